@@ -7,8 +7,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from making.tables import Schema
-from nrs_design.spec import read_spec
-from nrs_design.spec.document import to_data
+from nrs_design.spec.document import parse_document, read_source, to_data
 
 LONGEST = 48
 
@@ -36,7 +35,7 @@ def examples_of(
     """
     found: dict[tuple[str, str], Example] = {}
     for link, path in specs:
-        said: Any = to_data(read_spec(path).root)
+        said: Any = to_data(parse_document(read_source(path)[1]))
         root = next(name for name, kind in roots.items() if kind == said["kind"])
         for name, key, value in _walk(said, {"$ref": root}, "", definitions):
             text = _written(value)

@@ -14,7 +14,8 @@ from nrs_design.spec.check import Row, each
 from nrs_design.spec.dwell import DwellObstacle, find_changing_parameter
 from nrs_design.spec.faults import Location, did_you_mean
 from nrs_design.spec.fields import Label, Name, Title
-from nrs_design.spec.model import SpecModel
+from nrs_design.spec.misses import MissesSpec
+from nrs_design.spec.model import SpecModel, optional
 from nrs_design.spec.parameters import MAX_PARAMETERS, Entry, ParameterName, ParameterSpec
 from nrs_design.spec.references import NO_SUCH, Reference
 from nrs_design.spec.switching import (
@@ -107,6 +108,10 @@ class SwitchedSystemSpec(SpecModel):
     switching: SwitchingRule = Field(
         description="when modes change: arbitrary, or rules with dwell_time and transitions"
     )
+    misses: MissesSpec | None = optional(
+        "how many steps may miss their deadline, in discrete time, in the place of rules of "
+        "switching; the other modes are what a step in time brings about"
+    )
     resets: Annotated[tuple[ResetSpec, ...], Field(max_length=MAX_TRANSITIONS)] = Field(
         default=(),
         description="what switches do to the state; the others leave it as it is. Several from one "
@@ -165,6 +170,8 @@ def _resets(spec: SwitchedSystemSpec) -> Iterator[tuple[Location, _Reset]]:
 
 def _named_modes(spec: SwitchedSystemSpec) -> Iterator[tuple[Location, Reference]]:
     names = dict.fromkeys(mode.name for mode in spec.modes)
+    if spec.misses is not None:
+        yield ("misses", "mode"), Reference("mode", spec.misses.mode, names)
     for at, reset in _resets(spec):
         for key, name in (("from", reset.it.source), ("to", reset.it.target)):
             yield (*at, key), Reference("mode", name, names)
@@ -303,6 +310,32 @@ SYSTEM_CHECKS: tuple[Row[SwitchedSystemSpec], ...] = (
         Row[Any]("", _obstacle, "{0}", "leave {1} out, or {2}"),
     ),
     *each(_named_modes, NO_SUCH),
+    Row(
+        "misses",
+        lambda s: s.misses is not None and s.time == "continuous",
+        "deadlines are missed at steps, and time is continuous",
+        "write `time: discrete` and the matrices of a step, or remove misses",
+    ),
+    Row(
+        "misses",
+        lambda s: s.misses is not None and not (s.switching.is_arbitrary and not s.resets),
+        "a rule for misses says which modes may follow each other, and so do other rules",
+        "write `switching: arbitrary` without resets, or remove misses",
+    ),
+    Row(
+        "misses",
+        lambda s: (
+            s.misses is not None and any(not (p.varies or p.fixed) for p in s.parameters.values())
+        ),
+        "constant parameters are not modelled beside a rule for misses",
+        "remove `varies: false`, or misses",
+    ),
+    Row(
+        "misses.mode",
+        lambda s: s.misses is not None and len(s.modes) == 1,
+        "there is no mode of a step in time",
+        "add the mode of a hit beside that of a miss",
+    ),
     *each(
         _resets,
         Row[_Reset](

@@ -21,15 +21,20 @@ from nrs_design.spec.quantity import Quantity, is_less
 
 # What is assumed of switching, and why a doubt does not count: with it, less is shown.
 _ASSUMED = frozenset(
-    {"dwell_time", "longest_dwell_time", "transitions", "mode_logic", "accept_doubt"}
+    {"dwell_time", "longest_dwell_time", "transitions", "mode_logic", "accept_doubt", "misses"}
 )
 # What a proof is not about: words for people, where values come from, how long is searched.
 _BESIDE = frozenset({"title", "description", "provenance", "certification", "design"})
 # Parts whose keys are names that somebody has given, and no words of ours.
 _NAMED = frozenset({"environments", "controllers", "parameters", "modes", "scenarios"})
 # Limits below which something must stay, and above which: of a goal, a scenario, an assumption.
-_AT_MOST = frozenset({"peak_torque", "dwell_time", "hold", "slowest_speed", "shortest_contact"})
-_AT_LEAST = frozenset({"decay_rate", "delay", "initial_force", "longest_dwell_time"})
+_AT_MOST = frozenset(
+    {"peak_torque", "dwell_time", "hold", "slowest_speed", "shortest_contact", "of"}
+)
+# How many deadlines may be missed is what must be borne.
+_AT_LEAST = frozenset(
+    {"decay_rate", "delay", "initial_force", "longest_dwell_time", "at_most", "consecutive"}
+)
 _LIMITS = "limits"
 _PEOPLE = (_LIMITS, "contact")
 # Of a region of a body: what allows more the larger it is, what the smaller; of its mass, both.
@@ -54,7 +59,11 @@ _ABOUT_VALUES = _BESIDE | {
     *("doubts", "accept_doubt", "range_covers", "range_id", "linearized_about"),
 }
 # Ranges that stand alone, as lists of their ends.
-_RANGES = frozenset({"range", "band", "delay", "latency", "dead_time", "preload", "inertia"})
+_RANGES = frozenset(
+    {"range", "band", "delay", "latency", "dead_time", "preload", "inertia", "mobility"}
+)
+# Parts of which every entry is one.
+_OF_RANGES = frozenset({"joints"})
 
 Place = tuple[str | int, ...]
 
@@ -116,6 +125,7 @@ def _changes(before: Data, after: Data, at: Place) -> Iterator[Change]:
     key = next((part for part in reversed(at) if isinstance(part, str)), "")
     if before == after:
         return
+    key = key if _OF_RANGES.isdisjoint(_keys(at[:-1])) else "range"
     was, now = _range_of(before, key), _range_of(after, key)
     two_values = isinstance(before, str) and isinstance(after, str) and not _is_touched(at)
     if was is not None and now is not None and not two_values:

@@ -110,15 +110,21 @@ def assemble_matrices(spec: SwitchedSystemSpec, scale: Fraction = DECLARED) -> S
     parameters = read_parameters(spec, scale)
     resets = ((r.source, r.target, RationalMatrix.from_rows(r.map)) for r in spec.resets)
     corners = {mode.name: corner_modes(mode, parameters) for mode in spec.modes}
-    groups = {name: tuple(mode.name for mode in modes) for name, modes in corners.items()}
-    modes = tuple(chain.from_iterable(corners.values()))
+    if spec.misses is not None:
+        from nrs_design.switched.misses import modes_with_misses
+
+        modes, switching = modes_with_misses(corners, spec.misses)
+    else:
+        groups = {name: tuple(mode.name for mode in modes) for name, modes in corners.items()}
+        modes = tuple(chain.from_iterable(corners.values()))
+        switching = assemble_switching(spec.switching, groups, resets)
     system = SwitchedSystem(
         spec.name,
         Time(spec.time),
         tuple(f"x{i + 1}" for i in range(spec.dimension)),
         modes,
         assume_matrices(spec, parameters, scale),
-        assemble_switching(spec.switching, groups, resets),
+        switching,
     )
     return with_constants(system, constant_parameters(parameters))
 

@@ -72,6 +72,10 @@ def assume_matrices(
 
 
 def _switch_texts(spec: SwitchedSystemSpec) -> tuple[Assumption, ...]:
+    if (rule := spec.misses) is not None:
+        within, (most, of) = str(rule), rule.window
+        said = say("rules.misses", within, mode=rule.mode, at_most=most, of=of)
+        return say("at-a-switch.continuous", states="The state is"), said
     if spec.switching.is_arbitrary and not spec.resets:
         return GIVEN_MATRICES[1:]
     jump = say("at-a-switch.continuous", states="The state is")

@@ -110,7 +110,7 @@ class Mobility:
         AssemblyError
             If the period is too long.
         """
-        push = _push_of(self, drive, tuple(environments), frame.period)
+        push = push_of(self, drive, tuple(environments), frame.period)
         n = len(frame.states)
         unit = coordinates(n)
         first = n + len(INPUTS)
@@ -160,7 +160,7 @@ class Mobility:
 
 
 @dataclass(frozen=True, slots=True)
-class _Push:
+class AxisPush:
     """With ``w1^2 + w2^2`` summed over the axes at most the squares of three numbers summed so.
 
     Two say how far w moves an axis, three of what the numbers are made.
@@ -173,9 +173,27 @@ class _Push:
     deflection: Fraction
 
 
-def _push_of(
+def push_of(
     mobility: Mobility, drive: Drive, environments: Sequence[Environment], T: Fraction
-) -> _Push:
+) -> AxisPush:
+    """Return what the other axes do to one within a period.
+
+    Parameters
+    ----------
+    mobility : Mobility
+        Of the arm.
+    drive : Drive
+        Of the axis, with its own inertia.
+    environments : sequence of Environment
+        What it may touch.
+    T : Fraction
+        The period, in s.
+
+    Raises
+    ------
+    AssemblyError
+        If the period is too long.
+    """
     J, r, s = drive.ranges["J"].nominal, mobility.radius, mobility.middle
     stiffness = [e.stiffness for e in environments]
     damping = [damping_of(e) for e in environments]
@@ -197,7 +215,7 @@ def _push_of(
     little = ONE if wide_k or wide_b else LITTLE
     size = r**2 * (1 + nu) / back**2
     others = size * 2 * (1 + 1 / little)
-    return _Push(
+    return AxisPush(
         _root(T**2 / (ON_SPEED * left)) / slowing,
         _root((T**2 * 2 / 3) ** 2 / ((1 - ON_SPEED) * left)) / slowing,
         _root(size * (1 + little)) / s,

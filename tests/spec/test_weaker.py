@@ -58,6 +58,13 @@ switching:
   longest_dwell_time: {fast: 2 s}
   transitions: [[fast, slow], [slow, fast]]
 """
+ARM = """\
+kind: task-space
+name: c
+common:
+  coupling: {mobility: [0.8, 1.2], arm: {urdf: a.urdf, tip: tip, joints: {q1: [-6 deg, 6 deg]}}}
+misses: {mode: miss, at_most: 2, of: 10}
+"""
 WEAKER = {
     "constant stiffness": ("[720 N/m, 768 N/m]}", "[720 N/m, 768 N/m], varies: false}"),
     "range": ("[720 N/m, 768 N/m]", "[730 N/m, 768 N/m]"),
@@ -296,3 +303,26 @@ def test_every_part_that_a_shipped_spec_loses_is_weaker_or_beside_the_proof():
             (change,) = find_changes(before, after)
             beside = key in allowed or (key, before[key]) == ("contact", "kept")
             assert change.weaker or beside, (path, key)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "weaker"),
+    [
+        ("[0.8, 1.2]", "[0.9, 1.2]", True),
+        ("[0.8, 1.2]", "[0.7, 1.2]", False),
+        ("[-6 deg, 6 deg]", "[-4 deg, 6 deg]", True),
+        ("[-6 deg, 6 deg]", "[-6 deg, 0.1 rad]", True),
+        ("[-6 deg, 6 deg]", "[-7 deg, 6 deg]", False),
+        ("at_most: 2", "at_most: 1", True),
+        ("at_most: 2", "at_most: 3", False),
+        ("of: 10", "of: 11", True),
+        ("of: 10", "of: 9", False),
+        ("misses: {mode: miss, at_most: 2, of: 10}\n", "", False),
+    ],
+)
+def test_what_an_arm_may_do_and_how_often_steps_are_missed(old, new, weaker):
+    assert old in ARM
+    before, after = (to_data(parse_document(t)) for t in (ARM, ARM.replace(old, new)))
+    (change,) = find_changes(before, after)
+    assert change.weaker is weaker
+    assert new or [c.weaker for c in find_changes(after, before)] == [True]

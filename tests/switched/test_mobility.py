@@ -14,7 +14,7 @@ from nrs_design.models.drive import torque_drive
 from nrs_design.models.interval import Interval
 from nrs_design.pipeline import run_certification
 from nrs_design.spec import read_spec
-from nrs_design.switched.mobility import Mobility, _push_of
+from nrs_design.switched.mobility import Mobility, push_of
 
 T = 0.001
 LOW, HIGH = 0.8, 1.25
@@ -131,7 +131,7 @@ def test_no_period_goes_beyond_its_bound(ranged, near):
         drive = torque_drive(*(Interval.point(Fraction(str(v))) for v in (inertia, friction)))
         stiffness = Interval(Fraction(low), Fraction(low), Fraction(high))
         tissue = Environment("tissue", Elastic, (stiffness,))
-        pushes.append(_push_of(mobility, drive, (tissue,), Fraction("0.001")))
+        pushes.append(push_of(mobility, drive, (tissue,), Fraction("0.001")))
     closest = 0.0
     for _ in range(1000):
         omega, delta = rng.normal(size=3) / np.sqrt(J), rng.normal(size=3) * rng.choice([0, 0.03])

@@ -161,7 +161,7 @@ def shown_between(
     lows, highs = boxes
     middle = (lows + highs) / 2
     half = np.maximum(highs - middle, middle - lows) * OUTWARD
-    J, M = _over(arm, axes, middle, half)
+    J, M = enclosed_over(arm, axes, middle, half)
     weight = BallMatrix.known(np.diag(inertias))
     # What is rounded in 1/u and l is as small as what reading rounds.
     heavy = J.around(BallMatrix.known(np.diag(inertias / high)), half)
@@ -209,8 +209,20 @@ def _positive(form: Slopes, half: Floats) -> tuple[Bools, Floats]:
     return largest < 1, moved.sum(axis=-1).max(axis=-1)
 
 
-def _over(arm: ArmTree, axes: list[int], middle: Floats, half: Floats) -> tuple[Slopes, Slopes]:
-    """Return the Jacobian of the tip in some of its directions, and the mass matrix."""
+def enclosed_over(
+    arm: ArmTree, axes: list[int], middle: Floats, half: Floats
+) -> tuple[Slopes, Slopes]:
+    """Return the Jacobian of the tip in some of its directions, and the mass matrix, over boxes.
+
+    Parameters
+    ----------
+    arm : ArmTree
+        The arm.
+    axes : list of int
+        As for `mobility`.
+    middle, half : array, shape (n, b)
+        Joint positions at the middles of the boxes, and half their widths.
+    """
     n, b = middle.shape
     found: list[Slopes] = []
     M: Slopes | None = None

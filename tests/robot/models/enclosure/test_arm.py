@@ -4,7 +4,12 @@ import numpy as np
 import pytest
 
 from nrs_design.robot.models.arm import jacobian_and_mass, mobility
-from nrs_design.robot.models.enclosure.arm import BallMatrix, _over, cover_mobility, shown_between
+from nrs_design.robot.models.enclosure.arm import (
+    BallMatrix,
+    cover_mobility,
+    enclosed_over,
+    shown_between,
+)
 from nrs_design.robot.models.urdf import read_arm
 from nrs_design.work import Allowance
 from tests.robot.models.arms import EXAMPLE, random_tree
@@ -49,7 +54,7 @@ def test_jacobian_and_mass_stay_in_what_encloses_them(tree, seed):
     rng = np.random.default_rng(seed)
     middle = rng.uniform(-1, 1, (arm.order, 3))
     half = rng.uniform(0.01, 0.3, (arm.order, 3))
-    J, M = _over(arm, ALL, middle, half)
+    J, M = enclosed_over(arm, ALL, middle, half)
     for b in range(3):
         for _ in range(20):
             q = middle[:, b] + half[:, b] * rng.uniform(-1, 1, arm.order)

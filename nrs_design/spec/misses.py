@@ -1,0 +1,145 @@
+"""How many steps of a discrete loop may miss their deadline: a rule, and what it allows.
+
+Such loops are called weakly hard (Bernat, Burns and Llamosi 2001).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import comb
+from typing import Annotated
+
+from pydantic import Field
+
+from nrs_design.spec.check import Row
+from nrs_design.spec.fields import Label, whole
+from nrs_design.spec.model import SpecModel, optional
+
+MOST_STEPS = 1000
+MOST_STATES = 1000
+_Count = Annotated[int, whole(1, MOST_STEPS)]
+
+
+class MissesSpec(SpecModel):
+    """In any so many steps in a row, at most some are in the mode of a miss."""
+
+    mode: Label = Field(description="name of the mode that a missed deadline brings about")
+    at_most: _Count | None = optional("how many of `of` steps in a row may be missed")
+    of: _Count | None = optional("length of the window, in steps")
+    consecutive: _Count | None = optional(
+        "in the place of both: how many steps in a row may be missed"
+    )
+
+    @property
+    def window(self) -> tuple[int, int]:
+        """How many misses there are at most, in how many steps."""
+        if self.consecutive is not None:
+            return self.consecutive, self.consecutive + 1
+        assert self.at_most is not None
+        assert self.of is not None
+        return self.at_most, self.of
+
+    def __str__(self) -> str:
+        """Say the rule in a few words."""
+        if self.consecutive is not None:
+            return f"at most {self.consecutive} steps in a row in {self.mode}"
+        return f"at most {self.at_most} of any {self.of} steps in a row in {self.mode}"
+
+    checks = (
+        Row(
+            "",
+            lambda s: (s.consecutive is None) == (s.at_most is None and s.of is None),
+            "a rule for misses is a window, or a number of misses in a row",
+            "write `{{mode: miss, at_most: 2, of: 10}}`, or `{{mode: miss, consecutive: 3}}`",
+        ),
+        Row(
+            "",
+            lambda s: s.consecutive is None and (s.at_most is None) != (s.of is None),
+            "at_most and of belong together",
+            "write both, such as `at_most: 2, of: 10`",
+        ),
+        Row(
+            "of",
+            lambda s: None not in (s.at_most, s.of) and s.of <= s.at_most and (s.of, s.at_most),
+            "of any {0} steps, at most {1} may be missed: that is every one",
+            "write a longer window, or `switching: arbitrary`",
+        ),
+        Row(
+            "of",
+            lambda s: (
+                None not in (s.at_most, s.of) and (n := comb(s.of, s.at_most)) > MOST_STATES and n
+            ),
+            f"the rule has {{0}} states, at most {MOST_STATES} are built",
+            "write a shorter window",
+        ),
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class MissAutomaton:
+    """The words of hits and misses that a rule allows, by the fewest states; any may be first."""
+
+    # By state: where a hit and where a miss lead; None where no miss is allowed.
+    hit: tuple[int, ...]
+    miss: tuple[int | None, ...]
+
+    @property
+    def count(self) -> int:
+        """How many states there are."""
+        return len(self.hit)
+
+
+def automaton_of(at_most: int, of: int) -> MissAutomaton:
+    """Return the automaton of a window, with the fewest states.
+
+    A state is what the window still remembers: how long ago the misses were. States that allow the
+    same words are one.
+
+    Parameters
+    ----------
+    at_most, of : int
+        At most so many misses in so many steps; the first is the smaller one, and positive.
+    """
+    # Ages of the misses in the last steps, the youngest first; what is as old as the window is out.
+    start: tuple[int, ...] = ()
+    found = {start: 0}
+    hits, misses = list[int](), list[int | None]()
+    waiting = [start]
+
+    def place(ages: tuple[int, ...]) -> int:
+        if ages not in found:
+            found[ages] = len(found)
+            waiting.append(ages)
+        return found[ages]
+
+    for state in waiting:
+        older = tuple(age + 1 for age in state if age + 1 < of)
+        hits.append(place(older))
+        misses.append(place((1, *older)) if len(state) < at_most else None)
+    return _smallest(hits, misses)
+
+
+def _smallest(hits: list[int], misses: list[int | None]) -> MissAutomaton:
+    """Join states that allow the same words (Moore 1956)."""
+    part = [int(target is not None) for target in misses]
+    while True:
+        seen: dict[tuple[int, int, int | None], int] = {}
+        new = [
+            seen.setdefault(
+                (part[k], part[hits[k]], None if (m := misses[k]) is None else part[m]), len(seen)
+            )
+            for k in range(len(hits))
+        ]
+        if len(seen) == len(set(part)):
+            break
+        part = new
+    # Of each part its first state, in their order.
+    first: dict[int, int] = {}
+    for k, p in enumerate(part):
+        first.setdefault(p, k)
+    order = {p: i for i, p in enumerate(first)}
+    kept = [(hits[k], misses[k]) for k in first.values()]
+    return MissAutomaton(
+        tuple(order[part[hit]] for hit, _ in kept),
+        tuple(None if miss is None else order[part[miss]] for _, miss in kept),
+    )

@@ -1,0 +1,68 @@
+"""The modes of a loop of which some steps miss their deadline: one for each outcome and state."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+
+from nrs_design.errors import AssemblyError
+from nrs_design.proof.mode import Mode
+from nrs_design.proof.switching import Stay, Switching
+from nrs_design.spec.misses import MissesSpec, automaton_of
+
+MAX_TRANSITIONS = 200_000
+ONCE = Stay(Fraction(1), Fraction(1))
+
+
+def modes_with_misses(
+    groups: Mapping[str, Sequence[Mode]], rule: MissesSpec
+) -> tuple[tuple[Mode, ...], Switching]:
+    """Return the modes by what they lead to, and the switches that a rule for misses allows.
+
+    What may follow depends on the state of the automaton alone, so a mode is named by the state
+    that it leads to, such as ``miss/s3``. Corners of one mode may take turns at every step.
+
+    Parameters
+    ----------
+    groups : mapping of str to sequence of Mode
+        The corners of each mode of the spec; all but that of a miss are hits.
+    rule : MissesSpec
+        The rule.
+
+    Raises
+    ------
+    AssemblyError
+        If there are too many switches.
+    """
+    automaton = automaton_of(*rule.window)
+    # By the state that they lead to, and whether they are a miss; each in the order of states.
+    reached: dict[tuple[bool, int], tuple[Mode, ...]] = {}
+    for missed, targets in ((False, automaton.hit), (True, automaton.miss)):
+        corners = [
+            mode
+            for name, modes in groups.items()
+            if (name == rule.mode) is missed
+            for mode in modes
+        ]
+        for target in sorted({t for t in targets if t is not None}):
+            reached[missed, target] = tuple(
+                Mode(f"{mode.name}/s{target}", mode.A) for mode in corners
+            )
+    transitions: list[tuple[str, str]] = []
+    stays: list[tuple[str, Stay]] = []
+    for (_, state), sources in reached.items():
+        following = [(False, automaton.hit[state]), (True, automaton.miss[state])]
+        after = [mode for missed, t in following if t is not None for mode in reached[missed, t]]
+        names = {mode.name for mode in after}
+        if (len(transitions) + len(sources) * len(after)) > MAX_TRANSITIONS:
+            raise AssemblyError(
+                f"the rule for misses makes more than {MAX_TRANSITIONS} switches",
+                remedy="shorten its window, or declare fewer parameters",
+                at=("misses",),
+            )
+        for source in sources:
+            transitions += ((source.name, mode.name) for mode in after if mode is not source)
+            if source.name not in names:
+                stays.append((source.name, ONCE))
+    modes = tuple(mode for corners in reached.values() for mode in corners)
+    return modes, Switching(Fraction(1), tuple(transitions), stays=tuple(stays))

@@ -1,0 +1,100 @@
+"""Rules for missed deadlines: their words, counted and compared with every window."""
+
+from itertools import product
+from math import comb
+
+import pytest
+
+from nrs_design.errors import SpecError
+from nrs_design.spec import parse_spec
+from nrs_design.spec.misses import automaton_of
+
+TEXT = """\
+kind: switched-system
+name: weakly-hard
+time: discrete
+parameters: {k: {nominal: 1, range: [0.5, 1]}}
+modes:
+  - {name: hit, A: [["0.5*k"]]}
+  - {name: miss, A: [["1.5"]]}
+switching: arbitrary
+misses: {mode: miss, at_most: 1, of: 3}
+"""
+
+
+def follow(automaton, word):
+    """Return the state after a word of misses (1) and hits (0); None if it is not allowed."""
+    state = 0
+    for missed in word:
+        state = automaton.miss[state] if missed else automaton.hit[state]
+        if state is None:
+            return None
+    return state
+
+
+@pytest.mark.parametrize(("at_most", "of"), [(1, 2), (1, 3), (2, 4), (2, 5), (3, 4), (4, 6)])
+def test_words_are_those_that_every_window_allows(at_most, of):
+    automaton = automaton_of(at_most, of)
+    for length in range(1, 11):
+        for word in product((0, 1), repeat=length):
+            windows = (word[i : i + of] for i in range(max(1, length - of + 1)))
+            allowed = all(sum(window) <= at_most for window in windows)
+            assert (follow(automaton, word) is not None) is allowed
+
+
+@pytest.mark.parametrize(
+    ("at_most", "of"), [(1, 2), (1, 7), (2, 5), (2, 10), (3, 4), (3, 7), (5, 6)]
+)
+def test_there_are_as_few_states_as_can_be(at_most, of):
+    """No two states allow the same words, and each is reached; their number is a binomial."""
+    automaton = automaton_of(at_most, of)
+    assert automaton.count == comb(of, at_most)
+    words = [word for n in range(of) for word in product((0, 1), repeat=n)]
+
+    def future(state):
+        found = []
+        for word in words:
+            at = state
+            for missed in word:
+                at = None if at is None else (automaton.miss if missed else automaton.hit)[at]
+            found.append(at is not None)
+        return tuple(found)
+
+    assert len({future(state) for state in range(automaton.count)}) == automaton.count
+    reached = {follow(automaton, word) for word in words} - {None}
+    assert reached == set(range(automaton.count))
+
+
+def test_a_number_in_a_row_is_a_window():
+    spec = parse_spec(TEXT.replace("at_most: 1, of: 3", "consecutive: 3"))
+    assert spec.misses.window == (3, 4)
+    assert str(spec.misses) == "at most 3 steps in a row in miss"
+    assert str(parse_spec(TEXT).misses) == "at most 1 of any 3 steps in a row in miss"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("at_most: 1, of: 3", "at_most: 3, of: 3", "that is every one"),
+        ("at_most: 1, of: 3", "at_most: 3, of: 2", "that is every one"),
+        ("at_most: 1, of: 3", "at_most: 0, of: 3", "at_most"),
+        ("at_most: 1, of: 3", "at_most: 1", "belong together"),
+        ("at_most: 1, of: 3", "at_most: 1, of: 3, consecutive: 2", "a window, or a number"),
+        (", at_most: 1, of: 3", "", "a window, or a number"),
+        ("at_most: 1, of: 3", "at_most: 6, of: 30", "593775 states, at most 1000"),
+        ("mode: miss", "mode: mist", "there is no mode 'mist'"),
+        ("time: discrete", "time: continuous", "time is continuous"),
+        (
+            "switching: arbitrary",
+            "switching: {transitions: [[hit, miss]]}",
+            "and so do other rules",
+        ),
+        ("[0.5, 1]", "[0.5, 1], varies: false", "not modelled beside a rule for misses"),
+    ],
+)
+def test_rules_that_say_nothing_are_refused(old, new, said):
+    assert old in TEXT
+    with pytest.raises(SpecError, match=said) as caught:
+        parse_spec(TEXT.replace(old, new))
+    assert caught.value.line > 1
+    assert caught.value.remedy

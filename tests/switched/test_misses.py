@@ -1,0 +1,92 @@
+"""Loops that miss deadlines: verdicts known by hand, and by every word of a window."""
+
+from fractions import Fraction
+from itertools import product
+
+import numpy as np
+import pytest
+
+from nrs_design.search.certify import certify
+from nrs_design.spec import parse_spec
+from nrs_design.switched.assemble import assemble_matrices
+
+TEXT = """\
+kind: switched-system
+name: weakly-hard
+time: discrete
+modes:
+  - {{name: hit, A: {hit}}}
+  - {{name: miss, A: {miss}}}
+switching: arbitrary
+misses: {{mode: miss, at_most: {most}, of: {of}}}
+"""
+
+
+def system(hit, miss, most, of):
+    text = TEXT.format(hit=listed(hit), miss=listed(miss), most=most, of=of)
+    return assemble_matrices(parse_spec(text))
+
+
+def listed(A):
+    return [[str(Fraction(x).limit_denominator(1000)) for x in row] for row in A]
+
+
+def test_signals_are_the_words_of_the_rule():
+    """Of all sequences of modes, those along the switches are those of the windows."""
+    found = system([[0.5]], [[1.5]], 2, 4)
+    allowed = set(found.switching.transitions)
+    names = [mode.name for mode in found.modes]
+    once = {name for name, stay in found.switching.stays if stay.longest == 1}
+    allowed |= {(name, name) for name in names if name not in once}
+    words = {(name,) for name in names}
+    for _ in range(7):
+        words = {(*w, name) for w in words for name in names if (w[-1], name) in allowed}
+    said = {tuple(int(name.startswith("miss")) for name in word) for word in words}
+    expected = {
+        word
+        for word in product((0, 1), repeat=8)
+        if all(sum(word[i : i + 4]) <= 2 for i in range(5))
+    }
+    assert said == expected
+
+
+@pytest.mark.parametrize(
+    ("most", "of", "stable"),
+    [(1, 2, False), (1, 3, True), (2, 5, True), (2, 4, False), (3, 9, True)],
+)
+def test_one_state_decides_by_hand(most, of, stable):
+    """0.5 and 2.5: as many misses as allowed in every window, so 0.5^(of - most) 2.5^most."""
+    assert (0.5 ** (of - most) * 2.5**most < 1) is stable
+    found = certify(system([[0.5]], [[2.5]], most, of))
+    assert found.verdict == ("proved" if stable else "refuted")
+    if stable:
+        exact = (0.5 ** (of - most) * 2.5**most) ** (1 / of)
+        assert exact <= float(found.evidence.proved_rate(found.system)) <= exact * 1.01
+
+
+def largest_growth(hit, miss, most, of, longest=8):
+    """Return the largest spectral radius per step of the words that may repeat for ever."""
+    found = 0.0
+    for n in range(1, longest + 1):
+        for word in product((0, 1), repeat=n):
+            long = word * (of // n + 2)
+            if any(sum(long[i : i + of]) > most for i in range(len(long) - of + 1)):
+                continue
+            product_of = np.eye(len(hit))
+            for missed in word:
+                product_of = (miss if missed else hit) @ product_of
+            found = max(found, np.abs(np.linalg.eigvals(product_of)).max() ** (1 / n))
+    return found
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_no_verdict_is_against_a_word(seed):
+    rng = np.random.default_rng(seed)
+    hit, miss = rng.normal(size=(2, 2, 2))
+    hit *= rng.uniform(0.4, 0.9) / np.abs(np.linalg.eigvals(hit)).max()
+    miss *= rng.uniform(0.9, 1.5) / np.abs(np.linalg.eigvals(miss)).max()
+    hit, miss = (np.round(M, 3) for M in (hit, miss))
+    most, of = [(1, 2), (1, 3), (2, 4), (2, 3)][seed % 4]
+    growth = largest_growth(hit, miss, most, of)
+    verdict = certify(system(hit, miss, most, of)).verdict
+    assert verdict == ("refuted" if growth > 1 else "proved")

@@ -29,6 +29,8 @@ from nrs_design.gating.recorded import hash_recorded
 from nrs_design.gating.rules import NOT_WEAKER
 from nrs_design.spec import LoadedSpec, read_spec
 from nrs_design.spec.document import to_data
+from nrs_design.spec.load import is_there
+from nrs_design.spec.task_space import file_of
 from nrs_design.spec.weaker import Change, find_changes
 
 _GONE = "this spec of the base is gone: what it asked for is no longer shown"
@@ -65,7 +67,7 @@ def base_paths(paths: Sequence[Path], base: Path) -> tuple[Path, ...]:
                 path=path,
                 remedy="name what is compared itself, or remove the link",
             )
-    return tuple(base / path for path in relative if os.path.lexists(base / path))
+    return tuple(base / path for path in relative if os.path.lexists(file_of(base / path)))
 
 
 def compare_with_base(
@@ -101,7 +103,7 @@ def compare_with_base(
             gone.append(_gone(name))
             continue
         entry = entries.get(os.path.normpath(name))
-        if os.path.lexists(now.path):
+        if os.path.lexists(now.path) or is_there(now.path):
             found[now.path] = [*_of_spec(path, now), *_of_lock(entry, now)]
         else:
             # It is an outcome, since the lock file here names it still.
@@ -176,7 +178,7 @@ def _of_spec(path: Path, now: SpecOutcome) -> Iterator[Change]:
         return
     yield from find_changes(to_data(before.root), to_data(after.root))
     if before.bounds and after.bounds and before.bounds != after.bounds:
-        yield Change(("coupling",), "the bounds of its robot are others", True)
+        yield Change(("coupling",), "the bounds of its robot, or its URDF, are others", True)
     yield from _of_recorded(before, after)
 
 

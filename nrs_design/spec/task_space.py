@@ -114,8 +114,8 @@ def axis_document(root: Node, path: Path) -> Mapping:
         raise SpecError(
             f"this file holds several axes: {listed}",
             path=path,
-            remedy=f"name one, such as {address(path, known[0])}; certify-switching, gate and "
-            "check take them all",
+            remedy=f"name one, such as {address(path, known[0])}; check, certify-switching, "
+            "optimize, report and gate take them all",
         )
     axis = str(path).removeprefix(f"{file}{SEPARATOR}")
     assert isinstance(root, Mapping)

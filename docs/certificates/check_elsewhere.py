@@ -104,7 +104,9 @@ def acting(k, active):
         q = {key: x for key, x in q.items() if key in M or key[:8] in active}
         for i, entry in table(item["columns"][k], n, 1).items():
             M[i][act] = entry[0,]
-        facts += [(act, {act: 1}, {act: 1}), (act, {key: -x for key, x in q.items()}, q)]
+        alike = [*dict.fromkeys(c["name"] for c in o.get("couplings", ()))]
+        fact = f"coupling {alike.index(item['name']) + 1}" if act in acts["coupling"] else act
+        facts += [(fact, {act: 1}, {act: 1}), (fact, {key: -x for key, x in q.items()}, q)]
     for row in [*M.values(), *(v for _, *pair in facts for v in pair)] * (k >= count):
         need(row.pop((n - 1,), 0) == (row is M[n - 1,] and not flow), "free, but pushed")
     return Step(mode["name"], "modes", "modes", n, M, flow, facts, mode["denominator"], 1)

@@ -10,8 +10,10 @@ from fractions import Fraction
 
 import pytest
 
-from nrs_design.certificates.certificate import content_id
+from nrs_design.certificates.certificate import content_id, to_document
 from nrs_design.certificates.prove import prove
+from nrs_design.pipeline import run_certification
+from nrs_design.spec import read_spec
 from tests.certificates.attacks import (
     ATTACKS,
     BOTH,
@@ -67,7 +69,7 @@ def decide(path, monkeypatch):
 
 def test_it_is_short_and_imports_nothing_of_ours():
     text = SCRIPT.read_text()
-    assert len(text.splitlines()) <= 250
+    assert len(text.splitlines()) <= 252
     imported = {
         (item.module if isinstance(item, ast.ImportFrom) else item.names[0].name)
         for item in ast.walk(ast.parse(text))
@@ -82,6 +84,23 @@ def test_what_ships_holds(path, monkeypatch, capsys):
     kinds = [item["kind"] for item in json.loads(path.read_text())["statements"]]
     assert decide(path, monkeypatch) == 0
     assert capsys.readouterr().out.splitlines() == [f"{kind}: holds" for kind in kinds]
+
+
+def test_couplings_of_one_name_have_one_multiplier(judge):
+    """An axis of an arm: said under names of their own, two of its couplings are not bounded."""
+    axis = read_spec(f"{ROOT / 'docs/examples/six-torques.nrs.yaml'}#rx")
+    document = to_document(run_certification(axis).certificate)
+    assert judge(document) == 0
+    forged = copy.deepcopy(document)
+    for k, item in enumerate(forged["couplings"]):
+        item["name"] = f"the mobility of the arm {k}"
+    assert judge(forged) == 1
+    assert prove(forged).fault
+    stronger = copy.deepcopy(document)
+    for row in stronger["couplings"][0]["rows"]:
+        row["numerators"] = [[9 * x for x in row["numerators"][0]]]
+    assert judge(stronger) == 1
+    assert prove(stronger).fault
 
 
 def test_it_runs_as_typed():

@@ -107,13 +107,16 @@ const check = (() => {
     for (const act of active) {
       const [kind, number] = act.split(" "), item = o[`${kind}s`][number - 1], column = table(item.columns[k], n, 1);
       s.M.forEach((row, i) => row.set(act, [column.N[i][0], column.d]));
-      s.facts.push([act, 1n, one(act), one(act)]);
+      // Couplings of one name are bounded together.
+      const distinct = [...new Set((o.couplings ?? []).map(({ name }) => name))];
+      const fact = kind === "coupling" ? `coupling ${distinct.indexOf(item.name) + 1}` : act;
+      s.facts.push([fact, 1n, one(act), one(act)]);
       need(item.columns.length === S.A.length && item.rows.length === S.A.length, "a mode has no column or row");
       const keys = [...range(n).map(String), ...S.named("channel"), ...(kind === "coupling" ? S.named("rounding") : [])];
       const all = [...vector(table(item.rows[k], 1, keys.length)).values()].map((x, j) => [keys[j], x]);
       need(k < S.count || !all[n - 1][1][0], "free, but the deflection acts");
       const q = new Map(all.filter(([key], j) => j < n || active.includes(key)));
-      s.facts.push([act, -1n, q, q]);
+      s.facts.push([fact, -1n, q, q]);
     }
     return s;
   }

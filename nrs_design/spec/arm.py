@@ -1,4 +1,4 @@
-"""An arm as a URDF file has it, where its tip is, and in which joint positions it is used."""
+"""The arm of a URDF or MJCF file, where its tip is, and in which joint positions it is used."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ _POSITIONS = ReadBy(
 class ArmSpec(SpecModel):
     """The arm whose mobility a spec relies on; `nrs-design robot mobility` computes it."""
 
-    urdf: Title = Field(description="URDF file, relative to this file")
+    model: Title = Field(description="URDF or MJCF file, relative to this file")
     tip: Title = Field(
         description="its link on which forces act: axes are those of its frame, and what an axis "
         "is called, x, y, z, rx, ry or rz, says along or about which of them"

@@ -84,7 +84,7 @@ class CouplingSpec(SpecModel):
             for name, (low, high) in self.arm.joints.items()
         )
         return (
-            f"on trust as that of the link {self.arm.tip} of {self.arm.urdf}, its inertias those "
+            f"on trust as that of the link {self.arm.tip} of {self.arm.model}, its inertias those "
             f"of the file, with the joints at {poses}; `nrs-design robot mobility` and "
             "`nrs-design gate` compute it"
         )

@@ -177,7 +177,7 @@ def _loaded(file: Path, text: str, root: Node, syntax: tuple[Fault, ...]) -> Loa
         used = bounds.id
         sha256 = hash_meaning({"spec": sha256, "bounds": used})
     if spec.kind == "interaction-design" and spec.coupling is not None and spec.coupling.arm:
-        used = _hash_of_arm(file, spec.coupling.arm.urdf, root)
+        used = _hash_of_arm(file, spec.coupling.arm.model, root)
         sha256 = hash_meaning({"spec": sha256, "urdf": used})
     return LoadedSpec(file, sha256, text, spec, root, used)
 
@@ -189,9 +189,9 @@ def _hash_of_arm(spec: Path, urdf: str, root: Node) -> str:
         with open_regular(file) as opened:
             return hashlib.sha256(opened.read()).hexdigest()
     except OSError:
-        at = place_of(root, ("coupling", "arm", "urdf"), at_key=True)
+        at = place_of(root, ("coupling", "arm", "model"), at_key=True)
         raise SpecError(
-            f"there is no URDF {quoted(urdf)} relative to this file",
+            f"there is no model {quoted(urdf)} relative to this file",
             path=spec,
             line=at.line,
             column=at.column,

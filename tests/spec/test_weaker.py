@@ -62,7 +62,7 @@ ARM = """\
 kind: task-space
 name: c
 common:
-  coupling: {mobility: [0.8, 1.2], arm: {urdf: a.urdf, tip: tip, joints: {q1: [-6 deg, 6 deg]}}}
+  coupling: {mobility: [0.8, 1.2], arm: {model: a.urdf, tip: tip, joints: {q1: [-6 deg, 6 deg]}}}
 misses: {mode: miss, at_most: 2, of: 10}
 """
 WEAKER = {

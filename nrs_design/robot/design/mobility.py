@@ -76,7 +76,7 @@ def read_arm_in_use(path: Path) -> ArmInUse:
         raise DesignError(
             "no arm is named",
             path=first.path,
-            remedy="add `arm: {urdf: arm.urdf, tip: tool0, joints: {...}}` to coupling",
+            remedy="add `arm: {model: arm.urdf, tip: tool0, joints: {...}}` to coupling",
         )
     names = tuple(str(item.path).rpartition("#")[2] for item in loaded)
     with placed(first):
@@ -86,7 +86,7 @@ def read_arm_in_use(path: Path) -> ArmInUse:
             if design.coupling != coupling:
                 _wrong(f"the coupling of {name} is not that of {names[0]}", "say it in common")
             _check_name(design, name)
-        urdf = first.path.parent / arm.urdf
+        urdf = first.path.parent / arm.model
         held = {name: low.si for name, (low, high) in arm.joints.items() if low == high}
         model = read_arm(urdf, arm.tip, held)
         low, high = _box(arm, model)

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
+MAX_JOINTS = 12
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,6 +26,7 @@ class ArmJoint:
     limits: tuple[float, float] | None  # In rad or m; None for one that turns without end
     # Spatial inertia of the body in the frame of the joint, angular part first: shape (6, 6).
     inertia: Floats
+    armature: float = 0.0  # Of its drive, at the joint, in kg m^2 or kg
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,9 +95,9 @@ def motion_transform(rotation: Floats, place: Floats) -> Floats:
     place : array, shape (3,)
         Of its origin, in the first.
     """
-    turned = np.swapaxes(rotation, -1, -2)
-    zero = np.zeros_like(turned)
-    return np.block([[turned, zero], [-turned @ cross_matrix(place), turned]])
+    rotated = np.swapaxes(rotation, -1, -2)
+    zero = np.zeros_like(rotated)
+    return np.block([[rotated, zero], [-rotated @ cross_matrix(place), rotated]])
 
 
 def cross_matrix(v: Floats) -> Floats:
@@ -108,6 +110,12 @@ def cross_motion(S: Floats) -> Floats:
     """Return the matrix of the cross product of spatial velocities with one."""
     w, v = cross_matrix(S[:3]), cross_matrix(S[3:])
     return np.block([[w, np.zeros((3, 3))], [v, w]])
+
+
+def turned(axis: Floats, angle: float) -> Floats:
+    """Return the rotation about a unit vector (Rodrigues)."""
+    a = cross_matrix(axis)
+    return np.asarray(np.eye(3) + np.sin(angle) * a + (1 - np.cos(angle)) * (a @ a))
 
 
 def joint_axis(joint: ArmJoint) -> Floats:
@@ -142,6 +150,7 @@ def jacobian_and_mass(arm: ArmTree, q: Floats) -> tuple[Floats, Floats]:
         J[..., i] += joint_axis(joint)
         found.append(J)
         M += np.swapaxes(J, -1, -2) @ joint.inertia @ J
+        M[..., i, i] += joint.armature
     tip = motion_transform(arm.tip_rotation, arm.tip_place) @ found[arm.tip]
     return np.concatenate([tip[..., 3:, :], tip[..., :3, :]], axis=-2), M
 
@@ -183,11 +192,11 @@ def _joint_motion(joint: ArmJoint, q: Floats) -> Floats:
         return moved @ fixed
     cos, sin = np.cos(q)[..., None, None], np.sin(q)[..., None, None]
     # Rodrigues' formula for the transposed rotation.
-    turned = E - sin * a + (1 - cos) * (a @ a)
-    zero = np.zeros_like(turned)
+    rotated = E - sin * a + (1 - cos) * (a @ a)
+    zero = np.zeros_like(rotated)
     return (
         np.concatenate(
-            [np.concatenate([turned, zero], axis=-1), np.concatenate([zero, turned], axis=-1)],
+            [np.concatenate([rotated, zero], axis=-1), np.concatenate([zero, rotated], axis=-1)],
             axis=-2,
         )
         @ fixed

@@ -17,17 +17,17 @@ from nrs_design.errors import SpecError
 from nrs_design.files import open_regular
 from nrs_design.proof.text import quoted
 from nrs_design.robot.models.arm import (
+    MAX_JOINTS,
     ArmJoint,
     ArmTree,
     Floats,
-    cross_matrix,
     motion_transform,
     spatial_inertia,
+    turned,
 )
 from nrs_design.spec.faults import did_you_mean
 
 MAX_BYTES = 4 * 2**20
-MAX_JOINTS = 12
 _MOVING = ("revolute", "continuous", "prismatic")
 # A principal moment of a rigid body is at most the sum of the two others, but for rounded digits.
 _TRIANGLE = 1 + 1e-6
@@ -46,12 +46,12 @@ class _Joint:
 
 
 def read_arm(path: Path, tip: str, held: Mapping[str, float] = MappingProxyType({})) -> ArmTree:
-    """Read an arm, and which of its links is the tip.
+    """Read an arm from URDF, or from MJCF, and which of its links is the tip.
 
     Parameters
     ----------
     path : Path
-        A URDF file.
+        A URDF or MJCF file.
     tip : str
         Name of a link.
     held : mapping of str to float
@@ -64,6 +64,10 @@ def read_arm(path: Path, tip: str, held: Mapping[str, float] = MappingProxyType(
         moves nothing with an inertia.
     """
     root = _parsed(path)
+    if root.tag == "mujoco":
+        from nrs_design.robot.models.mjcf_arm import read_mjcf
+
+        return read_mjcf(path, root, tip, held)
     links = {_text(path, link, "name"): link for link in root.findall("link")}
     joints = [_joint(path, element, held) for element in root.findall("joint")]
     for name in held:
@@ -104,9 +108,9 @@ class _Tree:
                 X = motion_transform(rotation, place)
                 inertias[body] += X.T @ own @ X
             for joint in (j for j in self.joints if j.parent == link):
-                turned, moved = rotation @ joint.rotation, place + rotation @ joint.place
+                rotated, moved = rotation @ joint.rotation, place + rotation @ joint.place
                 if joint.kind == "fixed":
-                    waiting.append((joint.child, body, turned, moved))
+                    waiting.append((joint.child, body, rotated, moved))
                     continue
                 if len(made) == MAX_JOINTS:
                     raise _wrong(self.path, f"more than {MAX_JOINTS} joints move")
@@ -114,7 +118,7 @@ class _Tree:
                     ArmJoint(
                         joint.name,
                         body,
-                        turned,
+                        rotated,
                         moved,
                         joint.axis,
                         joint.kind == "prismatic",
@@ -179,10 +183,8 @@ def _parsed(path: Path) -> ElementTree.Element:
         root = ElementTree.fromstring(content)
     except ElementTree.ParseError as error:
         raise _wrong(path, f"this is no XML: {error}") from error
-    if root.tag == "mujoco":
-        raise _wrong(path, "this is MJCF", "save the model as URDF")
-    if root.tag != "robot":
-        raise _wrong(path, "this is no URDF: its root is not `robot`")
+    if root.tag not in ("robot", "mujoco"):
+        raise _wrong(path, "this is neither URDF nor MJCF: its root is not `robot` or `mujoco`")
     return root
 
 
@@ -224,10 +226,7 @@ def _joint(path: Path, element: ElementTree.Element, held: Mapping[str, float]) 
         if kind == "prismatic":
             place = place + rotation @ axis * held[name]
         else:
-            a = cross_matrix(axis)
-            rotation = rotation @ (
-                np.eye(3) + np.sin(held[name]) * a + (1 - np.cos(held[name])) * (a @ a)
-            )
+            rotation = rotation @ turned(axis, held[name])
         kind = "fixed"
     return _Joint(name, kind, parent, child, rotation, place, axis, limits)
 

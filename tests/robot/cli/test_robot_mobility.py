@@ -65,7 +65,7 @@ def test_too_little_work_decides_nothing(copy, tmp_path):
         ("q6: [-6 deg, 6 deg]", "q6: [6 deg, -6 deg]", "the range of q6 ends at"),
         ("q6: [-6 deg, 6 deg]", "q6: [-6 deg, 200 deg]", "'q6' is used beyond its limits"),
         ("tip: tip", "tip: top", "there is no link 'top'"),
-        ("urdf: arm.urdf", "urdf: other.urdf", "there is no URDF 'other.urdf'"),
+        ("model: arm.urdf", "model: other.urdf", "there is no model 'other.urdf'"),
         ("  rz:\n", "  yaw:\n", "axis 'yaw' is none of the tip"),
         ("  z:\n    axis: prismatic", "  q:\n    axis: prismatic", "axis 'q' is none of the tip"),
         ("    mobility: [0.7, 1.4]\n", "", "an arm is given, and no mobility"),

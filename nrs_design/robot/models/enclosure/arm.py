@@ -244,6 +244,8 @@ def enclosed_over(
         part = found[-1].around(BallMatrix.known(joint.inertia), half)
         M = part if M is None else M.plus(part, half)
     assert M is not None
+    armature = BallMatrix.known(np.diag([joint.armature for joint in arm.joints]))
+    M = Slopes.of(M.middle + armature, M.slopes, half)
     tip = BallMatrix.known(motion_transform(arm.tip_rotation, arm.tip_place))
     last = found[arm.tip]
     rows = [(axis + 3) % 6 for axis in axes]

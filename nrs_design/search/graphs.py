@@ -45,6 +45,8 @@ KEPT = 0.99
 MOST_ROUNDED = 250
 # Numbers of steps that are each shown for a mode that is stable, too.
 FEW_STAYS = 64
+# The lengths of a stay in continuous time, times the size of the mode, that are nearly one.
+NARROW_STAYS = 0.5
 # How finely the stays of a mode that must be left are enclosed.
 PIECES = (32, 256, 1024)
 
@@ -475,5 +477,9 @@ def _is_left(system: SwitchedSystem, mode: Mode, stay: Stay) -> bool:
     """Tell whether to show every stay, which asks for less than a decrease, but for longer."""
     if stay.longest is None:
         return False
-    few = stay.longest - stay.shortest < FEW_STAYS and system.time is Time.DISCRETE
+    width = float(stay.longest - stay.shortest)
+    few = width < FEW_STAYS
+    if system.time is Time.CONTINUOUS:
+        # Stays that are nearly of one length are enclosed well.
+        few = width * float(np.linalg.norm(mode.A.floats())) <= NARROW_STAYS
     return few or not is_stable(mode.A, system.time)

@@ -4,6 +4,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from scipy.linalg import expm
 
 from nrs_design.certificates.certificate import Verdict
 from nrs_design.errors import DesignError
@@ -20,6 +21,8 @@ from nrs_design.search.graphs import (
 )
 from nrs_design.search.ladder import applicable_methods
 from nrs_design.search.method import Method
+from nrs_design.spec import parse_spec
+from nrs_design.switched.assemble import assemble_matrices
 from tests.proof.graphs import shape_of
 from tests.proof.systems import (
     bouncing,
@@ -220,3 +223,56 @@ def test_equal_modes_and_blocks_are_left_as_they_are():
     assert shape_of(result.evidence) == "coupled-axes"
     assert len(result.system.modes) == 2
     assert np.isfinite(float(result.evidence.rate))
+
+
+def test_a_stable_mode_of_one_stay_need_not_decrease_on_the_way():
+    """The period shrinks to 0.934; in the form of a, the flow of a rises for a while."""
+    a, b, stays = [[0.13, 1.22], [-1.13, -0.56]], [[-0.77, -1.5], [0.96, 1.31]], ("1.7", "1.1")
+    text = f"""\
+kind: switched-system
+name: timed
+time: continuous
+modes:
+  - {{name: a, A: {a}}}
+  - {{name: b, A: {b}}}
+switching:
+  dwell_time: {{a: {stays[0]} s, b: {stays[1]} s}}
+  longest_dwell_time: {{a: {stays[0]} s, b: {stays[1]} s}}
+"""
+    period = expm(np.array(b) * float(stays[1])) @ expm(np.array(a) * float(stays[0]))
+    radius = np.abs(np.linalg.eigvals(period)).max()
+    assert radius == pytest.approx(0.934, abs=1e-3)
+    found = certify(assemble_matrices(parse_spec(text)), limits=Limits(optimize_rate=False))
+    assert found.verdict == "proved"
+    assert found.evidence.stays.leaving == ("a", "b")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(3))
+def test_timed_cycles_are_never_decided_wrongly(seed):
+    """Random pairs: stable periods are proved, but for a few, and the others are not."""
+    rng = np.random.default_rng(seed)
+    verdicts = {True: [], False: []}
+    while min(map(len, verdicts.values())) < 8:
+        A, B = rng.normal(size=(2, 2, 2)).round(2)
+        s, t = rng.uniform(0.2, 2, 2).round(1)
+        radius = np.abs(np.linalg.eigvals(expm(B * t) @ expm(A * s))).max()
+        stable = radius < 1
+        if abs(radius - 1) < 0.03 or len(verdicts[stable]) == 8:
+            continue
+        text = f"""\
+kind: switched-system
+name: timed
+time: continuous
+modes:
+  - {{name: a, A: {A.tolist()}}}
+  - {{name: b, A: {B.tolist()}}}
+switching:
+  dwell_time: {{a: {s} s, b: {t} s}}
+  longest_dwell_time: {{a: {s} s, b: {t} s}}
+"""
+        found = certify(assemble_matrices(parse_spec(text)), limits=Limits(optimize_rate=False))
+        verdicts[stable].append(str(found.verdict))
+    assert "refuted" not in verdicts[True]
+    assert verdicts[True].count("proved") >= 7
+    assert "proved" not in verdicts[False]

@@ -107,9 +107,8 @@ const check = (() => {
     for (const act of active) {
       const [kind, number] = act.split(" "), item = o[`${kind}s`][number - 1], column = table(item.columns[k], n, 1);
       s.M.forEach((row, i) => row.set(act, [column.N[i][0], column.d]));
-      // Couplings of one name are bounded together.
-      const distinct = [...new Set((o.couplings ?? []).map(({ name }) => name))];
-      const fact = kind === "coupling" ? `coupling ${distinct.indexOf(item.name) + 1}` : act;
+      // Couplings of one name have one bound.
+      const fact = kind === "coupling" ? `coupling ${[...new Set(o.couplings.map((c) => c.name))].indexOf(item.name) + 1}` : act;
       s.facts.push([fact, 1n, one(act), one(act)]);
       need(item.columns.length === S.A.length && item.rows.length === S.A.length, "a mode has no column or row");
       const keys = [...range(n).map(String), ...S.named("channel"), ...(kind === "coupling" ? S.named("rounding") : [])];

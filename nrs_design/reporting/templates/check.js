@@ -105,10 +105,8 @@ const check = (() => {
     const { o, n } = S, s = step(S.names[k], "modes", "modes", S.A[k], S.flow, 1);
     need(s.n === n, "modes are of unlike sizes");
     for (const act of active) {
-      const [kind, number] = act.split(" "), item = o[`${kind}s`][number - 1], column = table(item.columns[k], n, 1);
+      const [kind, number] = act.split(" "), item = o[`${kind}s`][number - 1], column = table(item.columns[k], n, 1), alike = [...new Set(o[`${kind}s`].map((c) => c.name))], fact = kind === "coupling" ? `coupling ${alike.indexOf(item.name) + 1}` : act;
       s.M.forEach((row, i) => row.set(act, [column.N[i][0], column.d]));
-      // Couplings of one name have one bound.
-      const fact = kind === "coupling" ? `coupling ${[...new Set(o.couplings.map((c) => c.name))].indexOf(item.name) + 1}` : act;
       s.facts.push([fact, 1n, one(act), one(act)]);
       need(item.columns.length === S.A.length && item.rows.length === S.A.length, "a mode has no column or row");
       const keys = [...range(n).map(String), ...S.named("channel"), ...(kind === "coupling" ? S.named("rounding") : [])];

@@ -62,8 +62,8 @@ def _together(axes: Sequence[Mapping[str, Any]]) -> Together:
     period = held[0].system.sample_time
     assert period is not None
     line = (
-        f"together: PROVED: all {len(axes)} axes, which act on each other through the arm, "
-        f"decrease with rho {at_most(rate)} per step, alpha {at_least((1 - rate) / period, '1/s')}"
+        f"together: PROVED: all {len(axes)} axes, through an arm of the stated mobility, taken on "
+        f"trust: rho {at_most(rate)} per step, alpha {at_least((1 - rate) / period, '1/s')}"
     )
     return line, {"together": {"verdict": "proved", "rate": exact_text(rate)}}
 

@@ -178,7 +178,9 @@ def _of_spec(path: Path, now: SpecOutcome) -> Iterator[Change]:
         return
     yield from find_changes(to_data(before.root), to_data(after.root))
     if before.bounds and after.bounds and before.bounds != after.bounds:
-        yield Change(("coupling",), "the bounds of its robot, or its URDF, are others", True)
+        yield Change(
+            ("coupling",), "the bounds of its robot, or the model of its arm, are others", True
+        )
     yield from _of_recorded(before, after)
 
 

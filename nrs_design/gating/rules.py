@@ -242,7 +242,7 @@ ROBOT_BOUNDS = Rule(
     "robot, which the certificate takes on trust. When their hash is not in the lock file, the "
     "gate computes every one of them again from the spec of the robot, by interval arithmetic, in "
     "minutes. Otherwise it tries poses, and a warning says that they are on trust in the lock "
-    "file. The mobility of an arm is computed from its URDF by every gate that is not --locked.",
+    "file. The mobility of an arm is computed from its model by every gate that is not --locked.",
     "Make the file anew with `nrs-design robot bounds ROBOT --write`; never edit it. Of an arm, "
     "write what `nrs-design robot mobility` shows.",
 )

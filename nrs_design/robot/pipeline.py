@@ -156,7 +156,7 @@ def run_mobility(path: Path, budget: float, progress: Progress = silent) -> ArmM
     Raises
     ------
     SpecError
-        If the file or the URDF is wrong.
+        If the file or the model is wrong.
     DesignError
         If they do not fit.
     """
@@ -178,19 +178,19 @@ def check_mobility(
     Raises
     ------
     SpecError
-        If the file or the URDF is wrong.
+        If the file or the model is wrong.
     DesignError
         If the work did not suffice to decide.
     """
     found = run_mobility(path, budget, progress)
     if found.verdict == "inconclusive":
         raise DesignError(
-            f"the mobility of {found.urdf.as_posix()} was not shown to stay in the declared range",
+            f"the mobility of {found.model.as_posix()} was not shown to stay in the declared range",
             path=path,
             remedy="declare a wider range, use smaller ranges of joints, or give "
             "`nrs-design robot mobility` more --budget",
         )
-    return found.urdf, found.faults
+    return found.model, found.faults
 
 
 def contradict_mobility(path: Path) -> tuple[Path, tuple[str, ...]]:
@@ -198,7 +198,7 @@ def contradict_mobility(path: Path) -> tuple[Path, tuple[str, ...]]:
     from nrs_design.robot.design.mobility import judge_mobility
 
     found = judge_mobility(path, 0.0, poses_only=True)
-    return found.urdf, found.faults
+    return found.model, found.faults
 
 
 def _checked(

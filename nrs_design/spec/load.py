@@ -57,13 +57,13 @@ class LoadedSpec:
 
     path: Path  # The file, as it was named
     # Hash of what the file says, in hexadecimal; see `hash_meaning`. Where it names a robot, the
-    # bounds of that are counted in, or its URDF.
+    # bounds of that are counted in, or the model of its arm.
     sha256: str
     text: str  # The file's text
     spec: Spec  # What it says
     # The text as a tree, for positions; parsed once more where it is not given.
     parsed: Node | None = field(default=None, repr=False, compare=False)
-    # Id of the bounds of the robot, or hash of the URDF, that it names; empty if it names none.
+    # Id of the bounds of the robot, or hash of the model of the arm, that it names; else empty.
     bounds: str = ""
 
     @property
@@ -178,20 +178,20 @@ def _loaded(file: Path, text: str, root: Node, syntax: tuple[Fault, ...]) -> Loa
         sha256 = hash_meaning({"spec": sha256, "bounds": used})
     if spec.kind == "interaction-design" and spec.coupling is not None and spec.coupling.arm:
         used = _hash_of_arm(file, spec.coupling.arm.model, root)
-        sha256 = hash_meaning({"spec": sha256, "urdf": used})
+        sha256 = hash_meaning({"spec": sha256, "arm": used})
     return LoadedSpec(file, sha256, text, spec, root, used)
 
 
-def _hash_of_arm(spec: Path, urdf: str, root: Node) -> str:
+def _hash_of_arm(spec: Path, model: str, root: Node) -> str:
     """Return the SHA-256 of the file of an arm, which is a part of what a spec says."""
-    file = spec.parent / urdf
+    file = spec.parent / model
     try:
         with open_regular(file) as opened:
             return hashlib.sha256(opened.read()).hexdigest()
     except OSError:
         at = place_of(root, ("coupling", "arm", "model"), at_key=True)
         raise SpecError(
-            f"there is no model {quoted(urdf)} relative to this file",
+            f"there is no model {quoted(model)} relative to this file",
             path=spec,
             line=at.line,
             column=at.column,

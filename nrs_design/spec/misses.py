@@ -6,6 +6,7 @@ Such loops are called weakly hard (Bernat, Burns and Llamosi 2001).
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import takewhile
 from math import comb
 from typing import Annotated
 
@@ -90,56 +91,37 @@ class MissAutomaton:
 
 
 def automaton_of(at_most: int, of: int) -> MissAutomaton:
-    """Return the automaton of a window, with the fewest states.
+    """Return the automaton of a window, with the fewest states: ``of`` over ``at_most``.
 
-    A state is what the window still remembers: how long ago the misses were. States that allow the
-    same words are one.
+    A state is how long ago the misses were that still bound what follows. The i-th youngest, a
+    steps ago, leaves at most ``at_most - i`` misses for the next ``of - 1 - a`` steps; where these
+    are no more than that, neither it nor an older one bounds anything, after any further steps.
 
     Parameters
     ----------
     at_most, of : int
         At most so many misses in so many steps; the first is the smaller one, and positive.
     """
-    # Ages of the misses in the last steps, the youngest first; what is as old as the window is out.
-    start: tuple[int, ...] = ()
-    found = {start: 0}
+
+    def bounding(ages: tuple[int, ...]) -> tuple[int, ...]:
+        each = enumerate(ages, 1)
+        return tuple(
+            a for _, a in takewhile(lambda item: of - 1 - item[1] > at_most - item[0], each)
+        )
+
+    # The youngest first.
+    found: dict[tuple[int, ...], int] = {(): 0}
     hits, misses = list[int](), list[int | None]()
-    waiting = [start]
+    waiting = [*found]
 
     def place(ages: tuple[int, ...]) -> int:
-        if ages not in found:
-            found[ages] = len(found)
-            waiting.append(ages)
-        return found[ages]
+        if (kept := bounding(ages)) not in found:
+            found[kept] = len(found)
+            waiting.append(kept)
+        return found[kept]
 
     for state in waiting:
-        older = tuple(age + 1 for age in state if age + 1 < of)
+        older = tuple(age + 1 for age in state)
         hits.append(place(older))
-        misses.append(place((1, *older)) if len(state) < at_most else None)
-    return _smallest(hits, misses)
-
-
-def _smallest(hits: list[int], misses: list[int | None]) -> MissAutomaton:
-    """Join states that allow the same words (Moore 1956)."""
-    part = [int(target is not None) for target in misses]
-    while True:
-        seen: dict[tuple[int, int, int | None], int] = {}
-        new = [
-            seen.setdefault(
-                (part[k], part[hits[k]], None if (m := misses[k]) is None else part[m]), len(seen)
-            )
-            for k in range(len(hits))
-        ]
-        if len(seen) == len(set(part)):
-            break
-        part = new
-    # Of each part its first state, in their order.
-    first: dict[int, int] = {}
-    for k, p in enumerate(part):
-        first.setdefault(p, k)
-    order = {p: i for i, p in enumerate(first)}
-    kept = [(hits[k], misses[k]) for k in first.values()]
-    return MissAutomaton(
-        tuple(order[part[hit]] for hit, _ in kept),
-        tuple(None if miss is None else order[part[miss]] for _, miss in kept),
-    )
+        misses.append(place((0, *older)) if len(state) < at_most else None)
+    return MissAutomaton(tuple(hits), tuple(misses))

@@ -177,7 +177,7 @@ def test_other_bounds_beside_other_words(tmp_path, monkeypatch):
     paths = [Path("specs")]
     outcome = run_locked(find_specs(paths), read_lock_if_any(LOCK), LOCK, named=paths)
     found = compare_with_base(outcome, paths, tmp_path / "base", LOCK)
-    assert "the bounds of its robot, or its URDF, are others" in [
+    assert "the bounds of its robot, or the model of its arm, are others" in [
         item.message for item in weaker(found)
     ]
 

@@ -26,7 +26,7 @@ def mobility(
         typer.Option(metavar="WORK", parser=read_work, help="Work, in units of about a second."),
     ] = 300.0,
 ) -> Answer:
-    """Compute the mobility of the arm that a file with several axes names, from its URDF.
+    """Compute the mobility of the arm that a file with several axes names, from its URDF or MJCF.
 
     Boxes of joint positions are halved until interval arithmetic shows that the eigenvalues of
     J^(1/2) Lambda^-1 J^(1/2) are in the declared range in each.
@@ -42,7 +42,7 @@ def mobility(
 
     def facts() -> dict[str, Any]:
         return {
-            "urdf": found.urdf.as_posix(),
+            "model": found.model.as_posix(),
             "axes": list(found.axes),
             "verdict": found.verdict,
             "declared": list(found.declared),

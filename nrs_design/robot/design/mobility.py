@@ -1,4 +1,4 @@
-"""From a file with several axes, and the URDF that it names, to the mobility of the arm."""
+"""From a file with several axes, and the model that it names, to the mobility of the arm."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class ArmInUse:
     """An arm, the inertias that its axes are given, and the box of its joint positions."""
 
     file: Path  # Of the axes
-    urdf: Path
+    model: Path  # URDF or MJCF
     arm: ArmTree
     names: tuple[str, ...]  # Of the axes
     inertias: Floats  # Shape (k,), in kg or kg m^2
@@ -68,7 +68,7 @@ def read_arm_in_use(path: Path) -> ArmInUse:
     Raises
     ------
     SpecError
-        If the file or the URDF is wrong, or they do not fit.
+        If the file or the model is wrong, or they do not fit.
     """
     loaded = read_axes(file_of(path))
     first, arm = loaded[0], loaded[0].arm
@@ -86,10 +86,10 @@ def read_arm_in_use(path: Path) -> ArmInUse:
             if design.coupling != coupling:
                 _wrong(f"the coupling of {name} is not that of {names[0]}", "say it in common")
             _check_name(design, name)
-        urdf = first.path.parent / arm.model
+        file = first.path.parent / arm.model
         held = {name: low.si for name, (low, high) in arm.joints.items() if low == high}
-        model = read_arm(urdf, arm.tip, held)
-        low, high = _box(arm, model)
+        tree = read_arm(file, arm.tip, held)
+        low, high = _box(arm, tree)
         assert coupling is not None
         assert coupling.mobility is not None
         declared = coupling.mobility
@@ -97,8 +97,8 @@ def read_arm_in_use(path: Path) -> ArmInUse:
     inertias = [drive.inertia.nominal.exact for drive in drives if drive is not None]
     return ArmInUse(
         file_of(path),
-        urdf,
-        model,
+        file,
+        tree,
         names,
         np.array([float(J) for J in inertias]),
         low,
@@ -146,7 +146,7 @@ def judge_mobility(
     Raises
     ------
     SpecError
-        If the file or the URDF is wrong.
+        If the file or the model is wrong.
     DesignError
         If they do not fit.
     """
@@ -166,7 +166,7 @@ def judge_mobility(
     lowest, highest = (tuple(map(float, q)) for q in ends)
     return ArmMobility(
         use.arm.name,
-        use.urdf,
+        use.model,
         use.names,
         tuple(joint.name for joint in use.arm.joints),
         use.declared,
@@ -238,7 +238,7 @@ def _box(arm: ArmSpec, model: ArmTree) -> tuple[Floats, Floats]:
             )
         if joint.limits is not None and not joint.limits[0] <= low.si <= high.si <= joint.limits[1]:
             _wrong(
-                f"joint {quoted(joint.name)} is used beyond its limits in the URDF, "
+                f"joint {quoted(joint.name)} is used beyond its limits, "
                 f"{joint.limits[0]:.6g} to {joint.limits[1]:.6g} {'m' if joint.slides else 'rad'}",
                 "use a range within the limits",
             )

@@ -1,4 +1,4 @@
-"""An open chain or tree of rigid links, as URDF describes it: joints, inertias, and a tip."""
+"""An open chain or tree of rigid links, as URDF and MJCF describe it, and its tip."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class ArmMobility:
     """What is found and shown of the mobility of an arm."""
 
     arm: str
-    urdf: Path
+    model: Path  # URDF or MJCF
     axes: tuple[str, ...]  # Of the tip
     joints: tuple[str, ...]
     # Lowest and highest: as a spec declares them, and as poses have them, in floating point.

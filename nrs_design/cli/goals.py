@@ -83,6 +83,7 @@ def design_answer(
     show: Callable[[], object],
     *,
     proved: bool = True,
+    judged: bool = False,
 ) -> Answer:
     """Return the answer of a command that shows a design: with goals and with what is doubtful.
 
@@ -96,6 +97,8 @@ def design_answer(
         Return the content of the JSON document; print the text.
     proved : bool
         Whether all goals are proved that need a proof of the design; else the exit code is 1, too.
+    judged : bool
+        Whether `show` says what is proved of the goals of a certificate.
     """
     from nrs_design.spec import doubt_spec
 
@@ -105,7 +108,8 @@ def design_answer(
     def show_all() -> None:
         show()
         _print_goals(spec.name, items)
-        _say_unjudged(spec)
+        if not judged:
+            _say_unjudged(spec)
         for text in warnings:
             note(f"warning: {text}")
 

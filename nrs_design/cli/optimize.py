@@ -5,7 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
 
 from nrs_design.axis import unit
 from nrs_design.cli.command import Answer, command
@@ -30,14 +33,26 @@ if TYPE_CHECKING:
 
 
 @command("optimize", each_axis=True)
-def optimize(spec: SpecFile) -> Answer:
+def optimize(
+    spec: SpecFile,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="NEW.nrs.yaml",
+            help="Write the spec with these gains given, named after the file, and its "
+            "certificate to reports/NAME.cert.json; for goals.decay_rate.",
+        ),
+    ] = None,
+) -> Answer:
     """Optimize virtual mass Mt and damping Bt for displayed impedance and sensitivity.
 
-    Goals of the spec are respected; the exit code is 1 if gains that are given miss one, or if
-    transparency or accuracy over a band is not proved.
+    Goals of the spec are respected. With goals.decay_rate the gains of all controllers are chosen
+    together, and come with their proof. The exit code is 1 if gains that are given miss a goal, or
+    if one is not proved.
 
     Example: nrs-design optimize specs/neuroboscope/soft-tissue.nrs.yaml
     """
+    from nrs_design.cli.certified_gains import CertifiedGains
     from nrs_design.pipeline import run_analysis, run_interaction
 
     loaded = take_spec(spec)
@@ -46,12 +61,16 @@ def optimize(spec: SpecFile) -> Answer:
         designed = run_interaction(loaded, "has nothing to design")
         step("margins")
         analysis = run_analysis(designed)
+    certified = CertifiedGains.of(designed, analysis, out)
+    if certified is not None:
+        designed, analysis = certified.designed, certified.analysis
 
     def facts() -> dict[str, Any]:
         return {
             "motion_loop": motion_summary(analysis),
             "sensor": _sensor(designed),
             "controllers": [_summary(designed.spec, item) for item in analysis.impedance],
+            "certified": None if certified is None else certified.facts(),
         }
 
     def show() -> None:
@@ -59,9 +78,20 @@ def optimize(spec: SpecFile) -> Answer:
             note("no impedance controllers in this spec; see nrs-design tune for the others")
         _print(designed.spec, analysis)
         print_responses(analysis)
+        if certified is not None:
+            certified.show()
 
     proved = all(found.proved for item in analysis.impedance for found in item.responses)
-    return design_answer(designed, analysis, analysis.impedance, facts, show, proved=proved)
+    proved = proved and (certified is None or certified.proved)
+    return design_answer(
+        designed,
+        analysis,
+        analysis.impedance,
+        facts,
+        show,
+        proved=proved,
+        judged=certified is not None,
+    )
 
 
 def motion_summary(analysis: DesignAnalysis) -> dict[str, Any]:

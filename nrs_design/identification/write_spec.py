@@ -13,7 +13,6 @@ from nrs_design.errors import DataError, SpecError
 from nrs_design.identification.actuator import ActuatorIdentification
 from nrs_design.identification.datasets import Source
 from nrs_design.identification.delay import DelayIdentification
-from nrs_design.identification.spec_document import SpecDocument
 from nrs_design.identification.statistics import Estimate, few_digits, span
 from nrs_design.identification.tissue import TissueIdentification
 from nrs_design.identification.tissue.tangent import Tangent
@@ -31,6 +30,7 @@ from nrs_design.spec.preload import FINEST, LARGEST, LEAST
 from nrs_design.spec.provenance import MAX_DOUBTS
 from nrs_design.spec.quantity import Quantity
 from nrs_design.spec.sampling import LONGEST_DELAY, SamplingSpec
+from nrs_design.spec.spec_document import SpecDocument
 
 _DIGITS = 6
 # What only a power law has in a spec.

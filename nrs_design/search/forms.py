@@ -31,11 +31,13 @@ from nrs_design.search.rounding import round_form, round_rate
 from nrs_design.search.sdp import (
     Sparse,
     begin,
+    find_maximum,
     maximize_margin,
     pack,
     program_cost,
     symmetric_basis,
     triangle,
+    unpack,
 )
 from nrs_design.work import Allowance, Cost
 
@@ -170,6 +172,14 @@ class Solution:
     vanishing: list[Array]
 
 
+@dataclass(frozen=True)
+class Priced:
+    """A solution, with what a unit of the inequality of an edge is worth to its margin."""
+
+    solution: Solution
+    worth: Mapping[int, Array]  # A form for each edge of the program, by its number
+
+
 class FormsProgram:
     """The program of a drawing, at any rate."""
 
@@ -260,15 +270,56 @@ class FormsProgram:
     ) -> Solution | None:
         """Solve for some of the edges."""
         begun = begin(allowance, *self.cost(active))
-        factors = [
+        x = maximize_margin(*self._built.of_edges(self.factors(rate), active), begun)
+        return None if x is None else self._read(x, rate)
+
+    def prices(self, rate: float, allowance: Allowance) -> Priced | None:
+        """Solve at a rate, and return what the inequalities are worth; None without a margin.
+
+        Parameters
+        ----------
+        rate : float
+            The alpha in 1/s, or rho per step.
+        allowance : Allowance
+            Work and memory.
+
+        Raises
+        ------
+        NotAffordableError
+            If work or memory do not suffice.
+        """
+        if self.solve(rate, allowance) is None:
+            return None
+        active = self.active  # Enough of the edges, as the solution has found
+        begun = begin(allowance, *self.cost(active))
+        found = find_maximum(*self._built.of_edges(self.factors(rate), active), begun)
+        solution = None if found is None else self._read(found.x, rate)
+        if found is None or solution is None:
+            return None
+        sizes = [self.edges[k].size for k in active]
+        lengths = [n * (n + 1) // 2 for n in sizes]
+        # The rows of the edges are the last ones.
+        parts = np.split(found.z[len(found.z) - sum(lengths) :], np.cumsum(lengths)[:-1])
+        worth = {k: unpack(part, n) for k, part, n in zip(active, parts, sizes, strict=True)}
+        return Priced(solution, worth)
+
+    def factors(self, rate: float) -> list[float]:
+        """Return what the rate makes of the inequality of each edge: twice that of a flow.
+
+        Of a map it is what the form after it counts.
+        """
+        return [
             2 * self.degree * float(np.ldexp(rate, self.unit))
             if edge.is_flow
             else edge.weight(rate, self.degree, self.time)
             for edge in self.edges
         ]
-        x = maximize_margin(*self._built.of_edges(factors, active), begun)
-        if x is None or x[-1] <= 0:
+
+    def _read(self, x: Array, rate: float) -> Solution | None:
+        """Take apart what the solver returned; None if there is no margin."""
+        if x[-1] <= 0:
             return None
+        factors = self.factors(rate)
         parts = np.split(x[:-1], self._built.ends)
         forms = [
             np.tensordot(part, symmetric_basis(n), axes=1)
@@ -296,6 +347,39 @@ class FormsProgram:
             form = form + solution.multipliers[place[fact]] * own
         return np.asarray(form)
 
+    def decrease(self, edge: Inequality, solution: Solution, N: Array, rate: float) -> Array:
+        """Return what must be positive of an edge, its own or that of a like drawing.
+
+        Parameters
+        ----------
+        edge : Inequality
+            With the facts of the program, at their scales.
+        solution : Solution
+            Forms and multipliers.
+        N : ndarray
+            The form that vanishes.
+        rate : float
+            The alpha in 1/s, or rho per step.
+        """
+        Q = solution.forms[edge.before][np.ix_(edge.kept, edge.kept)]
+        if edge.is_flow:
+            keeps = -2 * self.degree * float(np.ldexp(rate, self.unit))
+        else:
+            keeps = 1 / edge.weight(rate, self.degree, self.time)
+        return np.asarray(self._form(edge, solution, N) + keeps * edge.padded(Q))
+
+    def edges_at(self, system: SwitchedSystem) -> list[Inequality]:
+        """Return the edges for another system of the same shape, in the same units.
+
+        Parameters
+        ----------
+        system : SwitchedSystem
+            With other numbers in its modes.
+        """
+        every, _ = _edges(replace(self.drawing, system=system), self.scales)
+        first = [self.stands_for.index(k) for k in range(len(self.edges))]
+        return [every[k] for k in first]
+
     def _margins(self, solution: Solution, rate: float) -> Array:
         """Return the smallest eigenvalue of every inequality; it may be a little below zero.
 
@@ -303,13 +387,11 @@ class FormsProgram:
         """
         margins = []
         for edge, N in zip(self.edges, solution.vanishing, strict=True):
-            Q = solution.forms[edge.before][np.ix_(edge.kept, edge.kept)]
-            if edge.is_flow:
-                keeps = -2 * self.degree * float(np.ldexp(rate, self.unit))
-            else:
-                keeps = 1 / edge.weight(rate, self.degree, self.time)
-            form = self._form(edge, solution, N) + keeps * edge.padded(Q)
-            slack = 0.0 if edge.is_strict else SLACK * np.abs(Q).max()
+            slack = 0.0
+            if not edge.is_strict:
+                Q = solution.forms[edge.before][np.ix_(edge.kept, edge.kept)]
+                slack = SLACK * np.abs(Q).max()
+            form = self.decrease(edge, solution, N, rate)
             margins.append(float(np.linalg.eigvalsh(form)[0]) + slack)
         return np.array(margins)
 
@@ -635,8 +717,13 @@ class _Moved:
         )
 
 
-def _edges(drawing: Drawing) -> tuple[list[Inequality], dict[Fact, float]]:
-    """Return all edges, and of what size the multipliers of the facts are that are solved for."""
+def _edges(
+    drawing: Drawing, scales: Mapping[Fact, float] | None = None
+) -> tuple[list[Inequality], dict[Fact, float]]:
+    """Return all edges, and of what size the multipliers of the facts are that are solved for.
+
+    Sizes that are given are kept.
+    """
     system, graph = drawing.system, drawing.graph
     wholes = [one.whole for one in drawing.coordinates]
     inverses = [np.linalg.inv(whole) for whole in wholes]
@@ -671,14 +758,15 @@ def _edges(drawing: Drawing) -> tuple[list[Inequality], dict[Fact, float]]:
                 fact = item.names[name]
                 known = sizes.get(fact, (0.0, 0.0))
                 sizes[fact] = max(pushed, known[0]), max(size, known[1])
-    scales = {
+    found = {
         fact: pushed / size if pushed * size > 0 and isfinite(pushed / size) else 1.0
         for fact, (pushed, size) in sizes.items()
     }
+    scales = found if scales is None else scales
     for item in moved:
         lasts = item.step.time if system.time is Time.DISCRETE else 0.0
         edges.append(item.edge(scales, lasts=lasts))
-    return edges, scales
+    return edges, dict(scales)
 
 
 def _named(drawing: Drawing, listed: Sequence[tuple[int, AnyStep, int]]) -> list[dict[str, Fact]]:

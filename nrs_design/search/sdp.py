@@ -150,6 +150,14 @@ class Sparse:
 
 
 @dataclass(frozen=True, slots=True)
+class Maximum:
+    """What the solver returned, whatever its status."""
+
+    x: Array  # Shape (N,). The unknowns.
+    z: Array  # Shape (M,). What a unit of the offset of each row is worth.
+
+
+@dataclass(frozen=True, slots=True)
 class Begun:
     """A program whose predicted work has been charged, and that a solver is to solve."""
 
@@ -246,6 +254,24 @@ def maximize_margin(
     ndarray, shape (N,), or None
         What the solver returned, whatever its status; None if that is not finite.
     """
+    found = find_maximum(rows, offset, sizes, begun, equalities)
+    return None if found is None else found.x
+
+
+def find_maximum(
+    rows: Array | Sparse,
+    offset: Array,
+    sizes: Sequence[int],
+    begun: Begun,
+    equalities: int = 0,
+) -> Maximum | None:
+    """Do the same as `maximize_margin`, and return what the rows are worth as well.
+
+    Parameters
+    ----------
+    rows, offset, sizes, begun, equalities
+        As there.
+    """
     import clarabel
 
     variables = rows.shape[1]
@@ -267,5 +293,6 @@ def maximize_margin(
         settings,
     ).solve()
     begun.end(solution.iterations)
-    x = np.asarray(solution.x, dtype=float)
-    return x if x.shape == (variables,) and np.isfinite(x).all() else None
+    x, z = (np.asarray(part, dtype=float) for part in (solution.x, solution.z))
+    found = x.shape == (variables,) and np.isfinite(x).all() and np.isfinite(z).all()
+    return Maximum(x, z) if found else None

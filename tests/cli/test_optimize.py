@@ -210,3 +210,34 @@ def test_without_goals_a_doubtful_design_is_warned_of_and_the_exit_code_stays(tm
     warnings = document_of("optimize", SOFT_TISSUE, cwd=tmp_path)["warnings"]
     assert [f"warning: {text}" for text in warnings] == result.stderr.splitlines()
     assert run("optimize", SOFT_TISSUE, "-q", cwd=tmp_path).stderr == ""
+
+
+GOALS = ROOT / "docs" / "examples" / "gains-with-proof.nrs.yaml"
+REDESIGNED = ROOT / "specs" / "neuroboscope" / "soft-tissue-redesigned.nrs.yaml"
+
+
+def test_gains_with_their_proof_are_written_with_it(tmp_path):
+    """The spec that is shipped is what this command writes."""
+    new = tmp_path / "soft-tissue-redesigned.nrs.yaml"
+    document = document_of("optimize", GOALS, "--out", new, cwd=tmp_path, code=0)
+    certified = document["certified"]
+    assert certified["decay_rate"] >= 2
+    assert certified["binds"] == ["decay_rate"]
+    assert certified["cost"] > certified["free_cost"]
+    assert all(goal["met"] for goal in certified["goals"])
+    assert new.read_text() == REDESIGNED.read_text()
+    shown = run("verify", certified["certificate"], new, cwd=tmp_path, code=0).stdout
+    assert shown.startswith("PROVED")
+    # What stands is not replaced, and nothing else is written.
+    again = run("optimize", GOALS, "--out", new, cwd=tmp_path, code=2)
+    assert "exists, and is not replaced" in again.stderr
+    assert {path.name for path in tmp_path.iterdir()} == {new.name, "reports"}
+
+
+def test_gains_are_written_with_their_proof_only(tmp_path):
+    for place, words in (("a.nrs.yaml", "only gains that were chosen"), ("a.yaml", "only gains")):
+        refused = run("optimize", SOFT_TISSUE, "--out", place, cwd=tmp_path, code=2)
+        assert words in refused.stderr
+    refused = run("optimize", GOALS, "--out", "a.yaml", cwd=tmp_path, code=2)
+    assert "is not the name of a spec" in refused.stderr
+    assert not list(tmp_path.iterdir())

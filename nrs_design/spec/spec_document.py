@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from typing import Any
 
 from nrs_design.errors import SpecError
-from nrs_design.spec import LoadedSpec, parse_spec
+from nrs_design.spec.load import LoadedSpec, parse_spec
 
 # A longer text is a sentence, and no quantity.
 _SENTENCE = 40

@@ -1,0 +1,161 @@
+"""What `optimize` does and says where goals of the certificate choose the gains."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Self
+
+from nrs_design.cli.printing import note, progress, say
+from nrs_design.errors import OutputError
+from nrs_design.proof.bounds import lower_float
+
+if TYPE_CHECKING:
+    from nrs_design.certificates.certified_goal import CertifiedGoal
+    from nrs_design.design.analysis import DesignAnalysis
+    from nrs_design.pipeline import Designed
+    from nrs_design.pipeline.certified_optimum import CertifiedOptimum
+    from nrs_design.spec import LoadedSpec
+
+ENDING = ".nrs.yaml"
+
+
+@dataclass(frozen=True, slots=True)
+class CertifiedGains:
+    """Gains that come with their proof, and where both were written."""
+
+    found: CertifiedOptimum
+    designed: Designed  # The spec with these gains
+    analysis: DesignAnalysis
+    goals: tuple[CertifiedGoal, ...]
+    # spec, certificate: files that were written; None if none was asked for.
+    spec: Path | None
+    certificate: Path | None
+
+    @classmethod
+    def of(cls, designed: Designed, analysis: DesignAnalysis, out: Path | None) -> Self | None:
+        """Choose gains by the goals of the certificate, and write them; None without such goals.
+
+        Parameters
+        ----------
+        designed, analysis
+            The spec, and what its free optimum achieves.
+        out : Path or None
+            The spec with the gains.
+
+        Raises
+        ------
+        DesignError
+            If the goals are not reached.
+        OutputError
+            If a file cannot be written.
+        """
+        from nrs_design.certificates.goals import certified_goals
+        from nrs_design.pipeline import run_analysis
+        from nrs_design.pipeline.certified_optimum import run_certified_optimum, steering_goals
+
+        if not steering_goals(designed, analysis):
+            if out is not None:
+                raise OutputError(
+                    "only gains that were chosen by goals.decay_rate are written",
+                    path=out,
+                    remedy="add `goals: {decay_rate: 2 1/s}` and leave a gain free, or leave --out "
+                    "out",
+                )
+            return None
+        name = None if out is None else _name_for(designed.loaded, out)
+        with progress(f"gains with their proof for {designed.spec.name}") as step:
+            found = run_certified_optimum(designed, analysis, step, name)
+        own = found.result.designed
+        assert own is not None, "as it was designed before"
+        goals = tuple(certified_goals(own.spec, found.result.certificate))
+        certificate = None if out is None else _write(found, out)
+        return cls(found, own, run_analysis(own), goals, out, certificate)
+
+    @property
+    def proved(self) -> bool:
+        """Whether all goals of the certificate are met."""
+        return all(goal.met for goal in self.goals)
+
+    def facts(self) -> dict[str, Any]:
+        """Return the same for JSON, in SI units."""
+        found = self.found
+        rate = found.goals[0]
+        return {
+            "gains": {f"{name}.{gain}": text for (name, gain), text in found.gains.items()},
+            "cost": found.cost,
+            "free_cost": found.free_cost,
+            "free_decay_rate": found.free_rate,
+            "binds": [goal.key for goal in found.goals if goal.price is not None],
+            "cost_per_decay_rate": rate.price,
+            "goals": [
+                {"goal": goal.key, "wanted": goal.wanted, "shown": goal.said, "met": goal.met}
+                for goal in self.goals
+            ],
+            "decay_rate": self._rate(),
+            "designs_tried": found.tried,
+            "spec": None if self.spec is None else str(self.spec),
+            "certificate": None if self.certificate is None else str(self.certificate),
+        }
+
+    def show(self) -> None:
+        """Print what is proved, and what it costs."""
+        found = self.found
+        for goal in self.goals:
+            ends = "PROVED" if goal.met else "NOT PROVED"
+            say(f"goal {goal.key}, {goal.wanted}: {ends}: {goal.said}")
+        more = found.cost - found.free_cost
+        say(
+            f"cost {found.cost:.4f} of all controllers, {max(more, 0.0):.4f} above the least "
+            f"without these goals, which decays with {found.free_rate:.3g} 1/s"
+        )
+        for steered in found.goals:
+            if steered.price is None:
+                say(f"{steered.key} does not bind")
+            else:
+                say(f"{steered.key} binds: each 0.1 1/s more costs about {steered.price / 10:.2g}")
+
+    def _rate(self) -> float | None:
+        certificate = self.found.result.certificate
+        evidence = None if certificate is None else certificate.evidence
+        if certificate is None or evidence is None:
+            return None
+        rate, period = evidence.proved_rate(certificate.system), certificate.system.sample_time
+        if rate is None:
+            return None
+        return lower_float(rate if period is None else (1 - rate) / period)
+
+
+def _name_for(loaded: LoadedSpec, out: Path) -> str:
+    """Return the name of the new spec; refuse a place that it cannot be at."""
+    from nrs_design.output import check_place
+
+    if not out.name.endswith(ENDING):
+        raise OutputError("is not the name of a spec", path=out, remedy=f"end it in {ENDING}")
+    check_place(out)
+    if out.exists():
+        raise OutputError("exists, and is not replaced", path=out, remedy="name a new file")
+    beside = out.parent.resolve() == loaded.path.parent.resolve()
+    if not beside and (loaded.robot is not None or loaded.arm is not None):
+        raise OutputError(
+            "the spec names files beside itself",
+            path=out,
+            remedy=f"write into {loaded.path.parent}, too",
+        )
+    return out.name.removesuffix(ENDING)
+
+
+def _write(found: CertifiedOptimum, out: Path) -> Path:
+    """Write spec and certificate, both or none."""
+    from nrs_design.certificates.certificate import dump
+    from nrs_design.output import CERTIFICATE, write_outputs
+    from nrs_design.ownership import check_certificate, origin_of
+
+    result = found.result
+    assert result.certificate is not None, "as its goals are met"
+    path = Path("reports") / f"{result.loaded.spec.name}.cert.json"
+    check_certificate(out, path)
+    content = dump(result.certificate, origin_of(out, path))
+    write_outputs([(out, result.loaded.text, b""), (path, content, CERTIFICATE)])
+    note(f"spec written to {out}, certificate to {path}")
+    return path

@@ -1,0 +1,158 @@
+"""The least cost where constraints take long to find: known, with slopes, at few points only.
+
+Between points a constraint is taken as linear, within a region that grows where that was right
+and shrinks where it was wrong (sequential programming with a trust region and an exact penalty;
+Nocedal and Wright 2006, chapter 18).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+# How far a coordinate moves at first, and at least.
+REGION, SMALLEST_REGION = 0.25, 1e-3
+# A constraint that is missed by one adds so much to the cost.
+PENALTY = 10.0
+# A step is kept if it brings this share of what was predicted; from the other on, the region grows.
+KEPT, GOOD = 0.1, 0.6
+# What is less is no improvement.
+CHEAPER = 2e-5
+MOST_LOOKS = 16
+# Slopes that were wrong by more than this share are found again.
+WRONG = 0.1
+# How far a constraint is moved for its price.
+MOVED = 0.01
+
+
+@dataclass(frozen=True, eq=False)
+class Look:
+    """What is known at a point."""
+
+    x: Array  # Shape (n,)
+    values: Array  # Shape (k,). Of the constraints; those that are not negative are met.
+    slopes: Callable[[], Array]  # Gives shape (k, n); takes long
+
+
+@dataclass(frozen=True, eq=False)
+class SteeredProblem:
+    """What is to be cheap, and what is to be met."""
+
+    cost: Callable[[Array], float]  # Quick
+    look: Callable[[Array, Array], Look]  # At a point, given what is expected; takes long
+    low: Array
+    high: Array
+    # Constraints that are quick: not negative where they are met.
+    quick: Callable[[Array], Array] = field(default=lambda x: np.zeros(0))
+
+    def penalty(self, values: Array) -> float:
+        """Return what missed constraints add to the cost."""
+        return PENALTY * float(np.maximum(-values, 0.0).sum())
+
+
+@dataclass(frozen=True, eq=False)
+class Steered:
+    """Where a search ended."""
+
+    last: Look
+    slopes: Array  # Shape (k, n), there
+    cost: float
+    prices: Array  # Shape (k,). What the cost rises by if a constraint is one harder to meet.
+    looks: int
+
+
+def steer(problem: SteeredProblem, start: Look) -> Steered:
+    """Minimize the cost from a start; constraints that cannot be met are missed by little.
+
+    Parameters
+    ----------
+    problem : SteeredProblem
+        Cost and constraints.
+    start : Look
+        Within the bounds.
+    """
+    here, looks, region = start, 1, REGION
+    slopes: Array | None = None
+    while looks < MOST_LOOKS and region >= SMALLEST_REGION:
+        slopes = here.slopes() if slopes is None else slopes
+        there = _cheapest(problem, here, slopes, region)
+        reached = here.values + slopes @ (there - here.x)
+        merit = _merit(problem, here.x, here.values)
+        predicted = merit - _merit(problem, there, reached)
+        if predicted < CHEAPER:
+            break
+        found, looks = problem.look(there, reached), looks + 1
+        gained = merit - _merit(problem, there, found.values)
+        if gained >= KEPT * predicted:
+            slopes = _updated(slopes, here, found)
+            here = found
+            region = 2 * region if gained >= GOOD * predicted else region
+        else:
+            region = min(region, float(np.abs(there - here.x).max())) / 4
+    slopes = here.slopes() if slopes is None else slopes
+    prices = np.array([*_prices(problem, here, slopes)])
+    return Steered(here, slopes, problem.cost(here.x), prices, looks)
+
+
+def _updated(slopes: Array, here: Look, found: Look) -> Array | None:
+    """Return slopes that tell the last step (Broyden 1965); None where they were too wrong."""
+    step = found.x - here.x
+    expected = slopes @ step
+    wrong = found.values - here.values - expected
+    if np.abs(wrong).max() > WRONG * np.abs(expected).max():
+        return None
+    return np.asarray(slopes + np.outer(wrong, step) / (step @ step))
+
+
+def _merit(problem: SteeredProblem, x: Array, values: Array) -> float:
+    return problem.cost(x) + problem.penalty(values) + problem.penalty(problem.quick(x))
+
+
+def _cheapest(problem: SteeredProblem, here: Look, slopes: Array, region: float) -> Array:
+    """Minimize the cost where linear constraints hold as well as they can, within the region."""
+    from scipy.optimize import NonlinearConstraint, minimize
+
+    n, k = len(here.x), len(here.values)
+    low = np.maximum(problem.low, here.x - region)
+    high = np.minimum(problem.high, here.x + region)
+
+    def missed(z: Array) -> Array:
+        """Return what must not be negative."""
+        linear = here.values + slopes @ (z[:n] - here.x) + z[n : n + k]
+        return np.concatenate([linear, problem.quick(z[:n]) + z[n + k]])
+
+    # Behind the point there is by how much each constraint may be missed.
+    quick = float(np.maximum(-problem.quick(here.x), 0.0).max(initial=0.0))
+    start = np.concatenate([here.x, np.maximum(-here.values, 0.0), [quick]])
+
+    def merit(z: Array) -> float:
+        return problem.cost(np.clip(z[:n], low, high)) + PENALTY * float(z[n:].sum())
+
+    found = minimize(
+        merit,
+        start,
+        method="SLSQP",
+        bounds=[*zip(low, high, strict=True), *[(0.0, None)] * (k + 1)],
+        constraints=NonlinearConstraint(missed, 0.0, np.inf),
+        options={"ftol": 1e-9, "maxiter": 200},
+    )
+    return np.asarray(np.clip(found.x[:n], low, high), dtype=float)
+
+
+def _prices(problem: SteeredProblem, here: Look, slopes: Array) -> Iterator[float]:
+    """Yield what each constraint costs near a point, in first order."""
+
+    def cost(values: Array) -> float:
+        moved = Look(here.x, values, here.slopes)
+        there = _cheapest(problem, moved, slopes, REGION)
+        return problem.cost(there)
+
+    least = cost(here.values)
+    for i in range(len(here.values)):
+        harder = here.values - MOVED * np.eye(len(here.values))[i]
+        yield max(cost(harder) - least, 0.0) / MOVED

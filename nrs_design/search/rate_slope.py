@@ -1,0 +1,227 @@
+"""The best decay rate of one form for all modes, and how it changes with the modes (untrusted).
+
+By the envelope theorem: forms and multipliers need not be found again for a small change. With W
+what a unit of the inequality of each edge is worth to the margin, the margin changes by the sum of
+``trace(W dF)``, whether modes or the rate change; where it stays zero, the rate makes up for the
+modes.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from math import inf
+
+import numpy as np
+from numpy.linalg import LinAlgError
+from numpy.typing import NDArray
+
+from nrs_design.proof.mode import Time
+from nrs_design.proof.steps import COUPLING
+from nrs_design.proof.system import SwitchedSystem
+from nrs_design.search.family import Family, floats_in_silence
+from nrs_design.search.forms import FormsProgram, Inequality, Priced, Solution
+from nrs_design.search.graphs import draw_together
+from nrs_design.search.rung import Facts
+from nrs_design.work import Allowance
+
+RESOLUTION = 5e-4
+# There is more to the best rate than forms show beyond the one that they were asked for.
+FURTHER = 1.5
+# Modes are made to decay at least as a contraction to this share.
+CALM = 0.999
+# How far below the best rate slopes are taken, as shares of it.
+BELOW = (0.0, 1e-4, 1e-3, 1e-2)
+# Growth is looked at up to this many times the decay of the slowest mode.
+FASTEST_GROWTH = 64.0
+
+
+@dataclass(frozen=True)
+class RateSlope:
+    """The best rate of a system, and how it changes with small changes of the modes."""
+
+    rate: float  # In 1/s; of a contraction rho per step, (1 - rho) over the period
+    _program: FormsProgram
+    _priced: Priced
+    _at: float  # As the program counts rates
+    _per_rate: float  # What the margin changes by for 1/s
+
+    def change(self, system: SwitchedSystem) -> float:
+        """Return by how much the rate of a system nearby is larger, in first order, 1/s.
+
+        Parameters
+        ----------
+        system : SwitchedSystem
+            Of the same shape.
+        """
+        program, total = self._program, 0.0
+        changed = program.edges_at(system)
+        for k in self._priced.worth:
+            moved = _decrease(program, changed[k], self._priced, k, self._at)
+            own = _decrease(program, program.edges[k], self._priced, k, self._at)
+            total += float(np.sum(self._priced.worth[k] * (moved - own)))
+        return -total / self._per_rate
+
+
+def may_have_slope(system: SwitchedSystem) -> bool:
+    """Tell whether one form for all modes is what a proof of a system could be.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        The modes and their switching.
+    """
+    facts = Facts.of(system)
+    timed = facts.is_continuous or system.sample_time is not None
+    return facts.may_share_an_ellipsoid and not facts.takes_turns and timed
+
+
+def rate_slope(
+    system: SwitchedSystem,
+    guess: float | None = None,
+    allowance: Allowance | None = None,
+    resolution: float = RESOLUTION,
+) -> RateSlope | None:
+    """Find the best rate of one form for all modes; negative if they are shown to grow no faster.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        For which `may_have_slope` holds.
+    guess : float, optional
+        About what the rate is, 1/s.
+    allowance : Allowance, optional
+        Work and memory.
+    resolution : float
+        The best rate is bracketed to this share of the guess, or of the fastest decay of a mode.
+
+    Returns
+    -------
+    RateSlope or None
+        None if floating point shows nothing.
+
+    Raises
+    ------
+    NotAffordableError
+        If work or memory do not suffice.
+    """
+    allowance = allowance or Allowance()
+    with floats_in_silence():
+        family = Family.of(system, allowance)
+        solved = (COUPLING,) if system.couplings else ()
+        if not np.isfinite(family.limit):
+            return None
+        calm = replace(family, matrices=_calmed(family))
+        drawing = draw_together(calm, 1, lost=system.contact is not None, solved=solved)
+        if not drawing.is_finite:
+            return None
+        program = FormsProgram(drawing)
+        best = _best(program, family.limit, guess, resolution, allowance)
+        if best is None:
+            return None
+        # Where the margin is nearly nil, its slope is that of noise.
+        for below in BELOW:
+            at = _counted(best - below * max(abs(best), resolution), program)
+            priced = program.prices(at, allowance)
+            per_rate = 0.0 if priced is None else _per_rate(program, priced, at)
+            if priced is not None and per_rate < 0:
+                return RateSlope(best, program, priced, at, per_rate)
+    return None
+
+
+def _calmed(family: Family) -> NDArray[np.float64]:
+    """Return the modes, or all of them with as much more decay as makes them stable.
+
+    Coordinates are chosen by the norms of the modes, and a mode that grows has none.
+    """
+    modes, limit = family.matrices, family.limit
+    if family.system.time is Time.DISCRETE:
+        return modes if limit < CALM else np.asarray(modes * (CALM / limit))
+    least = (1 - CALM) * float(np.abs(np.linalg.eigvals(modes)).max())
+    return modes if limit > least else np.asarray(modes - (least - limit) * np.eye(modes.shape[1]))
+
+
+def _counted(rate: float, program: FormsProgram) -> float:
+    """Return a rate in 1/s as the program counts it."""
+    if program.time is Time.CONTINUOUS:
+        return rate
+    return 1 - rate * _period(program)
+
+
+def _period(program: FormsProgram) -> float:
+    period = program.drawing.system.sample_time
+    assert period is not None, "as has been looked at"
+    return float(period)
+
+
+def _best(
+    program: FormsProgram,
+    limit: float,
+    guess: float | None,
+    resolution: float,
+    allowance: Allowance,
+) -> float | None:
+    """Bracket the best rate, from the guess: forms for a rate show a better one themselves."""
+    fastest = (1 - limit) / _period(program) if program.time is Time.DISCRETE else limit
+    start = fastest / 2 if guess is None else guess
+    size = max(abs(start), abs(fastest) / 16)
+    low, high, step, rate = None, None, size / (4 if guess is None else 32), start
+    while abs(rate) <= FASTEST_GROWTH * max(abs(fastest), abs(start)):
+        solution = program.solve(_counted(rate, program), allowance)
+        shown = -inf if solution is None else _shown(program, solution)
+        if shown > rate:
+            low, step = shown, min(FURTHER * (shown - rate), 2 * step)
+        else:  # What is solved, and does not show the rate itself, is a margin of the solver's.
+            high = rate
+        if low is None:
+            rate, step = rate - step, 2 * step
+        elif high is None:
+            step = max(step, resolution * size)
+            rate = low + step
+        elif high - low > resolution * size:
+            rate = min(low + max(step, resolution * size), (low + high) / 2)
+            step /= 2
+        else:
+            return low
+    return low
+
+
+def _shown(program: FormsProgram, solution: Solution) -> float:
+    """Return the rate in 1/s that forms show; none where they are singular in floating point."""
+    try:
+        return _in_seconds(program.own_rate(solution), program)
+    except LinAlgError:
+        return -inf
+
+
+def _in_seconds(rate: float, program: FormsProgram) -> float:
+    """Return a rate as the program counts it in 1/s."""
+    if program.time is Time.CONTINUOUS:
+        return rate
+    return (1 - rate) / _period(program)
+
+
+def _decrease(
+    program: FormsProgram, edge: Inequality, priced: Priced, k: int, at: float
+) -> NDArray[np.float64]:
+    """Return the inequality of an edge as the rows of the program state it."""
+    N = priced.solution.vanishing[k]
+    form = program.decrease(edge, priced.solution, N, at)
+    return form if edge.is_flow else program.factors(at)[k] * form
+
+
+def _per_rate(program: FormsProgram, priced: Priced, at: float) -> float:
+    """Return what 1/s more does to the margin."""
+    total = 0.0
+    for k, worth in priced.worth.items():
+        edge = program.edges[k]
+        if edge.is_flow:
+            Q = priced.solution.forms[edge.before][np.ix_(edge.kept, edge.kept)]
+            changed = -2 * float(np.ldexp(1.0, program.unit)) * edge.padded(Q)
+        else:
+            Q = priced.solution.forms[edge.after][np.ix_(edge.left, edge.left)]
+            weight = edge.weight(at, 1, program.time)
+            continuous = program.time is Time.CONTINUOUS
+            more = 2 * edge.lasts if continuous else 2 * edge.lasts * _period(program) / at
+            changed = -more * weight * edge.changed(Q)
+        total += float(np.sum(worth * changed))
+    return total

@@ -27,6 +27,7 @@ COMMANDS = (
     "schema",
     "identify",
     "optimize",
+    "pareto",
     "tune",
     "mode-logic",
     "certify-switching",

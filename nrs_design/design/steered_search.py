@@ -25,7 +25,7 @@ KEPT, GOOD = 0.1, 0.6
 CHEAPER = 2e-5
 MOST_LOOKS = 16
 # Slopes that were wrong by more than this share are found again.
-WRONG = 0.1
+WRONG = 0.012
 # How far a constraint is moved for its price.
 MOVED = 0.01
 

@@ -9,64 +9,51 @@ checked as that of any spec.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable
+from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
-from itertools import product
-from math import exp, log
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
-from nrs_design.axis import unit
-from nrs_design.controllers.float32 import (
-    exact_decimal,
-    neighbors,
-    round_significant,
-    to_float32,
-)
 from nrs_design.errors import DesignError
 from nrs_design.pipeline.certification import (
     Result,
     assemble_spec,
-    gains_text,
     run_certification,
     search_limits,
 )
 from nrs_design.pipeline.design import Designed, placed
+from nrs_design.pipeline.free_gains import (
+    Array,
+    FreeGains,
+    Written,
+    gain_branches,
+    has_free_gains,
+    in_order,
+)
 from nrs_design.progress import Progress, silent
 from nrs_design.proof.bounds import rounded_up
-from nrs_design.proof.text import exact_text
-from nrs_design.spec import LoadedSpec
-from nrs_design.spec.document import parse_document
-from nrs_design.spec.load import respecified
-from nrs_design.spec.spec_document import SpecDocument
 from nrs_design.work import Allowance, Fuse, NotAffordableError
 
 if TYPE_CHECKING:
-    from nrs_design.design.analysis import DesignAnalysis, ImpedanceAnalysis
+    from nrs_design.design.analysis import DesignAnalysis
     from nrs_design.design.steered_search import Look, Steered, SteeredProblem
+    from nrs_design.models.plant import Plant
     from nrs_design.proof.system import SwitchedSystem
-
-Array = NDArray[np.float64]
+    from nrs_design.spec.spec_document import SpecDocument
 
 # Goals that gains are steered by.
 STEERING = ("decay_rate",)
 # Of a rate that is asked for, so much more is sought: roundings take a little.
 ROOM = 5e-4
-# How far the logarithm of a gain moves for a slope.
+# How far a coordinate moves for a slope.
 STEP = 1e-3
 # Roundings that are proved at most.
 MOST_ROUNDINGS = 4
-# A virtual mass that may be zero is zero, or at least this share of the largest.
-LEAST_MASS = 1e-3
 # A goal with less than this share to spare binds.
 NEAR = 5e-3
-# A logarithm that is nearer to that of a bound is at the bound.
-CLOSE = 1e-6
-UNITS = {"Mt": "kg*m^2", "Bt": "N*m*s/rad"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,7 +73,7 @@ class CertifiedOptimum:
     """The gains that were found, with their proof."""
 
     result: Result  # Of the spec with these gains; its certificate has been checked exactly
-    gains: Mapping[tuple[str, str], str]  # By controller and name: what ships, with units
+    gains: Written  # What ships of the free ones
     cost: float  # Summed over the controllers
     free_cost: float  # The least without goals of the certificate
     free_rate: float  # The best decay rate there in floating point, 1/s
@@ -103,9 +90,8 @@ def steering_goals(designed: Designed, analysis: DesignAnalysis) -> tuple[str, .
         The spec, and what its design achieves.
     """
     goals = designed.spec.goals
-    free = any(_free_names(item) for item in analysis.impedance)
-    given = [] if goals is None or not free else [key for key, _ in goals.given()]
-    return tuple(key for key in STEERING if key in given)
+    given = [] if goals is None else [key for key, _ in goals.given()]
+    return tuple(key for key in STEERING if key in given and has_free_gains(analysis))
 
 
 def run_certified_optimum(
@@ -135,21 +121,12 @@ def run_certified_optimum(
     AssemblyError
         If the modes make no switched system.
     """
-    from nrs_design.search.rate_slope import may_have_slope
-
     with placed(designed.loaded):
-        _check_delay(designed)
-        if not may_have_slope(assemble_spec(designed.loaded, designed, designed.spec.coordinates)):
-            raise DesignError(
-                "gains are chosen with their proof only where one quadratic function may be one: "
-                "not with two periods, rules that lead through unstable modes, or one state",
-                remedy="leave goals.decay_rate out, and certify what is optimized without it",
-                at=("goals", STEERING[0]),
-            )
+        check_steerable(designed)
         found, missed = [], []
-        for branch in _branches(designed, analysis, name):
+        for gains in gain_branches(designed, analysis):
             try:
-                found.append(branch.run(progress))
+                found.append(_Search(gains).run(progress, name))
             except DesignError as error:
                 missed.append(error)
         if not found:
@@ -157,263 +134,189 @@ def run_certified_optimum(
         return min(found, key=lambda item: item.cost)
 
 
-def _free_names(item: ImpedanceAnalysis) -> tuple[str, ...]:
-    return tuple(name for name in ("Mt", "Bt") if not getattr(item.given, name).fixed)
+def check_steerable(designed: Designed) -> None:
+    """Refuse what no choice of gains, or no form for all modes, could prove.
 
+    Raises
+    ------
+    DesignError
+        If the goal for the delay is beyond the declared one, or one form is no proof.
+    """
+    from nrs_design.search.rate_slope import may_have_slope
 
-def _check_delay(designed: Designed) -> None:
-    """Refuse a delay that the spec does not declare: no gains change that."""
     goals, sampling = designed.spec.goals, designed.spec.sampling
-    if goals is None or goals.delay is None or sampling is None:
-        return
-    if sampling.oldest < goals.delay.exact:
+    delay = None if goals is None else goals.delay
+    if delay is not None and sampling is not None and sampling.oldest < delay.exact:
         raise DesignError(
-            f"the goal delay, {goals.delay.text}, is beyond what the spec declares: force samples "
-            f"are at most {rounded_up(sampling.oldest, 's')} old",
+            f"the goal delay, {delay.text}, is beyond what the spec declares: force samples are "
+            f"at most {rounded_up(sampling.oldest, 's')} old",
             remedy="declare a longer sampling.delay, or relax the goal",
             at=("goals", "delay"),
         )
-
-
-def _branches(designed: Designed, analysis: DesignAnalysis, name: str | None) -> Iterator[_Branch]:
-    """Yield the sets of gains that are searched: without virtual masses, and with them."""
-    items = analysis.impedance
-    bounds = [item.problem.mass_bounds for item in items]
-    if any(low == 0 < high for low, high in bounds):
-        if all(low == 0 for low, _ in bounds):
-            yield _Branch(designed, items, [(0.0, 0.0)] * len(items), name)
-        if all(high > 0 for _, high in bounds):
-            above = [(low or LEAST_MASS * high, high) for low, high in bounds]
-            yield _Branch(designed, items, above, name)
-    else:
-        yield _Branch(designed, items, bounds, name)
-
-
-class _Branch:
-    """The search for gains of which either all virtual masses are zero, or none."""
-
-    def __init__(
-        self,
-        designed: Designed,
-        items: Sequence[ImpedanceAnalysis],
-        masses: Sequence[tuple[float, float]],
-        name: str | None,
-    ) -> None:
-        self.designed, self.items, self.name = designed, items, name
-        self.problems = [
-            replace(item.problem, mass_bounds=mass)
-            for item, mass in zip(items, masses, strict=True)
-        ]
-        bounds = [{"Mt": p.mass_bounds, "Bt": p.damping_bounds} for p in self.problems]
-        self.places = [
-            (k, name)
-            for k, own in enumerate(bounds)
-            for name, (low, high) in own.items()
-            if low < high
-        ]
-        ends = [bounds[k][name] for k, name in self.places]
-        self.low, self.high = (np.log([end[i] for end in ends]) for i in (0, 1))
-        self.fixed = [{name: low for name, (low, _) in own.items()} for own in bounds]
-        limits = search_limits(designed.spec)
-        self.allowance = Allowance(limits.budget, limits.memory, Fuse.of(limits.budget))
-        goals = designed.spec.goals
-        assert goals is not None
-        assert goals.decay_rate is not None, "the only goal that steers"
-        self.goal = goals.decay_rate
-
-    def run(self, progress: Progress) -> CertifiedOptimum:
-        """Search, round and prove."""
-        from nrs_design.design.steered_search import SteeredProblem, steer
-
-        progress("free optimum")
-        free = self._free()
-        problem = SteeredProblem(
-            self._cost, partial(self._look, progress), self.low, self.high, self._quick
-        )
-        first = self._look(progress, free, None)
-        found = steer(problem, first)
-        # What is not reached from one start may be from another: with more damping, or with less.
-        for bound in (self.high, self.low):
-            if found.last.values[0] > -NEAR:
-                break
-            other = steer(problem, self._look(progress, (free + bound) / 2, None))
-            found = max(found, other, key=lambda one: float(one.last.values[0]))
-        value = self._rate(found.last.values[0])
-        if found.last.values[0] <= -NEAR:
-            raise self._unreachable(found.last.x, value)
-        progress("proof")
-        result, gains, x = self._proved(found, problem)
-        binds = value < self.goal.si * (1 + NEAR)
-        price = float(found.prices[0]) / self._scale
-        return CertifiedOptimum(
-            result,
-            gains,
-            self._cost(x),
-            self._cost(free),
-            self._rate(first.values[0]),
-            (
-                SteeredGoal(
-                    "decay_rate", self.goal.exact, self.goal.text, value, price if binds else None
-                ),
-            ),
-            found.looks,
+    if not may_have_slope(assemble_spec(designed.loaded, designed, designed.spec.coordinates)):
+        raise DesignError(
+            "gains are chosen with their proof only where one quadratic function may be one: not "
+            "with two periods, rules that lead through unstable modes, or one state",
+            remedy="leave goals.decay_rate out, and certify what is optimized without it",
+            at=("goals", *STEERING) if goals is not None and goals.decay_rate else (),
         )
 
-    @property
-    def _scale(self) -> float:
-        """One of the values of a look, in 1/s."""
-        return self.goal.si
 
-    def _rate(self, value: float) -> float:
+@dataclass(frozen=True)
+class RateLooks:
+    """Looks at the best decay rate of designs, held against one that is asked for."""
+
+    gains: FreeGains
+    wanted: float  # 1/s
+    scale: float  # What one of the values of a look is, 1/s
+    allowance: Allowance
+    progress: Progress
+
+    @classmethod
+    def of(cls, gains: FreeGains, wanted: float, scale: float, progress: Progress) -> RateLooks:
+        """Take work and memory from the spec.
+
+        Parameters
+        ----------
+        gains, wanted, scale, progress
+            As for the class.
+        """
+        limits = search_limits(gains.designed.spec)
+        allowance = Allowance(limits.budget, limits.memory, Fuse.of(limits.budget))
+        return cls(gains, wanted, scale, allowance, progress)
+
+    def rate(self, value: float) -> float:
         """Return the rate in 1/s that a value of a look stands for."""
-        return float(value) * self._scale + self.goal.si * (1 + ROOM)
+        return float(value) * self.scale + self.wanted
 
-    def _free(self) -> Array:
-        """Return the least cost without goals of the certificate."""
-        from nrs_design.design.constrained import optimize_with_goals
+    def look(
+        self,
+        x: Array,
+        expected: Array | None,
+        plant: Callable[[Array], Plant | None] = lambda x: None,
+    ) -> Look:
+        """Find the best decay rate of a design, and let its slope be asked for.
 
-        best = [
-            optimize_with_goals(problem, item.requirement)
-            for problem, item in zip(self.problems, self.items, strict=True)
-        ]
-        found = np.log([getattr(best[k], name) for k, name in self.places])
-        return np.asarray(np.clip(found, self.low, self.high))
+        Parameters
+        ----------
+        x : ndarray
+            The point; what is behind the gains is for the plant.
+        expected : ndarray or None
+            About what comes of it.
+        plant : callable
+            Gives the plant at a point, if it is not that of the spec.
 
-    def _gains(self, x: Array) -> list[dict[str, float]]:
-        """Return Mt and Bt of every controller, in SI units."""
-        found = [dict(own) for own in self.fixed]
-        for (k, name), value, low, high in zip(self.places, x, self.low, self.high, strict=True):
-            found[k][name] = exp(min(max(value, low), high))
-        return found
-
-    def _cost(self, x: Array) -> float:
-        from nrs_design.design.impedance_optimum import impedance_cost
-
-        pairs = zip(self.problems, self._gains(x), strict=True)
-        return sum(float(impedance_cost(problem, own["Mt"], own["Bt"])) for problem, own in pairs)
-
-    def _quick(self, x: Array) -> Array:
-        """Return by how much the goals of each controller are met."""
-        met = [
-            -item.requirement.violation(np.array([own["Mt"]]), np.array([own["Bt"]]))[0]
-            for item, own in zip(self.items, self._gains(x), strict=True)
-            if item.requirement.goals
-        ]
-        return np.asarray(np.maximum(np.array(met, dtype=float), -1.0))
-
-    def _system(self, x: Array) -> SwitchedSystem:
-        """Assemble the modes with the single-precision gains next to a point."""
-        from nrs_design.controllers.gains import design_from_gains
-
-        gains = {name: dict(own) for name, own in gains_text(self.designed).items()}
-        for item, own in zip(self.items, self._gains(x), strict=True):
-            for name, value in own.items():
-                gains[item.name][name] = exact_decimal(to_float32(Fraction(value)))
-        design = design_from_gains(self.designed.spec, gains)
-        designed = replace(self.designed, design=design)
-        return assemble_spec(designed.loaded, designed, designed.spec.coordinates)
-
-    def _look(self, progress: Progress, x: Array, expected: Array | None) -> Look:
-        """Find the best decay rate of a design, and let its slope be asked for."""
+        Raises
+        ------
+        DesignError
+            If work or memory do not suffice.
+        """
         from nrs_design.design.steered_search import Look
         from nrs_design.search.rate_slope import rate_slope
 
+        gains, n = self.gains, len(self.gains.places)
+
+        def system(x: Array) -> SwitchedSystem:
+            return gains.system(x[:n], plant(x))
+
+        guess = None if expected is None else self.rate(expected[0])
         try:
-            guess = None if expected is None else self._rate(expected[0])
-            found = rate_slope(self._system(x), guess, self.allowance)
+            found = rate_slope(system(x), guess, self.allowance)
         except NotAffordableError as error:
             raise DesignError(
-                f"no gains were found: {error}",
-                remedy="allow more with certification.budget",
-                at=("goals", "decay_rate"),
+                f"no gains were found: {error}", remedy="allow more with certification.budget"
             ) from error
         if found is None:
             return Look(x, np.array([-1.0]), lambda: np.zeros((1, len(x))))
-        progress(f"decay rate {found.rate:.4g} 1/s at cost {self._cost(x):.5g}")
-        value = (found.rate - self.goal.si * (1 + ROOM)) / self._scale
+        self.progress(f"decay rate {found.rate:.4g} 1/s at cost {gains.cost(x[:n]):.5g}")
 
         def slopes() -> Array:
             moved = []
             for i in range(len(x)):
-                step = STEP if x[i] + STEP <= self.high[i] else -STEP
-                there = self._system(x + step * np.eye(len(x))[i])
-                moved.append(found.change(there) / step / self._scale)
+                step = -STEP if i < n and x[i] + STEP > gains.high[i] else STEP
+                there = system(x + step * np.eye(len(x))[i])
+                moved.append(found.change(there) / step / self.scale)
             return np.array([moved])
 
-        return Look(x, np.array([value]), slopes)
+        return Look(x, np.array([(found.rate - self.wanted) / self.scale]), slopes)
+
+
+class _Search:
+    """The search for the cheapest gains whose decay rate is proved."""
+
+    def __init__(self, gains: FreeGains) -> None:
+        goals = gains.designed.spec.goals
+        assert goals is not None
+        assert goals.decay_rate is not None, "the only goal that steers"
+        self.gains, self.goal = gains, goals.decay_rate
+
+    def run(self, progress: Progress, name: str | None) -> CertifiedOptimum:
+        """Search, round and prove."""
+        from nrs_design.design.steered_search import SteeredProblem, steer
+
+        gains = self.gains
+        progress("free optimum")
+        free = gains.optimum()
+        looks = RateLooks.of(gains, self.goal.si * (1 + ROOM), self.goal.si, progress)
+        problem = SteeredProblem(gains.cost, looks.look, gains.low, gains.high, gains.spared)
+        first = looks.look(free, None)
+        found = steer(problem, first)
+        # What is not reached from one start may be from another: with more damping, or with less.
+        for bound in (gains.high, gains.low):
+            if found.last.values[0] > -NEAR:
+                break
+            other = steer(problem, looks.look((free + bound) / 2, None))
+            found = max(found, other, key=lambda one: float(one.last.values[0]))
+        rate = looks.rate(found.last.values[0])
+        if found.last.values[0] <= -NEAR:
+            raise self._unreachable(found.last.x, rate)
+        progress("proof")
+        result, written, x = self._proved(found, problem, name)
+        binds = rate < self.goal.si * (1 + NEAR)
+        price = float(found.prices[0]) / looks.scale if binds else None
+        return CertifiedOptimum(
+            result,
+            written,
+            gains.cost(x),
+            gains.cost(free),
+            looks.rate(first.values[0]),
+            (SteeredGoal("decay_rate", self.goal.exact, self.goal.text, rate, price),),
+            found.looks,
+        )
 
     def _proved(
-        self, found: Steered, problem: SteeredProblem
-    ) -> tuple[Result, Mapping[tuple[str, str], str], Array]:
+        self, found: Steered, problem: SteeredProblem, name: str | None
+    ) -> tuple[Result, Written, Array]:
         """Round to the digits that ship, the cheapest first, and prove one that meets the goals."""
         from nrs_design.certificates.goals import certified_goals
 
-        last, digits = found.last, self.designed.spec.design.significant_digits
-        ranked = []
-        for written in product(
-            *(self._written(i, value, digits) for i, value in enumerate(last.x))
-        ):
-            x = np.log([value for value, _ in written])
+        last, near = found.last, []
+        for x, written in self.gains.roundings(last.x):
             missed = problem.penalty(last.values + found.slopes @ (x - last.x))
-            wrong = problem.penalty(self._quick(x)) > 0
-            texts = tuple(text for _, text in written)
-            ranked.append((wrong, missed > 0, self._cost(x) + missed, texts, x))
-        for *_, texts, x in sorted(ranked, key=lambda item: item[:4])[:MOST_ROUNDINGS]:
-            gains = self._texts(texts)
-            result = run_certification(self._respecified(gains))
+            wrong = problem.penalty(self.gains.spared(x)) > 0
+            near.append(((wrong, missed > 0, problem.cost(x) + missed), x, written))
+        for x, written in in_order(near)[:MOST_ROUNDINGS]:
+            result = run_certification(self.gains.respecified(written, partial(_named, name)))
             goals = certified_goals(result.loaded.spec, result.certificate)
             if all(goal.met for goal in goals if goal.key in STEERING):
-                return result, gains, x
+                return result, written, x
+        digits = self.gains.designed.spec.design.significant_digits
         raise DesignError(
             f"no gains of {digits} significant digits near the best ones were proved",
             remedy="raise design.significant_digits (at most 7), or relax a goal",
             at=("goals", "decay_rate"),
         )
 
-    def _written(self, i: int, x: float, digits: int) -> list[tuple[float, str]]:
-        """Return values near a gain as a spec may give them: its bound, or a few digits."""
-        k, name = self.places[i]
-        given = getattr(self.items[k].given, name)
-        for end in (given.min, given.max):
-            if end.exact > 0 and abs(x - log(end.si)) < CLOSE:
-                return [(end.si, end.text)]
-        found = {round_significant(near, digits) for near in neighbors(exp(x), digits)}
-        inside = [v for v in found if given.min.exact <= v <= given.max.exact and v > 0]
-        return [(float(v), f"{exact_text(v)} {unit(UNITS[name])}") for v in sorted(inside)]
-
-    def _texts(self, texts: Sequence[str]) -> dict[tuple[str, str], str]:
-        """Return what ships of every gain that the spec leaves free."""
-        found = dict(zip(self.places, texts, strict=True))
-        return {
-            (item.name, name): found.get((k, name), f"0 {unit(UNITS[name])}")
-            for k, item in enumerate(self.items)
-            for name in _free_names(item)
-        }
-
-    def _respecified(self, gains: Mapping[tuple[str, str], str]) -> LoadedSpec:
-        """Return the spec with these gains given, and its text; ranges of gains stay."""
-        loaded = self.designed.loaded
-        document = SpecDocument(loaded)
-        for (controller, name), text in gains.items():
-            given = getattr(self.designed.spec.controllers[controller], name)
-            ends = None if given.range is None else [end.text for end in given.range]
-            said = text if ends is None else {"nominal": text, "range": ends}
-            document.put(document.root["controllers"][controller], name, said)
-        if self.name is not None:
-            document.put(document.root, "name", self.name)
-        text = document.text()
-        return replace(respecified(loaded, parse_document(text, loaded.path)), text=text)
-
     def _unreachable(self, x: Array, rate: float) -> DesignError:
         """Say how near the goal gains come."""
-        gains = "; ".join(
-            f"{item.name} Mt = {own['Mt']:.4g} {unit('kg m^2')}, Bt = {own['Bt']:.4g} "
-            f"{unit('N m s/rad')}"
-            for item, own in zip(self.items, self._gains(x), strict=True)
-        )
         return DesignError(
             f"no gains within the bounds were found to be proved with a decay rate of "
-            f"{self.goal.text}: the nearest, {gains}, reach {rate:.4g} 1/s",
+            f"{self.goal.text}: the nearest, {self.gains.said(x)}, reach {rate:.4g} 1/s",
             remedy="relax the goal, widen the bounds, narrow the ranges, or shorten the delay",
             at=("goals", "decay_rate"),
         )
+
+
+def _named(name: str | None, document: SpecDocument) -> None:
+    if name is not None:
+        document.put(document.root, "name", name)

@@ -116,7 +116,7 @@ def run_stability_map(
         progress(f"delay {delay}, stiffness times {factor}")
         changed = {"sampling": sampling.model_copy(update={"delay": (shortest, delay)})}
         plain = spec.model_copy(update=changed | {"disturbances": None})
-        other = replace(designed, spec=plain, plant=_within(designed.plant, contacts, factor))
+        other = replace(designed, spec=plain, plant=as_stiff(designed.plant, contacts, factor))
         system = assemble_spec(result.loaded, other, result.coordinates)
         return settled(certify(system, limits=quick))
 
@@ -125,10 +125,20 @@ def run_stability_map(
     return StabilityMap(shortest, delays, factors, verdicts, contacts, declared, where)
 
 
-def _within(
+def as_stiff(
     plant: Plant, contacts: tuple[tuple[str, Fraction, Fraction], ...], factor: Fraction
 ) -> Plant:
-    """Return a plant whose contacts are as stiff as a cell allows."""
+    """Return a plant whose contacts are stiffer, or softer.
+
+    Parameters
+    ----------
+    plant : Plant
+        The plant.
+    contacts : tuple of (str, Fraction, Fraction)
+        Names, lower ends, and upper ends that count one.
+    factor : Fraction
+        On the upper ends.
+    """
     ends = {name: (low, factor * high) for name, low, high in contacts}
     changed = (_stiff(e, *ends[e.name]) if e.name in ends else e for e in plant.environments)
     return replace(plant, environments=tuple(changed))

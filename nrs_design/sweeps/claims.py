@@ -18,14 +18,21 @@ def claims_in(document: object) -> Iterator[str]:
     """Yield the name of everything that a document claims to be proved, or refuted."""
     if isinstance(document, Mapping):
         for name, value in document.items():
-            named = str(name).startswith(_CLAIMED) and value not in (None, False, "", [], {})
-            if named or (isinstance(value, str) and value.lower() in _VERDICTS):
+            if (str(name).startswith(_CLAIMED) and _says(value)) or (
+                isinstance(value, str) and value.lower() in _VERDICTS
+            ):
                 yield str(name)
             else:
                 yield from claims_in(value)
     elif isinstance(document, list | tuple):
         for item in document:
             yield from claims_in(item)
+
+
+def _says(value: object) -> bool:
+    """Tell whether a value is something; zero is, too."""
+    is_number = isinstance(value, int | float) and not isinstance(value, bool)
+    return is_number or bool(value)
 
 
 def is_shown(result: Mapping[str, Any], shown: Mapping[str, Any]) -> bool:

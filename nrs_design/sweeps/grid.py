@@ -133,7 +133,8 @@ def _paths(node: Node, at: Keys, said: str) -> Iterator[tuple[str, Keys]]:
 
 def _nearest(path: str, known: dict[str, Keys]) -> str:
     """Suggest paths that are alike; else what is below the longest part that is there."""
-    near = difflib.get_close_matches(path, known, n=3)
+    beside = [name for name in known if not path.startswith(f"{name}.")]
+    near = difflib.get_close_matches(path, beside, n=3)
     ends = [name for name in known if name.endswith(f".{path}")][:3]
     if near or ends:
         return f"did you mean {' or '.join(dict.fromkeys((*ends, *near)))}?"

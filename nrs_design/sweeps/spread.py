@@ -7,8 +7,10 @@ ones. The order in which results come back does not matter; whoever asks sorts t
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Callable, Collection, Iterator, Sequence
 from functools import partial
+from threading import Event, Thread
 from typing import TypeVar
 
 from nrs_design.errors import NrsDesignError
@@ -18,6 +20,8 @@ Work = Callable[[int], T]
 
 # So many times in a row workers may die before the next result.
 MAX_DEATHS = 3
+# Every so many seconds a worker looks whether anybody still waits for it.
+WATCH = 1.0
 # Of a scheduler: enough chunks for each worker that none waits long for the last one.
 CHUNKS_PER_WORKER, LARGEST_CHUNK = 8, 200
 
@@ -64,8 +68,25 @@ def spread(work: Work[T], points: Collection[int], jobs: int) -> Iterator[tuple[
 def _in_processes(work: Work[T], points: Sequence[int], jobs: int) -> Iterator[tuple[int, T]]:
     from joblib import Parallel, delayed
 
-    parallel = Parallel(n_jobs=jobs, return_as="generator_unordered")
+    parallel = Parallel(
+        n_jobs=jobs,
+        backend="loky",
+        return_as="generator_unordered",
+        initializer=_end_with,
+        initargs=(os.getpid(),),
+    )
     yield from parallel(delayed(_numbered)(work, point) for point in points)
+
+
+def _end_with(run: int) -> None:
+    """End this worker when the run that it works for is no more, however that ended."""
+
+    def watch() -> None:
+        while os.getppid() == run:
+            Event().wait(WATCH)
+        os._exit(1)
+
+    Thread(target=watch, daemon=True).start()
 
 
 def _numbered(work: Work[T], point: int) -> tuple[int, T]:

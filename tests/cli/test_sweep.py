@@ -1,6 +1,10 @@
 """`nrs-design sweep`, as a user types it."""
 
 import json
+import re
+import subprocess
+import sys
+from time import sleep
 
 import pytest
 
@@ -70,6 +74,54 @@ def test_a_spoilt_answer_is_computed_again(tmp_path, spec, spoil):
     second = run(*command, cwd=tmp_path, code=0)
     assert "1 computed, 0 were there" in second.stderr
     assert second.stdout == first.stdout
+
+
+def test_a_run_that_is_killed_goes_on(tmp_path, spec):
+    """It loses what it was at, and nothing else; no half-written file is left."""
+    command = (
+        "sweep",
+        spec,
+        "--set",
+        f"{STIFFNESS}=700..740/30 N/m",
+        "certify-switching",
+        "--json",
+    )
+    typed = subprocess.Popen(
+        [sys.executable, "-m", "nrs_design", *command],
+        cwd=tmp_path,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+    )
+    while len(kept(tmp_path / "mine.sweep")) < 6 and typed.poll() is None:
+        sleep(0.01)
+    typed.kill()
+    typed.wait()
+    there = {path: path.read_bytes() for path in kept(tmp_path / "mine.sweep")}
+    assert 6 <= len(there) < 60
+    resumed = run(*command, cwd=tmp_path, code=0)
+    found = re.search(r"(\d+) computed, (\d+) were there", resumed.stderr)
+    assert found
+    assert int(found[2]) >= 2
+    assert int(found[1]) + int(found[2]) == 30
+    assert all(path.read_bytes() == content for path, content in there.items())
+    whole = run(*command[:-1], "--store", "new", "--json", cwd=tmp_path, code=0)
+    assert whole.stdout == resumed.stdout
+
+
+def test_results_do_not_depend_on_how_many_processes_compute_them(tmp_path, spec):
+    command = (
+        "sweep",
+        spec,
+        "--set",
+        f"{STIFFNESS}=700..2000/6 N/m",
+        "certify-switching",
+        "--json",
+    )
+    alone = run(*command, "--store", "one", cwd=tmp_path, code=1)
+    two = run(*command, "--store", "two", "--jobs", 2, cwd=tmp_path, code=1)
+    assert two.stdout == alone.stdout
+    one, other = ({p.name: p.read_bytes() for p in kept(tmp_path / n)} for n in ("one", "two"))
+    assert one == other
 
 
 def certified(tmp_path, spec, value="700"):

@@ -1,0 +1,57 @@
+"""Points on several processes: one that is killed loses nothing."""
+
+import os
+import signal
+from functools import partial
+
+import pytest
+
+from nrs_design.errors import NrsDesignError
+from nrs_design.sweeps.spread import chunked, spread, spread_by_dask
+
+
+def square(point):
+    return point * point
+
+
+def killed_once(folder, point):
+    """Kill the worker that computes this point, the first time."""
+    mark = folder / "killed"
+    if point == 3 and not mark.exists():
+        mark.touch()
+        os.kill(os.getpid(), signal.SIGKILL)
+    return point * point
+
+
+def always_killed(own, point):
+    assert os.getpid() != own
+    os.kill(os.getpid(), signal.SIGKILL)
+
+
+def test_points_of_one_process_come_in_order():
+    assert list(spread(square, range(3), 1)) == [(0, 0), (1, 1), (2, 4)]
+
+
+def test_a_killed_worker_loses_nothing(tmp_path):
+    found = list(spread(partial(killed_once, tmp_path), range(8), 2))
+    assert (tmp_path / "killed").exists()
+    assert sorted(found) == [(point, point * point) for point in range(8)]
+
+
+def test_workers_that_always_die_end_in_an_error():
+    with pytest.raises(NrsDesignError, match="died 4 times in a row; 2 points are left"):
+        list(spread(partial(always_killed, os.getpid()), range(2), 2))
+
+
+@pytest.mark.parametrize(("count", "workers"), [(1, 4), (1000, 2), (100_000, 3)])
+def test_chunks_hold_every_point_once(count, workers):
+    chunks = chunked(range(count), workers)
+    assert [point for chunk in chunks for point in chunk] == list(range(count))
+    assert max(map(len, chunks)) <= 200
+
+
+def test_without_the_extra_there_is_one_clear_message(monkeypatch):
+    monkeypatch.setitem(__import__("sys").modules, "dask", None)
+    with pytest.raises(NrsDesignError, match="not installed") as caught:
+        list(spread_by_dask(square, range(2), "tcp://127.0.0.1:1"))
+    assert "nrs-design[dask]" in (caught.value.remedy or "")

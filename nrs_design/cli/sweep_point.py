@@ -148,8 +148,20 @@ def _computed(job: Job, key: str) -> Kept:
     placed = () if place is None else (place, str(job.store.certificate(key)))
     arguments = [*job.command, str(job.spec), *job.options, *placed, "--json", "--quiet"]
     with contextlib.redirect_stdout(io.StringIO()) as printed:
-        code = program_of(job.command[0]).main(arguments, standalone_mode=False)
-    return Kept(int(code or 0), _lasting(json.loads(printed.getvalue())))
+        code = _run(program_of(job.command[0]), arguments)
+    return Kept(code, _lasting(json.loads(printed.getvalue())))
+
+
+def _run(program: Any, arguments: list[str]) -> int:
+    """Return the exit code of a command; who interrupts it interrupts the whole sweep."""
+    import typer
+
+    try:
+        with program.make_context("nrs-design", arguments) as context:
+            program.invoke(context)
+    except typer.Exit as end:
+        return end.exit_code
+    return exit_codes.PROVED
 
 
 @cache

@@ -2,6 +2,7 @@
 
 import json
 import re
+import signal
 import subprocess
 import sys
 from time import sleep
@@ -76,7 +77,8 @@ def test_a_spoilt_answer_is_computed_again(tmp_path, spec, spoil):
     assert second.stdout == first.stdout
 
 
-def test_a_run_that_is_killed_goes_on(tmp_path, spec):
+@pytest.mark.parametrize(("how", "code"), [(signal.SIGKILL, -signal.SIGKILL), (signal.SIGINT, 130)])
+def test_a_run_that_is_killed_goes_on(tmp_path, spec, how, code):
     """It loses what it was at, and nothing else; no half-written file is left."""
     command = (
         "sweep",
@@ -94,8 +96,8 @@ def test_a_run_that_is_killed_goes_on(tmp_path, spec):
     )
     while len(kept(tmp_path / "mine.sweep")) < 6 and typed.poll() is None:
         sleep(0.01)
-    typed.kill()
-    typed.wait()
+    typed.send_signal(how)
+    assert typed.wait() == code
     there = {path: path.read_bytes() for path in kept(tmp_path / "mine.sweep")}
     assert 6 <= len(there) < 60
     resumed = run(*command, cwd=tmp_path, code=0)

@@ -7,8 +7,6 @@ be proved: that is used only if the certificate beside it is checked again here,
 
 from __future__ import annotations
 
-import contextlib
-import io
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -20,6 +18,7 @@ from nrs_design import __version__
 from nrs_design.axis import about
 from nrs_design.cli import exit_codes
 from nrs_design.cli.errors import error_summary
+from nrs_design.cli.printing import taking_json
 from nrs_design.errors import CertificateError, ClockError, NrsDesignError
 from nrs_design.spec.instead import saying_instead
 from nrs_design.spec.load import read_axes
@@ -147,9 +146,9 @@ def _computed(job: Job, key: str) -> Kept:
     place = CERTIFYING.get(" ".join(job.command))
     placed = () if place is None else (place, str(job.store.certificate(key)))
     arguments = [*job.command, str(job.spec), *job.options, *placed, "--json", "--quiet"]
-    with contextlib.redirect_stdout(io.StringIO()) as printed:
+    with taking_json() as documents:
         code = _run(program_of(job.command[0]), arguments)
-    return Kept(code, _lasting(json.loads(printed.getvalue())))
+    return Kept(code, _lasting(json.loads(documents[-1])))
 
 
 def _run(program: Any, arguments: list[str]) -> int:

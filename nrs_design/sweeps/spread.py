@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 import os
+import warnings
 from collections.abc import Callable, Collection, Iterator, Sequence
 from functools import partial
 from threading import Event, Thread
@@ -72,14 +73,16 @@ def _in_processes(work: Work[T], points: Sequence[int], jobs: int) -> Iterator[t
         n_jobs=jobs,
         backend="loky",
         return_as="generator_unordered",
-        initializer=_end_with,
+        initializer=_begin,
         initargs=(os.getpid(),),
     )
     yield from parallel(delayed(_numbered)(work, point) for point in points)
 
 
-def _end_with(run: int) -> None:
-    """End this worker when the run that it works for is no more, however that ended."""
+def _begin(run: int) -> None:
+    """Let this worker be silent as its run is, and end when that is no more, however it ended."""
+    # Warnings of libraries are for programmers.
+    warnings.simplefilter("ignore")
 
     def watch() -> None:
         while os.getppid() == run:
@@ -118,7 +121,7 @@ def spread_by_dask(work: Work[T], points: Sequence[int], scheduler: str) -> Iter
             remedy="pip install 'nrs-design[dask]', or leave --dask out and take --jobs",
         ) from None
     try:
-        client = Client(scheduler, set_as_default=False)
+        client = Client(scheduler)
     except (OSError, ValueError) as error:
         raise NrsDesignError(
             f"there is no scheduler at {scheduler} ({error})", remedy="start one: dask scheduler"

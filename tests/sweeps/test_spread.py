@@ -2,7 +2,10 @@
 
 import os
 import signal
+import sys
+from concurrent.futures import Future
 from functools import partial
+from types import SimpleNamespace
 
 import pytest
 
@@ -50,8 +53,43 @@ def test_chunks_hold_every_point_once(count, workers):
     assert max(map(len, chunks)) <= 200
 
 
+class Scheduler:
+    """What is asked of a client of dask.distributed, with two workers that answer at once."""
+
+    def __init__(self, address):
+        if address != "tcp://there:1":
+            raise OSError("timed out")
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        pass
+
+    def scheduler_info(self):
+        return {"workers": {"a": {}, "b": {}}}
+
+    def map(self, work, chunks, *, pure):
+        assert not pure
+        futures = []
+        for chunk in chunks:
+            futures.append(Future())
+            futures[-1].set_result(work(chunk))
+        return futures
+
+
+def test_a_scheduler_is_given_chunks(monkeypatch):
+    dask = SimpleNamespace(Client=Scheduler, as_completed=reversed)
+    monkeypatch.setitem(sys.modules, "dask", SimpleNamespace(distributed=dask))
+    monkeypatch.setitem(sys.modules, "dask.distributed", dask)
+    found = list(spread_by_dask(square, range(100), "tcp://there:1"))
+    assert sorted(found) == [(point, point * point) for point in range(100)]
+    with pytest.raises(NrsDesignError, match="there is no scheduler at tcp://elsewhere:1"):
+        list(spread_by_dask(square, range(2), "tcp://elsewhere:1"))
+
+
 def test_without_the_extra_there_is_one_clear_message(monkeypatch):
-    monkeypatch.setitem(__import__("sys").modules, "dask", None)
+    monkeypatch.setitem(sys.modules, "dask", None)
     with pytest.raises(NrsDesignError, match="not installed") as caught:
         list(spread_by_dask(square, range(2), "tcp://127.0.0.1:1"))
     assert "nrs-design[dask]" in (caught.value.remedy or "")

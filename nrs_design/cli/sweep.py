@@ -76,6 +76,15 @@ def sweep(
             "tcp://10.0.0.1:8786; they must share this folder and the store.",
         ),
     ] = None,
+    shown: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--show",
+            metavar="FACT",
+            help="Show this fact of every answer, such as Bt or decay_rate; may be repeated. "
+            "Default: the first ones that differ.",
+        ),
+    ] = None,
     table: Annotated[
         Path | None, typer.Option("--csv", metavar="FILE", help="Write all facts as a table.")
     ] = None,
@@ -87,11 +96,10 @@ def sweep(
 
     The exit code is that of the worst point: 4 before 2 before 1 before 3 before 0.
 
-    Example: nrs-design sweep specs/neuroboscope/soft-tissue.nrs.yaml
-    --set 'environments.soft.stiffness=700..800/5 N/m' certify-switching
+    Example: nrs-design sweep SPEC --set 'environments.soft.stiffness=500..2500/5 N/m'
+    certify-switching
 
-    Example: nrs-design sweep specs/neuroboscope/soft-tissue.nrs.yaml --jobs 2
-    --set 'environments.soft.lever_arm=0.2,0.24 m' --set 'limits.bandwidth=1,2,4 Hz' optimize
+    Example: nrs-design sweep SPEC --set 'limits.bandwidth=1,2 Hz' --jobs 2 --show Bt optimize
     """
     from nrs_design.cli.sweep_answer import facts_of, show, table_text, view_of
     from nrs_design.output import SWEEP, check_place, write_output
@@ -110,7 +118,7 @@ def sweep(
             write_output(table, table_text(job, points), replaces=SWEEP)
             note(f"table written to {table}")
         facts = facts_of(job, points) if wants_json() else {}
-        view = view_of(job, points)
+        view = view_of(job, points, shown or ())
     return Answer(lambda: facts, partial(show, view), worst({point.code for point in points}))
 
 

@@ -13,13 +13,13 @@ from nrs_design.cli import exit_codes
 from nrs_design.cli.printing import say
 from nrs_design.cli.tables import print_table
 from nrs_design.errors import NrsDesignError
-from nrs_design.sweeps.table import Columns, Row, cell_text, fact_columns, flat
+from nrs_design.sweeps.table import Columns, Row, cell_text, chosen, fact_columns, flat, short_names
 
 if TYPE_CHECKING:
     from nrs_design.cli.sweep_point import Job, Tile
 
 # What a terminal shows of rows, columns and messages; files hold them all.
-MOST_ROWS, MOST_COLUMNS, MOST_MESSAGES = 200, 6, 5
+MOST_ROWS, MOST_COLUMNS, MOST_MESSAGES, MOST_NAMED = 200, 6, 5, 12
 # What an answer without a verdict is called, by its exit code.
 WORDS: Mapping[int, str] = {
     exit_codes.PROVED: "met",
@@ -76,12 +76,22 @@ def table_text(job: Job, points: Sequence[Tile]) -> str:
     return text.getvalue()
 
 
-def view_of(job: Job, points: Sequence[Tile]) -> SweepView:
-    """Return what people see: what was set, how it ended, and the first facts that differ."""
+def view_of(job: Job, points: Sequence[Tile], wanted: Sequence[str]) -> SweepView:
+    """Return what people see: what was set, how it ended, and some facts.
+
+    Parameters
+    ----------
+    job : Job
+        What was done.
+    points : sequence of Tile
+        What came of each point.
+    wanted : sequence of str
+        Names of facts; without them, the first ones that differ from point to point.
+    """
     every = _columns(job, points)
     # How it ended has a column of its own.
     telling = [name for name in every.telling if name != "verdict"]
-    names = telling[:MOST_COLUMNS]
+    names = chosen(every, wanted) if wanted else telling[:MOST_COLUMNS]
     rows, ended = list[tuple[str, ...]](), Counter[str]()
     for point, result in _results(job, points):
         row = _row(result)
@@ -94,17 +104,19 @@ def view_of(job: Job, points: Sequence[Tile]) -> SweepView:
     lines = [f"{len(points)} points: {counted}"]
     if len(points) > MOST_ROWS:
         lines.append(f"{len(points) - MOST_ROWS} more rows: --csv FILE holds them all")
-    if len(telling) > MOST_COLUMNS:
-        lines.append(f"{len(telling) - MOST_COLUMNS} more facts differ: --csv FILE holds them all")
+    if not wanted and len(telling) > MOST_COLUMNS:
+        more = ", ".join(short_names(telling)[MOST_COLUMNS:][:MOST_NAMED])
+        lines.append(f"more facts differ (--show NAME, or --csv FILE for all): {more}")
     lines += _messages(job, points)
     heads = (f"{head}\n{unit}" if unit else head for head, unit in _heads(job))
-    title = f"{' '.join((*job.command, *job.options))} of {job.spec}"
-    return SweepView(title, (*heads, "answer", *names), tuple(rows), tuple(lines))
+    title = f"{job.spec}: {' '.join((*job.command, *job.options))}"
+    return SweepView(title, (*heads, "answer", *short_names(names)), tuple(rows), tuple(lines))
 
 
 def show(view: SweepView) -> None:
     """Print for people."""
-    print_table(view.title, view.columns, view.rows)
+    say(view.title)
+    print_table("", view.columns, view.rows)
     for line in view.lines:
         say(line)
 

@@ -6,6 +6,10 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
 
+from nrs_design.errors import NrsDesignError
+from nrs_design.proof.text import quoted
+from nrs_design.spec.faults import did_you_mean
+
 Cell: TypeAlias = str | int | float | bool | None
 Row: TypeAlias = Mapping[str, Cell]
 
@@ -64,8 +68,43 @@ def fact_columns(rows: Iterable[Row]) -> Columns:
             if isinstance(value, str) and len(value) > SHORT:
                 long.add(name)
         differ |= first.keys() - row.keys()
-    return Columns(
-        tuple(first), tuple(n for n in first if n in differ - long and not n.endswith(_EXACT))
+    telling = [n for n in first if n in differ - long and not n.endswith(_EXACT)]
+    # What is said at the top says most.
+    return Columns(tuple(first), tuple(sorted(telling, key=lambda name: name.count("."))))
+
+
+def chosen(columns: Columns, wanted: Sequence[str]) -> list[str]:
+    """Return the facts that are asked for, each by its whole name, or by how the shortest end.
+
+    Raises
+    ------
+    NrsDesignError
+        If there is none of such a name.
+    """
+    found: list[str] = []
+    for name in wanted:
+        named = [one for one in columns.every if one == name or one.endswith(f".{name}")]
+        if not named:
+            told = [*columns.telling, *columns.every]
+            raise NrsDesignError(
+                f"no answer has a fact {quoted(name)}", remedy=did_you_mean(name, told, "there are")
+            )
+        # Facts of the same name further down are parts of others.
+        least = min(one.count(".") for one in named)
+        found += [one for one in named if one.count(".") == least]
+    return list(dict.fromkeys(found))
+
+
+def short_names(names: Sequence[str]) -> list[str]:
+    """Return the shortest ending of each dotted name that no other one has."""
+    return [_ending(name, names) for name in names]
+
+
+def _ending(name: str, names: Sequence[str]) -> str:
+    parts = name.split(".")
+    ends = (".".join(parts[at:]) for at in range(len(parts) - 1, -1, -1))
+    return next(
+        end for end in ends if end == name or sum(f".{n}".endswith(f".{end}") for n in names) == 1
     )
 
 

@@ -1,6 +1,9 @@
 """Documents of points as columns of a table."""
 
-from nrs_design.sweeps.table import cell_text, fact_columns, flat
+import pytest
+
+from nrs_design.errors import NrsDesignError
+from nrs_design.sweeps.table import cell_text, chosen, fact_columns, flat, short_names
 
 
 def test_items_are_called_by_their_names():
@@ -28,6 +31,19 @@ def test_a_fact_tells_if_it_differs_and_is_short():
     assert columns.every == ("same", "rate", "said", "rate_exact", "late")
     assert columns.telling == ("rate", "late")
     assert fact_columns([]).every == ()
+
+
+def test_facts_are_chosen_by_how_they_end():
+    columns = fact_columns(
+        [{"a.Mt": 1, "a.Bt": 2, "b.Bt": 3, "a.optimum.Bt": 4, "verdict": "proved"}]
+    )
+    assert chosen(columns, ["Bt", "verdict", "a.Bt"]) == ["a.Bt", "b.Bt", "verdict"]
+    with pytest.raises(NrsDesignError, match="no answer has a fact 'Bx'"):
+        chosen(columns, ["Bx"])
+
+
+def test_the_shortest_names_that_differ():
+    assert short_names(["c.a.Bt", "c.b.Bt", "cost", "Bt"]) == ["a.Bt", "b.Bt", "cost", "Bt"]
 
 
 def test_cells():

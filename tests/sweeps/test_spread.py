@@ -1,7 +1,6 @@
 """Points on several processes: one that is killed loses nothing."""
 
 import os
-import signal
 import sys
 from concurrent.futures import Future
 from functools import partial
@@ -11,24 +10,7 @@ import pytest
 
 from nrs_design.errors import NrsDesignError
 from nrs_design.sweeps.spread import chunked, spread, spread_by_dask
-
-
-def square(point):
-    return point * point
-
-
-def killed_once(folder, point):
-    """Kill the worker that computes this point, the first time."""
-    mark = folder / "killed"
-    if point == 3 and not mark.exists():
-        mark.touch()
-        os.kill(os.getpid(), signal.SIGKILL)
-    return point * point
-
-
-def always_killed(own, point):
-    assert os.getpid() != own
-    os.kill(os.getpid(), signal.SIGKILL)
+from tests.sweeps.work import always_killed, killed_once, square
 
 
 def test_points_of_one_process_come_in_order():

@@ -1,0 +1,122 @@
+"""Points of a sweep: how many a second, what a second process gains, and what each costs beside.
+
+The work of a point is `certify-switching` on the soft-tissue design with another stiffness. The
+peer of the overhead is the same command, called in one process on files that somebody wrote. The
+bare work tells what a pool of processes can gain at most while others use the machine, too.
+"""
+
+from __future__ import annotations
+
+import os
+from concurrent.futures import ProcessPoolExecutor
+from functools import partial
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from time import perf_counter
+from typing import Any
+
+from benchmarks.measure import Comparison, Finding, Size
+from nrs_design.cli.printing import taking_json
+from nrs_design.cli.sweep_point import Job, answer_point, program_of
+from nrs_design.sweeps.grid import read_grid
+from nrs_design.sweeps.spread import spread
+from nrs_design.sweeps.store import Store
+
+SPEC = Path(__file__).parents[1] / "specs/neuroboscope/soft-tissue.nrs.yaml"
+COMMAND = "certify-switching"
+# Of the time of a point, and of the processes.
+SHARE, SPEED_UP = 0.5, 1.6
+
+
+def run(size: Size) -> tuple[Comparison | Finding, ...]:
+    """Measure one process, two, and points that are there."""
+    count = size.pick(400, 100, 4)
+    with TemporaryDirectory() as folder:
+        bare = _bare(Path(folder), count)
+        one = _job(Path(folder) / "one", count)
+        answer_point(one, 0)
+        alone, again = (_timed(one, 1) for _ in range(2))
+        two = _timed(_job(Path(folder) / "two", count), 2)
+        possible = _spun(1) / _spun(2) * 2
+    return (
+        Finding(
+            f"{count} points of {COMMAND}, one process",
+            f"{count / alone:.0f} points a second; overhead {alone / bare - 1:.0%} of the command",
+            f"overhead below {SHARE:.0%}",
+            alone / bare - 1 < SHARE,
+            alone,
+        ),
+        Comparison(
+            f"{count} points, two processes",
+            "one process",
+            alone,
+            two,
+            SPEED_UP if possible > SPEED_UP else None,
+            f"start of the workers included; idle loops gained {possible:.2f} just then",
+        ),
+        Comparison(
+            f"{count} points that are there, certificates checked again",
+            "computing them",
+            alone,
+            again,
+            None,
+            f"{count / again:.0f} points a second",
+        ),
+    )
+
+
+def _job(folder: Path, count: int) -> Job:
+    grid = read_grid(SPEC, [f"environments.soft.stiffness=500..900/{count} N/m"])
+    return Job(SPEC, grid, (COMMAND,), (), (COMMAND,), Store(folder))
+
+
+def _timed(job: Job, jobs: int) -> float:
+    start = perf_counter()
+    found = dict(spread(partial(answer_point, job), range(job.grid.count), jobs))
+    seconds = perf_counter() - start
+    assert len(found) == job.grid.count
+    assert all(point.error is None for point in found.values())
+    return seconds
+
+
+def _bare(folder: Path, count: int) -> float:
+    """Return the time of the same commands on written files, with nothing kept."""
+    text = SPEC.read_text(encoding="utf-8")
+    old = "{nominal: 747.1461 N/m, range: [720.56 N/m, 768.17 N/m]}"
+    assert old in text
+    grid = _job(folder, count).grid
+    files = []
+    for at in range(count):
+        files.append(folder / f"{at}.nrs.yaml")
+        files[-1].write_text(text.replace(old, *grid.texts(at)), encoding="utf-8")
+    program = program_of(COMMAND)
+    _call(program, files[0], folder)
+    start = perf_counter()
+    for file in files:
+        _call(program, file, folder)
+    return perf_counter() - start
+
+
+def _call(program: Any, file: Path, folder: Path) -> None:
+    place = folder / f"{file.name}.cert.json"
+    with taking_json() as documents:
+        program.main(
+            [COMMAND, str(file), "--out", str(place), "--json", "--quiet"], standalone_mode=False
+        )
+    assert documents
+
+
+def _spun(processes: int) -> float:
+    """Return how long so many idle loops take, each in a process of its own."""
+    with ProcessPoolExecutor(processes) as pool:
+        list(pool.map(_spin, [10_000] * processes))
+        start = perf_counter()
+        list(pool.map(_spin, [10_000_000] * processes))
+        return perf_counter() - start
+
+
+def _spin(steps: int) -> int:
+    total = os.getpid()
+    for step in range(steps):
+        total += step
+    return total

@@ -1,18 +1,19 @@
 """Points of a sweep: how many a second, what a second process gains, and what each costs beside.
 
 The work of a point is `certify-switching` on the soft-tissue design with another stiffness. The
-peer of the overhead is the same command, called in one process on files that somebody wrote. The
-bare work tells what a pool of processes can gain at most while others use the machine, too.
+peer of the overhead is the same command, called in one process on files that somebody wrote. What
+two processes gain is told by processor time, that of the busier one with all that it loads: where
+others use the machine, clocks tell what these leave.
 """
 
 from __future__ import annotations
 
 import os
-from concurrent.futures import ProcessPoolExecutor
+from collections import Counter
 from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from time import perf_counter
+from time import perf_counter, process_time_ns
 from typing import Any
 
 from benchmarks.measure import Comparison, Finding, Size
@@ -35,9 +36,8 @@ def run(size: Size) -> tuple[Comparison | Finding, ...]:
         bare = _bare(Path(folder), count)
         one = _job(Path(folder) / "one", count)
         answer_point(one, 0)
-        alone, again = (_timed(one, 1) for _ in range(2))
-        two = _timed(_job(Path(folder) / "two", count), 2)
-        possible = _spun(1) / _spun(2) * 2
+        (alone, one_busy), (again, _) = (_timed(one, 1) for _ in range(2))
+        two, two_busy = _timed(_job(Path(folder) / "two", count), 2)
     return (
         Finding(
             f"{count} points of {COMMAND}, one process",
@@ -49,10 +49,10 @@ def run(size: Size) -> tuple[Comparison | Finding, ...]:
         Comparison(
             f"{count} points, two processes",
             "one process",
-            alone,
-            two,
-            SPEED_UP if possible > SPEED_UP else None,
-            f"start of the workers included; idle loops gained {possible:.2f} just then",
+            one_busy,
+            two_busy,
+            size.pick(SPEED_UP, None, None),
+            f"processor time of the busier one; by the clock {alone:.1f} s and {two:.1f} s",
         ),
         Comparison(
             f"{count} points that are there, certificates checked again",
@@ -70,13 +70,23 @@ def _job(folder: Path, count: int) -> Job:
     return Job(SPEC, grid, (COMMAND,), (), (COMMAND,), Store(folder))
 
 
-def _timed(job: Job, jobs: int) -> float:
-    start = perf_counter()
-    found = dict(spread(partial(answer_point, job), range(job.grid.count), jobs))
+def _timed(job: Job, jobs: int) -> tuple[float, float]:
+    """Return the time of all points, and the processor time of the process that has most to do."""
+    start, busy = perf_counter(), Counter[int]()
+    found = dict(spread(partial(_measured, job), range(job.grid.count), jobs))
     seconds = perf_counter() - start
     assert len(found) == job.grid.count
-    assert all(point.error is None for point in found.values())
-    return seconds
+    for process, used, error in found.values():
+        assert error is None
+        busy[process] += used
+    return seconds, max(busy.values()) / 1e9
+
+
+def _measured(job: Job, index: int) -> tuple[int, int, object]:
+    """Answer a point: the process that did, the processor time in ns, and what is wrong."""
+    start = process_time_ns()
+    point = answer_point(job, index)
+    return os.getpid(), process_time_ns() - start, point.error
 
 
 def _bare(folder: Path, count: int) -> float:
@@ -104,19 +114,3 @@ def _call(program: Any, file: Path, folder: Path) -> None:
             [COMMAND, str(file), "--out", str(place), "--json", "--quiet"], standalone_mode=False
         )
     assert documents
-
-
-def _spun(processes: int) -> float:
-    """Return how long so many idle loops take, each in a process of its own."""
-    with ProcessPoolExecutor(processes) as pool:
-        list(pool.map(_spin, [10_000] * processes))
-        start = perf_counter()
-        list(pool.map(_spin, [10_000_000] * processes))
-        return perf_counter() - start
-
-
-def _spin(steps: int) -> int:
-    total = os.getpid()
-    for step in range(steps):
-        total += step
-    return total

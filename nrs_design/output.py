@@ -48,6 +48,8 @@ ROS2_LAUNCH, ROS2_PAGE = b'"""nrs-design launch of ROS 2\n', b"<!-- nrs-design p
 BOUNDS = b'{\n  "schema": "nrs-design/robot-bounds/'
 LOCK = b'{\n  "schema": "nrs-design/lock/'
 PAGE = b'<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta name="generator" content="nrs-design">\n'
+# What stands beside a page.
+PAGE_NOTE = b"nrs-design page made of\n"
 SCHEMA = (
     b'{\n  "$schema": "http://json-schema.org/draft-07/schema#",\n  "title": "nrs-design spec",\n',
     b'{\n  "$schema": "https://json-schema.org/draft/2020-12/schema",\n'

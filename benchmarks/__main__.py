@@ -30,6 +30,7 @@ BENCHMARKS = (
     "bounded_runs",
     "instruction_counts",
     "scenario_runs",
+    "sweep_points",
 )
 Result = Comparison | Finding | Failure
 HEADS = {

@@ -48,6 +48,8 @@ ROS2_LAUNCH, ROS2_PAGE = b'"""nrs-design launch of ROS 2\n', b"<!-- nrs-design p
 BOUNDS = b'{\n  "schema": "nrs-design/robot-bounds/'
 LOCK = b'{\n  "schema": "nrs-design/lock/'
 PAGE = b'<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta name="generator" content="nrs-design">\n'
+# What stands beside a page.
+PAGE_NOTE = b"nrs-design page made of\n"
 SCHEMA = (
     b'{\n  "$schema": "http://json-schema.org/draft-07/schema#",\n  "title": "nrs-design spec",\n',
     b'{\n  "$schema": "https://json-schema.org/draft/2020-12/schema",\n'
@@ -65,6 +67,7 @@ ARCHIVE = (
     b"PK\x03\x04\x14\x00\x00\x00\x00\x00\x00\x00!\x00_\x00\x9b?\xcc\x00\x00\x00\xcc\x00\x00\x00"
     b"\x09\x00\x00\x00about.npy"
 )
+SWEEP = b"point,exit_code,message,"
 TABLE = b"theta4_deg,K1,K2,K3,K1_least_squares,K2_least_squares,K3_least_squares\n"
 # Other programs write SARIF and JUnit files, too: ours say that they are.
 GATE = re.compile(

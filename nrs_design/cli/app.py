@@ -37,6 +37,7 @@ COMMANDS = (
     "audit",
     "check-lyapunov",
     "simulate",
+    "sweep",
     "report",
     "reproduce",
     "export",
@@ -91,7 +92,7 @@ def make_app(names: Iterable[str] = COMMANDS) -> typer.Typer:
         if isinstance(command, typer.Typer):
             app.add_typer(command, name=name)
         else:
-            app.command(name)(command)
+            app.command(name, context_settings=getattr(command, "settings", None))(command)
     return app
 
 

@@ -58,6 +58,7 @@ def command(
     has_json: bool = True,
     each_axis: bool = False,
     together: Callable[[Sequence[Mapping[str, Any]]], Together] | None = None,
+    passes_on: bool = False,
 ) -> Callable[[Callable[..., Answer]], Callable[..., None]]:
     """Make a command of a function: with --json and --quiet, and an end that prints its answer.
 
@@ -71,6 +72,8 @@ def command(
         Whether it is run for each axis of a `spec` that holds several.
     together : callable, optional
         What is then said of all axes, given the facts of each: a line, and more facts.
+    passes_on : bool
+        Whether options that it does not know belong to another command, which its last argument is.
     """
     options = {"as_json": Json, "quiet": Quiet} if has_json else {"quiet": Quiet}
 
@@ -93,6 +96,7 @@ def command(
         ]
         parameters = (*signature.parameters.values(), *added)
         vars(run)["__signature__"] = signature.replace(parameters=parameters)
+        vars(run)["settings"] = {"ignore_unknown_options": passes_on}
         run.__annotations__ = {p.name: p.annotation for p in parameters}
         return run
 

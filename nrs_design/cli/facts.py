@@ -13,32 +13,22 @@ from nrs_design.proof.bounds import lower_float, upper_float
 if TYPE_CHECKING:
     from fractions import Fraction
 
+    from nrs_design.certificates.certificate import Certificate
     from nrs_design.pipeline import Result
     from nrs_design.pipeline.blocked import Blocked
     from nrs_design.pipeline.margins import ProofMargins
     from nrs_design.search.certification import Certification
     from nrs_design.search.loop_margin import Bracket, MarginBrackets
+    from nrs_design.spec import Spec
 
 
 def certification_facts(result: Result, path: Path | None) -> dict[str, Any]:
     """Return the facts of a decision on stability under switching."""
-    from nrs_design.certificates.bounds import bounds_summary
-    from nrs_design.certificates.goals import certified_goals
-
     found, certificate = result.certification, result.certificate
-    system, evidence = found.system, found.evidence
+    system = found.system
     return {
         **spec_facts(result.loaded),
-        "verdict": str(found.verdict),
-        "refuted_in": found.refuted_in,
-        "common_quadratic": str(found.common_quadratic),
-        "claim": evidence.claim(system) if evidence else None,
-        "statements": [{"kind": s.kind, "claim": s.claim(system)} for s in found.statements],
-        "bounds": bounds_summary(system, found.statements),
-        "goals": [
-            {"goal": g.key, "wanted": g.wanted, "shown": g.said, "proved": g.met}
-            for g in certified_goals(result.loaded.spec, certificate)
-        ],
+        **_stated(found, certificate, result.loaded.spec),
         "method": found.method,
         **rate_facts(found),
         "time": str(system.time),
@@ -61,16 +51,65 @@ def certification_facts(result: Result, path: Path | None) -> dict[str, Any]:
     }
 
 
+def shown_facts(certificate: Certificate, spec: Spec) -> dict[str, Any]:
+    """Return those facts of a decision that its certificate shows by itself.
+
+    Parameters
+    ----------
+    certificate : Certificate
+        One that was checked just now.
+    spec : Spec
+        The spec that it was checked against.
+    """
+    system = certificate.system
+    return {
+        **_stated(certificate, certificate, spec),
+        **_proved_rate(certificate),
+        "time": str(system.time),
+        "coordinates": certificate.coordinates,
+        "states": list(system.states),
+        "modes": [mode.name for mode in system.modes],
+        "gains": dict(certificate.gains),
+        "assumptions": list(certificate.granted),
+        "certificate_id": certificate.id,
+    }
+
+
+def _stated(
+    found: Certification | Certificate, certificate: Certificate | None, spec: Spec
+) -> dict[str, Any]:
+    from nrs_design.certificates.bounds import bounds_summary
+    from nrs_design.certificates.goals import certified_goals
+
+    system, evidence = found.system, found.evidence
+    return {
+        "verdict": str(found.verdict),
+        "refuted_in": found.refuted_in,
+        "common_quadratic": str(found.common_quadratic),
+        "claim": evidence.claim(system) if evidence else None,
+        "statements": [{"kind": s.kind, "claim": s.claim(system)} for s in found.statements],
+        "bounds": bounds_summary(system, found.statements),
+        "goals": [
+            {"goal": g.key, "wanted": g.wanted, "shown": g.said, "proved": g.met}
+            for g in certified_goals(spec, certificate)
+        ],
+    }
+
+
 def rate_facts(certification: Certification) -> dict[str, Any]:
     """Return the facts of the proved rate and its limit."""
-    evidence, system = certification.evidence, certification.system
-    rate = None if evidence is None else evidence.proved_rate(system)
-    continuous = system.time == "continuous"
+    continuous = certification.system.time == "continuous"
     return {
-        **_number("decay_rate", rate, lower_float if continuous else upper_float),
+        **_proved_rate(certification),
         "decay_rate_limit": certification.rate_limit,
         "decay_rate_unit": "1/s" if continuous else "1 per step",
     }
+
+
+def _proved_rate(found: Certification | Certificate) -> dict[str, Any]:
+    evidence, system = found.evidence, found.system
+    rate = None if evidence is None else evidence.proved_rate(system)
+    return _number("decay_rate", rate, lower_float if system.time == "continuous" else upper_float)
 
 
 def margins_facts(margins: ProofMargins) -> dict[str, Any]:

@@ -26,6 +26,7 @@ COLOURS = {"proved": "green", "refuted": "red", "rejected": "red", "inconclusive
 
 _json: ContextVar[bool] = ContextVar("json", default=False)
 _quiet: ContextVar[bool] = ContextVar("quiet", default=False)
+_taken: ContextVar[list[str] | None] = ContextVar("taken", default=None)
 
 
 @contextmanager
@@ -57,7 +58,28 @@ def is_quiet() -> bool:
 def print_json(command: str, content: dict[str, Any]) -> None:
     """Print the versioned envelope of a command."""
     envelope = {"schema": f"nrs-design/{command}/1", **content}
-    print(json_text(envelope, allow_nan=False))
+    text, taken = json_text(envelope, allow_nan=False), _taken.get()
+    if taken is None:
+        print(text)
+    else:
+        taken.append(text)
+
+
+@contextmanager
+def taking_json() -> Iterator[list[str]]:
+    """Take the documents that are printed within, in this thread, in place of printing them.
+
+    Yields
+    ------
+    list of str
+        Their texts, as they come.
+    """
+    documents: list[str] = []
+    token = _taken.set(documents)
+    try:
+        yield documents
+    finally:
+        _taken.reset(token)
 
 
 def say(line: str = "", *, verdict: str = "") -> None:

@@ -1,9 +1,9 @@
-"""Recorded commands of scenarios with limits: the hash of a spec covers only their names."""
+"""Recorded commands of scenarios: the hash of a spec covers only their names."""
 
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
 from nrs_design.files import open_regular
 from nrs_design.spec import InteractionDesignSpec, LoadedSpec
@@ -11,15 +11,26 @@ from nrs_design.spec.scenarios import ScenarioSpec
 
 
 def hash_recorded(loaded: LoadedSpec) -> Mapping[str, str]:
-    """Return the SHA-256 of every such file, in hexadecimal, by its name in the spec.
+    """Return the SHA-256 of every file that scenarios with limits follow, by its name in the spec.
 
     Parameters
     ----------
     loaded : LoadedSpec
         The spec; files are below its folder. One that cannot be read is left out.
     """
+    return _hashes(loaded, recorded_files(loaded))
+
+
+def hash_followed(loaded: LoadedSpec) -> Mapping[str, str]:
+    """Return the SHA-256 of every file that any scenario follows; see `hash_recorded`."""
+    if not isinstance(loaded.spec, InteractionDesignSpec):
+        return {}
+    return _hashes(loaded, _names(loaded.spec.scenarios.values()))
+
+
+def _hashes(loaded: LoadedSpec, names: tuple[str, ...]) -> dict[str, str]:
     found = {}
-    for name in recorded_files(loaded):
+    for name in names:
         digest = hashlib.sha256()
         try:
             with open_regular(loaded.path.parent / name) as stream:
@@ -35,8 +46,11 @@ def recorded_files(loaded: LoadedSpec) -> tuple[str, ...]:
     """Return the names of these files, from the folder of the spec, sorted."""
     if not isinstance(loaded.spec, InteractionDesignSpec):
         return ()
-    limited = (one for one in loaded.spec.scenarios.values() if one.limits is not None)
-    return tuple(sorted({name for one in limited for name in _named(one)}))
+    return _names(one for one in loaded.spec.scenarios.values() if one.limits is not None)
+
+
+def _names(scenarios: Iterable[ScenarioSpec]) -> tuple[str, ...]:
+    return tuple(sorted({name for one in scenarios for name in _named(one)}))
 
 
 def _named(scenario: ScenarioSpec) -> Iterator[str]:

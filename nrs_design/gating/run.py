@@ -22,6 +22,7 @@ from nrs_design.gating.obligations import (
     SpecOutcome,
     failed,
 )
+from nrs_design.gating.pages import is_current, made_of, note_page
 from nrs_design.gating.paths import is_utf8
 from nrs_design.gating.places import Places
 from nrs_design.gating.recorded import hash_recorded
@@ -42,7 +43,9 @@ from nrs_design.spec.task_space import file_of
 from nrs_design.wings import load_wing
 
 if TYPE_CHECKING:
+    from nrs_design.design.analysis import DesignAnalysis
     from nrs_design.gating.lock import LockedGoal
+    from nrs_design.search.certification import Limits
 
 
 # For each of the bounds of a robot, in s.
@@ -228,7 +231,12 @@ def _examine(
     bounds, on_trust = _bounds(loaded, files, examiner, progress, robots)
     recorded = hash_recorded(loaded)
     simulated = tuple(judge_scenarios(result, examiner, progress))
-    goals, cautions = _goals_and_report(result, examiner, files, progress, subsets, blocked)
+    analysis, goals = judge_margins(result, examiner, progress)
+    cautions = (*examiner.contact(certificate), *examiner.cautions(analysis))
+    if files.html:
+        progress("report")
+        page = files.report(loaded.spec.name)
+        _write_page(result, page, limits, analysis, subsets, blocked)
     outcome = examiner.outcome(
         certification,
         file,
@@ -261,22 +269,22 @@ def _bounds(
     return examiner.known_bounds(files.bounds[loaded.sha256])
 
 
-def _goals_and_report(
+def _write_page(
     result: Result,
-    examiner: Examiner,
-    files: Files,
-    progress: Progress,
+    page: Path,
+    limits: Limits,
+    analysis: DesignAnalysis | None,
     subsets: tuple[Subset, ...] | None,
     blocked: Blocked | None,
-) -> Findings:
-    analysis, found = judge_margins(result, examiner, progress)
-    if files.html:
-        progress("report")
-        # Drawing costs seconds to import; a run without reports must not pay for it.
-        from nrs_design.reporting import build_report, render_html
+) -> None:
+    """Draw the page of a spec, unless the one that is there is just this."""
+    origin = origin_of(result.loaded.path, page)
+    made = made_of(result, limits, origin)
+    if is_current(page, made):
+        return
+    # Drawing costs seconds to import; a run without reports must not pay for it.
+    from nrs_design.reporting import build_report, render_html
 
-        page = files.report(result.loaded.spec.name)
-        origin = origin_of(result.loaded.path, page)
-        html = render_html(build_report(result, analysis, subsets=subsets, blocked=blocked), origin)
-        write_output(page, html, replaces=PAGE)
-    return found, (*examiner.contact(result.certificate), *examiner.cautions(analysis))
+    html = render_html(build_report(result, analysis, subsets=subsets, blocked=blocked), origin)
+    write_output(page, html, replaces=PAGE)
+    note_page(page, made)

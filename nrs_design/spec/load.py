@@ -28,6 +28,7 @@ from nrs_design.spec.document import (
     to_data,
 )
 from nrs_design.spec.faults import MAX_LISTED, did_you_mean
+from nrs_design.spec.instead import as_read
 from nrs_design.spec.meaning import hash_meaning
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.places import faults_between, file_faults, place_of
@@ -111,7 +112,7 @@ def read_spec(path: str | os.PathLike[str]) -> LoadedSpec:
     named = Path(path)
     file = file_of(named)
     _, text = read_source(file)
-    root, syntax = parse_with_faults(text, file)
+    root, syntax = _document(text, file)
     if is_task_space(root):
         _validated(model_of(KIND), root, syntax, file)
         return _loaded(named, text, axis_document(root, named), ())
@@ -138,11 +139,16 @@ def axes_at(path: Path) -> tuple[Path, ...]:
     _, text = read_source(path)
     if KIND not in text:
         return (path,)
-    root, syntax = parse_with_faults(text, path)
+    root, syntax = _document(text, path)
     if not is_task_space(root):
         return (path,)
     _validated(model_of(KIND), root, syntax, path)
     return tuple(address(path, axis) for axis in axis_names(root))
+
+
+def _document(text: str, file: Path) -> tuple[Node, tuple[Fault, ...]]:
+    root, syntax = parse_with_faults(text, file)
+    return as_read(root, file), syntax
 
 
 def respecified(loaded: LoadedSpec, root: Node) -> LoadedSpec:

@@ -16,6 +16,7 @@ from nrs_design.cli.printing import (
     progress,
     say,
     say_failure,
+    taking_json,
     wrapped,
 )
 
@@ -140,3 +141,12 @@ def test_a_reader_of_progress_that_goes_away_ends_nothing(monkeypatch):
     monkeypatch.setattr("sys.stderr", gone)
     with progress("certifying"):
         assert gone.written.wait(60)
+
+
+def test_a_document_may_be_taken_in_place_of_being_printed(capsys):
+    with taking_json() as documents:
+        print_json("verify", {"words": "a"})
+    assert [json.loads(text)["words"] for text in documents] == ["a"]
+    assert capsys.readouterr().out == ""
+    print_json("verify", {"words": "b"})
+    assert json.loads(capsys.readouterr().out)["words"] == "b"

@@ -1,0 +1,285 @@
+"""`nrs-design sweep`, as a user types it."""
+
+import json
+import signal
+import subprocess
+import sys
+from time import sleep
+
+import pytest
+
+from nrs_design.cli import exit_codes
+from nrs_design.cli.sweep import SWEPT
+from tests.support import SOFT_TISSUE, document_of, run
+
+STIFFNESS = "environments.soft.stiffness"
+# Proved, refuted.
+TWO = f"{STIFFNESS}=700,2000 N/m"
+
+
+@pytest.fixture
+def spec(tmp_path):
+    path = tmp_path / "mine.nrs.yaml"
+    path.write_text(SOFT_TISSUE.read_text(encoding="utf-8"), encoding="utf-8")
+    return path.name
+
+
+def kept(folder):
+    return sorted(folder.rglob("*.json"))
+
+
+def test_a_table_of_every_combination(tmp_path, spec):
+    limits = "limits.bandwidth=1,2 Hz"
+    stable = f"{STIFFNESS}=700,800 N/m"
+    done = run("sweep", spec, "--set", stable, "--set", limits, "optimize", cwd=tmp_path, code=0)
+    assert "4 points: 4 met" in done.stdout
+    rows = [line.split()[:2] for line in done.stdout.splitlines() if " met " in line]
+    assert rows == [["700", "1"], ["700", "2"], ["800", "1"], ["800", "2"]]
+
+
+def test_what_a_point_says_is_what_the_command_says(tmp_path, spec):
+    """The document of a point is that of the command on a spec with that value."""
+    swept = document_of("sweep", spec, "--set", TWO, "certify-switching", cwd=tmp_path, code=1)
+    assert [point["values"] for point in swept["points"]] == [["700 N/m"], ["2000 N/m"]]
+    text = (tmp_path / spec).read_text(encoding="utf-8")
+    for point, value in zip(swept["points"], ("700", "2000"), strict=True):
+        written = text.replace(
+            "{nominal: 747.1461 N/m, range: [720.56 N/m, 768.17 N/m]}", f"{value} N/m"
+        )
+        assert written != text
+        (tmp_path / "written.nrs.yaml").write_text(written, encoding="utf-8")
+        alone = document_of("certify-switching", "written.nrs.yaml", cwd=tmp_path)
+        for attempt in alone["attempts"]:
+            del attempt["seconds"]
+        result = point["result"]
+        assert result == {key: alone[key] for key in result}
+
+
+def test_a_run_goes_on_from_what_is_kept(tmp_path, spec):
+    command = ("sweep", spec, "--set", TWO, "certify-switching", "--json")
+    first = run(*command, cwd=tmp_path, code=1)
+    assert "2 computed, 0 were there" in first.stderr
+    # An answer and a certificate each.
+    assert len(kept(tmp_path / "mine.sweep")) == 4
+    second = run(*command, cwd=tmp_path, code=1)
+    assert "0 computed, 2 were there" in second.stderr
+    assert second.stdout == first.stdout
+
+
+@pytest.mark.parametrize("spoil", ["", "{", "[]", '{"schema": "nrs-design/tile/1"}', "\0"])
+def test_a_spoilt_answer_is_computed_again(tmp_path, spec, spoil):
+    command = ("sweep", spec, "--set", f"{STIFFNESS}=700 N/m", "check", "--json")
+    first = run(*command, cwd=tmp_path, code=0)
+    (entry,) = kept(tmp_path / "mine.sweep")
+    entry.write_text(spoil, encoding="utf-8")
+    second = run(*command, cwd=tmp_path, code=0)
+    assert "1 computed, 0 were there" in second.stderr
+    assert second.stdout == first.stdout
+
+
+def interrupted(tmp_path, command, how):
+    """Run a command as typed, and end it by a signal when a few answers are kept."""
+    process = subprocess.Popen(
+        [sys.executable, "-m", "nrs_design", *command],
+        cwd=tmp_path,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+    )
+    while len(kept(tmp_path / "mine.sweep")) < 3 and process.poll() is None:
+        sleep(0.001)
+    process.send_signal(how)
+    return process.wait()
+
+
+@pytest.mark.parametrize(
+    ("how", "code"), [(signal.SIGKILL, -signal.SIGKILL), (signal.SIGINT, exit_codes.INTERRUPTED)]
+)
+def test_a_run_that_is_killed_goes_on(tmp_path, spec, how, code):
+    """It loses what it was at, and nothing else; no half-written file is left."""
+    command = ("sweep", spec, "--set", f"{STIFFNESS}=700..740/40 N/m", "check", "--json")
+    assert interrupted(tmp_path, command, how) == code
+    there = {path: path.read_bytes() for path in kept(tmp_path / "mine.sweep")}
+    assert 3 <= len(there) < 40
+    resumed = run(*command, cwd=tmp_path, code=0)
+    assert f"{40 - len(there)} computed, {len(there)} were there" in resumed.stderr
+    assert all(path.read_bytes() == content for path, content in there.items())
+    whole = run(*command, "--store", "new", cwd=tmp_path, code=0)
+    assert whole.stdout == resumed.stdout
+
+
+def test_results_do_not_depend_on_how_many_processes_compute_them(tmp_path, spec):
+    command = (
+        "sweep",
+        spec,
+        "--set",
+        f"{STIFFNESS}=700..2000/6 N/m",
+        "certify-switching",
+        "--json",
+    )
+    alone = run(*command, "--store", "one", cwd=tmp_path, code=1)
+    two = run(*command, "--store", "two", "--jobs", 2, cwd=tmp_path, code=1)
+    assert two.stdout == alone.stdout
+    one, other = ({p.name: p.read_bytes() for p in kept(tmp_path / n)} for n in ("one", "two"))
+    assert one == other
+
+
+def certified(tmp_path, spec, value="700"):
+    command = ("sweep", spec, "--set", f"{STIFFNESS}={value} N/m", "certify-switching", "--json")
+    return run(*command, cwd=tmp_path)
+
+
+def rewritten(entry, change):
+    """Write an answer that somebody made: whole, with the id of what it says."""
+    from nrs_design.sweeps.store import Kept
+
+    document = json.loads(entry.read_text(encoding="utf-8"))
+    forged = Kept(document["code"], change(document["result"]))
+    entry.write_text(forged.text(document["key"]), encoding="utf-8")
+
+
+def answer_and_certificate(tmp_path):
+    certificate, answer = sorted(kept(tmp_path / "mine.sweep"), key=lambda path: len(path.name))[
+        ::-1
+    ]
+    return answer, certificate
+
+
+def test_proved_is_used_again_only_with_a_certificate_that_holds(tmp_path, spec):
+    """The rule that matters: no file in a folder makes something proved."""
+    first = certified(tmp_path, spec)
+    answer, certificate = answer_and_certificate(tmp_path)
+    whole = certificate.read_text(encoding="utf-8")
+
+    def is_computed_again():
+        done = certified(tmp_path, spec)
+        assert "1 computed, 0 were there" in done.stderr
+        assert done.stdout == first.stdout
+        assert certificate.read_text(encoding="utf-8") == whole
+
+    certificate.unlink()
+    is_computed_again()
+    certificate.write_text(whole.replace('"1/2"', '"1/3"', 1) + " ", encoding="utf-8")
+    certificate.write_text(whole.replace("3", "4", 1), encoding="utf-8")
+    is_computed_again()
+    certificate.write_text("{", encoding="utf-8")
+    is_computed_again()
+    rewritten(answer, lambda result: result | {"decay_rate": 2 * result["decay_rate"]})
+    is_computed_again()
+    rewritten(answer, lambda result: result | {"margin": {"proved_scale": 2.0}})
+    is_computed_again()
+    rewritten(answer, lambda result: {k: v for k, v in result.items() if k != "verdict"})
+    is_computed_again()
+    assert "0 computed, 1 were there" in certified(tmp_path, spec).stderr
+
+
+def test_the_certificate_of_another_point_proves_nothing(tmp_path, spec):
+    refuted = certified(tmp_path, spec, "2000")
+    answer, certificate = answer_and_certificate(tmp_path)
+    elsewhere = certificate.with_name("elsewhere.json")
+    certificate.rename(elsewhere)
+    answer.unlink()
+    certified(tmp_path, spec)
+    (tmp_path / "other").mkdir()
+    proof = next(p for p in kept(tmp_path / "mine.sweep") if p.name.endswith(".cert.json"))
+    proved = proof.with_name(proof.name.replace(".cert", ""))
+    certificate.write_bytes(proof.read_bytes())
+    said = json.loads(proved.read_text(encoding="utf-8"))["result"]
+    from nrs_design.sweeps.store import Kept
+
+    answer.write_text(Kept(0, said).text(answer.stem), encoding="utf-8")
+    again = certified(tmp_path, spec, "2000")
+    assert again.stdout == refuted.stdout
+    assert again.returncode == 1
+
+
+def test_a_value_that_makes_no_valid_spec_is_a_wrong_point(tmp_path, spec):
+    mixed = f"{STIFFNESS}=700,-5 N/m"
+    swept = document_of("sweep", spec, "--set", mixed, "check", cwd=tmp_path, code=2)
+    good, bad = swept["points"]
+    assert (good["exit_code"], bad["exit_code"], bad["result"]) == (0, 2, None)
+    assert "-5 N/m" in bad["error"]["faults"][0]["message"]
+    # Nothing is kept of what is wrong.
+    assert len(kept(tmp_path / "mine.sweep")) == 1
+    told = run("sweep", spec, "--set", mixed, "check", cwd=tmp_path, code=2).stdout
+    assert f"wrong: {STIFFNESS}=-5 N/m: " in told
+
+
+@pytest.mark.parametrize(
+    ("said", "message"),
+    [
+        ("environments.soft.stifness=1 N/m", "did you mean environments.soft.stiffness"),
+        (f"{STIFFNESS}=5..1/3 N/m", "reversed"),
+        (f"{STIFFNESS}=5..5/3 N/m", "empty"),
+        (f"{STIFFNESS}=1..2/1 N/m", "two ends"),
+        (f"{STIFFNESS}=1.5..2 N/m", "has no count"),
+        (f"{STIFFNESS}=1..1000000000 N/m", "1000000000 points are more than 1000000"),
+        (f"{STIFFNESS}=1,2 s", "is not a stiffness"),
+        (f"{STIFFNESS}=1,2", "has no unit"),
+        (f"{STIFFNESS}=1,,2 N/m", "lacks a value"),
+        (f"{STIFFNESS}=1,1 N/m", "twice"),
+        (f"{STIFFNESS}", "sets nothing"),
+        (f"{STIFFNESS}=[1 N/m]", "a list or a mapping"),
+    ],
+)
+def test_what_makes_no_sweep_is_refused(tmp_path, spec, said, message):
+    done = run("sweep", spec, "--set", said, "check", cwd=tmp_path, code=2)
+    assert message in done.stderr.replace("\n", " ")
+    assert kept(tmp_path) == []
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("--set", TWO, "--set", TWO, "check"), "is set twice"),
+        (("--set", TWO, "--set", f"{STIFFNESS}.nominal=1 N/m", "check"), "about one another"),
+        (("--set", TWO, "report"), "is no command that is run at every point"),
+        (("--set", TWO, "certify"), "did you mean certify-switching"),
+        (("--set", TWO, "check", "other.nrs.yaml"), "names no spec of its own"),
+        (("--set", TWO, "certify-switching", "--out", "x.json"), "takes no file"),
+        (("--set", TWO, "--store", "a", "--no-store", "check"), "exclude each other"),
+        (("--set", TWO, "--jobs", 2, "--dask", "tcp://127.0.0.1:1", "check"), "exclude each other"),
+        (("--set", TWO, "optimize", "--nope"), "No such option"),
+    ],
+)
+def test_wrong_usage(tmp_path, spec, arguments, message):
+    done = run("sweep", spec, *arguments, cwd=tmp_path, code=2)
+    assert message in " ".join(done.stderr.split())
+
+
+def test_options_belong_to_the_command_and_to_the_name_of_its_answer(tmp_path, spec):
+    command = ("sweep", spec, "--set", f"{STIFFNESS}=700 N/m", "certify-switching")
+    run(*command, cwd=tmp_path, code=0)
+    assert "1 computed" in run(*command, "--method", "lmi", cwd=tmp_path).stderr
+    assert "0 computed" in run(*command, "--method=lmi", cwd=tmp_path).stderr
+    assert "0 computed" in run(*command, "--", "--method", "lmi", cwd=tmp_path).stderr
+
+
+def test_no_store_keeps_nothing(tmp_path, spec):
+    run("sweep", spec, "--set", TWO, "--no-store", "check", cwd=tmp_path, code=0)
+    assert kept(tmp_path) == []
+    run("sweep", spec, "--set", TWO, "--store", "there", "check", cwd=tmp_path, code=0)
+    assert len(kept(tmp_path / "there")) == 2
+
+
+def test_a_table_as_csv(tmp_path, spec):
+    arguments = ("sweep", spec, "--set", TWO, "--csv", "t.csv", "check")
+    run(*arguments, cwd=tmp_path, code=0)
+    head, *rows = (tmp_path / "t.csv").read_text(encoding="utf-8").splitlines()
+    assert head.startswith(f"point,exit_code,message,{STIFFNESS} [N/m],")
+    assert [row.split(",")[:4] for row in rows] == [["0", "0", "", "700"], ["1", "0", "", "2000"]]
+    run(*arguments, cwd=tmp_path, code=0)
+    (tmp_path / "t.csv").write_text("mine", encoding="utf-8")
+    assert "not overwritten" in run(*arguments, cwd=tmp_path, code=2).stderr
+
+
+def test_every_command_of_the_table_is_run(tmp_path):
+    """Each takes a spec, and has --json."""
+    from nrs_design.cli.sweep_point import program_of
+
+    for words in map(str.split, SWEPT):
+        found = program_of(words[0])
+        for word in words:
+            found = found.commands[word]
+        names = [parameter.name for parameter in found.params]
+        assert {"spec", "specs"} & set(names)
+        assert "as_json" in names

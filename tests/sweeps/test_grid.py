@@ -1,0 +1,55 @@
+"""Points of a sweep, in one order."""
+
+from itertools import product
+
+import pytest
+
+from nrs_design.errors import SpecError
+from nrs_design.sweeps.grid import read_grid
+from tests.support import COMMUTING, ROOT, SOFT_TISSUE
+
+LEVER = "environments.soft.lever_arm=0.2,0.3 m"
+STIFFNESS = "environments.soft.stiffness=100..400/4 N/m"
+AXES = ROOT / "docs/examples/axes.nrs.yaml"
+
+
+def test_every_combination_once_and_the_last_field_fastest():
+    grid = read_grid(SOFT_TISSUE, [LEVER, STIFFNESS])
+    stiffness = [f"{value} N/m" for value in (100, 200, 300, 400)]
+    assert [grid.texts(at) for at in range(grid.count)] == list(
+        product(["0.2 m", "0.3 m"], stiffness)
+    )
+    assert grid.changes(0) == (
+        (("environments", "soft", "lever_arm"), "0.2 m"),
+        (("environments", "soft", "stiffness"), "100 N/m"),
+    )
+
+
+def test_items_of_lists_are_counted_from_0():
+    grid = read_grid(COMMUTING, ["modes.1.A.0.0=-1,-2"])
+    assert grid.changes(1) == ((("modes", 1, "A", 0, 0), "-2"),)
+
+
+def test_the_unit_above_a_column():
+    first, second = read_grid(SOFT_TISSUE, [STIFFNESS, "limits.torque=1 N*m,2 kN*m"]).fields
+    assert (first.unit, second.unit) == ("N/m", "")
+
+
+@pytest.mark.parametrize(
+    ("said", "message"),
+    [
+        (["stiffness=1 N/m"], "did you mean environments.soft.stiffness"),
+        (["sampling.delay=1"], "write one of kind, name"),
+        (["limits.torqe=1 N*m"], "did you mean limits.torque"),
+        (["environments.soft.zzzzzzzzzzzzzzzzzzzz=1 N*m"], "below environments.soft"),
+        ([], "one to 3 fields, not 0"),
+        ([LEVER] * 4, "one to 3 fields, not 4"),
+        (
+            ["limits.torque=1..1001/1001 N*m", STIFFNESS, "limits.bandwidth=1..250 Hz"],
+            "1001 x 4 x 250",
+        ),
+    ],
+)
+def test_what_makes_no_grid(said, message):
+    with pytest.raises(SpecError, match=message):
+        read_grid(SOFT_TISSUE, said)

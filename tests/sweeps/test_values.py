@@ -1,0 +1,52 @@
+"""Values of a field: lists and ranges, exactly as a spec writes them."""
+
+import pytest
+
+from nrs_design.errors import SpecError
+from nrs_design.spec import parse_exact
+from nrs_design.sweeps.values import parse_values
+
+
+def listed(text):
+    values = parse_values(text)
+    return [values[at] for at in range(len(values))]
+
+
+@pytest.mark.parametrize(
+    ("text", "values"),
+    [
+        ("1,2, 5 N*m/rad", ["1 N*m/rad", "2 N*m/rad", "5 N*m/rad"]),
+        ("1 ms, 2 s", ["1 ms", "2 s"]),
+        ("0.5", ["0.5"]),
+        ("kept,losable", ["kept", "losable"]),
+        ("1..2/3 N", ["1 N", "1.5 N", "2 N"]),
+        ("-1..1 N", ["-1 N", "0 N", "1 N"]),
+        ("0..1/4", ["0", "1/3", "2/3", "1"]),
+        ("1e-3..2e-3/2 s", ["0.001 s", "0.002 s"]),
+        (".5..1.5/2 s", ["0.5 s", "1.5 s"]),
+    ],
+)
+def test_values(text, values):
+    assert listed(text) == values
+
+
+def test_a_range_is_exact_and_as_long_as_it_says():
+    """No value passes through a float, and none is written before it is asked for."""
+    values = parse_values("1..250/1000000000 N")
+    assert len(values) == 10**9
+    assert parse_exact(values[10**9 - 1].partition(" ")[0]) == 250
+    assert parse_exact(values[1].partition(" ")[0]) == 1 + parse_exact("249/999999999")
+
+
+@pytest.mark.parametrize(
+    "text", ["", ",", "1,", "2..1/3 N", "1..1 N", "1..2/0 N", "1..2/1", "1.5..2"]
+)
+def test_what_has_no_values_is_refused(text):
+    with pytest.raises(SpecError):
+        parse_values(text)
+
+
+@pytest.mark.parametrize("text", ["1...2 N", "a..b", "1..2/-3", "1..", "[1, 2]", "1,2,1 N"])
+def test_what_is_no_list_and_no_range_is_refused(text):
+    with pytest.raises(SpecError):
+        parse_values(text)

@@ -28,6 +28,7 @@ from nrs_design.search.lifted import monomial_weights
 from nrs_design.search.motions import Motions, separating_coordinates
 from nrs_design.search.polynomial import conewise_cost, family_cost, functions_cost, work_of_checks
 from nrs_design.search.rounding import BACK_OFFS, claims, digits, rate_at
+from nrs_design.search.stays import round_stays
 from nrs_design.work import Cost, NotAffordableError
 
 Array = NDArray[np.float64]
@@ -47,8 +48,6 @@ MOST_ROUNDED = 250
 FEW_STAYS = 64
 # The lengths of a stay in continuous time, times the size of the mode, that are nearly one.
 NARROW_STAYS = 0.5
-# How finely the stays of a mode that must be left are enclosed.
-PIECES = (32, 256, 1024)
 
 
 @dataclass(frozen=True)
@@ -61,7 +60,6 @@ class Rates:
     nearest: float = BACK_OFFS[0]
     few: bool = False
     bits: Sequence[int] = field(default_factory=digits)
-    pieces: Sequence[int] = (1,)  # How finely stays of any length are enclosed
     always: bool = False  # Look for the largest rate, whatever was asked for
     words: str = "found with the largest decay rate"
 
@@ -124,9 +122,7 @@ def propose(
             for claim in claims(best, limit, time, rates.nearest, few=rates.few):
                 if not best or (solution := program.solve(float(claim), part)) is None:
                     continue
-                for evidence in program.roundings(
-                    solution, claim, bits, rates.pieces, errors=covered
-                ):
+                for evidence in program.roundings(solution, claim, bits, errors=covered):
                     yield Candidate(evidence, rates.words)
         except NotAffordableError:
             if rates.always:
@@ -298,21 +294,27 @@ def search_modes(family: Family, degree: int = 1) -> Candidates[FormsOnGraph]:
     cost, what = functions_cost(system, degree)
     checked = replace(cost, work=cost.work + work_of_checks(system, degree))
     allowance.require(checked, f"{what}, with the exact check of what it finds,")
-    drawing = draw_each_mode(family, degree)
-    if not drawing.is_finite:
-        return OUT_OF_RANGE
-    left = drawing.graph.stays is not None and drawing.graph.stays.leaving
-    rates = Rates(nearest=0.999, bits=digits(6))
-    if left and system.time is Time.CONTINUOUS:
-        # Enclosures take time: few attempts, and wider gaps.
-        rates = Rates(nearest=0.9, few=True, bits=digits(12, few=True), pieces=PIECES)
     always = family.optimize_rate or not family.stand_ins()
-    rates = replace(rates, always=always, words="found")
-    return (yield from propose([FormsProgram(drawing)], family, family.limit, rates))
+    ended = None
+    for drawing in draw_each_mode(family, degree):
+        if not drawing.is_finite:
+            return OUT_OF_RANGE
+        rates = Rates(nearest=0.999, bits=digits(6))
+        assert drawing.graph.stays is not None
+        if drawing.graph.stays.leaving and system.time is Time.CONTINUOUS:
+            # Enclosures take time: few attempts, and wider gaps.
+            rates = Rates(nearest=0.9, few=True, bits=digits(12, few=True))
+        rates = replace(rates, always=always, words="found")
+        ended = yield from propose([FormsProgram(drawing)], family, family.limit, rates)
+    return ended
 
 
-def draw_each_mode(family: Family, degree: int) -> Drawing:
-    """Draw a node for each mode, as a place of its own."""
+def draw_each_mode(family: Family, degree: int) -> Iterator[Drawing]:
+    """Draw a node for each mode, as a place of its own.
+
+    What is drawn next shows every stay of the modes that have a longest one, which asks for less,
+    but takes longer; in coordinates in which what a mean signal keeps is round.
+    """
     system = family.system
     like = family.stand_ins() or {mode.name: mode.name for mode in system.modes}
     number = {name: k for k, name in enumerate(dict.fromkeys(like.values()))}
@@ -322,18 +324,18 @@ def draw_each_mode(family: Family, degree: int) -> Drawing:
     for name in number:
         d = shared[0] if shared else balance(matrices[name][None])
         coordinates.append(lifted_coordinates(d, degree))
-    leaving = tuple(
-        mode.name for mode in system.modes if _is_left(system, mode, system.stays()[mode.name])
-    )
-    graph = FormsOnGraph(
-        tuple(Node(mode.name, ()) for mode in system.modes),
-        0,
-        ANY_RATE,
-        degree,
-        stays=Stays(leaving),
-    )
+    stays = system.stays()
+    leaving = tuple(m.name for m in system.modes if _is_left(system, m, stays[m.name]))
     forms = tuple(number[like[mode.name]] for mode in system.modes)
-    return Drawing(system, graph, forms, tuple(coordinates))
+    nodes = tuple(Node(mode.name, ()) for mode in system.modes)
+    graph = FormsOnGraph(nodes, 0, ANY_RATE, degree, stays=Stays(leaving))
+    drawing = Drawing(system, graph, forms, tuple(coordinates))
+    yield drawing
+    every = tuple(mode.name for mode in system.modes if stays[mode.name].longest is not None)
+    if every and system.time is Time.CONTINUOUS and drawing.is_finite:
+        own = round_stays(system, every)
+        graph = replace(graph, stays=Stays(every))
+        yield replace(drawing, graph=graph, coordinates=tuple(own[name] for name in number))
 
 
 def search_together(family: Family) -> Candidates[FormsOnGraph]:

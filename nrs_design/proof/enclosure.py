@@ -58,10 +58,47 @@ def exponential(A: RationalMatrix, begin: Fraction, end: Fraction) -> Any:
     middle, half = (begin + end) / 2, (end - begin) / 2
     exact = _fmpq_matrix(A)
     E = arb_mat(exact * fmpq(middle.numerator, middle.denominator)).exp()
-    if half > 0:
-        ball = ball_around(half)
-        E = (arb_mat(exact) * (-ball).union(ball)).exp() * E
-    return E
+    return exponential_near_zero(arb_mat(exact), half) * E if half > 0 else E
+
+
+def exponential_near_zero(A: Any, half: Fraction) -> Any:
+    """Return balls that contain ``exp(A t)`` for all t from ``-half`` to ``half``.
+
+    Parameters
+    ----------
+    A : flint.arb_mat, shape (n, n)
+        In 1/s.
+    half : Fraction
+        In s.
+    """
+    ball = ball_around(half)
+    return (A * (-ball).union(ball)).exp()
+
+
+def round_coordinates(form: Any) -> Any:
+    """Return an exact T with ``T' F T`` near the identity; the identity if F is not definite.
+
+    Parameters
+    ----------
+    form : flint.arb_mat, shape (n, n)
+        The symmetric F.
+    """
+    from flint import arb_mat
+
+    n = form.nrows()
+    L, as_it_is = arb_mat(n, n), arb_mat(n, n, [int(a == b) for a in range(n) for b in range(n)])
+    for j in range(n):
+        for i in range(j, n):
+            rest = form[i, j]
+            for k in range(j):
+                rest -= L[i, k] * L[j, k]
+            if i == j and not rest > 0:
+                return as_it_is
+            L[i, j] = rest.sqrt() if i == j else rest / L[j, j]
+    try:
+        return L.inv().transpose().mid()
+    except ZeroDivisionError:  # Not invertible for certain.
+        return as_it_is
 
 
 def overlap(enclosed: Any, M: RationalMatrix, error: Fraction) -> bool:

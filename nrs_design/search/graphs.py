@@ -21,9 +21,11 @@ from nrs_design.proof.switching import Clock, Stay
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.balance import balance, own_norm, scale_states
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
+from nrs_design.search.cycle import growing_cycles
 from nrs_design.search.decay import RESOLUTION, SMALLEST, bisect_position, limit_rate
 from nrs_design.search.family import Family, stand_ins, to_floats
 from nrs_design.search.forms import Drawing, FormCoordinates, FormsProgram
+from nrs_design.search.graph import Graph
 from nrs_design.search.lifted import monomial_weights
 from nrs_design.search.motions import Motions, separating_coordinates
 from nrs_design.search.polynomial import conewise_cost, family_cost, functions_cost, work_of_checks
@@ -36,6 +38,8 @@ Exponents = NDArray[np.int64]
 
 # Few roundings with errors: more digits at once, as every check takes longer.
 WITH_ERRORS = (24, 32, 40, 50, 60)
+# The same where stays are enclosed.
+BITS_OF_STAYS = (12, 32, 60)
 # Work for each edge, to have it in floating point.
 PER_EDGE = 5e-5
 # Programs take the steps of a system in units that suit this rate.
@@ -46,6 +50,7 @@ KEPT = 0.99
 MOST_ROUNDED = 250
 # Numbers of steps that are each shown for a mode that is stable, too.
 FEW_STAYS = 64
+GROWS = "not looked for: the state grows along a cycle of modes"
 # The lengths of a stay in continuous time, times the size of the mode, that are nearly one.
 NARROW_STAYS = 0.5
 
@@ -295,7 +300,9 @@ def search_modes(family: Family, degree: int = 1) -> Candidates[FormsOnGraph]:
     checked = replace(cost, work=cost.work + work_of_checks(system, degree))
     allowance.require(checked, f"{what}, with the exact check of what it finds,")
     always = family.optimize_rate or not family.stand_ins()
-    ended = None
+    limit, ended = _limit_of_cycles(family), None
+    if system.time is Time.CONTINUOUS and limit <= 0:
+        return GROWS
     for drawing in draw_each_mode(family, degree):
         if not drawing.is_finite:
             return OUT_OF_RANGE
@@ -303,10 +310,24 @@ def search_modes(family: Family, degree: int = 1) -> Candidates[FormsOnGraph]:
         assert drawing.graph.stays is not None
         if drawing.graph.stays.leaving and system.time is Time.CONTINUOUS:
             # Enclosures take time: few attempts, and wider gaps.
-            rates = Rates(nearest=0.9, few=True, bits=digits(12, few=True))
+            rates = Rates(nearest=0.9, few=True, bits=BITS_OF_STAYS)
         rates = replace(rates, always=always, words="found")
-        ended = yield from propose([FormsProgram(drawing)], family, family.limit, rates)
+        ended = yield from propose([FormsProgram(drawing)], family, limit, rates)
     return ended
+
+
+def _limit_of_cycles(family: Family) -> float:
+    """Return the rate that no form can beat, in continuous time with timed stays that of cycles.
+
+    Elsewhere that of the modes that need never be left is near enough.
+    """
+    system = family.system
+    timed = len(system.lasting_modes()) < len(system.modes)
+    if not timed or system.time is Time.DISCRETE or not system.is_uniform:
+        return family.limit
+    graph = Graph.of(system, np.array([mode.A.floats() for mode in system.modes]))
+    cycles = growing_cycles(graph, family.allowance)
+    return min((-float(graph.growth(*cycle)) for cycle in cycles), default=family.limit)
 
 
 def draw_each_mode(family: Family, degree: int) -> Iterator[Drawing]:

@@ -11,13 +11,14 @@ from nrs_design.proof.evidence import FormsOnGraph
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.switching import Edge
 from nrs_design.proof.system import SwitchedSystem
+from nrs_design.search.balance import round_coordinates
 
 Array = NDArray[np.float64]
 
 # Of each number of pieces in turn it is predicted whether they are enough.
 PIECES = (1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096)
-# Predictions leave out what is of second order: this is left for it.
-SAFE = 1.05
+# Predictions leave out what is rounded: this is left for it.
+SAFE = 1.02
 
 
 def enough_pieces(system: SwitchedSystem, graph: FormsOnGraph) -> int | None:
@@ -62,20 +63,21 @@ def _pieces_of(
     begin, width = float(stay.shortest), float(stay.longest - stay.shortest)
     if width == 0:
         return first
+    T = round_coordinates(before)
     B = np.array(edge.source.A.floats()) + rate * np.eye(n)
     G = np.eye(n) if edge.map is None else np.array(edge.map.floats())
-    roots = np.sqrt(np.diag(before))
-    scale = np.outer(roots, roots)
+    moved = np.abs(np.linalg.inv(T) @ B @ T)
     for k in range(first, len(PIECES)):
         half = width / PIECES[k] / 2
         step = expm(B * (2 * half))
         flows = accumulate(repeat(step, PIECES[k] - 1), np.matmul, initial=expm(B * (begin + half)))
-        E = np.array(list(flows))
-        form = before - np.swapaxes(G @ E, 1, 2) @ after @ (G @ E)
-        moved = np.abs(G) @ np.abs(B * half) @ np.abs(E)
-        error = np.swapaxes(np.abs(G @ E) + moved / 2, 1, 2) @ np.abs(after) @ moved
-        error = SAFE * (error + np.swapaxes(error, 1, 2)) / scale
-        rest = form / scale - np.eye(n) * error.sum(axis=2)[:, :, None]
+        E = G @ np.array(list(flows)) @ T
+        left = np.swapaxes(E, 1, 2) @ after @ E
+        # The exponential of a ball reaches so far from the identity.
+        reach = expm(moved * half) - np.eye(n)
+        error = np.abs(left) @ reach
+        error = error + np.swapaxes(error, 1, 2) + reach.T @ error
+        rest = np.eye(n) * (1 - SAFE * error.sum(axis=2)[:, :, None]) - left
         if float(np.linalg.eigvalsh(rest).min()) > 0:
             return k
     return None

@@ -32,9 +32,14 @@ def timed(widths, matrices=(A, B), stays=("1.7", "1.1"), resets=()):
     return SwitchedSystem("timed", Time.CONTINUOUS, states, modes, (), switching)
 
 
-@pytest.mark.parametrize("resets", [(), (Reset("a", "b", RationalMatrix(((9, 1), (0, 8)), 10)),)])
-def test_as_many_as_the_check_needs(resets):
-    system = timed(("0.02", "0.01"), resets=resets)
+SMALLER = (Reset("a", "b", RationalMatrix(((9, 1), (0, 8)), 10)),)
+
+
+@pytest.mark.parametrize(
+    ("widths", "resets"), [(("0.02", "0.01"), ()), (("0.08", "0.05"), SMALLER)]
+)
+def test_as_many_as_the_check_needs(widths, resets):
+    system = timed(widths, resets=resets)
     found = certify(system).evidence
     enough = found.stays.pieces
     assert enough == enough_pieces(system, found) > 4

@@ -103,7 +103,9 @@ class StepGraph:
         jumps = [k for k, edge in enumerate(word) if self.ways[edge] >= 0]
         if not jumps:
             return ((self.names[self.modes[word[0]]], Fraction(1)),), ()
-        word = word[jumps[0] :] + word[: jumps[0]]
+        # A signal begins with its first mode.
+        first = min(jumps, key=lambda k: int(self.modes[word[k]]))
+        word = word[first:] + word[:first]
         if self.count == 1:
             runs = [(mode, len([*run])) for mode, run in groupby(self.modes[word].tolist())]
             return tuple((self.names[mode], Fraction(count)) for mode, count in runs), ()

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from nrs_design.pipeline import Result
     from nrs_design.pipeline.blocked import Blocked
     from nrs_design.pipeline.margins import ProofMargins
+    from nrs_design.pipeline.radius import RadiusBounds
     from nrs_design.search.certification import Certification
     from nrs_design.search.loop_margin import Bracket, MarginBrackets
 
@@ -71,6 +72,18 @@ def rate_facts(certification: Certification) -> dict[str, Any]:
         "decay_rate_limit": certification.rate_limit,
         "decay_rate_unit": "1/s" if continuous else "1 per step",
     }
+
+
+def radius_facts(radius: RadiusBounds | None) -> dict[str, Any]:
+    """Return the facts of the growth per step that signals reach; none in continuous time."""
+    if radius is None:
+        return {}
+    word = None if radius.word is None else [[n, int(count)] for n, count in radius.word.steps]
+    found = {
+        **_number("lower", radius.lower, lower_float),
+        **_number("upper", radius.upper, upper_float),
+    }
+    return {"rho": {**found, "word": word, "method": radius.method}}
 
 
 def margins_facts(margins: ProofMargins) -> dict[str, Any]:

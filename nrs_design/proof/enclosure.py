@@ -75,7 +75,7 @@ def exponential_near_zero(A: Any, half: Fraction) -> Any:
     return (A * (-ball).union(ball)).exp()
 
 
-def round_coordinates(form: Any) -> Any:
+def unit_coordinates(form: Any) -> Any:
     """Return an exact T with ``T' F T`` near the identity; the identity if F is not definite.
 
     Parameters

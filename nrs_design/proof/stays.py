@@ -99,9 +99,9 @@ class EnclosedStep:
 @lru_cache(maxsize=64)
 def _own_coordinates(B: RationalMatrix, form: tuple[tuple[int, ...], ...]) -> tuple[Any, Any]:
     """Return coordinates T in which a form is nearly round, and ``T^-1 B T``."""
-    from nrs_design.proof.enclosure import balls, round_coordinates
+    from nrs_design.proof.enclosure import balls, unit_coordinates
 
-    T = round_coordinates(balls(RationalMatrix(form)))
+    T = unit_coordinates(balls(RationalMatrix(form)))
     return T, T.inv() * balls(B) * T
 
 

@@ -16,7 +16,7 @@ from nrs_design.proof.enclosure import (
     lower_integers,
     overlap,
     precision,
-    round_coordinates,
+    unit_coordinates,
 )
 from nrs_design.proof.exact import is_positive_definite
 from nrs_design.proof.matrix import RationalMatrix
@@ -209,9 +209,9 @@ def test_coordinates_in_which_a_form_is_round():
     with precision():
         for rows in ([[4, 2], [2, 1 + 2**-40]], [[10**30, 0], [0, 1]], [[2, 1], [1, 3]]):
             form = balls(RationalMatrix.from_rows([[Fraction(x) for x in row] for row in rows]))
-            T = round_coordinates(form)
+            T = unit_coordinates(form)
             around = T.transpose() * form * T
             assert all(T[i, j].is_exact() for i in range(2) for j in range(2))
             assert all(abs(around[i, j] - int(i == j)) < 1e-9 for i in range(2) for j in range(2))
         for rows in ([[1, 2], [2, 1]], [[0, 0], [0, 0]], [[1, 1], [1, 1]]):
-            assert round_coordinates(balls(RationalMatrix(rows))) == arb_mat([[1, 0], [0, 1]])
+            assert unit_coordinates(balls(RationalMatrix(rows))) == arb_mat([[1, 0], [0, 1]])

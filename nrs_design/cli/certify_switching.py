@@ -44,8 +44,8 @@ LargestBox = Annotated[
     typer.Option(
         "--margin",
         help="Find the largest box of ranges with a proof, the smallest refuted; the same for "
-        "delay and period of a sampled loop, and for what disturbs. Takes minutes: each value is "
-        "searched for 10 s at most.",
+        "delay and period of a sampled loop, for what disturbs, and for missed deadlines. Takes "
+        "minutes: each value is searched for 10 s at most.",
     ),
 ]
 ShortestDwell = Annotated[

@@ -69,9 +69,10 @@ def bound_radius(found: Certification, limits: Limits) -> RadiusBounds | None:
         return None
     budget = min(limits.budget, BUDGET)
     lower, word = _lower(system, Allowance(budget, limits.memory))
+    known: tuple[Fraction | None, str | None] = None, None
     if found.verdict is Verdict.PROVED and found.evidence is not None:
-        return RadiusBounds(lower, word, found.evidence.proved_rate(system), found.method)
-    upper, method = _upper(system, lower, replace(limits, budget=budget, more=False))
+        known = found.evidence.proved_rate(system), found.method
+    upper, method = _upper(system, lower, known, replace(limits, budget=budget, more=False))
     return RadiusBounds(lower, word, upper, method)
 
 
@@ -111,10 +112,12 @@ def _proposed(
 
 
 def _upper(
-    system: SwitchedSystem, lower: Fraction | None, limits: Limits
+    system: SwitchedSystem,
+    lower: Fraction | None,
+    best: tuple[Fraction | None, str | None],
+    limits: Limits,
 ) -> tuple[Fraction | None, str | None]:
-    """Return the least growth that a function is found to bound, and how it was found."""
-    best: tuple[Fraction | None, str | None] = None, None
+    """Return the least growth that a function is found to bound, and how; no worse than known."""
     rules = not (system.switching.is_arbitrary or system.switching.fixed_ends)
     higher = Method.MODE_POLYNOMIAL if rules else Method.POLYNOMIAL
     limits = replace(limits, max_degree=DEGREE)

@@ -52,7 +52,7 @@ LOST_TO_ERRORS = 1.25
 # and one more; no fewer than for the first of these times, and no more than for the last.
 SAMPLES, SHORTEST, LONGEST = 16, 1.0, 16.0
 # With so many edges a program begins.
-FIRST_EDGES = 8
+FIRST_EDGES, FEW_EACH = 8, 2
 # An edge outside the program keeps at least this share of the margin of those in it.
 NEARLY_ALL = 0.8
 # Forms reach up to the identity where there are any; all of them below this are zero.
@@ -184,7 +184,9 @@ class FormsProgram:
             fact for fact in self.scales if not fact[0].startswith((ROUNDING, COUPLING))
         ]
         count = len(self.edges)
-        few = count if self.degree > 1 else min(count, FIRST_EDGES)
+        # Where forms have few edges each, nearly all of these are needed.
+        whole = self.degree > 1 or count <= FEW_EACH * len(self.sizes)
+        few = count if whole else min(count, FIRST_EDGES)
         # The edges that solutions are sought for; what one violates is added, and stays.
         self.active = sorted({k * (count - 1) // max(few - 1, 1) for k in range(few)})
         flows = [np.abs(edge.M).max() for edge in self.edges if edge.is_flow]

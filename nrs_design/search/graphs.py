@@ -20,6 +20,7 @@ from nrs_design.proof.steps import CONTACT, COUPLING, FREE, ROUNDING, Stays, cou
 from nrs_design.proof.switching import Clock, Stay
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.balance import balance, own_norm, scale_states
+from nrs_design.search.branches import best_words
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
 from nrs_design.search.cycle import growing_cycles
 from nrs_design.search.decay import RESOLUTION, SMALLEST, bisect_position, limit_rate
@@ -31,6 +32,7 @@ from nrs_design.search.motions import Motions, separating_coordinates
 from nrs_design.search.polynomial import conewise_cost, family_cost, functions_cost, work_of_checks
 from nrs_design.search.rounding import BACK_OFFS, claims, digits, rate_at
 from nrs_design.search.stays import round_stays
+from nrs_design.search.step_graph import StepGraph
 from nrs_design.work import Cost, NotAffordableError
 
 Array = NDArray[np.float64]
@@ -50,6 +52,10 @@ KEPT = 0.99
 MOST_ROUNDED = 250
 # Numbers of steps that are each shown for a mode that is stable, too.
 FEW_STAYS = 64
+# Share of what is left for words that limit the rate.
+WORDS = 0.1
+# The largest rate, where it was not asked for, to this share of it.
+ROUGH = 0.3
 GROWS = "not looked for: the state grows along a cycle of modes"
 # The lengths of a stay in continuous time, times the size of the mode, that are nearly one.
 NARROW_STAYS = 0.5
@@ -301,7 +307,7 @@ def search_modes(family: Family, degree: int = 1) -> Candidates[FormsOnGraph]:
     allowance.require(checked, f"{what}, with the exact check of what it finds,")
     always = family.optimize_rate or not family.stand_ins()
     limit, ended = _limit_of_cycles(family), None
-    if system.time is Time.CONTINUOUS and limit <= 0:
+    if limit <= 0 if system.time is Time.CONTINUOUS else limit >= 1:
         return GROWS
     for drawing in draw_each_mode(family, degree):
         if not drawing.is_finite:
@@ -311,21 +317,30 @@ def search_modes(family: Family, degree: int = 1) -> Candidates[FormsOnGraph]:
         if drawing.graph.stays.leaving and system.time is Time.CONTINUOUS:
             # Enclosures take time: few attempts, and wider gaps.
             rates = Rates(nearest=0.9, few=True, bits=BITS_OF_STAYS)
+        if not family.optimize_rate:
+            rates = replace(rates, resolution=ROUGH)
         rates = replace(rates, always=always, words="found")
         ended = yield from propose([FormsProgram(drawing)], family, limit, rates)
     return ended
 
 
 def _limit_of_cycles(family: Family) -> float:
-    """Return the rate that no form can beat, in continuous time with timed stays that of cycles.
+    """Return the rate that no form can beat: that of the worst cycle found, under rules.
 
-    Elsewhere that of the modes that need never be left is near enough.
+    Without rules, that of the modes that need never be left is near enough.
     """
     system = family.system
-    timed = len(system.lasting_modes()) < len(system.modes)
-    if not timed or system.time is Time.DISCRETE or not system.is_uniform:
+    if not system.is_uniform or system.switching.is_arbitrary or system.switching.fixed_ends:
         return family.limit
-    graph = Graph.of(system, np.array([mode.A.floats() for mode in system.modes]))
+    matrices = np.array([mode.A.floats() for mode in system.modes])
+    if system.time is Time.DISCRETE:
+        steps = StepGraph.of(system, matrices) if np.isfinite(matrices).all() else None
+        allowance = family.allowance.part(WORDS)
+        words = () if steps is None else best_words(steps, allowance, family.limit)
+        return max((growth for _, growth in words), default=family.limit)
+    if len(system.lasting_modes()) == len(system.modes):
+        return family.limit
+    graph = Graph.of(system, matrices)
     cycles = growing_cycles(graph, family.allowance)
     return min((-float(graph.growth(*cycle)) for cycle in cycles), default=family.limit)
 

@@ -94,6 +94,9 @@ def test_states_in_other_units_cost_nothing(entries, radius, log2):
         ([[arb(2) ** -32700]], [[2**160 - 2**93 - 2]]),
         ([[arb(2) ** -32769]], [[2**160 - 2**162 - 2]]),
         ([[arb(2) ** -32770]], [[-2]]),
+        # What has more digits is rounded down, also below zero.
+        ([[1, arb(3) * arb(2) ** -170], [0, 1]], [[2**160 - 3, 0], [0, 2**160 - 3]]),
+        ([[1, arb(-3) * arb(2) ** -170], [0, 1]], [[2**160 - 3, -1], [-1, 2**160 - 3]]),
         # What is too large says nothing.
         ([[arb(2) ** 32767]], [[2**160 - 2]]),
         ([[arb(2) ** 32768]], [[0]]),
@@ -116,6 +119,7 @@ def test_a_radius_alone_counts_in_full():
 )
 def test_balls_that_say_nothing_prove_nothing(ball):
     with ends_soon():
+        assert not is_positive_definite(lower([[ball]]))
         assert not is_positive_definite(lower([[ball, arb(0)], [arb(0), arb(1)]]))
         assert not is_positive_definite(lower([[arb(1), ball], [ball, arb(1)]]))
 

@@ -11,7 +11,12 @@ import typer
 
 from nrs_design.cli import exit_codes
 from nrs_design.cli.command import Answer, Together, command
-from nrs_design.cli.facts import blocked_facts, certification_facts, margins_facts
+from nrs_design.cli.facts import (
+    blocked_facts,
+    certification_facts,
+    margins_facts,
+    radius_facts,
+)
 from nrs_design.cli.gradient_options import (
     GradientCoordinates,
     MaxUpdates,
@@ -30,6 +35,7 @@ from nrs_design.search.method import Method
 
 if TYPE_CHECKING:
     from nrs_design.pipeline import Result
+    from nrs_design.pipeline.radius import RadiusBounds
     from nrs_design.pipeline.subsets import Subset
 
 
@@ -38,8 +44,8 @@ LargestBox = Annotated[
     typer.Option(
         "--margin",
         help="Find the largest box of ranges with a proof, the smallest refuted; the same for "
-        "delay and period of a sampled loop, and for what disturbs. Takes minutes: each value is "
-        "searched for 10 s at most.",
+        "delay and period of a sampled loop, for what disturbs, and for missed deadlines. Takes "
+        "minutes: each value is searched for 10 s at most.",
     ),
 ]
 ShortestDwell = Annotated[
@@ -139,6 +145,9 @@ def certify_switching(
     with progress(f"{what} of {loaded.spec.name}", lines=True) as step:
         margins = run_proof_margins(result, limits, step, **asked)
         parts = find_subsets(result, limits, step)
+    from nrs_design.pipeline.radius import bound_radius
+
+    growth = bound_radius(result.certification, limits)
     relief = find_relief(result)
     steps = _next_steps(result, **asked)
 
@@ -147,6 +156,7 @@ def certify_switching(
         more |= {"relief": list(relief), "next_steps": list(steps)}
         return (
             certification_facts(result, written)
+            | radius_facts(growth)
             | margins_facts(margins)
             | more
             | _parts_facts(parts)
@@ -154,6 +164,8 @@ def certify_switching(
         )
 
     def show() -> None:
+        if growth is not None:
+            say(f"  {_growth_words(growth)}")
         for line in relief:
             say(f"  {line}")
         if any(asked.values()):
@@ -172,6 +184,21 @@ def certify_switching(
             say(f"next: {line}")
 
     return Answer(facts, show, exit_codes.OF_VERDICT[str(result.certification.verdict)])
+
+
+def _growth_words(radius: RadiusBounds) -> str:
+    """Say between which numbers the largest growth per step is, and how each is shown."""
+    from nrs_design.proof.bounds import rounded_down, rounded_up
+
+    low, high = "no word was found that shows how much it is at least", "no upper bound was found"
+    if radius.lower is not None and radius.word is not None:
+        signal = ", ".join(
+            name + (f" {count} times" if count > 1 else "") for name, count in radius.word.steps
+        )
+        low = f"at least {rounded_down(radius.lower)}, by {signal}, and again"
+    if radius.upper is not None:
+        high = f"at most {rounded_up(radius.upper)} ({radius.method})"
+    return f"growth per step, rho: {low}; {high}"
 
 
 def _write(result: Result, path: Path) -> Path | None:

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from nrs_design.pipeline import Result
     from nrs_design.pipeline.blocked import Blocked
     from nrs_design.pipeline.margins import ProofMargins
+    from nrs_design.pipeline.radius import RadiusBounds
     from nrs_design.search.certification import Certification
     from nrs_design.search.loop_margin import Bracket, MarginBrackets
     from nrs_design.spec import Spec
@@ -112,6 +113,18 @@ def _proved_rate(found: Certification | Certificate) -> dict[str, Any]:
     return _number("decay_rate", rate, lower_float if system.time == "continuous" else upper_float)
 
 
+def radius_facts(radius: RadiusBounds | None) -> dict[str, Any]:
+    """Return the facts of the growth per step that signals reach; none in continuous time."""
+    if radius is None:
+        return {}
+    word = None if radius.word is None else [[n, int(count)] for n, count in radius.word.steps]
+    found = {
+        **_number("lower", radius.lower, lower_float),
+        **_number("upper", radius.upper, upper_float),
+    }
+    return {"rho": {**found, "word": word, "method": radius.method}}
+
+
 def margins_facts(margins: ProofMargins) -> dict[str, Any]:
     """Return the facts of the margins that were asked for."""
     content: dict[str, Any] = {}
@@ -132,6 +145,8 @@ def margins_facts(margins: ProofMargins) -> dict[str, Any]:
             "unit": "s",
             "method": dwell.proof.method if dwell.proof else None,
         }
+    if margins.misses is not None:
+        content["most_misses"] = _ends(margins.misses)
     if margins.loop is not None:
         content["loop_margins"] = loop_facts(margins.loop)
     return content

@@ -14,6 +14,7 @@ from nrs_design.progress import Progress, silent
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.certification import Certification, Limits
+from nrs_design.spec.misses import MOST_STATES, MissesSpec
 
 if TYPE_CHECKING:
     from nrs_design.search.loop_margin import Bracket, CommandMargin, MarginBrackets
@@ -21,6 +22,8 @@ if TYPE_CHECKING:
     from nrs_design.spec.sampling import SamplingSpec
 
 MARGIN_BUDGET = 10.0
+# More misses in a row are not tried.
+MOST_IN_A_ROW = 64
 
 
 def quick_limits(result: Result, limits: Limits | None) -> Limits:
@@ -36,6 +39,7 @@ class ProofMargins:
     loop: MarginBrackets | None = None  # Of delay, period and disturbances
     box: BoxMargin | None = None  # Of the declared ranges
     dwell: DwellMargin | None = None  # Of the time between switches
+    misses: Bracket | None = None  # Of the number of deadlines that may be missed
 
 
 def run_proof_margins(
@@ -69,7 +73,8 @@ def run_proof_margins(
         which would bound the shortest one.
     """
     # Before minutes of work.
-    if margin and not _has_loop(result):
+    rule = _rule_for_misses(result)
+    if margin and rule is None and not _has_loop(result):
         _refuse_box(result)
     if shortest_dwell:
         _refuse_dwell(result)
@@ -78,7 +83,38 @@ def run_proof_margins(
         loop=_run_loop(result, quick, progress) if margin else None,
         box=_run_box(result, quick, progress) if margin and ranged else None,
         dwell=_run_dwell(result, quick, progress) if shortest_dwell else None,
+        misses=_run_misses(rule, result, quick, progress) if margin and rule else None,
     )
+
+
+def _rule_for_misses(result: Result) -> MissesSpec | None:
+    """Return how many deadlines may be missed, if a spec says so."""
+    spec = result.loaded.spec
+    return spec.misses if spec.kind == "switched-system" else None
+
+
+def _run_misses(rule: MissesSpec, result: Result, limits: Limits, progress: Progress) -> Bracket:
+    """Find the most misses in the same window, or in a row, with a proof."""
+    from nrs_design.search.certify import certify
+    from nrs_design.search.misses_margin import find_most_misses
+    from nrs_design.switched.assemble import assemble_matrices
+
+    spec, in_a_row = result.loaded.spec, rule.consecutive is not None
+    assert spec.kind == "switched-system"
+    declared, of = rule.window
+
+    def decide(number: int) -> Certification | str:
+        changed = rule.with_misses(number)
+        if (many := changed.states) > MOST_STATES:
+            return f"{many} states, and at most {MOST_STATES} are built"
+        try:
+            system = assemble_matrices(spec.model_copy(update={"misses": changed}))
+        except NrsDesignError as error:
+            return error.message
+        return certify(system, limits=limits)
+
+    most = max(declared, MOST_IN_A_ROW) if in_a_row else of - 1
+    return find_most_misses(declared, most, decide, result.certification, progress)
 
 
 def _run_box(result: Result, limits: Limits, progress: Progress) -> BoxMargin:

@@ -16,6 +16,7 @@ from nrs_design.proof.matrix import RationalMatrix
 
 PRECISION = 300
 MIDPOINT_BITS = 160
+GUARD_BITS = 64
 # Balls beyond this fail; what is nearer to zero than its inverse counts as zero with that radius.
 RANGE_LOG2 = 32_768
 
@@ -57,10 +58,49 @@ def exponential(A: RationalMatrix, begin: Fraction, end: Fraction) -> Any:
     middle, half = (begin + end) / 2, (end - begin) / 2
     exact = _fmpq_matrix(A)
     E = arb_mat(exact * fmpq(middle.numerator, middle.denominator)).exp()
-    if half > 0:
-        ball = ball_around(half)
-        E = (arb_mat(exact) * (-ball).union(ball)).exp() * E
-    return E
+    return exponential_near_zero(arb_mat(exact), half) * E if half > 0 else E
+
+
+def exponential_near_zero(A: Any, half: Fraction) -> Any:
+    """Return balls that contain ``exp(A t)`` for all t from ``-half`` to ``half``.
+
+    Parameters
+    ----------
+    A : flint.arb_mat, shape (n, n)
+        In 1/s.
+    half : Fraction
+        In s.
+    """
+    ball = ball_around(half)
+    return (A * (-ball).union(ball)).exp()
+
+
+def unit_coordinates(form: Any) -> Any:
+    """Return an exact T with ``T' F T`` near the identity; the identity if F is not definite.
+
+    Parameters
+    ----------
+    form : flint.arb_mat, shape (n, n)
+        The symmetric F.
+    """
+    from flint import arb_mat
+
+    n = form.nrows()
+    L, as_it_is = arb_mat(n, n), arb_mat(n, n, [int(a == b) for a in range(n) for b in range(n)])
+    for j in range(n):
+        for i in range(j, n):
+            rest = form[i, j]
+            for k in range(j):
+                rest -= L[i, k] * L[j, k]
+            if i == j and not rest > 0:
+                return as_it_is
+            L[i, j] = rest.sqrt() if i == j else rest / L[j, j]
+    try:
+        T = L.inv().transpose().mid()
+        T.inv()
+    except ZeroDivisionError:  # Not invertible for certain.
+        return as_it_is
+    return T
 
 
 def overlap(enclosed: Any, M: RationalMatrix, error: Fraction) -> bool:
@@ -141,43 +181,58 @@ def lower_integers(form: Any) -> IntegerMatrix:
     different units cost nothing.
     """
     n = form.nrows()
-    rows = [[form[i, j] for j in range(n)] for i in range(n)]
-    if any(not ball.abs_upper() < 2**RANGE_LOG2 for row in rows for ball in row):
-        return [[0] * n for _ in range(n)]
-    mids = [[_fraction(ball.mid()) for ball in row] for row in rows]
-    # Both a midpoint and a radius may have been taken for zero.
-    least = 2 * Fraction(1, 2**RANGE_LOG2)
-    radii = [[_fraction(ball.rad()) + least for ball in row] for row in rows]
-    scale = 2**MIDPOINT_BITS
-    largest = max(abs(v) for row in mids for v in row) or Fraction(1)
-    unit = Fraction(scale) / largest
     # Both triangles enclose the same number: take the upper one, whatever the lower one is.
-    upper = [[(min(i, j), max(i, j)) for j in range(n)] for i in range(n)]
-    lower = [[round(mids[i][j] * unit) for i, j in row] for row in upper]
-    weights = [_near_root(mids[i][i]) for i in range(n)]
-    for k, row in enumerate(upper):
-        slacks = (
-            (radii[i][j] * unit + 1) * weights[k] / w
-            for (i, j), w in zip(row, weights, strict=True)
-        )
-        lower[k][k] -= int(sum(slacks)) + 1
+    upper = {(i, j): form[i, j] for i in range(n) for j in range(i, n)}
+    if not all(ball.is_finite() for ball in upper.values()):
+        return [[0] * n for _ in range(n)]
+    mids = {k: _binary(ball.mid()) for k, ball in upper.items()}
+    radii = {k: _binary(ball.rad()) for k, ball in upper.items()}
+    if any(_log2(number) > RANGE_LOG2 for number in (*mids.values(), *radii.values())):
+        return [[0] * n for _ in range(n)]
+    # The largest midpoint becomes one of so many bits, and one more.
+    shift = MIDPOINT_BITS + 1 - max((_log2(mid) for mid in mids.values() if mid[0]), default=1)
+    # Rounding costs a midpoint less than one; and both it and its radius may have been taken for
+    # zero. Slacks are counted in units of their own.
+    lost = (1 << GUARD_BITS) + _ceil((2, -RANGE_LOG2), shift + GUARD_BITS)
+    slacks = {k: _ceil(radius, shift + GUARD_BITS) + lost for k, radius in radii.items()}
+    weights = [(_log2(mids[k, k]) - 1) // 2 if mids[k, k][0] > 0 else 0 for k in range(n)]
+    lower, sums = [[0] * n for _ in range(n)], [0] * n
+    for (i, j), slack in slacks.items():
+        lower[i][j] = lower[j][i] = _floor(mids[i, j], shift)
+        apart = weights[i] - weights[j]
+        sums[i] += _ceil((slack, apart), 0)
+        if i != j:
+            sums[j] += _ceil((slack, -apart), 0)
+    for k, total in enumerate(sums):
+        lower[k][k] -= (total >> GUARD_BITS) + 1
     return lower
 
 
-def _near_root(number: Fraction) -> Fraction:
-    """Return a power of two near the square root of a number, or 1 if it is not positive."""
-    if number <= 0:
-        return Fraction(1)
-    log2 = number.numerator.bit_length() - number.denominator.bit_length()
-    return Fraction(2) ** (log2 // 2)
+# An integer times two to a power.
+_Binary = tuple[int, int]
 
 
-def _fraction(ball: Any) -> Fraction:
-    """Return an exact ball (of radius zero) as a fraction, or zero for one very near to it."""
+def _binary(ball: Any) -> _Binary:
+    """Return an exact ball (of radius zero), or zero for one very near to it."""
     mantissa, exponent = ball.man_exp()
-    if int(mantissa).bit_length() + int(exponent) < -RANGE_LOG2:
-        return Fraction(0)
-    return fraction_of(ball)
+    number = int(mantissa), int(exponent)
+    return (0, 0) if _log2(number) < -RANGE_LOG2 else number
+
+
+def _log2(number: _Binary) -> int:
+    """Return the least n such that a number is smaller than two to the n; 0 for zero."""
+    return number[0].bit_length() + number[1]
+
+
+def _floor(number: _Binary, shift: int) -> int:
+    """Return the largest integer that is not above a number times two to a power."""
+    by = number[1] + shift
+    return number[0] << by if by >= 0 else number[0] >> -by
+
+
+def _ceil(number: _Binary, shift: int) -> int:
+    """Return the least integer that is not below a number times two to a power."""
+    return -_floor((-number[0], number[1]), shift)
 
 
 def fraction_of(ball: Any) -> Fraction:

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
 from math import comb
+from typing import Any
 
 from nrs_design.proof.exact import MAX_WORK, IntegerMatrix
 from nrs_design.proof.matrix import RationalMatrix, identity
@@ -57,9 +58,12 @@ class EnclosedStep:
         return self.edge.target.name
 
     def form(self, before: IntegerMatrix, after: IntegerMatrix, rate: Fraction) -> IntegerMatrix:
-        """Return integers below ``F - E' G E`` for all its lengths, times a positive number.
+        """Return integers below ``T' (F - E' G E) T`` for all its lengths, times a positive number.
 
-        E is the exponential of the mode plus the rate, and then the switch, in balls.
+        E is the exponential of the mode plus the rate, and then the switch, in balls. With B its
+        derivative, m the middle of the lengths and d the way from there,
+        ``E T = exp(B m) T exp(T^-1 B T d)``. The form of F is nearly that of the identity for T, so
+        the balls are no larger than it moves; what is positive definite for any T is without it.
 
         Parameters
         ----------
@@ -68,14 +72,37 @@ class EnclosedStep:
         rate : Fraction
             The alpha in 1/s.
         """
-        from nrs_design.proof.enclosure import balls, exponential, lower_integers, precision
+        from nrs_design.proof.enclosure import (
+            balls,
+            exponential,
+            exponential_near_zero,
+            lower_integers,
+            precision,
+        )
 
+        middle, half = (self.begin + self.end) / 2, (self.end - self.begin) / 2
         with precision():
-            E = exponential(shifted(self.edge.source.A, rate), self.begin, self.end)
+            B = shifted(self.edge.source.A, rate)
+            E = exponential(B, middle, middle)
             if self.edge.map is not None:
                 E = balls(self.edge.map) * E
             F, G = (balls(RationalMatrix(tuple(map(tuple, Q)))) for Q in (before, after))
-            return lower_integers(F - E.transpose() * G * E)
+            left = E.transpose() * G * E
+            if half > 0:
+                T, inner = _own_coordinates(B, tuple(map(tuple, before)))
+                F, left = (T.transpose() * Q * T for Q in (F, left))
+                near = exponential_near_zero(inner, half)
+                left = near.transpose() * left * near
+            return lower_integers(F - left)
+
+
+@lru_cache(maxsize=64)
+def _own_coordinates(B: RationalMatrix, form: tuple[tuple[int, ...], ...]) -> tuple[Any, Any]:
+    """Return coordinates T in which a form is nearly round, and ``T^-1 B T``."""
+    from nrs_design.proof.enclosure import balls, unit_coordinates
+
+    T = unit_coordinates(balls(RationalMatrix(form)))
+    return T, T.inv() * balls(B) * T
 
 
 def steps_of_stays(

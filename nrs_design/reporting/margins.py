@@ -17,7 +17,7 @@ from nrs_design.spec import InteractionDesignSpec
 if TYPE_CHECKING:
     from nrs_design.pipeline.margins import ProofMargins
     from nrs_design.search.loop_margin import Bracket
-    from nrs_design.spec import LoadedSpec
+    from nrs_design.spec import LoadedSpec, Spec
 
 # Makes a text lead to a place of the spec.
 _At = Callable[..., str]
@@ -40,6 +40,7 @@ def margin_lines(margins: ProofMargins, loaded: LoadedSpec) -> Iterator[Sentence
     yield from _box_lines(margins, at, "environments" if design else "parameters")
     yield from _loop_lines(margins, at)
     yield from _dwell_lines(margins, at)
+    yield from _misses_lines(margins, at, spec)
     sampled = isinstance(spec, InteractionDesignSpec) and spec.sampling is not None
     if sampled and _refutes(margins):
         yield Sentence(
@@ -88,6 +89,21 @@ def _dwell_lines(margins: ProofMargins, at: _At) -> Iterator[Sentence]:
         end = at(rounded_down(dwell.refuted, "s"), "switching")
         refuted = ("; ", end, f" and all shorter ones are refuted{_in(dwell.refuted_in)}")
     yield Sentence("shortest dwell time: ", *proved, *refuted)
+
+
+def _misses_lines(margins: ProofMargins, at: _At, spec: Spec) -> Iterator[Sentence]:
+    """State the most misses that are proved, and the fewest that are refuted."""
+    bracket = margins.misses
+    if bracket is None or spec.kind != "switched-system" or spec.misses is None:
+        return
+    of = spec.misses.of
+    where = " in a row" if of is None else f" of any {of} steps in a row"
+    proved, refuted = (
+        None if end is None else at(str(end), "misses") for end in (bracket.proved, bracket.refuted)
+    )
+    said = ("none is proved",) if proved is None else ("proved up to ", proved, where)
+    end = (bracket.end,) if refuted is None else ("refuted from ", refuted, " on")
+    yield Sentence("most missed deadlines: ", *said, ", ", *end)
 
 
 def _loop_lines(margins: ProofMargins, at: _At) -> Iterator[Sentence]:

@@ -22,7 +22,7 @@ PACKED_ORDER = 10
 # Work per candidate, and per form: for itself, and per product of entries and square of their bits.
 # What a motion does during a stay is enclosed anew for each form.
 PER_CANDIDATE = 1e-3
-PER_FORM, PER_ENCLOSED_FORM = 1e-4, 4e-3
+PER_FORM, PER_ENCLOSED_FORM = 1e-4, 5e-4
 PER_PRODUCT = 1.5e-7
 PER_SQUARED_BITS = 2e-13
 

@@ -10,7 +10,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
-from itertools import product
 from math import exp, inf, isfinite
 
 import numpy as np
@@ -27,6 +26,7 @@ from nrs_design.search.balance import balance, scale_states
 from nrs_design.search.family import NEARLY
 from nrs_design.search.lifted import make_vanish, products, vanishing_basis
 from nrs_design.search.lmi import time_unit
+from nrs_design.search.pieces import enough_pieces
 from nrs_design.search.rounding import round_form, round_rate
 from nrs_design.search.sdp import (
     Sparse,
@@ -50,10 +50,11 @@ Fact = tuple[str, int | None]
 LARGEST_MULTIPLIER = 64.0
 # What is rounded takes a little more than in the first order.
 LOST_TO_ERRORS = 1.25
-# Times at which a stay of any length in a range is looked at.
-SAMPLES = 17
+# Times at which a stay of any length in a range is looked at: for each time of its mode, so many,
+# and one more; no fewer than for the first of these times, and no more than for the last.
+SAMPLES, SHORTEST, LONGEST = 16, 1.0, 16.0
 # With so many edges a program begins.
-FIRST_EDGES = 8
+FIRST_EDGES, FEW_EACH = 8, 2
 # An edge outside the program keeps at least this share of the margin of those in it.
 NEARLY_ALL = 0.8
 # Forms reach up to the identity where there are any; all of them below this are zero.
@@ -193,7 +194,9 @@ class FormsProgram:
             fact for fact in self.scales if not fact[0].startswith((ROUNDING, COUPLING))
         ]
         count = len(self.edges)
-        few = count if self.degree > 1 else min(count, FIRST_EDGES)
+        # Where forms have few edges each, nearly all of these are needed.
+        whole = self.degree > 1 or count <= FEW_EACH * len(self.sizes)
+        few = count if whole else min(count, FIRST_EDGES)
         # The edges that solutions are sought for; what one violates is added, and stays.
         self.active = sorted({k * (count - 1) // max(few - 1, 1) for k in range(few)})
         flows = [np.abs(edge.M).max() for edge in self.edges if edge.is_flow]
@@ -422,7 +425,6 @@ class FormsProgram:
         solution: Solution,
         claim: Fraction,
         digits: Sequence[int],
-        pieces: Sequence[int] = (1,),
         *,
         errors: bool = False,
     ) -> Iterator[FormsOnGraph]:
@@ -436,8 +438,6 @@ class FormsProgram:
             The rate.
         digits : sequence of int
             After the binary point.
-        pieces : sequence of int
-            How finely stays of any length are enclosed.
         errors : bool
             Whether errors that were not solved for are covered, at a rate that leaves room.
         """
@@ -454,7 +454,7 @@ class FormsProgram:
             if claim >= 1:
                 return
             found |= taus
-        for count, bits in product(pieces, digits):
+        for bits in digits:
             if bits != digits[-1] and not errors:
                 coarse = [_rounded(Q, bits - exponent) for Q in balanced]
                 own = [one.T.T @ Q @ one.T for one, Q in zip(coordinates, coarse, strict=True)]
@@ -482,8 +482,12 @@ class FormsProgram:
                 denominator_log2=max(log2, 0),
                 rate=claim,
                 multipliers=facts,
-                stays=drawing.graph.stays and replace(drawing.graph.stays, pieces=count),
             )
+            if graph.stays and graph.stays.leaving and self.time is Time.CONTINUOUS:
+                # How finely stays of any length are enclosed.
+                if (pieces := enough_pieces(drawing.system, graph)) is None:
+                    continue
+                graph = replace(graph, stays=replace(graph.stays, pieces=pieces))
             if self.degree > 1:
                 forms = self._round_vanishing(graph, solution, bits - exponent, top)
                 graph = replace(graph, vanishing=forms)
@@ -805,7 +809,8 @@ def _stays(step: EnclosedStep) -> Iterator[tuple[float, Array]]:
     A = np.array(step.edge.source.A.floats())
     G = np.eye(len(A)) if step.edge.map is None else np.array(step.edge.map.floats())
     first, last = float(step.begin), float(step.end)
-    for lasts in np.linspace(first, last, SAMPLES if last > first else 1):
+    times = min(max(float(np.linalg.norm(A)) * (last - first), SHORTEST), LONGEST)
+    for lasts in np.linspace(first, last, round(SAMPLES * times) + 1 if last > first else 1):
         yield float(lasts), G @ np.asarray(expm(A * lasts))
 
 

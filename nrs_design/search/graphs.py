@@ -20,14 +20,19 @@ from nrs_design.proof.steps import CONTACT, COUPLING, FREE, ROUNDING, Stays, cou
 from nrs_design.proof.switching import Clock, Stay
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.balance import balance, own_norm, scale_states
+from nrs_design.search.branches import best_words
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
+from nrs_design.search.cycle import growing_cycles
 from nrs_design.search.decay import RESOLUTION, SMALLEST, bisect_position, limit_rate
 from nrs_design.search.family import Family, stand_ins, to_floats
 from nrs_design.search.forms import Drawing, FormCoordinates, FormsProgram
+from nrs_design.search.graph import Graph
 from nrs_design.search.lifted import monomial_weights
 from nrs_design.search.motions import Motions, separating_coordinates
 from nrs_design.search.polynomial import conewise_cost, family_cost, functions_cost, work_of_checks
 from nrs_design.search.rounding import BACK_OFFS, claims, digits, rate_at
+from nrs_design.search.stays import round_stays
+from nrs_design.search.step_graph import StepGraph
 from nrs_design.work import Cost, NotAffordableError
 
 Array = NDArray[np.float64]
@@ -35,6 +40,8 @@ Exponents = NDArray[np.int64]
 
 # Few roundings with errors: more digits at once, as every check takes longer.
 WITH_ERRORS = (24, 32, 40, 50, 60)
+# The same where stays are enclosed.
+BITS_OF_STAYS = (12, 32, 60)
 # Work for each edge, to have it in floating point.
 PER_EDGE = 5e-5
 # Programs take the steps of a system in units that suit this rate.
@@ -45,10 +52,13 @@ KEPT = 0.99
 MOST_ROUNDED = 250
 # Numbers of steps that are each shown for a mode that is stable, too.
 FEW_STAYS = 64
+# Share of what is left for words that limit the rate.
+WORDS = 0.1
+# The largest rate, where it was not asked for, to this share of it.
+ROUGH = 0.3
+GROWS = "not looked for: the state grows along a cycle of modes"
 # The lengths of a stay in continuous time, times the size of the mode, that are nearly one.
 NARROW_STAYS = 0.5
-# How finely the stays of a mode that must be left are enclosed.
-PIECES = (32, 256, 1024)
 
 
 @dataclass(frozen=True)
@@ -61,7 +71,6 @@ class Rates:
     nearest: float = BACK_OFFS[0]
     few: bool = False
     bits: Sequence[int] = field(default_factory=digits)
-    pieces: Sequence[int] = (1,)  # How finely stays of any length are enclosed
     always: bool = False  # Look for the largest rate, whatever was asked for
     words: str = "found with the largest decay rate"
 
@@ -124,9 +133,7 @@ def propose(
             for claim in claims(best, limit, time, rates.nearest, few=rates.few):
                 if not best or (solution := program.solve(float(claim), part)) is None:
                     continue
-                for evidence in program.roundings(
-                    solution, claim, bits, rates.pieces, errors=covered
-                ):
+                for evidence in program.roundings(solution, claim, bits, errors=covered):
                     yield Candidate(evidence, rates.words)
         except NotAffordableError:
             if rates.always:
@@ -298,21 +305,52 @@ def search_modes(family: Family, degree: int = 1) -> Candidates[FormsOnGraph]:
     cost, what = functions_cost(system, degree)
     checked = replace(cost, work=cost.work + work_of_checks(system, degree))
     allowance.require(checked, f"{what}, with the exact check of what it finds,")
-    drawing = draw_each_mode(family, degree)
-    if not drawing.is_finite:
-        return OUT_OF_RANGE
-    left = drawing.graph.stays is not None and drawing.graph.stays.leaving
-    rates = Rates(nearest=0.999, bits=digits(6))
-    if left and system.time is Time.CONTINUOUS:
-        # Enclosures take time: few attempts, and wider gaps.
-        rates = Rates(nearest=0.9, few=True, bits=digits(12, few=True), pieces=PIECES)
     always = family.optimize_rate or not family.stand_ins()
-    rates = replace(rates, always=always, words="found")
-    return (yield from propose([FormsProgram(drawing)], family, family.limit, rates))
+    limit, ended = _limit_of_cycles(family), None
+    if limit <= 0 if system.time is Time.CONTINUOUS else limit >= 1:
+        return GROWS
+    for drawing in draw_each_mode(family, degree):
+        if not drawing.is_finite:
+            return OUT_OF_RANGE
+        rates = Rates(nearest=0.999, bits=digits(6))
+        assert drawing.graph.stays is not None
+        if drawing.graph.stays.leaving and system.time is Time.CONTINUOUS:
+            # Enclosures take time: few attempts, and wider gaps.
+            rates = Rates(nearest=0.9, few=True, bits=BITS_OF_STAYS)
+        if not family.optimize_rate:
+            rates = replace(rates, resolution=ROUGH)
+        rates = replace(rates, always=always, words="found")
+        ended = yield from propose([FormsProgram(drawing)], family, limit, rates)
+    return ended
 
 
-def draw_each_mode(family: Family, degree: int) -> Drawing:
-    """Draw a node for each mode, as a place of its own."""
+def _limit_of_cycles(family: Family) -> float:
+    """Return the rate that no form can beat: that of the worst cycle found, under rules.
+
+    Without rules, that of the modes that need never be left is near enough.
+    """
+    system = family.system
+    if not system.is_uniform or system.switching.is_arbitrary or system.switching.fixed_ends:
+        return family.limit
+    matrices = np.array([mode.A.floats() for mode in system.modes])
+    if system.time is Time.DISCRETE:
+        steps = StepGraph.of(system, matrices) if np.isfinite(matrices).all() else None
+        allowance = family.allowance.part(WORDS)
+        words = () if steps is None else best_words(steps, allowance, family.limit)
+        return max((growth for _, growth in words), default=family.limit)
+    if len(system.lasting_modes()) == len(system.modes):
+        return family.limit
+    graph = Graph.of(system, matrices)
+    cycles = growing_cycles(graph, family.allowance)
+    return min((-float(graph.growth(*cycle)) for cycle in cycles), default=family.limit)
+
+
+def draw_each_mode(family: Family, degree: int) -> Iterator[Drawing]:
+    """Draw a node for each mode, as a place of its own.
+
+    What is drawn next shows every stay of the modes that have a longest one, which asks for less,
+    but takes longer; in coordinates in which what a mean signal keeps is round.
+    """
     system = family.system
     like = family.stand_ins() or {mode.name: mode.name for mode in system.modes}
     number = {name: k for k, name in enumerate(dict.fromkeys(like.values()))}
@@ -322,18 +360,18 @@ def draw_each_mode(family: Family, degree: int) -> Drawing:
     for name in number:
         d = shared[0] if shared else balance(matrices[name][None])
         coordinates.append(lifted_coordinates(d, degree))
-    leaving = tuple(
-        mode.name for mode in system.modes if _is_left(system, mode, system.stays()[mode.name])
-    )
-    graph = FormsOnGraph(
-        tuple(Node(mode.name, ()) for mode in system.modes),
-        0,
-        ANY_RATE,
-        degree,
-        stays=Stays(leaving),
-    )
+    stays = system.stays()
+    leaving = tuple(m.name for m in system.modes if _is_left(system, m, stays[m.name]))
     forms = tuple(number[like[mode.name]] for mode in system.modes)
-    return Drawing(system, graph, forms, tuple(coordinates))
+    nodes = tuple(Node(mode.name, ()) for mode in system.modes)
+    graph = FormsOnGraph(nodes, 0, ANY_RATE, degree, stays=Stays(leaving))
+    drawing = Drawing(system, graph, forms, tuple(coordinates))
+    yield drawing
+    every = tuple(mode.name for mode in system.modes if stays[mode.name].longest is not None)
+    if every and system.time is Time.CONTINUOUS and drawing.is_finite:
+        own = round_stays(system, every)
+        graph = replace(graph, stays=Stays(every))
+        yield replace(drawing, graph=graph, coordinates=tuple(own[name] for name in number))
 
 
 def search_together(family: Family) -> Candidates[FormsOnGraph]:

@@ -25,7 +25,7 @@ FARTHEST_DELAY = 32
 class Bracket:
     """The largest number with a proof, and the smallest that is refuted, where there are any."""
 
-    # proved, refuted: delays in samples, periods in s.
+    # proved, refuted: delays in samples, periods in s, numbers of misses.
     proved: Fraction | None
     refuted: Fraction | None
     end: str = ""  # Where the search for a refutation ended, and why there, if it found none
@@ -96,11 +96,11 @@ def find_longest_delay(
             break
     if not tried.is_refuted(declared) and longest > declared:
         if not tried.is_proved(longest):
-            _halve(declared, longest, tried.is_proved)
+            halve(declared, longest, tried.is_proved)
         if tried.that_are(Verdict.REFUTED):
             beyond = min(tried.that_are(Verdict.REFUTED))
             below = max((delay for delay in tried.all() if delay < beyond), default=beyond)
-            _halve(below, beyond, lambda delay: not tried.is_refuted(delay))
+            halve(below, beyond, lambda delay: not tried.is_refuted(delay))
     proved = max(tried.that_are(Verdict.PROVED), default=None)
     refuted = min(tried.that_are(Verdict.REFUTED), default=None)
     where = tried.refuted_in(refuted)
@@ -121,8 +121,16 @@ def _end_of_delays(tried: Tried[int]) -> str:
     )
 
 
-def _halve(inside: int, outside: int, accepts: Callable[[int], bool]) -> int:
-    """Bisect between a delay that is accepted and one that is not; return the first that is not."""
+def halve(inside: int, outside: int, accepts: Callable[[int], bool]) -> int:
+    """Bisect between a number that is accepted and one that is not; return the first that is not.
+
+    Parameters
+    ----------
+    inside, outside : int
+        The two numbers.
+    accepts : callable
+        Says whether a number between them is accepted.
+    """
     while outside - inside > 1:
         middle = (inside + outside) // 2
         if accepts(middle):
@@ -139,7 +147,7 @@ def _first_unstable(stable: int, is_unstable: Callable[[int], bool]) -> int | No
         if unstable == FARTHEST_DELAY:
             return None
         stable, unstable = unstable, min(2 * unstable, FARTHEST_DELAY)
-    return _halve(stable, unstable, lambda delay: not is_unstable(delay))
+    return halve(stable, unstable, lambda delay: not is_unstable(delay))
 
 
 def find_longest_period(

@@ -15,11 +15,13 @@ from nrs_design.proof.evidence.growth import Steps
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.balance import mean_norm_coordinates
+from nrs_design.search.branches import best_words
 from nrs_design.search.candidates import Candidate, Candidates
 from nrs_design.search.cycle import growing_cycles
 from nrs_design.search.family import Family
 from nrs_design.search.graph import Cycle, Graph
 from nrs_design.search.rounding import digits
+from nrs_design.search.step_graph import StepGraph
 from nrs_design.search.walk import growing_walks
 from nrs_design.search.words import growing_words
 from nrs_design.work import Allowance, Cost
@@ -41,6 +43,8 @@ LONGEST_STEPS = 2000
 LOOKS = 600
 PER_LOOK = 4e-5
 PER_GREEDY = 8e-6
+# Share of what is left for words of single steps.
+WORDS = 0.3
 NOTHING_GROWS = "no periodic signal tried makes solutions grow"
 
 
@@ -66,12 +70,25 @@ def search_period(family: Family) -> Candidates[GrowingSequence]:
         few = tuple(compress(system.modes, kept))
         system = system.with_modes(few, system.states, system.switching)
         matrices = matrices[kept]
+    yield from _words(system, matrices, allowance.part(WORDS))
     graph = Graph.of(system, matrices)
     for cycle, times in _signals(system, graph, allowance):
         yield from _roundings(system, graph, cycle, times)
         allowance.check()
     allowance.check()
     return NOTHING_GROWS
+
+
+def _words(
+    system: SwitchedSystem, matrices: Array, allowance: Allowance
+) -> Iterator[Candidate[GrowingSequence]]:
+    """Yield words of single steps that grow, in discrete time."""
+    graph = StepGraph.of(system, matrices)
+    if graph is None:
+        return
+    for word, growth in best_words(graph, allowance, 1.0):
+        steps, edges = graph.sequence(word)
+        yield from powers(system, steps, edges, growth ** len(word))
 
 
 def _signals(system: SwitchedSystem, graph: Graph, allowance: Allowance) -> Iterator[Signal]:

@@ -40,6 +40,23 @@ class MissesSpec(SpecModel):
         assert self.of is not None
         return self.at_most, self.of
 
+    @property
+    def states(self) -> int:
+        """How many states its automaton has."""
+        most, of = self.window
+        return comb(of, most)
+
+    def with_misses(self, number: int) -> MissesSpec:
+        """Return the rule with another number of misses, in the same window or in a row.
+
+        Parameters
+        ----------
+        number : int
+            Smaller than the window.
+        """
+        what = "at_most" if self.consecutive is None else "consecutive"
+        return self.model_copy(update={what: number})
+
     def __str__(self) -> str:
         """Say the rule in a few words."""
         if self.consecutive is not None:

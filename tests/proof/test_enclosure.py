@@ -16,6 +16,7 @@ from nrs_design.proof.enclosure import (
     lower_integers,
     overlap,
     precision,
+    unit_coordinates,
 )
 from nrs_design.proof.exact import is_positive_definite
 from nrs_design.proof.matrix import RationalMatrix
@@ -93,6 +94,9 @@ def test_states_in_other_units_cost_nothing(entries, radius, log2):
         ([[arb(2) ** -32700]], [[2**160 - 2**93 - 2]]),
         ([[arb(2) ** -32769]], [[2**160 - 2**162 - 2]]),
         ([[arb(2) ** -32770]], [[-2]]),
+        # What has more digits is rounded down, also below zero.
+        ([[1, arb(3) * arb(2) ** -170], [0, 1]], [[2**160 - 3, 0], [0, 2**160 - 3]]),
+        ([[1, arb(-3) * arb(2) ** -170], [0, 1]], [[2**160 - 3, -1], [-1, 2**160 - 3]]),
         # What is too large says nothing.
         ([[arb(2) ** 32767]], [[2**160 - 2]]),
         ([[arb(2) ** 32768]], [[0]]),
@@ -115,6 +119,7 @@ def test_a_radius_alone_counts_in_full():
 )
 def test_balls_that_say_nothing_prove_nothing(ball):
     with ends_soon():
+        assert not is_positive_definite(lower([[ball]]))
         assert not is_positive_definite(lower([[ball, arb(0)], [arb(0), arb(1)]]))
         assert not is_positive_definite(lower([[arb(1), ball], [ball, arb(1)]]))
 
@@ -201,3 +206,16 @@ def test_eigenvalues_add_up_to_the_trace_as_often_as_they_occur(entries, denomin
 
 def test_multiple_eigenvalues():
     assert len(eigenvalues(RationalMatrix(((1, 0), (0, 1)), 2))) == 2
+
+
+def test_coordinates_in_which_a_form_is_round():
+    """Forms of any size, nearly flat ones too; one that is not definite stays as it is."""
+    with precision():
+        for rows in ([[4, 2], [2, 1 + 2**-40]], [[10**30, 0], [0, 1]], [[2, 1], [1, 3]]):
+            form = balls(RationalMatrix.from_rows([[Fraction(x) for x in row] for row in rows]))
+            T = unit_coordinates(form)
+            around = T.transpose() * form * T
+            assert all(T[i, j].is_exact() for i in range(2) for j in range(2))
+            assert all(abs(around[i, j] - int(i == j)) < 1e-9 for i in range(2) for j in range(2))
+        for rows in ([[1, 2], [2, 1]], [[0, 0], [0, 0]], [[1, 1], [1, 1]]):
+            assert unit_coordinates(balls(RationalMatrix(rows))) == arb_mat([[1, 0], [0, 1]])

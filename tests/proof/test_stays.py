@@ -4,7 +4,9 @@ from dataclasses import replace
 from fractions import Fraction
 from itertools import pairwise
 
+import numpy as np
 import pytest
+from scipy.linalg import expm
 
 from nrs_design.proof import stays as module
 from nrs_design.proof.evidence.graph import Node
@@ -251,3 +253,30 @@ def test_the_largest_powers(monkeypatch, system, limit, value):
 
 def test_nodes_are_modes():
     assert scalars(1, 2).nodes == (Node("m0", ((1,),)), Node("m1", ((2,),)))
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_what_is_shown_of_a_range_holds_at_every_time_in_it(seed):
+    """In forms that are nearly flat, too; and a range in which a mode moves little is shown."""
+    rng = np.random.default_rng(seed)
+    n = int(rng.integers(1, 4))
+    rows = [[Fraction(int(v), 16) for v in row] for row in rng.integers(-40, 20, (n, n))]
+    S = rng.normal(size=(n, n)) * 10.0 ** rng.integers(-3, 3, n)
+    before = np.round(S.T @ S * 2.0**30).astype(object)
+    before = [[int(v) for v in row] for row in (before + before.T) // 2]
+    begin, width = Fraction(int(rng.integers(0, 8)), 8), Fraction(1, int(2 ** rng.integers(1, 12)))
+    times = np.linspace(float(begin), float(begin + width), 33)
+    flows = [expm(np.array(rows, dtype=float) * t) for t in times]
+    F = np.array(before, dtype=float)
+    # After the stay, the same form in units in which it nearly rises, or does so a little.
+    growth = max(np.linalg.eigvals(np.linalg.solve(F, E.T @ F @ E)).real.max() for E in flows)
+    for share, may in ((0.5, True), (1.01, False)):
+        after = [[int(v * share / growth * 2**40) for v in row] for row in before]
+        scaled = [[v * 2**40 for v in row] for row in before]
+        modes = (Mode(name, RationalMatrix.from_rows(rows)) for name in "ij")
+        step = EnclosedStep("", Edge(*modes, None), begin, begin + width)
+        shown = is_positive_definite(step.form(scaled, after, Fraction(0)))
+        assert may or not shown
+        T = np.linalg.inv(np.linalg.cholesky(F)).T
+        moved = np.linalg.norm(np.linalg.inv(T) @ np.array(rows, dtype=float) @ T) * float(width)
+        assert shown or not may or moved > 0.1

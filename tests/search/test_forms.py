@@ -50,7 +50,7 @@ DRAWN = [
         lambda f: draw_together(f, 1, lost=True, solved=("coupling",)),
     ),
     (search_together, bouncing(), lambda f: draw_together(f, 1, lost=True)),
-    (search_modes, geromel_colaneri(3), lambda f: draw_each_mode(f, 1)),
+    (search_modes, geromel_colaneri(3), lambda f: next(draw_each_mode(f, 1))),
     (QUARTIC, dayawansa_martin(6), lambda f: draw_together(f, 2)),
     (QUARTIC_WITH_FLIGHT, bouncing(), lambda f: draw_together(f, 2, lost=True)),
 ]

@@ -1,0 +1,61 @@
+"""Predictions of how finely stays are to be cut are what the exact check needs."""
+
+from dataclasses import replace
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.mode import Mode, Time
+from nrs_design.proof.switching import Reset, Stay, Switching
+from nrs_design.proof.system import SwitchedSystem
+from nrs_design.search.certify import certify
+from nrs_design.search.pieces import PIECES, enough_pieces
+
+A = [["0.13", "1.22"], ["-1.13", "-0.56"]]
+B = [["-0.77", "-1.5"], ["0.96", "1.31"]]
+
+
+def timed(widths, matrices=(A, B), stays=("1.7", "1.1"), resets=()):
+    """Two modes in turn, each with a stay of a length that is known but for a share of it."""
+    modes = tuple(
+        Mode(name, RationalMatrix.from_rows([[Fraction(x) for x in row] for row in rows]))
+        for name, rows in zip("ab", matrices, strict=True)
+    )
+    each = tuple(
+        (name, Stay(Fraction(stay), Fraction(stay) * (1 + Fraction(width))))
+        for name, stay, width in zip("ab", stays, widths, strict=True)
+    )
+    states = tuple(f"x{i}" for i in range(len(matrices[0])))
+    switching = Switching(resets=resets, stays=each)
+    return SwitchedSystem("timed", Time.CONTINUOUS, states, modes, (), switching)
+
+
+SMALLER = (Reset("a", "b", RationalMatrix(((9, 1), (0, 8)), 10)),)
+
+
+@pytest.mark.parametrize(
+    ("widths", "resets"), [(("0.02", "0.01"), ()), (("0.08", "0.05"), SMALLER)]
+)
+def test_as_many_as_the_check_needs(widths, resets):
+    system = timed(widths, resets=resets)
+    found = certify(system).evidence
+    enough = found.stays.pieces
+    assert enough == enough_pieces(system, found) > 4
+    coarse = replace(found, stays=replace(found.stays, pieces=enough // 4))
+    assert found.find_fault(system) is None
+    assert "does not decrease" in (coarse.find_fault(system) or "")
+
+
+def test_one_for_stays_of_one_length():
+    system = timed((0, 0))
+    found = certify(system).evidence
+    assert enough_pieces(system, found) == 1
+
+
+def test_none_where_forms_do_not_decrease():
+    system = timed(("0.02", "0.01"))
+    found = certify(system).evidence
+    assert enough_pieces(system, replace(found, rate=Fraction(2))) is None
+    assert np.all(np.diff(PIECES) > 0)

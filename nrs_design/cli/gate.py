@@ -63,6 +63,7 @@ def gate(
     no_reports: Annotated[
         bool, typer.Option("--no-reports", help="Write certificates, but no HTML reports.")
     ] = False,
+    jobs: Annotated[int, typer.Option(min=1, help="How many processes.")] = 1,
     against: Annotated[
         Path | None,
         typer.Option(
@@ -88,7 +89,7 @@ def gate(
     Example: nrs-design gate --locked --against ../base specs
     """
     chosen = format_of(format_)
-    _check_options(out, locked=locked, prune=prune)
+    _check_options(out, jobs, locked=locked, prune=prune)
     search = (max_degree, budget, memory)
     start = perf_counter()
     if against is not None:
@@ -99,7 +100,7 @@ def gate(
     outcome = (
         _re_check(paths, lock)
         if locked
-        else _certify(paths, lock, reports, search, html=not no_reports, prune=prune)
+        else _certify(paths, lock, reports, search, jobs, html=not no_reports, prune=prune)
     )
     if against is not None:
         from nrs_design.gating.against import compare_with_base
@@ -130,7 +131,7 @@ def format_of(format_: GateFormat) -> GateFormat:
     return GateFormat.JSON if as_json else format_
 
 
-def _check_options(out: Path | None, *, locked: bool, prune: bool) -> None:
+def _check_options(out: Path | None, jobs: int, *, locked: bool, prune: bool) -> None:
     """Refuse what excludes each other, and what must not be overwritten, before the work."""
     from nrs_design.gating.find_specs import SUFFIXES
     from nrs_design.output import GATE, check_place
@@ -139,6 +140,11 @@ def _check_options(out: Path | None, *, locked: bool, prune: bool) -> None:
         raise NrsDesignError(
             "--prune and --locked exclude each other: --locked writes nothing",
             remedy="keep one of them",
+        )
+    if jobs > 1 and locked:
+        raise NrsDesignError(
+            "--jobs and --locked exclude each other: re-checking takes no search",
+            remedy="leave --jobs out",
         )
     if out is not None and out.name.lower().endswith(SUFFIXES):
         raise OutputError("is the name of a spec", path=out, remedy="choose another --out")
@@ -186,6 +192,7 @@ def _certify(
     lock: Path,
     reports: Path,
     search: SearchLimits,
+    jobs: int,
     *,
     html: bool,
     prune: bool,
@@ -203,7 +210,7 @@ def _certify(
     known = read_lock_if_any(lock)
     with progress("gate") as step:
         files = Files(reports, html, certificates_of(known, lock), bounds_of(known))
-        outcome = run_gate(specs, files, step, Overrides(*search))
+        outcome = run_gate(specs, files, step, Overrides(*search), jobs)
     return _with_not_examined(write_lock(outcome, lock, prune=prune), paths)
 
 

@@ -142,9 +142,7 @@ def _beside(spec: Path) -> Path:
 
     file = file_of(spec)
     ending = next((end for end in SUFFIXES if file.name.lower().endswith(end)), file.suffix)
-    return file.with_name(
-        f"{file.name.removesuffix(file.name[len(file.name) - len(ending) :])}.sweep"
-    )
+    return file.with_name(f"{file.name[: len(file.name) - len(ending)]}.sweep")
 
 
 def _job(spec: Path, fields: Sequence[str], words: Sequence[str], folder: Path) -> Job:

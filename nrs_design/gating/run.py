@@ -40,6 +40,7 @@ from nrs_design.pipeline.subsets import Subset, find_subsets
 from nrs_design.progress import Progress, silent
 from nrs_design.spec import LoadedSpec, RobotSpec, read_spec
 from nrs_design.spec.task_space import file_of
+from nrs_design.sweeps.spread import spread
 from nrs_design.wings import load_wing
 
 if TYPE_CHECKING:
@@ -128,6 +129,7 @@ def run_gate(
     files: Files,
     progress: Progress = silent,
     overrides: Overrides | None = None,
+    jobs: int = 1,
 ) -> GateOutcome:
     """Design and certify every spec, and write its certificate and report.
 
@@ -141,6 +143,8 @@ def run_gate(
         Told the name of each step.
     overrides : Overrides, optional
         How far the searches go, over what each spec says.
+    jobs : int
+        How many processes; the outcome is the same for any number.
 
     Returns
     -------
@@ -148,25 +152,66 @@ def run_gate(
         A spec that fails is part of it, and does not keep the others from being examined.
     """
     read = [_read(path) for path in specs]
-    robots = Robots()
-    namesakes = _namesakes(item for item in read if isinstance(item, LoadedSpec))
+    valid = [item for item in read if isinstance(item, LoadedSpec)]
+    task = _Task(files, overrides, _namesakes(valid), _groups(valid))
+    if jobs == 1:
+        robots = Robots()
+        found = {one.path: task.examine(one, robots, progress) for one in valid}
+    else:
+        found = _examined_in_processes(task, jobs, progress)
+    return GateOutcome(
+        tuple(item if isinstance(item, SpecOutcome) else found[item.path] for item in read)
+    )
 
-    def examine(loaded: LoadedSpec) -> SpecOutcome:
-        namesake, name = namesakes.get(loaded.path), loaded.spec.name
+
+@dataclass(frozen=True, slots=True)
+class _Task:
+    """What is done with every spec, in any process."""
+
+    files: Files
+    overrides: Overrides | None
+    namesakes: Mapping[Path, Path]  # Another spec of the same name, for those that have one
+    groups: tuple[tuple[Path, ...], ...]  # Specs that one process examines
+
+    def examine(self, loaded: LoadedSpec, robots: Robots, progress: Progress) -> SpecOutcome:
+        """Return what is found about a spec, whatever goes wrong with it."""
+        namesake, name = self.namesakes.get(loaded.path), loaded.spec.name
         try:
             if namesake is not None:
                 raise _shared_name(loaded, namesake)
             with about(getattr(loaded.spec, "axis", None)):
                 return _examine(
-                    loaded, files, lambda s: progress(f"{name}: {s}"), overrides, robots
+                    loaded, self.files, lambda s: progress(f"{name}: {s}"), self.overrides, robots
                 )
         except Exception as error:
             # One spec must not keep the others from being examined, whatever goes wrong with it.
             return failed(loaded.path, error, loaded.sha256)
 
-    return GateOutcome(
-        tuple(item if isinstance(item, SpecOutcome) else examine(item) for item in read)
-    )
+    def examine_group(self, index: int) -> list[SpecOutcome]:
+        """Return what is found about the specs of a group, which are read here."""
+        robots = Robots()
+        read = map(_read, self.groups[index])
+        return [
+            item if isinstance(item, SpecOutcome) else self.examine(item, robots, silent)
+            for item in read
+        ]
+
+
+def _groups(specs: Sequence[LoadedSpec]) -> tuple[tuple[Path, ...], ...]:
+    """Return specs that share a robot, whose bounds are computed once, together; others alone."""
+    shared: defaultdict[Path, list[Path]] = defaultdict(list)
+    for loaded in specs:
+        key = loaded.robot or (file_of(loaded.path) if loaded.arm is not None else loaded.path)
+        shared[Path(os.path.realpath(key))].append(loaded.path)
+    return tuple(map(tuple, shared.values()))
+
+
+def _examined_in_processes(task: _Task, jobs: int, progress: Progress) -> dict[Path, SpecOutcome]:
+    found: dict[Path, SpecOutcome] = {}
+    for _, outcomes in spread(task.examine_group, range(len(task.groups)), jobs):
+        found |= {outcome.path: outcome for outcome in outcomes}
+        progress(f"{len(found)} of {sum(map(len, task.groups))} specs")
+    return found
 
 
 def _read(path: Path) -> LoadedSpec | SpecOutcome:

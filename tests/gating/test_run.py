@@ -53,6 +53,18 @@ def test_proved_spec(examine, tmp_path):
     assert verify(file, read_spec(spec.path)).fault is None
 
 
+def test_the_outcome_is_the_same_for_any_number_of_processes(tmp_path):
+    """Specs that cannot be read, share a name or are refuted are at their places."""
+    texts = (STABLE, UNSTABLE, BROKEN, STABLE.replace("name: stable", "name: other"), UNSTABLE)
+    paths = [tmp_path / f"s{i}.nrs.yaml" for i in range(len(texts))]
+    for path, text in zip(paths, texts, strict=True):
+        path.write_text(text)
+    files = Files(tmp_path / "reports", html=False)
+    alone = run_gate(paths, files)
+    assert run_gate(paths, files, jobs=2) == alone
+    assert [spec.path for spec in alone.specs] == paths
+
+
 def test_refuted_spec_names_the_unstable_modes_with_their_place(examine):
     outcome = examine(UNSTABLE)
     assert found(outcome.specs[0]) == [

@@ -6,11 +6,10 @@ import pytest
 
 from nrs_design.errors import SpecError
 from nrs_design.sweeps.grid import read_grid
-from tests.support import COMMUTING, ROOT, SOFT_TISSUE
+from tests.support import COMMUTING, SOFT_TISSUE
 
 LEVER = "environments.soft.lever_arm=0.2,0.3 m"
 STIFFNESS = "environments.soft.stiffness=100..400/4 N/m"
-AXES = ROOT / "docs/examples/axes.nrs.yaml"
 
 
 def test_every_combination_once_and_the_last_field_fastest():

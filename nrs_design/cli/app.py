@@ -38,6 +38,7 @@ COMMANDS = (
     "check-lyapunov",
     "simulate",
     "sweep",
+    "map",
     "report",
     "reproduce",
     "export",

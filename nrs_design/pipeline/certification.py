@@ -115,20 +115,40 @@ def run_certification(
     progress("design")
     designed, coordinates, system = _assembled(loaded, coordinates)
     certification = certify(system, method, limits or search_limits(loaded.spec), progress)
-    certificate = (
-        Certificate(
-            spec_name=loaded.spec.name,
-            spec_sha256=loaded.sha256,
-            coordinates=coordinates,
-            gains=gains_text(designed),
-            system=system,
-            statements=certification.statements,
-            version=__version__,
-        )
-        if certification.statements
-        else None
-    )
+    certificate = certificate_of(loaded, designed, coordinates, certification)
     return Result(loaded, designed, coordinates, certification, certificate)
+
+
+def certificate_of(
+    loaded: LoadedSpec,
+    designed: Designed | None,
+    coordinates: str | None,
+    certification: Certification,
+) -> Certificate | None:
+    """Return what may be written to a file; None if nothing was shown.
+
+    Parameters
+    ----------
+    loaded : LoadedSpec
+        The spec.
+    designed : Designed or None
+        Its gains; None for given matrices.
+    coordinates : str or None
+        Of the contact.
+    certification : Certification
+        What was shown of its system.
+    """
+    if not certification.statements:
+        return None
+    return Certificate(
+        spec_name=loaded.spec.name,
+        spec_sha256=loaded.sha256,
+        coordinates=coordinates,
+        gains=gains_text(designed),
+        system=certification.system,
+        statements=certification.statements,
+        version=__version__,
+    )
 
 
 def run_recorded(loaded: LoadedSpec, file: Path, progress: Progress = silent) -> Result:

@@ -75,6 +75,30 @@ def may_have_slope(system: SwitchedSystem) -> bool:
     return facts.may_share_an_ellipsoid and not facts.takes_turns and timed
 
 
+def has_margin(system: SwitchedSystem, allowance: Allowance | None = None) -> bool:
+    """Tell whether floating point finds one form for all modes that decreases at all.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        For which `may_have_slope` holds.
+    allowance : Allowance, optional
+        Work and memory.
+
+    Raises
+    ------
+    NotAffordableError
+        If work or memory do not suffice.
+    """
+    allowance = allowance or Allowance()
+    with floats_in_silence():
+        program = _program(system, allowance)
+        if program is None:
+            return False
+        solution = program.solve(_counted(0.0, program), allowance)
+        return solution is not None and _shown(program, solution) > 0
+
+
 def rate_slope(
     system: SwitchedSystem,
     guess: float | None = None,
@@ -106,16 +130,11 @@ def rate_slope(
     """
     allowance = allowance or Allowance()
     with floats_in_silence():
-        family = Family.of(system, allowance)
-        solved = (COUPLING,) if system.couplings else ()
-        if not np.isfinite(family.limit):
+        program = _program(system, allowance)
+        if program is None:
             return None
-        calm = replace(family, matrices=_calmed(family))
-        drawing = draw_together(calm, 1, lost=system.contact is not None, solved=solved)
-        if not drawing.is_finite:
-            return None
-        program = FormsProgram(drawing)
-        best = _best(program, family.limit, guess, resolution, allowance)
+        limit = Family.of(system).limit
+        best = _best(program, limit, guess, resolution, allowance)
         if best is None:
             return None
         # Where the margin is nearly nil, its slope is that of noise.
@@ -126,6 +145,17 @@ def rate_slope(
             if priced is not None and per_rate < 0:
                 return RateSlope(best, program, priced, at, per_rate)
     return None
+
+
+def _program(system: SwitchedSystem, allowance: Allowance) -> FormsProgram | None:
+    """Return the program of one form for all modes; None beyond floating point."""
+    family = Family.of(system, allowance)
+    solved = (COUPLING,) if system.couplings else ()
+    if not np.isfinite(family.limit):
+        return None
+    calm = replace(family, matrices=_calmed(family))
+    drawing = draw_together(calm, 1, lost=system.contact is not None, solved=solved)
+    return FormsProgram(drawing) if drawing.is_finite else None
 
 
 def _calmed(family: Family) -> NDArray[np.float64]:

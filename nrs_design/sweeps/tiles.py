@@ -1,0 +1,230 @@
+"""Tiles: what a spec says in each of them, and in boxes of many.
+
+A field that takes a range is cut into intervals: a tile is about all values of its interval. Of a
+field that is a range itself, such as ``sampling.delay: [0, 1]``, the upper end takes each value: a
+tile is about all that lies below. Any other field takes each value by itself.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from enum import StrEnum
+from pathlib import Path
+
+from nrs_design.errors import SpecError
+from nrs_design.proof.text import exact_text
+from nrs_design.spec import LoadedSpec, parse_exact
+from nrs_design.spec.document import Data, Mapping, Node, Sequence, parse_document, to_data
+from nrs_design.spec.edits import changed, node_at
+from nrs_design.spec.load import respecified
+from nrs_design.spec.spec_document import SpecDocument
+from nrs_design.sweeps.grid import Field, read_grid
+from nrs_design.sweeps.values import Spaced
+
+# More tiles than that are no map that anybody reads.
+MOST_TILES = 65_536
+# Parts of a spec by which gains are designed: where one of them changes, so do gains.
+OF_THE_DESIGN = frozenset({"controllers", "motion_loop", "limits", "design", "goals"})
+
+Span = tuple[int, int]  # First and last place along a field
+Box = tuple[Span, ...]  # One for each field
+
+
+class Cut(StrEnum):
+    """How a field is cut into tiles."""
+
+    INTERVAL = "interval"  # Between neighbouring values
+    UP_TO = "up to"  # From the declared lower end up to each value
+    POINT = "point"  # Each value by itself
+
+
+@dataclass(frozen=True, slots=True)
+class TileField:
+    """A field that is cut into tiles."""
+
+    field: Field
+    cut: Cut
+    unit: str
+    values: tuple[float, ...]  # Of intervals the borders, one more than there are tiles
+
+    @property
+    def count(self) -> int:
+        """How many tiles there are along the field."""
+        return len(self.values) - (self.cut is Cut.INTERVAL)
+
+    def said(self, span: Span, there: Node | None) -> Data:
+        """Return what the spec says in tiles of a span.
+
+        Parameters
+        ----------
+        span : (int, int)
+            First and last tile; of a `POINT`, the same.
+        there : Node or None
+            What the spec says where it stands.
+        """
+        first, last = span
+        values = self.field.values
+        if self.cut is Cut.POINT:
+            return values[first]
+        if self.cut is Cut.UP_TO:
+            assert isinstance(there, Sequence)
+            return (to_data(there.items[0]), values[last])
+        low, high = values[first], values[last + 1]
+        ends = [parse_exact(text.partition(" ")[0]) for text in (low, high)]
+        middle = exact_text((ends[0] + ends[1]) / 2)
+        nominal = f"{middle} {self.unit}" if self.unit else middle
+        said: dict[str, Data] = {"nominal": nominal, "range": (low, high)}
+        if isinstance(there, Mapping) and "varies" in there.entries:
+            said["varies"] = to_data(there.entries["varies"])
+        return said
+
+    def text(self, place: int) -> str:
+        """Write what a tile covers."""
+        values = [
+            text.partition(" ")[0] for text in map(self.field.values.__getitem__, self._at(place))
+        ]
+        unit = f" {self.unit}" if self.unit else ""
+        return f"{'..'.join(values)}{unit}"
+
+    def _at(self, place: int) -> tuple[int, ...]:
+        return (place, place + 1) if self.cut is Cut.INTERVAL else (place,)
+
+
+@dataclass(frozen=True, slots=True)
+class TileGrid:
+    """All tiles of one to three fields of a spec."""
+
+    loaded: LoadedSpec
+    fields: tuple[TileField, ...]
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """How many tiles there are along each field."""
+        return tuple(field.count for field in self.fields)
+
+    @property
+    def keeps_gains(self) -> bool:
+        """Whether the gains of the spec stay the same in all tiles."""
+        return not any(field.field.at[0] in OF_THE_DESIGN for field in self.fields)
+
+    def spec_of(self, box: Box) -> LoadedSpec:
+        """Return what the spec says of all tiles of a box at once.
+
+        Raises
+        ------
+        SpecError
+            If that is no valid spec.
+        """
+        root = self.loaded.root
+        for field, span in zip(self.fields, box, strict=True):
+            there = node_at(root, field.field.at)
+            root = changed(root, field.field.at, field.said(span, there))
+        return respecified(self.loaded, root)
+
+    def text_of(self, box: Box) -> str:
+        """Return the text of that spec, with the comments of the file.
+
+        Raises
+        ------
+        SpecError
+            If a comment would be lost, or the text would not say the same.
+        """
+        document = SpecDocument(self.loaded)
+        for field, span in zip(self.fields, box, strict=True):
+            *above, last = field.field.at
+            node = document.root
+            for key in above:
+                node = node[key]
+            said = _listed(field.said(span, node_at(self.loaded.root, field.field.at)))
+            if isinstance(last, int):
+                node[last] = said
+            else:
+                document.put(node, last, said)
+        text = document.text()
+        root = parse_document(text, self.loaded.path)
+        if respecified(self.loaded, root).sha256 != self.spec_of(box).sha256:
+            raise SpecError("the file cannot be rewritten with these values", path=self.loaded.path)
+        return text
+
+
+def _listed(said: Data) -> object:
+    """Return what a document says as lists and dictionaries; whole numbers need no quotes."""
+    if isinstance(said, str):
+        return int(said) if said.isdecimal() else said
+    if isinstance(said, tuple):
+        return [_listed(item) for item in said]
+    return {key: _listed(item) for key, item in said.items()}
+
+
+def read_tiles(loaded: LoadedSpec, path: Path, said: list[str]) -> TileGrid:
+    """Read what ``--over`` says, and refuse what makes no map of this spec.
+
+    Parameters
+    ----------
+    loaded : LoadedSpec
+        The spec.
+    path : Path
+        Its address.
+    said : list of str
+        Each ``PATH=LOW..HIGH/COUNT UNIT``, or a list of values.
+
+    Raises
+    ------
+    SpecError
+        If a path is not there, values are none or do not fit, or the tiles are too many.
+    """
+    grid = read_grid(path, said)
+    fields = tuple(_cut(loaded, field) for field in grid.fields)
+    count = math.prod(field.count for field in fields)
+    if count > MOST_TILES:
+        sizes = " x ".join(str(field.count) for field in fields)
+        raise SpecError(
+            f"{sizes} = {count} tiles are more than {MOST_TILES}",
+            remedy="cut the fields into fewer, such as 1..250/16",
+        )
+    return TileGrid(loaded, fields)
+
+
+def _cut(loaded: LoadedSpec, field: Field) -> TileField:
+    there = node_at(loaded.root, field.at)
+    numbers = [text.partition(" ")[0] for text in _texts(field)]
+    try:
+        values = tuple(float(parse_exact(number)) for number in numbers)
+    except (SpecError, ValueError):
+        return TileField(field, Cut.POINT, "", tuple(map(float, range(len(numbers)))))
+    if isinstance(there, Sequence) and len(there.items) == 2:
+        return TileField(field, Cut.UP_TO, field.unit, values)
+    finer = _with_borders(field)
+    bordered = TileField(finer, Cut.INTERVAL, field.unit, _numbers(finer))
+    if len(bordered.values) > 1 and _takes_ranges(loaded, bordered, there):
+        return bordered
+    return TileField(field, Cut.POINT, field.unit, values)
+
+
+def _texts(field: Field) -> Iterator[str]:
+    return (field.values[at] for at in range(len(field.values)))
+
+
+def _numbers(field: Field) -> tuple[float, ...]:
+    return tuple(float(parse_exact(text.partition(" ")[0])) for text in _texts(field))
+
+
+def _with_borders(field: Field) -> Field:
+    """Return as many intervals as a range has values: with one border more."""
+    if not isinstance(field.values, Spaced):
+        return field
+    spaced = field.values
+    return Field(
+        field.path, field.at, Spaced(spaced.low, spaced.high, spaced.count + 1, spaced.unit)
+    )
+
+
+def _takes_ranges(loaded: LoadedSpec, field: TileField, there: Node | None) -> bool:
+    root = changed(loaded.root, field.field.at, field.said((0, 0), there))
+    try:
+        respecified(loaded, root)
+    except SpecError:
+        return False
+    return True

@@ -1,0 +1,43 @@
+"""`nrs-design map`, as a user types it."""
+
+from tests.support import ROOT, document_of, run
+
+SAMPLED = ROOT / "specs" / "neuroboscope" / "soft-tissue-sampled.nrs.yaml"
+STIFFNESS = "environments.soft.stiffness=300..1100/4 N/m"
+
+
+def test_a_map_for_people_and_files(tmp_path):
+    files = "--figure", "m.png", "--csv", "m.csv", "--certificates", "certificates"
+    asked = "--over", STIFFNESS, "--over", "sampling.delay=0..1"
+    shown = run("map", SAMPLED, *asked, *files, cwd=tmp_path, code=1).stdout
+    assert "8 tiles:" in shown
+    assert "# proved, x refuted, . undecided" in shown
+    assert "in kept contact" in shown
+    rows = (tmp_path / "m.csv").read_text().splitlines()
+    assert rows[0] == "verdict,certificate,refuted_in,environments.soft.stiffness,sampling.delay"
+    assert len(rows) == 9
+    assert (tmp_path / "m.png").stat().st_size > 1000
+    (first, *_) = sorted((tmp_path / "certificates").glob("*.cert.json"))
+    spec = first.with_name(first.name.replace(".cert.json", ".nrs.yaml"))
+    assert run("verify", first, spec, cwd=tmp_path).returncode in (0, 3)
+
+
+def test_a_map_for_programs(tmp_path):
+    document = document_of("map", SAMPLED, "--over", STIFFNESS, cwd=tmp_path)
+    assert document["tiles"][0]["verdict"] == "proved"
+    assert document["keeps_gains"]
+    assert document["fields"][0]["cut"] == "interval"
+    proved = document["tiles"][0]["certificate"]
+    assert document["certificates"][proved]["box"][0][0] == 0
+
+
+def test_bad_requests(tmp_path):
+    for said, words in (
+        ("environments.soft.stiffness=5..1/4 N/m", "reversed"),
+        ("environments.hard.stiffness=1..5/4 N/m", "there is no field"),
+        ("environments.soft.stiffness=1..1000000000 N/m", "more than"),
+        ("environments.soft.stiffness", "sets nothing"),
+    ):
+        refused = run("map", SAMPLED, "--over", said, cwd=tmp_path, code=2)
+        assert words in refused.stderr
+    assert not list(tmp_path.iterdir())

@@ -1,0 +1,98 @@
+"""Every tile as its own spec says; proofs are for boxes, and refutations have witnesses."""
+
+from itertools import pairwise, product
+
+import pytest
+
+from nrs_design.certificates.certificate import Verdict, dump
+from nrs_design.certificates.verify import verify
+from nrs_design.pipeline import run_design
+from nrs_design.spec import read_spec
+from nrs_design.sweeps.tile_map import run_tile_map
+from nrs_design.sweeps.tiles import read_tiles
+from tests.support import ROOT, SOFT_TISSUE
+
+SAMPLED = ROOT / "specs" / "neuroboscope" / "soft-tissue-sampled.nrs.yaml"
+OSCILLATOR = """
+kind: switched-system
+name: oscillator
+time: continuous
+parameters:
+  k: {nominal: 2, range: [1, 3]}
+modes:
+  - {name: a, A: [[0, 1], [-k, -1]]}
+  - {name: b, A: [[0, 1], [-2, -1]]}
+switching: arbitrary
+"""
+
+
+def mapped(*said, path):
+    loaded = read_spec(path)
+    return run_tile_map(read_tiles(loaded, path, list(said)), run_design(loaded))
+
+
+def signs(found):
+    shape = found.grid.shape
+    return [
+        "".join(str(found.tiles[k, level].verdict)[0] for k in range(shape[0]))
+        for level in range(shape[1])
+    ]
+
+
+def test_stiffness_over_age():
+    """What is proved is proved for younger samples, and what grows does with older ones."""
+    found = mapped(
+        "environments.soft.stiffness=300..1100/4 N/m", "sampling.delay=0..2", path=SAMPLED
+    )
+    rows = signs(found)
+    assert rows[0][0] == "p"
+    assert rows[2][-2:] == "rr"
+    for lower, upper in pairwise(rows):
+        assert all(a == "p" for a, b in zip(lower, upper, strict=True) if b == "p")
+        assert all(b == "r" for a, b in zip(lower, upper, strict=True) if a == "r")
+    assert len(found.certificates) < len(found.tiles)
+
+
+def test_every_certificate_is_about_the_spec_of_its_box(tmp_path):
+    found = mapped("environments.soft.stiffness=300..1100/4 N/m", path=SAMPLED)
+    covered = set()
+    for certificate, box in zip(found.certificates, found.boxes, strict=True):
+        (tmp_path / "a.nrs.yaml").write_text(found.grid.text_of(box), encoding="utf-8")
+        (tmp_path / "a.cert.json").write_text(dump(certificate, "a.nrs.yaml"), encoding="utf-8")
+        checked = verify(tmp_path / "a.cert.json", read_spec(tmp_path / "a.nrs.yaml"))
+        assert checked.fault is None
+        if checked.certificate.verdict == Verdict.PROVED:
+            covered |= set(product(*(range(first, last + 1) for first, last in box)))
+    proved = {place for place, tile in found.tiles.items() if tile.verdict is Verdict.PROVED}
+    assert proved == covered != set()
+
+
+def test_values_without_a_range_and_gains_that_are_designed_anew():
+    found = mapped("limits.bandwidth=1,2 Hz", path=SOFT_TISSUE)
+    assert [tile.verdict for tile in found.tiles.values()] == [Verdict.PROVED] * 2
+    assert not found.grid.keeps_gains
+    gains = [certificate.gains for certificate in found.certificates]
+    assert gains[0] != gains[1]
+
+
+def test_given_matrices(tmp_path):
+    path = tmp_path / "a.nrs.yaml"
+    path.write_text(OSCILLATOR, encoding="utf-8")
+    found = mapped("parameters.k=1..9/8", path=path)
+    verdicts = [str(tile.verdict) for tile in found.tiles.values()]
+    assert verdicts[:4] == ["proved"] * 4
+    # Zelentsovsky 1994: from 2 on, it is stable up to 8.98513.
+    assert verdicts[-1] == "refuted"
+    assert "refuted" not in verdicts[:-1]
+
+
+def test_values_that_make_no_spec(tmp_path):
+    found = mapped("sampling.period=1,2 ms", "sampling.delay=0..1", path=SAMPLED)
+    assert all(tile.verdict is not None for tile in found.tiles.values())
+
+
+@pytest.mark.parametrize("field", ["environments.soft.lever_arm=0.2,0.24 m"])
+def test_a_witness_is_none_of_a_proof(field):
+    found = mapped(field, path=SOFT_TISSUE)
+    assert {str(tile.verdict) for tile in found.tiles.values()} <= {"proved", "refuted"}
+    assert found.witnesses == 0

@@ -1,0 +1,65 @@
+"""What a spec says in tiles and boxes."""
+
+import pytest
+
+from nrs_design.errors import SpecError
+from nrs_design.spec import read_spec
+from nrs_design.sweeps.tiles import Cut, read_tiles
+from tests.support import ROOT
+
+SAMPLED = ROOT / "specs" / "neuroboscope" / "soft-tissue-sampled.nrs.yaml"
+
+
+def tiles(*said, path=SAMPLED):
+    return read_tiles(read_spec(path), path, list(said))
+
+
+def test_a_range_is_cut_into_intervals():
+    grid = tiles("environments.soft.stiffness=100..900/4 N/m")
+    (field,) = grid.fields
+    assert (field.cut, field.count) == (Cut.INTERVAL, 4)
+    assert field.values == (100, 300, 500, 700, 900)
+    assert [field.text(k) for k in range(4)][1] == "300..500 N/m"
+    stiffness = grid.spec_of(((1, 2),)).spec.environments["soft"].stiffness
+    assert [end.text for end in stiffness.range] == ["300 N/m", "700 N/m"]
+    assert stiffness.nominal.text == "500 N/m"
+
+
+def test_of_a_range_the_upper_end_takes_each_value():
+    grid = tiles("sampling.delay=0..3")
+    (field,) = grid.fields
+    assert (field.cut, field.count, field.text(2)) == (Cut.UP_TO, 4, "2")
+    assert grid.spec_of(((0, 2),)).spec.sampling.delay == (0, 2)
+
+
+def test_values_by_themselves():
+    grid = tiles("sampling.period=1,2,4 ms")
+    (field,) = grid.fields
+    assert (field.cut, field.count) == (Cut.POINT, 3)
+    assert grid.spec_of(((2, 2),)).spec.sampling.period.text == "4 ms"
+    words = tiles("contact=kept,losable").fields[0]
+    assert (words.cut, words.text(1)) == (Cut.POINT, "losable")
+
+
+def test_gains_are_kept_unless_they_are_what_changes():
+    assert tiles("sampling.period=1,2 ms").keeps_gains
+    assert not tiles("limits.bandwidth=1,2 Hz").keeps_gains
+
+
+def test_the_text_of_a_box_says_the_same():
+    grid = tiles("environments.soft.stiffness=100..900/4 N/m", "sampling.delay=0..3")
+    box = ((0, 3), (1, 1))
+    text = grid.text_of(box)
+    assert "# A period of 2 ms" in text
+    assert "[100 N/m, 900 N/m]" in text
+    assert "delay: [0, 1]" in text
+
+
+def test_too_many_tiles():
+    with pytest.raises(SpecError, match="500 x 200 = 100000 tiles are more than 65536"):
+        tiles("environments.soft.stiffness=100..900/500 N/m", "sampling.period=1..2/200 ms")
+
+
+def test_a_field_that_is_not_there():
+    with pytest.raises(SpecError, match="there is no field"):
+        tiles("environments.hard.stiffness=1..2/2 N/m")

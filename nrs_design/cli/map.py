@@ -72,8 +72,8 @@ def map(
     with progress(f"map of {loaded.spec.name}") as step:
         found = run_tile_map(grid, run_design(loaded), step)
     if figure is not None:
-        from nrs_design.reporting.figures.tile_map import draw_tile_map
         from nrs_design.reporting.images import to_png
+        from nrs_design.sweeps.tile_figure import draw_tile_map
 
         write_output(figure, to_png(draw_tile_map(found)), replaces=PNG)
         note(f"figure written to {figure}")

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from nrs_design.certificates.certificate import Certificate, Verdict
 from nrs_design.errors import NrsDesignError
 from nrs_design.pipeline.certification import assemble_spec, certificate_of, search_limits
-from nrs_design.pipeline.design import Designed, run_design
+from nrs_design.pipeline.design import Designed, run_design, run_with_gains
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.certification import Certification, Limits
 from nrs_design.search.method import Method
@@ -67,7 +67,7 @@ def _decided(loaded: LoadedSpec, kept: Designed | None, method: Method | None) -
     from nrs_design.search.rate_slope import may_have_slope
 
     try:
-        designed = run_design(loaded) if kept is None else _with_gains(loaded, kept)
+        designed = run_design(loaded) if kept is None else run_with_gains(loaded, kept.design)
         coordinates = None if designed is None else designed.spec.coordinates
         system = assemble_spec(loaded, designed, coordinates)
     except NrsDesignError as error:
@@ -101,12 +101,3 @@ def _has_margin(system: SwitchedSystem, limits: Limits) -> bool:
 
 def _decides(found: Certification) -> bool:
     return found.verdict is not Verdict.INCONCLUSIVE or found.refuted_in is not None
-
-
-def _with_gains(loaded: LoadedSpec, kept: Designed) -> Designed:
-    """Return another spec with its own plant, and the gains of the one that was designed."""
-    from nrs_design.spec.build_plant import build_plant
-
-    spec = loaded.spec
-    assert spec.kind == "interaction-design", "as the spec with the gains is"
-    return Designed(loaded, spec, build_plant(spec), kept.design)

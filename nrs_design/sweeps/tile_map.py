@@ -16,7 +16,7 @@ from nrs_design.errors import SpecError
 from nrs_design.pipeline import Designed
 from nrs_design.pipeline.quick_verdict import QuickVerdict, run_quick_proof, run_quick_witness
 from nrs_design.progress import Progress, silent
-from nrs_design.sweeps.tiles import Box, Cut, Span, TileGrid
+from nrs_design.sweeps.tiles import Box, Span, TileCut, TileGrid
 
 Place = tuple[int, ...]
 
@@ -93,7 +93,7 @@ class _Painter:
     def climbed(self) -> int | None:
         """The field whose upper ends are climbed."""
         cuts = [one.cut for one in self.grid.fields]
-        return cuts.index(Cut.UP_TO) if Cut.UP_TO in cuts else None
+        return cuts.index(TileCut.UP_TO) if TileCut.UP_TO in cuts else None
 
     def paint(self) -> None:
         """Decide all tiles."""
@@ -180,7 +180,7 @@ class _Painter:
         return [
             axis
             for axis, (one, (first, last)) in enumerate(zip(self.grid.fields, box, strict=True))
-            if one.cut is Cut.POINT and first != last
+            if one.cut is TileCut.POINT and first != last
         ]
 
 

@@ -32,7 +32,7 @@ Span = tuple[int, int]  # First and last place along a field
 Box = tuple[Span, ...]  # One for each field
 
 
-class Cut(StrEnum):
+class TileCut(StrEnum):
     """How a field is cut into tiles."""
 
     INTERVAL = "interval"  # Between neighbouring values
@@ -45,14 +45,14 @@ class TileField:
     """A field that is cut into tiles."""
 
     field: Field
-    cut: Cut
+    cut: TileCut
     unit: str
     values: tuple[float, ...]  # Of intervals the borders, one more than there are tiles
 
     @property
     def count(self) -> int:
         """How many tiles there are along the field."""
-        return len(self.values) - (self.cut is Cut.INTERVAL)
+        return len(self.values) - (self.cut is TileCut.INTERVAL)
 
     def said(self, span: Span, there: Node | None) -> Data:
         """Return what the spec says in tiles of a span.
@@ -66,9 +66,9 @@ class TileField:
         """
         first, last = span
         values = self.field.values
-        if self.cut is Cut.POINT:
+        if self.cut is TileCut.POINT:
             return values[first]
-        if self.cut is Cut.UP_TO:
+        if self.cut is TileCut.UP_TO:
             assert isinstance(there, Sequence)
             return (to_data(there.items[0]), values[last])
         low, high = values[first], values[last + 1]
@@ -89,7 +89,7 @@ class TileField:
         return f"{'..'.join(values)}{unit}"
 
     def _at(self, place: int) -> tuple[int, ...]:
-        return (place, place + 1) if self.cut is Cut.INTERVAL else (place,)
+        return (place, place + 1) if self.cut is TileCut.INTERVAL else (place,)
 
 
 @dataclass(frozen=True, slots=True)
@@ -193,14 +193,14 @@ def _cut(loaded: LoadedSpec, field: Field) -> TileField:
     try:
         values = tuple(float(parse_exact(number)) for number in numbers)
     except (SpecError, ValueError):
-        return TileField(field, Cut.POINT, "", tuple(map(float, range(len(numbers)))))
+        return TileField(field, TileCut.POINT, "", tuple(map(float, range(len(numbers)))))
     if isinstance(there, Sequence) and len(there.items) == 2:
-        return TileField(field, Cut.UP_TO, field.unit, values)
+        return TileField(field, TileCut.UP_TO, field.unit, values)
     finer = _with_borders(field)
-    bordered = TileField(finer, Cut.INTERVAL, field.unit, _numbers(finer))
+    bordered = TileField(finer, TileCut.INTERVAL, field.unit, _numbers(finer))
     if len(bordered.values) > 1 and _takes_ranges(loaded, bordered, there):
         return bordered
-    return TileField(field, Cut.POINT, field.unit, values)
+    return TileField(field, TileCut.POINT, field.unit, values)
 
 
 def _texts(field: Field) -> Iterator[str]:

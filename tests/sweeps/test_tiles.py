@@ -4,7 +4,7 @@ import pytest
 
 from nrs_design.errors import SpecError
 from nrs_design.spec import read_spec
-from nrs_design.sweeps.tiles import Cut, read_tiles
+from nrs_design.sweeps.tiles import TileCut, read_tiles
 from tests.support import ROOT
 
 SAMPLED = ROOT / "specs" / "neuroboscope" / "soft-tissue-sampled.nrs.yaml"
@@ -17,7 +17,7 @@ def tiles(*said, path=SAMPLED):
 def test_a_range_is_cut_into_intervals():
     grid = tiles("environments.soft.stiffness=100..900/4 N/m")
     (field,) = grid.fields
-    assert (field.cut, field.count) == (Cut.INTERVAL, 4)
+    assert (field.cut, field.count) == (TileCut.INTERVAL, 4)
     assert field.values == (100, 300, 500, 700, 900)
     assert [field.text(k) for k in range(4)][1] == "300..500 N/m"
     stiffness = grid.spec_of(((1, 2),)).spec.environments["soft"].stiffness
@@ -28,17 +28,17 @@ def test_a_range_is_cut_into_intervals():
 def test_of_a_range_the_upper_end_takes_each_value():
     grid = tiles("sampling.delay=0..3")
     (field,) = grid.fields
-    assert (field.cut, field.count, field.text(2)) == (Cut.UP_TO, 4, "2")
+    assert (field.cut, field.count, field.text(2)) == (TileCut.UP_TO, 4, "2")
     assert grid.spec_of(((0, 2),)).spec.sampling.delay == (0, 2)
 
 
 def test_values_by_themselves():
     grid = tiles("sampling.period=1,2,4 ms")
     (field,) = grid.fields
-    assert (field.cut, field.count) == (Cut.POINT, 3)
+    assert (field.cut, field.count) == (TileCut.POINT, 3)
     assert grid.spec_of(((2, 2),)).spec.sampling.period.text == "4 ms"
     words = tiles("contact=kept,losable").fields[0]
-    assert (words.cut, words.text(1)) == (Cut.POINT, "losable")
+    assert (words.cut, words.text(1)) == (TileCut.POINT, "losable")
 
 
 def test_gains_are_kept_unless_they_are_what_changes():

@@ -92,6 +92,23 @@ def _ends(bounds: tuple[float, float], value: float) -> tuple[float, float]:
     return low / _BEYOND, high * _BEYOND
 
 
+def cheapest_damping(problem: ImpedanceProblem, Mt: float, Bt: float) -> float | None:
+    """Return the Bt of the least cost near a given one, N m s/rad; None where nothing is stable.
+
+    Parameters
+    ----------
+    problem : ImpedanceProblem
+        What would be minimized.
+    Mt, Bt : float
+        As given, in kg m^2 and N m s/rad.
+    """
+    near = replace(problem, mass_bounds=(Mt, Mt), damping_bounds=(Bt / _FURTHER, Bt * _FURTHER))
+    try:
+        return optimize_impedance(near).Bt
+    except DesignError:
+        return None
+
+
 def alternatives(problem: ImpedanceProblem, Mt: float, Bt: float) -> Iterator[Alternative]:
     """Yield the shipped gains, those best for either part of the cost, and those beyond a bound.
 

@@ -8,7 +8,7 @@ from matplotlib.contour import QuadContourSet
 
 from nrs_design.design.impedance import characteristic_basis, stabilizes
 from nrs_design.design.impedance_optimum import impedance_cost
-from nrs_design.design.landscape import alternatives, delay_borne, map_cost
+from nrs_design.design.landscape import alternatives, cheapest_damping, delay_borne, map_cost
 from nrs_design.pipeline import run_analysis, run_design
 from nrs_design.reporting.sections.landscape import draw_cost
 from nrs_design.spec import read_spec
@@ -102,3 +102,10 @@ def test_delay_borne_is_the_delay_margin_at_that_stiffness(insertion):
     assert borne[0] == pytest.approx(loop_margins(loop, *gains).delay_margin, rel=1e-6)
     assert 0 < borne[1] < 1e-3
     assert borne[2] == 0
+
+
+def test_the_cheapest_damping_beside_given_gains(insertion):
+    """Thesis 6.3.2.1: 2.15 with Mt = 0.01, wherever it is looked for from."""
+    for Bt in (0.5, 2.15, 9.0):
+        assert cheapest_damping(insertion.problem, 0.01, Bt) == pytest.approx(2.149, abs=2e-3)
+    assert cheapest_damping(insertion.problem, 1e6, 1e-9) is None

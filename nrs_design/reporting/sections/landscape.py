@@ -8,7 +8,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from nrs_design.axis import labelled
-from nrs_design.design.landscape import CostMap, alternatives, delay_borne, map_cost
+from nrs_design.design.landscape import (
+    CostMap,
+    alternatives,
+    cheapest_damping,
+    delay_borne,
+    map_cost,
+)
 from nrs_design.reporting.document import Block, Illustration, Paragraph, Section, Table
 from nrs_design.reporting.formatting import number
 from nrs_design.reporting.sections.places import linked
@@ -177,10 +183,12 @@ def draw_cost(item: ImpedanceAnalysis, found: CostMap) -> Figure:
     _draw_border(axes, found)
     _draw_bounds(axes, item, found)
     points = [(item.Mt, item.Bt, "D", 4.5, INK, "as shipped")]
-    # Gains that the spec gives are no optimum.
     if not (item.given.Mt.fixed and item.given.Bt.fixed):
         best = "optimum within bounds and goals"
         points.insert(0, (item.optimum.Mt, item.optimum.Bt, "*", 15.0, GREEN, best))
+    elif (Bt := cheapest_damping(item.problem, item.Mt, item.Bt)) is not None:
+        # Gains that the spec gives are no optimum: they may have been chosen by their proof.
+        points.insert(0, (item.Mt, Bt, "*", 15.0, GREEN, "least cost with this Mt"))
     for Mt, Bt, shape, size, tint, label in points:
         # No mass at all is drawn at the left edge.
         place = max(Mt, float(found.Mt[0]))

@@ -57,7 +57,7 @@ class CertifiedGains:
         if not steering_goals(designed, analysis):
             if out is not None:
                 raise OutputError(
-                    "only gains that were chosen by goals.decay_rate are written",
+                    "only gains that were chosen by a goal of the proof are written",
                     path=out,
                     remedy="add `goals: {decay_rate: 2 1/s}` and leave a gain free, or leave --out "
                     "out",
@@ -80,14 +80,13 @@ class CertifiedGains:
     def facts(self) -> dict[str, Any]:
         """Return the same for JSON, in SI units."""
         found = self.found
-        rate = found.goals[0]
         return {
             "gains": {f"{name}.{gain}": text for (name, gain), text in found.gains.items()},
             "cost": found.cost,
             "free_cost": found.free_cost,
             "free_decay_rate": found.free_rate,
             "binds": [goal.key for goal in found.goals if goal.price is not None],
-            "cost_per_decay_rate": rate.price,
+            "prices": {goal.key: goal.price for goal in found.goals},
             "goals": [
                 {"goal": goal.key, "wanted": goal.wanted, "shown": goal.said, "met": goal.met}
                 for goal in self.goals
@@ -113,7 +112,8 @@ class CertifiedGains:
             if steered.price is None:
                 say(f"{steered.key} does not bind")
             else:
-                say(f"{steered.key} binds: each 0.1 1/s more costs about {steered.price / 10:.2g}")
+                tighter = float(steered.wanted) / 100 * steered.price
+                say(f"{steered.key} binds: 1 % tighter costs about {tighter:.2g}")
 
     def _rate(self) -> float | None:
         certificate = self.found.result.certificate

@@ -9,7 +9,7 @@ checked as that of any spec.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
@@ -17,14 +17,22 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from nrs_design.axis import unit
 from nrs_design.errors import DesignError
 from nrs_design.pipeline.certification import (
     Result,
     assemble_spec,
     run_certification,
-    search_limits,
 )
 from nrs_design.pipeline.design import Designed, placed
+from nrs_design.pipeline.design_looks import (
+    ROOM,
+    ROOM_OF_BOUNDS,
+    AbstractJudge,
+    DesignLooks,
+    ForceJudge,
+    RateJudge,
+)
 from nrs_design.pipeline.free_gains import (
     Array,
     FreeGains,
@@ -35,21 +43,18 @@ from nrs_design.pipeline.free_gains import (
 )
 from nrs_design.progress import Progress, silent
 from nrs_design.proof.bounds import rounded_up
-from nrs_design.work import Allowance, Fuse, NotAffordableError
+from nrs_design.spec import Quantity
 
 if TYPE_CHECKING:
     from nrs_design.design.analysis import DesignAnalysis
     from nrs_design.design.steered_search import Look, Steered, SteeredProblem
-    from nrs_design.models.plant import Plant
-    from nrs_design.proof.system import SwitchedSystem
     from nrs_design.spec.spec_document import SpecDocument
 
 # Goals that gains are steered by.
-STEERING = ("decay_rate",)
-# Of a rate that is asked for, so much more is sought: roundings take a little.
-ROOM = 5e-4
-# How far a coordinate moves for a slope.
-STEP = 1e-3
+STEERING = ("decay_rate", "peak_torque")
+GOAL_UNITS = {"decay_rate": "1/s", "peak_torque": "N*m"}
+# A rate that only has to be positive is at least so much, 1/s.
+LEAST_RATE = 1e-2
 # Roundings that are proved at most.
 MOST_ROUNDINGS = 4
 # A goal with less than this share to spare binds.
@@ -157,98 +162,28 @@ def check_steerable(designed: Designed) -> None:
         raise DesignError(
             "gains are chosen with their proof only where one quadratic function may be one: not "
             "with two periods, rules that lead through unstable modes, or one state",
-            remedy="leave goals.decay_rate out, and certify what is optimized without it",
-            at=("goals", *STEERING) if goals is not None and goals.decay_rate else (),
+            remedy="leave decay_rate and peak_torque out of the goals, and certify what is "
+            "optimized without them",
+            at=("goals",) if goals is not None else (),
         )
 
 
-@dataclass(frozen=True)
-class RateLooks:
-    """Looks at the best decay rate of designs, held against one that is asked for."""
-
-    gains: FreeGains
-    wanted: float  # 1/s
-    scale: float  # What one of the values of a look is, 1/s
-    allowance: Allowance
-    progress: Progress
-
-    @classmethod
-    def of(cls, gains: FreeGains, wanted: float, scale: float, progress: Progress) -> RateLooks:
-        """Take work and memory from the spec.
-
-        Parameters
-        ----------
-        gains, wanted, scale, progress
-            As for the class.
-        """
-        limits = search_limits(gains.designed.spec)
-        allowance = Allowance(limits.budget, limits.memory, Fuse.of(limits.budget))
-        return cls(gains, wanted, scale, allowance, progress)
-
-    def rate(self, value: float) -> float:
-        """Return the rate in 1/s that a value of a look stands for."""
-        return float(value) * self.scale + self.wanted
-
-    def look(
-        self,
-        x: Array,
-        expected: Array | None,
-        plant: Callable[[Array], Plant | None] = lambda x: None,
-    ) -> Look:
-        """Find the best decay rate of a design, and let its slope be asked for.
-
-        Parameters
-        ----------
-        x : ndarray
-            The point; what is behind the gains is for the plant.
-        expected : ndarray or None
-            About what comes of it.
-        plant : callable
-            Gives the plant at a point, if it is not that of the spec.
-
-        Raises
-        ------
-        DesignError
-            If work or memory do not suffice.
-        """
-        from nrs_design.design.steered_search import Look
-        from nrs_design.search.rate_slope import rate_slope
-
-        gains, n = self.gains, len(self.gains.places)
-
-        def system(x: Array) -> SwitchedSystem:
-            return gains.system(x[:n], plant(x))
-
-        guess = None if expected is None else self.rate(expected[0])
-        try:
-            found = rate_slope(system(x), guess, self.allowance)
-        except NotAffordableError as error:
-            raise DesignError(
-                f"no gains were found: {error}", remedy="allow more with certification.budget"
-            ) from error
-        if found is None:
-            return Look(x, np.array([-1.0]), lambda: np.zeros((1, len(x))))
-        self.progress(f"decay rate {found.rate:.4g} 1/s at cost {gains.cost(x[:n]):.5g}")
-
-        def slopes() -> Array:
-            moved = []
-            for i in range(len(x)):
-                step = -STEP if i < n and x[i] + STEP > gains.high[i] else STEP
-                there = system(x + step * np.eye(len(x))[i])
-                moved.append(found.change(there) / step / self.scale)
-            return np.array([moved])
-
-        return Look(x, np.array([(found.rate - self.wanted) / self.scale]), slopes)
-
-
 class _Search:
-    """The search for the cheapest gains whose decay rate is proved."""
+    """The search for the cheapest gains whose proof meets the goals."""
 
     def __init__(self, gains: FreeGains) -> None:
         goals = gains.designed.spec.goals
-        assert goals is not None
-        assert goals.decay_rate is not None, "the only goal that steers"
-        self.gains, self.goal = gains, goals.decay_rate
+        assert goals is not None, "as one steers"
+        self.gains = gains
+        self.wanted = {key: value for key, value in goals.given() if key in STEERING}
+        rate, force = goals.decay_rate, goals.peak_torque
+        wanted = LEAST_RATE if rate is None else max(rate.si * (1 + ROOM), LEAST_RATE)
+        judges: list[AbstractJudge] = [
+            RateJudge("decay_rate", wanted, wanted if rate is None else rate.si)
+        ]
+        if force is not None:
+            judges.append(ForceJudge("peak_torque", force.si * (1 - ROOM_OF_BOUNDS)))
+        self.judges = tuple(judges)
 
     def run(self, progress: Progress, name: str | None) -> CertifiedOptimum:
         """Search, round and prove."""
@@ -257,32 +192,43 @@ class _Search:
         gains = self.gains
         progress("free optimum")
         free = gains.optimum()
-        looks = RateLooks.of(gains, self.goal.si * (1 + ROOM), self.goal.si, progress)
+        looks = DesignLooks.of(gains, self.judges, progress)
         problem = SteeredProblem(gains.cost, looks.look, gains.low, gains.high, gains.spared)
         first = looks.look(free, None)
         found = steer(problem, first)
         # What is not reached from one start may be from another: with more damping, or with less.
         for bound in (gains.high, gains.low):
-            if found.last.values[0] > -NEAR:
+            if found.last.values.min() > -NEAR:
                 break
             other = steer(problem, looks.look((free + bound) / 2, None))
-            found = max(found, other, key=lambda one: float(one.last.values[0]))
-        rate = looks.rate(found.last.values[0])
-        if found.last.values[0] <= -NEAR:
-            raise self._unreachable(found.last.x, rate)
+            found = max(found, other, key=lambda one: float(one.last.values.min()))
+        if found.last.values.min() <= -NEAR:
+            raise self._unreachable(found.last)
         progress("proof")
         result, written, x = self._proved(found, problem, name)
-        binds = rate < self.goal.si * (1 + NEAR)
-        price = float(found.prices[0]) / looks.scale if binds else None
         return CertifiedOptimum(
             result,
             written,
             gains.cost(x),
             gains.cost(free),
-            looks.rate(first.values[0]),
-            (SteeredGoal("decay_rate", self.goal.exact, self.goal.text, rate, price),),
+            self.judges[0].number(float(first.values[0])),
+            tuple(self._goals(found)),
             found.looks,
         )
+
+    def _goals(self, found: Steered) -> Iterator[SteeredGoal]:
+        """Yield the goals that steered, with what they cost."""
+        for judge, value, price in zip(self.judges, found.last.values, found.prices, strict=True):
+            if (wanted := self.wanted.get(judge.key)) is None:
+                continue
+            assert isinstance(wanted, Quantity)
+            yield SteeredGoal(
+                judge.key,
+                wanted.exact,
+                wanted.text,
+                judge.number(float(value)),
+                float(price) / wanted.si if value < NEAR else None,
+            )
 
     def _proved(
         self, found: Steered, problem: SteeredProblem, name: str | None
@@ -304,16 +250,22 @@ class _Search:
         raise DesignError(
             f"no gains of {digits} significant digits near the best ones were proved",
             remedy="raise design.significant_digits (at most 7), or relax a goal",
-            at=("goals", "decay_rate"),
+            at=("goals", next(iter(self.wanted))),
         )
 
-    def _unreachable(self, x: Array, rate: float) -> DesignError:
-        """Say how near the goal gains come."""
+    def _unreachable(self, last: Look) -> DesignError:
+        """Say which goal gains miss, and how near they come."""
+        worst = self.judges[int(np.argmin(last.values))]
+        reached = worst.number(float(last.values.min()))
+        wanted = self.wanted.get(worst.key)
+        asked = "at all" if wanted is None else f"of {getattr(wanted, 'text', wanted)}"
+        what = "decay rate" if worst.key == "decay_rate" else "bound on the force"
         return DesignError(
-            f"no gains within the bounds were found to be proved with a decay rate of "
-            f"{self.goal.text}: the nearest, {self.gains.said(x)}, reach {rate:.4g} 1/s",
+            f"no gains within the bounds were found to be proved with a {what} {asked}: the "
+            f"nearest, {self.gains.said(last.x)}, reach {reached:.4g} "
+            f"{unit(GOAL_UNITS[worst.key])}",
             remedy="relax the goal, widen the bounds, narrow the ranges, or shorten the delay",
-            at=("goals", "decay_rate"),
+            at=("goals", worst.key if wanted is not None else next(iter(self.wanted))),
         )
 
 

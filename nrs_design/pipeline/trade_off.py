@@ -21,8 +21,9 @@ from nrs_design.certificates.certificate import Verdict
 from nrs_design.design.objective import Objective
 from nrs_design.errors import DesignError
 from nrs_design.pipeline.certification import Result, run_certification
-from nrs_design.pipeline.certified_optimum import ROOM, RateLooks, check_steerable
+from nrs_design.pipeline.certified_optimum import LEAST_RATE, check_steerable
 from nrs_design.pipeline.design import Designed, placed
+from nrs_design.pipeline.design_looks import ROOM, DesignLooks, RateJudge
 from nrs_design.pipeline.free_gains import (
     Array,
     FreeGains,
@@ -62,8 +63,6 @@ BACK_OFFS = (5e-4, 2e-3, 1e-2, 5e-2)
 NO_MORE = 2e-3
 # Rates are looked for up to this one, 1/s.
 FASTEST = 1e4
-# A rate that only has to be positive is at least so much, 1/s.
-LEAST_RATE = 1e-2
 DIGITS = 4
 
 
@@ -242,7 +241,8 @@ class _Curve:
         """Look at the rate of a design: at its stiffness, or beside the rate that is asked for."""
         from nrs_design.design.steered_search import Look
 
-        looks = RateLooks.of(self.gains, self.least_rate, self.scale, self.progress)
+        judge = RateJudge("decay_rate", self.least_rate, self.scale)
+        looks = DesignLooks.of(self.gains, (judge,), self.progress)
         if self.stretches:
             return looks.look(x, expected, self._plant)
         found = looks.look(x[:-1], None if expected is None else expected + x[-1])

@@ -72,18 +72,18 @@ def search_ellipsoid(
     motions = Motions.of(family)
     raw = problem_of(family, motions, channels, output)
     T = separating_coordinates(motions)
-    size, level = _reach(raw, T)
+    size, level = reach(raw, T)
     if not (np.isfinite(T).all() and isfinite(size) and isfinite(level) and size * level > 0):
         return OUT_OF_RANGE
     whole, units = balanced(transformed(raw, T, size, level))
     exact = whole.without_roundings().distinct()
-    best, share = _best_share(exact, family.limit, allowance)
+    best, share = best_share(exact, family.limit, allowance)
     if not isfinite(best):
         return NO_MARGIN
     names = tuple(channel.name for channel in channels)
     for own in [whole.distinct(), exact] if system.roundings else [exact]:
         for slack in SLACKS:
-            found = _solve(own, share, allowance, best * slack**2)
+            found = least_level(own, share, allowance, best * slack**2)
             if found is None:
                 continue
             empty = InvariantEllipsoid(
@@ -112,8 +112,16 @@ def _short(number: float) -> Fraction:
     return Fraction(f"{number:.6e}")
 
 
-def _reach(problem: DisturbedProblem, T: Array) -> tuple[float, float]:
-    """Return how far state and output go under one mode alone, in coordinates ``x = T z``."""
+def reach(problem: DisturbedProblem, T: Array) -> tuple[float, float]:
+    """Return how far state and output go under one mode alone, in coordinates ``x = T z``.
+
+    Parameters
+    ----------
+    problem : DisturbedProblem
+        In the coordinates of a family.
+    T : ndarray, shape (n, n)
+        Invertible.
+    """
     n = problem.order
     inverse = np.linalg.inv(T)
     size = level = 0.0
@@ -135,14 +143,29 @@ def _reach(problem: DisturbedProblem, T: Array) -> tuple[float, float]:
     return size, level
 
 
-def _best_share(own: DisturbedProblem, limit: float, allowance: Allowance) -> tuple[float, float]:
-    """Return the least square of the level, relative to the scale, and its share."""
+def best_share(own: DisturbedProblem, limit: float, allowance: Allowance) -> tuple[float, float]:
+    """Return the least square of the level, relative to the scale, and its share.
+
+    Parameters
+    ----------
+    own : DisturbedProblem
+        In coordinates of like size, with outputs over a scale.
+    limit : float
+        The rate that no form can beat.
+    allowance : Allowance
+        Work and memory.
+
+    Raises
+    ------
+    NotAffordableError
+        If work or memory do not suffice.
+    """
     top = 2 * limit if own.time is Time.CONTINUOUS else 1 - limit**2
     tried: dict[float, float] = {}
 
     def attempt(share: float) -> float:
         if share not in tried:
-            found = _solve(own, share, allowance)
+            found = least_level(own, share, allowance)
             tried[share] = np.inf if found is None else found.last
         return tried[share]
 
@@ -159,10 +182,27 @@ def _best_share(own: DisturbedProblem, limit: float, allowance: Allowance) -> tu
     return tried[best], best
 
 
-def _solve(
+def least_level(
     own: DisturbedProblem, share: float, allowance: Allowance, level: float | None = None
 ) -> DisturbedSolution | None:
-    """Minimize the square of the level; or, for a given one, leave as much to spare as possible."""
+    """Minimize the square of the level; or, for a given one, leave as much to spare as possible.
+
+    Parameters
+    ----------
+    own : DisturbedProblem
+        In coordinates of like size, with outputs over a scale.
+    share : float
+        Of all disturbances together.
+    allowance : Allowance
+        Work and memory.
+    level : float, optional
+        The square of the level that is given.
+
+    Raises
+    ------
+    NotAffordableError
+        If work or memory do not suffice.
+    """
     n, lost, c, basis = own.order, own.multipliers, own.disturbances, symmetric_basis(own.order)
     k, unknowns = len(basis), len(basis) + lost + c + own.errors + 1
     blocks: list[tuple[Array, Array]] = []

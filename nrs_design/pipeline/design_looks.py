@@ -1,0 +1,209 @@
+"""What a proof would show of a design, in floating point, and how that changes with the gains."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from math import log, sqrt
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from nrs_design.errors import DesignError
+from nrs_design.pipeline.certification import search_limits
+from nrs_design.pipeline.free_gains import Array, FreeGains
+from nrs_design.progress import Progress
+from nrs_design.work import Allowance, Fuse, NotAffordableError
+
+if TYPE_CHECKING:
+    from nrs_design.design.steered_search import Look
+    from nrs_design.models.plant import Plant
+    from nrs_design.proof.system import SwitchedSystem
+
+# How far a coordinate moves for a slope.
+STEP = 1e-3
+# Of a rate that is asked for, so much more is sought, and of a bound less: roundings take a little.
+ROOM, ROOM_OF_BOUNDS = 5e-4, 4e-3
+
+
+@dataclass(frozen=True)
+class Judged:
+    """One number of a design, held against what is wanted."""
+
+    value: float  # Not negative where it is met; one is what is wanted
+    change: Callable[[SwitchedSystem], float]  # By how much it is larger for a system nearby
+    said: str  # The number, for people
+
+
+@dataclass
+class AbstractJudge(ABC):
+    """Finds one number of a design."""
+
+    key: str  # Of the goal
+
+    @abstractmethod
+    def judge(
+        self, system: SwitchedSystem, expected: float | None, allowance: Allowance
+    ) -> Judged | None:
+        """Return the number; None if floating point finds none.
+
+        Parameters
+        ----------
+        system : SwitchedSystem
+            Of the design.
+        expected : float or None
+            About what the value is.
+        allowance : Allowance
+            Work and memory.
+
+        Raises
+        ------
+        NotAffordableError
+            If work or memory do not suffice.
+        """
+
+    @abstractmethod
+    def number(self, value: float) -> float:
+        """Return the number that a value stands for, in SI units."""
+
+
+@dataclass
+class RateJudge(AbstractJudge):
+    """The best decay rate of one form for all modes."""
+
+    wanted: float  # 1/s, with its room
+    scale: float  # What a value of one is, 1/s
+
+    def judge(
+        self, system: SwitchedSystem, expected: float | None, allowance: Allowance
+    ) -> Judged | None:
+        """Bracket the rate, from about what is expected."""
+        from nrs_design.search.rate_slope import rate_slope
+
+        guess = None if expected is None else self.number(expected)
+        found = rate_slope(system, guess, allowance)
+        if found is None:
+            return None
+        return Judged(
+            (found.rate - self.wanted) / self.scale,
+            lambda system: found.change(system) / self.scale,
+            f"decay rate {found.rate:.4g} 1/s",
+        )
+
+    def number(self, value: float) -> float:
+        """Return the rate in 1/s."""
+        return value * self.scale + self.wanted
+
+
+@dataclass
+class ForceJudge(AbstractJudge):
+    """The least bound on the force under all disturbances."""
+
+    wanted: float  # N m, with its room
+    share: float | None = field(default=None, init=False)  # That was the best last time
+
+    def judge(
+        self, system: SwitchedSystem, expected: float | None, allowance: Allowance
+    ) -> Judged | None:
+        """Solve for a few shares, near the one that was the best."""
+        from nrs_design.search.force_slope import force_slope
+
+        output = next(output for output in system.outputs if output.name == "force")
+        found = force_slope(system, output, allowance, self.share)
+        if found is None:
+            return None
+        self.share = found.share
+        level = found.level * sqrt(system.axes or 1)
+        return Judged(
+            log(self.wanted / level),
+            lambda system: -found.change(system),
+            f"force up to {level:.4g}",
+        )
+
+    def number(self, value: float) -> float:
+        """Return the bound in N m."""
+        return self.wanted * float(np.exp(-value))
+
+
+@dataclass(frozen=True)
+class DesignLooks:
+    """Looks at designs, by several judges."""
+
+    gains: FreeGains
+    judges: tuple[AbstractJudge, ...]
+    progress: Progress
+    allowance: Allowance
+
+    @classmethod
+    def of(
+        cls, gains: FreeGains, judges: tuple[AbstractJudge, ...], progress: Progress
+    ) -> DesignLooks:
+        """Take work and memory from the spec.
+
+        Parameters
+        ----------
+        gains, judges, progress
+            As for the class.
+        """
+        limits = search_limits(gains.designed.spec)
+        allowance = Allowance(limits.budget, limits.memory, Fuse.of(limits.budget))
+        return cls(gains, judges, progress, allowance)
+
+    def look(
+        self,
+        x: Array,
+        expected: Array | None,
+        plant: Callable[[Array], Plant | None] = lambda x: None,
+    ) -> Look:
+        """Judge a design, and let slopes be asked for.
+
+        Parameters
+        ----------
+        x : ndarray
+            The point; what is behind the gains is for the plant.
+        expected : ndarray or None
+            About what comes of it.
+        plant : callable
+            Gives the plant at a point, if it is not that of the spec.
+
+        Raises
+        ------
+        DesignError
+            If work or memory do not suffice.
+        """
+        from nrs_design.design.steered_search import Look
+
+        gains, n = self.gains, len(self.gains.places)
+
+        def system(x: Array) -> SwitchedSystem:
+            return gains.system(x[:n], plant(x))
+
+        here = system(x)
+        found = [
+            self._judged(judge, here, None if expected is None else float(expected[k]))
+            for k, judge in enumerate(self.judges)
+        ]
+        said = ", ".join(one.said for one in found)
+        self.progress(f"{said} at cost {gains.cost(x[:n]):.5g}")
+
+        def slopes() -> Array:
+            moved = []
+            for i in range(len(x)):
+                step = -STEP if i < n and x[i] + STEP > gains.high[i] else STEP
+                there = system(x + step * np.eye(len(x))[i])
+                moved.append([one.change(there) / step for one in found])
+            return np.array(moved).T
+
+        return Look(x, np.array([one.value for one in found]), slopes)
+
+    def _judged(
+        self, judge: AbstractJudge, system: SwitchedSystem, expected: float | None
+    ) -> Judged:
+        try:
+            found = judge.judge(system, expected, self.allowance)
+        except NotAffordableError as error:
+            raise DesignError(
+                f"no gains were found: {error}", remedy="allow more with certification.budget"
+            ) from error
+        return found or Judged(-1.0, lambda system: 0.0, f"no {judge.key}")

@@ -1,0 +1,130 @@
+"""The least bound on an output under disturbances, and how it changes with the modes (untrusted).
+
+For a fixed share of the disturbances the bound is the value of one semidefinite program; at the
+best share its slope is that at the fixed one (envelope theorem). It is taken by a small change of
+the modes, with the program solved again.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import isfinite, log, sqrt
+
+import numpy as np
+from numpy.linalg import LinAlgError
+from numpy.typing import NDArray
+
+from nrs_design.proof.channels import Output
+from nrs_design.proof.mode import Time
+from nrs_design.proof.system import SwitchedSystem
+from nrs_design.search.disturbed import DisturbedProblem, balanced, problem_of, transformed
+from nrs_design.search.family import Family, floats_in_silence
+from nrs_design.search.invariant_ellipsoid import best_share, least_level, reach
+from nrs_design.search.motions import Motions, separating_coordinates
+from nrs_design.work import Allowance
+
+# Shares beside one that was the best nearby.
+BESIDE = (0.6, 1.0, 1.6)
+
+
+@dataclass(frozen=True)
+class _Frame:
+    """Coordinates and scales, which stay for small changes."""
+
+    T: NDArray[np.float64]
+    size: float
+    level: float
+
+
+@dataclass(frozen=True)
+class ForceSlope:
+    """The least bound that is found, and how it changes with small changes of the modes."""
+
+    level: float  # SI units of the output
+    share: float  # Of the disturbances; a guess for systems nearby
+    _output: Output
+    _frame: _Frame
+    _allowance: Allowance
+
+    def change(self, system: SwitchedSystem) -> float:
+        """Return by how much the logarithm of the bound of a system nearby is larger.
+
+        Parameters
+        ----------
+        system : SwitchedSystem
+            Of the same shape.
+
+        Raises
+        ------
+        NotAffordableError
+            If work or memory do not suffice.
+        """
+        with floats_in_silence():
+            own, _ = _problem(system, self._output, self._frame)
+            found = least_level(own, self.share, self._allowance)
+        if found is None:
+            return 0.0
+        return log(self._frame.level * sqrt(found.last) / self.level)
+
+
+def force_slope(
+    system: SwitchedSystem, output: Output, allowance: Allowance, share: float | None = None
+) -> ForceSlope | None:
+    """Find the least bound on an output under all disturbances at once, but for roundings.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        With disturbances.
+    output : Output
+        What they move.
+    allowance : Allowance
+        Work and memory.
+    share : float, optional
+        That was the best of a system nearby.
+
+    Returns
+    -------
+    ForceSlope or None
+        None if no bound is found in floating point.
+
+    Raises
+    ------
+    NotAffordableError
+        If work or memory do not suffice.
+    """
+    with floats_in_silence():
+        try:
+            family = Family.of(system)
+            motions = Motions.of(family)
+            T = separating_coordinates(motions)
+            size, level = reach(problem_of(family, motions, system.channels, output), T)
+        except LinAlgError:  # A mode that grows has no norm.
+            return None
+        if not (np.isfinite(T).all() and isfinite(size) and isfinite(level) and size * level > 0):
+            return None
+        frame = _Frame(T, size, level)
+        own, limit = _problem(system, output, frame)
+        top = 2 * limit if own.time is Time.CONTINUOUS else 1 - limit**2
+        tried = {}
+        for near in (share * factor for factor in BESIDE if share is not None):
+            if near < top and (found := least_level(own, near, allowance)) is not None:
+                tried[near] = found.last
+        if tried:
+            best = min(tried, key=lambda one: tried[one])
+            least = tried[best]
+        else:
+            least, best = best_share(own, limit, allowance)
+    if not isfinite(least):
+        return None
+    return ForceSlope(level * sqrt(least), best, output, frame, allowance)
+
+
+def _problem(
+    system: SwitchedSystem, output: Output, frame: _Frame
+) -> tuple[DisturbedProblem, float]:
+    """Return the conditions in a frame, without what is rounded, and the rate limit."""
+    family = Family.of(system)
+    raw = problem_of(family, Motions.of(family), system.channels, output)
+    whole, _ = balanced(transformed(raw, frame.T, frame.size, frame.level))
+    return whole.without_roundings().distinct(), family.limit

@@ -128,33 +128,49 @@ class CertifiedGains:
 
 def _name_for(loaded: LoadedSpec, out: Path) -> str:
     """Return the name of the new spec; refuse a place that it cannot be at."""
+    from nrs_design.errors import SpecError
+    from nrs_design.gating.recorded import hash_followed
     from nrs_design.output import check_place
+    from nrs_design.ownership import check_certificate
+    from nrs_design.spec.edits import changed
+    from nrs_design.spec.load import respecified
 
+    name = out.name.removesuffix(ENDING)
     if not out.name.endswith(ENDING):
         raise OutputError("is not the name of a spec", path=out, remedy=f"end it in {ENDING}")
     check_place(out)
     if out.exists():
         raise OutputError("exists, and is not replaced", path=out, remedy="name a new file")
+    try:
+        respecified(loaded, changed(loaded.root, ("name",), name))
+    except SpecError as error:
+        remedy = error.faults[0].remedy
+        raise OutputError(error.faults[0].message, path=out, remedy=remedy) from error
+    check_certificate(out, _certificate_of(name))
     beside = out.parent.resolve() == loaded.path.parent.resolve()
-    if not beside and (loaded.robot is not None or loaded.arm is not None):
+    named = loaded.robot is not None or loaded.arm is not None or hash_followed(loaded)
+    if named and not beside:
         raise OutputError(
             "the spec names files beside itself",
             path=out,
             remedy=f"write into {loaded.path.parent}, too",
         )
-    return out.name.removesuffix(ENDING)
+    return name
+
+
+def _certificate_of(name: str) -> Path:
+    return Path("reports") / f"{name}.cert.json"
 
 
 def _write(found: CertifiedOptimum, out: Path) -> Path:
     """Write spec and certificate, both or none."""
     from nrs_design.certificates.certificate import dump
     from nrs_design.output import CERTIFICATE, write_outputs
-    from nrs_design.ownership import check_certificate, origin_of
+    from nrs_design.ownership import origin_of
 
     result = found.result
     assert result.certificate is not None, "as its goals are met"
-    path = Path("reports") / f"{result.loaded.spec.name}.cert.json"
-    check_certificate(out, path)
+    path = _certificate_of(result.loaded.spec.name)
     content = dump(result.certificate, origin_of(out, path))
     write_outputs([(out, result.loaded.text, b""), (path, content, CERTIFICATE)])
     note(f"spec written to {out}, certificate to {path}")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -16,6 +17,7 @@ from nrs_design.cli.printing import note, progress, say
 from nrs_design.cli.reading import take_spec
 
 if TYPE_CHECKING:
+    from nrs_design.output import Output
     from nrs_design.spec import LoadedSpec
     from nrs_design.sweeps.tile_map import TileMap
 
@@ -52,36 +54,44 @@ def map(
 
     Nothing is interpolated: a proof is for all values of its tiles at once, however fast they
     change, and a refutation has a witness. Of a field that takes a range, tiles are intervals; of
-    one that is a range, such as sampling.delay: [0, 1], its upper end takes each value; any other
-    takes each value by itself. The exit code is 0 if all tiles are proved, 1 if one is refuted.
+    sampling.delay: [0, 1], the upper end takes each value; any other takes each value by itself.
+    Gains are those of the spec in all tiles. The exit code is 0 if all tiles are proved, 1 if one
+    is refuted.
 
     Example: nrs-design map specs/neuroboscope/soft-tissue-sampled.nrs.yaml
     --over 'environments.soft.stiffness=100..1700/8 N/m' --over sampling.delay=0..3
     """
     from nrs_design.cli.exit_codes import OF_VERDICT, worst
-    from nrs_design.output import MAP, PNG, check_place, write_output
+    from nrs_design.output import MAP, PNG, check_place, write_outputs
     from nrs_design.pipeline import run_design
+    from nrs_design.pipeline.free_gains import gains_given
     from nrs_design.sweeps.tile_map import run_tile_map
     from nrs_design.sweeps.tiles import read_tiles
 
     for path, kind in ((figure, PNG), (table, MAP)):
         if path is not None:
             check_place(path, kind)
+    if certificates is not None:
+        check_place(certificates / "x")
     loaded = take_spec(spec)
-    grid = read_tiles(loaded, spec, over)
+    designed = run_design(loaded)
+    grid = read_tiles(loaded if designed is None else gains_given(designed), spec, over)
     with progress(f"map of {loaded.spec.name}") as step:
-        found = run_tile_map(grid, run_design(loaded), step)
+        found = run_tile_map(grid, designed, step)
+    outputs: list[Output] = []
     if figure is not None:
         from nrs_design.reporting.images import to_png
         from nrs_design.sweeps.tile_figure import draw_tile_map
 
-        write_output(figure, to_png(draw_tile_map(found)), replaces=PNG)
-        note(f"figure written to {figure}")
+        outputs.append((figure, to_png(draw_tile_map(found)), PNG))
     if table is not None:
-        write_output(table, _table(found), replaces=MAP)
-        note(f"table written to {table}")
+        outputs.append((table, _table(found), MAP))
     if certificates is not None:
-        _write_certificates(found, certificates)
+        outputs += _certificates(found, certificates)
+    write_outputs(outputs)
+    for path in (figure, table, certificates):
+        if path is not None:
+            note(f"written: {path}")
     codes = {OF_VERDICT[str(tile.verdict)] for tile in found.tiles.values()}
     return Answer(partial(_facts, loaded, found), partial(_print, loaded, found), worst(codes))
 
@@ -98,7 +108,6 @@ def _facts(loaded: LoadedSpec, found: TileMap) -> dict[str, Any]:
             }
             for field in found.grid.fields
         ],
-        "keeps_gains": found.grid.keeps_gains,
         "tiles": [
             {
                 "at": [field.text(k) for field, k in zip(found.grid.fields, place, strict=True)],
@@ -140,8 +149,6 @@ def _print(loaded: LoadedSpec, found: TileMap) -> None:
     where = next((tile.refuted_in for tile in found.tiles.values() if tile.refuted_in), None)
     if where is not None:
         say(f"  x: refuted {where}, for some of them; where contact may be lost, these are open")
-    if not found.grid.keeps_gains:
-        say("Gains are designed anew in every tile.")
 
 
 def _draw(found: TileMap) -> None:
@@ -167,16 +174,29 @@ def _table(found: TileMap) -> str:
     return written.getvalue()
 
 
-def _write_certificates(found: TileMap, folder: Path) -> None:
-    """Write every certificate, and the spec that it is about, all or none."""
-    from nrs_design.certificates.certificate import dump
-    from nrs_design.output import CERTIFICATE, Output, write_outputs
+def _certificates(found: TileMap, folder: Path) -> Iterator[Output]:
+    """Yield every certificate, and the spec that it is about, with the gains that it is about.
 
-    files: list[Output] = []
+    Raises
+    ------
+    DesignError
+        If the spec of a box, by itself, would have other gains.
+    """
+    from nrs_design.certificates.certificate import dump
+    from nrs_design.errors import DesignError
+    from nrs_design.output import CERTIFICATE
+    from nrs_design.pipeline import run_design
+    from nrs_design.pipeline.certification import gains_text
+
     for certificate, box in zip(found.certificates, found.boxes, strict=True):
+        text, own = found.grid.text_of(box), run_design(found.grid.spec_of(box))
+        if gains_text(own) != {name: dict(gains) for name, gains in certificate.gains.items()}:
+            raise DesignError(
+                "gains of this spec follow from what the map changes, so no spec has the gains of "
+                "its certificates",
+                path=found.grid.loaded.path,
+                remedy="give these gains in the spec, or leave --certificates out",
+            )
         name = certificate.id[:SHORT]
-        content = dump(certificate, f"{name}.nrs.yaml")
-        files.append((folder / f"{name}.cert.json", content, CERTIFICATE))
-        files.append((folder / f"{name}.nrs.yaml", found.grid.text_of(box), b""))
-    write_outputs(files)
-    note(f"{len(found.certificates)} certificates written to {folder}, each with its spec")
+        yield folder / f"{name}.cert.json", dump(certificate, f"{name}.nrs.yaml"), CERTIFICATE
+        yield folder / f"{name}.nrs.yaml", text, b""

@@ -82,7 +82,7 @@ def answer_point(job: Job, index: int) -> Tile:
             axes = read_axes(job.spec)
             key = _key(job, axes)
             kept = job.store.read(key)
-            if kept is not None and is_shown(kept.result, _shown(job.store.certificate(key), axes)):
+            if kept is not None and _holds(kept, _shown(job.store.certificate(key), axes)):
                 return Tile(texts, kept.code, key, kept.id(key), reused=True)
             job.store.drop(key)
             kept = _computed(job, key)
@@ -95,6 +95,12 @@ def answer_point(job: Job, index: int) -> Tile:
         except Exception as error:
             # One point must not keep the others from being computed, whatever goes wrong with it.
             return Tile(texts, exit_codes.INTERNAL, error=_defect(error))
+
+
+def _holds(kept: Kept, shown: Mapping[str, Any]) -> bool:
+    """Tell whether answer and exit code say no more than what was shown just now."""
+    code = exit_codes.OF_VERDICT.get(str(shown.get("verdict")), kept.code)
+    return kept.code == code and is_shown(kept.result, shown)
 
 
 def _defect(error: Exception) -> dict[str, Any]:

@@ -26,8 +26,8 @@ CHEAPER = 2e-5
 MOST_LOOKS = 16
 # Slopes that were wrong by more than this share are found again.
 WRONG = 0.012
-# How far a constraint is moved for its price.
-MOVED = 0.01
+# How far a constraint is moved for its price; one that is met by more than the slack has none.
+MOVED, SLACK = 0.01, 0.05
 
 
 @dataclass(frozen=True, eq=False)
@@ -145,14 +145,20 @@ def _cheapest(problem: SteeredProblem, here: Look, slopes: Array, region: float)
 
 
 def _prices(problem: SteeredProblem, here: Look, slopes: Array) -> Iterator[float]:
-    """Yield what each constraint costs near a point, in first order."""
+    """Yield what each constraint costs near a point, in first order; nothing for one far from it.
+
+    A search ends a little inside of what binds.
+    """
 
     def cost(values: Array) -> float:
         moved = Look(here.x, values, here.slopes)
         there = _cheapest(problem, moved, slopes, REGION)
         return problem.cost(there)
 
-    least = cost(here.values)
-    for i in range(len(here.values)):
-        harder = here.values - MOVED * np.eye(len(here.values))[i]
-        yield max(cost(harder) - least, 0.0) / MOVED
+    for i, value in enumerate(here.values):
+        if value > SLACK:
+            yield 0.0
+            continue
+        met, harder = here.values.copy(), here.values.copy()
+        met[i], harder[i] = 0.0, -MOVED
+        yield max(cost(harder) - cost(met), 0.0) / MOVED

@@ -57,8 +57,10 @@ GOAL_UNITS = {"decay_rate": "1/s", "peak_torque": "N*m"}
 LEAST_RATE = 1e-2
 # Roundings that are proved at most.
 MOST_ROUNDINGS = 4
-# A goal with less than this share to spare binds.
+# A goal that is missed by no more than this share may be met by rounding.
 NEAR = 5e-3
+# What costs less does not bind.
+LEAST_PRICE = 1e-4
 
 
 @dataclass(frozen=True, slots=True)
@@ -202,10 +204,11 @@ class _Search:
                 break
             other = steer(problem, looks.look((free + bound) / 2, None))
             found = max(found, other, key=lambda one: float(one.last.values.min()))
-        if found.last.values.min() <= -NEAR:
-            raise self._unreachable(found.last)
         progress("proof")
-        result, written, x = self._proved(found, problem, name)
+        if found.last.values.min() <= -NEAR:
+            result, written, x = self._otherwise(free, found.last, name)
+        else:
+            result, written, x = self._proved(found, problem, name)
         return CertifiedOptimum(
             result,
             written,
@@ -227,7 +230,7 @@ class _Search:
                 wanted.exact,
                 wanted.text,
                 judge.number(float(value)),
-                float(price) / wanted.si if value < NEAR else None,
+                float(price) / wanted.si if price > LEAST_PRICE else None,
             )
 
     def _proved(
@@ -253,6 +256,20 @@ class _Search:
             at=("goals", next(iter(self.wanted))),
         )
 
+    def _otherwise(
+        self, free: Array, last: Look, name: str | None
+    ) -> tuple[Result, Written, Array]:
+        """Return the optimum of the cost alone if other functions prove its goals."""
+        from nrs_design.certificates.goals import certified_goals
+
+        near = [((float(np.abs(x - free).sum()),), x, w) for x, w in self.gains.roundings(free)]
+        x, written = in_order(near)[0]
+        result = run_certification(self.gains.respecified(written, partial(_named, name)))
+        goals = certified_goals(result.loaded.spec, result.certificate)
+        if not all(goal.met for goal in goals if goal.key in STEERING):
+            raise self._unreachable(last)
+        return result, written, x
+
     def _unreachable(self, last: Look) -> DesignError:
         """Say which goal gains miss, and how near they come."""
         worst = self.judges[int(np.argmin(last.values))]
@@ -260,11 +277,14 @@ class _Search:
         wanted = self.wanted.get(worst.key)
         asked = "at all" if wanted is None else f"of {getattr(wanted, 'text', wanted)}"
         what = "decay rate" if worst.key == "decay_rate" else "bound on the force"
+        reach = f"reach {reached:.4g} {unit(GOAL_UNITS[worst.key])}"
+        if worst.key == "decay_rate" and reached <= 0:
+            reach = "reach none"
         return DesignError(
-            f"no gains within the bounds were found to be proved with a {what} {asked}: the "
-            f"nearest, {self.gains.said(last.x)}, reach {reached:.4g} "
-            f"{unit(GOAL_UNITS[worst.key])}",
-            remedy="relax the goal, widen the bounds, narrow the ranges, or shorten the delay",
+            f"no gains within the bounds were found that one quadratic function for all modes "
+            f"proves with a {what} {asked}: the nearest, {self.gains.said(last.x)}, {reach}",
+            remedy="relax the goal, widen the bounds, narrow the ranges, or shorten the delay; or "
+            "give the gains, and let certify-switching try other functions",
             at=("goals", worst.key if wanted is not None else next(iter(self.wanted))),
         )
 

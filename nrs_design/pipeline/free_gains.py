@@ -244,6 +244,29 @@ def gain_branches(designed: Designed, analysis: DesignAnalysis) -> Iterator[Free
         yield FreeGains(designed, items, above)
 
 
+def gains_given(designed: Designed) -> LoadedSpec:
+    """Return the spec with all gains that it leaves free given as they ship, and its text.
+
+    Raises
+    ------
+    SpecError
+        If a comment would be lost.
+    """
+    loaded, document = designed.loaded, SpecDocument(designed.loaded)
+    laws, units = designed.design.laws, designed.design.units
+    for controller, given in designed.spec.controllers.items():
+        for name, gain in given.gains().items():
+            if gain.fixed:
+                continue
+            # The shortest decimal that single precision holds as this very number.
+            value = f"{np.float32(float(laws[controller].gains[name]))} {units[controller][name]}"
+            ends = None if gain.range is None else [end.text for end in gain.range]
+            said = value if ends is None else {"nominal": value, "range": ends}
+            document.put(document.root["controllers"][controller], name, said)
+    text = document.text()
+    return replace(respecified(loaded, parse_document(text, loaded.path)), text=text)
+
+
 def has_free_gains(analysis: DesignAnalysis) -> bool:
     """Tell whether an impedance controller has a gain to choose."""
     return any(free_names(item) for item in analysis.impedance)

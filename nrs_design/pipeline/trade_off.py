@@ -61,6 +61,8 @@ BEYOND = 0.2
 BACK_OFFS = (5e-4, 2e-3, 1e-2, 5e-2)
 # Roundings may cost this share more than is allowed.
 NO_MORE = 2e-3
+# Logarithm of the least factor between the ends of a stiffness.
+LEAST_WIDTH = 1e-3
 # Rates are looked for up to this one, 1/s.
 FASTEST = 1e4
 DIGITS = 4
@@ -205,7 +207,7 @@ class _Curve:
         """Return the free optimum, as far as something is proved of it, and all points."""
         free = self.gains.optimum()
         least = self.gains.cost(free)
-        x = np.append(free, 0.0)
+        x = np.append(free, max(0.0, log(self.softest) + LEAST_WIDTH) if self.stretches else 0.0)
         found = [self._proved(x, None, least, least)]
         for share in sorted(shares):
             budget = least * (1 + float(share))
@@ -226,7 +228,8 @@ class _Curve:
 
         least_y, most_y = -FASTEST / self.scale, FASTEST / self.scale
         if self.stretches:
-            least_y, most_y = log(self.softest), log(WIDEST)
+            # A range keeps its two ends, as modes are one for each.
+            least_y, most_y = log(self.softest) + LEAST_WIDTH, log(WIDEST)
         low, high = (start[:n], start[:n]) if fixed else (gains.low, gains.high)
         problem = SteeredProblem(
             lambda x: -float(x[n]),
@@ -250,7 +253,7 @@ class _Curve:
 
     def _plant(self, x: Array) -> Plant:
         """Return the plant with the upper ends of stiffness at a point."""
-        factor = max(Fraction(exp(float(x[-1]))), self.softest)
+        factor = Fraction(exp(max(float(x[-1]), log(self.softest) + LEAST_WIDTH)))
         return as_stiff(self.gains.designed.plant, self.contacts, factor)
 
     def _proved(

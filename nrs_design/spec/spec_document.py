@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import io
+import re
 from collections.abc import Iterable, Sequence
 from typing import Any
 
 from nrs_design.errors import SpecError
 from nrs_design.spec.load import LoadedSpec, parse_spec
 
+_COMMENT = re.compile(r"(?m)(?<!\S)#.*$")
 # A longer text is a sentence, and no quantity.
 _SENTENCE = 40
 
@@ -87,7 +89,8 @@ class SpecDocument:
         self._yaml.dump(self.root, stream)
         text = stream.getvalue()
         if "\r\n" in self._loaded.text:
-            text = text.replace("\n", "\r\n")
+            # Comments have kept theirs.
+            text = text.replace("\r\n", "\n").replace("\n", "\r\n")
         lost = [line for line in _comments(self._loaded.text) if line not in set(_comments(text))]
         if lost:
             raise SpecError(
@@ -116,5 +119,5 @@ def _flow(value: object) -> object:
 
 
 def _comments(text: str) -> Sequence[str]:
-    lines: Iterable[str] = (line.strip() for line in text.splitlines())
-    return [line for line in lines if line.startswith("#")]
+    """Return every comment, also behind a value; what looks like one in a text is kept as well."""
+    return [found.group().strip() for found in _COMMENT.finditer(text)]

@@ -35,8 +35,23 @@ def _says(value: object) -> bool:
     return is_number or bool(value)
 
 
+# What an answer with a certificate may hold beside what that shows: how it was found.
+BESIDE = frozenset(
+    {
+        "schema",
+        "spec",
+        "spec_sha256",
+        "method",
+        "attempts",
+        "decay_rate_limit",
+        "decay_rate_unit",
+        "relief",
+    }
+)
+
+
 def is_shown(result: Mapping[str, Any], shown: Mapping[str, Any]) -> bool:
-    """Tell whether a kept answer claims nothing beyond what was shown just now.
+    """Tell whether a kept answer says nothing beyond what was shown just now.
 
     Parameters
     ----------
@@ -44,8 +59,9 @@ def is_shown(result: Mapping[str, Any], shown: Mapping[str, Any]) -> bool:
         The answer, as it was kept.
     shown : mapping
         What a certificate shows that was checked again, under the names of the answer; empty
-        without one.
+        without one, and then nothing may be claimed.
     """
     same = all(name in result and result[name] == value for name, value in shown.items())
     rest = {name: value for name, value in result.items() if name not in shown}
-    return same and not any(claims_in(rest))
+    known = not shown or rest.keys() <= BESIDE
+    return same and known and not any(claims_in(rest))

@@ -59,7 +59,7 @@ def run_tile_map(grid: TileGrid, designed: Designed | None, progress: Progress =
     progress : callable
         Told how many tiles are decided.
     """
-    painter = _Painter(grid, designed if grid.keeps_gains else None, progress)
+    painter = _Painter(grid, designed, progress)
     painter.paint()
     whole = tuple((0, count - 1) for count in grid.shape)
     tiles = {place: painter.tiles[place] for place in _places(whole)}

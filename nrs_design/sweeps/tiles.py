@@ -1,8 +1,9 @@
 """Tiles: what a spec says in each of them, and in boxes of many.
 
-A field that takes a range is cut into intervals: a tile is about all values of its interval. Of a
-field that is a range itself, such as ``sampling.delay: [0, 1]``, the upper end takes each value: a
-tile is about all that lies below. Any other field takes each value by itself.
+A field that takes a range is cut into intervals: a tile is about all values of its interval. Of
+``sampling.delay: [0, 1]``, the upper end takes each value: a tile is about all ages up to it. Any
+other field takes each value by itself. Gains stay what they are: they are given in the spec of
+every box.
 """
 
 from __future__ import annotations
@@ -11,22 +12,34 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import StrEnum
+from itertools import pairwise
 from pathlib import Path
 
 from nrs_design.errors import SpecError
 from nrs_design.proof.text import exact_text
 from nrs_design.spec import LoadedSpec, parse_exact
-from nrs_design.spec.document import Data, Mapping, Node, Sequence, parse_document, to_data
+from nrs_design.spec.document import (
+    Data,
+    Mapping,
+    Node,
+    Scalar,
+    Sequence,
+    parse_document,
+    to_data,
+)
 from nrs_design.spec.edits import changed, node_at
 from nrs_design.spec.load import respecified
 from nrs_design.spec.spec_document import SpecDocument
+from nrs_design.spec.task_space import file_of
 from nrs_design.sweeps.grid import Field, read_grid
 from nrs_design.sweeps.values import Spaced
 
 # More tiles than that are no map that anybody reads.
 MOST_TILES = 65_536
-# Parts of a spec by which gains are designed: where one of them changes, so do gains.
+# Parts of a spec by which gains are designed.
 OF_THE_DESIGN = frozenset({"controllers", "motion_loop", "limits", "design", "goals"})
+# The list of two that is a range of which only the upper end changes.
+DELAY = ("sampling", "delay")
 
 Span = tuple[int, int]  # First and last place along a field
 Box = tuple[Span, ...]  # One for each field
@@ -104,11 +117,6 @@ class TileGrid:
         """How many tiles there are along each field."""
         return tuple(field.count for field in self.fields)
 
-    @property
-    def keeps_gains(self) -> bool:
-        """Whether the gains of the spec stay the same in all tiles."""
-        return not any(field.field.at[0] in OF_THE_DESIGN for field in self.fields)
-
     def spec_of(self, box: Box) -> LoadedSpec:
         """Return what the spec says of all tiles of a box at once.
 
@@ -164,7 +172,7 @@ def read_tiles(loaded: LoadedSpec, path: Path, said: list[str]) -> TileGrid:
     Parameters
     ----------
     loaded : LoadedSpec
-        The spec.
+        The spec, with all gains given.
     path : Path
         Its address.
     said : list of str
@@ -173,8 +181,13 @@ def read_tiles(loaded: LoadedSpec, path: Path, said: list[str]) -> TileGrid:
     Raises
     ------
     SpecError
-        If a path is not there, values are none or do not fit, or the tiles are too many.
+        If a path is not there, values are none or do not fit, gains would change, or the tiles are
+        too many.
     """
+    if file_of(path) != path:
+        raise SpecError(
+            "a map is of a spec with one axis", path=path, remedy="copy the axis into its own file"
+        )
     grid = read_grid(path, said)
     fields = tuple(_cut(loaded, field) for field in grid.fields)
     count = math.prod(field.count for field in fields)
@@ -189,18 +202,28 @@ def read_tiles(loaded: LoadedSpec, path: Path, said: list[str]) -> TileGrid:
 
 def _cut(loaded: LoadedSpec, field: Field) -> TileField:
     there = node_at(loaded.root, field.at)
-    numbers = [text.partition(" ")[0] for text in _texts(field)]
-    try:
-        values = tuple(float(parse_exact(number)) for number in numbers)
-    except (SpecError, ValueError):
-        return TileField(field, TileCut.POINT, "", tuple(map(float, range(len(numbers)))))
-    if isinstance(there, Sequence) and len(there.items) == 2:
+    if field.at[0] in OF_THE_DESIGN:
+        raise SpecError(
+            f"{field.path} is about gains, which stay the same in all tiles",
+            path=loaded.path,
+            remedy="use sweep, which designs them anew at every point",
+        )
+    values = _numbers(field)
+    if field.at == DELAY and isinstance(there, Sequence):
+        _check_ascending(field, values)
         return TileField(field, TileCut.UP_TO, field.unit, values)
-    finer = _with_borders(field)
-    bordered = TileField(finer, TileCut.INTERVAL, field.unit, _numbers(finer))
-    if len(bordered.values) > 1 and _takes_ranges(loaded, bordered, there):
-        return bordered
-    return TileField(field, TileCut.POINT, field.unit, values)
+    if isinstance(there, Sequence) or "range" in field.at:
+        raise SpecError(
+            f"{field.path} is a list",
+            path=loaded.path,
+            remedy="name the quantity, such as environments.soft.stiffness, or an item of a list",
+        )
+    if values and _takes_ranges(loaded, field, there):
+        _check_ascending(field, values)
+        finer = _with_borders(field)
+        return TileField(finer, TileCut.INTERVAL, field.unit, _numbers(finer))
+    numbers = values or tuple(map(float, range(len(field.values))))
+    return TileField(field, TileCut.POINT, field.unit if values else "", numbers)
 
 
 def _texts(field: Field) -> Iterator[str]:
@@ -208,23 +231,45 @@ def _texts(field: Field) -> Iterator[str]:
 
 
 def _numbers(field: Field) -> tuple[float, ...]:
-    return tuple(float(parse_exact(text.partition(" ")[0])) for text in _texts(field))
+    """Return the numbers of all values; none, if one is no number."""
+    try:
+        return tuple(float(parse_exact(text.partition(" ")[0])) for text in _texts(field))
+    except (SpecError, ValueError):
+        return ()
+
+
+def _check_ascending(field: Field, values: tuple[float, ...]) -> None:
+    """Refuse values that are not in order, or in several units: tiles lie between them."""
+    units = {text.partition(" ")[2] for text in _texts(field)}
+    ordered = all(a < b for a, b in pairwise(values))
+    if not (values and ordered and len(units) == 1):
+        raise SpecError(
+            f"the values of {field.path} do not ascend",
+            remedy="write them from the smallest to the largest, in one unit",
+        )
 
 
 def _with_borders(field: Field) -> Field:
-    """Return as many intervals as a range has values: with one border more."""
+    """Return as many intervals as a range has values, with one border more; whole numbers stay."""
     if not isinstance(field.values, Spaced):
         return field
     spaced = field.values
-    return Field(
-        field.path, field.at, Spaced(spaced.low, spaced.high, spaced.count + 1, spaced.unit)
-    )
+    whole = spaced.low.denominator == spaced.high.denominator == 1
+    if whole and spaced.count == spaced.high - spaced.low + 1:
+        return field
+    finer = Spaced(spaced.low, spaced.high, spaced.count + 1, spaced.unit)
+    return Field(field.path, field.at, finer)
 
 
-def _takes_ranges(loaded: LoadedSpec, field: TileField, there: Node | None) -> bool:
-    root = changed(loaded.root, field.field.at, field.said((0, 0), there))
+def _takes_ranges(loaded: LoadedSpec, field: Field, there: Node | None) -> bool:
+    """Tell whether what stands there could be a range."""
+    if isinstance(there, Mapping):
+        return "nominal" in there.entries
+    if not isinstance(there, Scalar):
+        return False
+    said: Data = {"nominal": there.text, "range": (there.text, there.text)}
     try:
-        respecified(loaded, root)
+        respecified(loaded, changed(loaded.root, field.at, said))
     except SpecError:
         return False
     return True

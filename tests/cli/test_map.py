@@ -1,5 +1,7 @@
 """`nrs-design map`, as a user types it."""
 
+import json
+
 from tests.support import ROOT, document_of, run
 
 SAMPLED = ROOT / "specs" / "neuroboscope" / "soft-tissue-sampled.nrs.yaml"
@@ -20,12 +22,16 @@ def test_a_map_for_people_and_files(tmp_path):
     (first, *_) = sorted((tmp_path / "certificates").glob("*.cert.json"))
     spec = first.with_name(first.name.replace(".cert.json", ".nrs.yaml"))
     assert run("verify", first, spec, cwd=tmp_path).returncode in (0, 3)
+    # By itself, the spec has the gains that are proved.
+    gains = json.loads(first.read_text())["gains"]["withdrawal"]["Bt"]
+    assert gains.startswith("1.0399999")
+    designed = document_of("optimize", spec, cwd=tmp_path)["controllers"][1]
+    assert designed["Bt"] == float(gains)
 
 
 def test_a_map_for_programs(tmp_path):
     document = document_of("map", SAMPLED, "--over", STIFFNESS, cwd=tmp_path)
     assert document["tiles"][0]["verdict"] == "proved"
-    assert document["keeps_gains"]
     assert document["fields"][0]["cut"] == "interval"
     proved = document["tiles"][0]["certificate"]
     assert document["certificates"][proved]["box"][0][0] == 0

@@ -241,3 +241,24 @@ def test_gains_are_written_with_their_proof_only(tmp_path):
     refused = run("optimize", GOALS, "--out", "a.yaml", cwd=tmp_path, code=2)
     assert "is not the name of a spec" in refused.stderr
     assert not list(tmp_path.iterdir())
+
+
+def test_line_ends_and_comments_are_kept(tmp_path):
+    text = GOALS.read_text(encoding="utf-8").replace("\n", "\r\n")
+    (tmp_path / "a.nrs.yaml").write_bytes(text.encode())
+    run("optimize", "a.nrs.yaml", "--out", "b.nrs.yaml", "-q", cwd=tmp_path, code=0)
+    written = (tmp_path / "b.nrs.yaml").read_bytes()
+    assert b"\r\r" not in written
+    assert written.count(b"\n") == written.count(b"\r\n")
+    inside = GOALS.read_text(encoding="utf-8").replace(
+        "Bt: {min: 0.1 N*m*s/rad, max: 20 N*m*s/rad}",
+        "Bt:\n      min: 0.1 N*m*s/rad  # low\n      max: 20 N*m*s/rad",
+    )
+    (tmp_path / "c.nrs.yaml").write_text(inside)
+    refused = run("optimize", "c.nrs.yaml", "--out", "d.nrs.yaml", cwd=tmp_path, code=2)
+    assert "the comment '# low' would be lost" in refused.stderr
+    assert not (tmp_path / "d.nrs.yaml").exists()
+    for name, words in (("New.nrs.yaml", "is not a name"), (".nrs.yaml", "name")):
+        refused = run("optimize", GOALS, "--out", name, cwd=tmp_path, code=2)
+        assert words in refused.stderr
+        assert name in refused.stderr

@@ -4,12 +4,14 @@ import json
 import signal
 import subprocess
 import sys
+from dataclasses import replace
 from time import sleep
 
 import pytest
 
 from nrs_design.cli import exit_codes
 from nrs_design.cli.sweep import SWEPT
+from nrs_design.sweeps.store import Store
 from tests.support import SOFT_TISSUE, document_of, run
 
 STIFFNESS = "environments.soft.stiffness"
@@ -283,3 +285,16 @@ def test_every_command_of_the_table_is_run(tmp_path):
         names = [parameter.name for parameter in found.params]
         assert {"spec", "specs"} & set(names)
         assert "as_json" in names
+
+
+def test_an_exit_code_is_that_of_what_is_shown(tmp_path, spec):
+    """A refuted point does not end well because a file says so."""
+    asked = "--set", f"{STIFFNESS}=2000 N/m", "certify-switching"
+    run("sweep", spec, *asked, cwd=tmp_path, code=1)
+    (file,) = (path for path in kept(tmp_path / "mine.sweep") if "cert" not in path.name)
+    store = Store(tmp_path / "mine.sweep")
+    answer = store.read(file.stem)
+    assert answer is not None
+    store.write(file.stem, replace(answer, code=0))
+    again = run("sweep", spec, *asked, cwd=tmp_path, code=1)
+    assert "1 computed" in again.stderr

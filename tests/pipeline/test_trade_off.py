@@ -74,3 +74,12 @@ def test_what_cannot_be_traded(tmp_path):
     given = (MASS, "Mt: 0.01 kg*m^2"), (damping, "Bt: 2 N*m*s/rad")
     with pytest.raises(DesignError, match="no gain is free"):
         traded(tmp_path, given, path=SOFT_TISSUE)
+
+
+@pytest.mark.slow
+def test_a_stiffness_that_was_known(tmp_path):
+    """From one value, the range grows: it has two ends from the beginning."""
+    known = "stiffness: {nominal: 747.1461 N/m, range: [720.56 N/m, 768.17 N/m]}"
+    (curve,) = traded(tmp_path, ((known, "stiffness: 747.1461 N/m"),))
+    assert all(float(point.stiffness["soft"]) > 43.04 for point in curve.points)
+    assert len(curve.points) == 2

@@ -7,6 +7,7 @@ import pytest
 from nrs_design.certificates.certificate import Verdict, dump
 from nrs_design.certificates.verify import verify
 from nrs_design.pipeline import run_design
+from nrs_design.pipeline.free_gains import gains_given
 from nrs_design.spec import read_spec
 from nrs_design.sweeps.tile_map import run_tile_map
 from nrs_design.sweeps.tiles import read_tiles
@@ -28,7 +29,9 @@ switching: arbitrary
 
 def mapped(*said, path):
     loaded = read_spec(path)
-    return run_tile_map(read_tiles(loaded, path, list(said)), run_design(loaded))
+    designed = run_design(loaded)
+    given = loaded if designed is None else gains_given(designed)
+    return run_tile_map(read_tiles(given, path, list(said)), designed)
 
 
 def signs(found):
@@ -67,12 +70,17 @@ def test_every_certificate_is_about_the_spec_of_its_box(tmp_path):
     assert proved == covered != set()
 
 
-def test_values_without_a_range_and_gains_that_are_designed_anew():
-    found = mapped("limits.bandwidth=1,2 Hz", path=SOFT_TISSUE)
-    assert [tile.verdict for tile in found.tiles.values()] == [Verdict.PROVED] * 2
-    assert not found.grid.keeps_gains
-    gains = [certificate.gains for certificate in found.certificates]
-    assert gains[0] != gains[1]
+def test_a_box_has_the_gains_of_the_spec(tmp_path):
+    """They are given in the text that a certificate is written with, whatever its stiffness."""
+    loaded = read_spec(SAMPLED)
+    designed = run_design(loaded)
+    path = tmp_path / "a.nrs.yaml"
+    given = gains_given(designed)
+    path.write_text(given.text, encoding="utf-8")
+    grid = read_tiles(read_spec(path), path, ["environments.soft.stiffness=60..80/2 N/m"])
+    box = ((0, 1),)
+    path.write_text(grid.text_of(box), encoding="utf-8")
+    assert run_design(read_spec(path)).design == designed.design
 
 
 def test_given_matrices(tmp_path):

@@ -41,9 +41,40 @@ def test_values_by_themselves():
     assert (words.cut, words.text(1)) == (TileCut.POINT, "losable")
 
 
-def test_gains_are_kept_unless_they_are_what_changes():
-    assert tiles("sampling.period=1,2 ms").keeps_gains
-    assert not tiles("limits.bandwidth=1,2 Hz").keeps_gains
+@pytest.mark.parametrize(
+    ("said", "words"),
+    [
+        # Gains would be others in a box than in its tiles.
+        ("limits.bandwidth=1,2 Hz", "is about gains"),
+        ("controllers.insertion.Bt.min=1,2 N*m*s/rad", "is about gains"),
+        # Tiles lie between values, and below them.
+        ("sampling.delay=0,6,1", "do not ascend"),
+        ("environments.soft.stiffness=500,400 N/m", "do not ascend"),
+        # A list of two need not be a range.
+        ("environments.soft.stiffness.range=700..900/3 N/m", "is a list"),
+    ],
+)
+def test_what_is_no_map(said, words):
+    with pytest.raises(SpecError, match=words):
+        tiles(said)
+
+
+def test_a_row_of_a_matrix_is_no_range():
+    path = ROOT / "specs" / "examples" / "dayawansa-martin-5.nrs.yaml"
+    with pytest.raises(SpecError, match="is a list"):
+        tiles("modes.0.A.0=-3..3", path=path)
+    assert tiles("modes.0.A.0.1=-3..3", path=path).fields[0].cut is TileCut.POINT
+
+
+def test_whole_numbers_are_borders_by_themselves():
+    (field,) = tiles("environments.soft.stiffness=700..704 N/m").fields
+    assert [field.text(k) for k in range(field.count)][:2] == ["700..701 N/m", "701..702 N/m"]
+
+
+def test_an_axis_of_several_is_no_file_of_its_own():
+    path = ROOT / "docs" / "examples" / "six-axes.nrs.yaml#x"
+    with pytest.raises(SpecError, match="a map is of a spec with one axis"):
+        tiles("sampling.delay=0..1", path=path)
 
 
 def test_the_text_of_a_box_says_the_same():

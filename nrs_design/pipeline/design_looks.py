@@ -78,7 +78,13 @@ class RateJudge(AbstractJudge):
     def judge(
         self, system: SwitchedSystem, expected: float | None, allowance: Allowance
     ) -> Judged | None:
-        """Bracket the rate, from about what is expected."""
+        """Bracket the rate, from about what is expected.
+
+        Parameters
+        ----------
+        system, expected, allowance
+            As for `AbstractJudge`.
+        """
         from nrs_design.search.rate_slope import rate_slope
 
         guess = None if expected is None else self.number(expected)
@@ -106,7 +112,13 @@ class ForceJudge(AbstractJudge):
     def judge(
         self, system: SwitchedSystem, expected: float | None, allowance: Allowance
     ) -> Judged | None:
-        """Solve for a few shares, near the one that was the best."""
+        """Solve for a few shares, near the one that was the best.
+
+        Parameters
+        ----------
+        system, expected, allowance
+            As for `AbstractJudge`.
+        """
         from nrs_design.search.force_slope import force_slope
 
         output = next(output for output in system.outputs if output.name == "force")

@@ -19,7 +19,7 @@ from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.disturbed import DisturbedProblem, balanced, problem_of, transformed
 from nrs_design.search.family import Family, floats_in_silence
-from nrs_design.search.invariant_ellipsoid import best_share, least_level, reach_of
+from nrs_design.search.invariant_ellipsoid import best_share, least_level, reach_and_level
 from nrs_design.search.motions import Motions, separating_coordinates
 from nrs_design.work import Allowance
 
@@ -98,7 +98,7 @@ def force_slope(
             family = Family.of(system)
             motions = Motions.of(family)
             T = separating_coordinates(motions)
-            size, level = reach_of(problem_of(family, motions, system.channels, output), T)
+            size, level = reach_and_level(problem_of(family, motions, system.channels, output), T)
         except LinAlgError:  # A mode that grows has no norm.
             return None
         if not (np.isfinite(T).all() and isfinite(size) and isfinite(level) and size * level > 0):

@@ -72,7 +72,7 @@ def search_ellipsoid(
     motions = Motions.of(family)
     raw = problem_of(family, motions, channels, output)
     T = separating_coordinates(motions)
-    size, level = reach_of(raw, T)
+    size, level = reach_and_level(raw, T)
     if not (np.isfinite(T).all() and isfinite(size) and isfinite(level) and size * level > 0):
         return OUT_OF_RANGE
     whole, units = balanced(transformed(raw, T, size, level))
@@ -112,7 +112,7 @@ def _short(number: float) -> Fraction:
     return Fraction(f"{number:.6e}")
 
 
-def reach_of(problem: DisturbedProblem, T: Array) -> tuple[float, float]:
+def reach_and_level(problem: DisturbedProblem, T: Array) -> tuple[float, float]:
     """Return how far state and output go under one mode alone, in coordinates ``x = T z``.
 
     Parameters

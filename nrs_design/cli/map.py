@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     from nrs_design.sweeps.tile_map import TileMap
 
 SIGNS = {"proved": "#", "refuted": "x", "inconclusive": "."}
+# Refuted in kept contact: open where contact may be lost.
+IN_CONTACT = "o"
 # A wider map is drawn in files only.
 WIDEST = 90
 # Letters of the id of a certificate that its file is named by.
@@ -128,27 +130,22 @@ def _facts(loaded: LoadedSpec, found: TileMap) -> dict[str, Any]:
 
 
 def _print(loaded: LoadedSpec, found: TileMap) -> None:
-    from nrs_design.certificates.certificate import Verdict
-
-    counts = [found.count(one) for one in (Verdict.PROVED, Verdict.REFUTED, Verdict.INCONCLUSIVE)]
+    counted = ", ".join(f"{count} {name}" for name, count in found.counts().items())
     say(
-        f"{loaded.spec.name}: {len(found.tiles)} tiles: {counts[0]} proved, {counts[1]} refuted, "
-        f"{counts[2]} undecided; {found.proofs} proofs and {found.witnesses} witnesses tried"
+        f"{loaded.spec.name}: {len(found.tiles)} tiles: {counted}; "
+        f"{found.proofs} proofs and {found.witnesses} witnesses tried"
     )
     fields = found.grid.fields
     if len(fields) == 2 and fields[0].count <= WIDEST:
         _draw(found)
     elif len(fields) == 1:
         for place, tile in found.tiles.items():
-            say(f"  {fields[0].text(place[0])}: {tile.verdict}")
+            say(f"  {fields[0].text(place[0])}: {tile.shown}")
     else:
         say("--figure, --csv or --json have the tiles")
     wrong = next((tile.wrong for tile in found.tiles.values() if tile.wrong), None)
     if wrong is not None:
         note(f"warning: some tiles make no system: {wrong}")
-    where = next((tile.refuted_in for tile in found.tiles.values() if tile.refuted_in), None)
-    if where is not None:
-        say(f"  x: refuted {where}, for some of them; where contact may be lost, these are open")
 
 
 def _draw(found: TileMap) -> None:
@@ -156,10 +153,12 @@ def _draw(found: TileMap) -> None:
     across, up = found.grid.fields
     width = max(len(up.text(k)) for k in range(up.count))
     for level in reversed(range(up.count)):
-        signs = (SIGNS[str(found.tiles[k, level].verdict)] for k in range(across.count))
-        say(f"  {up.text(level):>{width}} |{''.join(signs)}")
+        tiles = (found.tiles[k, level] for k in range(across.count))
+        signs = "".join(SIGNS.get(tile.shown, IN_CONTACT) for tile in tiles)
+        say(f"  {up.text(level):>{width}} |{signs}")
     say(f"  {'':>{width}} {across.text(0)} to {across.text(across.count - 1)}")
-    say(f"  # proved, x refuted, . undecided; up: {up.field.path}, across: {across.field.path}")
+    meant = [f"{SIGNS.get(name, IN_CONTACT)} {name}" for name, n in found.counts().items() if n]
+    say(f"  {', '.join(meant)}; up: {up.field.path}, across: {across.field.path}")
 
 
 def _table(found: TileMap) -> str:

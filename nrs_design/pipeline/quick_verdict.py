@@ -36,6 +36,11 @@ class QuickVerdict:
     refuted_in: str | None = None
     wrong: str = ""  # Why there is no switched system to decide
 
+    @property
+    def grows(self) -> bool:
+        """Whether there is a witness of growth, if only in kept contact."""
+        return self.verdict is Verdict.REFUTED or self.refuted_in is not None
+
 
 def run_quick_proof(loaded: LoadedSpec, kept: Designed | None) -> QuickVerdict:
     """Try to prove a spec by one form for all modes, or one for each.
@@ -84,9 +89,8 @@ def _decided(loaded: LoadedSpec, kept: Designed | None, method: Method | None) -
     found = certify(system, chosen, limits)
     if not _decides(found):
         return QuickVerdict(Verdict.INCONCLUSIVE)
-    verdict = Verdict.REFUTED if found.refuted_in is not None else found.verdict
     certificate = certificate_of(loaded, designed, coordinates, found)
-    return QuickVerdict(verdict, certificate, found.refuted_in)
+    return QuickVerdict(found.verdict, certificate, found.refuted_in)
 
 
 def _has_margin(system: SwitchedSystem, limits: Limits) -> bool:

@@ -6,7 +6,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from nrs_design.certificates.certificate import Verdict
-from nrs_design.reporting.style import BLUE, GRID, INK, VERMILLION, new_axes, styled
+from nrs_design.reporting.style import BLUE, GRID, INK, ORANGE, VERMILLION, new_axes, styled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -16,9 +16,9 @@ if TYPE_CHECKING:
     from nrs_design.sweeps.tiles import TileField
 
 LOOKS = {
-    Verdict.PROVED: (BLUE, "Proved"),
-    Verdict.REFUTED: (VERMILLION, "Refuted"),
-    Verdict.INCONCLUSIVE: (GRID, "Undecided"),
+    str(Verdict.PROVED): BLUE,
+    str(Verdict.REFUTED): VERMILLION,
+    str(Verdict.INCONCLUSIVE): GRID,
 }
 
 
@@ -40,7 +40,7 @@ def draw_tile_map(found: TileMap) -> Figure:
         if any(place[2:]):
             continue
         i, j = place[0], place[1] if up is not None else 0
-        look, _ = LOOKS[tile.verdict]
+        look = LOOKS.get(tile.shown, ORANGE)
         size = left[i + 1] - left[i], bottom[j + 1] - bottom[j]
         axes.add_patch(
             Rectangle((left[i], bottom[j]), *size, facecolor=look, edgecolor="white", linewidth=0.5)
@@ -52,13 +52,12 @@ def draw_tile_map(found: TileMap) -> Figure:
         axes.set_ylabel(_label(up))
         _name_whole(axes, up)
     axes.grid(visible=False)
-    where = next((tile.refuted_in for tile in found.tiles.values() if tile.refuted_in), None)
-    names = {Verdict.REFUTED: f"Refuted {where}"} if where else {}
     handles = [
-        Patch(facecolor=look, edgecolor=INK, label=names.get(verdict, label))
-        for verdict, (look, label) in LOOKS.items()
+        Patch(facecolor=LOOKS.get(name, ORANGE), edgecolor=INK, label=name.capitalize())
+        for name, count in found.counts().items()
+        if count
     ]
-    figure.legend(handles=handles, loc="outside lower center", ncols=3)
+    figure.legend(handles=handles, loc="outside lower center", ncols=2)
     return figure
 
 

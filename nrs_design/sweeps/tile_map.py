@@ -8,6 +8,7 @@ above, by the same witness.
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass, field
 from itertools import product
 
@@ -27,8 +28,14 @@ class TileVerdict:
 
     verdict: Verdict
     certificate: int | None = None  # Place of the one that covers it, or of its witness
-    refuted_in: str | None = None  # As of `QuickVerdict`
+    # Of what it is refuted, if that leaves the loss of contact open: then it is inconclusive.
+    refuted_in: str | None = None
     wrong: str = ""  # Why there is nothing to decide
+
+    @property
+    def shown(self) -> str:
+        """Its verdict in words."""
+        return str(self.verdict) if self.refuted_in is None else f"refuted {self.refuted_in}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,9 +49,11 @@ class TileMap:
     proofs: int  # How many were tried
     witnesses: int
 
-    def count(self, verdict: Verdict) -> int:
-        """Return how many tiles have a verdict."""
-        return sum(tile.verdict is verdict for tile in self.tiles.values())
+    def counts(self) -> dict[str, int]:
+        """Return how many tiles there are of each verdict, the proved ones first."""
+        found = Counter(tile.shown for tile in self.tiles.values())
+        rest = {name: found[name] for name in sorted(found) if name not in ORDER}
+        return {name: found[name] for name in ORDER[:2]} | rest | {ORDER[2]: found[ORDER[2]]}
 
 
 def run_tile_map(grid: TileGrid, designed: Designed | None, progress: Progress = silent) -> TileMap:
@@ -74,6 +83,7 @@ def run_tile_map(grid: TileGrid, designed: Designed | None, progress: Progress =
 
 
 OPEN = Verdict.INCONCLUSIVE
+ORDER = tuple(map(str, (Verdict.PROVED, Verdict.REFUTED, OPEN)))
 
 
 @dataclass
@@ -127,7 +137,7 @@ class _Painter:
         elif not single:
             for half in _halves(base, whole):
                 self._climb(half, low, top, 1)
-        elif found.verdict is Verdict.REFUTED:
+        elif found.grows:
             self._put(self._at(base, (low, top)), found, self._at(base, (low, low)))
         else:
             self._refute(base, low, top, found)
@@ -138,7 +148,7 @@ class _Painter:
         witness, level = found, low
         while open_up_to + 1 < refuted:
             tried = self._witness(self._at(base, (level, level)))
-            if tried.verdict is Verdict.REFUTED:
+            if tried.grows:
                 refuted, witness = level, tried
             else:
                 open_up_to = level

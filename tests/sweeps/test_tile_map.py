@@ -37,7 +37,7 @@ def mapped(*said, path):
 def signs(found):
     shape = found.grid.shape
     return [
-        "".join(str(found.tiles[k, level].verdict)[0] for k in range(shape[0]))
+        "".join(found.tiles[k, level].shown[0] for k in range(shape[0]))
         for level in range(shape[1])
     ]
 

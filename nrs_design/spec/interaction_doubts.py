@@ -64,6 +64,14 @@ def _hard(spec: Spec) -> tuple[str, str] | None:
     return force.text, limit.text
 
 
+def _older(spec: Spec) -> tuple[str, str] | None:
+    """Return a wanted delay that no force sample has, so that no proof is about it."""
+    delay, sampling = None if spec.goals is None else spec.goals.delay, spec.sampling
+    if delay is None or sampling is None or sampling.oldest >= delay.exact:
+        return None
+    return delay.text, rounded_up(sampling.oldest, "s")
+
+
 def _left(spec: Spec) -> tuple[str, str] | None:
     """Return a disturbance that commands may leave, and their limit."""
     command = None if spec.disturbances is None else spec.disturbances.command
@@ -103,6 +111,12 @@ INTERACTION_DOUBTS: tuple[Row[Spec], ...] = (
         "switch {0} of the mode logic, from {1} to {2}, waits for a torque of {3}, above "
         "limits.torque of {4}",
         "lower the threshold by noise and by what the torque moves in its age",
+    ),
+    Row(
+        "goals.delay",
+        _older,
+        "goals.delay is {0}, and force samples are declared to be at most {1} old",
+        "declare a longer sampling.delay, or relax the goal",
     ),
     Row(
         "limits.command",

@@ -47,6 +47,16 @@ def test_a_threshold_above_the_largest_torque():
     assert "0.3001 N*m, above limits.torque of 0.3 N*m" in str(found[-1])
 
 
+def test_a_delay_that_is_not_declared():
+    """One sample of 2 ms: a goal of 2 ms is met by it, one of 4 ms by no proof."""
+    for goal, count in (("2 ms", 1), ("4 ms", 2)):
+        more = f"sampling: {{period: 2 ms, delay: [0, 1]}}\ngoals: {{delay: {goal}}}\nswitching:"
+        found = doubts(IMPEDANCE.replace("switching:", more))
+        assert len(found) == count
+    assert found[-1].at == ("goals", "delay")
+    assert "force samples are declared to be at most 0.002 s" in str(found[-1])
+
+
 def test_a_command_that_cannot_reach_the_speed_limit():
     """8 deg/s is 0.139626 rad/s, and 288.39 rpm with the gain of the thesis."""
     for command, count in (("289 rpm", 1), ("288 rpm", 2)):

@@ -46,14 +46,22 @@ class Destinations:
         SpecError
             If there is something wrong with the spec.
         """
+        from nrs_design.errors import SpecError
         from nrs_design.output import check_place, page_kind
         from nrs_design.spec import read_spec
+        from nrs_design.spec.task_space import file_of
 
         if report is not None:
             check_place(report, page_kind(report))
         spec = None
         if write is not None:
             spec = read_spec(write)
+            if file_of(write) != write:
+                raise SpecError(
+                    "the file holds several axes, and nothing is merged into one of them",
+                    path=write,
+                    remedy="identify without --write, and copy what is found",
+                )
             check_place(write)
         return cls(spec, report, date)
 

@@ -8,7 +8,9 @@ from collections.abc import Iterable, Sequence
 from typing import Any
 
 from nrs_design.errors import SpecError
+from nrs_design.spec.document import Data, Node, to_data
 from nrs_design.spec.load import LoadedSpec, parse_spec
+from nrs_design.spec.task_space import file_of
 
 _COMMENT = re.compile(r"(?m)(?<!\S)#.*$")
 # A longer text is a sentence, and no quantity.
@@ -23,13 +25,15 @@ class SpecDocument:
         from ruamel.yaml.util import load_yaml_guess_indent
 
         self._loaded = loaded
-        _, indent, offset = load_yaml_guess_indent(loaded.text)
+        # An axis of several is written as a spec of its own, without the comments of their file.
+        self._given = loaded.text if file_of(loaded.path) == loaded.path else _alone(loaded.root)
+        _, indent, offset = load_yaml_guess_indent(self._given)
         self._yaml = YAML(typ="rt")
         self._yaml.preserve_quotes = True
         # Lines are never folded anew.
         self._yaml.width = 1 << 20
         self._yaml.indent(mapping=2, sequence=indent or 4, offset=2 if offset is None else offset)
-        self.root: Any = self._yaml.load(loaded.text)
+        self.root: Any = self._yaml.load(self._given)
 
     def put(self, node: Any, key: str, value: object) -> None:
         """Set a key; a new one goes second to last, as the last one carries what comes after.
@@ -88,10 +92,10 @@ class SpecDocument:
         stream = io.StringIO()
         self._yaml.dump(self.root, stream)
         text = stream.getvalue()
-        if "\r\n" in self._loaded.text:
+        if "\r\n" in self._given:
             # Comments have kept theirs.
             text = text.replace("\r\n", "\n").replace("\n", "\r\n")
-        lost = [line for line in _comments(self._loaded.text) if line not in set(_comments(text))]
+        lost = [line for line in _comments(self._given) if line not in set(_comments(text))]
         if lost:
             raise SpecError(
                 f"the comment {lost[0]!r} would be lost",
@@ -100,6 +104,31 @@ class SpecDocument:
             )
         parse_spec(text, self._loaded.path)
         return text
+
+
+def _alone(root: Node) -> str:
+    """Write a document as it was read."""
+    from ruamel.yaml import YAML
+
+    stream, writer = io.StringIO(), YAML()
+    writer.width = 1 << 20
+    writer.dump(plain(to_data(root)), stream)
+    return stream.getvalue()
+
+
+def plain(said: Data) -> Any:
+    """Return what a document says as lists and dictionaries; whole numbers need no quotes.
+
+    Parameters
+    ----------
+    said : Data
+        As `nrs_design.spec.document.to_data` gives it.
+    """
+    if isinstance(said, str):
+        return int(said) if said.isdecimal() else said
+    if isinstance(said, tuple):
+        return [plain(item) for item in said]
+    return {key: plain(item) for key, item in said.items()}
 
 
 def _flow(value: object) -> object:

@@ -29,7 +29,7 @@ from nrs_design.spec.document import (
 )
 from nrs_design.spec.edits import changed, node_at
 from nrs_design.spec.load import respecified
-from nrs_design.spec.spec_document import SpecDocument
+from nrs_design.spec.spec_document import SpecDocument, plain
 from nrs_design.spec.task_space import file_of
 from nrs_design.sweeps.grid import Field, read_grid
 from nrs_design.sweeps.values import Spaced
@@ -145,7 +145,7 @@ class TileGrid:
             node = document.root
             for key in above:
                 node = node[key]
-            said = _listed(field.said(span, node_at(self.loaded.root, field.field.at)))
+            said = plain(field.said(span, node_at(self.loaded.root, field.field.at)))
             if isinstance(last, int):
                 node[last] = said
             else:
@@ -155,15 +155,6 @@ class TileGrid:
         if respecified(self.loaded, root).sha256 != self.spec_of(box).sha256:
             raise SpecError("the file cannot be rewritten with these values", path=self.loaded.path)
         return text
-
-
-def _listed(said: Data) -> object:
-    """Return what a document says as lists and dictionaries; whole numbers need no quotes."""
-    if isinstance(said, str):
-        return int(said) if said.isdecimal() else said
-    if isinstance(said, tuple):
-        return [_listed(item) for item in said]
-    return {key: _listed(item) for key, item in said.items()}
 
 
 def read_tiles(loaded: LoadedSpec, path: Path, said: list[str]) -> TileGrid:

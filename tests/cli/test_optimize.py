@@ -262,3 +262,19 @@ def test_line_ends_and_comments_are_kept(tmp_path):
         refused = run("optimize", GOALS, "--out", name, cwd=tmp_path, code=2)
         assert words in refused.stderr
         assert name in refused.stderr
+
+
+def test_an_axis_of_several_is_written_as_a_spec_of_its_own(tmp_path):
+    text = (ROOT / "docs" / "examples" / "six-axes.nrs.yaml").read_text(encoding="utf-8")
+    text = text.replace("Bt: 72 N*s/m", "Bt: {min: 10 N*s/m, max: 300 N*s/m}")
+    place = "    environments: {tissue"
+    text = text.replace(place, f"    goals: {{decay_rate: 2 1/s}}\n{place}")
+    (tmp_path / "arm.nrs.yaml").write_text(text)
+    written = "z.nrs.yaml"
+    document = document_of("optimize", "arm.nrs.yaml#z", "--out", written, cwd=tmp_path, code=0)
+    certified = document["certified"]
+    assert certified["decay_rate"] >= 2
+    assert certified["gains"].keys() == {"insertion.Bt"}
+    shown = run("verify", certified["certificate"], written, cwd=tmp_path, code=0).stdout
+    assert shown.startswith("PROVED")
+    assert "name: z\n" in (tmp_path / written).read_text()

@@ -10,7 +10,7 @@ from nrs_design.spec.templates import PRISMATIC, TEMPLATES
 from nrs_design.spec.units import parse_unit
 
 SLIDE = AxisType.PRISMATIC
-TEXT = TEMPLATES[PRISMATIC]
+TEXT = TEMPLATES[PRISMATIC["interaction-design"]]
 
 
 @pytest.mark.parametrize(

@@ -59,7 +59,7 @@ def init(
     ] = DriveOption.MOTOR,
     axis: Annotated[
         AxisOption,
-        typer.Option(help="Of an interaction-design with a motor: it turns, or it slides."),
+        typer.Option(help="Of an interaction-design: it turns, or it slides; not with torques."),
     ] = AxisOption.ROTARY,
     out: Annotated[
         Path | None, typer.Option(help="File to write; default TEMPLATE.nrs.yaml.")
@@ -82,13 +82,13 @@ def init(
             raise typer.BadParameter("it is for interaction-design", param_hint="--drive")
         chosen = f"{drive}-interface"
     if axis is AxisOption.PRISMATIC:
-        if chosen != TemplateOption.INTERACTION_DESIGN:
+        if chosen not in PRISMATIC:
             raise typer.BadParameter(
-                "it is for an interaction-design with a motor; in another, write "
-                "`axis: prismatic`, and quantities in m, N and kg",
+                "it is for an interaction-design with a motor, or over velocities or positions; in "
+                "another, write `axis: prismatic`, and quantities in m, N and kg",
                 param_hint="--axis",
             )
-        chosen = PRISMATIC
+        chosen = PRISMATIC[chosen]
     path = out or Path(f"{template}.nrs.yaml")
     if path.exists() and not force:
         raise OutputError("exists already", path=path, remedy="name another file, or add --force")

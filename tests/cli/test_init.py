@@ -72,3 +72,17 @@ def test_a_robot_without_a_motor_has_a_template_of_its_own(taken: str, tmp_path:
     assert "warning" not in result.stderr
     refused = run("init", "robot", "--drive", taken, cwd=tmp_path, code=2)
     assert "interaction-design" in refused.stderr
+
+
+@pytest.mark.parametrize("taken", ["velocity", "position"])
+def test_one_that_slides_has_one_too(taken: str, tmp_path: Path) -> None:
+    asked = "--drive", taken, "--axis", "prismatic", "--out", "mine.nrs.yaml"
+    run("init", "interaction-design", *asked, cwd=tmp_path)
+    text = (tmp_path / "mine.nrs.yaml").read_text(encoding="utf-8")
+    assert "\naxis: prismatic " in text
+    result = run("gate", "mine.nrs.yaml", "--no-reports", cwd=tmp_path, code=0)
+    assert "all fulfilled" in result.stdout
+    assert "warning" not in result.stderr
+    torque = "init", "interaction-design", "--drive", "torque", "--axis", "prismatic"
+    refused = run(*torque, cwd=tmp_path, code=2)
+    assert "prismatic" in refused.stderr

@@ -8,14 +8,18 @@ from types import MappingProxyType
 
 # Interaction designs of robots that take velocities, positions and torques.
 INTERFACES = tuple(f"{taken}-interface" for taken in ("velocity", "position", "torque"))
-# One of an axis that slides.
-PRISMATIC = "prismatic-axis"
+# Those of an axis that slides, by what they are of an axis that turns.
+PRISMATIC = {
+    "interaction-design": "prismatic-axis",
+    "velocity-interface": "prismatic-velocity-interface",
+    "position-interface": "prismatic-position-interface",
+}
 # Several axes in one file.
 TASK_SPACE = "task-space"
 _NAMES = (
     "interaction-design",
     *INTERFACES,
-    PRISMATIC,
+    *PRISMATIC.values(),
     "hybrid-force",
     TASK_SPACE,
     "switched-system",

@@ -219,3 +219,7 @@ def test_coordinates_in_which_a_form_is_round():
             assert all(abs(around[i, j] - int(i == j)) < 1e-9 for i in range(2) for j in range(2))
         for rows in ([[1, 2], [2, 1]], [[0, 0], [0, 0]], [[1, 1], [1, 1]]):
             assert unit_coordinates(balls(RationalMatrix(rows))) == arb_mat([[1, 0], [0, 1]])
+        # Definite, but of a root that is not invertible for certain.
+        wide = arb(0.85, 0.28)
+        form = arb_mat([[arb(0.73), wide], [wide, arb(1.86)]])
+        assert unit_coordinates(form) == arb_mat([[1, 0], [0, 1]])

@@ -110,6 +110,8 @@ KINDS_OF_SPECS = {
     ("nrs_design.pipeline.design", "interaction-design"),
     ("nrs_design.pipeline.design", "robot"),
     ("nrs_design.pipeline.margins", "robot"),
+    ("nrs_design.pipeline.margins", "switched-system"),
+    ("nrs_design.reporting.margins", "switched-system"),
     ("nrs_design.robot.pipeline", "robot"),
     ("nrs_design.robot.design.mobility", "interaction-design"),
     ("nrs_design.spec.load", "interaction-design"),

@@ -145,9 +145,11 @@ def certify_switching(
     with progress(f"{what} of {loaded.spec.name}", lines=True) as step:
         margins = run_proof_margins(result, limits, step, **asked)
         parts = find_subsets(result, limits, step)
-    from nrs_design.pipeline.radius import bound_radius
+    growth = None
+    if result.certification.system.time == "discrete":
+        from nrs_design.pipeline.radius import bound_radius
 
-    growth = bound_radius(result.certification, limits)
+        growth = bound_radius(result.certification, limits)
     relief = find_relief(result)
     steps = _next_steps(result, **asked)
 
@@ -193,7 +195,7 @@ def _growth_words(radius: RadiusBounds) -> str:
     low, high = "no word was found that shows how much it is at least", "no upper bound was found"
     if radius.lower is not None and radius.word is not None:
         signal = ", ".join(
-            name + (f" {count} times" if count > 1 else "") for name, count in radius.word.steps
+            name + (f" {count} times" if count > 1 else "") for name, count in radius.word
         )
         low = f"at least {rounded_down(radius.lower)}, by {signal}, and again"
     if radius.upper is not None:

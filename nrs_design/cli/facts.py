@@ -117,7 +117,7 @@ def radius_facts(radius: RadiusBounds | None) -> dict[str, Any]:
     """Return the facts of the growth per step that signals reach; none in continuous time."""
     if radius is None:
         return {}
-    word = None if radius.word is None else [[n, int(count)] for n, count in radius.word.steps]
+    word = None if radius.word is None else [[n, int(count)] for n, count in radius.word]
     found = {
         **_number("lower", radius.lower, lower_float),
         **_number("upper", radius.upper, upper_float),

@@ -13,7 +13,7 @@ from fractions import Fraction
 import numpy as np
 
 from nrs_design.certificates.certificate import Verdict
-from nrs_design.proof.evidence import GrowingSequence
+from nrs_design.proof.evidence import AbstractEvidence
 from nrs_design.proof.evidence.growth import Steps
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
@@ -43,7 +43,9 @@ class RadiusBounds:
     """The largest growth per step of all signals, between two numbers that are shown exactly."""
 
     lower: Fraction | None  # Some signal reaches it; None if no word was found
-    word: GrowingSequence | None  # That signal
+    # That signal, again and again: modes with the number of their steps.
+    word: Steps | None
+    evidence: AbstractEvidence | None  # That it grows, of modes divided by the lower end
     upper: Fraction | None  # No signal grows by more, but for a constant factor; None if not shown
     method: str | None  # By which rung that was found
 
@@ -68,23 +70,23 @@ def bound_radius(found: Certification, limits: Limits) -> RadiusBounds | None:
     if system.roundings or system.couplings:
         return None
     budget = min(limits.budget, BUDGET)
-    lower, word = _lower(system, Allowance(budget, limits.memory))
+    lower, word, evidence = _lower(system, Allowance(budget, limits.memory))
     known: tuple[Fraction | None, str | None] = None, None
     if found.verdict is Verdict.PROVED and found.evidence is not None:
         known = found.evidence.proved_rate(system), found.method
     upper, method = _upper(system, lower, known, replace(limits, budget=budget, more=False))
-    return RadiusBounds(lower, word, upper, method)
+    return RadiusBounds(lower, word, evidence, upper, method)
 
 
 def _lower(
     system: SwitchedSystem, allowance: Allowance
-) -> tuple[Fraction | None, GrowingSequence | None]:
+) -> tuple[Fraction | None, Steps | None, AbstractEvidence | None]:
     """Return what the best word is shown to grow by, and that word."""
     with floats_in_silence():
         matrices = np.array([mode.A.floats() for mode in system.modes])
         graph = StepGraph.of(system, matrices)
         if graph is None or not np.isfinite(matrices).all():
-            return None, None
+            return None, None, None
         words = list(best_words(graph, allowance))
     for word, growth in reversed(words):
         steps, edges = graph.sequence(word)
@@ -96,9 +98,8 @@ def _lower(
             radius = (growth / float(claim)) ** len(word)
             evidence, _ = first_accepted(_proposed(divided, steps, edges, radius), divided)
             if evidence is not None:
-                assert isinstance(evidence, GrowingSequence)
-                return claim, evidence
-    return None, None
+                return claim, steps, evidence
+    return None, None, None
 
 
 def _proposed(
@@ -106,7 +107,7 @@ def _proposed(
     steps: Steps,
     edges: tuple[int, ...],
     radius: float,
-) -> Candidates[GrowingSequence]:
+) -> Candidates[AbstractEvidence]:
     yield from powers(system, steps, edges, radius)
     return None
 

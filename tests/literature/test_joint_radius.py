@@ -64,7 +64,7 @@ def test_both_ends_of_the_growth_per_step(name):
     assert found.verdict == "refuted"
     ends = bound_radius(found, LIMITS)
     assert radius * (1 - digits) - 1e-7 < float(ends.lower) < radius * (1 + digits)
-    assert {mode for mode, _ in ends.word.steps} == word
+    assert {mode for mode, _ in ends.word} == word
     assert ends.lower < ends.upper < degree_four * 1.0005
 
 

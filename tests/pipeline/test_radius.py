@@ -49,12 +49,12 @@ def test_the_word_is_shown_for_the_divided_modes():
     system = lossy_network()
     _, radius = bounds(system)
     product = np.eye(2)
-    for name, count in radius.word.steps:
+    for name, count in radius.word:
         A = next(np.array(mode.A.floats()) for mode in system.modes if mode.name == name)
         product = np.linalg.matrix_power(A, int(count)) @ product
-    length = sum(int(count) for _, count in radius.word.steps)
+    length = sum(int(count) for _, count in radius.word)
     assert float(radius.lower) < np.abs(np.linalg.eigvals(product)).max() ** (1 / length)
-    assert radius.word.fits(system.switching)
+    assert radius.evidence.fits(system.switching)
 
 
 @pytest.mark.parametrize("seed", range(8))

@@ -126,7 +126,7 @@ def check(seed):
         ends = bound_radius(found, LIMITS)
         assert ends.upper is None or known <= float(ends.upper) + ROOM, seed
         if ends.lower is not None:
-            assert_grows(ends.word, rule, matrices, float(ends.lower) - ROOM)
+            assert_grows(ends.evidence, rule, matrices, float(ends.lower) - ROOM)
             assert ends.upper is None or ends.lower <= ends.upper
     return found.verdict
 

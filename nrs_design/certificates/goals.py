@@ -80,7 +80,7 @@ def _effort(certificate: Certificate | None) -> str:
 
 
 def _decay_rate(wanted: Fraction, text: str, certificate: Certificate | None) -> CertifiedGoal:
-    rate = _decay(certificate)
+    rate = decay_rate(certificate)
     if rate is None:
         return CertifiedGoal("decay_rate", "no decay rate in 1/s was proved", text, False)
     said = f"the proved decay rate is {rounded_down(rate, '1/s')}"
@@ -89,8 +89,16 @@ def _decay_rate(wanted: Fraction, text: str, certificate: Certificate | None) ->
     return CertifiedGoal("decay_rate", said, text, rate >= wanted)
 
 
-def _decay(certificate: Certificate | None) -> Fraction | None:
-    """Return the proved rate in 1/s; of a contraction rho per step, ``1 - rho`` is not above it."""
+def decay_rate(certificate: Certificate | None) -> Fraction | None:
+    """Return the proved rate in 1/s; None if none is proved, or no period is known.
+
+    Of a contraction rho per step, ``(1 - rho)`` over the period is not above it.
+
+    Parameters
+    ----------
+    certificate : Certificate or None
+        Checked.
+    """
     evidence = None if certificate is None else certificate.evidence
     if certificate is None or evidence is None:
         return None

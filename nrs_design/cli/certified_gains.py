@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
@@ -91,7 +92,7 @@ class CertifiedGains:
                 {"goal": goal.key, "wanted": goal.wanted, "shown": goal.said, "met": goal.met}
                 for goal in self.goals
             ],
-            "decay_rate": self._rate(),
+            "decay_rate": None if self.rate is None else lower_float(self.rate),
             "designs_tried": found.tried,
             "spec": None if self.spec is None else str(self.spec),
             "certificate": None if self.certificate is None else str(self.certificate),
@@ -103,27 +104,23 @@ class CertifiedGains:
         for goal in self.goals:
             ends = "PROVED" if goal.met else "NOT PROVED"
             say(f"goal {goal.key}, {goal.wanted}: {ends}: {goal.said}")
-        more = found.cost - found.free_cost
-        say(
-            f"cost {found.cost:.4f} of all controllers, {max(more, 0.0):.4f} above the least "
-            f"without these goals, which decays with {found.free_rate:.3g} 1/s"
-        )
+        more, rate = max(found.cost - found.free_cost, 0.0), found.free_rate
+        # A rate that is not positive is no decay.
+        shows = f"a decay of {rate:.3g} 1/s" if rate > 0 else "no decay"
+        say(f"cost {found.cost:.4f} of all controllers, {more:.4f} above the least without these")
+        say(f"goals, of which one quadratic function shows {shows} (floating point)")
         for steered in found.goals:
-            if steered.price is None:
+            if (tighter := steered.price_of_a_percent) is None:
                 say(f"{steered.key} does not bind")
             else:
-                tighter = float(steered.wanted) / 100 * steered.price
                 say(f"{steered.key} binds: 1 % tighter costs about {tighter:.2g}")
 
-    def _rate(self) -> float | None:
-        certificate = self.found.result.certificate
-        evidence = None if certificate is None else certificate.evidence
-        if certificate is None or evidence is None:
-            return None
-        rate, period = evidence.proved_rate(certificate.system), certificate.system.sample_time
-        if rate is None:
-            return None
-        return lower_float(rate if period is None else (1 - rate) / period)
+    @property
+    def rate(self) -> Fraction | None:
+        """The proved decay rate, 1/s."""
+        from nrs_design.certificates.goals import decay_rate
+
+        return decay_rate(self.found.result.certificate)
 
 
 def _name_for(loaded: LoadedSpec, out: Path) -> str:

@@ -25,14 +25,6 @@ from nrs_design.pipeline.certification import (
     run_certification,
 )
 from nrs_design.pipeline.design import Designed, placed
-from nrs_design.pipeline.design_looks import (
-    ROOM,
-    ROOM_OF_BOUNDS,
-    AbstractJudge,
-    DesignLooks,
-    ForceJudge,
-    RateJudge,
-)
 from nrs_design.pipeline.free_gains import (
     Array,
     FreeGains,
@@ -41,18 +33,25 @@ from nrs_design.pipeline.free_gains import (
     has_free_gains,
     in_order,
 )
+from nrs_design.pipeline.proof_constraints import (
+    NOTHING,
+    ROOM,
+    ROOM_OF_BOUNDS,
+    AbstractProofConstraint,
+    DesignEvaluator,
+    ForceConstraint,
+    RateConstraint,
+)
 from nrs_design.progress import Progress, silent
 from nrs_design.proof.bounds import rounded_up
-from nrs_design.spec import Quantity
 
 if TYPE_CHECKING:
     from nrs_design.design.analysis import DesignAnalysis
-    from nrs_design.design.steered_search import Look, Steered, SteeredProblem
+    from nrs_design.design.trust_region import ConstrainedOptimum, ConstrainedProblem, Evaluation
     from nrs_design.spec.spec_document import SpecDocument
 
 # Goals that gains are steered by.
-STEERING = ("decay_rate", "peak_torque")
-GOAL_UNITS = {"decay_rate": "1/s", "peak_torque": "N*m"}
+STEERING = (RateConstraint.key, ForceConstraint.key)
 # A rate that only has to be positive is at least so much, 1/s.
 LEAST_RATE = 1e-2
 # Roundings that are proved at most.
@@ -69,10 +68,13 @@ class SteeredGoal:
 
     key: str  # In the spec
     wanted: Fraction  # In SI units
-    text: str  # As the spec writes it
-    found: float  # In floating point, before gains are rounded
     # What one more in SI units costs, in first order; None where the goal does not bind.
     price: float | None
+
+    @property
+    def price_of_a_percent(self) -> float | None:
+        """What it costs to ask for one per cent more."""
+        return None if self.price is None else float(self.wanted) / 100 * self.price
 
 
 @dataclass(frozen=True, slots=True)
@@ -177,77 +179,69 @@ class _Search:
         goals = gains.designed.spec.goals
         assert goals is not None, "as one steers"
         self.gains = gains
-        self.wanted = {key: value for key, value in goals.given() if key in STEERING}
         rate, force = goals.decay_rate, goals.peak_torque
+        given = zip(STEERING, (rate, force), strict=True)
+        self.wanted = {key: value for key, value in given if value is not None}
         wanted = LEAST_RATE if rate is None else max(rate.si * (1 + ROOM), LEAST_RATE)
-        judges: list[AbstractJudge] = [
-            RateJudge("decay_rate", wanted, wanted if rate is None else rate.si)
+        constraints: list[AbstractProofConstraint] = [
+            RateConstraint(wanted, wanted if rate is None else rate.si)
         ]
         if force is not None:
-            judges.append(ForceJudge("peak_torque", force.si * (1 - ROOM_OF_BOUNDS)))
-        self.judges = tuple(judges)
+            constraints.append(ForceConstraint(force.si * (1 - ROOM_OF_BOUNDS)))
+        self.constraints = tuple(constraints)
 
     def run(self, progress: Progress, name: str | None) -> CertifiedOptimum:
         """Search, round and prove."""
-        from nrs_design.design.steered_search import SteeredProblem, steer
+        from nrs_design.design.trust_region import ConstrainedProblem, minimize_in_trust_region
 
         gains = self.gains
         progress("free optimum")
         free = gains.optimum()
-        looks = DesignLooks.of(gains, self.judges, progress)
-        problem = SteeredProblem(gains.cost, looks.look, gains.low, gains.high, gains.spared)
-        first = looks.look(free, None)
-        found = steer(problem, first)
+        evaluate = DesignEvaluator.of(gains, self.constraints, progress).evaluate
+        problem = ConstrainedProblem(gains.cost, evaluate, gains.low, gains.high, gains.spared)
+        first = evaluate(free, None)
+        found = minimize_in_trust_region(problem, first)
         # What is not reached from one start may be from another: with more damping, or with less.
         for bound in (gains.high, gains.low):
             if found.last.values.min() > -NEAR:
                 break
-            other = steer(problem, looks.look((free + bound) / 2, None))
+            other = minimize_in_trust_region(problem, evaluate((free + bound) / 2, None))
             found = max(found, other, key=lambda one: float(one.last.values.min()))
         progress("proof")
-        if found.last.values.min() <= -NEAR:
+        if missed := bool(found.last.values.min() <= -NEAR):
             result, written, x = self._otherwise(free, found.last, name)
         else:
             result, written, x = self._proved(found, problem, name)
+        # At the optimum of the cost alone, nothing binds.
+        prices = np.zeros(len(self.constraints)) if missed else found.shadow_prices
         return CertifiedOptimum(
             result,
             written,
             gains.cost(x),
             gains.cost(free),
-            self.judges[0].number(float(first.values[0])),
-            tuple(self._goals(found)),
-            found.looks,
+            self.constraints[0].number(float(first.values[0])),
+            tuple(self._goals(prices)),
+            found.evaluations,
         )
 
-    def _goals(self, found: Steered) -> Iterator[SteeredGoal]:
+    def _goals(self, prices: Array) -> Iterator[SteeredGoal]:
         """Yield the goals that steered, with what they cost."""
-        for judge, value, price in zip(self.judges, found.last.values, found.prices, strict=True):
-            if (wanted := self.wanted.get(judge.key)) is None:
-                continue
-            assert isinstance(wanted, Quantity)
-            yield SteeredGoal(
-                judge.key,
-                wanted.exact,
-                wanted.text,
-                judge.number(float(value)),
-                float(price) / wanted.si if price > LEAST_PRICE else None,
-            )
+        for constraint, price in zip(self.constraints, prices, strict=True):
+            if (wanted := self.wanted.get(constraint.key)) is not None:
+                own = float(price) / wanted.si if price > LEAST_PRICE else None
+                yield SteeredGoal(constraint.key, wanted.exact, own)
 
     def _proved(
-        self, found: Steered, problem: SteeredProblem, name: str | None
+        self, found: ConstrainedOptimum, problem: ConstrainedProblem, name: str | None
     ) -> tuple[Result, Written, Array]:
         """Round to the digits that ship, the cheapest first, and prove one that meets the goals."""
-        from nrs_design.certificates.goals import certified_goals
-
         last, near = found.last, []
         for x, written in self.gains.roundings(last.x):
-            missed = problem.penalty(last.values + found.slopes @ (x - last.x))
+            missed = problem.penalty(last.values + found.jacobian @ (x - last.x))
             wrong = problem.penalty(self.gains.spared(x)) > 0
             near.append(((wrong, missed > 0, problem.cost(x) + missed), x, written))
         for x, written in in_order(near)[:MOST_ROUNDINGS]:
-            result = run_certification(self.gains.respecified(written, partial(_named, name)))
-            goals = certified_goals(result.loaded.spec, result.certificate)
-            if all(goal.met for goal in goals if goal.key in STEERING):
+            if (result := self._certified(written, name)) is not None:
                 return result, written, x
         digits = self.gains.designed.spec.design.significant_digits
         raise DesignError(
@@ -256,33 +250,36 @@ class _Search:
             at=("goals", next(iter(self.wanted))),
         )
 
-    def _otherwise(
-        self, free: Array, last: Look, name: str | None
-    ) -> tuple[Result, Written, Array]:
-        """Return the optimum of the cost alone if other functions prove its goals."""
+    def _certified(self, written: Written, name: str | None) -> Result | None:
+        """Certify the spec with these gains; None if a goal that steers is not met."""
         from nrs_design.certificates.goals import certified_goals
 
-        near = [((float(np.abs(x - free).sum()),), x, w) for x, w in self.gains.roundings(free)]
-        x, written = in_order(near)[0]
         result = run_certification(self.gains.respecified(written, partial(_named, name)))
         goals = certified_goals(result.loaded.spec, result.certificate)
-        if not all(goal.met for goal in goals if goal.key in STEERING):
+        return result if all(goal.met for goal in goals if goal.key in STEERING) else None
+
+    def _otherwise(
+        self, free: Array, last: Evaluation, name: str | None
+    ) -> tuple[Result, Written, Array]:
+        """Return the optimum of the cost alone if other functions prove its goals."""
+        near = [((float(np.abs(x - free).sum()),), x, w) for x, w in self.gains.roundings(free)]
+        x, written = in_order(near)[0]
+        if (result := self._certified(written, name)) is None:
             raise self._unreachable(last)
         return result, written, x
 
-    def _unreachable(self, last: Look) -> DesignError:
+    def _unreachable(self, last: Evaluation) -> DesignError:
         """Say which goal gains miss, and how near they come."""
-        worst = self.judges[int(np.argmin(last.values))]
-        reached = worst.number(float(last.values.min()))
-        wanted = self.wanted.get(worst.key)
-        asked = "at all" if wanted is None else f"of {getattr(wanted, 'text', wanted)}"
-        what = "decay rate" if worst.key == "decay_rate" else "bound on the force"
-        reach = f"reach {reached:.4g} {unit(GOAL_UNITS[worst.key])}"
-        if worst.key == "decay_rate" and reached <= 0:
-            reach = "reach none"
+        worst = self.constraints[int(np.argmin(last.values))]
+        value = float(last.values.min())
+        reached, wanted = worst.number(value), self.wanted.get(worst.key)
+        asked = "at all" if wanted is None else f"of {wanted.text}"
+        # A rate that is not positive is no decay.
+        none = value <= NOTHING or reached <= 0
+        reach = "reach none" if none else f"reach {reached:.4g} {unit(worst.unit)}"
         return DesignError(
             f"no gains within the bounds were found that one quadratic function for all modes "
-            f"proves with a {what} {asked}: the nearest, {self.gains.said(last.x)}, {reach}",
+            f"proves with a {worst.title} {asked}: the nearest, {self.gains.said(last.x)}, {reach}",
             remedy="relax the goal, widen the bounds, narrow the ranges, or shorten the delay; or "
             "give the gains, and let certify-switching try other functions",
             at=("goals", worst.key if wanted is not None else next(iter(self.wanted))),

@@ -17,13 +17,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from nrs_design.certificates.bounds import bound_on
-from nrs_design.certificates.certificate import Verdict
+from nrs_design.certificates.goals import decay_rate
 from nrs_design.design.objective import Objective
 from nrs_design.errors import DesignError
 from nrs_design.pipeline.certification import Result, run_certification
 from nrs_design.pipeline.certified_optimum import LEAST_RATE, check_steerable
 from nrs_design.pipeline.design import Designed, placed
-from nrs_design.pipeline.design_looks import ROOM, DesignLooks, RateJudge
 from nrs_design.pipeline.free_gains import (
     Array,
     FreeGains,
@@ -32,27 +31,19 @@ from nrs_design.pipeline.free_gains import (
     has_free_gains,
     in_order,
 )
+from nrs_design.pipeline.proof_constraints import ROOM, DesignEvaluator, RateConstraint
 from nrs_design.pipeline.stability_map import as_stiff
 from nrs_design.progress import Progress, silent
-from nrs_design.proof.mode import Time
 from nrs_design.proof.text import exact_text
 
 if TYPE_CHECKING:
     from nrs_design.design.analysis import DesignAnalysis
-    from nrs_design.design.steered_search import Look
+    from nrs_design.design.trust_region import Evaluation
     from nrs_design.models.plant import Plant
     from nrs_design.spec.quantity import Quantity
     from nrs_design.spec.quantity_fields import RangedQuantity
     from nrs_design.spec.spec_document import SpecDocument
 
-# Shares by which the cost may be above its least, by default.
-SHARES = (
-    Fraction(1, 100),
-    Fraction(2, 100),
-    Fraction(5, 100),
-    Fraction(10, 100),
-    Fraction(20, 100),
-)
 # Upper ends of stiffness are looked for up to so many times the declared ones.
 WIDEST = 64.0
 # A cost beyond what is allowed by this share of the least counts as one missed constraint.
@@ -107,7 +98,7 @@ def run_trade_off(
     designed: Designed,
     analysis: DesignAnalysis,
     objective: Objective,
-    shares: Sequence[Fraction] = SHARES,
+    shares: Sequence[Fraction],
     progress: Progress = silent,
 ) -> tuple[TradeOffCurve, ...]:
     """Find what is proved for a little more cost.
@@ -197,6 +188,8 @@ class _Curve:
         self.wanted = Fraction(0) if goal is None else goal.exact
         self.least_rate = max(float(self.wanted) * (1 + ROOM), LEAST_RATE)
         self.scale = max(self.least_rate, 1.0)
+        constraint = RateConstraint(self.least_rate, self.scale)
+        self.evaluator = DesignEvaluator.of(gains, (constraint,), progress)
 
     @property
     def stretches(self) -> bool:
@@ -218,7 +211,7 @@ class _Curve:
 
     def _largest(self, start: Array, budget: float, least: float, *, fixed: bool = False) -> Array:
         """Return the point with the largest objective within a cost, or with the same gains."""
-        from nrs_design.design.steered_search import SteeredProblem, steer
+        from nrs_design.design.trust_region import ConstrainedProblem, minimize_in_trust_region
 
         gains, n = self.gains, len(self.gains.places)
 
@@ -231,25 +224,23 @@ class _Curve:
             # A range keeps its two ends, as modes are one for each.
             least_y, most_y = log(self.softest) + LEAST_WIDTH, log(WIDEST)
         low, high = (start[:n], start[:n]) if fixed else (gains.low, gains.high)
-        problem = SteeredProblem(
+        problem = ConstrainedProblem(
             lambda x: -float(x[n]),
-            self._look,
+            self._evaluate,
             np.append(low, least_y),
             np.append(high, most_y),
             (lambda x: np.zeros(0)) if fixed else quick,
         )
-        return steer(problem, self._look(start, None)).last.x
+        return minimize_in_trust_region(problem, self._evaluate(start, None)).last.x
 
-    def _look(self, x: Array, expected: Array | None) -> Look:
-        """Look at the rate of a design: at its stiffness, or beside the rate that is asked for."""
-        from nrs_design.design.steered_search import Look
+    def _evaluate(self, x: Array, expected: Array | None) -> Evaluation:
+        """Find the rate of a design: at its stiffness, or beside the rate that is asked for."""
+        from nrs_design.design.trust_region import Evaluation
 
-        judge = RateJudge("decay_rate", self.least_rate, self.scale)
-        looks = DesignLooks.of(self.gains, (judge,), self.progress)
         if self.stretches:
-            return looks.look(x, expected, self._plant)
-        found = looks.look(x[:-1], None if expected is None else expected + x[-1])
-        return Look(x, found.values - x[-1], lambda: np.hstack([found.slopes(), [[-1.0]]]))
+            return self.evaluator.evaluate(x, expected, self._plant)
+        found = self.evaluator.evaluate(x[:-1], None if expected is None else expected + x[-1])
+        return Evaluation(x, found.values - x[-1], lambda: np.hstack([found.jacobian(), [[-1.0]]]))
 
     def _plant(self, x: Array) -> Plant:
         """Return the plant with the upper ends of stiffness at a point."""
@@ -273,7 +264,7 @@ class _Curve:
             result = run_certification(
                 gains.respecified(written, change if self.stretches else _unchanged)
             )
-            rate = _rate(result)
+            rate = decay_rate(result.certificate)
             if rate is not None and rate >= self.wanted:
                 self.progress(f"proved at cost {gains.cost(own):.5g}")
                 return TradeOffPoint(share, gains.cost(own), written, result, rate)
@@ -306,27 +297,12 @@ def _stretched(designed: Designed, factor: Fraction, document: SpecDocument) -> 
 
 def _in_unit(quantity: Quantity, other: Quantity) -> Fraction:
     """Return the number of a quantity in the unit of another."""
-    return (
-        quantity.value
-        if quantity.unit == other.unit
-        else quantity.exact * other.value / other.exact
-    )
+    if quantity.unit == other.unit:
+        return quantity.value
+    return quantity.exact * other.value / other.exact
 
 
 def _digits_below(value: Fraction) -> Fraction:
     """Round down to a few significant digits."""
     step = Fraction(10) ** (floor(log10(value)) + 1 - DIGITS)
     return floor(value / step) * step
-
-
-def _rate(result: Result) -> Fraction | None:
-    """Return the proved rate in 1/s; None if nothing is proved."""
-    certificate = result.certificate
-    evidence = None if certificate is None else certificate.evidence
-    if certificate is None or evidence is None or certificate.verdict != Verdict.PROVED:
-        return None
-    rate, system = evidence.proved_rate(certificate.system), certificate.system
-    if rate is None or system.time is Time.CONTINUOUS:
-        return rate
-    assert system.sample_time is not None, "as a loop is sampled"
-    return (1 - rate) / system.sample_time

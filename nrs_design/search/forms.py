@@ -174,11 +174,11 @@ class Solution:
 
 
 @dataclass(frozen=True)
-class Priced:
-    """A solution, with what a unit of the inequality of an edge is worth to its margin."""
+class DualSolution:
+    """A solution, with its dual variables: how much a unit of an inequality adds to the margin."""
 
     solution: Solution
-    worth: Mapping[int, Array]  # A form for each edge of the program, by its number
+    duals: Mapping[int, Array]  # A form for each edge of the program, by its number
 
 
 class FormsProgram:
@@ -276,8 +276,8 @@ class FormsProgram:
         x = maximize_margin(*self._built.of_edges(self.factors(rate), active), begun)
         return None if x is None else self._read(x, rate)
 
-    def prices(self, rate: float, allowance: Allowance) -> Priced | None:
-        """Solve at a rate, and return what the inequalities are worth; None without a margin.
+    def solve_dual(self, rate: float, allowance: Allowance) -> DualSolution | None:
+        """Solve at a rate, for the dual variables as well; None without a margin.
 
         Parameters
         ----------
@@ -303,8 +303,8 @@ class FormsProgram:
         lengths = [n * (n + 1) // 2 for n in sizes]
         # The rows of the edges are the last ones.
         parts = np.split(found.z[len(found.z) - sum(lengths) :], np.cumsum(lengths)[:-1])
-        worth = {k: unpack(part, n) for k, part, n in zip(active, parts, sizes, strict=True)}
-        return Priced(solution, worth)
+        duals = {k: unpack(part, n) for k, part, n in zip(active, parts, sizes, strict=True)}
+        return DualSolution(solution, duals)
 
     def factors(self, rate: float) -> list[float]:
         """Return what the rate makes of the inequality of each edge: twice that of a flow.

@@ -1,7 +1,7 @@
 """The best decay rate of one form for all modes, and how it changes with the modes (untrusted).
 
 By the envelope theorem: forms and multipliers need not be found again for a small change. With W
-what a unit of the inequality of each edge is worth to the margin, the margin changes by the sum of
+the dual variable of the inequality F of each edge, the margin changes by the sum of
 ``trace(W dF)``, whether modes or the rate change; where it stays zero, the rate makes up for the
 modes.
 """
@@ -19,7 +19,7 @@ from nrs_design.proof.mode import Time
 from nrs_design.proof.steps import COUPLING
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.family import Family, floats_in_silence
-from nrs_design.search.forms import FormsProgram, Inequality, Priced, Solution
+from nrs_design.search.forms import DualSolution, FormsProgram, Inequality, Solution
 from nrs_design.search.graphs import draw_together
 from nrs_design.search.rung import Facts
 from nrs_design.work import Allowance
@@ -41,7 +41,7 @@ class RateSlope:
 
     rate: float  # In 1/s; of a contraction rho per step, (1 - rho) over the period
     _program: FormsProgram
-    _priced: Priced
+    _dual: DualSolution
     _at: float  # As the program counts rates
     _per_rate: float  # What the margin changes by for 1/s
 
@@ -55,10 +55,10 @@ class RateSlope:
         """
         program, total = self._program, 0.0
         changed = program.edges_at(system)
-        for k in self._priced.worth:
-            moved = _decrease(program, changed[k], self._priced, k, self._at)
-            own = _decrease(program, program.edges[k], self._priced, k, self._at)
-            total += float(np.sum(self._priced.worth[k] * (moved - own)))
+        for k in self._dual.duals:
+            moved = _decrease(program, changed[k], self._dual, k, self._at)
+            own = _decrease(program, program.edges[k], self._dual, k, self._at)
+            total += float(np.sum(self._dual.duals[k] * (moved - own)))
         return -total / self._per_rate
 
 
@@ -140,10 +140,10 @@ def rate_slope(
         # Where the margin is nearly nil, its slope is that of noise.
         for below in BELOW:
             at = _counted(best - below * max(abs(best), resolution), program)
-            priced = program.prices(at, allowance)
-            per_rate = 0.0 if priced is None else _per_rate(program, priced, at)
-            if priced is not None and per_rate < 0:
-                return RateSlope(best, program, priced, at, per_rate)
+            dual = program.solve_dual(at, allowance)
+            per_rate = 0.0 if dual is None else _per_rate(program, dual, at)
+            if dual is not None and per_rate < 0:
+                return RateSlope(best, program, dual, at, per_rate)
     return None
 
 
@@ -231,27 +231,27 @@ def _in_seconds(rate: float, program: FormsProgram) -> float:
 
 
 def _decrease(
-    program: FormsProgram, edge: Inequality, priced: Priced, k: int, at: float
+    program: FormsProgram, edge: Inequality, dual: DualSolution, k: int, at: float
 ) -> NDArray[np.float64]:
     """Return the inequality of an edge as the rows of the program state it."""
-    N = priced.solution.vanishing[k]
-    form = program.decrease(edge, priced.solution, N, at)
+    N = dual.solution.vanishing[k]
+    form = program.decrease(edge, dual.solution, N, at)
     return form if edge.is_flow else program.factors(at)[k] * form
 
 
-def _per_rate(program: FormsProgram, priced: Priced, at: float) -> float:
+def _per_rate(program: FormsProgram, dual: DualSolution, at: float) -> float:
     """Return what 1/s more does to the margin."""
     total = 0.0
-    for k, worth in priced.worth.items():
+    for k, own in dual.duals.items():
         edge = program.edges[k]
         if edge.is_flow:
-            Q = priced.solution.forms[edge.before][np.ix_(edge.kept, edge.kept)]
+            Q = dual.solution.forms[edge.before][np.ix_(edge.kept, edge.kept)]
             changed = -2 * float(np.ldexp(1.0, program.unit)) * edge.padded(Q)
         else:
-            Q = priced.solution.forms[edge.after][np.ix_(edge.left, edge.left)]
+            Q = dual.solution.forms[edge.after][np.ix_(edge.left, edge.left)]
             weight = edge.weight(at, 1, program.time)
             continuous = program.time is Time.CONTINUOUS
             more = 2 * edge.lasts if continuous else 2 * edge.lasts * _period(program) / at
             changed = -more * weight * edge.changed(Q)
-        total += float(np.sum(worth * changed))
+        total += float(np.sum(own * changed))
     return total

@@ -154,7 +154,7 @@ class Maximum:
     """What the solver returned, whatever its status."""
 
     x: Array  # Shape (N,). The unknowns.
-    z: Array  # Shape (M,). What a unit of the offset of each row is worth.
+    z: Array  # Shape (M,). The dual variables of the rows.
 
 
 @dataclass(frozen=True, slots=True)
@@ -265,7 +265,7 @@ def find_maximum(
     begun: Begun,
     equalities: int = 0,
 ) -> Maximum | None:
-    """Do the same as `maximize_margin`, and return what the rows are worth as well.
+    """Do the same as `maximize_margin`, and return the dual variables as well.
 
     Parameters
     ----------

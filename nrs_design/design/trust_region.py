@@ -1,6 +1,6 @@
-"""The least cost where constraints take long to find: known, with slopes, at few points only.
+"""The least cost under constraints that take long to evaluate.
 
-Between points a constraint is taken as linear, within a region that grows where that was right
+Between evaluations a constraint is taken as linear, within a region that grows where that was right
 and shrinks where it was wrong (sequential programming with a trust region and an exact penalty;
 Nocedal and Wright 2006, chapter 18).
 """
@@ -23,28 +23,28 @@ PENALTY = 10.0
 KEPT, GOOD = 0.1, 0.6
 # What is less is no improvement.
 CHEAPER = 2e-5
-MOST_LOOKS = 16
+MOST_EVALUATIONS = 16
 # Slopes that were wrong by more than this share are found again.
 WRONG = 0.012
-# How far a constraint is moved for its price; one that is met by more than the slack has none.
+# How far a constraint is moved for its shadow price; one met by more than the slack has none.
 MOVED, SLACK = 0.01, 0.05
 
 
 @dataclass(frozen=True, eq=False)
-class Look:
+class Evaluation:
     """What is known at a point."""
 
     x: Array  # Shape (n,)
     values: Array  # Shape (k,). Of the constraints; those that are not negative are met.
-    slopes: Callable[[], Array]  # Gives shape (k, n); takes long
+    jacobian: Callable[[], Array]  # Gives shape (k, n); takes long
 
 
 @dataclass(frozen=True, eq=False)
-class SteeredProblem:
+class ConstrainedProblem:
     """What is to be cheap, and what is to be met."""
 
     cost: Callable[[Array], float]  # Quick
-    look: Callable[[Array, Array], Look]  # At a point, given what is expected; takes long
+    evaluate: Callable[[Array, Array], Evaluation]  # At a point, given what is expected; takes long
     low: Array
     high: Array
     # Constraints that are quick: not negative where they are met.
@@ -56,64 +56,67 @@ class SteeredProblem:
 
 
 @dataclass(frozen=True, eq=False)
-class Steered:
+class ConstrainedOptimum:
     """Where a search ended."""
 
-    last: Look
-    slopes: Array  # Shape (k, n), there
+    last: Evaluation
+    jacobian: Array  # Shape (k, n), there
     cost: float
-    prices: Array  # Shape (k,). What the cost rises by if a constraint is one harder to meet.
-    looks: int
+    # Shape (k,). What the cost rises by if a constraint is one harder to meet.
+    shadow_prices: Array
+    evaluations: int
 
 
-def steer(problem: SteeredProblem, start: Look) -> Steered:
+def minimize_in_trust_region(problem: ConstrainedProblem, start: Evaluation) -> ConstrainedOptimum:
     """Minimize the cost from a start; constraints that cannot be met are missed by little.
 
     Parameters
     ----------
-    problem : SteeredProblem
+    problem : ConstrainedProblem
         Cost and constraints.
-    start : Look
+    start : Evaluation
         Within the bounds.
     """
-    here, looks, region = start, 1, REGION
-    slopes: Array | None = None
-    while looks < MOST_LOOKS and region >= SMALLEST_REGION:
-        slopes = here.slopes() if slopes is None else slopes
-        there = _cheapest(problem, here, slopes, region)
-        reached = here.values + slopes @ (there - here.x)
+    here, count, region = start, 1, REGION
+    jacobian: Array | None = None
+    while count < MOST_EVALUATIONS and region >= SMALLEST_REGION:
+        jacobian = here.jacobian() if jacobian is None else jacobian
+        there = _cheapest(problem, here, jacobian, region)
+        reached = here.values + jacobian @ (there - here.x)
         merit = _merit(problem, here.x, here.values)
         predicted = merit - _merit(problem, there, reached)
         if predicted < CHEAPER:
             break
-        found, looks = problem.look(there, reached), looks + 1
+        found, count = problem.evaluate(there, reached), count + 1
         gained = merit - _merit(problem, there, found.values)
         if gained >= KEPT * predicted:
-            slopes = _updated(slopes, here, found)
+            jacobian = _updated(jacobian, here, found)
             here = found
             region = 2 * region if gained >= GOOD * predicted else region
         else:
             region = min(region, float(np.abs(there - here.x).max())) / 4
-    slopes = here.slopes() if slopes is None else slopes
-    prices = np.array([*_prices(problem, here, slopes)])
-    return Steered(here, slopes, problem.cost(here.x), prices, looks)
+    jacobian = here.jacobian() if jacobian is None else jacobian
+    shadow_prices = np.array([*_shadow_prices(problem, here, jacobian)])
+    return ConstrainedOptimum(here, jacobian, problem.cost(here.x), shadow_prices, count)
 
 
-def _updated(slopes: Array, here: Look, found: Look) -> Array | None:
-    """Return slopes that tell the last step (Broyden 1965); None where they were too wrong."""
+def _updated(jacobian: Array, here: Evaluation, found: Evaluation) -> Array | None:
+    """Return the Jacobian that tells the last step (Broyden 1965); None where it was too wrong."""
     step = found.x - here.x
-    expected = slopes @ step
+    expected = jacobian @ step
     wrong = found.values - here.values - expected
     if np.abs(wrong).max() > WRONG * np.abs(expected).max():
         return None
-    return np.asarray(slopes + np.outer(wrong, step) / (step @ step))
+    return np.asarray(jacobian + np.outer(wrong, step) / (step @ step))
 
 
-def _merit(problem: SteeredProblem, x: Array, values: Array) -> float:
+def _merit(problem: ConstrainedProblem, x: Array, values: Array) -> float:
     return problem.cost(x) + problem.penalty(values) + problem.penalty(problem.quick(x))
 
 
-def _cheapest(problem: SteeredProblem, here: Look, slopes: Array, region: float) -> Array:
+def _cheapest(
+    problem: ConstrainedProblem, here: Evaluation, jacobian: Array, region: float
+) -> Array:
     """Minimize the cost where linear constraints hold as well as they can, within the region."""
     from scipy.optimize import NonlinearConstraint, minimize
 
@@ -123,7 +126,7 @@ def _cheapest(problem: SteeredProblem, here: Look, slopes: Array, region: float)
 
     def missed(z: Array) -> Array:
         """Return what must not be negative."""
-        linear = here.values + slopes @ (z[:n] - here.x) + z[n : n + k]
+        linear = here.values + jacobian @ (z[:n] - here.x) + z[n : n + k]
         return np.concatenate([linear, problem.quick(z[:n]) + z[n + k]])
 
     # Behind the point there is by how much each constraint may be missed.
@@ -144,15 +147,17 @@ def _cheapest(problem: SteeredProblem, here: Look, slopes: Array, region: float)
     return np.asarray(np.clip(found.x[:n], low, high), dtype=float)
 
 
-def _prices(problem: SteeredProblem, here: Look, slopes: Array) -> Iterator[float]:
+def _shadow_prices(
+    problem: ConstrainedProblem, here: Evaluation, jacobian: Array
+) -> Iterator[float]:
     """Yield what each constraint costs near a point, in first order; nothing for one far from it.
 
     A search ends a little inside of what binds.
     """
 
     def cost(values: Array) -> float:
-        moved = Look(here.x, values, here.slopes)
-        there = _cheapest(problem, moved, slopes, REGION)
+        moved = Evaluation(here.x, values, here.jacobian)
+        there = _cheapest(problem, moved, jacobian, REGION)
         return problem.cost(there)
 
     for i, value in enumerate(here.values):

@@ -6,7 +6,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from math import log, sqrt
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
@@ -17,19 +17,21 @@ from nrs_design.progress import Progress
 from nrs_design.work import Allowance, Fuse, NotAffordableError
 
 if TYPE_CHECKING:
-    from nrs_design.design.steered_search import Look
+    from nrs_design.design.trust_region import Evaluation
     from nrs_design.models.plant import Plant
     from nrs_design.proof.system import SwitchedSystem
 
 # How far a coordinate moves for a slope.
 STEP = 1e-3
+# The value where floating point finds no number.
+NOTHING = -10.0
 # Of a rate that is asked for, so much more is sought, and of a bound less: roundings take a little.
 ROOM, ROOM_OF_BOUNDS = 5e-4, 4e-3
 
 
 @dataclass(frozen=True)
-class Judged:
-    """One number of a design, held against what is wanted."""
+class ConstraintValue:
+    """A number of a design, held against what is wanted."""
 
     value: float  # Not negative where it is met; one is what is wanted
     change: Callable[[SwitchedSystem], float]  # By how much it is larger for a system nearby
@@ -37,15 +39,17 @@ class Judged:
 
 
 @dataclass
-class AbstractJudge(ABC):
-    """Finds one number of a design."""
+class AbstractProofConstraint(ABC):
+    """A number that a proof is to show."""
 
-    key: str  # Of the goal
+    key: ClassVar[str]  # Of the goal
+    title: ClassVar[str]  # For people
+    unit: ClassVar[str]
 
     @abstractmethod
-    def judge(
+    def value(
         self, system: SwitchedSystem, expected: float | None, allowance: Allowance
-    ) -> Judged | None:
+    ) -> ConstraintValue | None:
         """Return the number; None if floating point finds none.
 
         Parameters
@@ -69,21 +73,25 @@ class AbstractJudge(ABC):
 
 
 @dataclass
-class RateJudge(AbstractJudge):
+class RateConstraint(AbstractProofConstraint):
     """The best decay rate of one form for all modes."""
+
+    key: ClassVar[str] = "decay_rate"
+    title: ClassVar[str] = "decay rate"
+    unit: ClassVar[str] = "1/s"
 
     wanted: float  # 1/s, with its room
     scale: float  # What a value of one is, 1/s
 
-    def judge(
+    def value(
         self, system: SwitchedSystem, expected: float | None, allowance: Allowance
-    ) -> Judged | None:
+    ) -> ConstraintValue | None:
         """Bracket the rate, from about what is expected.
 
         Parameters
         ----------
         system, expected, allowance
-            As for `AbstractJudge`.
+            As for `AbstractProofConstraint`.
         """
         from nrs_design.search.rate_slope import rate_slope
 
@@ -91,7 +99,7 @@ class RateJudge(AbstractJudge):
         found = rate_slope(system, guess, allowance)
         if found is None:
             return None
-        return Judged(
+        return ConstraintValue(
             (found.rate - self.wanted) / self.scale,
             lambda system: found.change(system) / self.scale,
             f"decay rate {found.rate:.4g} 1/s",
@@ -103,21 +111,25 @@ class RateJudge(AbstractJudge):
 
 
 @dataclass
-class ForceJudge(AbstractJudge):
+class ForceConstraint(AbstractProofConstraint):
     """The least bound on the force under all disturbances."""
+
+    key: ClassVar[str] = "peak_torque"
+    title: ClassVar[str] = "bound on the force"
+    unit: ClassVar[str] = "N*m"
 
     wanted: float  # N m, with its room
     share: float | None = field(default=None, init=False)  # That was the best last time
 
-    def judge(
+    def value(
         self, system: SwitchedSystem, expected: float | None, allowance: Allowance
-    ) -> Judged | None:
+    ) -> ConstraintValue | None:
         """Solve for a few shares, near the one that was the best.
 
         Parameters
         ----------
         system, expected, allowance
-            As for `AbstractJudge`.
+            As for `AbstractProofConstraint`.
         """
         from nrs_design.search.force_slope import force_slope
 
@@ -127,7 +139,7 @@ class ForceJudge(AbstractJudge):
             return None
         self.share = found.share
         level = found.level * sqrt(system.axes or 1)
-        return Judged(
+        return ConstraintValue(
             log(self.wanted / level),
             lambda system: -found.change(system),
             f"force up to {level:.4g}",
@@ -139,36 +151,36 @@ class ForceJudge(AbstractJudge):
 
 
 @dataclass(frozen=True)
-class DesignLooks:
-    """Looks at designs, by several judges."""
+class DesignEvaluator:
+    """Evaluates designs under several constraints."""
 
     gains: FreeGains
-    judges: tuple[AbstractJudge, ...]
+    constraints: tuple[AbstractProofConstraint, ...]
     progress: Progress
     allowance: Allowance
 
     @classmethod
     def of(
-        cls, gains: FreeGains, judges: tuple[AbstractJudge, ...], progress: Progress
-    ) -> DesignLooks:
+        cls, gains: FreeGains, constraints: tuple[AbstractProofConstraint, ...], progress: Progress
+    ) -> DesignEvaluator:
         """Take work and memory from the spec.
 
         Parameters
         ----------
-        gains, judges, progress
+        gains, constraints, progress
             As for the class.
         """
         limits = search_limits(gains.designed.spec)
         allowance = Allowance(limits.budget, limits.memory, Fuse.of(limits.budget))
-        return cls(gains, judges, progress, allowance)
+        return cls(gains, constraints, progress, allowance)
 
-    def look(
+    def evaluate(
         self,
         x: Array,
         expected: Array | None,
         plant: Callable[[Array], Plant | None] = lambda x: None,
-    ) -> Look:
-        """Judge a design, and let slopes be asked for.
+    ) -> Evaluation:
+        """Evaluate a design; its Jacobian only where it is asked for.
 
         Parameters
         ----------
@@ -184,7 +196,7 @@ class DesignLooks:
         DesignError
             If work or memory do not suffice.
         """
-        from nrs_design.design.steered_search import Look
+        from nrs_design.design.trust_region import Evaluation
 
         gains, n = self.gains, len(self.gains.places)
 
@@ -193,13 +205,13 @@ class DesignLooks:
 
         here = system(x)
         found = [
-            self._judged(judge, here, None if expected is None else float(expected[k]))
-            for k, judge in enumerate(self.judges)
+            self._value(constraint, here, None if expected is None else float(expected[k]))
+            for k, constraint in enumerate(self.constraints)
         ]
         said = ", ".join(one.said for one in found)
         self.progress(f"{said} at cost {gains.cost(x[:n]):.5g}")
 
-        def slopes() -> Array:
+        def jacobian() -> Array:
             moved = []
             for i in range(len(x)):
                 step = -STEP if i < n and x[i] + STEP > gains.high[i] else STEP
@@ -207,15 +219,15 @@ class DesignLooks:
                 moved.append([one.change(there) / step for one in found])
             return np.array(moved).T
 
-        return Look(x, np.array([one.value for one in found]), slopes)
+        return Evaluation(x, np.array([one.value for one in found]), jacobian)
 
-    def _judged(
-        self, judge: AbstractJudge, system: SwitchedSystem, expected: float | None
-    ) -> Judged:
+    def _value(
+        self, constraint: AbstractProofConstraint, system: SwitchedSystem, expected: float | None
+    ) -> ConstraintValue:
         try:
-            found = judge.judge(system, expected, self.allowance)
+            found = constraint.value(system, expected, self.allowance)
         except NotAffordableError as error:
             raise DesignError(
                 f"no gains were found: {error}", remedy="allow more with certification.budget"
             ) from error
-        return found or Judged(-1.0, lambda system: 0.0, f"no {judge.key}")
+        return found or ConstraintValue(NOTHING, lambda system: 0.0, f"no {constraint.title}")

@@ -188,8 +188,6 @@ class _Curve:
         self.wanted = Fraction(0) if goal is None else goal.exact
         self.least_rate = max(float(self.wanted) * (1 + ROOM), LEAST_RATE)
         self.scale = max(self.least_rate, 1.0)
-        constraint = RateConstraint(self.least_rate, self.scale)
-        self.evaluator = DesignEvaluator.of(gains, (constraint,), progress)
 
     @property
     def stretches(self) -> bool:
@@ -224,22 +222,26 @@ class _Curve:
             # A range keeps its two ends, as modes are one for each.
             least_y, most_y = log(self.softest) + LEAST_WIDTH, log(WIDEST)
         low, high = (start[:n], start[:n]) if fixed else (gains.low, gains.high)
+        # What a search may take is for one point.
+        constraint = RateConstraint(self.least_rate, self.scale)
+        evaluator = DesignEvaluator.of(gains, (constraint,), self.progress)
+        evaluate = partial(self._evaluate, evaluator)
         problem = ConstrainedProblem(
             lambda x: -float(x[n]),
-            self._evaluate,
+            evaluate,
             np.append(low, least_y),
             np.append(high, most_y),
             (lambda x: np.zeros(0)) if fixed else quick,
         )
-        return minimize_in_trust_region(problem, self._evaluate(start, None)).last.x
+        return minimize_in_trust_region(problem, evaluate(start, None)).last.x
 
-    def _evaluate(self, x: Array, expected: Array | None) -> Evaluation:
+    def _evaluate(self, evaluator: DesignEvaluator, x: Array, expected: Array | None) -> Evaluation:
         """Find the rate of a design: at its stiffness, or beside the rate that is asked for."""
         from nrs_design.design.trust_region import Evaluation
 
         if self.stretches:
-            return self.evaluator.evaluate(x, expected, self._plant)
-        found = self.evaluator.evaluate(x[:-1], None if expected is None else expected + x[-1])
+            return evaluator.evaluate(x, expected, self._plant)
+        found = evaluator.evaluate(x[:-1], None if expected is None else expected + x[-1])
         return Evaluation(x, found.values - x[-1], lambda: np.hstack([found.jacobian(), [[-1.0]]]))
 
     def _plant(self, x: Array) -> Plant:

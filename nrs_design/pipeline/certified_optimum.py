@@ -35,8 +35,6 @@ from nrs_design.pipeline.free_gains import (
 )
 from nrs_design.pipeline.proof_constraints import (
     NOTHING,
-    ROOM,
-    ROOM_OF_BOUNDS,
     AbstractProofConstraint,
     DesignEvaluator,
     ForceConstraint,
@@ -46,6 +44,8 @@ from nrs_design.progress import Progress, silent
 from nrs_design.proof.bounds import rounded_up
 
 if TYPE_CHECKING:
+    # What was certified, what ships of the free gains, and the point.
+    Proved = tuple[Result, Written, Array]
     from nrs_design.design.analysis import DesignAnalysis
     from nrs_design.design.trust_region import ConstrainedOptimum, ConstrainedProblem, Evaluation
     from nrs_design.spec.spec_document import SpecDocument
@@ -56,10 +56,16 @@ STEERING = (RateConstraint.key, ForceConstraint.key)
 LEAST_RATE = 1e-2
 # Roundings that are proved at most.
 MOST_ROUNDINGS = 4
+# Roundings take a little: so much more is asked for of a rate, and less of a bound; where the proof
+# falls short, more than that.
+ROOMS = ((5e-4, 4e-3), (4e-3, 1.2e-2), (2e-2, 4e-2))
 # A goal that is missed by no more than this share may be met by rounding.
 NEAR = 5e-3
 # What costs less does not bind.
 LEAST_PRICE = 1e-4
+
+
+Constraints = tuple[AbstractProofConstraint, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,7 +141,7 @@ def run_certified_optimum(
         found, missed = [], []
         for gains in gain_branches(designed, analysis):
             try:
-                found.append(_Search(gains).run(progress, name))
+                found.append(_Search(gains, progress, name).run())
             except DesignError as error:
                 missed.append(error)
         if not found:
@@ -175,53 +181,76 @@ def check_steerable(designed: Designed) -> None:
 class _Search:
     """The search for the cheapest gains whose proof meets the goals."""
 
-    def __init__(self, gains: FreeGains) -> None:
+    def __init__(self, gains: FreeGains, progress: Progress, name: str | None) -> None:
+        self.gains, self.progress, self.name = gains, progress, name
         goals = gains.designed.spec.goals
         assert goals is not None, "as one steers"
-        self.gains = gains
-        rate, force = goals.decay_rate, goals.peak_torque
-        given = zip(STEERING, (rate, force), strict=True)
+        given = zip(STEERING, (goals.decay_rate, goals.peak_torque), strict=True)
         self.wanted = {key: value for key, value in given if value is not None}
-        wanted = LEAST_RATE if rate is None else max(rate.si * (1 + ROOM), LEAST_RATE)
-        constraints: list[AbstractProofConstraint] = [
-            RateConstraint(wanted, wanted if rate is None else rate.si)
-        ]
-        if force is not None:
-            constraints.append(ForceConstraint(force.si * (1 - ROOM_OF_BOUNDS)))
-        self.constraints = tuple(constraints)
+        self.constraints = self._constraints(*ROOMS[0])
 
-    def run(self, progress: Progress, name: str | None) -> CertifiedOptimum:
-        """Search, round and prove."""
+    def _constraints(self, room: float, room_of_bounds: float) -> Constraints:
+        """Return what is asked for, and a little more, as roundings take some of it."""
+        rate, force = (self.wanted.get(key) for key in STEERING)
+        wanted = LEAST_RATE if rate is None else max(rate.si * (1 + room), LEAST_RATE)
+        decays = RateConstraint(wanted, wanted if rate is None else rate.si)
+        if force is None:
+            return (decays,)
+        return decays, ForceConstraint(force.si * (1 - room_of_bounds))
+
+    def run(self) -> CertifiedOptimum:
+        """Search, round and prove; where the proof falls short, once more with more room."""
+        self.progress("free optimum")
+        start = free = self.gains.optimum()
+        evaluations, free_rate = 0, None
+        for rooms in ROOMS:
+            self.constraints = self._constraints(*rooms)
+            problem, first, found = self._minimum(start)
+            evaluations += found.evaluations
+            if free_rate is None:
+                free_rate = self.constraints[0].number(float(first.values[0]))
+            if found.last.values.min() <= -NEAR:
+                break
+            self.progress("proof")
+            if (proved := self._proved(found, problem)) is not None:
+                return self._optimum(free, free_rate, proved, found.shadow_prices, evaluations)
+            start = found.last.x
+        self.progress("proof")
+        # Other functions may prove the optimum of the cost alone; nothing binds there.
+        if (proved := self._otherwise(free)) is not None:
+            nothing = np.zeros(len(self.constraints))
+            return self._optimum(free, free_rate or 0.0, proved, nothing, evaluations)
+        raise self._unreachable(found.last, in_floats=rooms != ROOMS[0])
+
+    def _minimum(self, start: Array) -> tuple[ConstrainedProblem, Evaluation, ConstrainedOptimum]:
+        """Minimize the cost in floating point, also from other starts if that misses a goal."""
         from nrs_design.design.trust_region import ConstrainedProblem, minimize_in_trust_region
 
         gains = self.gains
-        progress("free optimum")
-        free = gains.optimum()
-        evaluate = DesignEvaluator.of(gains, self.constraints, progress).evaluate
+        evaluate = DesignEvaluator.of(gains, self.constraints, self.progress).evaluate
         problem = ConstrainedProblem(gains.cost, evaluate, gains.low, gains.high, gains.spared)
-        first = evaluate(free, None)
+        first = evaluate(start, None)
         found = minimize_in_trust_region(problem, first)
-        # What is not reached from one start may be from another: with more damping, or with less.
+        # With more damping, or with less.
         for bound in (gains.high, gains.low):
             if found.last.values.min() > -NEAR:
                 break
-            other = minimize_in_trust_region(problem, evaluate((free + bound) / 2, None))
+            other = minimize_in_trust_region(problem, evaluate((start + bound) / 2, None))
             found = max(found, other, key=lambda one: float(one.last.values.min()))
-        progress("proof")
-        if missed := bool(found.last.values.min() <= -NEAR):
-            result, written, x = self._otherwise(free, found.last, name)
-        else:
-            result, written, x = self._proved(found, problem, name)
-        # At the optimum of the cost alone, nothing binds.
-        prices = np.zeros(len(self.constraints)) if missed else found.shadow_prices
+        return problem, first, found
+
+    def _optimum(
+        self, free: Array, free_rate: float, proved: Proved, prices: Array, evaluations: int
+    ) -> CertifiedOptimum:
+        result, written, x = proved
         return CertifiedOptimum(
             result,
             written,
-            gains.cost(x),
-            gains.cost(free),
-            self.constraints[0].number(float(first.values[0])),
+            self.gains.cost(x),
+            self.gains.cost(free),
+            free_rate,
             tuple(self._goals(prices)),
-            found.evaluations,
+            evaluations,
         )
 
     def _goals(self, prices: Array) -> Iterator[SteeredGoal]:
@@ -231,48 +260,46 @@ class _Search:
                 own = float(price) / wanted.si if price > LEAST_PRICE else None
                 yield SteeredGoal(constraint.key, wanted.exact, own)
 
-    def _proved(
-        self, found: ConstrainedOptimum, problem: ConstrainedProblem, name: str | None
-    ) -> tuple[Result, Written, Array]:
+    def _proved(self, found: ConstrainedOptimum, problem: ConstrainedProblem) -> Proved | None:
         """Round to the digits that ship, the cheapest first, and prove one that meets the goals."""
         last, near = found.last, []
         for x, written in self.gains.roundings(last.x):
             missed = problem.penalty(last.values + found.jacobian @ (x - last.x))
-            wrong = problem.penalty(self.gains.spared(x)) > 0
-            near.append(((wrong, missed > 0, problem.cost(x) + missed), x, written))
+            if problem.penalty(self.gains.spared(x)) == 0:
+                near.append(((missed > 0, problem.cost(x) + missed), x, written))
         for x, written in in_order(near)[:MOST_ROUNDINGS]:
-            if (result := self._certified(written, name)) is not None:
+            if (result := self._certified(written)) is not None:
                 return result, written, x
-        digits = self.gains.designed.spec.design.significant_digits
-        raise DesignError(
-            f"no gains of {digits} significant digits near the best ones were proved",
-            remedy="raise design.significant_digits (at most 7), or relax a goal",
-            at=("goals", next(iter(self.wanted))),
-        )
+        return None
 
-    def _certified(self, written: Written, name: str | None) -> Result | None:
+    def _certified(self, written: Written) -> Result | None:
         """Certify the spec with these gains; None if a goal that steers is not met."""
         from nrs_design.certificates.goals import certified_goals
 
-        result = run_certification(self.gains.respecified(written, partial(_named, name)))
+        result = run_certification(self.gains.respecified(written, partial(_named, self.name)))
         goals = certified_goals(result.loaded.spec, result.certificate)
         return result if all(goal.met for goal in goals if goal.key in STEERING) else None
 
-    def _otherwise(
-        self, free: Array, last: Evaluation, name: str | None
-    ) -> tuple[Result, Written, Array]:
-        """Return the optimum of the cost alone if other functions prove its goals."""
+    def _otherwise(self, free: Array) -> Proved | None:
+        """Return the optimum of the cost alone, if its goals are proved."""
         near = [((float(np.abs(x - free).sum()),), x, w) for x, w in self.gains.roundings(free)]
         x, written = in_order(near)[0]
-        if (result := self._certified(written, name)) is None:
-            raise self._unreachable(last)
-        return result, written, x
+        result = self._certified(written)
+        return None if result is None else (result, written, x)
 
-    def _unreachable(self, last: Evaluation) -> DesignError:
+    def _unreachable(self, last: Evaluation, *, in_floats: bool) -> DesignError:
         """Say which goal gains miss, and how near they come."""
         worst = self.constraints[int(np.argmin(last.values))]
-        value = float(last.values.min())
-        reached, wanted = worst.number(value), self.wanted.get(worst.key)
+        value, wanted = float(last.values.min()), self.wanted.get(worst.key)
+        reached = worst.number(value)
+        at = ("goals", next(iter(self.wanted)) if wanted is None else worst.key)
+        if in_floats:
+            return DesignError(
+                f"the goals are reached in floating point, near {self.gains.said(last.x)}, but "
+                "roundings take what would prove it",
+                remedy="relax a goal a little, or raise design.significant_digits (at most 7)",
+                at=at,
+            )
         asked = "at all" if wanted is None else f"of {wanted.text}"
         # A rate that is not positive is no decay.
         none = value <= NOTHING or reached <= 0
@@ -282,7 +309,7 @@ class _Search:
             f"proves with a {worst.title} {asked}: the nearest, {self.gains.said(last.x)}, {reach}",
             remedy="relax the goal, widen the bounds, narrow the ranges, or shorten the delay; or "
             "give the gains, and let certify-switching try other functions",
-            at=("goals", worst.key if wanted is not None else next(iter(self.wanted))),
+            at=at,
         )
 
 

@@ -25,8 +25,6 @@ if TYPE_CHECKING:
 STEP = 1e-3
 # The value where floating point finds no number.
 NOTHING = -10.0
-# Of a rate that is asked for, so much more is sought, and of a bound less: roundings take a little.
-ROOM, ROOM_OF_BOUNDS = 5e-4, 4e-3
 
 
 @dataclass(frozen=True)

@@ -31,7 +31,7 @@ from nrs_design.pipeline.free_gains import (
     has_free_gains,
     in_order,
 )
-from nrs_design.pipeline.proof_constraints import ROOM, DesignEvaluator, RateConstraint
+from nrs_design.pipeline.proof_constraints import DesignEvaluator, RateConstraint
 from nrs_design.pipeline.stability_map import as_stiff
 from nrs_design.progress import Progress, silent
 from nrs_design.proof.text import exact_text
@@ -48,6 +48,8 @@ if TYPE_CHECKING:
 WIDEST = 64.0
 # A cost beyond what is allowed by this share of the least counts as one missed constraint.
 BEYOND = 0.2
+# Roundings take a little of a rate.
+ROOM = 5e-4
 # What is found is claimed with so much less, until it is proved.
 BACK_OFFS = (5e-4, 2e-3, 1e-2, 5e-2)
 # Roundings may cost this share more than is allowed.

@@ -7,8 +7,9 @@ Nocedal and Wright 2006, chapter 18).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
+from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,7 +24,9 @@ PENALTY = 10.0
 KEPT, GOOD = 0.1, 0.6
 # What is less is no improvement.
 CHEAPER = 2e-5
-MOST_EVALUATIONS = 16
+MOST_EVALUATIONS = 24
+# Linear models beside that where the search stands, and by how much one may be below what is known.
+MOST_CUTS, CONTRADICTS = 6, 1e-3
 # Slopes that were wrong by more than this share are found again.
 WRONG = 0.012
 # How far a constraint is moved for its shadow price; one met by more than the slack has none.
@@ -70,6 +73,10 @@ class ConstrainedOptimum:
 def minimize_in_trust_region(problem: ConstrainedProblem, start: Evaluation) -> ConstrainedOptimum:
     """Minimize the cost from a start; constraints that cannot be met are missed by little.
 
+    A constraint that is a minimum of several has ridges, where its gradient says little. So it is
+    taken as the least of its linear models at the last evaluations (Kelley 1960), of those that do
+    not contradict what is known where the search stands.
+
     Parameters
     ----------
     problem : ConstrainedProblem
@@ -77,37 +84,62 @@ def minimize_in_trust_region(problem: ConstrainedProblem, start: Evaluation) -> 
     start : Evaluation
         Within the bounds.
     """
-    here, count, region = start, 1, REGION
-    jacobian: Array | None = None
+    here = _Cut.of(start)
+    cuts, count, region = [here], 1, REGION
     while count < MOST_EVALUATIONS and region >= SMALLEST_REGION:
-        jacobian = here.jacobian() if jacobian is None else jacobian
-        there = _cheapest(problem, here, jacobian, region)
-        reached = here.values + jacobian @ (there - here.x)
+        there = _cheapest(problem, here.x, cuts, region)
+        reached = _model(cuts, there)
         merit = _merit(problem, here.x, here.values)
         predicted = merit - _merit(problem, there, reached)
         if predicted < CHEAPER:
             break
         found, count = problem.evaluate(there, reached), count + 1
         gained = merit - _merit(problem, there, found.values)
+        cut = _updated(here, found) or _Cut.of(found)
         if gained >= KEPT * predicted:
-            jacobian = _updated(jacobian, here, found)
-            here = found
+            here = cut
             region = 2 * region if gained >= GOOD * predicted else region
         else:
-            region = min(region, float(np.abs(there - here.x).max())) / 4
-    jacobian = here.jacobian() if jacobian is None else jacobian
-    shadow_prices = np.array([*_shadow_prices(problem, here, jacobian)])
-    return ConstrainedOptimum(here, jacobian, problem.cost(here.x), shadow_prices, count)
+            region = min(region, float(np.abs(there - here.x).max())) / 2
+        others = [one for one in (*cuts, cut) if one is not here and one.allows(here)]
+        cuts = [here, *others[-MOST_CUTS:]]
+    shadow_prices = np.array([*_shadow_prices(problem, here)])
+    last = Evaluation(here.x, here.values, lambda: here.jacobian)
+    return ConstrainedOptimum(last, here.jacobian, problem.cost(here.x), shadow_prices, count)
 
 
-def _updated(jacobian: Array, here: Evaluation, found: Evaluation) -> Array | None:
-    """Return the Jacobian that tells the last step (Broyden 1965); None where it was too wrong."""
+@dataclass(frozen=True, eq=False)
+class _Cut:
+    """The linear model of all constraints at a point."""
+
+    x: Array
+    values: Array
+    jacobian: Array
+
+    @classmethod
+    def of(cls, found: Evaluation) -> Self:
+        return cls(found.x, found.values, found.jacobian())
+
+    def at(self, x: Array) -> Array:
+        return np.asarray(self.values + self.jacobian @ (x - self.x))
+
+    def allows(self, known: _Cut) -> bool:
+        """Tell whether it does not say less than what is known at another point."""
+        return bool((self.at(known.x) >= known.values - CONTRADICTS).all())
+
+
+def _model(cuts: Sequence[_Cut], x: Array) -> Array:
+    return np.asarray(np.min([cut.at(x) for cut in cuts], axis=0))
+
+
+def _updated(here: _Cut, found: Evaluation) -> _Cut | None:
+    """Return a model that tells the last step (Broyden 1965); None if the old one was too wrong."""
     step = found.x - here.x
-    expected = jacobian @ step
+    expected = here.jacobian @ step
     wrong = found.values - here.values - expected
-    if np.abs(wrong).max() > WRONG * np.abs(expected).max():
+    if (np.abs(wrong) > WRONG * np.abs(expected)).any():
         return None
-    return np.asarray(jacobian + np.outer(wrong, step) / (step @ step))
+    return _Cut(found.x, found.values, here.jacobian + np.outer(wrong, step) / (step @ step))
 
 
 def _merit(problem: ConstrainedProblem, x: Array, values: Array) -> float:
@@ -115,23 +147,23 @@ def _merit(problem: ConstrainedProblem, x: Array, values: Array) -> float:
 
 
 def _cheapest(
-    problem: ConstrainedProblem, here: Evaluation, jacobian: Array, region: float
+    problem: ConstrainedProblem, here: Array, cuts: Sequence[_Cut], region: float
 ) -> Array:
-    """Minimize the cost where linear constraints hold as well as they can, within the region."""
+    """Minimize the cost where linear models hold as well as they can, within the region."""
     from scipy.optimize import NonlinearConstraint, minimize
 
-    n, k = len(here.x), len(here.values)
-    low = np.maximum(problem.low, here.x - region)
-    high = np.minimum(problem.high, here.x + region)
+    n, k = len(here), len(cuts[0].values)
+    low = np.maximum(problem.low, here - region)
+    high = np.minimum(problem.high, here + region)
 
-    def missed(z: Array) -> Array:
+    def met(z: Array) -> Array:
         """Return what must not be negative."""
-        linear = here.values + jacobian @ (z[:n] - here.x) + z[n : n + k]
-        return np.concatenate([linear, problem.quick(z[:n]) + z[n + k]])
+        linear = [cut.at(z[:n]) + z[n : n + k] for cut in cuts]
+        return np.concatenate([*linear, problem.quick(z[:n]) + z[n + k]])
 
     # Behind the point there is by how much each constraint may be missed.
-    quick = float(np.maximum(-problem.quick(here.x), 0.0).max(initial=0.0))
-    start = np.concatenate([here.x, np.maximum(-here.values, 0.0), [quick]])
+    quick = float(np.maximum(-problem.quick(here), 0.0).max(initial=0.0))
+    start = np.concatenate([here, np.maximum(-_model(cuts, here), 0.0), [quick]])
 
     def merit(z: Array) -> float:
         return problem.cost(np.clip(z[:n], low, high)) + PENALTY * float(z[n:].sum())
@@ -141,24 +173,21 @@ def _cheapest(
         start,
         method="SLSQP",
         bounds=[*zip(low, high, strict=True), *[(0.0, None)] * (k + 1)],
-        constraints=NonlinearConstraint(missed, 0.0, np.inf),
+        constraints=NonlinearConstraint(met, 0.0, np.inf),
         options={"ftol": 1e-9, "maxiter": 200},
     )
     return np.asarray(np.clip(found.x[:n], low, high), dtype=float)
 
 
-def _shadow_prices(
-    problem: ConstrainedProblem, here: Evaluation, jacobian: Array
-) -> Iterator[float]:
+def _shadow_prices(problem: ConstrainedProblem, here: _Cut) -> Iterator[float]:
     """Yield what each constraint costs near a point, in first order; nothing for one far from it.
 
     A search ends a little inside of what binds.
     """
 
     def cost(values: Array) -> float:
-        moved = Evaluation(here.x, values, here.jacobian)
-        there = _cheapest(problem, moved, jacobian, REGION)
-        return problem.cost(there)
+        cut = _Cut(here.x, values, here.jacobian)
+        return problem.cost(_cheapest(problem, here.x, [cut], REGION))
 
     for i, value in enumerate(here.values):
         if value > SLACK:

@@ -172,8 +172,7 @@ def check_steerable(designed: Designed) -> None:
         raise DesignError(
             "gains are chosen with their proof only where one quadratic function may be one: not "
             "with two periods, rules that lead through unstable modes, or one state",
-            remedy="leave decay_rate and peak_torque out of the goals, and certify what is "
-            "optimized without them",
+            remedy="optimize without a goal of the proof, and let certify-switching try others",
             at=("goals",) if goals is not None else (),
         )
 
@@ -193,7 +192,7 @@ class _Search:
         """Return what is asked for, and a little more, as roundings take some of it."""
         rate, force = (self.wanted.get(key) for key in STEERING)
         wanted = LEAST_RATE if rate is None else max(rate.si * (1 + room), LEAST_RATE)
-        decays = RateConstraint(wanted, wanted if rate is None else rate.si)
+        decays = RateConstraint(wanted, max(wanted, 1.0))
         if force is None:
             return (decays,)
         return decays, ForceConstraint(force.si * (1 - room_of_bounds))
@@ -257,7 +256,7 @@ class _Search:
         """Yield the goals that steered, with what they cost."""
         for constraint, price in zip(self.constraints, prices, strict=True):
             if (wanted := self.wanted.get(constraint.key)) is not None:
-                own = float(price) / wanted.si if price > LEAST_PRICE else None
+                own = float(price) / constraint.one if price > LEAST_PRICE else None
                 yield SteeredGoal(constraint.key, wanted.exact, own)
 
     def _proved(self, found: ConstrainedOptimum, problem: ConstrainedProblem) -> Proved | None:

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 # How far a coordinate moves for a slope.
 STEP = 1e-3
 # The value where floating point finds no number.
-NOTHING = -10.0
+NOTHING = -1e4
 
 
 @dataclass(frozen=True)
@@ -69,6 +69,11 @@ class AbstractProofConstraint(ABC):
     def number(self, value: float) -> float:
         """Return the number that a value stands for, in SI units."""
 
+    @property
+    @abstractmethod
+    def one(self) -> float:
+        """By how much more a number is asked for where the value is one less, in SI units."""
+
 
 @dataclass
 class RateConstraint(AbstractProofConstraint):
@@ -106,6 +111,11 @@ class RateConstraint(AbstractProofConstraint):
     def number(self, value: float) -> float:
         """Return the rate in 1/s."""
         return value * self.scale + self.wanted
+
+    @property
+    def one(self) -> float:
+        """The scale, 1/s."""
+        return self.scale
 
 
 @dataclass
@@ -146,6 +156,11 @@ class ForceConstraint(AbstractProofConstraint):
     def number(self, value: float) -> float:
         """Return the bound in N m."""
         return self.wanted * float(np.exp(-value))
+
+    @property
+    def one(self) -> float:
+        """The bound itself, as values are logarithms, N m."""
+        return self.wanted
 
 
 @dataclass(frozen=True)

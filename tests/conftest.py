@@ -30,6 +30,8 @@ from nrs_design.cli import COLLECT_AFTER
 from tests.costs import mark_by_cost, seconds_of
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+# Lines are found whole; how they are broken is tested by itself.
+os.environ["COLUMNS"] = "10000"
 settings.register_profile("few", deadline=None, max_examples=15, derandomize=True)
 settings.register_profile("many", deadline=None, max_examples=100)
 settings.load_profile("few")

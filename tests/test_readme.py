@@ -36,7 +36,8 @@ def test_the_readme_shows_sessions() -> None:
 
 
 @pytest.mark.parametrize(("command", "shown"), SESSIONS)
-def test_output(command: str, shown: str, checkout: Path) -> None:
+def test_output(command: str, shown: str, checkout: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("COLUMNS", "100")
     result = run(*command.split(), cwd=checkout)
     assert squeeze(result.stdout) == squeeze(shown), result.stderr
 

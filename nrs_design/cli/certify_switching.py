@@ -26,10 +26,18 @@ from nrs_design.cli.gradient_options import (
     StartMode,
     UpdateOrder,
 )
-from nrs_design.cli.options import Budget, LoopCoordinates, MaxDegree, Memory, SpecFile, Verbose
-from nrs_design.cli.printing import note, progress, say, wants_json, wants_text
+from nrs_design.cli.options import Budget, LoopCoordinates, MaxDegree, Memory, SpecFile
+from nrs_design.cli.printing import (
+    detail,
+    note,
+    progress,
+    say,
+    wants_details,
+    wants_json,
+    wants_text,
+)
 from nrs_design.cli.reading import take_spec
-from nrs_design.proof.text import exact_text
+from nrs_design.proof.text import counted, exact_text
 from nrs_design.search.gradient_settings import Coordinates, Gradient, Order
 from nrs_design.search.method import Method
 
@@ -37,6 +45,7 @@ if TYPE_CHECKING:
     from nrs_design.pipeline import Result
     from nrs_design.pipeline.radius import RadiusBounds
     from nrs_design.pipeline.subsets import Subset
+    from nrs_design.search.certification import Certification
 
 
 LargestBox = Annotated[
@@ -97,7 +106,6 @@ def certify_switching(
     seed: Seed = 0,
     max_updates: MaxUpdates = 20_000,
     gradient_coordinates: GradientCoordinates = Coordinates.MEAN_NORM,
-    verbose: Verbose = False,
 ) -> Answer:
     """Prove or refute exponential stability under the declared switching; keep the certificate.
 
@@ -132,7 +140,7 @@ def certify_switching(
     # Write and print the proof before looking for margins, which takes minutes.
     written = _write(result, path)
     if wants_text():
-        _print(result, verbose=verbose)
+        _print(result)
     asked = {"margin": margin, "shortest_dwell": shortest_dwell}
     blocked = None
     # One rung alone may be at a loss for what others prove.
@@ -168,7 +176,8 @@ def certify_switching(
     def show() -> None:
         if growth is not None:
             say(f"  {_growth_words(growth)}")
-        for line in relief:
+        found = blocked is not None and blocked.proved
+        for line in relief if wants_details() or not found else ():
             say(f"  {line}")
         if any(asked.values()):
             # Reports are slow to load, and a bare proof says nothing that only they can.
@@ -182,24 +191,27 @@ def certify_switching(
 
             for line in blocked_lines(blocked, loaded.path):
                 say(f"  {line}")
-        for line in steps:
+        # The most promising comes first; what would be proved is a better one.
+        for line in steps if wants_details() else steps[: 0 if found or relief else 1]:
             say(f"next: {line}")
 
     return Answer(facts, show, exit_codes.OF_VERDICT[str(result.certification.verdict)])
 
 
 def _growth_words(radius: RadiusBounds) -> str:
-    """Say between which numbers the largest growth per step is, and how each is shown."""
+    """Say between which numbers the largest growth per step is; with -v, how each is shown."""
     from nrs_design.proof.bounds import rounded_down, rounded_up
 
-    low, high = "no word was found that shows how much it is at least", "no upper bound was found"
+    low, high = "at least (no word was found)", "at most (no bound was found)"
     if radius.lower is not None and radius.word is not None:
         signal = ", ".join(
             name + (f" {count} times" if count > 1 else "") for name, count in radius.word
         )
-        low = f"at least {rounded_down(radius.lower)}, by {signal}, and again"
+        shown = f", by {signal}, and again" if wants_details() else ""
+        low = f"at least {rounded_down(radius.lower)}{shown}"
     if radius.upper is not None:
-        high = f"at most {rounded_up(radius.upper)} ({radius.method})"
+        shown = f" ({radius.method})" if wants_details() else ""
+        high = f"at most {rounded_up(radius.upper)}{shown}"
     return f"growth per step, rho: {low}; {high}"
 
 
@@ -242,28 +254,21 @@ def _print_parts(parts: tuple[Subset, ...] | None) -> None:
         say(f"  {line}")
 
 
-def _print(result: Result, *, verbose: bool) -> None:
+def _print(result: Result) -> None:
     from nrs_design.certificates.goals import certified_goals
 
     certification = result.certification
-    name = result.loaded.spec.name
-    verdict = str(certification.verdict)
-    refuted = certification.refuted_in
-    aside = f"common quadratic function: {certification.common_quadratic}"
-    beside = aside if refuted is None else f"refuted {refuted}; {aside}"
-    say(f"{name}: {verdict.upper()} ({beside})", verdict=verdict)
-    for statement in certification.statements:
-        say(f"  {statement.claim(certification.system)}")
-    if certification.evidence is None:
-        say(f"  {_open_words(refuted)}")
-    everything = verbose or certification.evidence is None
+    system, statements = certification.system, certification.statements
+    verdict, shown = str(certification.verdict), _briefs(certification)
+    say(f"{result.loaded.spec.name}: {verdict.upper()}{_after(certification)}", verdict=verdict)
+    for statement, short in zip(statements, shown, strict=True):
+        say(f"  {statement.claim(system) if wants_details() else short}")
     for attempt in certification.attempts:
         # A bound that was wanted and not found must be visible.
         sought = attempt.step.startswith(
             ("bound on ", "constant force", "decay under", "limits of")
         )
-        missing = sought and attempt.outcome != "found"
-        if everything or missing:
+        if wants_details() or (sought and attempt.outcome != "found"):
             # Steps that were skipped took no time.
             took = f" ({attempt.work:.2g} of work, {attempt.seconds:.2g} s)"
             took = took if attempt.seconds else ""
@@ -271,19 +276,34 @@ def _print(result: Result, *, verbose: bool) -> None:
     for goal in certified_goals(result.loaded.spec, result.certificate):
         ends = "met" if goal.met else "NOT PROVED"
         say(f"  goal {goal.key}, {goal.wanted}: {ends}: {goal.said}")
-    say("  modes: " + ", ".join(_shortened([m.name for m in certification.system.modes])))
-    say("  taken for granted (nrs-design report says how to test each):")
-    for assumption in certification.granted:
-        say(f"    - {assumption}")
+    _print_granted(result)
 
 
-def _open_words(refuted: str | None) -> str:
-    if refuted is None:
-        return "Neither a proof nor a refutation was found; this is not a statement of stability."
-    return (
-        f"Refuted {refuted}; where contact may be lost, neither a proof nor a refutation was found."
-    )
+def _briefs(certification: Certification) -> list[str]:
+    from nrs_design.certificates.brief import brief
+
+    return [brief(item, certification.system) for item in certification.statements]
 
 
-def _shortened(names: list[str], limit: int = 12) -> list[str]:
-    return names if len(names) <= limit else [*names[:limit], f"and {len(names) - limit} more"]
+def _after(certification: Certification) -> str:
+    """Say beside the verdict what it leaves open."""
+    refuted = certification.refuted_in
+    if refuted is not None:
+        return f" (refuted {refuted}; open where contact may be lost)"
+    return "" if certification.evidence is not None else ": no proof, and no signal that grows"
+
+
+def _print_granted(result: Result) -> None:
+    """Print what is taken for granted: all of it, or how much and what is not modelled."""
+    certification = result.certification
+    granted, names = certification.granted, [mode.name for mode in certification.system.modes]
+    detail(f"  common quadratic function: {certification.common_quadratic}")
+    detail(f"  modes: {', '.join(names)}")
+    if wants_details():
+        say("  taken for granted (nrs-design report says how to test each):")
+        for assumption in granted:
+            say(f"    - {assumption}")
+    elif granted:
+        without = "; ".join(result.omits)
+        besides = f"; not modelled: {without}" if without else ""
+        say(f"  takes {counted(len(granted), 'thing')} for granted (-v lists them){besides}")

@@ -10,17 +10,18 @@ import typer
 from nrs_design.cli import exit_codes
 from nrs_design.cli.command import Answer, command
 from nrs_design.cli.errors import error_summary, print_error
-from nrs_design.cli.printing import note, wants_json, wants_text
+from nrs_design.cli.printing import note, say, wants_details, wants_json, wants_text
 from nrs_design.cli.reading import take_spec
 from nrs_design.cli.tables import print_table
 from nrs_design.errors import NrsDesignError
+from nrs_design.proof.text import counted
 
 
 @command("check")
 def check(
     specs: Annotated[list[Path], typer.Argument(metavar="SPEC...", help="Spec files.")],
 ) -> Answer:
-    """Validate specs and print what was understood, as written and in SI units.
+    """Validate specs; with -v, print what was understood, as written and in SI units.
 
     Example: nrs-design check specs/neuroboscope/soft-tissue.nrs.yaml
     """
@@ -81,8 +82,12 @@ def _understood(path: Path) -> dict[str, Any]:
 
 
 def _print(result: dict[str, Any]) -> None:
+    title = f"{result['path']}: ok ({result['kind']}, {counted(len(result['values']), 'field')}"
+    if not wants_details():
+        say(f"{title}; -v lists them)")
+        return
     print_table(
-        f"{result['path']}: valid {result['kind']} {result['name']!r}",
+        f"{title})",
         ["field", "as written", "SI value", "unit"],
         [[v["name"], v["written"], v["si"], v["unit"]] for v in result["values"]],
     )

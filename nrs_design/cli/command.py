@@ -12,7 +12,14 @@ import typer
 
 from nrs_design.cli import exit_codes
 from nrs_design.cli.exit_codes import worst
-from nrs_design.cli.printing import output, print_json, say, wants_json, wants_text
+from nrs_design.cli.printing import (
+    output,
+    print_json,
+    say,
+    wants_details,
+    wants_json,
+    wants_text,
+)
 from nrs_design.errors import NrsDesignError
 
 if TYPE_CHECKING:
@@ -21,8 +28,10 @@ if TYPE_CHECKING:
 # A line, if there is one, and facts.
 Together: TypeAlias = tuple[str | None, dict[str, Any]]
 
+VERBOSE = "Print all of it: the whole claim, what it takes for granted, and every step."
 QUIET = "Print nothing but errors, and what --json, --format or --out ask for; see the exit code."
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON document on stdout.")]
+Verbose = Annotated[bool, typer.Option("--verbose", "-v", help=VERBOSE)]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help=QUIET)]
 
 
@@ -45,7 +54,7 @@ class Answer:
         if wants_json():
             print_json(self.name or name, self.facts())
         elif self.loud:
-            with output(as_json=False, quiet=False):
+            with output(as_json=False, quiet=False, verbose=wants_details()):
                 self.show()
         elif wants_text():
             self.show()
@@ -60,7 +69,7 @@ def command(
     together: Callable[[Sequence[Mapping[str, Any]]], Together] | None = None,
     passes_on: bool = False,
 ) -> Callable[[Callable[..., Answer]], Callable[..., None]]:
-    """Make a command of a function: with --json and --quiet, and an end that prints its answer.
+    """Make a command of a function: with --json, -v and -q, and an end that prints its answer.
 
     Parameters
     ----------
@@ -75,14 +84,18 @@ def command(
     passes_on : bool
         Whether options that it does not know belong to another command, which its last argument is.
     """
-    options = {"as_json": Json, "quiet": Quiet} if has_json else {"quiet": Quiet}
+    options = {"verbose": Verbose, "quiet": Quiet}
+    options |= {"as_json": Json} if has_json else {}
 
     def decorate(function: Callable[..., Answer]) -> Callable[..., None]:
         @wraps(function)
-        def run(*, as_json: bool = False, quiet: bool = False, **arguments: Any) -> None:
+        def run(
+            *, as_json: bool = False, quiet: bool = False, verbose: bool = False, **arguments: Any
+        ) -> None:
             from nrs_design.axis import AxisType, about
 
-            with output(as_json=as_json, quiet=quiet), about(AxisType.ROTARY):
+            shown = output(as_json=as_json, quiet=quiet, verbose=verbose)
+            with shown, about(AxisType.ROTARY):
                 if each_axis:
                     answer = _for_each_axis(function, arguments, together)
                 else:
@@ -129,7 +142,8 @@ def _for_each_axis(
         if wants_json() or together is not None:
             answers[str(axis)] = answer.facts()
         if not wants_json():
-            with output(as_json=False, quiet=not (wants_text() or answer.loud)):
+            quiet = not (wants_text() or answer.loud)
+            with output(as_json=False, quiet=quiet, verbose=wants_details()):
                 answer.show()
     line, facts = together(tuple(answers.values())) if together else (None, {})
     return Answer(

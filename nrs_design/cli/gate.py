@@ -13,7 +13,7 @@ import typer
 from nrs_design.cli import exit_codes
 from nrs_design.cli.command import command
 from nrs_design.cli.options import Budget, MaxDegree, Memory
-from nrs_design.cli.printing import note, progress, say, say_failure, wants_json, wants_text
+from nrs_design.cli.printing import note, progress, say, say_failure, wants_details, wants_json
 from nrs_design.cli.tables import print_table
 from nrs_design.errors import NrsDesignError, OutputError
 
@@ -161,29 +161,26 @@ def _deliver(outcome: GateOutcome, chosen: GateFormat, out: Path | None) -> None
     if out is not None:
         write_output(out, document, replaces=GATE)
     elif chosen is GateFormat.TEXT:
-        _show(outcome, document)
+        _show(outcome)
     else:
         sys.stdout.write(document)
     if out is not None or chosen is not GateFormat.TEXT:
-        for line in FORMATS["text"](outcome).split("\n"):
-            note(line)
+        from nrs_design.gating.formats.text import summary_line
+
+        note(summary_line(outcome))
 
 
-def _show(outcome: GateOutcome, document: str) -> None:
-    """Print for people: what is not fulfilled; and the rest too, without --quiet."""
+def _show(outcome: GateOutcome) -> None:
+    """Print for people: what is not fulfilled, and the sum; with -v every spec and its gains."""
     from nrs_design.gating.formats import text
 
-    if wants_text() and not sys.stdout.isatty():
-        sys.stdout.write(document)
-        return
-    if wants_text():
+    if wants_details():
         print_table("", text.COLUMNS, text.rows_of(outcome))
-    gaps = [""] if outcome.broken else []
-    for line in (*text.gain_lines(outcome), *gaps):
-        say(line)
+        for line in (*text.gain_lines(outcome), ""):
+            say(line)
     for item in outcome.broken:
         say_failure(text.line_of(item), str(item.status))
-    for line in (*text.change_lines(outcome), "", text.summary_line(outcome)):
+    for line in (*text.change_lines(outcome), text.summary_line(outcome)):
         say(line)
 
 

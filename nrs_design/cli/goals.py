@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from nrs_design.cli import exit_codes
 from nrs_design.cli.command import Answer, spec_facts
-from nrs_design.cli.printing import note, say
+from nrs_design.cli.printing import detail, note, say, wants_details
 from nrs_design.cli.tables import print_table
 from nrs_design.proof.bounds import lower_float, upper_float
 
@@ -44,7 +44,7 @@ def _print_goals(name: str, items: Iterable[AbstractControllerAnalysis]) -> None
         columns = ["controller", "goal", "wanted", "worst", "at", ""]
         print_table(f"{name}: goals", columns, rows)
         for line in MEANING:
-            say(line)
+            detail(line)
 
 
 def responses_summary(item: ImpedanceAnalysis) -> list[dict[str, Any]]:
@@ -72,7 +72,7 @@ def print_responses(analysis: DesignAnalysis) -> None:
     for name, found in judged:
         say(f"{name}: {found.key}, {found.wanted}: {found.ends.upper()}: {found.said}")
     if judged:
-        say(RESPONSE_MEANING)
+        detail(RESPONSE_MEANING)
 
 
 def design_answer(
@@ -84,6 +84,7 @@ def design_answer(
     *,
     proved: bool = True,
     judged: bool = False,
+    marked: bool = False,
 ) -> Answer:
     """Return the answer of a command that shows a design: with goals and with what is doubtful.
 
@@ -99,22 +100,25 @@ def design_answer(
         Whether all goals are proved that need a proof of the design; else the exit code is 1, too.
     judged : bool
         Whether `show` says what is proved of the goals of a certificate.
+    marked : bool
+        Whether it marks what is unusual.
     """
     from nrs_design.spec import doubt_spec
 
     loaded, spec = designed.loaded, designed.spec
-    warnings = [str(doubt) for doubt in (*doubt_spec(spec), *analysis.warnings)]
+    doubts = (*doubt_spec(spec), *analysis.warnings)
 
     def show_all() -> None:
         show()
         _print_goals(spec.name, items)
         if not judged:
             _say_unjudged(spec)
-        for text in warnings:
-            note(f"warning: {text}")
+        for doubt in doubts:
+            if wants_details() or not (marked and doubt.flagged):
+                note(f"warning: {doubt}")
 
     return Answer(
-        lambda: spec_facts(loaded) | facts() | {"warnings": warnings},
+        lambda: spec_facts(loaded) | facts() | {"warnings": [str(doubt) for doubt in doubts]},
         show_all,
         exit_codes.unless(
             not proved or any(not found.met for item in items for found in item.achieved)

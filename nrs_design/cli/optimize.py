@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -19,10 +18,10 @@ from nrs_design.cli.goals import (
     responses_summary,
 )
 from nrs_design.cli.options import SpecFile
-from nrs_design.cli.printing import note, progress, say
+from nrs_design.cli.printing import detail, note, progress, say, wants_details
 from nrs_design.cli.reading import take_spec
 from nrs_design.cli.tables import print_table
-from nrs_design.proof.bounds import lower, lower_float, upper_float
+from nrs_design.proof.bounds import lower_float, upper_float
 
 if TYPE_CHECKING:
     from nrs_design.design.analysis import DesignAnalysis, ImpedanceAnalysis
@@ -91,6 +90,7 @@ def optimize(
         show,
         proved=proved,
         judged=certified is not None,
+        marked=True,
     )
 
 
@@ -213,18 +213,16 @@ def finite(value: float) -> float | None:
 
 
 def _print(spec: InteractionDesignSpec, analysis: DesignAnalysis) -> None:
+    source = "by root locus" if analysis.motion_source == "designed" else "given in the spec"
     G = analysis.motion
-    from nrs_design.design.measures import MARGINS
-
-    source = (
-        "designed by root locus" if analysis.motion_source == "designed" else "given in the spec"
-    )
     motion = f"({_polynomial(G.numerator)}) / ({_polynomial(G.denominator)})"
-    say(f"{spec.name}: G(s) = {motion}, {source}")
+    detail(f"{spec.name}: G(s) = {motion}, {source}")
+    if not analysis.impedance:
+        return
+    from nrs_design.cli.marked import MARGINS_NOTE, cells, marks
+
     columns = [
         "controller",
-        f"Zdes\n{unit('N m s/rad')}",
-        f"k\n{unit('N m/rad')}",
         f"Mt\n{unit('kg m^2')}",
         f"Bt\n{unit('N m s/rad')}",
         "cost",
@@ -233,39 +231,17 @@ def _print(spec: InteractionDesignSpec, analysis: DesignAnalysis) -> None:
         "phase\nmargin",
         "delay\nmargin",
         "disk\nmargin",
-        f"k limit\n{unit('N m/rad')}",
+        f"stands up to\n{unit('N m/rad')}",
     ]
-    rows = [
-        [
-            item.name,
-            f"{item.problem.desired:.5g}",
-            f"{item.problem.loop.contact.stiffness:.6g}",
-            f"{item.Mt:.6g}",
-            f"{item.Bt:.6g}",
-            f"{item.cost:.4f}",
-            *(measure.text(item.worst(measure).value) for measure in MARGINS),
-            _limit(item.lowest_limit),
-        ]
-        for item in analysis.impedance
-    ]
-    if rows:
-        print_table("margins and k limit: the worst over the ranges", columns, rows)
-        for line in meanings(spec):
-            say(line)
-    limits = [
-        f"{item.name} {_limit(item.limit_at_arm)} N/m at {item.lever_arm:g} m"
-        for item in analysis.impedance
-        if item.limit_at_arm is not None and math.isfinite(item.limit_at_arm)
-    ]
-    if limits:
-        say(f"k limit where it is touched: {', '.join(limits)}")
-
-
-def _limit(value: float) -> str:
-    """Write a limit of stiffness, rounded down."""
-    if math.isnan(value):
-        return "not computed"
-    return "unlimited" if math.isinf(value) else lower(Fraction(value), 4)
+    print_table(
+        f"{spec.name}: the worst over all ranges", columns, [*map(cells, analysis.impedance)]
+    )
+    for line in marks(analysis.impedance):
+        say(line)
+    for line in meanings(spec):
+        detail(line)
+    if not wants_details():
+        say(MARGINS_NOTE)
 
 
 def _polynomial(coefficients: tuple[float, ...]) -> str:

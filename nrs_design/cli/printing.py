@@ -21,23 +21,33 @@ from nrs_design.printable import json_text, printable
 
 _CODES = {"red": "1;31", "green": "1;32", "yellow": "1;33", "blue": "1;34", "cyan": "36"}
 # Seconds after which a command that still works says so, where it shows no spinner.
-SILENCE = 20.0
+SILENCE = 10.0
+# Columns of a line where there is no terminal, and COLUMNS does not say otherwise.
+WIDTH = 100
 COLOURS = {"proved": "green", "refuted": "red", "rejected": "red", "inconclusive": "yellow"}
 
 _json: ContextVar[bool] = ContextVar("json", default=False)
 _quiet: ContextVar[bool] = ContextVar("quiet", default=False)
+_verbose: ContextVar[bool] = ContextVar("verbose", default=False)
 _taken: ContextVar[list[str] | None] = ContextVar("taken", default=None)
 
 
 @contextmanager
-def output(*, as_json: bool, quiet: bool) -> Iterator[None]:
-    """Set what is printed within: a JSON document in place of text; no text and no notes."""
-    tokens = _json.set(as_json), _quiet.set(quiet)
+def output(*, as_json: bool, quiet: bool, verbose: bool = False) -> Iterator[None]:
+    """Set what is printed within.
+
+    Parameters
+    ----------
+    as_json, quiet, verbose : bool
+        A JSON document in place of text; no text and no notes; all of the text.
+    """
+    tokens = _json.set(as_json), _quiet.set(quiet), _verbose.set(verbose)
     try:
         yield
     finally:
         _json.reset(tokens[0])
         _quiet.reset(tokens[1])
+        _verbose.reset(tokens[2])
 
 
 def wants_json() -> bool:
@@ -48,6 +58,11 @@ def wants_json() -> bool:
 def wants_text() -> bool:
     """Whether the result is wanted as text."""
     return not (_json.get() or _quiet.get())
+
+
+def wants_details() -> bool:
+    """Whether the result is wanted as text, and all of it."""
+    return wants_text() and _verbose.get()
 
 
 def is_quiet() -> bool:
@@ -91,6 +106,12 @@ def say(line: str = "", *, verdict: str = "") -> None:
     print(text.replace(word, painted(word, COLOURS[verdict], sys.stdout), 1) if word else text)
 
 
+def detail(line: str) -> None:
+    """Print one line of the result that only --verbose asks for."""
+    if wants_details():
+        say(line)
+
+
 def say_failure(line: str, status: str) -> None:
     """Print one line about what is not fulfilled, --quiet or not; its status is coloured."""
     text, colour = wrapped(printable(line), sys.stdout), COLOURS.get(status, "red")
@@ -124,8 +145,14 @@ def painted(text: str, colour: str, stream: TextIO) -> str:
     return text if dull or not stream.isatty() else f"\x1b[{_CODES[colour]}m{text}\x1b[0m"
 
 
+def columns(stream: TextIO) -> int:
+    """Return how wide a line may be: as the terminal is, or COLUMNS says; elsewhere `WIDTH`."""
+    known = shutil.get_terminal_size((WIDTH, 24))
+    return known.columns if stream.isatty() or "COLUMNS" in os.environ else WIDTH
+
+
 def wrapped(line: str, stream: TextIO, hanging: int = 2) -> str:
-    """Break a line between words, as wide as the terminal is; a pipe gets it whole.
+    """Break a line between words, as wide as the terminal is.
 
     Parameters
     ----------
@@ -136,12 +163,10 @@ def wrapped(line: str, stream: TextIO, hanging: int = 2) -> str:
     hanging : int
         Spaces before the second and every later line.
     """
-    if not stream.isatty():
-        return line
     indent = " " * (len(line) - len(line.lstrip(" ")))
     return textwrap.fill(
         line.strip(),
-        shutil.get_terminal_size().columns,
+        columns(stream),
         initial_indent=indent,
         subsequent_indent=indent + " " * hanging,
         break_long_words=False,

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import asdict
+from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from nrs_design.axis import unit
 from nrs_design.cli import exit_codes
 from nrs_design.cli.command import Answer, spec_facts
-from nrs_design.cli.printing import note, say
+from nrs_design.cli.printing import note, say, wants_details
 from nrs_design.cli.run_files import RunFiles, write_runs
 from nrs_design.cli.tables import print_table
 from nrs_design.progress import Progress
@@ -61,6 +63,9 @@ def simulate_scenarios(
     files = [] if out is None else _write(designed, out, runs)
 
     def show() -> None:
+        if not wants_details():
+            _print_briefly(runs)
+            return
         for run in runs:
             _print(*run)
         say("not modelled:")
@@ -162,10 +167,58 @@ def _facts(
     }
 
 
+def _print_briefly(runs: Sequence[Bounded]) -> None:
+    """Print a row for each run, and what went wrong in one."""
+    from nrs_design.axis import current
+    from nrs_design.proof.bounds import upper
+    from nrs_design.reporting.simulation import four_digits_up
+
+    fine, rows, beyond = current().fine, [], False
+    for one, bounds, _ in runs:
+        proved = {b.output: b.level for b in bounds if not b.uncovered}
+        limits = {"torque": one.metrics["torque_limit"], **one.scenario.limits}
+        peaks = {"torque": "peak_torque", "velocity": "peak_velocity", "deflection": "peak_depth"}
+        shown = {
+            key: four_digits_up((1.0 if key == "torque" else fine) * one.metrics[name])
+            + "!" * (one.metrics[name] > limits.get(key, math.inf))
+            for key, name in peaks.items()
+        }
+        beyond = beyond or "!" in "".join(shown.values())
+        rows.append(
+            [
+                one.run.scenario,
+                shown["torque"],
+                upper(Fraction(proved["force"]), 4) if "force" in proved else "-",
+                f"{limits['torque']:.4g}",
+                shown["velocity"],
+                shown["deflection"],
+                str(one.metrics["switches"]),
+            ]
+        )
+    columns = [
+        "run",
+        f"largest\n{unit('N m')}",
+        f"proved\n{unit('N m')}",
+        f"limit\n{unit('N m')}",
+        f"speed\n{unit('deg/s')}",
+        f"deflection\n{unit('deg')}",
+        "switches",
+    ]
+    print_table("", columns, rows)
+    if beyond:
+        say("! beyond a limit of the spec or the scenario")
+    for one, _, _ in runs:
+        if one.run.stopped:
+            say(f"{one.run.scenario}: STOPPED: {one.run.stopped}")
+        if one.run.refused:
+            say(f"{one.run.scenario}: the law refused {one.run.refused} samples")
+        if one.run.saturated:
+            say(f"{one.run.scenario}: the motor met its limit at {one.run.saturated} samples")
+    say("A run proves nothing; -v says all that was measured, and what is not modelled.")
+
+
 def _print(one: Simulated, bounds: tuple[CertifiedBound, ...], rate: CertifiedRate | None) -> None:
     """Print the metrics of a run, bounds beside what they bound."""
-    from fractions import Fraction
-
     from nrs_design.proof.bounds import upper
     from nrs_design.reporting.simulation import four_digits_up, metric_rows
 
@@ -219,8 +272,6 @@ def _setting(run: Run) -> str:
 
 def _rate(rate: CertifiedRate) -> str:
     """Return the rate in words, rounded to the safe side."""
-    from fractions import Fraction
-
     from nrs_design.proof.bounds import lower, upper
 
     number = Fraction(rate.rate)

@@ -1,17 +1,15 @@
-"""Tables on stdout: transposed, not folded, where the terminal is too narrow."""
+"""Tables on stdout: transposed, not folded, where they would be too wide."""
 
 from __future__ import annotations
 
-import shutil
 import sys
 from collections.abc import Iterator, Sequence
 
+from nrs_design.cli.printing import columns as columns_of
 from nrs_design.printable import printable
 
 Cells = Sequence[str]
 
-# In a pipe no table is folded.
-ENDLESS = 10_000
 # Longer cells are sentences and may be wrapped; shorter ones are never broken.
 SENTENCE = 40
 # Between two columns; at both edges together there is one less.
@@ -19,9 +17,9 @@ _GAP = 3
 
 
 def print_table(title: str, columns: Cells, rows: Sequence[Cells]) -> None:
-    """Print a plain table, as wide as it needs to be in a pipe.
+    """Print a plain table.
 
-    Where a terminal is too narrow for it, rows become columns, side by side as far as they fit; a
+    Where it is wider than a line may be, rows become columns, side by side as far as they fit; a
     number is never broken.
 
     Parameters
@@ -34,8 +32,8 @@ def print_table(title: str, columns: Cells, rows: Sequence[Cells]) -> None:
         Cells, as many in each row as there are headings.
     """
     rows = [["\n".join(map(printable, cell.split("\n"))) for cell in row] for row in rows]
-    width = shutil.get_terminal_size().columns if sys.stdout.isatty() else None
-    if width is None or _least_width([columns, *rows]) <= width:
+    width = columns_of(sys.stdout)
+    if _least_width([columns, *rows]) <= width:
         _print(title, columns, rows, width)
         return
     for index, (head, *body) in enumerate(_turned(columns, rows, width)):
@@ -75,7 +73,7 @@ def _least(cell: str) -> int:
     return max(SENTENCE // 2, *map(cell_len, cell.split()))
 
 
-def _print(title: str, columns: Cells, rows: Sequence[Cells], width: int | None) -> None:
+def _print(title: str, columns: Cells, rows: Sequence[Cells], width: int) -> None:
     from rich.box import SIMPLE_HEAD
     from rich.console import Console
     from rich.table import Table
@@ -83,9 +81,9 @@ def _print(title: str, columns: Cells, rows: Sequence[Cells], width: int | None)
     table = Table(title_justify="left", box=SIMPLE_HEAD, pad_edge=False)
     table.title = printable(title) or None
     least = _least_widths([columns, *rows])
-    fits = width is None or _least_width([columns, *rows]) <= width
+    fits = _least_width([columns, *rows]) <= width
     for column, narrowest in zip(columns, least, strict=True):
         table.add_column(column, overflow="fold", min_width=narrowest if fits else None)
     for row in rows:
         table.add_row(*row)
-    Console(width=width or ENDLESS, markup=False, emoji=False, highlight=False).print(table)
+    Console(width=width, markup=False, emoji=False, highlight=False).print(table)

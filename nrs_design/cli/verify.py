@@ -11,7 +11,7 @@ import typer
 from nrs_design.cli import exit_codes
 from nrs_design.cli.command import Answer, command
 from nrs_design.cli.options import CoordinatesOption
-from nrs_design.cli.printing import is_quiet, progress, say
+from nrs_design.cli.printing import is_quiet, progress, say, wants_details
 from nrs_design.cli.reading import take_spec
 from nrs_design.errors import CertificateError, NrsDesignError
 
@@ -288,33 +288,32 @@ def _deployed(
 
 
 def _print(certificate: Certificate, spec: Spec | None, on_trust: Path | None) -> None:
+    from nrs_design.certificates.brief import brief
+
     verdict, where = certificate.verdict, certificate.refuted_in
     refuted = "" if where is None else f" (refuted {where})"
-    if spec is None:
-        say(
-            f"{verdict.upper()}{refuted} for the modes in the file, checked exactly.",
-            verdict=verdict,
-        )
-        say(
-            "  not compared with a spec: name it to check that these are its modes, gains and "
-            "assumptions; without it none of them is printed"
-        )
-    elif on_trust is None:
-        say(f"{verdict.upper()}{refuted}: the certificate holds, checked exactly.", verdict=verdict)
-    else:
-        say(
-            f"{verdict.upper()}{refuted}, on trust in {on_trust.as_posix()}: the certificate "
-            "holds, checked exactly, if the bounds in that file do; --bounds computes them again.",
-            verdict=verdict,
-        )
+    say(f"{verdict.upper()}{refuted}{_extent(spec, on_trust)}", verdict=verdict)
     for statement in certificate.statements:
-        say(f"  {statement.claim(certificate.system)}")
-    if spec is not None and certificate.coordinates:
-        say(f"  coordinates: {certificate.coordinates}")
+        whole = statement.claim(certificate.system)
+        say(f"  {whole if wants_details() else brief(statement, certificate.system)}")
     if verdict in _NEXT:
         say(_NEXT[verdict])
-    if spec is not None:
+    if spec is not None and wants_details():
+        if certificate.coordinates:
+            say(f"  coordinates: {certificate.coordinates}")
         _print_gains(certificate, spec)
+
+
+def _extent(spec: Spec | None, on_trust: Path | None) -> str:
+    """Say what was checked beside the proof."""
+    if spec is None:
+        return " for the modes in the file, checked exactly; name a SPEC to compare them with"
+    if on_trust is None:
+        return ": the certificate holds for this spec, checked exactly"
+    return (
+        f", on trust in {on_trust.as_posix()}: the certificate holds, checked exactly, if the "
+        "bounds in that file do; --bounds computes them again"
+    )
 
 
 def _print_gains(certificate: Certificate, spec: Spec) -> None:

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from nrs_design.controllers.controller_design import ImpedanceOptimum
 from nrs_design.design.goals import Achieved
-from nrs_design.design.measures import DISK_MARGIN, MARGINS, SENSITIVITY_PEAK
+from nrs_design.design.measures import DISK_MARGIN, MARGINS, SENSITIVITY_PEAK, Measure
 from nrs_design.spec import Doubt, ImpedanceControllerSpec
 
 
@@ -16,22 +16,26 @@ def doubt_values(name: str, achieved: tuple[Achieved, ...]) -> Iterator[Doubt]:
 
     A goal for Ms or for the disk margin limits gain and phase together, so it speaks of both.
     """
+    found = [item for item in achieved if is_unusual(item.measure, achieved)]
+    if found:
+        bad = (
+            f"{item.measure.title} {item.measure.text(item.value)} (usual: {item.measure.usual})"
+            for item in found
+        )
+        keys = ", ".join(item.measure.goal for item in found)
+        text = f"{name}: {', '.join(bad)}; a goal says what is accepted: {keys}"
+        yield Doubt(("controllers", name), text, flagged=True)
+
+
+def is_unusual(measure: Measure, achieved: tuple[Achieved, ...]) -> bool:
+    """Tell whether a measure is beyond its usual limit, and no goal speaks of it."""
     given = {item.measure for item in achieved if item.goal is not None}
     judged = given.union(MARGINS) if given & {SENSITIVITY_PEAK, DISK_MARGIN} else given
-    bad, keys = [], []
-    for item in achieved:
-        measure, limit = item.measure, item.measure.doubtful
-        known = not math.isnan(item.value)
-        missed = known and limit is not None and measure.violation(item.value, limit) > 0
-        if limit is None or measure in judged or not missed:
-            continue
-        bad.append(
-            f"{measure.title} {measure.text(item.value)} (usual: {measure.goal_text(limit)})"
-        )
-        keys.append(measure.goal)
-    if bad:
-        text = f"{name}: {', '.join(bad)}; a goal says what is accepted: {', '.join(keys)}"
-        yield Doubt(("controllers", name), text)
+    limit = measure.doubtful
+    if limit is None or measure in judged:
+        return False
+    values = (item.value for item in achieved if item.measure == measure)
+    return any(not math.isnan(v) and measure.violation(v, limit) > 0 for v in values)
 
 
 def doubt_bounds(
@@ -57,4 +61,4 @@ def doubt_bounds(
         for side, end in (("lower", bounds.min), ("upper", bounds.max)):
             if value == end.si:
                 text = f"{name}: {gain} is on its {side} bound {end.text}"
-                yield Doubt(("controllers", name, gain), text)
+                yield Doubt(("controllers", name, gain), text, flagged=True)

@@ -73,6 +73,12 @@ class Measure:
         rounded = context.create_decimal(Decimal(value * scale))
         return f"{rounded.normalize():f} {shown}".rstrip()
 
+    @property
+    def usual(self) -> str:
+        """What is usual, such as ``at most 2``, for a measure that has a doubtful value."""
+        assert self.doubtful is not None
+        return self.goal_text(self.doubtful)
+
     def goal_text(self, value: float) -> str:
         """Write a goal, such as ``at most 2``."""
         scale, unit_shown = self._shown

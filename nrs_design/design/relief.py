@@ -38,13 +38,12 @@ def doubt_stiffness(
         if highest < limit or math.isnan(limit):
             continue
         enough = enough_damping(requirement, contact.name, Mt, Bt, highest)
-        held = "no Bt" if enough is None else f"Bt = {enough:g} {unit('N*m*s/rad')}"
+        held = "no Bt would hold it"
+        if enough is not None:
+            held = f"Bt = {enough:g} {unit('N*m*s/rad')} would just hold it, while constant"
         text = (
-            f"{name}: the stiffness of {contact.name}, up to {highest:.6g} {unit('N*m/rad')}, "
-            f"reaches the limit {limit:.6g} {unit('N*m/rad')} of its gains; with Mt = {Mt:g} "
-            f"{unit('kg*m^2')}, {held} would hold "
-            "one such contact at every corner of the other ranges, constant and without margin "
-            "(floating point, not a proof)"
+            f"{name}: {contact.name} is up to {highest:.6g} {unit('N*m/rad')} stiff, and its gains "
+            f"hold less than {limit:.6g}; {held} (floating point, not a proof)"
         )
         yield Doubt(("controllers", name), text)
 

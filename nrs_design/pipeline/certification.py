@@ -18,6 +18,7 @@ from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.certification import Attempt, Certification, Limits
 from nrs_design.search.method import Method
 from nrs_design.spec import LoadedSpec
+from nrs_design.switched.assumption import omitted
 from nrs_design.work import GIGABYTE
 
 if TYPE_CHECKING:
@@ -43,6 +44,11 @@ class Result:
     def design(self) -> ControllerDesign | None:
         """The gains that ship; None for given matrices."""
         return None if self.designed is None else self.designed.design
+
+    @property
+    def omits(self) -> tuple[str, ...]:
+        """What is not modelled, in a few words each."""
+        return omitted(self.certification.granted)
 
 
 @dataclass(frozen=True, slots=True)

@@ -19,6 +19,7 @@ class Doubt:
 
     at: tuple[str, ...]  # Keys that lead to it in the spec
     message: str  # What is doubtful; one line
+    flagged: bool = False  # Whether the table of the design marks it
 
     def __str__(self) -> str:
         """Return the message."""

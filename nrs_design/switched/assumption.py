@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import tomllib
+from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import cache
@@ -34,6 +35,7 @@ class AssumptionKind:
     breaks: str  # What no longer follows if it is false
     test: str  # How to test it on the robot
     field: str = ""  # Of the spec that is about it, such as ``sampling.period``
+    omits: str = ""  # What is not modelled, in a few words
     argued: bool = False  # It follows from how the controller is made
     says: tuple[tuple[str, str], ...] = ()  # Its sentences by name
 
@@ -76,6 +78,18 @@ class Assumption(str):
     def kind(self) -> AssumptionKind:
         """What breaks if it is false, and how to test it."""
         return kinds()[self.id.partition(".")[0]]
+
+
+def omitted(granted: Iterable[str]) -> tuple[str, ...]:
+    """Return what is not modelled, in a few words each; the sentences say it whole.
+
+    Parameters
+    ----------
+    granted : iterable of str
+        Those that are no `Assumption` say nothing of their kind.
+    """
+    said = (item.kind.omits for item in granted if isinstance(item, Assumption))
+    return tuple(dict.fromkeys(words for words in said if words))
 
 
 @cache

@@ -34,7 +34,7 @@ def test_one_answer_as_text_as_json_or_not_at_all(capsys, options, loud, out):
     assert ending.value.exit_code == 3
     assert capsys.readouterr() == (out, "" if "quiet" in options else "note\n")
     assert find.__doc__ == "Find it."
-    assert list(inspect.signature(find).parameters) == ["name", "as_json", "quiet"]
+    assert list(inspect.signature(find).parameters) == ["name", "verbose", "quiet", "as_json"]
 
 
 def test_a_command_without_a_document_has_no_json():
@@ -42,4 +42,4 @@ def test_a_command_without_a_document_has_no_json():
     def write() -> Answer:
         return found()
 
-    assert list(inspect.signature(write).parameters) == ["quiet"]
+    assert list(inspect.signature(write).parameters) == ["verbose", "quiet"]

@@ -20,7 +20,9 @@ def changed(tmp_path, *pairs):
 
 
 def test_any_stiffness_from_tissue_to_tissue_and_tool_is_proved(tmp_path):
-    result = run("certify-switching", PARALLEL, "--out", "ours.cert.json", cwd=tmp_path, code=0)
+    result = run(
+        "certify-switching", PARALLEL, "-v", "--out", "ours.cert.json", cwd=tmp_path, code=0
+    )
     assert "PROVED" in result.stdout
     assert "the axis moves on until it meets something" in result.stdout
     run("verify", "ours.cert.json", PARALLEL, cwd=tmp_path, code=0)

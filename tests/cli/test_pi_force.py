@@ -10,7 +10,7 @@ RUNS = ROOT / "docs/examples/force-limit-runs.nrs.yaml"
 
 def test_what_the_thesis_holds_to_be_impossible_is_proved(tmp_path):
     spec = SPECS / "force-limit-pi.nrs.yaml"
-    result = run("certify-switching", spec, "--out", "ours.cert.json", cwd=tmp_path, code=0)
+    result = run("certify-switching", spec, "-v", "--out", "ours.cert.json", cwd=tmp_path, code=0)
     assert "PROVED" in result.stdout
     assert "decays at 20 1/s, and stays in the command" in result.stdout
     run("verify", "ours.cert.json", spec, cwd=tmp_path, code=0)

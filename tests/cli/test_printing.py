@@ -60,11 +60,19 @@ def test_colours_are_for_those_who_want_them(monkeypatch, variables, coloured):
     assert painted("PROVED", "green", io.StringIO()) == "PROVED"
 
 
-def test_lines_break_between_words_on_a_terminal_only(narrow):
+def test_lines_break_between_words(narrow):
     line = "  one two three four five six"
-    assert wrapped(line, io.StringIO()) == line
     assert wrapped(line, Terminal()) == "  one two three four\n    five six"
     assert wrapped(line, Terminal(), hanging=0) == "  one two three four\n  five six"
+
+
+def test_a_pipe_gets_a_hundred_columns_unless_told_otherwise(monkeypatch):
+    line = "word " * 40
+    monkeypatch.delenv("COLUMNS")
+    lines = wrapped(line, io.StringIO()).split("\n")
+    assert 90 < max(map(len, lines)) <= 100
+    monkeypatch.setenv("COLUMNS", "50")
+    assert max(map(len, wrapped(line, io.StringIO()).split("\n"))) <= 50
 
 
 def test_a_long_name_is_not_cut(narrow):

@@ -84,7 +84,7 @@ def test_a_saturated_command_is_said(spec, tmp_path):
     path.write_text(path.read_text().replace("2 Hz}", "2 Hz, command: 100 rpm}"))
     saturated = document_of("simulate", path, cwd=tmp_path)["runs"][0]["saturated_samples"]
     assert saturated > 0
-    told = run("simulate", path, cwd=tmp_path).stdout
+    told = run("simulate", path, "-v", cwd=tmp_path).stdout
     assert f"met its limit at {saturated} samples" in told
 
 
@@ -101,8 +101,8 @@ def test_json(spec, tmp_path):
 
 def test_what_an_engine_leaves_out_is_said(spec, tmp_path):
     path = spec(RUN + ", errors: {force_noise: 0.01 N*m}")
-    assert "noise and jitter of the scenario" in run("simulate", path, cwd=tmp_path).stdout
-    result = run("simulate", path, "--engine", "sampled", cwd=tmp_path)
+    assert "noise and jitter of the scenario" in run("simulate", path, "-v", cwd=tmp_path).stdout
+    result = run("simulate", path, "--engine", "sampled", "-v", cwd=tmp_path)
     assert "noise and jitter" not in result.stdout
     assert "other axes" in result.stdout
 
@@ -110,17 +110,17 @@ def test_what_an_engine_leaves_out_is_said(spec, tmp_path):
 def test_controllers_in_force_and_age_of_the_force_are_said(spec, tmp_path):
     """A run shows no more than these."""
     path = spec(scenario=None, more="sampling: {period: 2 ms, delay: [0, 1]}\n")
-    told = run("simulate", path, cwd=tmp_path).stdout
+    told = run("simulate", path, "-v", cwd=tmp_path).stdout
     assert "in force: insertion, withdrawal; a sample every 0.002 s" in told
     assert "age of the force in samples: 0 to 1, drawn anew at each\n" in told
-    late = run("simulate", path, "--delay", "3", cwd=tmp_path).stdout
+    late = run("simulate", path, "--delay", "3", "-v", cwd=tmp_path).stdout
     assert "age of the force in samples: 3\n" in late
-    twice = run("simulate", path, "--outer-period", "0.001", cwd=tmp_path).stdout
+    twice = run("simulate", path, "--outer-period", "0.001", "-v", cwd=tmp_path).stdout
     assert "motion loop every 0.002 s, force sample every 0.001 s" in twice
 
 
 def test_a_spec_without_scenarios_has_one(spec, tmp_path):
-    result = run("simulate", spec(scenario=None), cwd=tmp_path)
+    result = run("simulate", spec(scenario=None), "-v", cwd=tmp_path)
     assert "insertion-and-withdrawal: exact engine" in result.stdout
     assert "continuous time, force of the moment" in result.stdout
 
@@ -135,7 +135,7 @@ def test_a_bound_stands_beside_the_peak(spec, tmp_path):
     rate = one["certified_rate"]
     assert rate["rate"] > 1
     assert rate["uncovered"] == ["the command does not come to an end before the run does"]
-    told = run("simulate", path, cwd=tmp_path).stdout
+    told = run("simulate", path, "-v", cwd=tmp_path).stdout
     assert "certified decay once nothing is commanded: " in told
     (unbound,) = document_of("simulate", path, "--no-bound", cwd=tmp_path)["runs"]
     assert unbound["certified_bounds"] == []
@@ -208,7 +208,7 @@ def test_a_profile_from_a_file(spec, tmp_path):
 
 def test_limits_of_a_scenario_stand_beside_its_peaks(spec, tmp_path):
     own = "limits: {torque: 0.25 N*m, deflection: 0.5 deg, velocity: 10 deg/s}"
-    result = run("simulate", spec(f"{RUN}, {own}"), cwd=tmp_path)
+    result = run("simulate", spec(f"{RUN}, {own}"), "-v", cwd=tmp_path)
     rows = [line.split() for line in result.stdout.splitlines() if "largest" in line]
     assert [row[-1] for row in rows] == ["0.25", "0.5", "10"]
     document = document_of("simulate", spec(f"{RUN}, {own}"), cwd=tmp_path)
@@ -266,7 +266,7 @@ def test_a_chattering_logic_is_counted(spec, tmp_path):
     """Noise around a command near zero: the signs of 6.3.2 have no bands."""
     noisy = STILL.replace("1 deg/s", "-0.1 deg/s") % ("1 s", "0 deg")
     path = spec(noisy + ", errors: {force_noise: 0.05 N*m}", SAMPLED)
-    assert "stays below 10 ms (chatter)" in run("simulate", path, cwd=tmp_path, code=0).stdout
+    assert "stays below 10 ms (chatter)" in run("simulate", path, "-v", cwd=tmp_path, code=0).stdout
     document = document_of("simulate", path, cwd=tmp_path)
     assert document["runs"][0]["metrics"]["chatter"] > 20
 

@@ -31,8 +31,8 @@ def test_withdrawal_of_the_thesis_and_both_specimens():
     contacts = (contact("soft", "43.0356"), contact("soft+stiff", "104.6964"))
     (doubt,) = doubt_stiffness("withdrawal", loops(*contacts), contacts, 0.01, 1.04)
     assert doubt.at == ("controllers", "withdrawal")
-    assert "soft+stiff, up to 104.696 N*m/rad" in doubt.message
-    assert "Bt = 1.29 N*m*s/rad would hold one such contact at every corner" in doubt.message
+    assert "soft+stiff is up to 104.696 N*m/rad stiff" in doubt.message
+    assert "Bt = 1.29 N*m*s/rad would just hold it, while constant" in doubt.message
 
 
 @settings(max_examples=30)

@@ -10,7 +10,7 @@ from nrs_design.pipeline import run_design
 from nrs_design.spec import read_spec
 from nrs_design.spec.load import axes_at
 from nrs_design.switched.assemble import assemble, assemble_matrices
-from nrs_design.switched.assumption import Assumption, Standing, kinds, say
+from nrs_design.switched.assumption import Assumption, Standing, kinds, omitted, say
 from tests.support import ROOT
 
 SPECS = [
@@ -61,8 +61,16 @@ def test_kinds_have_names_of_their_own_and_no_empty_field():
     rows = kinds().values()
     assert len({kind.name for kind in rows}) == len(rows) > 30
     for kind in rows:
-        needed = {field.name for field in fields(kind)} - {"field", "argued"}
+        needed = {field.name for field in fields(kind)} - {"field", "argued", "omits"}
         assert all(getattr(kind, name) for name in needed), kind.id
+
+
+def test_what_is_not_modelled_is_said_once_and_in_a_few_words():
+    quiet = say("uncoupled.axes")
+    assert omitted([quiet, quiet, "a plain text", say("not-sampled.continuous")]) == (
+        "other axes",
+        "sampling, delay, quantization, friction, saturation",
+    )
 
 
 def test_every_sentence_of_the_table_is_said_somewhere():

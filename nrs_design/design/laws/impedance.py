@@ -116,6 +116,11 @@ class ImpedanceAnalysis(AbstractControllerAnalysis):
         """The stiffness limit where the contact is, in N/m, if its lever arm is known."""
         return self.lever_arm and self.lowest_limit / self.lever_arm**2
 
+    @property
+    def on_bound(self) -> frozenset[str]:
+        """Which gains a bound of the spec has chosen, not the cost."""
+        return frozenset(d.at[-1] for d in doubt_bounds(self.name, self.given, self.optimum))
+
     def worst(self, measure: Measure) -> Achieved:
         """Return the worst value of a measure over the ranges, and where it is."""
         return next(found for found in self.achieved if found.measure is measure)

@@ -15,7 +15,7 @@ from nrs_design.controllers.controller_design import Controller, ImpedanceOptimu
 from nrs_design.controllers.float32 import to_float32
 from nrs_design.controllers.laws import LAWS, CompliantLaw, ProportionalDerivative
 from nrs_design.controllers.sensor import Sensor, build_sensor
-from nrs_design.design.doubts import doubt_values
+from nrs_design.design.doubts import doubt_values, is_unusual
 from nrs_design.design.goals import Achieved, ContactCorner, corners_of
 from nrs_design.design.measures import Measure
 from nrs_design.design.transfer import TransferFunction
@@ -99,6 +99,13 @@ class AbstractControllerAnalysis(ABC):
 
     name: str  # Of the controller
     achieved: tuple[Achieved, ...]  # The worst values over the contacts, beside the goals
+
+    @property
+    def unusual(self) -> tuple[Measure, ...]:
+        """What is beyond its usual limit, and no goal speaks of it."""
+        return tuple(
+            item.measure for item in self.achieved if is_unusual(item.measure, self.achieved)
+        )
 
     def doubts(self) -> Iterator[Doubt]:
         """Yield what is doubtful about the gains, and no goal speaks of it."""

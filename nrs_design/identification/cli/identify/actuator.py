@@ -9,7 +9,7 @@ import typer
 from nrs_design.cli.command import Answer, command
 from nrs_design.cli.destinations import Destinations
 from nrs_design.cli.options import Date, ReportTo
-from nrs_design.cli.printing import progress, say
+from nrs_design.cli.printing import detail, progress, say
 from nrs_design.identification.cli.identify.common import (
     ColumnMap,
     CoversOption,
@@ -89,9 +89,9 @@ def _print(found: ActuatorIdentification) -> None:
         say(f"range: gain {gain} (rad/s)/{found.unit}, time constant {time_constant} s")
         say(f"the range holds {found.covers}")
     if found.figures is not None:
-        say(f"R = {found.figures.resistance} ohm")
-        say(f"speed over torque = {found.figures.gradient} rpm/(N m)")
-        say(f"both for a motor with {found.figures.sheet}; options give another data sheet")
+        detail(f"R = {found.figures.resistance} ohm")
+        detail(f"speed over torque = {found.figures.gradient} rpm/(N m)")
+        detail(f"both for a motor with {found.figures.sheet}; options give another data sheet")
 
 
 def _facts(found: ActuatorIdentification) -> Facts:

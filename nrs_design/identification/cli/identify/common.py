@@ -15,7 +15,7 @@ import typer
 from nrs_design.cli import exit_codes
 from nrs_design.cli.command import Answer
 from nrs_design.cli.destinations import Destinations
-from nrs_design.cli.printing import is_quiet, say
+from nrs_design.cli.printing import is_quiet, say, wants_details
 from nrs_design.cli.tables import print_table
 from nrs_design.identification.finding import Finding, is_synthetic
 from nrs_design.printable import printable
@@ -97,8 +97,9 @@ def _bar() -> Iterator[Callable[[str], Callable[[float], None]]]:
 
 
 def print_fits(table: Table) -> None:
-    """Print a table of the page, which its headings explain."""
-    print_table("", table.columns, table.rows)
+    """Print a table of the page, which its headings explain, where all is wanted."""
+    if wants_details():
+        print_table("", table.columns, table.rows)
 
 
 def estimate_numbers(estimate: Estimate) -> dict[str, float | None]:

@@ -11,7 +11,7 @@ import typer
 from nrs_design.cli.command import Answer, command
 from nrs_design.cli.destinations import Destinations
 from nrs_design.cli.options import Date, ReportTo
-from nrs_design.cli.printing import progress, say
+from nrs_design.cli.printing import detail, progress, say, wants_details
 from nrs_design.identification.cli.identify.common import (
     ColumnMap,
     CoversOption,
@@ -42,6 +42,7 @@ from nrs_design.identification.cli.identify.tissue_options import (
     Tare,
     Zero,
 )
+from nrs_design.proof.text import counted
 
 if TYPE_CHECKING:
     from nrs_design.identification.statistics import Estimate
@@ -156,7 +157,11 @@ def _print(found: TissueIdentification, arm: float | None, texts: Sequence[str])
         say(found.chosen.box)
     for fit in found.chosen.fits:
         remarks = (*_offsets(fit, found.rotational), *fit.trial.remarks)
-        say(f"{fit.record.name}: {'; '.join(remarks)}")
+        detail(f"{fit.record.name}: {'; '.join(remarks)}")
+    remarked = sum(bool(fit.trial.remarks) for fit in found.chosen.fits)
+    if not wants_details():
+        said = f"{counted(remarked, 'record')} with remarks, " if remarked else ""
+        say(f"{said}{counted(len(comparison(found).columns) - 1, 'law')} compared (-v shows them)")
     if arm is not None:
         turned = [f"{value:.6g}" for value in law.at_pivot(arm).values]
         say(f"at the pivot: {in_words(named(law, turned, True))}")

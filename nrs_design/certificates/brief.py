@@ -1,0 +1,96 @@
+"""What a statement shows, in a few words; the whole claim is in the certificate."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+from nrs_design.proof.bounds import at_least, at_most, lower, upper
+from nrs_design.proof.evidence import AbstractEvidence
+from nrs_design.proof.evidence.abstract import Bound, Shows
+from nrs_design.proof.mode import Time
+from nrs_design.proof.system import SwitchedSystem
+from nrs_design.proof.text import counted
+
+DIGITS = 4
+
+
+def brief(evidence: AbstractEvidence, system: SwitchedSystem) -> str:
+    """Say what a statement shows: its number first, and for which signals and contact.
+
+    Parameters
+    ----------
+    evidence : AbstractEvidence
+        A statement that was checked.
+    system : SwitchedSystem
+        What it is about.
+    """
+    match evidence.shows:
+        case Shows.STABILITY:
+            return _decay(evidence.proved_rate(system), system) + _scope(evidence, system)
+        case Shows.BOUND:
+            bound = evidence.bound(system)
+            assert bound is not None
+            return _bound(bound) + _contact(evidence, system)
+        case Shows.CONVERGENCE:
+            return "under a constant force that pushes in, contact settles; no rate is claimed"
+        case Shows.NO_COMMON_QUADRATIC:
+            return "no common quadratic function exists"
+        case Shows.REGION:
+            assert system.saturation is not None
+            start, size = system.saturation.start, evidence.start_size
+            unit = f" {start.unit}".rstrip()
+            of = "" if size is None else f" with a {start.name} up to {lower(size, DIGITS)}{unit}"
+            return f"although signals saturate, decays from rest{of}{_contact(evidence, system)}"
+        case Shows.SAFETY:
+            speed = evidence.kept_speed
+            most = "" if speed is None else f", at most {upper(speed, DIGITS)} rad/s"
+            return f"the safety layer keeps its limits whatever is commanded{most}"
+        case _:
+            # The signal that grows; after a colon, such a claim says what follows from it.
+            claim = evidence.claim_in_scope(system)
+            return claim.rpartition(": ")[0] or claim
+
+
+def _decay(rate: Fraction | None, system: SwitchedSystem) -> str:
+    """Say how fast, in seconds where a step has a length."""
+    if rate is None:
+        return "decays"
+    if system.time is Time.DISCRETE and system.sample_time is None:
+        return f"decays with rho {at_most(rate)} per step"
+    # -log(rho) >= 1 - rho
+    step = system.sample_time
+    alpha = rate if step is None else (1 - rate) / step
+    within = f"time constant at most {_seconds(1 / alpha)}"
+    rho = "" if step is None else f", rho {at_most(rate)} per step"
+    return f"decays with alpha {at_least(alpha, '1/s')} ({within}{rho})"
+
+
+def _seconds(time: Fraction) -> str:
+    """Write a time, rounded up, in a unit in which it is easily read."""
+    return f"{upper(1000 * time, 3)} ms" if time < 1 else f"{upper(time, 3)} s"
+
+
+def _scope(evidence: AbstractEvidence, system: SwitchedSystem) -> str:
+    switching = system.switching
+    signals = "the declared rules of switching"
+    if switching.is_arbitrary:
+        signals = f"any switching among {counted(len(system.modes), 'mode')}"
+    elif switching.fixed_ends:
+        signals = "any switching, at constant parameters"
+    if system.couplings:
+        signals += ", for any number of coupled axes"
+    rounded = ", rounding included" if system.roundings and evidence.covers_rounding else ""
+    return f" under {signals}{_contact(evidence, system)}{rounded}"
+
+
+def _contact(evidence: AbstractEvidence, system: SwitchedSystem) -> str:
+    if evidence.covers_lost_contact:
+        lost = system.contact is not None or system.flights is not None
+        return ", contact may be lost" if lost else ""
+    return ", as long as contact is kept" if system.contact is not None else ""
+
+
+def _bound(bound: Bound) -> str:
+    sizes = [f"|{c.name}| <= {lower(c.bound, DIGITS)} {c.unit}".rstrip() for c in bound.channels]
+    level = f"{upper(bound.level, DIGITS)} {bound.output.unit}".rstrip()
+    return f"|{bound.output.name}| <= {level} from rest while {', '.join(sizes)}"

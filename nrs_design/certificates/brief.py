@@ -6,7 +6,12 @@ from fractions import Fraction
 
 from nrs_design.proof.bounds import at_least, at_most, lower, upper
 from nrs_design.proof.evidence import AbstractEvidence
-from nrs_design.proof.evidence.abstract import Bound, Shows
+from nrs_design.proof.evidence.abstract import (
+    AT_ANY_DEFLECTION,
+    IN_KEPT_CONTACT,
+    Bound,
+    Shows,
+)
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.proof.text import counted
@@ -48,7 +53,7 @@ def brief(evidence: AbstractEvidence, system: SwitchedSystem) -> str:
         case _:
             # The signal that grows; after a colon, such a claim says what follows from it.
             claim = evidence.claim_in_scope(system)
-            return claim.rpartition(": ")[0] or claim
+            return (claim.rpartition(": ")[0] or claim) + _growing_contact(evidence, system)
 
 
 def _decay(rate: Fraction | None, system: SwitchedSystem) -> str:
@@ -88,6 +93,14 @@ def _contact(evidence: AbstractEvidence, system: SwitchedSystem) -> str:
         lost = system.contact is not None or system.flights is not None
         return ", contact may be lost" if lost else ""
     return ", as long as contact is kept" if system.contact is not None else ""
+
+
+def _growing_contact(evidence: AbstractEvidence, system: SwitchedSystem) -> str:
+    if evidence.covers_loss(system):
+        return ""
+    if system.flights is not None:
+        return f", {AT_ANY_DEFLECTION}"
+    return f", {IN_KEPT_CONTACT}" if system.contact is not None else ""
 
 
 def _bound(bound: Bound) -> str:

@@ -49,14 +49,14 @@ def test_the_command_as_typed():
     assert {row["verdict"] for row in document["rows"]} == {
         "reproduced", "printed differently", "fitted", "derived", "not reproducible",
     }  # fmt: skip
-    readme = (ROOT / "README.md").read_text()
-    assert f"\nAll in all: {document['summary']}\n" in readme
+    page = (ROOT / "docs/explanation/reproduce.md").read_text()
+    assert f"\nAll in all: {document['summary']}\n" in page
     errors = len(document["errors_of_the_print"])
     assert f"(errors of the print: {errors})" in document["summary"]
     rows = {
         (row["section"], row["name"], row["printed"], row["verdict"]) for row in document["rows"]
     }
-    shown = readme.partition("| section | quantity |")[2].partition("\n\n")[0].splitlines()[2:]
+    shown = page.partition("| section | quantity |")[2].partition("\n\n")[0].splitlines()[2:]
     assert len(shown) > 20
     for line in shown:
         section, name, printed, _, _, verdict = (cell.strip() for cell in line.split("|")[1:-1])

@@ -154,6 +154,7 @@ class Section:
     title: str
     blocks: tuple[Block, ...]
     boxed: bool = False
+    folded: bool = False  # Whether a page shows its title only, until a reader opens it
 
 
 @dataclass(frozen=True, slots=True)
@@ -181,6 +182,8 @@ class Report:
     # them; without them, it stands on top itself.
     summary: tuple[str, ...] = ()
     lights: tuple[Light, ...] = ()  # Below the sentences
+    key: tuple[tuple[str, str], ...] = ()  # Label and value of what a reader wants to know first
+    lead: str = ""  # Name of the figure that a page shows beside them, or empty
     # The text of the certificate that its id is the hash of, which a page can check; or empty.
     certificate: str = ""
     # As the reader gave it. Without one the report has no date, and the same spec gives the same

@@ -85,6 +85,7 @@ def _section(section: Section, name: str) -> dict[str, Any]:
         "id": name,
         "title": section.title,
         "boxed": section.boxed,
+        "folded": section.folded,
         "blocks": [_block(block) for block in section.blocks],
     }
 

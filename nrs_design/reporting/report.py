@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from nrs_design.axis import about
@@ -11,6 +12,7 @@ from nrs_design.reporting.sections.design import design_sections
 from nrs_design.reporting.sections.evidence import evidence_sections
 from nrs_design.reporting.sections.goals import goal_facts, goals_section
 from nrs_design.reporting.sections.head import claim_of, facts, proved_rate, remarks_of
+from nrs_design.reporting.sections.key import key_facts, tests_section
 from nrs_design.reporting.sections.methods import methods_section
 from nrs_design.reporting.sections.mode_logic import logic_section
 from nrs_design.reporting.sections.modes import modes_section
@@ -38,6 +40,9 @@ if TYPE_CHECKING:
     from nrs_design.pipeline.stability_map import StabilityMap
     from nrs_design.pipeline.subsets import Subset
     from nrs_design.search.method_run import MethodRun
+
+# The run under the worst signal that was found, beside its proved bound.
+LEAD = "run"
 
 
 def build_report(
@@ -85,9 +90,9 @@ def build_report(
     with about(getattr(result.loaded.spec, "axis", None)):
         spec, certification, designed = result.loaded.spec, result.certification, result.designed
         system = certification.system
-        sections = (
+        first = (tests_section(result), remedies_section(result, margins, subsets, blocked))
+        others = (
             proof_section(result),
-            remedies_section(result, margins, subsets, blocked),
             stability_map_section(result.loaded, stability_map) if stability_map else None,
             *(design_sections(designed, analysis) if designed else ()),
             goals_section(result, analysis),
@@ -102,6 +107,7 @@ def build_report(
             recheck_section(result),
             spec_section(result.loaded),
         )
+        sections = (*first, *(replace(item, folded=True) for item in others if item is not None))
         return Report(
             name=spec.name,
             title=spec.title,
@@ -112,6 +118,8 @@ def build_report(
             sections=tuple(section for section in sections if section is not None),
             summary=summary_of(result),
             lights=lights_of(result, analysis),
+            key=key_facts(result, analysis),
+            lead=LEAD,
             certificate=canonical(to_document(result.certificate)) if result.certificate else "",
             date=date,
         )

@@ -71,10 +71,17 @@ def open_page(browser, text, folder, width, scheme="light"):
     browser.get(path.as_uri())
 
 
+def unfold(browser):
+    """Open all that is folded, as a reader would."""
+    script = "document.querySelectorAll('details').forEach(fold => { fold.open = true; })"
+    browser.execute_script(script)
+
+
 @pytest.mark.parametrize("width", [375, 1280])
 @pytest.mark.parametrize("case", ALL)
 def test_page_renders(browser, report, page, tmp_path, case, width):
     open_page(browser, page(case), tmp_path, width)
+    unfold(browser)
     assert [entry for entry in browser.get_log("browser") if entry["level"] == "SEVERE"] == []
     sizes = browser.execute_script(
         "return [...document.querySelectorAll('figure svg')].map(s => {"
@@ -90,6 +97,7 @@ def test_page_renders(browser, report, page, tmp_path, case, width):
 def test_a_telephone_shows_all_of_it_legibly(browser, page, tmp_path, case):
     """Letters of figures are 8 px high or more; no table hides a column to the right."""
     open_page(browser, page(case), tmp_path, 390)
+    unfold(browser)
     scales = browser.execute_script(
         "return [...document.querySelectorAll('figure svg')].map(s => "
         "s.getBoundingClientRect().width / s.viewBox.baseVal.width)"
@@ -106,9 +114,11 @@ def test_a_telephone_shows_all_of_it_legibly(browser, page, tmp_path, case):
 @pytest.mark.parametrize("width", [375, 1280])
 def test_blocks_do_not_overlap(browser, page, tmp_path, width):
     open_page(browser, page("proved"), tmp_path, width)
+    unfold(browser)
+    # On a wide screen the figure of the head stands beside the rest of it.
     boxes = browser.execute_script(
-        "return [...document.querySelectorAll("
-        "'header > :not(button), section > *:not(figure), figure > *')].map(e => {"
+        "return [...document.querySelectorAll('header > :not(button, figure),"
+        "section > *:not(figure, details), details > *:not(figure), main figure > *')].map(e => {"
         "const r = e.getBoundingClientRect(); return [r.top, r.bottom, e.tagName]})"
     )
     boxes = [box for box in boxes if box[1] > box[0]]
@@ -121,6 +131,7 @@ def test_blocks_do_not_overlap(browser, page, tmp_path, width):
 def test_letters_within_a_figure_do_not_overlap(browser, page, tmp_path, case):
     """Text groups of one figure may touch a curve, but not each other."""
     open_page(browser, page(case), tmp_path, 1280)
+    unfold(browser)
     overlaps = browser.execute_script(
         """
         const found = [];
@@ -181,6 +192,31 @@ def test_a_figure_names_what_is_pointed_at_and_can_be_enlarged(browser, page, tm
     assert browser.execute_script(box) == pytest.approx(whole / 2)
     everything.click()
     assert browser.execute_script(box) == pytest.approx(whole)
+
+
+@pytest.mark.parametrize("case", ["proved", "refuted", "inconclusive"])
+def test_the_first_screen_says_it_and_the_rest_is_folded(browser, page, tmp_path, case):
+    """Verdict, key facts and the run at 1280 x 800; at most 1,200 words and 40 links unfolded."""
+    open_page(browser, page(case), tmp_path, 1280)
+    low, words, links = browser.execute_script(
+        "const low = s => document.querySelector(s).getBoundingClientRect().bottom;"
+        "return [Math.max(low('.badge'), low('.key'), low('header figure svg')),"
+        "document.body.innerText.split(/\\s+/).length,"
+        "[...document.querySelectorAll('a')].filter(a => a.checkVisibility()).length]"
+    )
+    assert low <= 800
+    assert words <= 1200
+    assert links <= 40
+
+
+def test_a_link_opens_what_it_leads_to(browser, page, tmp_path):
+    open_page(browser, page("proved"), tmp_path, 1280)
+    shown = "return document.querySelector('.claim').checkVisibility()"
+    assert not browser.execute_script(shown)
+    browser.execute_script("location.hash = '#statement'")
+    assert browser.execute_async_script(
+        "setTimeout(() => arguments[0](document.querySelector('.claim').checkVisibility()), 100)"
+    )
 
 
 def test_without_its_script_the_page_says_all_the_same(browser, page, tmp_path):

@@ -36,8 +36,8 @@ if TYPE_CHECKING:
 
 # States of a family that is nothing but its motion loop.
 MOTION_STATES = ("xp1", "xp2")
-# More modes than these share a row, and a color.
-_ROWS = 24
+# More modes than these share a row, and a color; so many at most have one each by all means.
+_ROWS, _ALONE = 24, 6
 
 
 @styled
@@ -174,6 +174,9 @@ class Group:
 def groups_of(response: SwitchedRun, names: Sequence[str], most: int = _ROWS) -> list[Group]:
     """Return the modes of a run in the order of their first use, the last ones together.
 
+    Of many, those with one controller and contact are one: a reader asks for these, not for
+    corners of ranges.
+
     Parameters
     ----------
     response : SwitchedRun
@@ -184,6 +187,15 @@ def groups_of(response: SwitchedRun, names: Sequence[str], most: int = _ROWS) ->
         How many rows there may be.
     """
     used = list(dict.fromkeys(response.mode.tolist()))
+    if len(used) > _ALONE:
+        alike: dict[str, list[int]] = {}
+        for mode in used:
+            alike.setdefault("/".join(names[mode].split("/")[:2]), []).append(mode)
+        if len(alike) <= _ALONE:
+            return [
+                Group(name if len(modes) == 1 else f"{name}: {len(modes)}", tuple(modes), color(i))
+                for i, (name, modes) in enumerate(alike.items())
+            ]
     single = used if len(used) <= most else used[: most - 1]
     groups = [Group(names[m], (m,), color(i)) for i, m in enumerate(single)]
     if len(used) > len(single):

@@ -41,7 +41,7 @@ function addCheck(text) {
   bar.className = "tools";
   bar.id = "check";
   bar.append(told, press);
-  document.querySelector(".claim").after(bar);
+  (document.querySelector(".lights") || document.querySelector(".claim")).after(bar);
 }
 
 addCheck(document.getElementById("numbers").textContent);

@@ -86,5 +86,20 @@ function addTools(svg) {
   });
 }
 
+// A link into a folded part, or a printer, opens it.
+function unfold(inner) {
+  for (let fold = inner?.closest("details"); fold; fold = fold.parentElement.closest("details")) fold.open = true;
+  const own = inner?.querySelector(":scope > details");
+  if (own) own.open = true;
+}
+
+function follow() {
+  const target = location.hash.length > 1 && document.getElementById(decodeURIComponent(location.hash.slice(1)));
+  if (target) { unfold(target); target.scrollIntoView(); }
+}
+
 addTheme();
+addEventListener("hashchange", follow);
+addEventListener("beforeprint", () => document.querySelectorAll("details").forEach((fold) => { fold.open = true; }));
+follow();
 document.querySelectorAll("figure svg").forEach(addTools);

@@ -13,9 +13,10 @@ from nrs_design.design.measures import SENSITIVITY_PEAK
 from nrs_design.proof.bounds import lower, upper
 from nrs_design.proof.mode import Time
 from nrs_design.reporting.document import Bullets, Derived, Paragraph, Section
+from nrs_design.reporting.formatting import shortened
 from nrs_design.reporting.register import register_of
 from nrs_design.reporting.sections.head import proved_rate
-from nrs_design.reporting.sections.titles import EVIDENCE, GOALS
+from nrs_design.reporting.sections.titles import EVIDENCE, GOALS, MODES
 from nrs_design.spec import InteractionDesignSpec
 
 if TYPE_CHECKING:
@@ -37,7 +38,13 @@ def key_facts(result: Result, analysis: DesignAnalysis | None) -> tuple[tuple[st
     analysis : DesignAnalysis or None
         What the design achieves; None where there is none, or a nominal loop is unstable.
     """
-    return (*_decay(result), *_force(result), *_gains(result), *_achieved(analysis))
+    return (
+        *_modes(result),
+        *_decay(result),
+        *_force(result),
+        *_gains(result),
+        *_achieved(analysis),
+    )
 
 
 def tests_section(result: Result) -> Section | None:
@@ -51,6 +58,14 @@ def tests_section(result: Result) -> Section | None:
         return None
     text = f"{len(tests)} assumptions are neither tested nor argued. Each has a test:"
     return Section(TESTS, (Paragraph(text), Bullets("", tests)))
+
+
+def _modes(result: Result) -> Iterator[tuple[str, str]]:
+    if isinstance(result.loaded.spec, InteractionDesignSpec):
+        return
+    system = result.certification.system
+    names = shortened([mode.name for mode in system.modes], 4)
+    yield "Modes", Derived(f"{names}; {system.time} time", MODES)
 
 
 def _decay(result: Result) -> Iterator[tuple[str, str]]:

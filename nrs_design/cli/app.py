@@ -20,34 +20,17 @@ from nrs_design.errors import ClockError, NrsDesignError
 from nrs_design.printable import printable
 from nrs_design.wings import load_wing, wing_of
 
-# Each command is in the module of its name, here or in its wing; the help keeps this order.
-COMMANDS = (
-    "init",
-    "check",
-    "schema",
-    "identify",
-    "optimize",
-    "pareto",
-    "tune",
-    "mode-logic",
-    "certify-switching",
-    "compare-methods",
-    "verify",
-    "diff",
-    "audit",
-    "check-lyapunov",
-    "simulate",
-    "sweep",
-    "map",
-    "report",
-    "reproduce",
-    "export",
-    "evidence",
-    "gate",
-    "explain",
-    "robot",
-    "ros2",
-)
+# Each command is in the module of its name, here or in its wing; the help keeps groups and order.
+GROUPS = {
+    "Start": ("init", "check", "explain", "schema"),
+    "Design": ("optimize", "pareto", "tune", "mode-logic", "simulate"),
+    "Prove": ("certify-switching", "verify", "map", "sweep", "compare-methods", "check-lyapunov"),
+    "Ship": ("report", "gate", "export", "evidence", "diff"),
+    "Measure": ("identify", "audit"),
+    "Robot": ("robot", "ros2", "reproduce"),
+}
+COMMANDS = tuple(name for names in GROUPS.values() for name in names)
+_PANELS = {name: panel for panel, names in GROUPS.items() for name in names}
 
 # Environment variables that libraries read when they are loaded. Users cannot override them: no
 # outcome may depend on them.
@@ -91,9 +74,10 @@ def make_app(names: Iterable[str] = COMMANDS) -> typer.Typer:
                 continue
         command = getattr(module, attribute)
         if isinstance(command, typer.Typer):
-            app.add_typer(command, name=name)
+            app.add_typer(command, name=name, rich_help_panel=_PANELS[name])
         else:
-            app.command(name, context_settings=getattr(command, "settings", None))(command)
+            settings = getattr(command, "settings", None)
+            app.command(name, context_settings=settings, rich_help_panel=_PANELS[name])(command)
     return app
 
 

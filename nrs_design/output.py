@@ -78,6 +78,8 @@ GATE = re.compile(
     rb'|\{\n  "\$schema": "https://json\.schemastore\.org/sarif[^{]*\{\s*"tool": \{\s*"driver": \{'
     rb'\s*"name": "nrs-design"'
     rb'|<\?xml version="1\.0" encoding="UTF-8"\?>\n<testsuites name="nrs-design" '
+    rb"|### [^\n]{1,4} nrs-design: "
+    rb"|<svg [^\n]*>\n<!-- nrs-design badge -->"
 )
 # What follows the first line of a figure that stands for itself.
 SVG_MARK = "<!-- nrs-design figure -->\n"

@@ -35,6 +35,8 @@ class GateFormat(StrEnum):
     SARIF = "sarif"
     JUNIT = "junit"
     JSON = "json"
+    MARKDOWN = "markdown"
+    BADGE = "badge"
 
 
 @command("gate")

@@ -1,8 +1,11 @@
 """The files that other projects copy or refer to work in a repository as it is."""
 
+import os
 import re
 import shlex
 import shutil
+import subprocess
+import sys
 import tomllib
 from pathlib import Path
 
@@ -12,6 +15,7 @@ from typer.main import get_command
 
 from nrs_design.cli import main
 from nrs_design.cli.app import make_app
+from tests.support import run
 
 from .conftest import STABLE
 
@@ -21,6 +25,9 @@ GITLAB = ROOT / "docs/ci/gitlab-ci.yml"
 HOOKS = ROOT / ".pre-commit-hooks.yaml"
 GUIDE = ROOT / "docs/ci/README.md"
 CLEARED = "rm -rf gate"
+
+
+ACTION = ROOT / "docs/ci/action.yml"
 
 
 def parse(text):
@@ -200,3 +207,39 @@ def test_the_licence_is_that_of_the_project():
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
     assert project["license"] == {"text": "MIT"}
     assert (ROOT / "LICENSE").read_text().startswith("MIT License\n")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("weaker", [False, True])
+def test_the_action_writes_the_summary_of_the_job(tmp_path, weaker):
+    """Its lines as bash runs them; what is weaker than the base fails, and is in the summary."""
+    (tmp_path / "head/specs").mkdir(parents=True)
+    spec = tmp_path / "head/specs/a.nrs.yaml"
+    spec.write_text(STABLE)
+    run("gate", "specs", "--no-reports", cwd=tmp_path / "head", code=0)
+    shutil.copytree(tmp_path / "head", tmp_path / "base")
+    if weaker:
+        spec.write_text(STABLE.replace("arbitrary", "{dwell_time: 1 s}"))
+        run("gate", "specs", "--no-reports", cwd=tmp_path / "head")
+    environment = {
+        **os.environ,
+        "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}",
+        "SPECS": "specs",
+        "BASE": "../base",
+        "RUNNER_TEMP": str(tmp_path),
+        "GITHUB_STEP_SUMMARY": str(tmp_path / "summary.md"),
+    }
+    lines = [step["run"] for step in parse(ACTION.read_text())["runs"]["steps"] if "run" in step]
+    gate, summary = lines[1:3]
+    codes = [
+        subprocess.run(
+            ["bash", "-eo", "pipefail", "-c", line],
+            env=environment,
+            cwd=tmp_path / "head",
+            check=False,
+        ).returncode
+        for line in (gate, summary)
+    ]
+    assert codes == [int(weaker), 0]
+    said = (tmp_path / "summary.md").read_text()
+    assert ("weaker" in said and "NRS110" in said) if weaker else "✅ nrs" in said

@@ -1,11 +1,13 @@
-"""What the gate prints: for people, GitHub, code scanners and test reporters."""
+"""What the gate prints: for people, GitHub, code scanners, test reporters and READMEs."""
 
 from collections.abc import Callable, Mapping
 from types import MappingProxyType
 
+from nrs_design.gating.formats.badge import to_badge
 from nrs_design.gating.formats.github import to_github
 from nrs_design.gating.formats.json_document import to_json
 from nrs_design.gating.formats.junit import to_junit
+from nrs_design.gating.formats.markdown import to_markdown
 from nrs_design.gating.formats.sarif import to_sarif
 from nrs_design.gating.formats.text import to_text
 from nrs_design.gating.obligations import GateOutcome
@@ -17,7 +19,18 @@ FORMATS: Mapping[str, Callable[[GateOutcome], str]] = MappingProxyType(
         "sarif": to_sarif,
         "junit": to_junit,
         "json": to_json,
+        "markdown": to_markdown,
+        "badge": to_badge,
     }
 )
 
-__all__ = ["FORMATS", "to_github", "to_json", "to_junit", "to_sarif", "to_text"]
+__all__ = [
+    "FORMATS",
+    "to_badge",
+    "to_github",
+    "to_json",
+    "to_junit",
+    "to_markdown",
+    "to_sarif",
+    "to_text",
+]

@@ -1,18 +1,38 @@
 """Design of compliant controllers for surgical co-worker robots, with proofs.
 
-``import nrs_design as nrs`` offers `nrs.certify`, `nrs.check_lyapunov`, `nrs.load` and
-`nrs.verify`; what they need is imported when they are first asked for.
+``import nrs_design as nrs`` offers `nrs.load`, `nrs.certify`, `nrs.identify`,
+`nrs.check_lyapunov` and `nrs.verify`; what they need is imported when they are first asked for.
 """
 
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from nrs_design.api import Decision, Gradient, Study, certify, check_lyapunov, load, verify
+    from nrs_design.api import (
+        Decision,
+        Gradient,
+        Optimum,
+        Study,
+        certify,
+        check_lyapunov,
+        identify,
+        load,
+        verify,
+    )
 
 __version__ = "0.1.0"
 
-__all__ = ["Decision", "Gradient", "Study", "certify", "check_lyapunov", "load", "verify"]
+__all__ = [
+    "Decision",
+    "Gradient",
+    "Optimum",
+    "Study",
+    "certify",
+    "check_lyapunov",
+    "identify",
+    "load",
+    "verify",
+]
 
 
 def __getattr__(name: str) -> Any:

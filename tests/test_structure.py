@@ -37,6 +37,9 @@ REACHED = {
     # What a scenario moves may be all links, or MuJoCo.
     ("nrs_design.pipeline.scenarios", "robot", "pipeline"),
     ("nrs_design.simulation.bodies", "robot", "simulation.bodies"),
+    # Records and runs, from the library.
+    ("nrs_design.api.measured", "identification", "library"),
+    ("nrs_design.api.study", "identification", "library"),
     # A recorded command is a record.
     ("nrs_design.simulation.build_scenario", "identification", "tables.table"),
 }

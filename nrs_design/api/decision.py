@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from nrs_design import pipeline
+from nrs_design.api.paper import WIDTHS, form_of, latex_of
 from nrs_design.certificates.certificate import dump
 from nrs_design.errors import DesignError, OutputError, SpecError
 from nrs_design.output import CERTIFICATE, PAGE, check_html, write_output
@@ -17,7 +18,9 @@ from nrs_design.search.certification import Attempt
 from nrs_design.spec import LoadedSpec, read_spec
 
 if TYPE_CHECKING:
+    import numpy as np
     from matplotlib.figure import Figure
+    from numpy.typing import NDArray
 
     from nrs_design.proof.evidence import AbstractEvidence
     from nrs_design.reporting import Report
@@ -103,8 +106,44 @@ class Decision:
 
         return mode_state_spaces(self.result.certification.system)
 
-    def plot(self, name: str | None = None) -> Figure:
+    @property
+    def P(self) -> NDArray[np.float64] | None:
+        """The matrix of the function V = x' P x, shape (n, n), rounded to doubles.
+
+        None unless one quadratic function decides; `evidence` has the exact numbers.
+        """
+        return form_of(self.evidence)
+
+    def latex(self) -> str:
+        """Return claim and P for a paper, each number on the side that stays true."""
+        certification = self.result.certification
+        name, time = self.result.loaded.spec.name, certification.system.time
+        return latex_of(name, self.verdict, self.decay_rate, time, self.P)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return verdict, rate, claim, assumptions and gains; the rate exactly, as a text."""
+        certificate = self.result.certificate
+        return {
+            "spec": self.result.loaded.spec.name,
+            "verdict": self.verdict,
+            "refuted_in": self.refuted_in,
+            "common_quadratic": self.common_quadratic,
+            "decay_rate": None if self.decay_rate is None else str(self.decay_rate),
+            "claim": self.claim,
+            "assumptions": [str(text) for text in self.assumptions],
+            "gains": {} if certificate is None else dict(certificate.gains),
+        }
+
+    def plot(self, name: str | None = None, width: str | None = None) -> Figure:
         """Return a figure of the report: the run beside its bound, or another one by name.
+
+        Parameters
+        ----------
+        name : str, optional
+            Of the figure.
+        width : {"ieee", "ieee-two"}, optional
+            Width of one or two columns of a paper of the IEEE, 3.5 or 7.16 in; the figure keeps its
+            height. ``savefig`` writes it as PDF, SVG, PNG or, with a TeX, PGF.
 
         Raises
         ------
@@ -118,7 +157,12 @@ class Decision:
             raise DesignError(
                 f"there is no figure {chosen!r}", remedy=f"figures here: {', '.join(figures)}"
             )
-        return figures[chosen]
+        figure = figures[chosen]
+        if width is not None:
+            if width not in WIDTHS:
+                raise DesignError(f"there is no width {width!r}", remedy=f"{' or '.join(WIDTHS)}")
+            figure.set_size_inches(WIDTHS[width], figure.get_size_inches()[1])
+        return figure
 
     def report(self, file: str | Path | None = None) -> str:
         """Return the report as one HTML page, and write it if a file is named.

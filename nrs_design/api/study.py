@@ -5,15 +5,17 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from nrs_design import pipeline
 from nrs_design.api.decision import Decision
+from nrs_design.api.optimum import Optimum
 from nrs_design.errors import DesignError
 from nrs_design.search.certification import Limits
 from nrs_design.search.gradient_settings import Gradient
 from nrs_design.search.method import Method
 from nrs_design.spec import LoadedSpec, read_spec
+from nrs_design.wings import load_wing
 
 if TYPE_CHECKING:
     from nrs_design.controllers.controller_design import ControllerDesign
@@ -50,6 +52,50 @@ class Study:
         """
         designed = pipeline.run_design(self.loaded)
         return None if designed is None else designed.design
+
+    def optimize(self) -> Optimum:
+        """Design the controllers; gains are floats with units, and margins come with them.
+
+        Raises
+        ------
+        DesignError
+            If the spec gives matrices, or a requirement cannot be met within its bounds.
+
+        Examples
+        --------
+        >>> import nrs_design as nrs
+        >>> optimum = nrs.load("specs/neuroboscope/soft-tissue.nrs.yaml").optimize()
+        >>> round(optimum.gains["insertion"]["Bt"], 4), optimum.units["insertion"]["Bt"]
+        (2.15, 'N*m*s/rad')
+        """
+        return Optimum(pipeline.run_interaction(self.loaded, "has nothing to optimize"))
+
+    def report(self, file: str | Path | None = None) -> str:
+        """Certify, and return the report as one HTML page; write it if a file is named."""
+        return self.certify().report(file)
+
+    def audit(self, log: str | Path, certificate: str | Path | None = None) -> Any:
+        """Judge whether a run of the robot stayed inside what was proved.
+
+        Parameters
+        ----------
+        log : path-like
+            CSV file of the run; see `nrs-design audit` for its columns.
+        certificate : path-like, optional
+            Checked against the spec; without one nothing is proved, and the judgement says so.
+
+        Returns
+        -------
+        RunJudgement
+            Of `nrs_design.identification.running`, with its verdict and every check.
+
+        Raises
+        ------
+        DataError, CertificateError
+            If a file cannot be used.
+        """
+        file = None if certificate is None else Path(certificate)
+        return load_wing("identification", "library").judge_log(Path(log), self.loaded, file)
 
     def state_spaces(self) -> StateSpaces:
         """Design, and return actuator, motion loop and controllers for python-control.

@@ -78,6 +78,9 @@ class MotorConstants:
     reduction: float  # Gearhead ratio N
 
 
+THESIS_MOTOR = MotorConstants(0.0115, 0.0115, 14.81e-7, 181.0)
+
+
 def voltage_gain(actuator: Actuator, motor: MotorConstants) -> float:
     """Return K_m, motor speed over voltage in rad/(s V).
 

@@ -5,9 +5,10 @@ from nrs_design.identification.actuator.identify import (
     identify_actuator,
 )
 from nrs_design.identification.actuator.model import ActuatorFit, MotorFigures
-from nrs_design.models.actuator import MotorConstants
+from nrs_design.models.actuator import THESIS_MOTOR, MotorConstants
 
 __all__ = [
+    "THESIS_MOTOR",
     "ActuatorFit",
     "ActuatorIdentification",
     "MotorConstants",

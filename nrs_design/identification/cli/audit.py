@@ -13,7 +13,6 @@ from nrs_design.cli.destinations import Destinations
 from nrs_design.cli.options import Date, ReportTo
 from nrs_design.cli.printing import progress, say
 from nrs_design.cli.tables import print_table
-from nrs_design.errors import CertificateError
 from nrs_design.identification.cli.identify.common import SYNTHETIC, ColumnMap, read_all, sources
 
 if TYPE_CHECKING:
@@ -70,6 +69,7 @@ def audit(
     """
     from nrs_design.identification.running import judge_run, read_run, read_run_bounds
     from nrs_design.identification.running.bounds import parse_command_limit
+    from nrs_design.identification.running.proof import proof_of
     from nrs_design.identification.write_spec import check_turning
     from nrs_design.spec import read_spec
 
@@ -78,7 +78,7 @@ def audit(
     check_turning(loaded.spec, loaded.path)
     bounds = read_run_bounds(loaded)
     limit = None if command_limit is None else parse_command_limit(command_limit, bounds.command)
-    reason, losable = _proof_of(certificate, loaded)
+    reason, losable = proof_of(certificate, loaded)
     (run,) = read_all([log], read_run, columns or [])
     with progress("judging"):
         found = judge_run(
@@ -103,37 +103,6 @@ def _page(found: RunJudgement, name: str, reason: str) -> Report:
     from nrs_design.identification.reporting.running import run_report
 
     return run_report(found, name, reason)
-
-
-def _proof_of(certificate: Path | None, loaded: LoadedSpec) -> tuple[str, bool]:
-    """Say why the spec is not proved, and whether a proof holds while contact is lost.
-
-    The reason is empty if a certificate proves it.
-
-    Raises
-    ------
-    CertificateError
-        If the certificate is rejected.
-    """
-    from nrs_design.certificates.verify import verify
-    from nrs_design.proof.evidence import Shows
-
-    if certificate is None:
-        return "no certificate is named", False
-    outcome = verify(certificate, loaded)
-    if outcome.certificate is None or outcome.fault is not None:
-        raise CertificateError(
-            f"the certificate is rejected: {outcome.fault}",
-            path=certificate,
-            remedy="make it anew with certify-switching --out, or name the spec that it is for",
-        )
-    verdict, statements = outcome.certificate.verdict, outcome.certificate.statements
-    if verdict != "proved":
-        return f"its certificate says {verdict}", False
-    # A proof of a spec that asks for it holds while contact is lost, whatever its evidence.
-    asked = loaded.spec.kind == "interaction-design" and loaded.spec.contact == "losable"
-    covered = any(s.shows is Shows.STABILITY and s.covers_lost_contact for s in statements)
-    return "", asked or covered
 
 
 # What a check that is not modelled takes for granted.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -30,12 +31,14 @@ if TYPE_CHECKING:
 def actuator(
     data: DataFiles,
     columns: ColumnMap = None,
-    torque_constant: Annotated[float, typer.Option(min=1e-9, help="K_T in N m/A.")] = 0.0115,
-    back_emf_constant: Annotated[float, typer.Option(min=1e-9, help="K_B in V s/rad.")] = 0.0115,
+    torque_constant: Annotated[float | None, typer.Option(min=1e-9, help="K_T in N m/A.")] = None,
+    back_emf_constant: Annotated[
+        float | None, typer.Option(min=1e-9, help="K_B in V s/rad.")
+    ] = None,
     inertia: Annotated[
-        float, typer.Option(min=1e-15, help="At the motor shaft, in kg m^2.")
-    ] = 14.81e-7,
-    reduction: Annotated[float, typer.Option(min=1e-9, help="Gearhead ratio N.")] = 181.0,
+        float | None, typer.Option(min=1e-15, help="At the motor shaft, in kg m^2.")
+    ] = None,
+    reduction: Annotated[float | None, typer.Option(min=1e-9, help="Gearhead ratio N.")] = None,
     covers: Annotated[
         CoversOption,
         typer.Option(help="What the range holds: this motor, 95 % of records, or the next one."),
@@ -53,13 +56,19 @@ def actuator(
 
     Example: nrs-design identify actuator specs/data/actuator-*hz.csv --report reports/actuator.html
     """
-    from nrs_design.identification.actuator import MotorConstants, identify_actuator
+    from nrs_design.identification.actuator import THESIS_MOTOR, identify_actuator
     from nrs_design.identification.datasets import FrequencyResponse, read_actuator
     from nrs_design.identification.reporting.actuator import actuator_report
     from nrs_design.identification.write_spec import check_actuator, merge_actuator
 
     outputs = Destinations.checked(write, report, date)
-    motor = MotorConstants(torque_constant, back_emf_constant, inertia, reduction)
+    given = {
+        "torque_constant": torque_constant,
+        "back_emf_constant": back_emf_constant,
+        "inertia": inertia,
+        "reduction": reduction,
+    }
+    motor = replace(THESIS_MOTOR, **{key: v for key, v in given.items() if v is not None})
     items = read_all(data, read_actuator, columns or [])
     series = [(item,) if isinstance(item, FrequencyResponse) else item for item in items]
     records = [record for group in series for record in group]

@@ -1,0 +1,32 @@
+"""`Study.optimize`: floats with units, as a student takes them into a notebook."""
+
+import pytest
+
+import nrs_design as nrs
+from nrs_design.errors import DesignError
+from tests.support import COMMUTING, SOFT_TISSUE
+
+
+def test_gains_and_margins_of_the_thesis():
+    optimum = nrs.load(SOFT_TISSUE).optimize()
+    assert optimum.gains["insertion"] == pytest.approx({"Mt": 0.01, "Bt": 2.15})
+    assert optimum.units["insertion"] == {"Mt": "kg*m^2", "Bt": "N*m*s/rad"}
+    # Reference: 3.75298, by Sturm chains on the family.
+    assert optimum.margins["withdrawal"]["max_sensitivity_peak"] == pytest.approx(3.75298, abs=1e-4)
+    assert optimum.cost["insertion"] == pytest.approx(0.1552, abs=1e-4)
+    assert set(optimum.to_dict()) == {"gains", "units", "margins", "cost"}
+    assert str(optimum).startswith("insertion: Mt = 0.01 kg*m^2, Bt = 2.15 N*m*s/rad\n")
+    assert "<th>withdrawal</th>" in optimum._repr_html_()
+
+
+def test_its_figures_have_names():
+    optimum = nrs.load(SOFT_TISSUE).optimize()
+    assert optimum.plot("sensitivity").axes
+    with pytest.raises(DesignError, match="no figure 'x'") as caught:
+        optimum.plot("x")
+    assert "displayed-impedance" in str(caught.value.remedy)
+
+
+def test_matrices_have_nothing_to_optimize():
+    with pytest.raises(DesignError, match="has nothing to optimize"):
+        nrs.load(COMMUTING).optimize()

@@ -17,15 +17,6 @@ from nrs_design.cli.facts import (
     margins_facts,
     radius_facts,
 )
-from nrs_design.cli.gradient_options import (
-    GradientCoordinates,
-    MaxUpdates,
-    Radius,
-    Relaxation,
-    Seed,
-    StartMode,
-    UpdateOrder,
-)
 from nrs_design.cli.options import Budget, LoopCoordinates, MaxDegree, Memory, SpecFile
 from nrs_design.cli.printing import (
     detail,
@@ -38,7 +29,7 @@ from nrs_design.cli.printing import (
 )
 from nrs_design.cli.reading import take_spec
 from nrs_design.proof.text import counted, exact_text
-from nrs_design.search.gradient_settings import Coordinates, Gradient, Order
+from nrs_design.search.gradient_settings import Gradient
 from nrs_design.search.method import Method
 
 if TYPE_CHECKING:
@@ -99,13 +90,15 @@ def certify_switching(
     memory: Memory = None,
     margin: LargestBox = False,
     shortest_dwell: ShortestDwell = False,
-    relaxation: Relaxation = 1.0,
-    radius: Radius = 1.0,
-    start_mode: StartMode = None,
-    order: UpdateOrder = Order.ROUND_ROBIN,
-    seed: Seed = 0,
-    max_updates: MaxUpdates = 20_000,
-    gradient_coordinates: GradientCoordinates = Coordinates.MEAN_NORM,
+    settings: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--set",
+            metavar="NAME=VALUE",
+            help="A setting of --method gradient: relaxation, radius, start, order, seed, "
+            "max_updates, coordinates.",
+        ),
+    ] = None,
 ) -> Answer:
     """Prove or refute exponential stability under the declared switching; keep the certificate.
 
@@ -122,9 +115,7 @@ def certify_switching(
     check_certificate(spec, path)
     check_place(path, CERTIFICATE)
     history: list[tuple[int, float]] = []
-    gradient = Gradient(
-        relaxation, radius, start_mode, order, seed, max_updates, gradient_coordinates
-    )
+    gradient = Gradient.of_texts(settings or ())
     if method is Method.GRADIENT and wants_json():
         gradient = replace(gradient, tell=lambda updates, v: history.append((updates, v)))
     limits = search_limits(loaded.spec, Overrides(max_degree, budget, memory), optimize_rate)

@@ -6,8 +6,6 @@ from typing import Annotated
 
 import typer
 
-from nrs_design.search.gradient_settings import Coordinates, Order
-
 PANEL = "Gradient iteration"
 
 Relaxation = Annotated[
@@ -23,16 +21,7 @@ StartMode = Annotated[
         metavar="MODE", rich_help_panel=PANEL, help="Gives the first Q; default the first mode."
     ),
 ]
-UpdateOrder = Annotated[
-    Order, typer.Option("--order", rich_help_panel=PANEL, help="How the next mode is taken.")
-]
 Seed = Annotated[int, typer.Option(min=0, rich_help_panel=PANEL, help="Of the random order.")]
 MaxUpdates = Annotated[
     int, typer.Option(min=0, rich_help_panel=PANEL, help="Updates after which it gives up.")
-]
-GradientCoordinates = Annotated[
-    Coordinates,
-    typer.Option(
-        rich_help_panel=PANEL, help="States it runs in; given are those of the modes, as printed."
-    ),
 ]

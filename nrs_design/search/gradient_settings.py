@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, fields, replace
 from enum import StrEnum
 from math import isfinite
+from typing import Any, Self
 
 from nrs_design.errors import DesignError
 
@@ -81,6 +82,36 @@ class Gradient:
         _require(
             self.coordinates in set(Coordinates), "states", self.coordinates, f"out of {known}"
         )
+
+    @classmethod
+    def of_texts(cls, entries: Iterable[str]) -> Self:
+        """Read settings, ``name=value`` each.
+
+        Parameters
+        ----------
+        entries : iterable of str
+            Such as ``radius=1e5``.
+
+        Raises
+        ------
+        DesignError
+            If there is no such setting, or its value is none.
+        """
+        known: dict[str, Any] = {f.name: f.default for f in fields(cls) if f.name != "tell"}
+        read: dict[str, Any] = {}
+        for entry in entries:
+            name, sign, text = entry.partition("=")
+            if not sign or name not in known:
+                remedy = f"write NAME=VALUE, with one of {', '.join(known)}"
+                wrong = f"{entry!r} is no setting of the gradient iteration"
+                raise DesignError(wrong, remedy=remedy)
+            kind: Callable[[str], Any] = str if known[name] is None else type(known[name])
+            try:
+                read[name] = kind(text)
+            except ValueError:
+                remedy = f"by default it is {known[name]}"
+                raise DesignError(f"{text!r} is no value of {name}", remedy=remedy) from None
+        return cls(**read)
 
     def briefly(self, updates: int) -> Gradient:
         """Return settings for a try of at most so many updates, which nobody is told about."""

@@ -6,6 +6,7 @@ import subprocess
 import sys
 
 import pytest
+from typer.main import get_command
 
 from nrs_design import __version__
 from nrs_design.cli.app import COMMANDS, make_app
@@ -235,3 +236,19 @@ def test_a_hostile_file_name_is_shown_and_changes_no_exit_code(tmp_path, spec, e
         for line in (result.stdout + result.stderr).split("\n"):
             assert line.isprintable()
             assert not line.strip().startswith("::")
+
+
+# What all commands have, and those of one field of measurements, which are many.
+SHARED, MANY = {"help", "as_json", "quiet", "verbose"}, {"tissue", "audit"}
+
+
+def test_a_command_has_twelve_options_at_most():
+    def options(command):
+        inner = getattr(command, "commands", {}).values()
+        own = [p for p in command.params if p.param_type_name == "option" and p.name not in SHARED]
+        if not inner and command.name not in MANY:
+            yield command.name, len(own)
+        for item in inner:
+            yield from options(item)
+
+    assert {name: count for name, count in options(get_command(make_app())) if count > 12} == {}

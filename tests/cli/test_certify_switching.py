@@ -582,7 +582,7 @@ class TestGradientOptions:
     def test_the_rate_is_optimized_and_the_way_is_told(self, tmp_path):
         """The LMI proves 3.914 1/s for this pair, and the iteration alone without it 1.2."""
         arguments = ("certify-switching", SOFT_TISSUE, "--method", "gradient", "--json")
-        done = run(*arguments, "--order", "random", "--seed", "3", cwd=tmp_path, code=0)
+        done = run(*arguments, "--set", "order=random", "--set", "seed=3", cwd=tmp_path, code=0)
         document = json.loads(done.stdout)
         assert 3.6 < document["decay_rate"] < 3.92
         history = document["gradient_history"]
@@ -590,8 +590,8 @@ class TestGradientOptions:
         assert history[-1][1] <= 0 < history[0][1]
 
     def test_the_states_as_given_lead_nowhere(self, tmp_path):
-        options = ("--gradient-coordinates", "given", "--coordinates", "force")
-        few = ("--max-updates", "500", "-v")
+        options = ("--set", "coordinates=given", "--coordinates", "force")
+        few = ("--set", "max_updates=500", "-v")
         arguments = ("certify-switching", SOFT_TISSUE, "--method", "gradient", *options, *few)
         done = run(*arguments, cwd=tmp_path, code=3)
         assert "gradient: not converged after 500 updates" in done.stdout
@@ -599,9 +599,14 @@ class TestGradientOptions:
     @pytest.mark.parametrize(
         ("options", "message"),
         [
-            (("--method", "lmi", "--radius", "2"), "lmi has no use for settings of the gradient"),
-            (("--method", "gradient", "--start-mode", "m9"), "cannot start with mode 'm9'"),
-            (("--method", "gradient", "--radius", "0"), "cannot run with radius 0.0"),
+            (
+                ("--method", "lmi", "--set", "radius=2"),
+                "lmi has no use for settings of the gradient",
+            ),
+            (("--method", "gradient", "--set", "start=m9"), "cannot start with mode 'm9'"),
+            (("--method", "gradient", "--set", "radius=0"), "cannot run with radius 0.0"),
+            (("--set", "radus=2"), "is no setting of the gradient iteration"),
+            (("--set", "radius=x"), "'x' is no value of radius"),
         ],
     )
     def test_settings_that_make_no_sense(self, tmp_path, options, message):

@@ -47,6 +47,7 @@ def environment(folder: Path) -> dict[str, str]:
     return os.environ | {
         "PATH": f"{program.parent}:{os.environ['PATH']}",
         "PYTHONPATH": str(ROOT),
+        "COLUMNS": "100",
         "PYTHONWARNINGS": "default",
     }
 

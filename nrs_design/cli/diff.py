@@ -11,8 +11,9 @@ from nrs_design.cli import exit_codes
 from nrs_design.cli.command import Answer, command
 from nrs_design.cli.destinations import Destinations
 from nrs_design.cli.options import Date, ReportTo
-from nrs_design.cli.printing import progress, say
+from nrs_design.cli.printing import progress, say, wants_details
 from nrs_design.cli.tables import print_table
+from nrs_design.proof.text import counted
 
 if TYPE_CHECKING:
     from nrs_design.comparison import Comparison, Difference, Side
@@ -77,8 +78,11 @@ def _print(found: Comparison) -> None:
         rows = [_row(item) for item in items if not item.is_text]
         if rows:
             print_table(str(part), ["", "A", "B"], rows)
-        for item in (item for item in items if item.is_text):
+        texts = [item for item in items if item.is_text]
+        for item in texts if wants_details() else ():
             _print_text(item)
+        if texts and not wants_details():
+            say(f"{part}: {counted(len(texts), 'text')} differ (-v shows them)")
     if found.same:
         say(f"the same: {', '.join(found.same)}")
     for remark in found.remarks:

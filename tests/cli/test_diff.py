@@ -10,9 +10,11 @@ def test_text_and_exit_codes(tmp_path):
     done = run("diff", COMMUTING, CERTIFICATE, cwd=tmp_path, code=0)
     assert "the same: gains, verdict, assumptions" in done.stdout
     assert "Not compared, since not both files tell it: spec, margins." in done.stdout
-    done = run("diff", CERTIFICATE, OTHER, cwd=tmp_path, code=1)
+    done = run("diff", CERTIFICATE, OTHER, "-v", cwd=tmp_path, code=1)
     assert "decay rate" in done.stdout
     assert "verdict, A: Every solution" in done.stdout
+    short = run("diff", CERTIFICATE, OTHER, cwd=tmp_path, code=1).stdout
+    assert "verdict: 2 texts differ (-v shows them)" in short
     assert list(tmp_path.iterdir()) == []
 
 

@@ -11,7 +11,7 @@ from nrs_design.cli import exit_codes
 from nrs_design.cli.command import Answer, command
 from nrs_design.cli.destinations import Destinations
 from nrs_design.cli.options import Date, ReportTo
-from nrs_design.cli.printing import progress, say
+from nrs_design.cli.printing import detail, progress, say, wants_details
 from nrs_design.cli.tables import print_table
 from nrs_design.identification.cli.identify.common import SYNTHETIC, ColumnMap, read_all, sources
 
@@ -29,7 +29,7 @@ UNPROVED = "UNPROVED SPEC: {reason}; its ranges are only declared."
 
 
 # Letters of what a cell says, in a pipe, too.
-_WIDEST, _BELOW = 60, "see below"
+_WIDEST = 60
 
 
 @command("audit")
@@ -131,30 +131,34 @@ def _print(found: RunJudgement, name: str, reason: str) -> None:
     print_table("", ["check", "outcome", "measured", "allowed", "first at s"], rows)
     for basis in dict.fromkeys(c.basis for c in found.checks if c.basis):
         of = ", ".join(c.name for c in found.checks if c.basis == basis)
-        say(f"bound of {of}: {basis}")
+        detail(f"bound of {of}: {basis}")
     for check in found.checks:
         if check.status != "not judged" and _measured(check) != check.measured:
-            say(f"{check.name}: {check.measured}")
+            detail(f"{check.name}: {check.measured}")
         if _cell(check.allowed) != check.allowed:
-            say(f"{check.name}, allowed: {check.allowed}")
+            detail(f"{check.name}, allowed: {check.allowed}")
         if check.status == "not modelled":
             who = found.bounds.source
             comma = "," if "," in who else ""
-            say(f"not covered: {who}{comma} takes for granted that {_GRANTED[check.name]}")
+            detail(f"not covered: {who}{comma} takes for granted that {_GRANTED[check.name]}")
         if check.status == "not judged":
-            say(f"not judged: {check.name}: {check.measured}")
+            detail(f"not judged: {check.name}: {check.measured}")
     say(found.estimates)
     if found.hint:
         say(found.hint)
 
 
+def _below() -> str:
+    return "see below" if wants_details() else "see -v"
+
+
 def _measured(check: Check) -> str:
-    return _BELOW if check.status == "not judged" else _cell(check.measured)
+    return _below() if check.status == "not judged" else _cell(check.measured)
 
 
 def _cell(text: str) -> str:
     """Return what fits into a cell; what is longer stands below the table."""
-    return text if len(text) <= _WIDEST else _BELOW
+    return text if len(text) <= _WIDEST else _below()
 
 
 def _when(check: Check) -> str:

@@ -103,7 +103,7 @@ def test_outside(tmp_path, proof):
 
 
 def test_an_unproved_spec_is_said_loudly(tmp_path):
-    done = run("audit", write(tmp_path), SOFT_TISSUE, cwd=tmp_path, code=3)
+    done = run("audit", write(tmp_path), SOFT_TISSUE, "-v", cwd=tmp_path, code=3)
     assert "UNPROVED SPEC: no certificate is named" in done.stdout
     # What is long stands below the table, once.
     table = done.stdout[: done.stdout.index("bound of ")].splitlines()

@@ -297,4 +297,4 @@ def _print_granted(result: Result) -> None:
     elif granted:
         without = "; ".join(result.omits)
         besides = f"; not modelled: {without}" if without else ""
-        say(f"  takes {counted(len(granted), 'thing')} for granted (-v lists them){besides}")
+        say(f"  takes {counted(len(granted), 'thing')} for granted (-v){besides}")

@@ -214,7 +214,7 @@ def _print_briefly(runs: Sequence[Bounded]) -> None:
             say(f"{one.run.scenario}: the law refused {one.run.refused} samples")
         if one.run.saturated:
             say(f"{one.run.scenario}: the motor met its limit at {one.run.saturated} samples")
-    say("A run proves nothing; -v says all that was measured, and what is not modelled.")
+    say("A run proves nothing; -v says more.")
 
 
 def _print(one: Simulated, bounds: tuple[CertifiedBound, ...], rate: CertifiedRate | None) -> None:

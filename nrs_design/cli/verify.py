@@ -309,10 +309,10 @@ def _extent(spec: Spec | None, on_trust: Path | None) -> str:
     if spec is None:
         return " for the modes in the file, checked exactly; name a SPEC to compare them with"
     if on_trust is None:
-        return ": the certificate holds for this spec, checked exactly"
+        return " for this spec, checked exactly"
     return (
-        f", on trust in {on_trust.as_posix()}: the certificate holds, checked exactly, if the "
-        "bounds in that file do; --bounds computes them again"
+        f", on trust in {on_trust.as_posix()}: checked exactly for this spec, if the "
+        "bounds in that file hold; --bounds computes them again"
     )
 
 

@@ -327,7 +327,7 @@ def blocked_lines(blocked: Blocked, path: Path) -> tuple[str, ...]:
     head = "proved with any one of these changes"
     if not alone:
         head = f"proved with these changes together, and with none of {some} alone that was tried"
-    head += f" ({blocked.work:.2g} of work: a larger --budget may reach further)"
+    head += "; a larger --budget may reach further"
     head += "; bounds under disturbances were not looked for" if blocked.unbounded else ""
     lines = [_said(item, path) for item in blocked.proved]
     if not alone:

@@ -37,7 +37,7 @@ SHORT = """\
 soft-tissue: PROVED
   decays with alpha >= 3.91583 1/s (time constant at most 256 ms) under any switching among 4 modes\
 , contact may be lost
-  takes 12 things for granted (-v lists them); not modelled: other axes; sampling, delay, \
+  takes 12 things for granted (-v); not modelled: other axes; sampling, delay, \
 quantization, friction, saturation
 """
 

@@ -34,7 +34,7 @@ def certified(tmp_path_factory):
 
 def test_proof_holds(certified):
     result = typed("verify", "soft-tissue.json", SOFT_TISSUE, cwd=certified, code=0)
-    assert result.stdout.startswith("PROVED: the certificate holds, checked exactly.")
+    assert result.stdout.startswith("PROVED for this spec, checked exactly")
     assert "insertion: Mt = 0.00999999977648258209228515625 kg*m^2, Bt = 2.15" in result.stdout
 
 
@@ -77,7 +77,7 @@ def test_without_a_spec_what_is_altered_is_rejected(certified, tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "code", "said"),
     [
-        (("thesis-print-error.json", PRINT_ERROR), 1, "REFUTED: the certificate holds"),
+        (("thesis-print-error.json", PRINT_ERROR), 1, "REFUTED for this spec"),
         (("soft-tissue.json", COMMUTING), 1, "REJECTED: it belongs to another spec"),
         (("soft-tissue.json", PRINT_ERROR), 1, "REJECTED: it belongs to another spec"),
         (("soft-tissue.json", "--coordinates", "force"), 2, "needs a SPEC"),
@@ -112,7 +112,7 @@ def test_remark_that_decides_nothing(tmp_path):
     spec = write_spec(tmp_path / "hard.nrs.yaml", *HARD).path
     run("certify-switching", spec, "--max-degree", 2, "--out", "c.json", cwd=tmp_path, code=3)
     result = run("verify", "c.json", spec, cwd=tmp_path, code=3)
-    assert result.stdout.startswith("INCONCLUSIVE: the certificate holds, checked exactly.")
+    assert result.stdout.startswith("INCONCLUSIVE for this spec, checked exactly")
     assert "does not exist. This alone says nothing about stability." in result.stdout
 
 

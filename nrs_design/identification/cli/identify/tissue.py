@@ -161,7 +161,7 @@ def _print(found: TissueIdentification, arm: float | None, texts: Sequence[str])
     remarked = sum(bool(fit.trial.remarks) for fit in found.chosen.fits)
     if not wants_details():
         said = f"{counted(remarked, 'record')} with remarks, " if remarked else ""
-        say(f"{said}{counted(len(comparison(found).columns) - 1, 'law')} compared (-v shows them)")
+        say(f"{said}{counted(len(found.models), 'law')} compared (-v shows them)")
     if arm is not None:
         turned = [f"{value:.6g}" for value in law.at_pivot(arm).values]
         say(f"at the pivot: {in_words(named(law, turned, True))}")

@@ -33,7 +33,7 @@ def certified(tmp_path_factory):
 
 
 def test_proof_holds(certified):
-    result = typed("verify", "soft-tissue.json", SOFT_TISSUE, cwd=certified, code=0)
+    result = typed("verify", "soft-tissue.json", SOFT_TISSUE, "-v", cwd=certified, code=0)
     assert result.stdout.startswith("PROVED for this spec, checked exactly")
     assert "insertion: Mt = 0.00999999977648258209228515625 kg*m^2, Bt = 2.15" in result.stdout
 

@@ -67,7 +67,7 @@ def map(
     from nrs_design.output import MAP, PNG, check_place, write_outputs
     from nrs_design.pipeline import run_design
     from nrs_design.pipeline.free_gains import gains_given
-    from nrs_design.sweeps.tile_map import run_tile_map
+    from nrs_design.sweeps.tile_map import check_corners, run_tile_map
     from nrs_design.sweeps.tiles import read_tiles
 
     for path, kind in ((figure, PNG), (table, MAP)):
@@ -78,6 +78,9 @@ def map(
     loaded = take_spec(spec)
     designed = run_design(loaded)
     grid = read_tiles(loaded if designed is None else gains_given(designed), spec, over)
+    if certificates is not None:
+        # The ends of the map, so that a long search is not for nothing.
+        check_corners(grid, designed)
     with progress(f"map of {loaded.spec.name}") as step:
         found = run_tile_map(grid, designed, step)
     outputs: list[Output] = []
@@ -174,28 +177,14 @@ def _table(found: TileMap) -> str:
 
 
 def _certificates(found: TileMap, folder: Path) -> Iterator[Output]:
-    """Yield every certificate, and the spec that it is about, with the gains that it is about.
-
-    Raises
-    ------
-    DesignError
-        If the spec of a box, by itself, would have other gains.
-    """
+    """Yield every certificate, and the spec that it is about, with the gains that it is about."""
     from nrs_design.certificates.certificate import dump
-    from nrs_design.errors import DesignError
     from nrs_design.output import CERTIFICATE
-    from nrs_design.pipeline import run_design
-    from nrs_design.pipeline.certification import gains_text
+    from nrs_design.pipeline.free_gains import check_own_gains
 
     for certificate, box in zip(found.certificates, found.boxes, strict=True):
-        text, own = found.grid.text_of(box), run_design(found.grid.spec_of(box))
-        if gains_text(own) != {name: dict(gains) for name, gains in certificate.gains.items()}:
-            raise DesignError(
-                "gains of this spec follow from what the map changes, so no spec has the gains of "
-                "its certificates",
-                path=found.grid.loaded.path,
-                remedy="give these gains in the spec, or leave --certificates out",
-            )
+        check_own_gains(found.grid.spec_of(box), certificate.gains)
         name = certificate.id[:SHORT]
+        text = found.grid.text_of(box)
         yield folder / f"{name}.cert.json", dump(certificate, f"{name}.nrs.yaml"), CERTIFICATE
         yield folder / f"{name}.nrs.yaml", text, b""

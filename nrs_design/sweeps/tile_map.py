@@ -15,6 +15,8 @@ from itertools import product
 from nrs_design.certificates.certificate import Certificate, Verdict
 from nrs_design.errors import SpecError
 from nrs_design.pipeline import Designed
+from nrs_design.pipeline.certification import gains_text
+from nrs_design.pipeline.free_gains import check_own_gains
 from nrs_design.pipeline.quick_verdict import QuickVerdict, run_quick_proof, run_quick_witness
 from nrs_design.progress import Progress, silent
 from nrs_design.sweeps.tiles import Box, Span, TileCut, TileGrid
@@ -82,6 +84,23 @@ def run_tile_map(grid: TileGrid, designed: Designed | None, progress: Progress =
     )
 
 
+def check_corners(grid: TileGrid, designed: Designed | None) -> None:
+    """Refuse a map in whose first or last tile the spec by itself would have other gains.
+
+    Raises
+    ------
+    DesignError
+        If it would. A tile that makes no spec has no certificate, and is passed over.
+    """
+    gains = gains_text(designed)
+    for place in (tuple(0 for _ in grid.shape), tuple(count - 1 for count in grid.shape)):
+        try:
+            loaded = grid.spec_of(tuple((k, k) for k in place))
+        except SpecError:
+            continue
+        check_own_gains(loaded, gains)
+
+
 OPEN = Verdict.INCONCLUSIVE
 ORDER = tuple(map(str, (Verdict.PROVED, Verdict.REFUTED, OPEN)))
 
@@ -137,6 +156,10 @@ class _Painter:
         elif not single:
             for half in _halves(base, whole):
                 self._climb(half, low, top, 1)
+        elif found.wrong:
+            # Such as an age below the shortest one: the next level may well make a spec.
+            self._put(self._at(base, (low, low)), found, base)
+            self._climb(base, low + 1, top, 1)
         elif found.grows:
             self._put(self._at(base, (low, top)), found, self._at(base, (low, low)))
         else:

@@ -95,8 +95,16 @@ def test_given_matrices(tmp_path):
 
 
 def test_values_that_make_no_spec(tmp_path):
-    found = mapped("sampling.period=1,2 ms", "sampling.delay=0..1", path=SAMPLED)
-    assert all(tile.verdict is not None for tile in found.tiles.values())
+    """A delay below the shortest one is no range; the levels above it are decided all the same."""
+    path = tmp_path / "a.nrs.yaml"
+    text = SAMPLED.read_text(encoding="utf-8").replace("delay: [0, 1]", "delay: [1, 1]")
+    path.write_text(text, encoding="utf-8")
+    found = mapped("environments.soft.stiffness=300,400,2000 N/m", "sampling.delay=0..1", path=path)
+    wrong = {place: tile.wrong for place, tile in found.tiles.items()}
+    assert "delay" in wrong[0, 0]
+    assert "delay" in wrong[1, 0]
+    assert wrong[0, 1] == wrong[1, 1] == ""
+    assert [found.tiles[k, 1].shown for k in (0, 1)] == ["proved", "refuted in kept contact"]
 
 
 @pytest.mark.parametrize("field", ["environments.soft.lever_arm=0.2,0.24 m"])

@@ -125,7 +125,7 @@ def propose(
     first, best = asked.solve(rate_at(0.0, limit, time), allowance), 0.0
     if first is None:
         return NO_MARGIN
-    if asked.is_dear:
+    if asked.is_dear and all(program is asked for program in programs):
         return (yield from _propose_dear(asked, first, family, limit, rates, covers))
     part = allowance.part(rates.share)
     if family.optimize_rate or rates.always:

@@ -41,6 +41,14 @@ def map(
             "intervals, 0..10 are whole numbers. Up to three times.",
         ),
     ],
+    refine: Annotated[
+        int,
+        typer.Option(
+            min=0,
+            max=8,
+            help="So many times, halve the intervals that are not proved beside proved ones.",
+        ),
+    ] = 0,
     figure: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Draw one or two fields as a PNG image.")
     ] = None,
@@ -67,7 +75,8 @@ def map(
     from nrs_design.output import MAP, PNG, check_place, write_outputs
     from nrs_design.pipeline import run_design
     from nrs_design.pipeline.free_gains import gains_given
-    from nrs_design.sweeps.tile_map import check_corners, run_tile_map
+    from nrs_design.sweeps.paint import check_corners, run_tile_map
+    from nrs_design.sweeps.refine import refined
     from nrs_design.sweeps.tiles import read_tiles
 
     for path, kind in ((figure, PNG), (table, MAP)):
@@ -82,7 +91,7 @@ def map(
         # The ends of the map, so that a long search is not for nothing.
         check_corners(grid, designed)
     with progress(f"map of {loaded.spec.name}") as step:
-        found = run_tile_map(grid, designed, step)
+        found = refined(run_tile_map(grid, designed, step), designed, refine, step)
     outputs: list[Output] = []
     if figure is not None:
         from nrs_design.reporting.images import to_png
@@ -127,7 +136,8 @@ def _facts(loaded: LoadedSpec, found: TileMap) -> dict[str, Any]:
             {"id": certificate.id, "box": [list(span) for span in box]}
             for certificate, box in zip(found.certificates, found.boxes, strict=True)
         ],
-        "proofs_tried": found.proofs,
+        "programs": found.proofs,
+        "forms_carried": found.carried,
         "witnesses_sought": found.witnesses,
     }
 
@@ -136,7 +146,8 @@ def _print(loaded: LoadedSpec, found: TileMap) -> None:
     counted = ", ".join(f"{count} {name}" for name, count in found.counts().items())
     say(
         f"{loaded.spec.name}: {len(found.tiles)} tiles: {counted}; "
-        f"{found.proofs} proofs and {found.witnesses} witnesses tried"
+        f"{found.proofs} programs, {found.carried} forms carried on, {found.witnesses} looks for "
+        "growth"
     )
     fields = found.grid.fields
     if len(fields) == 2 and fields[0].count <= WIDEST:

@@ -133,7 +133,7 @@ def test_a_bisection_without_work_keeps_what_it_has():
 @pytest.mark.parametrize("threshold", [0.02, 0.3, 0.8, 0.999, 1.0])
 @pytest.mark.parametrize("power", [1.0, 2.0, 3.0])
 def test_a_climb_asks_few_positions(threshold, power):
-    """What is shown lies between what is asked and the largest; margins fall in one way or another."""
+    """What is shown lies between what is asked and the largest, however margins fall."""
     asked = []
 
     def answer(position):

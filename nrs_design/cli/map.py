@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
@@ -55,6 +53,18 @@ def map(
     table: Annotated[
         Path | None, typer.Option("--csv", metavar="FILE", help="Write a row for every tile.")
     ] = None,
+    npz: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="Write verdicts and certificates as arrays for NumPy."),
+    ] = None,
+    mark: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME=LOW..HIGH UNIT",
+            help="Draw an interval into the figure, such as 'hand=434..1570 N/m'; ranges that the "
+            "spec declares are drawn anyway.",
+        ),
+    ] = None,
     certificates: Annotated[
         Path | None,
         typer.Option(metavar="FOLDER", help="Write every certificate, and the spec it is about."),
@@ -72,14 +82,16 @@ def map(
     --over 'environments.soft.stiffness=100..1700/8 N/m' --over sampling.delay=0..3
     """
     from nrs_design.cli.exit_codes import OF_VERDICT, worst
-    from nrs_design.output import MAP, PNG, check_place, write_outputs
+    from nrs_design.output import MAP, MAP_ARCHIVE, PNG, check_place, write_outputs
     from nrs_design.pipeline import run_design
     from nrs_design.pipeline.free_gains import gains_given
+    from nrs_design.sweeps.marks import declared_marks, read_marks
     from nrs_design.sweeps.paint import check_corners, run_tile_map
     from nrs_design.sweeps.refine import refined
+    from nrs_design.sweeps.tile_table import to_csv, to_npz
     from nrs_design.sweeps.tiles import read_tiles
 
-    for path, kind in ((figure, PNG), (table, MAP)):
+    for path, kind in ((figure, PNG), (table, MAP), (npz, MAP_ARCHIVE)):
         if path is not None:
             check_place(path, kind)
     if certificates is not None:
@@ -87,6 +99,7 @@ def map(
     loaded = take_spec(spec)
     designed = run_design(loaded)
     grid = read_tiles(loaded if designed is None else gains_given(designed), spec, over)
+    marks = (*declared_marks(grid), *read_marks(grid, mark or ()))
     if certificates is not None:
         # The ends of the map, so that a long search is not for nothing.
         check_corners(grid, designed)
@@ -97,13 +110,15 @@ def map(
         from nrs_design.reporting.images import to_png
         from nrs_design.sweeps.tile_figure import draw_tile_map
 
-        outputs.append((figure, to_png(draw_tile_map(found)), PNG))
+        outputs.append((figure, to_png(draw_tile_map(found, marks)), PNG))
     if table is not None:
-        outputs.append((table, _table(found), MAP))
+        outputs.append((table, to_csv(found), MAP))
+    if npz is not None:
+        outputs.append((npz, to_npz(found), MAP_ARCHIVE))
     if certificates is not None:
         outputs += _certificates(found, certificates)
     write_outputs(outputs)
-    for path in (figure, table, certificates):
+    for path in (figure, table, npz, certificates):
         if path is not None:
             note(f"written: {path}")
     codes = {OF_VERDICT[str(tile.verdict)] for tile in found.tiles.values()}
@@ -173,18 +188,6 @@ def _draw(found: TileMap) -> None:
     say(f"  {'':>{width}} {across.text(0)} to {across.text(across.count - 1)}")
     meant = [f"{SIGNS.get(name, IN_CONTACT)} {name}" for name, n in found.counts().items() if n]
     say(f"  {', '.join(meant)}; up: {up.field.path}, across: {across.field.path}")
-
-
-def _table(found: TileMap) -> str:
-    written = io.StringIO()
-    rows = csv.writer(written, lineterminator="\n")
-    paths = (field.field.path for field in found.grid.fields)
-    rows.writerow(["verdict", "certificate", "refuted_in", *paths])
-    for place, tile in found.tiles.items():
-        certificate = None if tile.certificate is None else found.certificates[tile.certificate].id
-        at = [field.text(k) for field, k in zip(found.grid.fields, place, strict=True)]
-        rows.writerow([str(tile.verdict), certificate, tile.refuted_in, *at])
-    return written.getvalue()
 
 
 def _certificates(found: TileMap, folder: Path) -> Iterator[Output]:

@@ -210,7 +210,8 @@ class _Painter:
             return
         split = [axis for axis in self.mixed if box[axis][0] != box[axis][1]]
         level = min(self.ceiling[column] for column in columns)
-        if not split and any(self.proved[column] < level for column in columns):
+        # What pays for one column alone is asked of that alone.
+        if not split and sum(self.proved[column] < level for column in columns) > 1:
             self._try(box, level)
         for half in _halves(box, split):
             self._prove(half)

@@ -10,6 +10,7 @@ from nrs_design.pipeline import run_design
 from nrs_design.pipeline.free_gains import gains_given
 from nrs_design.spec import read_spec
 from nrs_design.sweeps.paint import run_tile_map
+from nrs_design.sweeps.refine import refined
 from nrs_design.sweeps.tiles import read_tiles
 from tests.support import ROOT, SOFT_TISSUE
 
@@ -56,18 +57,57 @@ def test_stiffness_over_age():
     assert len(found.certificates) < len(found.tiles)
 
 
-def test_every_certificate_is_about_the_spec_of_its_box(tmp_path):
-    found = mapped("environments.soft.stiffness=300..1100/4 N/m", path=SAMPLED)
+def boxes_of(found, folder):
+    """Verify every certificate against the spec of its box, and return the tiles of the proofs."""
     covered = set()
     for certificate, box in zip(found.certificates, found.boxes, strict=True):
-        (tmp_path / "a.nrs.yaml").write_text(found.grid.text_of(box), encoding="utf-8")
-        (tmp_path / "a.cert.json").write_text(dump(certificate, "a.nrs.yaml"), encoding="utf-8")
-        checked = verify(tmp_path / "a.cert.json", read_spec(tmp_path / "a.nrs.yaml"))
+        (folder / "a.nrs.yaml").write_text(found.grid.text_of(box), encoding="utf-8")
+        (folder / "a.cert.json").write_text(dump(certificate, "a.nrs.yaml"), encoding="utf-8")
+        checked = verify(folder / "a.cert.json", read_spec(folder / "a.nrs.yaml"))
         assert checked.fault is None
         if checked.certificate.verdict == Verdict.PROVED:
             covered |= set(product(*(range(first, last + 1) for first, last in box)))
-    proved = {place for place, tile in found.tiles.items() if tile.verdict is Verdict.PROVED}
-    assert proved == covered != set()
+    return covered
+
+
+def proved_in(found):
+    return {place for place, tile in found.tiles.items() if tile.verdict is Verdict.PROVED}
+
+
+def test_every_certificate_is_about_the_spec_of_its_box(tmp_path):
+    found = mapped("environments.soft.stiffness=300..1100/4 N/m", path=SAMPLED)
+    assert proved_in(found) == boxes_of(found, tmp_path) == {(0,), (1,), (2,)}
+
+
+def test_borders_are_refined(tmp_path):
+    """What is not proved beside what is: halved, with certificates about the finer boxes."""
+    coarse = mapped("environments.soft.stiffness=500..1100/2 N/m", path=SAMPLED)
+    assert signs(coarse) == ["pi"]
+    designed = run_design(read_spec(SAMPLED))
+    fine = refined(coarse, designed, 2)
+    (field,) = fine.grid.fields
+    assert field.values == (500, 800, 875, 950, 1100)
+    assert signs(fine) == ["pp.r".replace(".", "i")]
+    assert proved_in(fine) == boxes_of(fine, tmp_path) == {(0,), (1,)}
+    # A form is carried to what is beside it before another one is looked for.
+    assert fine.carried > 0
+    assert refined(fine, designed, 0) is fine
+
+
+def test_a_map_without_a_border_is_as_fine_as_it_gets():
+    found = mapped("environments.soft.lever_arm=0.2,0.24 m", path=SOFT_TISSUE)
+    assert refined(found, run_design(read_spec(SOFT_TISSUE)), 3) is found
+
+
+@pytest.mark.nightly
+def test_programs_of_a_large_map():
+    """176 tiles, with ages up to 10, of at most 15 programs."""
+    found = mapped(
+        "environments.soft.stiffness=17..4340/16 N/m", "sampling.delay=0..10", path=SAMPLED
+    )
+    assert found.proofs <= 15
+    assert found.counts()["proved"] == 5
+    assert found.counts()["refuted in kept contact"] == 154
 
 
 def test_a_box_has_the_gains_of_the_spec(tmp_path):

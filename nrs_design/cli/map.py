@@ -161,8 +161,8 @@ def _print(loaded: LoadedSpec, found: TileMap) -> None:
     counted = ", ".join(f"{count} {name}" for name, count in found.counts().items())
     say(
         f"{loaded.spec.name}: {len(found.tiles)} tiles: {counted}; "
-        f"{found.proofs} programs, {found.carried} forms carried on, {found.witnesses} looks for "
-        "growth"
+        f"{found.proofs} programs, {found.carried} forms carried on, growth looked for "
+        f"{found.witnesses} times"
     )
     fields = found.grid.fields
     if len(fields) == 2 and fields[0].count <= WIDEST:

@@ -26,9 +26,9 @@ from nrs_design.search.balance import balance, scale_states
 from nrs_design.search.family import NEARLY
 from nrs_design.search.forms_interior_point import (
     FormsCones,
-    Kind,
-    Point,
-    Term,
+    ConeKind,
+    FormsPoint,
+    FormTerm,
     maximize,
 )
 from nrs_design.search.lifted import make_vanish, products, vanishing_basis
@@ -218,7 +218,7 @@ class FormsProgram:
             given = np.array([mode.A.floats() for mode in drawing.system.modes])
             flows = [float(np.abs(scale_states(given, balance(given))).max())]
         self.unit = time_unit(np.array(max(flows))[None], self.time) if flows else 0
-        self._last: Point | None = None  # What our own method found last
+        self._last: FormsPoint | None = None  # What our own method found last
         self.is_dear = self._is_dear()
         if self.is_dear:
             self.active = _spaced(count, max(few, min(count, FIRST_OF_DEAR)))
@@ -358,15 +358,15 @@ class FormsProgram:
     def _cones(self, active: Sequence[int], rate: float) -> FormsCones:
         """Return the inequalities of some edges at a rate."""
         factors, place = self.factors(rate), {fact: k for k, fact in enumerate(self.scales)}
-        kinds = list[Kind]()
+        kinds = list[ConeKind]()
         for k, n in enumerate(self.sizes):
             whole = np.eye(n)[None]
-            kinds.append(Kind(0.0, (Term(k, whole, whole),), (), False, 1, n))
+            kinds.append(ConeKind(0.0, (FormTerm(k, whole, whole),), (), False, 1, n))
         for fact, k in place.items():
-            kinds.append(Kind(0.0, (), ((k, np.ones((1, 1, 1))),), False, 1, 1))
+            kinds.append(ConeKind(0.0, (), ((k, np.ones((1, 1, 1))),), False, 1, 1))
             if fact in self.bounded:
                 below = -np.ones((1, 1, 1))
-                kinds.append(Kind(LARGEST_MULTIPLIER, (), ((k, below),), False, 1, 1))
+                kinds.append(ConeKind(LARGEST_MULTIPLIER, (), ((k, below),), False, 1, 1))
         groups: dict[object, list[int]] = {}
         for k in active:
             edge = self.edges[k]
@@ -382,14 +382,14 @@ class FormsProgram:
             M[:, :, first.left] = np.array([edge.M.T for edge in edges])
             if first.is_flow:
                 N = -np.ldexp(M, self.unit) - weights / 2 * E
-                terms = Term(first.before, E, N), Term(first.before, N, E)
+                terms = FormTerm(first.before, E, N), FormTerm(first.before, N, E)
             else:
-                terms = Term(first.before, E, E), Term(first.after, -weights * M, M)
+                terms = FormTerm(first.before, E, E), FormTerm(first.after, -weights * M, M)
             facts = tuple(
                 (place[fact], np.array([edge.facts[i][1] for edge in edges]))
                 for i, (fact, _) in enumerate(first.facts)
             )
-            kinds.append(Kind(0.0, terms, facts, first.is_strict, len(edges), first.size))
+            kinds.append(ConeKind(0.0, terms, facts, first.is_strict, len(edges), first.size))
         return FormsCones(self.sizes, len(self.scales), kinds)
 
     def factors(self, rate: float) -> list[float]:

@@ -40,7 +40,7 @@ BYTES_PER_ENTRY = 400
 
 
 @dataclass(frozen=True)
-class Term:
+class FormTerm:
     """``L Q R'`` for every cone of a kind: with its transpose, if that is another term."""
 
     form: int  # Which Q
@@ -49,7 +49,7 @@ class Term:
 
 
 @dataclass(frozen=True)
-class Kind:
+class ConeKind:
     """Cones of one size in which the same forms and multipliers enter.
 
     ``X = constant I + sum of terms + sum of m C - t I`` must be positive definite; the last only
@@ -57,7 +57,7 @@ class Kind:
     """
 
     constant: float
-    terms: tuple[Term, ...]
+    terms: tuple[FormTerm, ...]
     multipliers: tuple[tuple[int, Array], ...]  # Which m, and C of shape (cones, s, s)
     counts: bool
     cones: int
@@ -65,7 +65,7 @@ class Kind:
 
 
 @dataclass(frozen=True)
-class Point:
+class FormsPoint:
     """Forms and multipliers, with the margin that they leave."""
 
     forms: list[Array]
@@ -82,11 +82,11 @@ class FormsCones:
         Orders of the forms.
     multipliers : int
         How many there are.
-    kinds : sequence of Kind
+    kinds : sequence of ConeKind
         The cones.
     """
 
-    def __init__(self, sizes: Sequence[int], multipliers: int, kinds: Sequence[Kind]) -> None:
+    def __init__(self, sizes: Sequence[int], multipliers: int, kinds: Sequence[ConeKind]) -> None:
         self.sizes, self.kinds = list(sizes), list(kinds)
         self.ends = np.cumsum([n * (n + 1) // 2 for n in sizes])
         self.unknowns = int(self.ends[-1]) + multipliers + 1
@@ -179,7 +179,7 @@ class FormsCones:
                 H[b : b + block.shape[1], a : a + len(block)] += block.T
         return H
 
-    def _scalars(self, kind: Kind, S: Array) -> Iterator[tuple[int, Array, Array]]:
+    def _scalars(self, kind: ConeKind, S: Array) -> Iterator[tuple[int, Array, Array]]:
         """Yield the unknowns that are numbers: their place, ``S C S`` and C."""
         for k, C in kind.multipliers:
             yield int(self.ends[-1]) + k, S @ C @ S, C
@@ -190,17 +190,17 @@ class FormsCones:
 
 def maximize(
     cones: FormsCones,
-    start: Point | None,
+    start: FormsPoint | None,
     goes_on: Callable[[], bool] = lambda: True,
     accuracy: float = ACCURACY,
-) -> Point:
+) -> FormsPoint:
     """Maximize the margin; end where it is found to be negative, too.
 
     Parameters
     ----------
     cones : FormsCones
         The inequalities.
-    start : Point, optional
+    start : FormsPoint, optional
         Positive definite forms, and multipliers; else the identity.
     goes_on : callable
         Asked before every step; No ends the search with the last iterate.
@@ -232,14 +232,14 @@ def maximize(
         if settled and (gap <= max(FLOOR, accuracy * abs(y[-1])) or y[-1] + 2 * gap < 0):
             break
     forms, multipliers = cones.split(y)
-    return Point(forms, multipliers, float(y[-1]))
+    return FormsPoint(forms, multipliers, float(y[-1]))
 
 
-def _start(cones: FormsCones, start: Point | None) -> Array:
+def _start(cones: FormsCones, start: FormsPoint | None) -> Array:
     count = cones.unknowns - int(cones.ends[-1]) - 1
     if start is None:
         forms = [np.eye(n) for n in cones.sizes]
-        start = Point(forms, np.full(count, START_MULTIPLIER), 0.0)
+        start = FormsPoint(forms, np.full(count, START_MULTIPLIER), 0.0)
     whole = sum(float(np.trace(Q)) for Q in start.forms)
     share = sum(cones.sizes) / whole
     packed = [pack(share * Q) for Q in start.forms]

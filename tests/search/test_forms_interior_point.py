@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from nrs_design.search.forms_interior_point import FormsCones, Kind, Term, maximize
+from nrs_design.search.forms_interior_point import FormsCones, ConeKind, FormTerm, maximize
 
 RNG = np.random.default_rng(8)
 
@@ -13,9 +13,9 @@ def of_maps(matrices, rate=1.0):
     n = matrices.shape[-1]
     whole = np.eye(n)[None]
     M = np.swapaxes(matrices, -1, -2)
-    terms = Term(0, whole, whole), Term(0, -M / rate**2, M)
-    form = Kind(0.0, (Term(0, whole, whole),), (), False, 1, n)
-    return FormsCones([n], 0, [form, Kind(0.0, terms, (), True, len(matrices), n)])
+    terms = FormTerm(0, whole, whole), FormTerm(0, -M / rate**2, M)
+    form = ConeKind(0.0, (FormTerm(0, whole, whole),), (), False, 1, n)
+    return FormsCones([n], 0, [form, ConeKind(0.0, terms, (), True, len(matrices), n)])
 
 
 def of_everything():
@@ -25,12 +25,12 @@ def of_everything():
     M = RNG.normal(size=(5, 4, 3))
     C = RNG.normal(size=(5, 4, 4))
     kinds = [
-        Kind(0.0, (Term(0, E, E),), (), False, 1, 3),
-        Kind(2.0, (), ((0, -np.ones((1, 1, 1))),), False, 1, 1),
-        Kind(0.0, (Term(0, E, N), Term(0, N, E)), (), True, 2, 3),
-        Kind(
+        ConeKind(0.0, (FormTerm(0, E, E),), (), False, 1, 3),
+        ConeKind(2.0, (), ((0, -np.ones((1, 1, 1))),), False, 1, 1),
+        ConeKind(0.0, (FormTerm(0, E, N), FormTerm(0, N, E)), (), True, 2, 3),
+        ConeKind(
             0.0,
-            (Term(1, shorter, shorter), Term(0, -M, M)),
+            (FormTerm(1, shorter, shorter), FormTerm(0, -M, M)),
             ((0, C + np.swapaxes(C, 1, 2)),),
             True,
             5,
@@ -109,10 +109,10 @@ def test_a_multiplier_keeps_its_limit():
     """``Q - Q/2 + m >= t`` for one state, with ``0 <= m <= 2``: the largest t is 2.5."""
     one = np.ones((1, 1, 1))
     kinds = [
-        Kind(0.0, (Term(0, one, one),), (), False, 1, 1),
-        Kind(0.0, (), ((0, one),), False, 1, 1),
-        Kind(2.0, (), ((0, -one),), False, 1, 1),
-        Kind(0.0, (Term(0, one, one), Term(0, -one / 2, one)), ((0, one),), True, 1, 1),
+        ConeKind(0.0, (FormTerm(0, one, one),), (), False, 1, 1),
+        ConeKind(0.0, (), ((0, one),), False, 1, 1),
+        ConeKind(2.0, (), ((0, -one),), False, 1, 1),
+        ConeKind(0.0, (FormTerm(0, one, one), FormTerm(0, -one / 2, one)), ((0, one),), True, 1, 1),
     ]
     found = maximize(FormsCones([1], 1, kinds), None, accuracy=1e-9)
     assert found.margin == pytest.approx(2.5, abs=1e-6)

@@ -88,7 +88,7 @@ def map(
     from nrs_design.sweeps.marks import declared_marks, read_marks
     from nrs_design.sweeps.paint import check_corners, run_tile_map
     from nrs_design.sweeps.refine import refined
-    from nrs_design.sweeps.tile_table import to_csv, to_npz
+    from nrs_design.sweeps.tile_table import tiles_csv, tiles_npz
     from nrs_design.sweeps.tiles import read_tiles
 
     for path, kind in ((figure, PNG), (table, MAP), (npz, MAP_ARCHIVE)):
@@ -112,9 +112,9 @@ def map(
 
         outputs.append((figure, to_png(draw_tile_map(found, marks)), PNG))
     if table is not None:
-        outputs.append((table, to_csv(found), MAP))
+        outputs.append((table, tiles_csv(found), MAP))
     if npz is not None:
-        outputs.append((npz, to_npz(found), MAP_ARCHIVE))
+        outputs.append((npz, tiles_npz(found), MAP_ARCHIVE))
     if certificates is not None:
         outputs += _certificates(found, certificates)
     write_outputs(outputs)

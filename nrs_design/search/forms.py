@@ -25,8 +25,8 @@ from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.balance import balance, scale_states
 from nrs_design.search.family import NEARLY
 from nrs_design.search.forms_interior_point import (
-    FormsCones,
     ConeKind,
+    FormsCones,
     FormsPoint,
     FormTerm,
     maximize,

@@ -19,7 +19,7 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.search.interior_point import STEP_SHARE, nesterov_todd, reach
+from nrs_design.search.interior_point import STEP_SHARE, nesterov_todd, step_to_border
 from nrs_design.search.sdp import pack, symmetric_basis, unpack
 from nrs_design.work import Cost
 
@@ -298,7 +298,7 @@ def _along(residual: Array, trace: Array) -> Array:
 
 
 def _farthest(d: list[Array], change: list[Array], share: float) -> float:
-    return min(reach(own, part, share) for own, part in zip(d, change, strict=True))
+    return min(step_to_border(own, part, share) for own, part in zip(d, change, strict=True))
 
 
 def _kronecker(U: Array, V: Array) -> Array:

@@ -136,12 +136,14 @@ def _step(cones: Cones, X: Array, Z: Array) -> tuple[Array, Array]:
     D = d[..., None] * np.eye(n)
     _, dX, dZ = direction(-D)
     gap = (d * d).sum()
-    reached = ((D + reach(d, dX, 1.0) * dX) * (D + reach(d, dZ, 1.0) * dZ)).sum()
+    reached = ((D + step_to_border(d, dX, 1.0) * dX) * (D + step_to_border(d, dZ, 1.0) * dZ)).sum()
     center = max(reached / gap, 0.0) ** 3 * gap / d.size
     bend = (dX @ dZ + dZ @ dX) / (d[..., None] + d[..., None, :])
     dy, dX, dZ = direction(center / d[..., None] * np.eye(n) - bend - D)
     back = np.swapaxes(scaled.W, -1, -2)
-    return reach(d, dX, STEP_SHARE) * dy, reach(d, dZ, STEP_SHARE) * (back @ dZ @ scaled.W)
+    return step_to_border(d, dX, STEP_SHARE) * dy, step_to_border(d, dZ, STEP_SHARE) * (
+        back @ dZ @ scaled.W
+    )
 
 
 def _scale(cones: Cones, X: Array, Z: Array) -> _Scaled:
@@ -170,7 +172,7 @@ def nesterov_todd(X: Array, Z: Array) -> tuple[Array, Array]:
     return np.sqrt(d)[..., None] * Vt @ np.linalg.inv(L), d
 
 
-def reach(d: Array, change: Array, share: float) -> float:
+def step_to_border(d: Array, change: Array, share: float) -> float:
     """Return how far a step may go, one at most, as a share of the way to the border.
 
     Parameters

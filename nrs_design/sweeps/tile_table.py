@@ -13,7 +13,7 @@ from nrs_design.sweeps.tile_map import TileMap
 ABOUT = "a map of nrs-design"
 
 
-def to_csv(found: TileMap) -> str:
+def tiles_csv(found: TileMap) -> str:
     """Return a row for each tile: its verdict, the id of its certificate, and what it covers."""
     written = io.StringIO()
     rows = csv.writer(written, lineterminator="\n")
@@ -26,7 +26,7 @@ def to_csv(found: TileMap) -> str:
     return written.getvalue()
 
 
-def to_npz(found: TileMap) -> bytes:
+def tiles_npz(found: TileMap) -> bytes:
     """Return arrays with an axis for each field, and what these axes are.
 
     ``verdict`` and ``refuted_in`` hold words; ``certificate`` the place of one in ``certificates``,

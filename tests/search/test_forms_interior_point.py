@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from nrs_design.search.forms_interior_point import FormsCones, ConeKind, FormTerm, maximize
+from nrs_design.search.forms_interior_point import ConeKind, FormsCones, FormTerm, maximize
 
 RNG = np.random.default_rng(8)
 

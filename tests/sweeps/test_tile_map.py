@@ -92,6 +92,17 @@ def test_borders_are_refined(tmp_path):
     assert refined(fine, None, 0) is fine
 
 
+def test_what_is_proved_stays_so_on_a_finer_grid(tmp_path):
+    path = tmp_path / "oscillator.nrs.yaml"
+    path.write_text(OSCILLATOR, encoding="utf-8")
+    coarse = mapped("parameters.k=1,3,9", path=path)
+    assert coarse.tiles[0,].shown == "proved"
+    fine = refined(coarse, None, 1)
+    assert fine.grid.fields[0].values == (1, 3, 6, 9)
+    assert (0,) in proved_in(fine)
+    assert proved_in(fine) == boxes_of(fine, tmp_path)
+
+
 def test_a_map_without_a_border_is_as_fine_as_it_gets():
     found = mapped("environments.soft.lever_arm=0.2,0.24 m", path=SOFT_TISSUE)
     assert refined(found, run_design(read_spec(SOFT_TISSUE)), 3) is found

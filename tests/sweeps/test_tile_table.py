@@ -10,7 +10,7 @@ from nrs_design.certificates.certificate import Verdict
 from nrs_design.output import MAP, MAP_ARCHIVE
 from nrs_design.spec import read_spec
 from nrs_design.sweeps.tile_map import TileMap, TileVerdict
-from nrs_design.sweeps.tile_table import to_csv, to_npz
+from nrs_design.sweeps.tile_table import tiles_csv, tiles_npz
 from nrs_design.sweeps.tiles import read_tiles
 from tests.support import ROOT
 
@@ -36,16 +36,16 @@ def found():
 
 
 def test_arrays_have_an_axis_for_each_field(found):
-    content = to_npz(found)
+    content = tiles_npz(found)
     assert content.startswith(MAP_ARCHIVE)
-    assert content == to_npz(found)
+    assert content == tiles_npz(found)
     with np.load(io.BytesIO(content)) as arrays:
         assert arrays["verdict"].shape == (3, 2)
         assert arrays["values_0"].tolist() == [300, 500, 700, 900]
         assert arrays["values_1"].tolist() == [0, 1]
         assert arrays["fields"].tolist()[1] == ["sampling.delay", "", "up to"]
         assert arrays["certificate"].tolist() == [[1, 1], [-1, -1], [-1, 0]]
-        rows = list(csv.reader(io.StringIO(to_csv(found))))[1:]
+        rows = list(csv.reader(io.StringIO(tiles_csv(found))))[1:]
         names = [*arrays["certificates"].tolist(), ""]
         flat = zip(
             arrays["verdict"].ravel(),
@@ -57,6 +57,6 @@ def test_arrays_have_an_axis_for_each_field(found):
 
 
 def test_a_table_says_what_a_tile_covers(found):
-    text = to_csv(found)
+    text = tiles_csv(found)
     assert text.encode().startswith(MAP)
     assert text.splitlines()[6].endswith(",in kept contact,700..900 N/m,1")

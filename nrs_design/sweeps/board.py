@@ -87,7 +87,17 @@ class Board:
         self.witnesses = coarse.witnesses
 
     def put_refuted(self, column: Place, level: int, witness: QuickVerdict) -> None:
-        """Write down that a column is refuted from a level on, if there is a witness."""
+        """Write down that a column is refuted from a level on, if there is a witness.
+
+        Parameters
+        ----------
+        column : tuple of int
+            The column.
+        level : int
+            The lowest that is refuted.
+        witness : QuickVerdict
+            About the spec of the column at this level; what says nothing is left.
+        """
         if not witness.grows:
             return
         box = at(column)
@@ -99,7 +109,17 @@ class Board:
         self.ceiling[column] = min(self.ceiling[column], level - 1)
 
     def put_proved(self, box: Box, found: QuickVerdict, level: int) -> None:
-        """Write down a proof of a box up to a level."""
+        """Write down a proof of a box up to a level.
+
+        Parameters
+        ----------
+        box : Box
+            Of columns.
+        found : QuickVerdict
+            A proof of the spec of the box at the level.
+        level : int
+            The highest that is proved.
+        """
         kept = self._kept_as(found, self.leveled(box, (0, level)))
         first = min(self.proved[column] for column in places_of(box)) + 1
         levels = self._valid(box, first, level)

@@ -31,6 +31,7 @@ BENCHMARKS = (
     "instruction_counts",
     "scenario_runs",
     "sweep_points",
+    "map_tiles",
     "gains_with_proof",
 )
 Result = Comparison | Finding | Failure

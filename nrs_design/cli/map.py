@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
@@ -41,11 +39,31 @@ def map(
             "intervals, 0..10 are whole numbers. Up to three times.",
         ),
     ],
+    refine: Annotated[
+        int,
+        typer.Option(
+            min=0,
+            max=8,
+            help="So many times, halve the intervals that are not proved beside proved ones.",
+        ),
+    ] = 0,
     figure: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Draw one or two fields as a PNG image.")
     ] = None,
     table: Annotated[
         Path | None, typer.Option("--csv", metavar="FILE", help="Write a row for every tile.")
+    ] = None,
+    npz: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="Write verdicts and certificates as arrays for NumPy."),
+    ] = None,
+    mark: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME=LOW..HIGH UNIT",
+            help="Draw an interval into the figure, such as 'hand=434..1570 N/m'; ranges that the "
+            "spec declares are drawn anyway.",
+        ),
     ] = None,
     certificates: Annotated[
         Path | None,
@@ -64,13 +82,16 @@ def map(
     --over 'environments.soft.stiffness=100..1700/8 N/m' --over sampling.delay=0..3
     """
     from nrs_design.cli.exit_codes import OF_VERDICT, worst
-    from nrs_design.output import MAP, PNG, check_place, write_outputs
+    from nrs_design.output import MAP, MAP_ARCHIVE, PNG, check_place, write_outputs
     from nrs_design.pipeline import run_design
     from nrs_design.pipeline.free_gains import gains_given
-    from nrs_design.sweeps.tile_map import run_tile_map
+    from nrs_design.sweeps.marks import declared_marks, read_marks
+    from nrs_design.sweeps.paint import check_corners, run_tile_map
+    from nrs_design.sweeps.refine import refined
+    from nrs_design.sweeps.tile_table import tiles_csv, tiles_npz
     from nrs_design.sweeps.tiles import read_tiles
 
-    for path, kind in ((figure, PNG), (table, MAP)):
+    for path, kind in ((figure, PNG), (table, MAP), (npz, MAP_ARCHIVE)):
         if path is not None:
             check_place(path, kind)
     if certificates is not None:
@@ -78,20 +99,26 @@ def map(
     loaded = take_spec(spec)
     designed = run_design(loaded)
     grid = read_tiles(loaded if designed is None else gains_given(designed), spec, over)
+    marks = (*declared_marks(grid), *read_marks(grid, mark or ()))
+    if certificates is not None:
+        # The ends of the map, so that a long search is not for nothing.
+        check_corners(grid, designed)
     with progress(f"map of {loaded.spec.name}") as step:
-        found = run_tile_map(grid, designed, step)
+        found = refined(run_tile_map(grid, designed, step), designed, refine, step)
     outputs: list[Output] = []
     if figure is not None:
         from nrs_design.reporting.images import to_png
         from nrs_design.sweeps.tile_figure import draw_tile_map
 
-        outputs.append((figure, to_png(draw_tile_map(found)), PNG))
+        outputs.append((figure, to_png(draw_tile_map(found, marks)), PNG))
     if table is not None:
-        outputs.append((table, _table(found), MAP))
+        outputs.append((table, tiles_csv(found), MAP))
+    if npz is not None:
+        outputs.append((npz, tiles_npz(found), MAP_ARCHIVE))
     if certificates is not None:
         outputs += _certificates(found, certificates)
     write_outputs(outputs)
-    for path in (figure, table, certificates):
+    for path in (figure, table, npz, certificates):
         if path is not None:
             note(f"written: {path}")
     codes = {OF_VERDICT[str(tile.verdict)] for tile in found.tiles.values()}
@@ -124,7 +151,8 @@ def _facts(loaded: LoadedSpec, found: TileMap) -> dict[str, Any]:
             {"id": certificate.id, "box": [list(span) for span in box]}
             for certificate, box in zip(found.certificates, found.boxes, strict=True)
         ],
-        "proofs_tried": found.proofs,
+        "programs": found.proofs,
+        "forms_carried": found.carried,
         "witnesses_sought": found.witnesses,
     }
 
@@ -133,7 +161,8 @@ def _print(loaded: LoadedSpec, found: TileMap) -> None:
     counted = ", ".join(f"{count} {name}" for name, count in found.counts().items())
     say(
         f"{loaded.spec.name}: {len(found.tiles)} tiles: {counted}; "
-        f"{found.proofs} proofs and {found.witnesses} witnesses tried"
+        f"{found.proofs} programs, {found.carried} forms carried on, growth looked for "
+        f"{found.witnesses} times"
     )
     fields = found.grid.fields
     if len(fields) == 2 and fields[0].count <= WIDEST:
@@ -161,41 +190,15 @@ def _draw(found: TileMap) -> None:
     say(f"  {', '.join(meant)}; up: {up.field.path}, across: {across.field.path}")
 
 
-def _table(found: TileMap) -> str:
-    written = io.StringIO()
-    rows = csv.writer(written, lineterminator="\n")
-    paths = (field.field.path for field in found.grid.fields)
-    rows.writerow(["verdict", "certificate", "refuted_in", *paths])
-    for place, tile in found.tiles.items():
-        certificate = None if tile.certificate is None else found.certificates[tile.certificate].id
-        at = [field.text(k) for field, k in zip(found.grid.fields, place, strict=True)]
-        rows.writerow([str(tile.verdict), certificate, tile.refuted_in, *at])
-    return written.getvalue()
-
-
 def _certificates(found: TileMap, folder: Path) -> Iterator[Output]:
-    """Yield every certificate, and the spec that it is about, with the gains that it is about.
-
-    Raises
-    ------
-    DesignError
-        If the spec of a box, by itself, would have other gains.
-    """
+    """Yield every certificate, and the spec that it is about, with the gains that it is about."""
     from nrs_design.certificates.certificate import dump
-    from nrs_design.errors import DesignError
     from nrs_design.output import CERTIFICATE
-    from nrs_design.pipeline import run_design
-    from nrs_design.pipeline.certification import gains_text
+    from nrs_design.pipeline.free_gains import check_own_gains
 
     for certificate, box in zip(found.certificates, found.boxes, strict=True):
-        text, own = found.grid.text_of(box), run_design(found.grid.spec_of(box))
-        if gains_text(own) != {name: dict(gains) for name, gains in certificate.gains.items()}:
-            raise DesignError(
-                "gains of this spec follow from what the map changes, so no spec has the gains of "
-                "its certificates",
-                path=found.grid.loaded.path,
-                remedy="give these gains in the spec, or leave --certificates out",
-            )
+        check_own_gains(found.grid.spec_of(box), certificate.gains)
         name = certificate.id[:SHORT]
+        text = found.grid.text_of(box)
         yield folder / f"{name}.cert.json", dump(certificate, f"{name}.nrs.yaml"), CERTIFICATE
         yield folder / f"{name}.nrs.yaml", text, b""

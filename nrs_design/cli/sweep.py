@@ -19,7 +19,7 @@ from nrs_design.cli.printing import note, progress, wants_json
 from nrs_design.errors import NrsDesignError
 
 if TYPE_CHECKING:
-    from nrs_design.cli.sweep_point import Job, Tile
+    from nrs_design.cli.sweep_point import Job, PointAnswer
 
 # Commands that answer about one spec, with --json, and write nothing elsewhere.
 SWEPT = (
@@ -207,14 +207,14 @@ def _refuse_more(value: object) -> None:
         )
 
 
-def _points(job: Job, jobs: int, dask: str | None) -> list[Tile]:
+def _points(job: Job, jobs: int, dask: str | None) -> list[PointAnswer]:
     """Compute what is not there, and return all points in the order of the grid."""
     from nrs_design.cli.sweep_point import answer_point
     from nrs_design.sweeps.spread import spread, spread_by_dask
 
     work, every = partial(answer_point, job), range(job.grid.count)
     coming = spread(work, every, jobs) if dask is None else spread_by_dask(work, every, dask)
-    found: dict[int, Tile] = {}
+    found: dict[int, PointAnswer] = {}
     computed, start = 0, perf_counter()
     with progress(f"{job.grid.count} points") as step:
         for index, point in coming:

@@ -16,7 +16,7 @@ from nrs_design.errors import NrsDesignError
 from nrs_design.sweeps.table import Columns, Row, cell_text, chosen, fact_columns, flat, short_names
 
 if TYPE_CHECKING:
-    from nrs_design.cli.sweep_point import Job, Tile
+    from nrs_design.cli.sweep_point import Job, PointAnswer
 
 # What a terminal shows of rows, columns and messages; files hold them all.
 MOST_ROWS, MOST_COLUMNS, MOST_MESSAGES, MOST_NAMED = 200, 6, 5, 12
@@ -40,7 +40,7 @@ class SweepView:
     lines: tuple[str, ...]  # Below the table
 
 
-def facts_of(job: Job, points: Sequence[Tile]) -> dict[str, Any]:
+def facts_of(job: Job, points: Sequence[PointAnswer]) -> dict[str, Any]:
     """Return the content of the JSON document: the same for any number of processes."""
     from nrs_design.spec.load import read_axes
 
@@ -62,7 +62,7 @@ def facts_of(job: Job, points: Sequence[Tile]) -> dict[str, Any]:
     }
 
 
-def table_text(job: Job, points: Sequence[Tile]) -> str:
+def table_text(job: Job, points: Sequence[PointAnswer]) -> str:
     """Return all facts as CSV: a row for each point, a column for each number or word."""
     columns = _columns(job, points)
     text = io.StringIO()
@@ -76,14 +76,14 @@ def table_text(job: Job, points: Sequence[Tile]) -> str:
     return text.getvalue()
 
 
-def view_of(job: Job, points: Sequence[Tile], wanted: Sequence[str]) -> SweepView:
+def view_of(job: Job, points: Sequence[PointAnswer], wanted: Sequence[str]) -> SweepView:
     """Return what people see: what was set, how it ended, and some facts.
 
     Parameters
     ----------
     job : Job
         What was done.
-    points : sequence of Tile
+    points : sequence of PointAnswer
         What came of each point.
     wanted : sequence of str
         Names of facts; without them, the first ones that differ from point to point.
@@ -121,7 +121,9 @@ def show(view: SweepView) -> None:
         say(line)
 
 
-def _results(job: Job, points: Sequence[Tile]) -> Iterator[tuple[Tile, Mapping[str, Any] | None]]:
+def _results(
+    job: Job, points: Sequence[PointAnswer]
+) -> Iterator[tuple[PointAnswer, Mapping[str, Any] | None]]:
     """Yield each point with its answer, read from the store: many do not fit into memory at once.
 
     Raises
@@ -140,7 +142,7 @@ def _results(job: Job, points: Sequence[Tile]) -> Iterator[tuple[Tile, Mapping[s
         yield point, None if kept is None else kept.result
 
 
-def _columns(job: Job, points: Sequence[Tile]) -> Columns:
+def _columns(job: Job, points: Sequence[PointAnswer]) -> Columns:
     return fact_columns(_row(result) for _, result in _results(job, points) if result is not None)
 
 
@@ -157,7 +159,7 @@ def _headed(head: str, unit: str) -> str:
     return f"{head} [{unit}]" if unit else head
 
 
-def _values(job: Job, point: Tile) -> list[str]:
+def _values(job: Job, point: PointAnswer) -> list[str]:
     """Return the values of a point, without the unit where that stands above them."""
     return [
         _number(text.removesuffix(f" {field.unit}")) if field.unit else text
@@ -172,15 +174,15 @@ def _number(text: str) -> str:
     return f"{float(parse_exact(text)):.10g}" if "/" in text else text
 
 
-def _message(point: Tile) -> str:
+def _message(point: PointAnswer) -> str:
     faults = () if point.error is None else point.error["faults"]
     return "; ".join(fault["message"] for fault in faults)
 
 
-def _messages(job: Job, points: Sequence[Tile]) -> Iterator[str]:
+def _messages(job: Job, points: Sequence[PointAnswer]) -> Iterator[str]:
     """Yield what is wrong, with the values of the first point of which it is said."""
     paths = [field.path for field in job.grid.fields]
-    said: dict[str, list[Tile]] = {}
+    said: dict[str, list[PointAnswer]] = {}
     for point in points:
         if point.error is not None:
             said.setdefault(_message(point), []).append(point)

@@ -53,7 +53,7 @@ class Job:
 
 
 @dataclass(frozen=True, slots=True)
-class Tile:
+class PointAnswer:
     """What came of one point."""
 
     texts: tuple[str, ...]  # Values of the fields, in their order
@@ -66,7 +66,7 @@ class Tile:
     reused: bool = field(default=False, compare=False)
 
 
-def answer_point(job: Job, index: int) -> Tile:
+def answer_point(job: Job, index: int) -> PointAnswer:
     """Return what comes of one point: kept, or computed and kept.
 
     Parameters
@@ -83,18 +83,18 @@ def answer_point(job: Job, index: int) -> Tile:
             key = _key(job, axes)
             kept = job.store.read(key)
             if kept is not None and _holds(kept, _shown(job.store.certificate(key), axes)):
-                return Tile(texts, kept.code, key, kept.id(key), reused=True)
+                return PointAnswer(texts, kept.code, key, kept.id(key), reused=True)
             job.store.drop(key)
             kept = _computed(job, key)
             job.store.write(key, kept)
-            return Tile(texts, kept.code, key, kept.id(key))
+            return PointAnswer(texts, kept.code, key, kept.id(key))
         except NrsDesignError as error:
             stopped = isinstance(error, ClockError)
             code = exit_codes.INCONCLUSIVE if stopped else exit_codes.USAGE
-            return Tile(texts, code, error=error_summary(error))
+            return PointAnswer(texts, code, error=error_summary(error))
         except Exception as error:
             # One point must not keep the others from being computed, whatever goes wrong with it.
-            return Tile(texts, exit_codes.INTERNAL, error=_defect(error))
+            return PointAnswer(texts, exit_codes.INTERNAL, error=_defect(error))
 
 
 def _holds(kept: Kept, shown: Mapping[str, Any]) -> bool:

@@ -187,7 +187,7 @@ def run_recorded(loaded: LoadedSpec, file: Path, progress: Progress = silent) ->
     start = perf_counter()
     kept = read_valid_certificate(file, loaded, designed)
     taken = perf_counter() - start
-    if {n: dict(g) for n, g in kept.gains.items()} != gains_text(designed):
+    if not is_of_gains(kept.gains, designed):
         message = "it is about other gains than are designed here"
         raise CertificateError(message, path=file, remedy=_ANEW)
     outcome = f"{file.name}: each of its statements was checked again exactly"
@@ -289,6 +289,19 @@ def gains_text(designed: Designed | None) -> Gains:
     from nrs_design.controllers.gains import gains_of
 
     return gains_of(designed.design)
+
+
+def is_of_gains(gains: Gains, designed: Designed | None) -> bool:
+    """Tell whether gains, such as those of a certificate, are those that a design ships.
+
+    Parameters
+    ----------
+    gains : mapping
+        As `gains_text` gives them.
+    designed : Designed or None
+        The design; None for given matrices.
+    """
+    return {name: dict(own) for name, own in gains.items()} == gains_text(designed)
 
 
 def assemble_spec(

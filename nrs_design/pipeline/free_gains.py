@@ -24,8 +24,9 @@ from nrs_design.controllers.float32 import (
     round_significant,
     to_float32,
 )
-from nrs_design.pipeline.certification import assemble_spec, gains_text
-from nrs_design.pipeline.design import Designed
+from nrs_design.errors import DesignError
+from nrs_design.pipeline.certification import assemble_spec, gains_text, is_of_gains
+from nrs_design.pipeline.design import Designed, run_design
 from nrs_design.proof.text import exact_text
 from nrs_design.spec import LoadedSpec
 from nrs_design.spec.document import parse_document
@@ -33,6 +34,7 @@ from nrs_design.spec.load import respecified
 from nrs_design.spec.spec_document import SpecDocument
 
 if TYPE_CHECKING:
+    from nrs_design.certificates.certificate import Gains
     from nrs_design.design.analysis import DesignAnalysis, ImpedanceAnalysis
     from nrs_design.design.impedance_optimum import ImpedanceProblem
     from nrs_design.models.plant import Plant
@@ -242,6 +244,30 @@ def gain_branches(designed: Designed, analysis: DesignAnalysis) -> Iterator[Free
     if all(high > 0 for _, high in bounds):
         above = tuple((low or LEAST_MASS * high, high) for low, high in bounds)
         yield FreeGains(designed, items, above)
+
+
+def check_own_gains(loaded: LoadedSpec, gains: Gains) -> None:
+    """Refuse a spec that by itself would be designed with other gains.
+
+    Parameters
+    ----------
+    loaded : LoadedSpec
+        The spec of some tile, which a certificate is to be written with.
+    gains : mapping
+        Those of the certificate, as `gains_text` gives them.
+
+    Raises
+    ------
+    DesignError
+        If its own gains are others, or it has none.
+    """
+    if not is_of_gains(gains, run_design(loaded)):
+        raise DesignError(
+            "gains of this spec follow from what the map changes, so no spec has the gains of "
+            "its certificates",
+            path=loaded.path,
+            remedy="give these gains in the spec, or leave --certificates out",
+        )
 
 
 def gains_given(designed: Designed) -> LoadedSpec:

@@ -139,6 +139,24 @@ def refuted_at_once(system: SwitchedSystem, limits: Limits | None = None) -> str
     ClockError
         If the clock stopped it.
     """
+    found = certify_growth(system, limits)
+    evidence = found.statements[:1]
+    return None if not evidence else refuted_in(system, evidence) or ""
+
+
+def certify_growth(system: SwitchedSystem, limits: Limits | None = None) -> Certification:
+    """Refute by one mode, or a round of two, that grows: of those that are suspected.
+
+    Parameters
+    ----------
+    system, limits
+        As for `refuted_at_once`.
+
+    Raises
+    ------
+    ClockError
+        If the clock stopped it.
+    """
     from nrs_design.search.rounds import search_rounds
     from nrs_design.search.unstable_mode import examine_suspicious_modes
 
@@ -147,7 +165,34 @@ def refuted_at_once(system: SwitchedSystem, limits: Limits | None = None) -> str
         family = Family.of(system, _allowance(limits))
     search = examine_suspicious_modes if system.clock is None else search_rounds
     evidence, _ = _take(partial(search, family), system, family.allowance)
-    return None if evidence is None else refuted_in(system, (evidence,)) or ""
+    return _concluded(system, "suspicious modes", evidence)
+
+
+def certify_with(system: SwitchedSystem, statement: AbstractEvidence) -> Certification:
+    """Decide a system by evidence that was found for another one, and by nothing else.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        The modes and their switching.
+    statement : AbstractEvidence
+        Such as a form for a system with the same states.
+    """
+    try:
+        fault = find_fault(statement, system)
+    except TooLargeError as error:
+        fault = str(error)
+    return _concluded(system, "known evidence", None if fault else statement)
+
+
+def _concluded(
+    system: SwitchedSystem, method: str, evidence: AbstractEvidence | None
+) -> Certification:
+    """Conclude from one statement that the exact check has accepted, or from none."""
+    statements = () if evidence is None else (evidence,)
+    if evidence is not None and not agrees(system, evidence):
+        raise InternalError(DISAGREE)
+    return _conclude(system, method, statements, ())
 
 
 def _allowance(limits: Limits) -> Allowance:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from fractions import Fraction
+from math import inf, sqrt
 from typing import TypeVar
 
 import numpy as np
@@ -21,6 +22,8 @@ from nrs_design.work import Allowance, NotAffordableError
 # A position is bracketed to this share of itself, or given up as nil below the smallest one.
 RESOLUTION = 2.0**-12
 SMALLEST = 2.0**-40
+# A step goes so far to what is known to be infeasible, at most; and after one that went too far.
+FAR, NEAR = 0.75, 0.125
 
 Solution = TypeVar("Solution")
 
@@ -114,6 +117,58 @@ def bisect_position(
         except NotAffordableError:
             break
     return low
+
+
+def climb_position(
+    ask: Callable[[float], tuple[float, float] | None],
+    start: tuple[float, float],
+    resolution: float,
+    smallest: float,
+) -> float:
+    """Climb to the largest feasible position, where each answer takes long and says more than yes.
+
+    The root of the margin is nearly straight until it is nil: the next position is where it would
+    be. When what the search may take is used up, it ends early.
+
+    Parameters
+    ----------
+    ask : callable
+        Decides a position: the margin there, and the position that was shown; or None.
+    start : (float, float)
+        The same of position zero.
+    resolution, smallest
+        As for `bisect_position`.
+
+    Returns
+    -------
+    float
+        The largest position that was shown; zero if there is none.
+    """
+    low, high = max(0.0, min(start[1], 1.0)), 1.0
+    known, position = [(0.0, sqrt(start[0]))], low
+    while high - low > max(resolution * high, smallest):
+        try:
+            found = ask(position)
+        except NotAffordableError:
+            break
+        if found is None:
+            high = position
+        else:
+            margin, shown = found
+            known.append((position, sqrt(margin)))
+            low = max(low, position, min(shown, high))
+        step = max(resolution * high, smallest)
+        if found is None:  # What was shown last is near the largest
+            position = min(low + max(step, NEAR * (high - low)), (low + high) / 2)
+        else:
+            position = min(max(_root(*known[-2:]), low + step), low + FAR * (high - low))
+    return low
+
+
+def _root(first: tuple[float, float], second: tuple[float, float]) -> float:
+    """Return where the straight line through two points is nil; nowhere if it rises."""
+    (a, f), (b, g) = first, second
+    return b + g * (b - a) / (f - g) if f > g else inf
 
 
 def rate_of(matrices: NDArray[np.float64], Q: NDArray[np.float64], time: Time) -> float:

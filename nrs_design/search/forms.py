@@ -24,11 +24,19 @@ from nrs_design.proof.steps import COUPLING, ROUNDING, Step
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.balance import balance, scale_states
 from nrs_design.search.family import NEARLY
+from nrs_design.search.forms_interior_point import (
+    ConeKind,
+    FormsCones,
+    FormsPoint,
+    FormTerm,
+    maximize,
+)
 from nrs_design.search.lifted import make_vanish, products, vanishing_basis
-from nrs_design.search.lmi import time_unit
+from nrs_design.search.lmi import FEWEST_STEPS, time_unit
 from nrs_design.search.pieces import enough_pieces
 from nrs_design.search.rounding import round_form, round_rate
 from nrs_design.search.sdp import (
+    STEPS,
     Sparse,
     begin,
     find_maximum,
@@ -57,6 +65,9 @@ SAMPLES, SHORTEST, LONGEST = 16, 1.0, 16.0
 FIRST_EDGES, FEW_EACH = 8, 2
 # An edge outside the program keeps at least this share of the margin of those in it.
 NEARLY_ALL = 0.8
+# Work for the first edges from which on a general solver is not asked. Our own method takes more of
+# them at once, and is content with less of those outside.
+DEAR, FIRST_OF_DEAR, BARELY = 0.05, 64, 0.1
 # Forms reach up to the identity where there are any; all of them below this are zero.
 NOTHING = 1e-4
 # What floating point hides where a form need not decrease, relative to its size.
@@ -171,6 +182,7 @@ class Solution:
     forms: list[Array]
     multipliers: Array
     vanishing: list[Array]
+    margin: float  # That they were solved for, of the edges that counted
 
 
 @dataclass(frozen=True)
@@ -198,7 +210,7 @@ class FormsProgram:
         whole = self.degree > 1 or count <= FEW_EACH * len(self.sizes)
         few = count if whole else min(count, FIRST_EDGES)
         # The edges that solutions are sought for; what one violates is added, and stays.
-        self.active = sorted({k * (count - 1) // max(few - 1, 1) for k in range(few)})
+        self.active = _spaced(count, few)
         flows = [np.abs(edge.M).max() for edge in self.edges if edge.is_flow]
         if flows and self.degree > 1:
             # The unit of the modes themselves: lifted entries, and margins with them, grow with
@@ -206,6 +218,20 @@ class FormsProgram:
             given = np.array([mode.A.floats() for mode in drawing.system.modes])
             flows = [float(np.abs(scale_states(given, balance(given))).max())]
         self.unit = time_unit(np.array(max(flows))[None], self.time) if flows else 0
+        self._last: FormsPoint | None = None  # What our own method found last
+        self.is_dear = self._is_dear()
+        if self.is_dear:
+            self.active = _spaced(count, max(few, min(count, FIRST_OF_DEAR)))
+
+    def _is_dear(self) -> bool:
+        """Tell whether a general solver takes long, even for few edges, and our own method less.
+
+        Ours begins where every inequality has room, and knows quadratic forms only.
+        """
+        work = self.cost(self.active)[0].work
+        if self.degree > 1 or work <= DEAR or not all(edge.is_strict for edge in self.edges):
+            return False
+        return STEPS * self._cones(self.active, 1.0).cost().work < work
 
     @cached_property
     def _vanishing(self) -> list[Array]:
@@ -261,17 +287,40 @@ class FormsProgram:
                 return solution
             margins, known = self._margins(solution, rate), set(self.active)
             strict = np.array([edge.is_strict for edge in self.edges])
-            enough = NEARLY_ALL * min((margins[k] for k in known if strict[k]), default=0.0)
+            share = BARELY if self.is_dear else NEARLY_ALL
+            enough = share * min((margins[k] for k in known if strict[k]), default=0.0)
             tight = ~(margins > np.where(strict, max(enough, 0.0), 0.0))
             added = [k for k in np.argsort(margins) if tight[k] and k not in known]
             if not added:
                 return solution
             self.active = sorted([*known, *added[: len(known)]])
 
+    @cached_property
+    def _vanish_nowhere(self) -> list[Array]:
+        return [np.zeros((edge.size, edge.size)) for edge in self.edges]
+
+    def _solve_ours(
+        self, active: Sequence[int], rate: float, allowance: Allowance
+    ) -> Solution | None:
+        """Solve for some of the edges with the method of our own, from where the last one ended."""
+        cones = self._cones(active, rate)
+        step = cones.cost()
+        allowance.require(
+            Cost(FEWEST_STEPS * step.work, step.memory), f"{len(active)} inequalities"
+        )
+        found = maximize(cones, self._last, lambda: allowance.goes_on(step.work))
+        if found.margin <= 0:
+            return None
+        self._last = found
+        share = 1.0 if self.time is Time.CONTINUOUS else float(rate**2)
+        return Solution(found.forms, share * found.multipliers, self._vanish_nowhere, found.margin)
+
     def _solve_for(
         self, active: Sequence[int], rate: float, allowance: Allowance
     ) -> Solution | None:
         """Solve for some of the edges."""
+        if self.is_dear:
+            return self._solve_ours(active, rate, allowance)
         begun = begin(allowance, *self.cost(active))
         x = maximize_margin(*self._built.of_edges(self.factors(rate), active), begun)
         return None if x is None else self._read(x, rate)
@@ -306,6 +355,43 @@ class FormsProgram:
         duals = {k: unpack(part, n) for k, part, n in zip(active, parts, sizes, strict=True)}
         return DualSolution(solution, duals)
 
+    def _cones(self, active: Sequence[int], rate: float) -> FormsCones:
+        """Return the inequalities of some edges at a rate."""
+        factors, place = self.factors(rate), {fact: k for k, fact in enumerate(self.scales)}
+        kinds = list[ConeKind]()
+        for k, n in enumerate(self.sizes):
+            whole = np.eye(n)[None]
+            kinds.append(ConeKind(0.0, (FormTerm(k, whole, whole),), (), False, 1, n))
+        for fact, k in place.items():
+            kinds.append(ConeKind(0.0, (), ((k, np.ones((1, 1, 1))),), False, 1, 1))
+            if fact in self.bounded:
+                below = -np.ones((1, 1, 1))
+                kinds.append(ConeKind(LARGEST_MULTIPLIER, (), ((k, below),), False, 1, 1))
+        groups: dict[object, list[int]] = {}
+        for k in active:
+            edge = self.edges[k]
+            entries = tuple(edge.kept), tuple(edge.left), tuple(fact for fact, _ in edge.facts)
+            key = edge.before, edge.after, edge.size, edge.is_flow, edge.is_strict, entries
+            groups.setdefault(key, []).append(k)
+        for members in groups.values():
+            first, edges = self.edges[members[0]], [self.edges[k] for k in members]
+            weights = np.array([factors[k] for k in members])[:, None, None]
+            E = np.zeros((1, first.size, self.sizes[first.before]))
+            E[0, np.arange(len(first.kept)), first.kept] = 1.0
+            M = np.zeros((len(edges), first.size, self.sizes[first.after]))
+            M[:, :, first.left] = np.array([edge.M.T for edge in edges])
+            if first.is_flow:
+                N = -np.ldexp(M, self.unit) - weights / 2 * E
+                terms = FormTerm(first.before, E, N), FormTerm(first.before, N, E)
+            else:
+                terms = FormTerm(first.before, E, E), FormTerm(first.after, -weights * M, M)
+            facts = tuple(
+                (place[fact], np.array([edge.facts[i][1] for edge in edges]))
+                for i, (fact, _) in enumerate(first.facts)
+            )
+            kinds.append(ConeKind(0.0, terms, facts, first.is_strict, len(edges), first.size))
+        return FormsCones(self.sizes, len(self.scales), kinds)
+
     def factors(self, rate: float) -> list[float]:
         """Return what the rate makes of the inequality of each edge: twice that of a flow.
 
@@ -339,7 +425,7 @@ class FormsProgram:
             for keep, part, basis in zip(keeps, parts[len(forms) :], self._vanishing, strict=False)
         ]
         share = 1.0 if self.time is Time.CONTINUOUS else float(rate ** (2 * self.degree))
-        return Solution(forms, share * parts[-1], vanishing)
+        return Solution(forms, share * parts[-1], vanishing, float(x[-1]))
 
     def _form(self, edge: Inequality, solution: Solution, N: Array) -> Array:
         """Return the inequality of an edge without what counts for the rate."""
@@ -533,6 +619,11 @@ class FormsProgram:
         taus = {f: pushed[f] / sizes[f] if pushed[f] * sizes[f] else 1.0 for f in pushed}
         left = float(claim) ** 2 + LOST_TO_ERRORS * worst
         return taus, round_rate(float(np.sqrt(left)), Time.DISCRETE)
+
+
+def _spaced(count: int, few: int) -> list[int]:
+    """Return so many of the first numbers, at about equal distances."""
+    return sorted({k * (count - 1) // max(few - 1, 1) for k in range(few)})
 
 
 @dataclass(frozen=True)

@@ -23,14 +23,20 @@ from nrs_design.search.balance import balance, own_norm, scale_states
 from nrs_design.search.branches import best_words
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
 from nrs_design.search.cycle import growing_cycles
-from nrs_design.search.decay import RESOLUTION, SMALLEST, bisect_position, limit_rate
+from nrs_design.search.decay import (
+    RESOLUTION,
+    SMALLEST,
+    bisect_position,
+    climb_position,
+    limit_rate,
+)
 from nrs_design.search.family import Family, stand_ins, to_floats
-from nrs_design.search.forms import Drawing, FormCoordinates, FormsProgram
+from nrs_design.search.forms import Drawing, FormCoordinates, FormsProgram, Solution
 from nrs_design.search.graph import Graph
 from nrs_design.search.lifted import monomial_weights
 from nrs_design.search.motions import Motions, separating_coordinates
 from nrs_design.search.polynomial import conewise_cost, family_cost, functions_cost, work_of_checks
-from nrs_design.search.rounding import BACK_OFFS, claims, digits, rate_at
+from nrs_design.search.rounding import BACK_OFFS, claims, digits, position_of, rate_at
 from nrs_design.search.stays import round_stays
 from nrs_design.search.step_graph import StepGraph
 from nrs_design.work import Cost, NotAffordableError
@@ -54,6 +60,8 @@ MOST_ROUNDED = 250
 FEW_STAYS = 64
 # Share of what is left for words that limit the rate.
 WORDS = 0.1
+# The largest rate to this share, where every solution takes long.
+OF_DEAR, NEAR_OF_DEAR = 2.0**-7, 0.998
 # The largest rate, where it was not asked for, to this share of it.
 ROUGH = 0.3
 GROWS = "not looked for: the state grows along a cycle of modes"
@@ -117,6 +125,8 @@ def propose(
     first, best = asked.solve(rate_at(0.0, limit, time), allowance), 0.0
     if first is None:
         return NO_MARGIN
+    if asked.is_dear and all(program is asked for program in programs):
+        return (yield from _propose_dear(asked, first, family, limit, rates, covers))
     part = allowance.part(rates.share)
     if family.optimize_rate or rates.always:
         half = part.part(0.5)
@@ -145,6 +155,44 @@ def propose(
             if slow is not None:
                 for evidence in program.roundings(slow, claim, bits, errors=covered):
                     yield Candidate(evidence)
+    return None
+
+
+def _propose_dear(
+    program: FormsProgram,
+    first: Solution,
+    family: Family,
+    limit: float,
+    rates: Rates,
+    covers: int,
+) -> Candidates[FormsOnGraph]:
+    """Propose forms of a program of which every solution takes long: no more of them than needed.
+
+    What a solution shows is more than what it was asked for, and is claimed of it.
+    """
+    time, part = program.time, family.allowance.part(rates.share / 2)
+
+    def shown(solution: Solution) -> float:
+        return position_of(program.own_rate(solution), limit, time)
+
+    found = [(shown(first), first)]
+
+    def ask(position: float) -> tuple[float, float] | None:
+        solution = program.solve(rate_at(position, limit, time), part)
+        if solution is None:
+            return None
+        found.append((shown(solution), solution))
+        return solution.margin, found[-1][0]
+
+    if family.optimize_rate or rates.always:
+        start = first.margin, found[0][0]
+        climb_position(ask, start, max(rates.resolution, OF_DEAR), rates.smallest)
+    for position, solution in sorted(found, key=lambda one: one[0], reverse=True):
+        for covered in (True, False) if covers else (False,):
+            bits = WITH_ERRORS if covered else rates.bits
+            for claim in claims(position, limit, time, min(rates.nearest, NEAR_OF_DEAR)):
+                for evidence in program.roundings(solution, claim, bits, errors=covered):
+                    yield Candidate(evidence, rates.words)
     return None
 
 

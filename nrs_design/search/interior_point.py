@@ -136,26 +136,54 @@ def _step(cones: Cones, X: Array, Z: Array) -> tuple[Array, Array]:
     D = d[..., None] * np.eye(n)
     _, dX, dZ = direction(-D)
     gap = (d * d).sum()
-    reached = ((D + _reach(d, dX, 1.0) * dX) * (D + _reach(d, dZ, 1.0) * dZ)).sum()
+    reached = ((D + step_to_border(d, dX, 1.0) * dX) * (D + step_to_border(d, dZ, 1.0) * dZ)).sum()
     center = max(reached / gap, 0.0) ** 3 * gap / d.size
     bend = (dX @ dZ + dZ @ dX) / (d[..., None] + d[..., None, :])
     dy, dX, dZ = direction(center / d[..., None] * np.eye(n) - bend - D)
     back = np.swapaxes(scaled.W, -1, -2)
-    return _reach(d, dX, STEP_SHARE) * dy, _reach(d, dZ, STEP_SHARE) * (back @ dZ @ scaled.W)
+    return step_to_border(d, dX, STEP_SHARE) * dy, step_to_border(d, dZ, STEP_SHARE) * (
+        back @ dZ @ scaled.W
+    )
 
 
 def _scale(cones: Cones, X: Array, Z: Array) -> _Scaled:
-    """Find W with ``W X W' = W^-T Z W^-1`` diagonal, and bring all images there."""
-    L = np.linalg.cholesky(X)
-    R = np.linalg.cholesky((Z + np.swapaxes(Z, -1, -2)) / 2)
-    _, d, Vt = np.linalg.svd(np.swapaxes(R, -1, -2) @ L)
-    W = np.sqrt(d)[..., None] * Vt @ np.linalg.inv(L)
+    """Bring all images to the coordinates in which X and Z are the same diagonal matrix."""
+    W, d = nesterov_todd(X, Z)
     images = W @ cones.images @ np.swapaxes(W, -1, -2)
     return _Scaled(W, d, pack(images).reshape(len(images), -1))
 
 
-def _reach(d: Array, change: Array, share: float) -> float:
-    """Return how far a step may go, one at most, as a share of the way to the border."""
+def nesterov_todd(X: Array, Z: Array) -> tuple[Array, Array]:
+    """Return W with ``W X W' = W^-T Z W^-1`` diagonal, and the diagonals.
+
+    Parameters
+    ----------
+    X, Z : ndarray, shape (cones, n, n)
+        Positive definite.
+
+    Raises
+    ------
+    numpy.linalg.LinAlgError
+        If one is not, in floating point.
+    """
+    L = np.linalg.cholesky(X)
+    R = np.linalg.cholesky((Z + np.swapaxes(Z, -1, -2)) / 2)
+    _, d, Vt = np.linalg.svd(np.swapaxes(R, -1, -2) @ L)
+    return np.sqrt(d)[..., None] * Vt @ np.linalg.inv(L), d
+
+
+def step_to_border(d: Array, change: Array, share: float) -> float:
+    """Return how far a step may go, one at most, as a share of the way to the border.
+
+    Parameters
+    ----------
+    d : ndarray, shape (cones, n)
+        Diagonals of what is positive definite.
+    change : ndarray, shape (cones, n, n)
+        Of it.
+    share : float
+        Of the way.
+    """
     root = np.sqrt(d)
     relative = change / (root[..., None] * root[..., None, :])
     steepest = float(-np.linalg.eigvalsh(relative)[..., 0].min())

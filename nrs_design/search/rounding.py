@@ -38,6 +38,17 @@ def rate_at(position: float, limit: float, time: Time) -> float:
     return position * limit if time is Time.CONTINUOUS else 1 - position * (1 - limit)
 
 
+def position_of(rate: float, limit: float, time: Time) -> float:
+    """Return the position of a rate: the inverse of `rate_at`.
+
+    Parameters
+    ----------
+    rate, limit, time
+        As there.
+    """
+    return rate / limit if time is Time.CONTINUOUS else (1 - rate) / (1 - limit)
+
+
 def claims(
     position: float, limit: float, time: Time, nearest: float = BACK_OFFS[0], *, few: bool = False
 ) -> Iterator[Fraction]:

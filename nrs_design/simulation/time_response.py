@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import io
-import zipfile
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from nrs_design.arrays.archive import to_archive
 from nrs_design.axis import AxisType
 
 Array = NDArray[np.float64]
@@ -120,8 +120,7 @@ class TimeResponse:
     def to_npz(self) -> bytes:
         """Return the arrays as a NumPy archive; names and units are text arrays beside them.
 
-        The first one, ``about``, is stored as it is, so that an archive of ours can be told from
-        others by its first bytes, whatever version of Python wrote it.
+        The first one says what it is; see `nrs_design.arrays.archive`.
         """
         named = {
             kind: np.array([[s.name, s.unit] for s in signals], dtype=np.str_).reshape(-1, 2)
@@ -131,15 +130,6 @@ class TimeResponse:
                 ("inputs", self.inputs),
             )
         }
-        about = {"about": np.array("a run of nrs-design")}
         arrays = {"t": self.t, "y": self.y, "x": self.x, "u": self.u, "mode": self.mode}
         modes = {"modes": np.array(self.modes, dtype=np.str_)}
-        file = io.BytesIO()
-        with zipfile.ZipFile(file, "w") as archive:
-            for name, array in (about | arrays | named | modes).items():
-                content = io.BytesIO()
-                np.lib.format.write_array(content, array, allow_pickle=False)
-                member = zipfile.ZipInfo(f"{name}.npy")
-                packed = zipfile.ZIP_STORED if name in about else zipfile.ZIP_DEFLATED
-                archive.writestr(member, content.getvalue(), packed)
-        return file.getvalue()
+        return to_archive("a run of nrs-design", arrays | named | modes)

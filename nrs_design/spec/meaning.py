@@ -5,12 +5,17 @@ from __future__ import annotations
 import hashlib
 import json
 
-from nrs_design.spec.document import Data
 
+def hash_meaning(said: object) -> str:
+    """Return the SHA-256 of what a document says, in hexadecimal.
 
-def hash_meaning(said: Data) -> str:
-    """Return the SHA-256 of what a document says (as `to_data` gives it), in hexadecimal.
+    Parameters
+    ----------
+    said : object
+        Of a spec, as `to_data` gives it; else what JSON holds.
 
+    Notes
+    -----
     Two documents share it exactly if they have the same keys in the same order and the same
     texts: comments, line ends, quotes and layout do not count. A spec is read from these texts and
     from nothing else. Order counts because modes are numbered in the order of the controllers.

@@ -7,7 +7,6 @@ computed again. What it claims is no evidence; see `nrs_design.sweeps.claims`.
 
 from __future__ import annotations
 
-import hashlib
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -34,7 +33,7 @@ class Kept:
 
     def id(self, key: str) -> str:
         """Return the SHA-256 of what is written of it under a name, in hexadecimal."""
-        return _id_of(self.said(key))
+        return hash_meaning(self.said(key))
 
     def text(self, key: str) -> str:
         """Return what is written of it under a name."""
@@ -94,8 +93,3 @@ def key_of(meaning: Data, asked: Data, version: str) -> str:
         Of this program.
     """
     return hash_meaning({"spec": meaning, "asked": asked, "version": version})
-
-
-def _id_of(said: Mapping[str, Any]) -> str:
-    canonical = json.dumps(said, separators=(",", ":"), ensure_ascii=True)
-    return hashlib.sha256(canonical.encode()).hexdigest()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -12,6 +13,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from nrs_design.sweeps.marks import Mark
     from nrs_design.sweeps.tile_map import TileMap
     from nrs_design.sweeps.tiles import TileField
 
@@ -23,13 +25,15 @@ LOOKS = {
 
 
 @styled
-def draw_tile_map(found: TileMap) -> Figure:
+def draw_tile_map(found: TileMap, marks: Sequence[Mark] = ()) -> Figure:
     """Draw the tiles of one or two fields, the first one across.
 
     Parameters
     ----------
     found : TileMap
         Of three fields, the tiles at the first value of the last one.
+    marks : sequence of Mark
+        Intervals that are drawn in.
     """
     from nrs_design.plotting import Patch, Rectangle
 
@@ -52,6 +56,8 @@ def draw_tile_map(found: TileMap) -> Figure:
         axes.set_ylabel(_label(up))
         _name_whole(axes, up)
     axes.grid(visible=False)
+    for mark in marks:
+        _draw_mark(axes, mark)
     handles = [
         Patch(facecolor=LOOKS.get(name, ORANGE), edgecolor=INK, label=name.capitalize())
         for name, count in found.counts().items()
@@ -59,6 +65,21 @@ def draw_tile_map(found: TileMap) -> Figure:
     ]
     figure.legend(handles=handles, loc="outside lower center", ncols=2)
     return figure
+
+
+def _draw_mark(axes: Axes, mark: Mark) -> None:
+    """Draw the ends of an interval as lines through the tiles, with its name between them."""
+    middle = (mark.low + mark.high) / 2
+    line = axes.axvline if mark.axis == 0 else axes.axhline
+    for end in {mark.low, mark.high}:
+        line(end, color=INK, linewidth=1.0, linestyle="--")
+    if mark.axis == 0:
+        name = axes.text(middle, 0.98, mark.name, rotation=90, va="top", ha="center")
+        name.set_transform(axes.get_xaxis_transform())
+    else:
+        name = axes.text(0.98, middle, mark.name, va="center", ha="right")
+        name.set_transform(axes.get_yaxis_transform())
+    name.set(color=INK, clip_on=True)
 
 
 def _borders(field: TileField) -> list[float]:

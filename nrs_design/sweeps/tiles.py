@@ -9,9 +9,10 @@ every box.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from enum import StrEnum
+from fractions import Fraction
 from itertools import pairwise
 from pathlib import Path
 
@@ -85,7 +86,7 @@ class TileField:
             assert isinstance(there, Sequence)
             return (to_data(there.items[0]), values[last])
         low, high = values[first], values[last + 1]
-        ends = [parse_exact(text.partition(" ")[0]) for text in (low, high)]
+        ends = parse_exact(low.partition(" ")[0]), parse_exact(high.partition(" ")[0])
         middle = exact_text((ends[0] + ends[1]) / 2)
         nominal = f"{middle} {self.unit}" if self.unit else middle
         said: dict[str, Data] = {"nominal": nominal, "range": (low, high)}
@@ -100,6 +101,34 @@ class TileField:
         ]
         unit = f" {self.unit}" if self.unit else ""
         return f"{'..'.join(values)}{unit}"
+
+    def cut_finer(self, tiles: Collection[int]) -> TileField:
+        """Return the field with some of its tiles halved; only intervals can be."""
+        if self.cut is not TileCut.INTERVAL or not tiles:
+            return self
+        texts = list[str]()
+        for place in range(self.count):
+            low, high = self._ends(place)
+            unit = f" {self.unit}" if self.unit else ""
+            texts.append(self.field.values[place])
+            if place in tiles:
+                texts.append(f"{exact_text((low + high) / 2)}{unit}")
+        finer = Field(self.field.path, self.field.at, (*texts, self.field.values[self.count]))
+        return TileField(finer, self.cut, self.unit, _numbers(finer))
+
+    def span_of(self, coarse: TileField, place: int) -> Span:
+        """Return which tiles lie in a tile of the field as it was before `cut_finer`."""
+        if self.cut is not TileCut.INTERVAL:
+            return place, place
+        every = list(_texts(self.field))
+        ends = [every.index(coarse.field.values[k]) for k in (place, place + 1)]
+        return ends[0], ends[1] - 1
+
+    def _ends(self, place: int) -> tuple[Fraction, Fraction]:
+        low, high = (
+            parse_exact(self.field.values[k].partition(" ")[0]) for k in (place, place + 1)
+        )
+        return low, high
 
     def _at(self, place: int) -> tuple[int, ...]:
         return (place, place + 1) if self.cut is TileCut.INTERVAL else (place,)
@@ -116,6 +145,11 @@ class TileGrid:
     def shape(self) -> tuple[int, ...]:
         """How many tiles there are along each field."""
         return tuple(field.count for field in self.fields)
+
+    @property
+    def count(self) -> int:
+        """How many tiles there are."""
+        return math.prod(self.shape)
 
     def spec_of(self, box: Box) -> LoadedSpec:
         """Return what the spec says of all tiles of a box at once.

@@ -5,10 +5,12 @@ import signal
 import subprocess
 import sys
 from dataclasses import replace
+from fractions import Fraction
 from time import sleep
 
 import pytest
 
+from nrs_design.certificates.certificate import content_id
 from nrs_design.cli import exit_codes
 from nrs_design.cli.sweep import SWEPT
 from nrs_design.sweeps.store import Store
@@ -146,6 +148,29 @@ def answer_and_certificate(tmp_path):
     return answer, certificate
 
 
+def faster(document):
+    """Claim twice the rate, with the form that shows the true one."""
+    rate = Fraction(document["statements"][0]["rate"])
+    document["statements"][0]["rate"] = str(2 * rate)
+    return document
+
+
+def indefinite(document):
+    node = document["statements"][0]["nodes"][0]
+    node["form"] = [[-entry for entry in row] for row in node["form"]]
+    return document
+
+
+def of_another_spec(document):
+    document["spec"]["sha256"] = "0" * 64
+    return document
+
+
+def agreeing(result, document):
+    rate = float(Fraction(document["statements"][0]["rate"]))
+    return result | {"decay_rate": rate}
+
+
 def test_proved_is_used_again_only_with_a_certificate_that_holds(tmp_path, spec):
     """The rule that matters: no file in a folder makes something proved."""
     first = certified(tmp_path, spec)
@@ -160,9 +185,12 @@ def test_proved_is_used_again_only_with_a_certificate_that_holds(tmp_path, spec)
 
     certificate.unlink()
     is_computed_again()
-    certificate.write_text(whole.replace('"1/2"', '"1/3"', 1) + " ", encoding="utf-8")
-    certificate.write_text(whole.replace("3", "4", 1), encoding="utf-8")
-    is_computed_again()
+    for forge in (faster, indefinite, of_another_spec):
+        document = forge(json.loads(whole))
+        # As whoever forges one would: with the id of what it says now, and an answer that agrees.
+        certificate.write_text(json.dumps(document | {"id": content_id(document)}), "utf-8")
+        rewritten(answer, lambda result, document=document: agreeing(result, document))
+        is_computed_again()
     certificate.write_text("{", encoding="utf-8")
     is_computed_again()
     rewritten(answer, lambda result: result | {"decay_rate": 2 * result["decay_rate"]})

@@ -6,6 +6,7 @@ from nrs_design.search.decay import (
     RESOLUTION,
     SMALLEST,
     bisect_position,
+    climb_position,
     fastest_first,
     limit_rate,
     rate_of,
@@ -127,3 +128,29 @@ def test_a_bisection_without_work_keeps_what_it_has():
         return position < 0.6
 
     assert bisect_position(is_feasible) == 0.5
+
+
+@pytest.mark.parametrize("threshold", [0.02, 0.3, 0.8, 0.999, 1.0])
+@pytest.mark.parametrize("power", [1.0, 2.0, 3.0])
+def test_a_climb_asks_few_positions(threshold, power):
+    """What is shown lies between what is asked and the largest, however margins fall."""
+    asked = []
+
+    def answer(position):
+        asked.append(position)
+        if position >= threshold:
+            return None
+        left = threshold - position
+        return left**power, position + left / 3
+
+    found = climb_position(answer, answer(0.0), 2.0**-7, 2.0**-14)
+    assert threshold - 2.0**-6 <= found <= threshold
+    assert len(asked) <= 14
+
+
+def test_a_climb_without_work_keeps_what_was_shown():
+    def broke(position):
+        raise NotAffordableError("no more")
+
+    assert climb_position(broke, (1.0, 0.25), 2.0**-7, 2.0**-14) == 0.25
+    assert climb_position(broke, (1.0, -0.25), 2.0**-7, 2.0**-14) == 0.0

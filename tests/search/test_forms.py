@@ -21,6 +21,7 @@ from nrs_design.search.graphs import (
     search_modes,
     search_periodic_quadratic,
     search_polynomial,
+    search_preconditioned,
     search_together,
 )
 from nrs_design.work import Allowance, NotAffordableError
@@ -111,3 +112,34 @@ def test_edges_that_a_solution_violates_are_added(monkeypatch, search, system, d
 def test_forms_that_are_nearly_zero_are_no_solution():
     """The best rate is ``sqrt(3)/2``; below it, the solver finds none but zero, with a margin."""
     assert found(search_modes, two_ways(3)).rate < 0.8665
+
+
+@pytest.mark.parametrize(
+    ("search", "system", "draw"),
+    [
+        (search_together, bouncing_in_steps(), lambda f: draw_together(f, 1, lost=True)),
+        (
+            search_coupled_axes,
+            leaning(bouncing_in_steps(), "1/8"),
+            lambda f: draw_together(f, 1, lost=True, solved=("coupling",)),
+        ),
+        (search_preconditioned, dayawansa_martin(3), lambda f: draw_together(f, 1)),
+    ],
+)
+def test_our_own_method_shows_as_much_as_a_general_solver(monkeypatch, search, system, draw):
+    """Where it is asked: here for what a general solver is asked otherwise."""
+    rates = []
+    for work in (np.inf, -1.0):
+        monkeypatch.setattr(forms, "DEAR", work)
+        monkeypatch.setattr(forms, "STEPS", -1.0)
+        program = FormsProgram(draw(Family.of(system)))
+        assert program.is_dear == (work < 0)
+        evidence = found(search, system)
+        assert evidence.find_fault(system) is None
+        rates.append(float(evidence.rate))
+    given, ours = rates
+    if system.time is Time.DISCRETE:
+        given, ours = 1 - given, 1 - ours
+    assert ours >= 0.98 * given
+    # What grows has no forms, and the margin says so.
+    assert program.solve(1e3 if system.time is Time.CONTINUOUS else 0.01, Allowance()) is None

@@ -9,7 +9,8 @@ from nrs_design.certificates.verify import verify
 from nrs_design.pipeline import run_design
 from nrs_design.pipeline.free_gains import gains_given
 from nrs_design.spec import read_spec
-from nrs_design.sweeps.tile_map import run_tile_map
+from nrs_design.sweeps.paint import run_tile_map
+from nrs_design.sweeps.refine import refined
 from nrs_design.sweeps.tiles import read_tiles
 from tests.support import ROOT, SOFT_TISSUE
 
@@ -56,18 +57,66 @@ def test_stiffness_over_age():
     assert len(found.certificates) < len(found.tiles)
 
 
-def test_every_certificate_is_about_the_spec_of_its_box(tmp_path):
-    found = mapped("environments.soft.stiffness=300..1100/4 N/m", path=SAMPLED)
+def boxes_of(found, folder):
+    """Verify every certificate against the spec of its box, and return the tiles of the proofs."""
     covered = set()
     for certificate, box in zip(found.certificates, found.boxes, strict=True):
-        (tmp_path / "a.nrs.yaml").write_text(found.grid.text_of(box), encoding="utf-8")
-        (tmp_path / "a.cert.json").write_text(dump(certificate, "a.nrs.yaml"), encoding="utf-8")
-        checked = verify(tmp_path / "a.cert.json", read_spec(tmp_path / "a.nrs.yaml"))
+        (folder / "a.nrs.yaml").write_text(found.grid.text_of(box), encoding="utf-8")
+        (folder / "a.cert.json").write_text(dump(certificate, "a.nrs.yaml"), encoding="utf-8")
+        checked = verify(folder / "a.cert.json", read_spec(folder / "a.nrs.yaml"))
         assert checked.fault is None
         if checked.certificate.verdict == Verdict.PROVED:
             covered |= set(product(*(range(first, last + 1) for first, last in box)))
-    proved = {place for place, tile in found.tiles.items() if tile.verdict is Verdict.PROVED}
-    assert proved == covered != set()
+    return covered
+
+
+def proved_in(found):
+    return {place for place, tile in found.tiles.items() if tile.verdict is Verdict.PROVED}
+
+
+def test_every_certificate_is_about_the_spec_of_its_box(tmp_path):
+    found = mapped("environments.soft.stiffness=300..1100/4 N/m", path=SAMPLED)
+    assert proved_in(found) == boxes_of(found, tmp_path) == {(0,), (1,)}
+
+
+def test_borders_are_refined(tmp_path):
+    """What is not proved beside what is: halved, with certificates about the finer boxes."""
+    coarse = mapped("environments.soft.stiffness=500,700,900,1100 N/m", path=SAMPLED)
+    assert [tile.shown[0] for tile in coarse.tiles.values()] == ["p", "r", "r"]
+    fine = refined(coarse, run_design(read_spec(SAMPLED)), 1)
+    assert fine.grid.fields[0].values == (500, 700, 800, 900, 1100)
+    assert [tile.shown[0] for tile in fine.tiles.values()] == ["p", "p", "r", "r"]
+    assert proved_in(fine) == boxes_of(fine, tmp_path) == {(0,), (1,)}
+    # A form is carried to what is beside it before another one is looked for.
+    assert fine.carried > 0
+    assert refined(fine, None, 0) is fine
+
+
+def test_what_is_proved_stays_so_on_a_finer_grid(tmp_path):
+    path = tmp_path / "oscillator.nrs.yaml"
+    path.write_text(OSCILLATOR, encoding="utf-8")
+    coarse = mapped("parameters.k=1,3,9", path=path)
+    assert coarse.tiles[0,].shown == "proved"
+    fine = refined(coarse, None, 1)
+    assert fine.grid.fields[0].values == (1, 3, 6, 9)
+    assert (0,) in proved_in(fine)
+    assert proved_in(fine) == boxes_of(fine, tmp_path)
+
+
+def test_a_map_without_a_border_is_as_fine_as_it_gets():
+    found = mapped("environments.soft.lever_arm=0.2,0.24 m", path=SOFT_TISSUE)
+    assert refined(found, run_design(read_spec(SOFT_TISSUE)), 3) is found
+
+
+@pytest.mark.nightly
+def test_programs_of_a_large_map():
+    """176 tiles, with ages up to 10, of at most 15 programs."""
+    found = mapped(
+        "environments.soft.stiffness=17..4340/16 N/m", "sampling.delay=0..10", path=SAMPLED
+    )
+    assert found.proofs <= 15
+    assert found.counts()["proved"] == 5
+    assert found.counts()["refuted in kept contact"] == 154
 
 
 def test_a_box_has_the_gains_of_the_spec(tmp_path):
@@ -95,12 +144,21 @@ def test_given_matrices(tmp_path):
 
 
 def test_values_that_make_no_spec(tmp_path):
-    found = mapped("sampling.period=1,2 ms", "sampling.delay=0..1", path=SAMPLED)
-    assert all(tile.verdict is not None for tile in found.tiles.values())
+    """A delay below the shortest one is no range; the levels above it are decided all the same."""
+    path = tmp_path / "a.nrs.yaml"
+    text = SAMPLED.read_text(encoding="utf-8").replace("delay: [0, 1]", "delay: [1, 1]")
+    path.write_text(text, encoding="utf-8")
+    found = mapped("environments.soft.stiffness=300,400,2000 N/m", "sampling.delay=0..1", path=path)
+    wrong = {place: tile.wrong for place, tile in found.tiles.items()}
+    assert "delay" in wrong[0, 0]
+    assert "delay" in wrong[1, 0]
+    assert wrong[0, 1] == wrong[1, 1] == ""
+    assert [found.tiles[k, 1].shown for k in (0, 1)] == ["proved", "refuted in kept contact"]
 
 
 @pytest.mark.parametrize("field", ["environments.soft.lever_arm=0.2,0.24 m"])
-def test_a_witness_is_none_of_a_proof(field):
+def test_what_is_proved_is_asked_once(field):
+    """A look for modes that grow, and a program each."""
     found = mapped(field, path=SOFT_TISSUE)
-    assert {str(tile.verdict) for tile in found.tiles.values()} <= {"proved", "refuted"}
-    assert found.witnesses == 0
+    assert {str(tile.verdict) for tile in found.tiles.values()} == {"proved"}
+    assert (found.proofs, found.witnesses) == (2, 2)

@@ -53,6 +53,7 @@ from nrs_design.switched.sampled_inputs import (
     damping_of,
     roundings_of,
 )
+from nrs_design.switched.saturation import with_sampled_saturation
 
 
 def close_sampled_loop(
@@ -151,7 +152,7 @@ def close_sampled_loop(
     if conditions.idle is not None and conditions.idle.reset:
         map_ = zeroing(frame.states, ("reference [rad]", "vm [rad/s]"))
         resets = ((*pair, map_) for pair in leaving_impedance(design.controllers))
-    return SwitchedSystem(
+    system = SwitchedSystem(
         conditions.name,
         Time.DISCRETE,
         frame.states,
@@ -168,6 +169,9 @@ def close_sampled_loop(
         axes=None if links is None or not channels else links.count,
         flights=flights,
     )
+    if conditions.initial_force is not None:
+        system = with_sampled_saturation(system, conditions, frame, every, environments)
+    return system
 
 
 def _motions(

@@ -1,18 +1,18 @@
-"""What of an impedance loop saturates, in continuous time: the velocity command, and the motor's.
+"""What of a loop saturates: the command of the motor, and in continuous time the velocity's, too.
 
-The admittance commands the velocity v. The motion loop integrates ``e' = sat(v) - omega`` and
-commands the motor ``u = Kp e + Kd (sat(v) - omega)``, of which the driver takes ``sat(u)``:
-``tau omega' = Km sat(u) - omega``, less what a load adds.
+In continuous time the admittance commands the velocity v. The motion loop integrates ``e' = sat(v)
+- omega`` and commands the motor ``u = Kp e + Kd (sat(v) - omega)``, of which the driver takes
+``sat(u)``: ``tau omega' = Km sat(u) - omega``, less what a load adds. The processor cuts off u, and of the
+velocities only what the hand commands.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import replace
 from fractions import Fraction
 
 from nrs_design.controllers.float32 import float32_not_above
-from nrs_design.controllers.sensor import LowPass
 from nrs_design.models.actuator import Actuator
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.linear_form import LinearForm, combine, coordinates, zero
@@ -22,9 +22,12 @@ from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode
 from nrs_design.proof.saturation import CutOff, Saturation, Start
 from nrs_design.proof.system import SwitchedSystem
+from nrs_design.spec.motion import MOTOR_COMMAND
 from nrs_design.spec.operating import OperatingConditions
 from nrs_design.switched.assumption import say
 from nrs_design.switched.loop_assumptions import NOT_MODELLED, NOT_MODELLED_BUT_LIMITS
+from nrs_design.switched.sampled_frame import CUT_OFF, INPUTS, Frame
+from nrs_design.switched.sampled_inputs import SampledMode
 from nrs_design.switched.shared_state import SharedState
 
 # States of a motion loop in its physical state, `nrs_design.models.motion_loop.JointMotionLoop`.
@@ -33,6 +36,15 @@ _FILTERED = (
     " Where a motion begins with a contact force, the filter shows none of it, all of it, or any "
     "part, each lag the same."
 )
+_LATE = (
+    " Where a motion begins with a contact force, the force samples before it, and a filter, show "
+    "none of it, all of it, or any part, all the same."
+)
+# What is said of quantization where nothing saturates, and where something does.
+SATURATED_TEXTS = {
+    say(f"not-quantized.{key}"): f"{key}-limited"
+    for key in ("sampled", "sampled-disturbed", "sensor", "sensor-disturbed")
+}
 
 
 def with_saturation(
@@ -81,13 +93,8 @@ def with_saturation(
             (motor,) * len(modes),
         ),
     )
-    wanted = conditions.initial_force
-    start = Start(
-        "contact force",
-        conditions.axis.unit("N*m"),
-        tuple(_rest(system.states, state.environments, low_pass)),
-        None if isinstance(wanted, str) else wanted,
-    )
+    lags = () if low_pass is None else low_pass.states
+    start = _start(conditions, _rest(system.states, state.environments, lags))
     texts = (
         NOT_MODELLED_BUT_LIMITS if text == NOT_MODELLED else text for text in system.assumptions
     )
@@ -97,6 +104,63 @@ def with_saturation(
     bound = f"{velocity} and {command}, or more"
     limited = say("limited.signals", bound, velocity=velocity, command=command, filtered=filtered)
     return replace(system, saturation=Saturation(signals, start), assumptions=(*texts, limited))
+
+
+def with_sampled_saturation(
+    system: SwitchedSystem,
+    conditions: OperatingConditions,
+    frame: Frame,
+    motions: Sequence[SampledMode],
+    environments: Sequence[Environment],
+) -> SwitchedSystem:
+    """Let a statement be about motions in which the command of the motor saturates, sampled.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        The loop in which nothing does.
+    conditions : OperatingConditions
+        With the limit and the goal, as `nrs_design.spec.combinations` checks.
+    frame : Frame
+        Of all modes.
+    motions : sequence of SampledMode
+        All modes, those of free motion last.
+    environments : sequence of Environment
+        All contacts.
+    """
+    assert conditions.largest_command is not None  # `combinations` asks for it.
+    n, wide = len(frame.states), len(frame.states) + len(INPUTS)
+    limit, cut = float32_not_above(conditions.largest_command), INPUTS.index(CUT_OFF)
+    signal = CutOff(
+        MOTOR_COMMAND,
+        conditions.command,
+        limit,
+        tuple(motion.column(cut) for motion in motions),
+        tuple(RationalMatrix.from_rows([motion.command[:n]]) for motion in motions),
+        tuple(RationalMatrix.from_rows([motion.command[wide:]]) for motion in motions)
+        if system.roundings
+        else (),
+    )
+    rest = _rest(system.states, environments, frame.samples_and_lags)
+    texts = (
+        say(f"not-quantized.{SATURATED_TEXTS[text]}") if text in SATURATED_TEXTS else text
+        for text in system.assumptions
+    )
+    bound = rounded_up(limit, conditions.command)
+    filtered = _LATE if frame.samples_and_lags else ""
+    limited = say("limited.sampled", f"{bound}, or more", command=bound, filtered=filtered)
+    what = Saturation((signal,), _start(conditions, rest))
+    return replace(system, saturation=what, assumptions=(*texts, limited))
+
+
+def _start(conditions: OperatingConditions, states: Iterable[RationalMatrix]) -> Start:
+    wanted = conditions.initial_force
+    return Start(
+        "contact force",
+        conditions.axis.unit("N*m"),
+        tuple(states),
+        None if isinstance(wanted, str) else wanted,
+    )
 
 
 def _physical(
@@ -127,14 +191,13 @@ def _drive(mode: Mode, Kp: Fraction) -> Fraction:
 
 
 def _rest(
-    states: Sequence[str], environments: Sequence[Environment], low_pass: LowPass | None
+    states: Sequence[str], environments: Sequence[Environment], lags: Collection[str]
 ) -> list[RationalMatrix]:
     """Return the states at rest with a unit of force, at every stiffness.
 
-    A filter of the force may not have seen the force yet, or have settled at it.
+    What shows the force later, such as a filter of it, may not have seen it yet, or have settled.
     """
     unit = coordinates(len(states))
-    lags = () if low_pass is None else low_pass.states
     settled = [Fraction(int(state in lags)) for state in states]
     sensed = [zero(len(states)), *([settled] if lags else [])]
     return [

@@ -92,7 +92,7 @@ class SaturationPage(AbstractPage):
     @property
     def _shown(self) -> tuple[Fraction, Fraction]:
         """Size of the start, and rate of decay in 1/s."""
-        level, rate = self.evidence.start_size, self.evidence.start_rate
+        level, rate = self.evidence.start_size, self.evidence.start_rate(self.system)
         assert level is not None  # it shows both
         assert rate is not None
         return level, rate

@@ -36,7 +36,7 @@ def test_a_scalar_loop_decays_from_inside_of_its_region():
     assert holds(system, HELD)
     assert HELD.shows is Shows.REGION
     assert HELD.start_size == Fraction(13, 16)
-    assert HELD.start_rate == Fraction(1, 32)
+    assert HELD.start_rate(system) == Fraction(1, 32)
     assert HELD.proved_rate(system) is None
     claim = HELD.claim(system)
     assert "a place up to 0.8125 m" in claim

@@ -45,7 +45,7 @@ from nrs_design.switched.motor_command import motor_command
 from nrs_design.switched.parameter_box import Box
 from nrs_design.switched.sampled_assumptions import Loss, assume_sampled
 from nrs_design.switched.sampled_coupled import couplings_of, slowed_motor
-from nrs_design.switched.sampled_frame import Frame, Turn
+from nrs_design.switched.sampled_frame import CUT_OFF, INPUTS, Frame, Turn
 from nrs_design.switched.sampled_inputs import (
     SampledMode,
     anything_of,
@@ -170,7 +170,20 @@ def close_sampled_loop(
         flights=flights,
     )
     if conditions.initial_force is not None:
-        system = with_sampled_saturation(system, conditions, frame, every, environments)
+        acted: Iterable[Coupling] = ()
+        if links is not None:
+            acted = couplings_of(
+                frame,
+                links,
+                ranges,
+                channels,
+                every,
+                losable=losable is not None,
+                entries=(len(frame.states) + INPUTS.index(CUT_OFF),),
+            )
+        system = with_sampled_saturation(
+            system, conditions, frame, every, environments, tuple(acted)
+        )
     return system
 
 

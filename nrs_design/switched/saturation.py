@@ -2,8 +2,8 @@
 
 In continuous time the admittance commands the velocity v. The motion loop integrates ``e' = sat(v)
 - omega`` and commands the motor ``u = Kp e + Kd (sat(v) - omega)``, of which the driver takes
-``sat(u)``: ``tau omega' = Km sat(u) - omega``, less what a load adds. The processor cuts off u, and of the
-velocities only what the hand commands.
+``sat(u)``: ``tau omega' = Km sat(u) - omega``, less what a load adds. The processor cuts off u; of
+the velocities it cuts off what the hand commands.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from nrs_design.models.contact.environment import Environment
 from nrs_design.models.linear_form import LinearForm, combine, coordinates, zero
 from nrs_design.models.motion_loop import JointMotionLoop, Realization
 from nrs_design.proof.bounds import rounded_up
+from nrs_design.proof.channels import Coupling
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode
 from nrs_design.proof.saturation import CutOff, Saturation, Start
@@ -41,7 +42,7 @@ _LATE = (
     "none of it, all of it, or any part, all the same."
 )
 # What is said of quantization where nothing saturates, and where something does.
-SATURATED_TEXTS = {
+SATURATED_TEXTS: dict[str, str] = {
     say(f"not-quantized.{key}"): f"{key}-limited"
     for key in ("sampled", "sampled-disturbed", "sensor", "sensor-disturbed")
 }
@@ -112,6 +113,7 @@ def with_sampled_saturation(
     frame: Frame,
     motions: Sequence[SampledMode],
     environments: Sequence[Environment],
+    acted: Sequence[Coupling] = (),
 ) -> SwitchedSystem:
     """Let a statement be about motions in which the command of the motor saturates, sampled.
 
@@ -127,6 +129,8 @@ def with_sampled_saturation(
         All modes, those of free motion last.
     environments : sequence of Environment
         All contacts.
+    acted : sequence of Coupling
+        What axes do to each other, with what is cut off from the command in the place of the state.
     """
     assert conditions.largest_command is not None  # `combinations` asks for it.
     n, wide = len(frame.states), len(frame.states) + len(INPUTS)
@@ -140,6 +144,10 @@ def with_sampled_saturation(
         tuple(RationalMatrix.from_rows([motion.command[wide:]]) for motion in motions)
         if system.roundings
         else (),
+        tuple(
+            RationalMatrix.from_rows([[item.rows[k].fractions()[0][0] for item in acted]])
+            for k in range(len(motions) if acted else 0)
+        ),
     )
     rest = _rest(system.states, environments, frame.samples_and_lags)
     texts = (

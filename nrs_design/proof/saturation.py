@@ -52,6 +52,8 @@ class Start:
     states: tuple[RationalMatrix, ...]
     # The size that a statement is meant to reach; for words and searches only.
     wanted: Fraction | None = None
+    # What of such a state is neither at rest nor zero, in words that begin with a comma.
+    beside: str = ""
 
 
 @dataclass(frozen=True, slots=True)

@@ -149,7 +149,8 @@ COMBINATIONS: tuple[Row[Spec], ...] = (
     # The loop must rest at one deflection under every controller.
     *_beside(CONSTANT_FORCE, SAMPLED, COUPLED, LOADED, DAMPED, SPRUNG),
     not_together(SATURATED, COUPLED, CONTINUOUS),
-    *_beside(SATURATED, TWO_PERIODS, GIVEN_LOOP, FORCE_COORDINATES, OTHERS, SPRUNG),
+    not_together(SATURATED, OTHERS, CONTINUOUS),
+    *_beside(SATURATED, TWO_PERIODS, GIVEN_LOOP, FORCE_COORDINATES, SPRUNG, IDLE_RESET),
     *_beside(SATURATED, AT_ONCE, SAFE, TORQUES),
     *_beside(SATURATED, MEMORY, HAND, PRELOADED),
     not_together(SATURATED, DAMPED, NOT_KEPT),

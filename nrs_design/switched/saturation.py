@@ -8,7 +8,7 @@ the velocities it cuts off what the hand commands.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
 
@@ -27,7 +27,7 @@ from nrs_design.spec.motion import MOTOR_COMMAND
 from nrs_design.spec.operating import OperatingConditions
 from nrs_design.switched.assumption import say
 from nrs_design.switched.loop_assumptions import NOT_MODELLED, NOT_MODELLED_BUT_LIMITS
-from nrs_design.switched.sampled_frame import CUT_OFF, INPUTS, Frame
+from nrs_design.switched.sampled_frame import BEFORE, CUT_OFF, INPUTS, Frame
 from nrs_design.switched.sampled_inputs import SampledMode
 from nrs_design.switched.shared_state import SharedState
 
@@ -41,6 +41,8 @@ _LATE = (
     " Where a motion begins with a contact force, the force samples before it, and a filter, show "
     "none of it, all of it, or any part, all the same."
 )
+_HELD = ", the error of motion a sample ago being what it is then under one of the controllers"
+INTEGRAL = "integral [rad]"
 # What is said of quantization where nothing saturates, and where something does.
 SATURATED_TEXTS: dict[str, str] = {
     say(f"not-quantized.{key}"): f"{key}-limited"
@@ -149,25 +151,80 @@ def with_sampled_saturation(
             for k in range(len(motions) if acted else 0)
         ),
     )
+    signals = (signal, *_clamped(conditions, frame, motions, rounded=bool(system.roundings)))
+    placed = any(law.law.commands == "position" for law in frame.laws)
     rest = _rest(system.states, environments, frame.samples_and_lags)
+    if placed:
+        rest = list(_held(frame, motions, rest))
     texts = (
         say(f"not-quantized.{SATURATED_TEXTS[text]}") if text in SATURATED_TEXTS else text
         for text in system.assumptions
     )
     bound = rounded_up(limit, conditions.command)
     filtered = _LATE if frame.samples_and_lags else ""
-    limited = say("limited.sampled", f"{bound}, or more", command=bound, filtered=filtered)
-    what = Saturation((signal,), _start(conditions, rest))
+    clamped = ""
+    for other in signals[1:]:
+        angle = rounded_up(other.limit, other.unit)
+        clamped = f"; the {other.name} likewise at {angle}"
+    said = f"{bound}{clamped}, or more"
+    limited = say("limited.sampled", said, command=bound, clamped=clamped, filtered=filtered)
+    what = Saturation(signals, _start(conditions, rest, _HELD if placed else ""))
     return replace(system, saturation=what, assumptions=(*texts, limited))
 
 
-def _start(conditions: OperatingConditions, states: Iterable[RationalMatrix]) -> Start:
+def _clamped(
+    conditions: OperatingConditions,
+    frame: Frame,
+    motions: Sequence[SampledMode],
+    *,
+    rounded: bool,
+) -> Iterator[CutOff]:
+    """Yield the integral of the force error, which becomes what it sums up to, cut off."""
+    if conditions.largest_integral is None:
+        return
+    n, wide = len(frame.states), len(frame.states) + len(INPUTS)
+    k = frame.states.index(INTEGRAL)
+    rows = [motion.moves[k] for motion in motions]
+    yield CutOff(
+        "integral of the force error",
+        conditions.axis.unit("rad"),
+        float32_not_above(conditions.largest_integral),
+        (_column(coordinates(n)[k]),) * len(motions),
+        # The signal before it, the command, plays no part in it.
+        tuple(RationalMatrix.from_rows([[*row[:n], Fraction(0)]]) for row in rows),
+        tuple(RationalMatrix.from_rows([row[wide:]]) for row in rows) if rounded else (),
+    )
+
+
+def _held(
+    frame: Frame, motions: Sequence[SampledMode], states: Sequence[RationalMatrix]
+) -> Iterator[RationalMatrix]:
+    """Yield states at rest in which the error of a sample ago is that of now, in any mode.
+
+    The command ``Kp e + D (e - e before)`` is ``(Kp + D) e`` where the error before is zero.
+    """
+    before, n = frame.states.index(frame.stored[BEFORE]), len(frame.states)
+    gain = frame.step.Kp + frame.step.D
+    commands = {tuple(motion.command[:n]) for motion in motions}
+    found: dict[RationalMatrix, None] = {}
+    for state in states:
+        (x,) = zip(*state.fractions(), strict=True)
+        for command in commands:
+            error = sum((c * v for c, v in zip(command, x, strict=True)), Fraction(0)) / gain
+            found[_column([*x[:before], error, *x[before + 1 :]])] = None
+    yield from found
+
+
+def _start(
+    conditions: OperatingConditions, states: Iterable[RationalMatrix], beside: str = ""
+) -> Start:
     wanted = conditions.initial_force
     return Start(
         "contact force",
         conditions.axis.unit("N*m"),
         tuple(states),
         None if isinstance(wanted, str) else wanted,
+        beside,
     )
 
 

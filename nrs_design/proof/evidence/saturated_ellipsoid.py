@@ -214,7 +214,7 @@ class SaturatedEllipsoid(AbstractEvidence):
             f"{decay} with {rate_words(self.rate, system.time)} in the norm "
             f"|w| = sqrt(w' Q w), where w holds {states} switching arbitrarily{lost}{among}, with "
             f"no disturbance{of_all}. In particular: every motion that begins at rest with {sized} "
-            f"{rounded_down(self.level, start.unit)}, and all else zero.{seconds}"
+            f"{rounded_down(self.level, start.unit)}{start.beside}, and all else zero.{seconds}"
         )
 
     def find_unsayable(self, system: SwitchedSystem) -> str | None:

@@ -15,7 +15,7 @@ Rows = list[list[Fraction]]
 
 def between(
     system: SwitchedSystem,
-    held: Sequence[Sequence[Fraction]],
+    held: Sequence[Sequence[Sequence[Fraction]]],
     *,
     rounding: bool = False,
     coupling: bool = False,
@@ -31,8 +31,8 @@ def between(
     ----------
     system : SwitchedSystem
         With what saturates.
-    held : sequence of rows, each of n numbers
-        The h of every signal.
+    held : sequence of sequences of rows, each of n numbers
+        The h of every signal, in every mode and after them in the free modes.
     rounding, coupling : bool
         Whether roundings, and what axes do to each other, are kept, or left out.
     """
@@ -50,7 +50,7 @@ def between(
             [*row, *(item.columns[k].fractions()[i][0] for item in items)]
             for i, row in enumerate(mode.A.fractions())
         ]
-        for number, changes in enumerate(saturation.changes(k, held, len(items))):
+        for number, changes in enumerate(saturation.changes(k, held[k], len(items))):
             moved = _plus(whole, columns, changes)
             A = RationalMatrix.from_rows([row[:n] for row in moved])
             modes.append(Mode(f"{mode.name}, {number}", A))

@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.search.family import to_floats
+from nrs_design.search.family import NEARLY, to_floats
 from nrs_design.search.sdp import solve_blocks, symmetric_basis
 from nrs_design.work import Allowance
 
@@ -38,6 +39,8 @@ class Problem:
     columns: Array  # Shape (k, s, n). What every signal does.
     rows: tuple[Array, ...]  # Shape (k, n + signals before). Their arguments.
     starts: Array  # Shape (c, n). States at the size one.
+    # Which rows h a mode has, of those that modes share: always the first in continuous time.
+    groups: tuple[int, ...]
 
     @classmethod
     def of(cls, system: SwitchedSystem) -> Problem:
@@ -57,7 +60,15 @@ class Problem:
             row[:, n:] *= limits[:i]
             rows.append(row)
         starts = to_floats(saturation.start.states)[:, :, 0]
-        return cls(A, len(free), columns, tuple(rows), starts)
+        groups = (0,) * len(A)
+        if system.time is Time.DISCRETE:
+            groups = _alike(np.concatenate([row[:, :n] for row in rows], axis=1))
+        return cls(A, len(free), columns, tuple(rows), starts, groups)
+
+    @property
+    def held(self) -> int:
+        """How many rows h there are."""
+        return len(self.rows) * (max(self.groups) + 1)
 
     def transformed(self, T: Array) -> Problem:
         """Return the same in coordinates ``x = T z``.
@@ -97,12 +108,13 @@ class Problem:
         S : ndarray or expression, shape (n, n)
             The identity gives the matrices themselves.
         Y : sequence of ndarray or expression, each of shape (1, n)
-            The rows ``h S``.
+            The rows ``h S``, those of a group one after the other.
         """
-        n, linear = self.A.shape[1], self.linear
-        for k, replaced in product(range(len(self.A)), product((False, True), repeat=len(Y))):
+        n, linear, count = self.A.shape[1], self.linear, len(self.rows)
+        for k, replaced in product(range(len(self.A)), product((False, True), repeat=count)):
             B, taken = self.A[k] @ S, list[Any]()
-            for i, (row, y, other) in enumerate(zip(self.rows, Y, replaced, strict=True)):
+            own = Y[self.groups[k] * count :][:count]
+            for i, (row, y, other) in enumerate(zip(self.rows, own, replaced, strict=True)):
                 argument = row[k, None, :n] @ S
                 for share, before in zip(row[k, n:], taken, strict=True):
                     argument = argument + share * before
@@ -113,6 +125,20 @@ class Problem:
     def is_free(self, k: int) -> bool:
         """Tell whether a mode is one of free motion."""
         return k >= len(self.A) - self.free
+
+
+def _alike(rows: Array) -> tuple[int, ...]:
+    """Return a number for each row, one for those that floating point hardly tells apart."""
+    kept: list[Array] = []
+    found = []
+    for row in rows:
+        near = NEARLY * np.abs(rows).max()
+        k = next((k for k, other in enumerate(kept) if np.abs(other - row).max() <= near), None)
+        if k is None:
+            k = len(kept)
+            kept.append(row)
+        found.append(k)
+    return tuple(found)
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ signals are while nothing is cut off.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
@@ -19,7 +19,7 @@ import numpy as np
 from nrs_design.proof.between import between
 from nrs_design.proof.channels import Coupling, Rounding
 from nrs_design.proof.evidence import SaturatedEllipsoid
-from nrs_design.proof.mode import Mode, Time
+from nrs_design.proof.mode import Time
 from nrs_design.proof.saturation import CutOff
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
@@ -39,7 +39,6 @@ from nrs_design.search.saturated_region import (
     ENOUGH,
     H_DIGITS,
     LARGEST,
-    SLOWEST,
     SMALLEST,
     Array,
     Problem,
@@ -52,8 +51,12 @@ from nrs_design.search.saturated_region import (
 from nrs_design.search.sdp import solve_blocks, symmetric_basis
 from nrs_design.work import Allowance
 
+# The slowest decay that counts, as a share of the fastest there is: what is rounded needs room.
+SLOWEST_STEP = 0.02
 # How far H is taken from what the signals are while nothing is cut off, the farthest first.
 WAYS = (1.0, 0.8, 0.5, 0.0)
+# How far below zero an eigenvalue may be where a form counts as positive, over its largest entry.
+LOOSE = 1e-6
 # Steps of a bisection of the rate, and shares of the largest one that are claimed.
 BISECTIONS = 5
 RATES = (0.98, 0.9, 0.5)
@@ -66,10 +69,30 @@ class _Loop:
     system: SwitchedSystem
     T: Array
     own: Problem
+    stands: tuple[int, ...]  # For each mode of the whole system, the one that stands for it
+
+    @property
+    def limits(self) -> Array:
+        """Those of all rows h."""
+        assert self.system.saturation is not None
+        limits = [float(s.limit) for s in self.system.saturation.signals]
+        return np.tile(limits, self.own.held // len(limits))
+
+    @property
+    def linear(self) -> Array:
+        """What the signals are while nothing is cut off, in the first mode of each group."""
+        groups = self.own.groups
+        first = [groups.index(group) for group in range(max(groups) + 1)]
+        return np.concatenate([self.own.linear[k] for k in first])
+
+    def by_mode(self, H: Array) -> list[Array]:
+        """Return the rows h of every mode."""
+        count = len(self.own.rows)
+        return [H[group * count : (group + 1) * count] for group in self.own.groups]
 
     def whole(self, H: Array, *, rounding: bool) -> tuple[Family, Array, DisturbedProblem, Array]:
         """Return the conditions for given rows, with their family, coordinates and units."""
-        held = [[Fraction(float(v)) for v in h] for h in H]
+        held = [[[Fraction(float(v)) for v in h] for h in rows] for rows in self.by_mode(H)]
         coupling = bool(self.system.couplings)
         loop = between(self.system, held, rounding=rounding, coupling=coupling)
         family = Family.of(loop)
@@ -100,18 +123,19 @@ def search_saturated_steps(
         If work or memory do not suffice.
     """
     assert system.saturation is not None  # who asks has looked
-    lean = _lean(system)
+    kept, stands = _stand_ins(system)
+    lean = _lean(system, kept)
     family, raw = Family.of(lean), Problem.of(lean)
     T = np.ldexp(separating_coordinates(Motions.of(family)), family.exponents[:, None])
     T /= np.linalg.norm(raw.linear @ T, axis=-1).max()
     own = raw.transformed(T)
     if not all(np.isfinite(part).all() for part in (T, own.A, own.columns, *own.rows)):
         return OUT_OF_RANGE
-    slowest = 1 - SLOWEST * (1 - family.limit)
+    slowest = 1 - SLOWEST_STEP * (1 - family.limit)
     first = _improved(own, slowest, allowance)
     if first is None:
         return NO_MARGIN
-    loop = _Loop(lean, T, own)
+    loop = _Loop(lean, T, own, stands)
     wanted = system.saturation.start.wanted
     rounded = (True, False) if system.roundings else (False,)
     for rounding in rounded:
@@ -131,10 +155,28 @@ def search_saturated_steps(
     return NO_MARGIN
 
 
-def _lean(system: SwitchedSystem) -> SwitchedSystem:
-    """Leave out modes that floating point cannot tell apart, with what belongs to them."""
+def _stand_ins(system: SwitchedSystem) -> tuple[list[int], tuple[int, ...]]:
+    """Return modes that floating point tells apart, and for each mode which of them stands for it.
+
+    Modes in contact and free, by their numbers.
+    """
+    kept: list[int] = []
+    stands: list[int] = []
+    first = 0
+    for modes in (system.modes, system.free):
+        if not modes:
+            continue
+        names = [mode.name for mode in modes]
+        found = stand_ins(names, to_floats([mode.A for mode in modes]))
+        kept += [first + k for k, name in enumerate(names) if found[name] == name]
+        stands += [kept.index(first + names.index(found[name])) for name in names]
+        first += len(modes)
+    return kept, tuple(stands)
+
+
+def _lean(system: SwitchedSystem, kept: list[int]) -> SwitchedSystem:
+    """Leave out all modes but some, with what belongs to them."""
     modes, free = system.modes, system.free
-    kept = [*_kept(modes), *(len(modes) + k for k in _kept(free))]
     own = tuple(m for k, m in enumerate(modes) if k in kept)
     flying = tuple(m for k, m in enumerate(free, len(modes)) if k in kept)
     contact = None if system.contact is None else replace(system.contact, free=flying)
@@ -152,14 +194,6 @@ def _lean(system: SwitchedSystem) -> SwitchedSystem:
     )
 
 
-def _kept(modes: tuple[Mode, ...]) -> list[int]:
-    if not modes:
-        return []
-    names = [mode.name for mode in modes]
-    first = stand_ins(names, to_floats([mode.A for mode in modes]))
-    return [k for k, name in enumerate(names) if first[name] == name]
-
-
 def _parts(item: Rounding | Coupling | CutOff, kept: list[int]) -> dict[str, Any]:
     """Return what an item has for every mode, for some of them."""
     parts = {part: getattr(item, part, ()) for part in ("columns", "rows", "errors", "pushes")}
@@ -168,7 +202,7 @@ def _parts(item: Rounding | Coupling | CutOff, kept: list[int]) -> dict[str, Any
 
 def _improved(problem: Problem, rate: float, allowance: Allowance) -> Region | None:
     """Return the region with the largest start, in contact and without roundings."""
-    n, count = problem.A.shape[1], len(problem.rows)
+    n, count = problem.A.shape[1], problem.held
     (S, Y), size = row_unknowns(n, count), last_unknown(n, count)
     unit = np.linalg.norm(problem.starts, axis=1).max()
     # An ellipsoid may be long, but not without end.
@@ -206,10 +240,8 @@ def _largest(
 
 def _rows(loop: _Loop, H: Array, way: float) -> Array:
     """Return rows between what the signals are while nothing is cut off and others, rounded."""
-    assert loop.system.saturation is not None
-    limits = np.array([float(s.limit) for s in loop.system.saturation.signals])
-    linear = loop.own.linear[0]
-    found = limits[:, None] * ((linear + way * (H - linear)) @ np.linalg.inv(loop.T))
+    moved = loop.linear + way * (H - loop.linear)
+    found = loop.limits[:, None] * (moved @ np.linalg.inv(loop.T))
     log2 = _log2(found)
     return np.asarray(np.ldexp(np.rint(np.ldexp(found, log2)), -log2))
 
@@ -266,9 +298,7 @@ def _solution(
         side = stack.shape[-1]
         images = np.concatenate([stack, -spare * np.eye(side)[None]])
         blocks.append((np.zeros((side, side)), images))
-    assert loop.system.saturation is not None
-    limits = np.array([float(s.limit) for s in loop.system.saturation.signals])
-    for h in H / limits[:, None] @ loop.T:
+    for h in H / loop.limits[:, None] @ loop.T:
         constant, images = np.zeros((n + 1, n + 1)), np.zeros((unknowns, n + 1, n + 1))
         constant[:n, n] = constant[n, :n] = h
         constant[n, n] = 1.0
@@ -288,8 +318,16 @@ def _solution(
     x = solve_blocks(blocks, allowance)
     if x is None or (level is None and x[-1] >= 0) or (level is not None and x[-1] <= 0):
         return None
+    if level is None and not _holds(blocks, x):
+        return None
     Q, crossings, taus = np.tensordot(x[:k], basis, axes=1), x[k : k + lost], x[k + lost : -1]
     return DisturbedSolution(Q, crossings, np.zeros(0), taus, abs(float(x[-1])))
+
+
+def _holds(blocks: Sequence[tuple[Array, Array]], x: Array) -> bool:
+    """Tell whether a solution is one: a solver returns what it has where there is none."""
+    forms = (constant + np.tensordot(x, images, axes=1) for constant, images in blocks)
+    return all(np.linalg.eigvalsh(form)[0] >= -LOOSE * np.abs(form).max() for form in forms)
 
 
 def _rounded(
@@ -306,7 +344,8 @@ def _rounded(
     if found is None:
         return
     log2 = _log2(H)
-    rows = tuple(tuple(int(v) for v in row) for row in np.ldexp(H, log2))
+    each = [H] if max(loop.own.groups) == 0 else [loop.by_mode(H)[k] for k in loop.stands]
+    rows = tuple(tuple(int(v) for v in row) for row in np.ldexp(np.concatenate(each), log2))
     family, T, _, units = loop.whole(H, rounding=rounding)
     for numbers in roundings(family, found, T, units):
         yield SaturatedEllipsoid(

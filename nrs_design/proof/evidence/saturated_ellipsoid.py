@@ -36,7 +36,8 @@ NOTHING_SATURATES = "the system does not say what saturates"
 class SaturatedEllipsoid(AbstractEvidence):
     """``V = w' Q w`` decreases wherever ``V <= 1``, although signals are cut off at their limits.
 
-    Every signal ``s = sat(a)`` has a row h with ``|h w| <= limit`` in the ellipsoid (Hu and Lin).
+    Every signal ``s = sat(a)`` has a row h with ``|h w| <= limit`` in the ellipsoid (Hu and Lin),
+    or in discrete time one in every mode.
     There s is a mixture of its argument a and of ``h w``, so the loop moves as a mixture of the
     matrices that have, for each signal, one or the other in its place: `Saturation.between`. With
     w the state, or ``w = (y, max(delta, 0))`` where the system says how contact is lost, V
@@ -62,7 +63,9 @@ class SaturatedEllipsoid(AbstractEvidence):
     Q: Matrix  # Shape (n, n). Numerators of the symmetric matrix.
     denominator_log2: int  # Q is these numerators over two to this power
     rate: Fraction  # The alpha in 1/s, or rho per step
-    H: Matrix  # Shape (signals, n). Numerators of the rows h.
+    # Shape (signals, n), or (signals times modes, n). Numerators of the rows h: one for each
+    # signal, or in discrete time one for each in every mode, and after them in the free modes.
+    H: Matrix
     H_denominator_log2: int  # H is these numerators over two to this power
     # Motions that begin at the start of the system, at this size at most, begin in ``V <= 1``.
     level: Fraction
@@ -104,7 +107,10 @@ class SaturatedEllipsoid(AbstractEvidence):
         if not 0 <= self.H_denominator_log2 <= MAX_INTEGER_BITS:
             return "the denominator of H is out of range"
         rows = len(system.saturation.signals)
-        if len(self.H) != rows or any(len(row) != system.order for row in self.H):
+        by_mode = system.time is Time.DISCRETE and len(self.H) == rows * len(system.every_mode)
+        if len(self.H) != rows and not by_mode:
+            return f"H has not {rows} rows of {system.order} entries"
+        if any(len(row) != system.order for row in self.H):
             return f"H has not {rows} rows of {system.order} entries"
         if self.rate <= 0 or self.level <= 0:
             return "the rate or the level is not positive"
@@ -141,9 +147,12 @@ class SaturatedEllipsoid(AbstractEvidence):
         yield "Q is not symmetric and positive definite", self.Q
         yield from self._decreases(system, system.saturation)
         Q = RationalMatrix(self.Q, 2**self.denominator_log2).fractions()
-        for signal, h in zip(system.saturation.signals, self._held(), strict=True):
-            form = bordered(Q, h, signal.limit**2)
-            yield f"the row of {signal.name} is beyond its limit", form.numerators
+        signals = system.saturation.signals
+        # Modes may share their rows: each is looked at once.
+        for i, h in dict.fromkeys((k % len(signals), tuple(h)) for k, h in enumerate(self.H)):
+            row = [Fraction(entry, 2**self.H_denominator_log2) for entry in h]
+            form = bordered(Q, row, signals[i].limit ** 2)
+            yield f"the row of {signals[i].name} is beyond its limit", form.numerators
         start = system.saturation.start
         for state in start.states:
             x = state.fractions()
@@ -155,7 +164,7 @@ class SaturatedEllipsoid(AbstractEvidence):
         if system.time is Time.DISCRETE:
             yield from self._steps(system)
             return
-        held = self._held()
+        (held, *_) = self._held(system)
         for k, mode in enumerate(system.every_mode):
             where, Q = f"in mode {mode.name}", self.Q
             is_free = k >= len(system.modes)
@@ -168,7 +177,9 @@ class SaturatedEllipsoid(AbstractEvidence):
 
     def _steps(self, system: SwitchedSystem) -> Forms:
         acting = Acting(rounding=bool(self.roundings), coupling=bool(self.taus))
-        whole = between(system, self._held(), rounding=acting.rounding, coupling=acting.coupling)
+        whole = between(
+            system, self._held(system), rounding=acting.rounding, coupling=acting.coupling
+        )
         known = dict(zip(multiplier_names(system), self.multipliers, strict=True))
         known |= {f"{ROUNDING} {k}": m for k, m in enumerate(self.roundings, 1)}
         known |= {f"{COUPLING} {k}": m for k, m in enumerate(self.taus, 1)}
@@ -182,8 +193,12 @@ class SaturatedEllipsoid(AbstractEvidence):
             form = step.form(before, after, keeps, known.__getitem__, self.denominator_log2)
             yield f"V does not decrease at the claimed rate {step.where}", form
 
-    def _held(self) -> list[list[Fraction]]:
-        return RationalMatrix(self.H, 2**self.H_denominator_log2).fractions()
+    def _held(self, system: SwitchedSystem) -> list[list[list[Fraction]]]:
+        """Return the rows of every mode and free mode."""
+        assert system.saturation is not None
+        rows = RationalMatrix(self.H, 2**self.H_denominator_log2).fractions()
+        count, modes = len(system.saturation.signals), range(len(system.every_mode))
+        return [rows[k * count : (k + 1) * count] if len(rows) > count else rows for k in modes]
 
     def claim_in_scope(self, system: SwitchedSystem) -> str:
         """State from where motions decay, how fast, and what saturates."""

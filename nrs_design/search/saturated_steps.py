@@ -55,7 +55,7 @@ from nrs_design.work import Allowance
 SLOWEST_STEP = 0.02
 # How far H is taken from what the signals are while nothing is cut off, the farthest first.
 WAYS = (1.0, 0.8, 0.5, 0.0)
-# How far below zero an eigenvalue may be where a form counts as positive, over its largest entry.
+# How far below zero an eigenvalue may be where a form counts as positive, over its largest part.
 LOOSE = 1e-6
 # Steps of a bisection of the rate, and shares of the largest one that are claimed.
 BISECTIONS = 5
@@ -326,8 +326,11 @@ def _solution(
 
 def _holds(blocks: Sequence[tuple[Array, Array]], x: Array) -> bool:
     """Tell whether a solution is one: a solver returns what it has where there is none."""
-    forms = (constant + np.tensordot(x, images, axes=1) for constant, images in blocks)
-    return all(np.linalg.eigvalsh(form)[0] >= -LOOSE * np.abs(form).max() for form in forms)
+    for constant, images in blocks:
+        parts = np.concatenate([constant[None], x[:, None, None] * images])
+        if np.linalg.eigvalsh(parts.sum(axis=0))[0] < -LOOSE * np.abs(parts).max():
+            return False
+    return True
 
 
 def _rounded(

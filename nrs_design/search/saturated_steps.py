@@ -234,7 +234,8 @@ def _largest(
         H = _rows(loop, region.H, way)
         found = _solution(loop, H, rate, None, allowance, rounding=rounding)
         if found is not None:
-            return H, 1 / float(np.sqrt(found.last))
+            # With roundings, the solver ends a little beyond what is possible without them.
+            return H, min(1 / float(np.sqrt(found.last)), region.size)
     return None
 
 

@@ -146,7 +146,8 @@ def _words(program: Program, limits: MonitorLimits) -> Iterator[str]:
             "command saturates. The state is taken as it is read, the speed from the way of a "
             "period under the motor of the proof; what is not known for certain counts as the "
             "worst. So silence means that it was inside, but for errors of the readings. It is "
-            "not tested at the first samples, before angles are known."
+            "not tested at the first samples, before angles are known. That the command meets its "
+            "limit is no violation then."
         )
     if limits.sector is not None:
         yield from sector_words(limits.sector, limits.travel)
@@ -159,6 +160,8 @@ def told_kinds(limits: MonitorLimits) -> dict[str, str]:
     sector = limits.sector
     told = {
         "SPEED": limits.speed is not None,
+        # Within the region, the command may meet its limit.
+        "SATURATION": limits.region is None,
         "REGION": limits.region is not None,
         "STIFFNESS": sector is not None,
         "PULL": sector is not None and not sector.kept,
@@ -179,7 +182,7 @@ def _limits(names: CNames, limits: MonitorLimits) -> Iterator[tuple[str, int | F
     up = f"{names.upper}_MONITOR"
     yield f"{up}_PERIOD", limits.period, "s"
     yield f"{up}_TORQUE", limits.torque, f"{unit('N*m')}, from the spec"
-    if limits.command is not None:
+    if limits.command is not None and limits.region is None:
         yield f"{up}_COMMAND", limits.command, "from the spec"
     if limits.speed is not None:
         yield f"{up}_SPEED", limits.speed, f"{unit('rad/s')}, over all axes, from the spec"

@@ -11,7 +11,7 @@ from nrs_design.controllers.operations import StepLaw
 from nrs_design.controllers.sector import Sector, sector_of
 from nrs_design.exporters.export import Export
 from nrs_design.exporters.record import ExportRecord
-from nrs_design.exporters.region import Region, region_of
+from nrs_design.exporters.region import MonitoredRegion, region_of
 from nrs_design.spec import InteractionDesignSpec
 
 # Longer than any processor runs.
@@ -32,7 +32,7 @@ class MonitorLimits:
     follows: tuple[tuple[bool, ...], ...]  # For each mode, which may follow it
     sector: Sector | None  # What torque and angle keep; None where the spec does not tell
     # Where motions decay although the command saturates; None where nothing is proved of it.
-    region: Region | None
+    region: MonitoredRegion | None
     # How far the joint moves, at the limit of its velocity, between two torques that are read.
     travel: Fraction
     left_out: tuple[str, ...]  # What is not monitored, and why
@@ -85,7 +85,7 @@ def _left_out(
     spec: InteractionDesignSpec,
     record: ExportRecord,
     sector: Sector | str,
-    region: Region | str,
+    region: MonitoredRegion | str,
 ) -> tuple[str, ...]:
     said = []
     if isinstance(sector, str):

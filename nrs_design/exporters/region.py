@@ -36,7 +36,7 @@ _NONE = (
 
 
 @dataclass(frozen=True, slots=True)
-class Region:
+class MonitoredRegion:
     """Numbers of the test, of single precision."""
 
     # Shape (n, n). The U, upper triangular.
@@ -51,7 +51,7 @@ class Region:
     samples: int  # How many angles before the present one are needed
 
 
-def region_of(export: Export, law: StepLaw) -> Region | str:
+def region_of(export: Export, law: StepLaw) -> MonitoredRegion | str:
     """Return the region of the proof, or why it is not monitored.
 
     Parameters
@@ -94,7 +94,7 @@ def region_of(export: Export, law: StepLaw) -> Region | str:
     touched = {name for c in spec.controllers.values() for name in contact_names(c.contacts)}
     found = [e.stiffness for e in build_environments(spec) if e.name in touched]
     low, high = min(k.low for k in found), max(k.high for k in found)
-    return Region(
+    return MonitoredRegion(
         rows,
         tuple(known[name] for name in system.states),
         (float32_not_above(1 / high), float32_not_below(1 / low)),

@@ -13,7 +13,7 @@ from nrs_design.exporters.formats.c import render as render_c
 from nrs_design.exporters.formats.monitor import render, told_kinds
 from nrs_design.exporters.monitor_limits import monitor_limits
 from nrs_design.exporters.program import program_of
-from nrs_design.exporters.region import ROOM, Region, region_of
+from nrs_design.exporters.region import ROOM, MonitoredRegion, region_of
 from nrs_design.proof.channels import Coupling
 from nrs_design.proof.evidence import SaturatedEllipsoid
 from nrs_design.simulation.step_program import StepProgram
@@ -41,8 +41,11 @@ def export(tmp_path_factory):
     return exported(tmp_path_factory.mktemp("region"), text)
 
 
+LAW = ("reference", "error_before", "velocity")
+
+
 class Law(ctypes.Structure):
-    _fields_ = [(name, ctypes.c_float) for name in ("reference", "error_before", "velocity")]
+    _fields_ = [(name, ctypes.c_float) for name in LAW]
 
 
 class Input(ctypes.Structure):
@@ -100,7 +103,7 @@ def runs(monitor, delta, rng, samples=80):
         given = {"angle": angle, "torque": before} | states
         values = [np.float32(given.get(value.name, 0.0)) for value in law.values]
         (command,), after, _ = program.step(0, values)
-        known = Law(*(states[name] for name, _ in Law._fields_))
+        known = Law(*(states[name] for name in LAW))
         said = monitor.step(
             mode=0, age=1, angle=angle, torque=before, command=command * 0.999, law=known
         )
@@ -151,7 +154,7 @@ def test_silence_means_inside(tmp_path, export):
 def test_the_numbers_are_on_the_safe_side(export):
     program = program_of(export)
     region = region_of(export, program.law)
-    assert isinstance(region, Region)
+    assert isinstance(region, MonitoredRegion)
     evidence = next(s for s in export.certificate.statements if isinstance(s, SaturatedEllipsoid))
     Q = np.ldexp(np.array(evidence.Q, dtype=float), -evidence.denominator_log2)
     U = np.array([[float(v) for v in row] for row in region.rows])

@@ -15,7 +15,7 @@ from nrs_design.exporters.c_names import CNames, block_comment
 from nrs_design.exporters.export import Export
 from nrs_design.exporters.monitor_limits import MonitorLimits, monitor_limits
 from nrs_design.exporters.program import Program, program_of
-from nrs_design.exporters.region import Region
+from nrs_design.exporters.region import MonitoredRegion
 from nrs_design.exporters.sector_numbers import sector_macros, sector_words
 from nrs_design.exporters.template import fill_template
 from nrs_design.output import C_MONITOR, C_MONITOR_HEADER
@@ -198,7 +198,7 @@ def _limits(names: CNames, limits: MonitorLimits) -> Iterator[tuple[str, int | F
             yield f"{up}_{name}", number, note
 
 
-def _region_macros(region: Region) -> Iterator[tuple[str, Fraction, str]]:
+def _region_macros(region: MonitoredRegion) -> Iterator[tuple[str, Fraction, str]]:
     """Yield the numbers by which the state is read."""
     per = f"{unit('rad/(N*m)')}, at the "
     yield "LEAST_YIELD", region.yields[0], f"{per}largest stiffness"

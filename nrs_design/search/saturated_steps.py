@@ -232,10 +232,15 @@ def _largest(
     """Return the rows, in units of the spec, and the largest start for them, rounded as it is."""
     for way in WAYS:
         H = _rows(loop, region.H, way)
-        found = _solution(loop, H, rate, None, allowance, rounding=rounding)
+        # The rows are made for this size, which leaves no room: a little less does.
+        wanted = BELOW * region.size
+        slower = 1 - RATES[0] * (1 - rate)
+        if way == 1.0 and _solution(loop, H, slower, wanted, allowance, rounding=rounding):
+            return H, region.size
+        found = _solution(loop, H, rate, region.size, allowance, rounding=rounding, largest=True)
         if found is not None:
             # With roundings, the solver ends a little beyond what is possible without them.
-            return H, min(1 / float(np.sqrt(found.last)), region.size)
+            return H, region.size * min(1 / float(np.sqrt(found.last)), 1.0)
     return None
 
 
@@ -279,20 +284,21 @@ def _solution(
     loop: _Loop,
     H: Array,
     rate: float,
-    level: float | None,
+    level: float,
     allowance: Allowance,
     *,
     rounding: bool,
+    largest: bool = False,
 ) -> DisturbedSolution | None:
-    """Return Q and multipliers for the largest start; or, for a level, with most to spare.
+    """Return Q and multipliers for a start of some size, with most to spare; or the largest start.
 
-    Of the first, `last` is one over the square of the size.
+    Of that, `last` is the square of the level over its size.
     """
     _, _, problem, _ = loop.whole(H, rounding=rounding)
     n, basis = problem.order, symmetric_basis(problem.order)
     k, lost = len(basis), problem.multipliers
     unknowns = k + lost + problem.errors + 1
-    spare = 0.0 if level is None else 1.0
+    spare = 0.0 if largest else 1.0
     blocks: list[tuple[Array, Array]] = []
     for condition in problem.conditions(basis, 1 - rate**2):
         stack = condition.stack(0, lost)
@@ -308,7 +314,7 @@ def _solution(
         blocks.append((constant, images))
     for x in loop.own.starts:
         images = np.zeros((unknowns, 1, 1))
-        images[:k, 0, 0] = -np.einsum("i,kij,j->k", x, basis, x) * (level or 1.0) ** 2
+        images[:k, 0, 0] = -np.einsum("i,kij,j->k", x, basis, x) * level**2
         # Minimized, so the last unknown is less than what is to be small.
         images[-1] = -1.0
         blocks.append((np.full((1, 1), spare), images))
@@ -317,9 +323,9 @@ def _solution(
         images[i] = 1.0
         blocks.append((np.zeros((1, 1)), images))
     x = solve_blocks(blocks, allowance)
-    if x is None or (level is None and x[-1] >= 0) or (level is not None and x[-1] <= 0):
+    if x is None or (x[-1] >= 0 if largest else x[-1] <= 0):
         return None
-    if level is None and not _holds(blocks, x):
+    if largest and not _holds(blocks, x):
         return None
     Q, crossings, taus = np.tensordot(x[:k], basis, axes=1), x[k : k + lost], x[k + lost : -1]
     return DisturbedSolution(Q, crossings, np.zeros(0), taus, abs(float(x[-1])))

@@ -39,7 +39,7 @@ def test_the_region_is_the_largest_of_hu_and_lin():
     numbers = [np.array([[float(Fraction(v)) for v in row] for row in M]) for M in (A, B, F)]
     a, b, f = numbers
     S, Y, s = cp.Variable((2, 2), symmetric=True), cp.Variable((1, 2)), cp.Variable()
-    wanted = [cp.bmat([[S, Y.T], [Y, [[49.0]]]]) >> 0]
+    wanted = [cp.bmat([[S, Y.T], [Y, np.array([[49.0]])]]) >> 0]
     wanted += [S - s * np.outer(x, x) >> 0 for x in np.eye(2)]
     for image in (a @ S + b @ (f @ S), a @ S + b @ Y):
         wanted.append(cp.bmat([[S, image.T], [image, S]]) >> 0)

@@ -33,7 +33,7 @@ def test_the_clamp_is_an_angle_rounded_to_the_safe_side():
         (FORCE.replace(SAMPLED, "").replace(CLAMP, ""), "decay although signals saturate"),
         (FORCE.replace("  command: 2000 rpm\n", ""), "nothing says where the command"),
         (
-            IMPEDANCE.replace("delay: [0, 1]}", "delay: 1, outer_period: 4 ms}"),
+            IMPEDANCE.replace("delay: 1}", "delay: 1, outer_period: 4 ms}"),
             "decay although signals saturate",
         ),
     ],

@@ -23,7 +23,7 @@ from tests.proof.systems import pushed_away_in_steps
 from tests.support import ROOT
 
 KM, TAU, PERIOD = 4.8417e-4, 0.0351, Fraction(1, 500)
-SAMPLED = "switching: arbitrary\nsampling: {period: 2 ms, delay: [0, 1]}"
+SAMPLED = "switching: arbitrary\nsampling: {period: 2 ms, delay: 1}"
 IMPEDANCE = (
     (ROOT / "docs/examples/saturating.nrs.yaml")
     .read_text("utf-8")
@@ -102,7 +102,7 @@ def ways(system):
         if parts[-1] != "E-min":
             continue
         stiffness = {"k-min": SOFTEST, "k-max": HARDEST}.get(parts[-2])
-        late = "delay-1" in parts
+        late = "delay-0" not in parts
         if stiffness is None:
             # What touches nothing, or takes no force.
             stiffness = 0.0

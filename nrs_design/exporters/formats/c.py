@@ -114,7 +114,8 @@ def _header_lines(record: ExportRecord, law: StepLaw, names: CNames) -> Iterator
         "limits is refused until init. Within the limits no operation overflows."
     )
     yield (
-        "Saturation, outside the proof: of the command of the motor, at COMMAND_LIMIT below."
+        "Saturation of the command of the motor, at COMMAND_LIMIT below: outside the proof, but "
+        "for a region in which it may say that motions decay all the same."
         if "command_limit" in law.coefficient
         else "The command of the motor does not saturate: the spec has no `limits: command`."
     )

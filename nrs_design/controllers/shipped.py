@@ -146,4 +146,5 @@ def step_limits(spec: InteractionDesignSpec) -> StepLimits:
         angle,
         float32_not_above(spec.limits.velocity.not_above),
         None if command is None else float32_not_above(command.not_above),
+        None if spec.anti_windup is None else float32_not_above(spec.anti_windup.clamp.not_above),
     )

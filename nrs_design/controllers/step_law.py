@@ -26,6 +26,8 @@ from nrs_design.controllers.sensor import DiscreteLowPass
 from nrs_design.models.drive import Takes
 
 UNITS = {"command": "rpm"}
+# Where the integral of the force error is cut off.
+INTEGRAL_LIMIT = "integral_limit"
 ZERO = Fraction(0)
 
 
@@ -39,6 +41,8 @@ class StepLimits:
     velocity: Fraction = BEYOND
     # The speed command of the motor saturates there, rpm; None for nowhere.
     command: Fraction | None = None
+    # The integral of the force error is cut off there, rad; None for nowhere.
+    integral: Fraction | None = None
 
     def within(self, value: Value) -> Value:
         """Return a value that is refused beyond the largest angle, if it is one."""
@@ -143,6 +147,8 @@ def build_law(
     limits, parts = frame.limits, step_parts(laws.values())
     if frame.takes is Takes.VELOCITY:
         parts = tuple(map(_streamed, parts))
+    if limits.integral is not None:
+        parts = tuple(map(_clamped, parts))
     places = [part.place for part in parts if part.place is not None]
     states = [state for part in reversed(parts) for state in part.states]
     inputs = {value.name: value for part in parts for value in part.inputs}
@@ -158,6 +164,7 @@ def build_law(
     )
     edges = {"velocity_limit": (limits.velocity, "rad/s")} if takes_hand else {}
     edges |= {} if limits.command is None else {"command_limit": (limits.command, "rpm")}
+    edges |= {} if limits.integral is None else {INTEGRAL_LIMIT: (limits.integral, "rad")}
     lagging = {f"filtered_{i}": _lagged(i) for i in range(1, frame.order + 1)}
     following = {name: made for part in parts for name, made in part.following.items()}
     first = {place.name: following[place.name] for place in places}
@@ -224,6 +231,17 @@ def _streamed(part: StepPart) -> StepPart:
         after=tuple(after),
         following={name: made for name, made in part.following.items() if name == "velocity"},
     )
+
+
+def _clamped(part: StepPart) -> StepPart:
+    """Return the part of an integral that is cut off: what is summed up saturates, unrounded."""
+    made = part.following.get("integral")
+    if made is None:
+        return part
+    *before, last = part.after
+    summed = replace(last, name="summed_integral")
+    cut = Operation(made, "saturate", INTEGRAL_LIMIT, summed.name)
+    return replace(part, after=(*before, summed, cut))
 
 
 def _coefficients(

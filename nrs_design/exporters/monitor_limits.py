@@ -7,9 +7,11 @@ from fractions import Fraction
 from math import ceil, floor
 
 from nrs_design.controllers.float32 import float32_not_above, to_float32
+from nrs_design.controllers.operations import StepLaw
 from nrs_design.controllers.sector import Sector, sector_of
 from nrs_design.exporters.export import Export
 from nrs_design.exporters.record import ExportRecord
+from nrs_design.exporters.region import MonitoredRegion, region_of
 from nrs_design.spec import InteractionDesignSpec
 
 # Longer than any processor runs.
@@ -29,27 +31,30 @@ class MonitorLimits:
     stays: tuple[tuple[int, int], ...]  # Shortest and longest time in each mode, in samples
     follows: tuple[tuple[bool, ...], ...]  # For each mode, which may follow it
     sector: Sector | None  # What torque and angle keep; None where the spec does not tell
+    # Where motions decay although the command saturates; None where nothing is proved of it.
+    region: MonitoredRegion | None
     # How far the joint moves, at the limit of its velocity, between two torques that are read.
     travel: Fraction
     left_out: tuple[str, ...]  # What is not monitored, and why
 
 
-def monitor_limits(export: Export, modes: tuple[str, ...]) -> MonitorLimits:
+def monitor_limits(export: Export, law: StepLaw) -> MonitorLimits:
     """Return what the loop of an export must keep.
 
     Parameters
     ----------
     export : Export
         With a record, proved or not.
-    modes : tuple of str
-        Controllers, in the order of the program.
+    law : StepLaw
+        Of the program: its controllers, and the states that a monitor is given.
     """
-    record, spec = export.shipped(), export.spec
+    record, spec, modes = export.shipped(), export.spec, law.modes
     assert spec is not None
     assert record.sample_time is not None
     period, allowed = Fraction(record.sample_time.exact), spec.switching.of_a_run.transitions
     command = spec.limits.command
     speed = None if spec.coupling is None else spec.coupling.speed
+    region = region_of(export, law)
     sector, (youngest, oldest) = sector_of(spec), record.delay or (0, 0)
     return MonitorLimits(
         period=to_float32(period),
@@ -62,8 +67,9 @@ def monitor_limits(export: Export, modes: tuple[str, ...]) -> MonitorLimits:
             tuple(allowed is None or a == b or (a, b) in allowed for b in modes) for a in modes
         ),
         sector=None if isinstance(sector, str) else sector,
+        region=None if isinstance(region, str) else region,
         travel=spec.limits.velocity.not_below * period * (1 + oldest - youngest),
-        left_out=_left_out(spec, record, sector),
+        left_out=_left_out(spec, record, sector, region),
     )
 
 
@@ -76,11 +82,16 @@ def _stay(spec: InteractionDesignSpec, name: str, period: Fraction) -> tuple[int
 
 
 def _left_out(
-    spec: InteractionDesignSpec, record: ExportRecord, sector: Sector | str
+    spec: InteractionDesignSpec,
+    record: ExportRecord,
+    sector: Sector | str,
+    region: MonitoredRegion | str,
 ) -> tuple[str, ...]:
     said = []
     if isinstance(sector, str):
         said.append(f"Stiffness, and whether contact is kept: {sector}.")
+    if isinstance(region, str):
+        said.append(f"The region of a proof in which the command saturates: {region}.")
     if spec.limits.command is None:
         said.append("Saturation: the spec has no `limits: command`.")
     if spec.coupling is not None and spec.coupling.speed is None:

@@ -166,6 +166,12 @@ def _find_odd_saturation(system: SwitchedSystem) -> str | None:
     for signal in signals:
         if signal.limit <= 0:
             return f"the limit of {signal.name} is not positive"
+        parts = (signal.errors, len(system.roundings)), (signal.pushes, len(system.couplings))
+        for rows, width in parts:
+            if rows and len(rows) != len(system.every_mode):
+                return f"{signal.name} has not one row of what acts on it for every mode"
+            if not all(row.is_well_formed and row.shape == (1, width) for row in rows):
+                return f"{signal.name} does not know what the arithmetic rounds, or axes do"
     return _find_odd_start(system, system.saturation.start)
 
 

@@ -34,6 +34,11 @@ class CutOff:
     # Shape (1, n + number of signals before it). The q in the same order; in free motion nothing in
     # them stands for the deflection.
     rows: tuple[RationalMatrix, ...]
+    # Shape (1, roundings of the system). What these add to its argument, in the same order; none
+    # where nothing is said of that.
+    errors: tuple[RationalMatrix, ...] = ()
+    # Shape (1, couplings of the system). What it adds to the row of each of them, likewise.
+    pushes: tuple[RationalMatrix, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,6 +52,8 @@ class Start:
     states: tuple[RationalMatrix, ...]
     # The size that a statement is meant to reach; for words and searches only.
     wanted: Fraction | None = None
+    # What of such a state is neither at rest nor zero, in words that begin with a comma.
+    beside: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,7 +61,8 @@ class Saturation:
     """What saturates in a loop, and how motions begin that a statement about it names.
 
     The modes say what the loop does while nothing is cut off. Beyond that it is
-    ``x' = A x + sum c_i (s_i - l_i x)``, where ``l_i x`` is what ``s_i`` were if nothing was.
+    ``x' = A x + sum c_i (s_i - l_i x)``, where ``l_i x`` is what ``s_i`` were if nothing was; in
+    discrete time ``x+`` is that.
     """
 
     signals: tuple[CutOff, ...]  # Each may depend on those before it
@@ -77,26 +85,46 @@ class Saturation:
         held : sequence of rows, each of n numbers
             The h of every signal.
         """
-        rows = A.fractions()
-        linear = self._signals(k, held, (False,) * len(self.signals))
-        for replaced in product((False, True), repeat=len(self.signals)):
-            moved = [list(row) for row in rows]
-            taken = self._signals(k, held, replaced)
-            for signal, new, old in zip(self.signals, taken, linear, strict=True):
+        for changes in self.changes(k, held, 0):
+            moved = [list(row) for row in A.fractions()]
+            for signal, change in zip(self.signals, changes, strict=True):
                 for row, (c,) in zip(moved, signal.columns[k].fractions(), strict=True):
-                    for j, (other, own) in enumerate(zip(new, old, strict=True)):
-                        row[j] += c * (other - own)
+                    row[:] = [own + c * more for own, more in zip(row, change, strict=True)]
             yield RationalMatrix.from_rows(moved)
 
+    def changes(
+        self, k: int, held: Sequence[Sequence[Fraction]], errors: int
+    ) -> Iterator[list[list[Fraction]]]:
+        """Yield by how much the signals differ from what they are while nothing is cut off.
+
+        Between these the loop is, as `between` says; each is a row for every signal.
+
+        Parameters
+        ----------
+        k, held
+            As for `between`.
+        errors : int
+            How many errors there are behind the state in the rows.
+        """
+        wide = [[*h, *(ZERO,) * errors] for h in held]
+        linear = self._signals(k, wide, errors, (False,) * len(self.signals))
+        for replaced in product((False, True), repeat=len(self.signals)):
+            taken = self._signals(k, wide, errors, replaced)
+            yield [
+                [new - old for new, old in zip(*rows, strict=True)]
+                for rows in zip(taken, linear, strict=True)
+            ]
+
     def _signals(
-        self, k: int, held: Sequence[Sequence[Fraction]], replaced: Sequence[bool]
+        self, k: int, held: Sequence[Sequence[Fraction]], errors: int, replaced: Sequence[bool]
     ) -> list[list[Fraction]]:
-        """Return every signal as a row over the state: its argument, or the h in its place."""
+        """Return every signal as a row over the state and errors: its argument, or the h."""
         found: list[list[Fraction]] = []
         for signal, h, other in zip(self.signals, held, replaced, strict=True):
-            row = signal.rows[k].fractions()[0]
-            argument = row[: len(h)]
-            for share, before in zip(row[len(h) :], found, strict=True):
+            row, n = signal.rows[k].fractions()[0], len(h) - errors
+            off = signal.errors[k].fractions()[0] if errors else []
+            argument = [*row[:n], *off]
+            for share, before in zip(row[n:], found, strict=True):
                 argument = [a + share * b for a, b in zip(argument, before, strict=True)]
             found.append(list(h) if other else argument)
         return found

@@ -20,6 +20,7 @@ from nrs_design.progress import Progress, silent
 from nrs_design.proof.channels import Channel, Output
 from nrs_design.proof.evidence import AbstractEvidence, Shows
 from nrs_design.proof.exact import TooLargeError
+from nrs_design.proof.mode import Time
 from nrs_design.proof.second_opinion import agrees
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.candidates import Candidates
@@ -249,11 +250,21 @@ def _saturated(
     """Show from where motions decay although signals saturate, where the system has some."""
     if system.saturation is None:
         return (), ()
+    progress(SATURATION)
+    search = partial(_saturation_search(system), system, allowance)
+    return _attempted(SATURATION, search, system, allowance)
+
+
+def _saturation_search(
+    system: SwitchedSystem,
+) -> Callable[[SwitchedSystem, Allowance], Candidates[AbstractEvidence]]:
+    if system.time is Time.DISCRETE:
+        from nrs_design.search.saturated_steps import search_saturated_steps
+
+        return search_saturated_steps
     from nrs_design.search.saturated_ellipsoid import search_saturated
 
-    progress(SATURATION)
-    search = partial(search_saturated, system, allowance)
-    return _attempted(SATURATION, search, system, allowance)
+    return search_saturated
 
 
 def _safety(

@@ -10,132 +10,41 @@ gains little. At last H is rounded, and Q is found for it with as much to spare 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator
 from fractions import Fraction
-from itertools import product
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from nrs_design.proof.evidence import SaturatedEllipsoid
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.balance import round_coordinates
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
-from nrs_design.search.family import Family, to_floats
+from nrs_design.search.family import Family
 from nrs_design.search.rounding import round_rate, unscale
-from nrs_design.search.sdp import solve_blocks, symmetric_basis
+from nrs_design.search.saturated_region import (
+    BELOW,
+    ENOUGH,
+    H_DIGITS,
+    LARGEST,
+    SLOWEST,
+    SMALLEST,
+    Array,
+    Problem,
+    Region,
+    bordered_by,
+    last_unknown,
+    row_unknowns,
+    solved,
+)
 from nrs_design.work import Allowance
 
-Array = NDArray[np.float64]
-
 DIGITS = (16, 20, 24, 32, 40, 50, 60)
-H_DIGITS = 40
-# The slowest decay that counts, as a share of the fastest there is, and by how much a start stays
-# below the largest one: nearer to it there is no decay to speak of.
-SLOWEST, BELOW = 1e-3, 0.99
 # Improvements of a region in free motion, and the least gain that is worth another.
 STEPS, GAIN = 12, 1.003
 BISECTIONS = 8
-# A start just inside of a region leaves nothing for rounding.
-ENOUGH = 0.999
 # Shares of the largest rate that are claimed.
 RATES = (0.99, 0.9, 0.5, 0.1)
-# In coordinates in which nothing saturates in the unit ball.
-SMALLEST, LARGEST = 1e-7, 1e5
-
-
-@dataclass(frozen=True)
-class Problem:
-    """The loop in floating point; signals in units of their limits."""
-
-    # Shape (k, n, n). Modes in contact, and after them the free ones, which leave the deflection
-    # where it is.
-    A: Array
-    free: int  # How many of them are free
-    columns: Array  # Shape (k, s, n). What every signal does.
-    rows: tuple[Array, ...]  # Shape (k, n + signals before). Their arguments.
-    starts: Array  # Shape (c, n). States at the size one.
-
-    @classmethod
-    def of(cls, system: SwitchedSystem) -> Problem:
-        """Convert a system of which something saturates."""
-        saturation = system.saturation
-        assert saturation is not None  # who asks has looked
-        free = () if system.contact is None else system.contact.free
-        limits = np.array([float(s.limit) for s in saturation.signals])
-        A = to_floats([mode.A for mode in (*system.modes, *free)])
-        columns = np.stack([to_floats(s.columns)[:, :, 0] for s in saturation.signals], axis=1)
-        columns *= limits[:, None]
-        if free:
-            A[-len(free) :, -1] = columns[-len(free) :, :, -1] = 0.0
-        n, rows = A.shape[1], list[Array]()
-        for i, signal in enumerate(saturation.signals):
-            row = to_floats(signal.rows)[:, 0] / limits[i]
-            row[:, n:] *= limits[:i]
-            rows.append(row)
-        starts = to_floats(saturation.start.states)[:, :, 0]
-        return cls(A, len(free), columns, tuple(rows), starts)
-
-    def transformed(self, T: Array) -> Problem:
-        """Return the same in coordinates ``x = T z``."""
-        inverse, n = np.linalg.inv(T), len(T)
-        rows = (np.concatenate([row[:, :n] @ T, row[:, n:]], axis=1) for row in self.rows)
-        return replace(
-            self,
-            A=inverse @ self.A @ T,
-            columns=self.columns @ inverse.T,
-            rows=tuple(rows),
-            starts=self.starts @ inverse.T,
-        )
-
-    @property
-    def linear(self) -> Array:
-        """The signals while nothing is cut off, as rows; shape (k, s, n)."""
-        found: list[Array] = []
-        n = self.A.shape[1]
-        for row in self.rows:
-            whole = row[:, :n].copy()
-            for i, before in enumerate(found):
-                whole += row[:, n + i, None] * before
-            found.append(whole)
-        return np.stack(found, axis=1)
-
-    def vertices(self, S: Any, Y: Sequence[Any]) -> Iterator[tuple[int, Any]]:
-        """Yield, with the index of its mode, ``B S`` for every B that a mode is a mixture of.
-
-        Parameters
-        ----------
-        S : ndarray or expression, shape (n, n)
-            The identity gives the matrices themselves.
-        Y : sequence of ndarray or expression, each of shape (1, n)
-            The rows ``h S``.
-        """
-        n, linear = self.A.shape[1], self.linear
-        for k, replaced in product(range(len(self.A)), product((False, True), repeat=len(Y))):
-            B, taken = self.A[k] @ S, list[Any]()
-            for i, (row, y, other) in enumerate(zip(self.rows, Y, replaced, strict=True)):
-                argument = row[k, None, :n] @ S
-                for share, before in zip(row[k, n:], taken, strict=True):
-                    argument = argument + share * before
-                taken.append(y if other else argument)
-                B = B + self.columns[k, i, :, None] @ (taken[-1] - linear[k, i, None] @ S)
-            yield k, B
-
-    def is_free(self, k: int) -> bool:
-        """Tell whether a mode is one of free motion."""
-        return k >= len(self.A) - self.free
-
-
-@dataclass(frozen=True)
-class Region:
-    """The ellipsoid ``z' S^-1 z <= 1``, with its H, and the largest start in it."""
-
-    S: Array
-    H: Array
-    size: float
 
 
 def search_saturated(
@@ -187,12 +96,12 @@ def search_saturated(
 def _unsaturated(problem: Problem, rate: float, allowance: Allowance) -> Array | None:
     """Return a quadratic function of the loop in which nothing is cut off."""
     n = problem.A.shape[1]
-    Q, t = _unknowns(n, 0)[0], _last(n, 0)
+    Q, t = row_unknowns(n, 0)[0], last_unknown(n, 0)
     blocks = [(np.eye(n), -Q), (np.zeros((n, n)), Q - t * np.eye(n))]
     for k, A in enumerate(problem.A):
         last = n - problem.is_free(k)
         blocks.append(_decrease(A[:last, :last], Q[:, :last, :last], t, rate))
-    x = _solved(blocks, allowance)
+    x = solved(blocks, allowance)
     return None if x is None else np.asarray(np.tensordot(x, Q, axes=1))
 
 
@@ -214,7 +123,7 @@ def _largest(
 def _improved(problem: Problem, rate: float, near: Region, allowance: Allowance) -> Region | None:
     """Return the largest region for the columns g that fit another."""
     n, count = problem.A.shape[1], len(problem.rows)
-    (S, Y), size = _unknowns(n, count), _last(n, count)
+    (S, Y), size = row_unknowns(n, count), last_unknown(n, count)
     unit = np.linalg.norm(problem.starts, axis=1).max()
     # An ellipsoid may be long, but not without end.
     blocks = [(LARGEST * np.eye(n), -S)]
@@ -222,14 +131,14 @@ def _improved(problem: Problem, rate: float, near: Region, allowance: Allowance)
     corner = np.zeros((n + 1, n + 1))
     corner[n, n] = 1.0
     for y in Y:
-        blocks.append((corner, _bordered(S, y)))
+        blocks.append((corner, bordered_by(S, y)))
     before = dict(enumerate(problem.vertices(np.eye(n), [h[None] for h in near.H])))
     for i, (k, form) in enumerate(problem.vertices(S, Y)):
         if problem.is_free(k):
             form = form + _column(before[i][1], near.S, rate)[:, None] @ S[:, n - 1 : n, :]
         images = -(form + np.swapaxes(form, -1, -2)) - 2 * rate * S
         blocks.append((-SMALLEST * np.eye(n), images))
-    x = _solved(blocks, allowance)
+    x = solved(blocks, allowance)
     if x is None:
         return None
     found = np.asarray(np.tensordot(x, S, axes=1))
@@ -306,13 +215,13 @@ def _fitted(
 ) -> Array | None:
     """Return Q for a given H, where it is about the identity, with as much to spare as possible."""
     n = problem.A.shape[1]
-    Q, t = _unknowns(n, 0)[0], _last(n, 0)
+    Q, t = row_unknowns(n, 0)[0], last_unknown(n, 0)
     blocks = []
     for h in H:
         constant = np.zeros((n + 1, n + 1))
         constant[n, :n] = constant[:n, n] = h
         constant[n, n] = 1.0
-        border = _bordered(Q, np.zeros((len(Q), 1, n)))
+        border = bordered_by(Q, np.zeros((len(Q), 1, n)))
         blocks.append((constant, border - t * np.eye(n + 1)))
     for x in problem.starts:
         value = level**2 * (x @ Q @ x)[:, None, None]
@@ -320,52 +229,11 @@ def _fitted(
     for k, B in problem.vertices(np.eye(n), [h[None] for h in H]):
         last = n - problem.is_free(k)
         blocks.append(_decrease(B[:last, :last], Q[:, :last, :last], t, rate))
-    x = _solved(blocks, allowance)
+    x = solved(blocks, allowance)
     return None if x is None else np.asarray(np.tensordot(x, Q, axes=1))
-
-
-def _unknowns(n: int, rows: int) -> tuple[Array, list[Array]]:
-    """Return what each unknown makes of a symmetric matrix, and of rows; the last one of neither.
-
-    Parameters
-    ----------
-    n : int
-        Order of the matrix, and length of the rows.
-    rows : int
-        How many rows there are.
-    """
-    basis, total = symmetric_basis(n), n * (n + 1) // 2 + rows * n + 1
-    S, Y = np.zeros((total, n, n)), [np.zeros((total, 1, n)) for _ in range(rows)]
-    S[: len(basis)] = basis
-    for i, row in enumerate(Y):
-        first = len(basis) + i * n
-        row[first : first + n, 0] = np.eye(n)
-    return S, Y
-
-
-def _last(n: int, rows: int) -> Array:
-    """Return what each unknown makes of the number that is to be large."""
-    number = np.zeros((n * (n + 1) // 2 + rows * n + 1, 1, 1))
-    number[-1] = 1.0
-    return number
-
-
-def _bordered(S: Array, y: Array) -> Array:
-    """Return ``[[S, y'], [y, 0]]`` for every unknown."""
-    n = S.shape[-1]
-    whole = np.zeros((len(S), n + 1, n + 1))
-    whole[:, :n, :n] = S
-    whole[:, n:, :n], whole[:, :n, n:] = y, np.swapaxes(y, -1, -2)
-    return whole
 
 
 def _decrease(A: Array, Q: Array, t: Array, rate: float) -> tuple[Array, Array]:
     """Return the block that wants a decrease of at least t."""
     half, identity = Q @ A, np.eye(len(A))
     return np.zeros_like(A), -(half + np.swapaxes(half, -1, -2)) - 2 * rate * Q - t * identity
-
-
-def _solved(blocks: Sequence[tuple[Array, Array]], allowance: Allowance) -> Array | None:
-    """Make the last unknown large where all blocks are positive; None where it is not positive."""
-    x = solve_blocks(blocks, allowance)
-    return x if x is not None and x[-1] > 0 else None

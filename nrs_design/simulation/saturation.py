@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from nrs_design.proof.mode import Time
 from nrs_design.proof.saturation import Saturation
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.simulation.norms import Array, Indices
@@ -15,10 +16,12 @@ from nrs_design.simulation.switched import SwitchedRun
 def saturated_rates(system: SwitchedSystem) -> Callable[[Array], Array]:
     """Return the function from states, one for each mode and free mode, to their rates.
 
+    In discrete time it leads to the next states.
+
     Parameters
     ----------
     system : SwitchedSystem
-        In continuous time, with what saturates.
+        With what saturates.
     """
     saturation = system.saturation
     assert saturation is not None  # who asks has looked
@@ -43,7 +46,7 @@ def share_cut_off(system: SwitchedSystem, run: SwitchedRun) -> dict[str, float]:
     Parameters
     ----------
     system : SwitchedSystem
-        In continuous time, with what saturates.
+        With what saturates.
     run : SwitchedRun
         As `greedy_run` gives it.
     """
@@ -81,20 +84,22 @@ def _signals(
 def saturated_step(system: SwitchedSystem, step: float) -> Callable[[Array, Indices], Array]:
     """Return the function from a state and modes to the states after a step in each of them.
 
-    By the classical Runge-Kutta method.
+    By the classical Runge-Kutta method in continuous time.
 
     Parameters
     ----------
     system : SwitchedSystem
-        In continuous time, with what saturates.
+        With what saturates.
     step : float
-        In s.
+        In s; in discrete time it is one of the system.
     """
     rates = saturated_rates(system)
     total = len(system.modes) + (0 if system.contact is None else len(system.contact.free))
 
     def advance(x: Array, modes: Indices) -> Array:
         x = np.tile(x, (total, 1))
+        if system.time is Time.DISCRETE:
+            return rates(x)[modes]
         k1 = rates(x)
         k2 = rates(x + step / 2 * k1)
         k3 = rates(x + step / 2 * k2)

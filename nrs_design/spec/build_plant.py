@@ -117,6 +117,7 @@ def build_conditions(spec: InteractionDesignSpec) -> OperatingConditions:
         limits.velocity.not_above,
         None if limits.command is None else limits.command.not_above,
         spec.command,
+        None if spec.anti_windup is None else spec.anti_windup.clamp.not_above,
         spec.coupling,
         spec.touched,
         {name: controller.gains() for name, controller in spec.controllers.items()},

@@ -148,7 +148,10 @@ COMBINATIONS: tuple[Row[Spec], ...] = (
     not_together(CONTACT_RULES, LOSABLE, SPRUNG),
     # The loop must rest at one deflection under every controller.
     *_beside(CONSTANT_FORCE, SAMPLED, COUPLED, LOADED, DAMPED, SPRUNG),
-    *_beside(SATURATED, SAMPLED, COUPLED, GIVEN_LOOP, FORCE_COORDINATES, OTHERS, SPRUNG, AT_ONCE),
+    not_together(SATURATED, COUPLED, CONTINUOUS),
+    not_together(SATURATED, OTHERS, CONTINUOUS),
+    *_beside(SATURATED, TWO_PERIODS, GIVEN_LOOP, FORCE_COORDINATES, SPRUNG, IDLE_RESET),
+    *_beside(SATURATED, AT_ONCE, SAFE, TORQUES),
     *_beside(SATURATED, MEMORY, HAND, PRELOADED),
     not_together(SATURATED, DAMPED, NOT_KEPT),
 )

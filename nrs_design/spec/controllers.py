@@ -22,6 +22,7 @@ from nrs_design.spec.model import SpecModel, optional
 from nrs_design.spec.parameters import Switch
 from nrs_design.spec.quantity import Quantity
 from nrs_design.spec.quantity_fields import (
+    Angle,
     Decay,
     Duration,
     ForceGain,
@@ -365,6 +366,15 @@ class IdleStatesSpec(SpecModel):
         default=False,
         description="true: they are set to zero when an impedance controller is left; not with "
         "pi-force controllers, whose integral bleeds",
+    )
+
+
+class AntiWindupSpec(SpecModel):
+    """What keeps the integral of pi-force controllers from winding up."""
+
+    clamp: Angle = Field(
+        description="where the integral w is cut off, both ways, at every sample and under every "
+        "controller, as an angle of the reference, such as 2 deg"
     )
 
 

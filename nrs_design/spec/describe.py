@@ -143,7 +143,7 @@ def _interaction(spec: InteractionDesignSpec) -> Iterator[Line]:
         yield from _environment(f"environments.{name}", environment)
     for name, controller in spec.controllers.items():
         yield from _controller(f"controllers.{name}", controller, spec.limits)
-    for key in ("idle_states", "goals", "design"):
+    for key in ("idle_states", "anti_windup", "goals", "design"):
         yield from describe_model(getattr(spec, key), key)
     if spec.sampling is not None:
         yield from _sampling(spec.sampling)

@@ -120,8 +120,9 @@ class GoalsSpec(SpecModel):
     )
     initial_force: TorqueOrLargest | None = optional(
         "contact force in N*m from which, at rest, every motion must be proved to "
-        "decay although velocity command and motor command saturate at their limits; largest: as "
-        "large as is found; for the whole spec, with `limits: command`, in continuous time"
+        "decay although velocity command and motor command saturate at their limits (sampled: "
+        "the motor command alone, and the integral at its clamp); largest: as large as is found; "
+        "for the whole spec, with `limits: command`"
     )
 
     checks = (

@@ -422,6 +422,18 @@ INTERACTION_CHECKS: tuple[Row[Spec], ...] = (
         "remove idle_states",
     ),
     Row(
+        "anti_windup",
+        lambda s: s.anti_windup is not None and not any(c.bleeds for c in s.controllers.values()),
+        "anti_windup without a pi-force controller, the only kind with an integral to cut off",
+        "remove anti_windup",
+    ),
+    Row(
+        "anti_windup",
+        lambda s: s.anti_windup is not None and s.sampling is None,
+        "anti_windup is what the processor does at a sample, and no sampling is given",
+        "add `sampling: {{period: 2 ms, delay: [0, 1]}}`, or remove anti_windup",
+    ),
+    Row(
         "controllers.{0}.offset",
         _other_offset,
         "{0!r} has offset {1}, {2!r} has {3}: one state cannot hold both",

@@ -14,6 +14,7 @@ from nrs_design.axis import AxisType
 from nrs_design.models.drive import COMMANDS, Takes
 from nrs_design.spec.certification import CertificationSpec
 from nrs_design.spec.controllers import (
+    AntiWindupSpec,
     ControllerSpec,
     IdleStatesSpec,
     Offset,
@@ -105,6 +106,9 @@ class AbstractInteractionSpec(SpecModel):
         "what the states of impedance controllers do while a position or force "
         "controller is active, and the integral of a pi-force controller while another one is; "
         "required where there are both"
+    )
+    anti_windup: AntiWindupSpec | None = optional(
+        "where the processor cuts off the integral of pi-force controllers; with sampling"
     )
     goals: GoalsSpec | None = optional(
         "what every impedance and force controller must achieve; the gate enforces it"

@@ -42,6 +42,7 @@ class OperatingConditions:
     velocity: Fraction  # Limit of the velocity command in rad/s, rounded down
     largest_command: Fraction | None  # Limit of the motor command in its unit, rounded down
     command: str  # Unit of the motor command
+    largest_integral: Fraction | None  # Where the integral of the force error is cut off, in rad
     coupling: CouplingSpec | None  # What axes do to each other
     touched: frozenset[str]  # The environments that some controller touches
     gains: Mapping[str, Mapping[str, GainSpec]]  # Declared, by controller and name

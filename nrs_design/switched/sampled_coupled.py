@@ -76,6 +76,7 @@ def couplings_of(
     motions: Sequence[SampledMode],
     *,
     losable: bool,
+    entries: Sequence[int] | None = None,
 ) -> Iterator[Coupling]:
     """Yield what the links do to the speed and to the way of an axis within a period.
 
@@ -93,6 +94,8 @@ def couplings_of(
         All modes, those of free motion last.
     losable : bool
         Whether contact may be lost where the spring of the tissue ends.
+    entries : sequence of int, optional
+        Of which entries of the forms of a frame the rows are, in the place of `coupled_entries`.
 
     Raises
     ------
@@ -108,20 +111,31 @@ def couplings_of(
     if states[0] == "e [rad]":
         way[0] = Fraction(-1)
     on_speed, on_way = pushes(coupling, ranges.time_constant, frame.period)
-    kept = known_entries(frame, channels)
-    first = len(states) + len(INPUTS)
-    seen = [*kept, *range(first, first + len(frame.roundings))]
+    seen = coupled_entries(frame, channels) if entries is None else entries
     slips = [[motion.slip[i] for i in seen] for motion in motions]
-    wide = coordinates(len(seen))
     seen_by = {
         INERTIA: slips,
-        CORIOLIS: [wide[omega]] * len(motions),
-        GRAVITY: [wide[delta]] * len(motions),
+        CORIOLIS: [[Fraction(int(i == omega)) for i in seen]] * len(motions),
+        GRAVITY: [[Fraction(int(i == delta)) for i in seen]] * len(motions),
     }
     found = (("on the speed", unit[omega], on_speed), ("on the way", way, on_way))
     yield from couplings_along(
         [(what, column, push.sizes) for what, column, push in found], seen_by
     )
+
+
+def coupled_entries(frame: Frame, channels: Sequence[Channel]) -> list[int]:
+    """Return where states, declared disturbances and roundings are in a form of a frame.
+
+    Parameters
+    ----------
+    frame : Frame
+        Of all modes.
+    channels : sequence of Channel
+        The disturbances.
+    """
+    first = len(frame.states) + len(INPUTS)
+    return [*known_entries(frame, channels), *range(first, first + len(frame.roundings))]
 
 
 def pushes(coupling: AxesCoupling, tau: Interval, period: Fraction) -> tuple[Push, Push]:

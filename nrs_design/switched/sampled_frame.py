@@ -54,6 +54,8 @@ DELTA, HELD = "delta [rad]", "u held"
 # What the measured angle is the sum of, and an input.
 MEASURED = (DELTA, "encoder error", "rounding of the angle")
 REFERENCE = "rounding of the reference"
+# By how much the command is less than what the law makes of the sample, where a driver limits it.
+CUT_OFF = "cut off from the command"
 # What acts on a frame from outside, in this order.
 INPUTS = (
     "velocity command",
@@ -62,6 +64,7 @@ INPUTS = (
     "force error",
     REFERENCE,
     "rounding of the angle",
+    CUT_OFF,
 )
 
 T = TypeVar("T")
@@ -158,6 +161,13 @@ class Frame:
         return (*place, *motion, *others, *ages, DELTA)
 
     @property
+    def samples_and_lags(self) -> tuple[str, ...]:
+        """The states that show a force later: samples on their way, and the lags of its filter."""
+        samples = (f"F {j} before [N*m]" for j in range(1, self.longest_delay + 1))
+        lags = (text for name, text in self.stored.items() if name.startswith("filtered_"))
+        return (*samples, *lags)
+
+    @property
     def _sent(self) -> tuple[str, ...]:
         """The commands of samples before, the last one first, as far as they are not in force."""
         return tuple(f"u {age} before" for age in range(1, self.timing.oldest + 1))
@@ -174,12 +184,12 @@ class Frame:
         values: Mapping[str, Fraction],
         turn: Turn = Turn.BOTH,
     ) -> list[LinearForm]:
-        """Return the map of one period, below it the size of each rounding, and the slip.
+        """Return the map of one period, below it the size of each rounding, command and slip.
 
         The first rows lead from the states, the `INPUTS` and the `roundings` to the next states;
-        a rounding error is at most the size that its row below gives. The last row is the slip: the
-        difference between the speed and its steady state under the command, or the acceleration of
-        a joint that takes torques.
+        a rounding error is at most the size that its row below gives. The last two rows are the
+        command before it is cut off, and the slip: the difference between the speed and its steady
+        state under the command, or the acceleration of a joint that takes torques.
 
         Parameters
         ----------
@@ -209,12 +219,13 @@ class Frame:
             *reference,
             *(_state(made, self.motor, name, numbers) for name, numbers in taken.items()),
             *([made.after[BEFORE]] if BEFORE in made.after else []),
-            *([made.drive] if self.holds else []),
+            *([made.sent[0]] if self.holds else []),
             *(combine((ONE, u), (-ONE, delta)) if self._placed else u for u in made.sent[:-1]),
             *others,
             *ages[: self.longest_delay],
             delta,
             *made.sizes,
+            made.drive,
             _slip(made, self.motor, values),
         ]
 
@@ -257,10 +268,10 @@ class _Sample:
     __eq__, __hash__ = object.__eq__, object.__hash__
 
     after: Mapping[str, LinearForm]
-    drive: LinearForm
+    drive: LinearForm  # The command of this sample before it is cut off
     sizes: Sequence[LinearForm]
     at: _Signals
-    sent: Sequence[LinearForm]  # The command of this sample, and after it those of samples before
+    sent: Sequence[LinearForm]  # What is sent of it, and after it the commands of samples before
     given: Commands
 
 
@@ -280,6 +291,7 @@ def _sample(
     step = frame._step(law, at.samples[delay - 1] if delay else _force(frame, *contact))
     nothing = zero(len(at[DELTA]))
     after, drive = dict(at.states), at.forms.get(HELD, nothing)
+    cut = at[CUT_OFF] if turn is not Turn.ADMITTANCE else nothing
     sizes: dict[str, LinearForm] = {}
     following = frame.listed.following
     if turn is not Turn.ADMITTANCE:
@@ -295,7 +307,7 @@ def _sample(
         moved = (ONE if law.law.commands == "velocity" else ZERO, at[REFERENCE])
         after |= {name: combine((ONE, after[name]), moved) for name in _places(after)}
         sizes |= step.other_sizes(retuned=retuned)
-    sent = [drive, *(at[name] for name in frame._sent)]
+    sent = [combine((ONE, drive), (ONE, cut)), *(at[name] for name in frame._sent)]
     ages = frame.timing.within
     given = Commands(
         tuple(at[name] for name in frame.motor.states),

@@ -19,7 +19,7 @@ from nrs_design.switched.sampled_frame import INPUTS, Frame
 
 @dataclass(frozen=True, slots=True)
 class SampledMode:
-    """One mode, the rows that move its states, those that bound roundings, and the slip.
+    """One mode: what moves its states and bounds its roundings, its command, and the slip.
 
     Of two periods, it says whether it is in force where a round begins.
     """
@@ -27,6 +27,7 @@ class SampledMode:
     mode: Mode
     moves: tuple[LinearForm, ...]
     sizes: tuple[LinearForm, ...]
+    command: LinearForm  # Before it is cut off
     slip: LinearForm
     begins: bool = True
 
@@ -47,9 +48,9 @@ class SampledMode:
         begins : bool
             As for the class.
         """
-        *rows, slip = rows
+        *rows, command, slip = rows
         mode = Mode(name, RationalMatrix.from_rows([row[:n] for row in rows[:n]]))
-        return cls(mode, tuple(rows[:n]), tuple(rows[n:]), slip, begins)
+        return cls(mode, tuple(rows[:n]), tuple(rows[n:]), command, slip, begins)
 
     def column(self, i: int) -> RationalMatrix:
         """Return what the i-th of inputs and, after them, roundings does to the states."""

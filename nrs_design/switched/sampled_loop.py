@@ -45,7 +45,7 @@ from nrs_design.switched.motor_command import motor_command
 from nrs_design.switched.parameter_box import Box
 from nrs_design.switched.sampled_assumptions import Loss, assume_sampled
 from nrs_design.switched.sampled_coupled import couplings_of, slowed_motor
-from nrs_design.switched.sampled_frame import Frame, Turn
+from nrs_design.switched.sampled_frame import CUT_OFF, INPUTS, Frame, Turn
 from nrs_design.switched.sampled_inputs import (
     SampledMode,
     anything_of,
@@ -53,6 +53,7 @@ from nrs_design.switched.sampled_inputs import (
     damping_of,
     roundings_of,
 )
+from nrs_design.switched.saturation import with_sampled_saturation
 
 
 def close_sampled_loop(
@@ -151,7 +152,7 @@ def close_sampled_loop(
     if conditions.idle is not None and conditions.idle.reset:
         map_ = zeroing(frame.states, ("reference [rad]", "vm [rad/s]"))
         resets = ((*pair, map_) for pair in leaving_impedance(design.controllers))
-    return SwitchedSystem(
+    system = SwitchedSystem(
         conditions.name,
         Time.DISCRETE,
         frame.states,
@@ -168,6 +169,22 @@ def close_sampled_loop(
         axes=None if links is None or not channels else links.count,
         flights=flights,
     )
+    if conditions.initial_force is not None:
+        acted: Iterable[Coupling] = ()
+        if links is not None:
+            acted = couplings_of(
+                frame,
+                links,
+                ranges,
+                channels,
+                every,
+                losable=losable is not None,
+                entries=(len(frame.states) + INPUTS.index(CUT_OFF),),
+            )
+        system = with_sampled_saturation(
+            system, conditions, frame, every, environments, tuple(acted)
+        )
+    return system
 
 
 def _motions(

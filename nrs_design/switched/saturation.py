@@ -1,30 +1,34 @@
-"""What of an impedance loop saturates, in continuous time: the velocity command, and the motor's.
+"""What of a loop saturates: the command of the motor, and in continuous time the velocity's, too.
 
-The admittance commands the velocity v. The motion loop integrates ``e' = sat(v) - omega`` and
-commands the motor ``u = Kp e + Kd (sat(v) - omega)``, of which the driver takes ``sat(u)``:
-``tau omega' = Km sat(u) - omega``, less what a load adds.
+In continuous time the admittance commands the velocity v. The motion loop integrates ``e' = sat(v)
+- omega`` and commands the motor ``u = Kp e + Kd (sat(v) - omega)``, of which the driver takes
+``sat(u)``: ``tau omega' = Km sat(u) - omega``, less what a load adds. The processor cuts off u; of
+the velocities it cuts off what the hand commands.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
 
 from nrs_design.controllers.float32 import float32_not_above
-from nrs_design.controllers.sensor import LowPass
 from nrs_design.models.actuator import Actuator
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.linear_form import LinearForm, combine, coordinates, zero
 from nrs_design.models.motion_loop import JointMotionLoop, Realization
 from nrs_design.proof.bounds import rounded_up
+from nrs_design.proof.channels import Coupling
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode
 from nrs_design.proof.saturation import CutOff, Saturation, Start
 from nrs_design.proof.system import SwitchedSystem
+from nrs_design.spec.motion import MOTOR_COMMAND
 from nrs_design.spec.operating import OperatingConditions
 from nrs_design.switched.assumption import say
 from nrs_design.switched.loop_assumptions import NOT_MODELLED, NOT_MODELLED_BUT_LIMITS
+from nrs_design.switched.sampled_frame import BEFORE, CUT_OFF, INPUTS, Frame
+from nrs_design.switched.sampled_inputs import SampledMode
 from nrs_design.switched.shared_state import SharedState
 
 # States of a motion loop in its physical state, `nrs_design.models.motion_loop.JointMotionLoop`.
@@ -33,6 +37,17 @@ _FILTERED = (
     " Where a motion begins with a contact force, the filter shows none of it, all of it, or any "
     "part, each lag the same."
 )
+_LATE = (
+    " Where a motion begins with a contact force, the force samples before it, and a filter, show "
+    "none of it, all of it, or any part, all the same."
+)
+_HELD = ", the error of motion a sample ago being what it is then under one of the controllers"
+INTEGRAL = "integral [rad]"
+# What is said of quantization where nothing saturates, and where something does.
+SATURATED_TEXTS: dict[str, str] = {
+    say(f"not-quantized.{key}"): f"{key}-limited"
+    for key in ("sampled", "sampled-disturbed", "sensor", "sensor-disturbed")
+}
 
 
 def with_saturation(
@@ -81,13 +96,8 @@ def with_saturation(
             (motor,) * len(modes),
         ),
     )
-    wanted = conditions.initial_force
-    start = Start(
-        "contact force",
-        conditions.axis.unit("N*m"),
-        tuple(_rest(system.states, state.environments, low_pass)),
-        None if isinstance(wanted, str) else wanted,
-    )
+    lags = () if low_pass is None else low_pass.states
+    start = _start(conditions, _rest(system.states, state.environments, lags))
     texts = (
         NOT_MODELLED_BUT_LIMITS if text == NOT_MODELLED else text for text in system.assumptions
     )
@@ -97,6 +107,125 @@ def with_saturation(
     bound = f"{velocity} and {command}, or more"
     limited = say("limited.signals", bound, velocity=velocity, command=command, filtered=filtered)
     return replace(system, saturation=Saturation(signals, start), assumptions=(*texts, limited))
+
+
+def with_sampled_saturation(
+    system: SwitchedSystem,
+    conditions: OperatingConditions,
+    frame: Frame,
+    motions: Sequence[SampledMode],
+    environments: Sequence[Environment],
+    acted: Sequence[Coupling] = (),
+) -> SwitchedSystem:
+    """Let a statement be about motions in which the command of the motor saturates, sampled.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        The loop in which nothing does.
+    conditions : OperatingConditions
+        With the limit and the goal, as `nrs_design.spec.combinations` checks.
+    frame : Frame
+        Of all modes.
+    motions : sequence of SampledMode
+        All modes, those of free motion last.
+    environments : sequence of Environment
+        All contacts.
+    acted : sequence of Coupling
+        What axes do to each other, with what is cut off from the command in the place of the state.
+    """
+    assert conditions.largest_command is not None  # `combinations` asks for it.
+    n, wide = len(frame.states), len(frame.states) + len(INPUTS)
+    limit, cut = float32_not_above(conditions.largest_command), INPUTS.index(CUT_OFF)
+    signal = CutOff(
+        MOTOR_COMMAND,
+        conditions.command,
+        limit,
+        tuple(motion.column(cut) for motion in motions),
+        tuple(RationalMatrix.from_rows([motion.command[:n]]) for motion in motions),
+        tuple(RationalMatrix.from_rows([motion.command[wide:]]) for motion in motions)
+        if system.roundings
+        else (),
+        tuple(
+            RationalMatrix.from_rows([[item.rows[k].fractions()[0][0] for item in acted]])
+            for k in range(len(motions) if acted else 0)
+        ),
+    )
+    signals = (signal, *_clamped(conditions, frame, motions, rounded=bool(system.roundings)))
+    placed = any(law.law.commands == "position" for law in frame.laws)
+    rest = _rest(system.states, environments, frame.samples_and_lags)
+    if placed:
+        rest = list(_held(frame, motions, rest))
+    texts = (
+        say(f"not-quantized.{SATURATED_TEXTS[text]}") if text in SATURATED_TEXTS else text
+        for text in system.assumptions
+    )
+    bound = rounded_up(limit, conditions.command)
+    filtered = _LATE if frame.samples_and_lags else ""
+    clamped = ""
+    for other in signals[1:]:
+        angle = rounded_up(other.limit, other.unit)
+        clamped = f"; the {other.name} likewise at {angle}"
+    said = f"{bound}{clamped}, or more"
+    limited = say("limited.sampled", said, command=bound, clamped=clamped, filtered=filtered)
+    what = Saturation(signals, _start(conditions, rest, _HELD if placed else ""))
+    return replace(system, saturation=what, assumptions=(*texts, limited))
+
+
+def _clamped(
+    conditions: OperatingConditions,
+    frame: Frame,
+    motions: Sequence[SampledMode],
+    *,
+    rounded: bool,
+) -> Iterator[CutOff]:
+    """Yield the integral of the force error, which becomes what it sums up to, cut off."""
+    if conditions.largest_integral is None:
+        return
+    n, wide = len(frame.states), len(frame.states) + len(INPUTS)
+    k = frame.states.index(INTEGRAL)
+    rows = [motion.moves[k] for motion in motions]
+    yield CutOff(
+        "integral of the force error",
+        conditions.axis.unit("rad"),
+        float32_not_above(conditions.largest_integral),
+        (_column(coordinates(n)[k]),) * len(motions),
+        # The signal before it, the command, plays no part in it.
+        tuple(RationalMatrix.from_rows([[*row[:n], Fraction(0)]]) for row in rows),
+        tuple(RationalMatrix.from_rows([row[wide:]]) for row in rows) if rounded else (),
+    )
+
+
+def _held(
+    frame: Frame, motions: Sequence[SampledMode], states: Sequence[RationalMatrix]
+) -> Iterator[RationalMatrix]:
+    """Yield states at rest in which the error of a sample ago is that of now, in any mode.
+
+    The command ``Kp e + D (e - e before)`` is ``(Kp + D) e`` where the error before is zero.
+    """
+    before, n = frame.states.index(frame.stored[BEFORE]), len(frame.states)
+    gain = frame.step.Kp + frame.step.D
+    commands = {tuple(motion.command[:n]) for motion in motions}
+    found: dict[RationalMatrix, None] = {}
+    for state in states:
+        (x,) = zip(*state.fractions(), strict=True)
+        for command in commands:
+            error = sum((c * v for c, v in zip(command, x, strict=True)), Fraction(0)) / gain
+            found[_column([*x[:before], error, *x[before + 1 :]])] = None
+    yield from found
+
+
+def _start(
+    conditions: OperatingConditions, states: Iterable[RationalMatrix], beside: str = ""
+) -> Start:
+    wanted = conditions.initial_force
+    return Start(
+        "contact force",
+        conditions.axis.unit("N*m"),
+        tuple(states),
+        None if isinstance(wanted, str) else wanted,
+        beside,
+    )
 
 
 def _physical(
@@ -127,14 +256,13 @@ def _drive(mode: Mode, Kp: Fraction) -> Fraction:
 
 
 def _rest(
-    states: Sequence[str], environments: Sequence[Environment], low_pass: LowPass | None
+    states: Sequence[str], environments: Sequence[Environment], lags: Collection[str]
 ) -> list[RationalMatrix]:
     """Return the states at rest with a unit of force, at every stiffness.
 
-    A filter of the force may not have seen the force yet, or have settled at it.
+    What shows the force later, such as a filter of it, may not have seen it yet, or have settled.
     """
     unit = coordinates(len(states))
-    lags = () if low_pass is None else low_pass.states
     settled = [Fraction(int(state in lags)) for state in states]
     sensed = [zero(len(states)), *([settled] if lags else [])]
     return [

@@ -43,7 +43,7 @@ def sources(export, spec):
     """Return the files of a law and its monitor."""
     names = CNames("x")
     program = Program(export.record, LAW, names)
-    limits = monitor_limits(replace(export, spec=spec), LAW.modes)
+    limits = monitor_limits(replace(export, spec=spec), LAW)
     return {
         "x.h": law_header(export.record, LAW, names),
         "x.c": law_source(export.record, LAW, names),

@@ -83,6 +83,11 @@ LAWS = {
         },
         to_float32(Fraction("0.96")),
     ),
+    "clamped": build_law(
+        frame(limits=StepLimits(Fraction(3), command=Fraction(4000), integral=Fraction(1, 128))),
+        {**PLACED, "hold": INTEGRAL.discretize(PERIOD, "exact")},
+        to_float32(Fraction("0.96")),
+    ),
     "mixed, spring": build_law(
         frame(LowPass(1, Fraction(200)).discretize(PERIOD)),
         {**PLACED, "insertion": SPRUNG.discretize(PERIOD, "exact")},

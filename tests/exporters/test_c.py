@@ -2,6 +2,7 @@
 
 import re
 
+import numpy as np
 import pytest
 
 from nrs_design.exporters.c_names import CNames, harmless
@@ -53,6 +54,20 @@ def test_host_compilers_agree_with_the_replica(tmp_path, sampled_export, shape):
         built(gcc, *STRICT, level, tmp_path / "law.c", tmp_path / "test.o", "-o", program)
         done = run(program)
         assert (done.returncode, done.stdout) == (0, SAME)
+
+
+def test_an_integral_is_cut_off_bit_for_bit(tmp_path, sampled_export):
+    """Of the states of the vectors many are beyond the clamp, and one is at it to the bit."""
+    gcc, law = compiler(), LAWS["clamped"]
+    vectors = make_vectors(law, COUNT)
+    limit = np.float32(float(law.coefficient["integral_limit"].values[0])).view(np.uint32)
+    after = vectors.rows[:, vectors.columns.index("after.integral")]
+    assert (after == limit).sum() > 100
+    flag = written(tmp_path, law, sampled_export)
+    program = tmp_path / "test"
+    sources = (tmp_path / "law.c", tmp_path / "test.c")
+    built(gcc, *STRICT, flag, "-O2", *sources, "-o", program)
+    assert run(program).stdout == SAME
 
 
 @pytest.mark.parametrize("shape", SHAPES)

@@ -73,7 +73,7 @@ class Monitor:
         export = Export("proved", record, None, spec=spec)
         names = CNames("x")
         program = Program(sampled_export.record, LAW, names)
-        limits = monitor_limits(export, LAW.modes)
+        limits = monitor_limits(export, LAW)
         self.sources = {
             "x.h": law_header(sampled_export.record, LAW, names),
             "x_monitor.h": header_text(program, limits),
@@ -244,7 +244,7 @@ def test_what_is_left_out_is_said(sampled_export):
     ):
         assert text in words
     for kind in KINDS:
-        unknown = kind in ("SPEED", "STIFFNESS", "PULL", "FAST")
+        unknown = kind in ("SPEED", "STIFFNESS", "PULL", "FAST", "REGION")
         assert (f"_LEFT_{kind} " in words) == (not unknown)
 
 

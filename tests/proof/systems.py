@@ -347,6 +347,38 @@ def pushed_away(pull: Entry = 3) -> SwitchedSystem:
     return replace(system, saturation=Saturation((signal,), start))
 
 
+def pushed_away_in_steps() -> SwitchedSystem:
+    """``x+ = 3/2 x + sat(-x)``, cut off at 1: it decays from ``|x| < 2`` exactly."""
+    signal = CutOff("s", "N", Fraction(1), (matrix([[1]]),), (matrix([[-1]]),))
+    start = Start("place", "m", (matrix([[1]]),))
+    system = family([["1/2"]], time=Time.DISCRETE)
+    return replace(system, saturation=Saturation((signal,), start), sample_time=Fraction(1, 10))
+
+
+def saturating_in_steps(*, axes: bool = False) -> SwitchedSystem:
+    """A mass that bounces in steps, of which ``v+ = 11/10 v + sat(-3/10 v)``, cut off at 1/2.
+
+    What makes the push is rounded. With other axes, these push by a part of what it does.
+    """
+    system = bouncing_in_steps()
+    column, row, share = matrix([[1], [0]]), matrix([["-3/10", 0]]), Fraction(1, 1000)
+    rounding = Rounding("s", (column,) * 3, (matrix([[3 * share / 10, 0]]),) * 3)
+    part = Fraction(1, 16)
+    seen = (matrix([[-3 * part / 10, 0, part]]),) * 3
+    coupling = (Coupling("c", (column,) * 3, seen),) if axes else ()
+    pushes = (matrix([[part]]),) * 3 if axes else ()
+    signal = CutOff(
+        "s", "N", Fraction(1, 2), (column,) * 3, (row,) * 3, (matrix([[1]]),) * 3, pushes
+    )
+    start = Start("force", "N", tuple(matrix([[0], [Fraction(1, k)]]) for k in (1, 2)))
+    return replace(
+        system,
+        roundings=(rounding,),
+        couplings=coupling,
+        saturation=Saturation((signal,), start),
+    )
+
+
 def bouncing_in_steps(damping: Entry = 0) -> SwitchedSystem:
     """The same in steps of a tenth of a second by Euler's method."""
     b = Fraction(damping)
@@ -485,6 +517,9 @@ SYSTEMS = {
     "saturated-ellipsoid": saturating,
     "saturated-ellipsoid, kept": lambda: kept(saturating()),
     "saturated-ellipsoid, scalar": pushed_away,
+    "saturated-ellipsoid, scalar in steps": pushed_away_in_steps,
+    "saturated-ellipsoid, in steps": saturating_in_steps,
+    "saturated-ellipsoid, axes in steps": lambda: saturating_in_steps(axes=True),
     "growing-sequence, mode": lambda: family([[0, 1], [-1, 0]]),
     "growing-sequence, free": drifting,
     "growing-sequence, contact": juggling,

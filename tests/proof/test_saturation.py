@@ -10,7 +10,15 @@ from nrs_design.proof.contradiction import find_contradiction
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode
 from nrs_design.proof.saturation import CutOff, Saturation
-from tests.proof.systems import family, genuine, kept, matrix, pushed_away, saturating
+from tests.proof.systems import (
+    family,
+    genuine,
+    kept,
+    matrix,
+    pushed_away,
+    saturating,
+    saturating_in_steps,
+)
 
 WHAT = pushed_away().saturation
 NEITHER = "no signal saturates, or more than 4 do"
@@ -64,6 +72,23 @@ def test_every_signal_fits_the_system(part, entries, oddity):
     first, second = LOST.signals
     odd = replace(LOST, signals=(first, replace(second, **{part: entries})))
     assert oddity_of(saturating(), odd) == oddity
+
+
+def test_what_acts_on_a_signal_has_its_size():
+    system = saturating_in_steps(axes=True)
+    (signal,) = system.saturation.signals
+    row = matrix([[1]])
+    for part in ("errors", "pushes"):
+        for rows, said in (
+            ((row,) * 2, "one row of what acts on it for every mode"),
+            ((row,) * 4, "one row of what acts on it for every mode"),
+            ((row, row, matrix([[1, 1]])), "does not know what the arithmetic rounds"),
+            ((row, row, RAGGED), "does not know what the arithmetic rounds"),
+            ((), None),
+        ):
+            odd = replace(system.saturation, signals=(replace(signal, **{part: rows}),))
+            found = oddity_of(system, odd)
+            assert found == said if said is None else said in found
 
 
 def test_a_limit_may_be_any_positive_number():

@@ -251,10 +251,104 @@ def _safety_layer(system: SwitchedSystem, item: SafetyLayer) -> bool:
     return kept and (loop.command is None or item.limits.command <= loop.command)
 
 
+def _saturated_steps(system: SwitchedSystem, item: SaturatedEllipsoid) -> bool:
+    """Every choice of arguments and rows as a mode, from the loop without any signal."""
+    what, contact, n = system.saturation, system.contact, system.order
+    if system.switching.resets or not 0 < item.rate < 1 or item.level <= 0:
+        return False
+    rounded = len(system.roundings) if item.roundings else 0
+    numbers = [item.multipliers, item.roundings, item.taus]
+    counts = [0 if contact is None else 1, rounded, len(system.couplings)]
+    if [*map(len, numbers)] != counts or any(v < 0 for part in numbers for v in part):
+        return False
+    signals, every = what.signals, (*system.modes, *(contact.free if contact else ()))
+    modes, columns, rows, seen = [], [[] for _ in system.roundings], [], []
+    if len(item.H) not in (len(signals), len(signals) * len(every)):
+        return False
+    for k, mode in enumerate(every):
+        held = item.H if len(item.H) == len(signals) else item.H[k * len(signals) :]
+        wide = [
+            [*row, *(r.columns[k].fractions()[i][0] for r in system.roundings[:rounded])]
+            for i, row in enumerate(mode.A.fractions())
+        ]
+        pushed = [c.rows[k].fractions()[0] for c in system.couplings]
+        own = [[*row[:n], *row[n + len(system.channels) :][:rounded]] for row in pushed]
+
+        def given(replaced, k=k, held=held):
+            found = []
+            for i, signal in enumerate(signals):
+                q = signal.rows[k].fractions()[0]
+                off = signal.errors[k].fractions()[0] if rounded else []
+                before = [[share * v for v in s] for share, s in zip(q[n:], found, strict=True)]
+                argument = [sum(part) for part in zip([*q[:n], *off], *before, strict=True)]
+                h = [Fraction(v, 2**item.H_denominator_log2) for v in held[i]]
+                found.append([*h, *[Fraction(0)] * rounded] if i in replaced else argument)
+            return found
+
+        for mask in range(2 ** len(signals)):
+            replaced = [i for i in range(len(signals)) if mask >> i & 1]
+            B, q = wide, own
+            for signal, new, old in zip(signals, given(replaced), given(()), strict=True):
+                more = [[a - b for a, b in zip(new, old, strict=True)]]
+                B = combine((1, B), (1, times(signal.columns[k].fractions(), more)))
+                acts = [[entry] for entry in signal.pushes[k].fractions()[0]] if q else []
+                q = combine((1, q), (1, times(acts, more))) if q else q
+            modes.append(Mode(f"{mode.name} {mask}", RationalMatrix.from_rows([r[:n] for r in B])))
+            for j, found in enumerate(columns[:rounded]):
+                found.append(RationalMatrix.from_rows([[row[n + j]] for row in B]))
+            rows.append(k)
+            seen.append(q)
+    first = len(modes) // len(every) * len(system.modes)
+    cut = [
+        replace(
+            r,
+            columns=tuple(columns[j]),
+            rows=tuple(RationalMatrix.from_rows([r.rows[k].fractions()[0][:n]]) for k in rows),
+        )
+        for j, r in enumerate(system.roundings[:rounded])
+    ]
+    coupled = [
+        replace(
+            c,
+            columns=tuple(c.columns[k] for k in rows),
+            rows=tuple(RationalMatrix.from_rows([q[j]]) for q in seen),
+        )
+        for j, c in enumerate(system.couplings)
+    ]
+    loop = replace(
+        system,
+        modes=tuple(modes[:first]),
+        contact=None if contact is None else replace(contact, free=tuple(modes[first:])),
+        roundings=tuple(cut),
+        couplings=tuple(coupled),
+        channels=(),
+        saturation=None,
+    )
+    unit = Fraction(1, 2**item.denominator_log2)
+    Q = [[v * unit for v in row] for row in item.Q]
+    known = {"lost": item.multipliers[0] * unit} if item.multipliers else {}
+    known |= {f"rounding {i}": v * unit for i, v in enumerate(item.roundings, 1)}
+    known |= {f"coupling {i}": v * unit for i, v in enumerate(item.taus, 1)}
+    steps = moves(loop, lost=contact is not None, rounding=bool(rounded), coupling=True)
+    forms = [inequality(m, Q, Q, item.rate**2, known.__getitem__) for m in steps]
+    if not is_definite(Q) or not all(map(is_definite, forms)):
+        return False
+    for i, h in enumerate(item.H):
+        row = [Fraction(v, 2**item.H_denominator_log2) for v in h]
+        bordered = [[*q, v] for q, v in zip(Q, row, strict=True)] + [[*row, Fraction(0)]]
+        limit = signals[i % len(signals)].limit
+        if not -determinant(bordered) / determinant(Q) < limit**2:
+            return False
+    starts = [x.fractions() for x in what.start.states]
+    return all(item.level**2 * times(transpose(x), times(Q, x))[0][0] < 1 for x in starts)
+
+
 def _saturated_ellipsoid(system: SwitchedSystem, item: SaturatedEllipsoid) -> bool:
     """Every choice of arguments and rows, from the loop without any signal."""
     what, contact = system.saturation, system.contact
-    if what is None or system.time is not Time.CONTINUOUS or system.couplings:
+    if what is not None and system.time is Time.DISCRETE:
+        return _saturated_steps(system, item)
+    if what is None or system.couplings:
         return False
     if system.switching.resets or item.rate <= 0 or item.level <= 0:
         return False

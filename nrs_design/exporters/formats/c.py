@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from nrs_design.controllers.operations import StepLaw
+from nrs_design.controllers.step_law import INTEGRAL_LIMIT
 from nrs_design.controllers.step_logic import UNITS
 from nrs_design.exporters import SAMPLED, Format
 from nrs_design.exporters.c_names import CNames, block_comment
@@ -113,10 +114,16 @@ def _header_lines(record: ExportRecord, law: StepLaw, names: CNames) -> Iterator
         "limits is refused until init. Within the limits no operation overflows."
     )
     yield (
-        "Saturation, outside the proof: of the command of the motor, at COMMAND_LIMIT below."
+        "Saturation of the command of the motor, at COMMAND_LIMIT below: outside the proof, but "
+        "for a region in which it may say that motions decay all the same."
         if "command_limit" in law.coefficient
         else "The command of the motor does not saturate: the spec has no `limits: command`."
     )
+    if INTEGRAL_LIMIT in law.coefficient:
+        yield (
+            "The integral of the force error is cut off at INTEGRAL_LIMIT, both ways, at every "
+            "sample and in every mode, so that it does not wind up."
+        )
     if "velocity_limit" in law.coefficient:
         yield "The velocity command saturates at VELOCITY_LIMIT before the law takes it."
     if "safe_speed" in law.coefficient:

@@ -15,6 +15,7 @@ from nrs_design.exporters.c_names import CNames, block_comment
 from nrs_design.exporters.export import Export
 from nrs_design.exporters.monitor_limits import MonitorLimits, monitor_limits
 from nrs_design.exporters.program import Program, program_of
+from nrs_design.exporters.region import MonitoredRegion
 from nrs_design.exporters.sector_numbers import sector_macros, sector_words
 from nrs_design.exporters.template import fill_template
 from nrs_design.output import C_MONITOR, C_MONITOR_HEADER
@@ -38,6 +39,7 @@ KINDS = {
     "STIFFNESS": "No stiffness of the range, another one at every sample, explains the readings",
     "PULL": "The torque pulls, which no tissue does",
     "FAST": "The joint is faster than its readings are known for",
+    "REGION": "The state may be outside of where motions decay although the command saturates",
     "SPEED": "The axes together are faster than their coupling is known for",
 }
 
@@ -56,7 +58,7 @@ def render(export: Export) -> dict[str, bytes]:
         If there is no program of a controller yet.
     """
     program = program_of(export)
-    limits = monitor_limits(export, program.law.modes)
+    limits = monitor_limits(export, program.law)
     return {
         "_monitor.h": header_text(program, limits).encode(),
         "_monitor.c": source_text(program, limits).encode(),
@@ -84,6 +86,7 @@ def header_text(program: Program, limits: MonitorLimits) -> str:
         macros=[*_limits(names, limits)],
         limits=limits,
         remembered=_remembered(limits),
+        region=limits.region,
     )
 
 
@@ -118,6 +121,7 @@ def source_text(program: Program, limits: MonitorLimits) -> str:
         limits=limits,
         oldest=limits.age[1] if limits.age else 0,
         remembered=_remembered(limits),
+        region=limits.region,
     )
 
 
@@ -136,6 +140,15 @@ def _words(program: Program, limits: MonitorLimits) -> Iterator[str]:
             "all axes together, the root of the sum of the squares of their joint speeds, which "
             "the caller knows: one monitor sees one axis. It is judged as it is read."
         )
+    if limits.region is not None:
+        yield (
+            "The region: from the states in an ellipsoid, motions are proved to decay although the "
+            "command saturates. The state is taken as it is read, the speed from the way of a "
+            "period under the motor of the proof; what is not known for certain counts as the "
+            "worst. So silence means that it was inside, but for errors of the readings. It is "
+            "not tested at the first samples, before angles are known. That the command meets its "
+            "limit is no violation then."
+        )
     if limits.sector is not None:
         yield from sector_words(limits.sector, limits.travel)
     yield "Uneven steps of time: no proof knows them. The caller says how much is accepted."
@@ -147,6 +160,9 @@ def told_kinds(limits: MonitorLimits) -> dict[str, str]:
     sector = limits.sector
     told = {
         "SPEED": limits.speed is not None,
+        # Within the region, the command may meet its limit.
+        "SATURATION": limits.region is None,
+        "REGION": limits.region is not None,
         "STIFFNESS": sector is not None,
         "PULL": sector is not None and not sector.kept,
         "FAST": sector is not None and sector.speed is not None,
@@ -166,7 +182,7 @@ def _limits(names: CNames, limits: MonitorLimits) -> Iterator[tuple[str, int | F
     up = f"{names.upper}_MONITOR"
     yield f"{up}_PERIOD", limits.period, "s"
     yield f"{up}_TORQUE", limits.torque, f"{unit('N*m')}, from the spec"
-    if limits.command is not None:
+    if limits.command is not None and limits.region is None:
         yield f"{up}_COMMAND", limits.command, "from the spec"
     if limits.speed is not None:
         yield f"{up}_SPEED", limits.speed, f"{unit('rad/s')}, over all axes, from the spec"
@@ -174,6 +190,22 @@ def _limits(names: CNames, limits: MonitorLimits) -> Iterator[tuple[str, int | F
         least, most = limits.age
         yield f"{up}_YOUNGEST", least, "samples, from the spec"
         yield f"{up}_OLDEST", most, ""
+    if limits.region is not None:
+        for name, number, note in _region_macros(limits.region):
+            yield f"{up}_{name}", number, note
     if limits.sector is not None:
         for name, number, note in sector_macros(limits.sector):
             yield f"{up}_{name}", number, note
+
+
+def _region_macros(region: MonitoredRegion) -> Iterator[tuple[str, Fraction, str]]:
+    """Yield the numbers by which the state is read."""
+    per = f"{unit('rad/(N*m)')}, at the "
+    yield "LEAST_YIELD", region.yields[0], f"{per}largest stiffness"
+    yield "MOST_YIELD", region.yields[1], f"{per}least stiffness"
+    yield "LEAST_STIFF", region.stiffness[0], unit("N*m/rad")
+    yield "MOST_STIFF", region.stiffness[1], unit("N*m/rad")
+    yield "WAY_LOW", region.ways[0], "1/s, speed after a period over its way, for a command of zero"
+    yield "WAY_HIGH", region.ways[1], "1/s"
+    yield "GAIN_LOW", region.gains[0], "of the motor"
+    yield "GAIN_HIGH", region.gains[1], "of the motor"

@@ -90,7 +90,7 @@ def render(export: Export) -> dict[str, bytes]:
     """
     program = program_of(export)
     code = {**c.render(export), **monitor.render(export)}
-    values = _values(program, monitor_limits(export, program.law.modes), code["_monitor.h"])
+    values = _values(program, monitor_limits(export, program.law), code["_monitor.h"])
     texts = {
         name: fill_template(f"ros2/{template}.j2", unit=unit, **values)
         for name, template in _TEMPLATES.items()

@@ -175,9 +175,8 @@ class AbstractEvidence(ABC):
         """Size of the start of a saturating system that motions decay from, if it shows one."""
         return None
 
-    @property
-    def start_rate(self) -> Fraction | None:
-        """Rate in 1/s at which they decay, if it shows one; of others nothing is said."""
+    def start_rate(self, system: SwitchedSystem) -> Fraction | None:
+        """Return the rate in 1/s at which they decay, if it shows one; others may not decay."""
         return None
 
     def proved_rate(self, system: SwitchedSystem) -> Fraction | None:
@@ -205,7 +204,7 @@ class AbstractEvidence(ABC):
         """Say in words what is shown, how fast in seconds, and what it takes for granted."""
         said, rate = [self.claim_in_scope(system)], self.proved_rate(system)
         if system.sample_time is not None and rate is not None:
-            said.append(_in_seconds(rate, system.sample_time))
+            said.append(in_seconds(rate, system.sample_time))
         said += self._said_of_contact(system)
         if system.roundings and self.covers_rounding:
             said.append(ROUNDED)
@@ -340,8 +339,16 @@ class AbstractEvidence(ABC):
         return self.find_misfit(system)
 
 
-def _in_seconds(rate: Fraction, step: Fraction) -> str:
-    """Say what a contraction rho per step is in seconds: ``-log(rho) >= 1 - rho``."""
+def in_seconds(rate: Fraction, step: Fraction) -> str:
+    """Say what a contraction rho per step is in seconds: ``-log(rho) >= 1 - rho``.
+
+    Parameters
+    ----------
+    rate : Fraction
+        The rho, below one.
+    step : Fraction
+        How long a step takes, in s.
+    """
     alpha = at_least((1 - rate) / step, "1/s")
     return f"A step takes {exact_text(step)} s, so that is exp(-alpha t) with alpha {alpha}."
 

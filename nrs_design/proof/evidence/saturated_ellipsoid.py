@@ -7,13 +7,25 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import ClassVar
 
+from nrs_design.proof.between import between
 from nrs_design.proof.bounds import rounded_down, rounded_up
-from nrs_design.proof.evidence.abstract import AbstractEvidence, Shows, find_odd_form
+from nrs_design.proof.evidence.abstract import AbstractEvidence, Shows, find_odd_form, in_seconds
 from nrs_design.proof.evidence.fields import MAX_INTEGER_BITS, Matrix, rate_words
 from nrs_design.proof.exact import IntegerMatrix, lyapunov_decrease
 from nrs_design.proof.matrix import RationalMatrix, bordered, leading, multiply
 from nrs_design.proof.mode import Time
 from nrs_design.proof.saturation import Saturation
+from nrs_design.proof.steps import (
+    CONTACT,
+    COUPLING,
+    FREE,
+    ROUNDING,
+    Acting,
+    coupling_facts,
+    grain_of,
+    multiplier_names,
+    steps_of,
+)
 from nrs_design.proof.system import SwitchedSystem
 
 Forms = Iterator[tuple[str, IntegerMatrix]]
@@ -24,7 +36,8 @@ NOTHING_SATURATES = "the system does not say what saturates"
 class SaturatedEllipsoid(AbstractEvidence):
     """``V = w' Q w`` decreases wherever ``V <= 1``, although signals are cut off at their limits.
 
-    Every signal ``s = sat(a)`` has a row h with ``|h w| <= limit`` in the ellipsoid (Hu and Lin).
+    Every signal ``s = sat(a)`` has a row h with ``|h w| <= limit`` in the ellipsoid (Hu and Lin),
+    or in discrete time one in every mode.
     There s is a mixture of its argument a and of ``h w``, so the loop moves as a mixture of the
     matrices that have, for each signal, one or the other in its place: `Saturation.between`. With
     w the state, or ``w = (y, max(delta, 0))`` where the system says how contact is lost, V
@@ -35,20 +48,37 @@ class SaturatedEllipsoid(AbstractEvidence):
       matrices of every free mode, and of Q;
 
     and the set ``V <= 1`` lies where the rows keep their limits: ``[[Q, h'], [h, limit^2]] > 0``.
+    In discrete time the matrices are the modes of `nrs_design.proof.between`, and V is left with a
+    share rho^2 in every step of them, as `nrs_design.proof.steps` says, with one multiplier for
+    each fact: where contact is lost, for roundings and for what other axes do. In the last case V
+    is the sum over all axes, each of which is then within its own limits.
     All are linear in the matrices: convex combinations of modes are covered.
     """
 
     kind: ClassVar[str] = "saturated-ellipsoid"
     covers_mixtures: ClassVar[bool] = True
     covers_lost_contact: ClassVar[bool] = True
+    covers_coupling: ClassVar[bool] = True
 
     Q: Matrix  # Shape (n, n). Numerators of the symmetric matrix.
     denominator_log2: int  # Q is these numerators over two to this power
-    rate: Fraction  # The alpha in 1/s
-    H: Matrix  # Shape (signals, n). Numerators of the rows h.
+    rate: Fraction  # The alpha in 1/s, or rho per step
+    # Shape (signals, n), or (signals times modes, n). Numerators of the rows h: one for each
+    # signal, or in discrete time one for each in every mode, and after them in the free modes.
+    H: Matrix
     H_denominator_log2: int  # H is these numerators over two to this power
     # Motions that begin at the start of the system, at this size at most, begin in ``V <= 1``.
     level: Fraction
+    # In discrete time, all over the denominator of Q: in the order of `multiplier_names`; one for
+    # each rounding of the system, if they are covered; and one for each coupling.
+    multipliers: tuple[int, ...] = ()
+    roundings: tuple[int, ...] = ()
+    taus: tuple[int, ...] = ()
+
+    @property
+    def covers_rounding(self) -> bool:
+        """Whether it has the multipliers for it."""
+        return bool(self.roundings)
 
     @property
     def shows(self) -> Shows:
@@ -60,17 +90,16 @@ class SaturatedEllipsoid(AbstractEvidence):
         """The level."""
         return self.level
 
-    @property
-    def start_rate(self) -> Fraction:
-        """The alpha in 1/s."""
-        return self.rate
+    def start_rate(self, system: SwitchedSystem) -> Fraction:
+        """Return alpha in 1/s, or what is not above it: ``1 - rho`` in every step."""
+        if system.time is Time.CONTINUOUS:
+            return self.rate
+        return (1 - self.rate) / (system.sample_time or 1)
 
     def find_misfit(self, system: SwitchedSystem) -> str | None:
         """Check that something saturates, shapes, and the signs of rate and level."""
         if system.saturation is None:
             return NOTHING_SATURATES
-        if system.time is not Time.CONTINUOUS:
-            return "saturation is covered in continuous time only"
         if system.contact is not None and system.contact.pulls:
             return "the environment could pull, which is not covered where signals saturate"
         if (odd := find_odd_form(self.Q, self.denominator_log2, system.order)) is not None:
@@ -78,9 +107,39 @@ class SaturatedEllipsoid(AbstractEvidence):
         if not 0 <= self.H_denominator_log2 <= MAX_INTEGER_BITS:
             return "the denominator of H is out of range"
         rows = len(system.saturation.signals)
-        if len(self.H) != rows or any(len(row) != system.order for row in self.H):
+        by_mode = system.time is Time.DISCRETE and len(self.H) == rows * len(system.every_mode)
+        if len(self.H) != rows and not by_mode:
             return f"H has not {rows} rows of {system.order} entries"
-        return None if self.rate > 0 and self.level > 0 else "the rate or the level is not positive"
+        if any(len(row) != system.order for row in self.H):
+            return f"H has not {rows} rows of {system.order} entries"
+        if self.rate <= 0 or self.level <= 0:
+            return "the rate or the level is not positive"
+        return self._find_odd_step(system)
+
+    def _find_odd_step(self, system: SwitchedSystem) -> str | None:
+        """Check what is there in discrete time only: the rate, and the multipliers."""
+        assert system.saturation is not None
+        if system.time is Time.CONTINUOUS:
+            if system.couplings or self.multipliers or self.roundings or self.taus:
+                return "in continuous time it has no multipliers, and is of one axis"
+            return None
+        if self.rate >= 1:
+            return "the rate is not one of exponential decay"
+        rounded = len(system.roundings) if self.roundings else 0
+        axes = len(set(coupling_facts(system.couplings)))
+        for numbers, count, each in (
+            (self.multipliers, len(multiplier_names(system)), "condition that needs it"),
+            (self.roundings, rounded, "rounding"),
+            (self.taus, axes, "coupling"),
+        ):
+            if len(numbers) != count:
+                return f"there is not one multiplier for each {each}"
+            if any(number < 0 for number in numbers):
+                return f"the multiplier of a {each} is negative"
+        for signal in system.saturation.signals:
+            if (rounded and not signal.errors) or (axes and not signal.pushes):
+                return f"{signal.name} does not say what the arithmetic rounds, or axes do"
+        return None
 
     def forms(self, system: SwitchedSystem) -> Forms:
         """Yield Q, the decreases in contact and free, and what the ellipsoid must and may hold."""
@@ -88,9 +147,12 @@ class SaturatedEllipsoid(AbstractEvidence):
         yield "Q is not symmetric and positive definite", self.Q
         yield from self._decreases(system, system.saturation)
         Q = RationalMatrix(self.Q, 2**self.denominator_log2).fractions()
-        for signal, h in zip(system.saturation.signals, self._held(), strict=True):
-            form = bordered(Q, h, signal.limit**2)
-            yield f"the row of {signal.name} is beyond its limit", form.numerators
+        signals = system.saturation.signals
+        # Modes may share their rows: each is looked at once.
+        for i, h in dict.fromkeys((k % len(signals), tuple(h)) for k, h in enumerate(self.H)):
+            row = [Fraction(entry, 2**self.H_denominator_log2) for entry in h]
+            form = bordered(Q, row, signals[i].limit ** 2)
+            yield f"the row of {signals[i].name} is beyond its limit", form.numerators
         start = system.saturation.start
         for state in start.states:
             x = state.fractions()
@@ -99,7 +161,10 @@ class SaturatedEllipsoid(AbstractEvidence):
             yield f"the ellipsoid does not hold the stated {start.name}", left.numerators
 
     def _decreases(self, system: SwitchedSystem, saturation: Saturation) -> Forms:
-        held = self._held()
+        if system.time is Time.DISCRETE:
+            yield from self._steps(system)
+            return
+        (held, *_) = self._held(system)
         for k, mode in enumerate(system.every_mode):
             where, Q = f"in mode {mode.name}", self.Q
             is_free = k >= len(system.modes)
@@ -110,8 +175,30 @@ class SaturatedEllipsoid(AbstractEvidence):
                 form = lyapunov_decrease(N, B.denominator, Q, self.rate)
                 yield f"V does not decrease at the claimed rate {where}", form
 
-    def _held(self) -> list[list[Fraction]]:
-        return RationalMatrix(self.H, 2**self.H_denominator_log2).fractions()
+    def _steps(self, system: SwitchedSystem) -> Forms:
+        acting = Acting(rounding=bool(self.roundings), coupling=bool(self.taus))
+        whole = between(
+            system, self._held(system), rounding=acting.rounding, coupling=acting.coupling
+        )
+        known = dict(zip(multiplier_names(system), self.multipliers, strict=True))
+        known |= {f"{ROUNDING} {k}": m for k, m in enumerate(self.roundings, 1)}
+        known |= {f"{COUPLING} {k}": m for k, m in enumerate(self.taus, 1)}
+        inner, keeps = leading(self.Q), self.rate**2
+        for step in steps_of(whole, acting, grain_of(keeps), lost=True):
+            before = self.Q if step.source == CONTACT else inner
+            after = self.Q if len(step.rows) == len(self.Q) else inner
+            # At the surface both functions are one: free motion ends there as it goes on.
+            if step.source == FREE and step.target == CONTACT and after is inner:
+                continue
+            form = step.form(before, after, keeps, known.__getitem__, self.denominator_log2)
+            yield f"V does not decrease at the claimed rate {step.where}", form
+
+    def _held(self, system: SwitchedSystem) -> list[list[list[Fraction]]]:
+        """Return the rows of every mode and free mode."""
+        assert system.saturation is not None
+        rows = RationalMatrix(self.H, 2**self.H_denominator_log2).fractions()
+        count, modes = len(system.saturation.signals), range(len(system.every_mode))
+        return [rows[k * count : (k + 1) * count] if len(rows) > count else rows for k in modes]
 
     def claim_in_scope(self, system: SwitchedSystem) -> str:
         """State from where motions decay, how fast, and what saturates."""
@@ -125,13 +212,24 @@ class SaturatedEllipsoid(AbstractEvidence):
                 "(zero elsewhere),"
             )
             lost = ", contact lost and made again at any time"
+        decay = "|w(t)| <= exp(-alpha t) |w(0)|"
+        if system.time is Time.DISCRETE:
+            decay = "|w(m)| <= rho^m |w(0)| after m steps"
+        of_all, sized, among = "", f"a {start.name} up to", ""
+        if system.couplings:
+            of_all = ", with the sum of the w' Q w of all axes in the place of w' Q w"
+            sized = f"{start.name}s of all axes, the root of whose sum of squares is up to"
+            among = ", every axis switched by itself and on others within the stated bounds"
+        seconds = ""
+        if system.time is Time.DISCRETE and system.sample_time is not None:
+            seconds = f" {in_seconds(self.rate, system.sample_time)}"
         return (
             f"Although signals saturate, each at the stated limit or beyond it ({', '.join(limits)}"
             f"): every motion that begins in the ellipsoid w' Q w <= 1 stays in it, and "
-            f"|w(t)| <= exp(-alpha t) |w(0)| with {rate_words(self.rate, system.time)} in the norm "
-            f"|w| = sqrt(w' Q w), where w holds {states} switching arbitrarily{lost}, with no "
-            f"disturbance. In particular: every motion that begins at rest with a {start.name} up "
-            f"to {rounded_down(self.level, start.unit)}, and all else zero."
+            f"{decay} with {rate_words(self.rate, system.time)} in the norm "
+            f"|w| = sqrt(w' Q w), where w holds {states} switching arbitrarily{lost}{among}, with "
+            f"no disturbance{of_all}. In particular: every motion that begins at rest with {sized} "
+            f"{rounded_down(self.level, start.unit)}{start.beside}, and all else zero.{seconds}"
         )
 
     def find_unsayable(self, system: SwitchedSystem) -> str | None:

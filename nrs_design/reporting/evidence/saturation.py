@@ -8,6 +8,7 @@ from fractions import Fraction
 import numpy as np
 
 from nrs_design.proof.bounds import lower, nearly, rounded_down, rounded_up
+from nrs_design.proof.mode import Time
 from nrs_design.proof.saturation import Saturation
 from nrs_design.reporting.document import Illustration, Paragraph, Section, Table
 from nrs_design.reporting.evidence import words
@@ -92,7 +93,7 @@ class SaturationPage(AbstractPage):
     @property
     def _shown(self) -> tuple[Fraction, Fraction]:
         """Size of the start, and rate of decay in 1/s."""
-        level, rate = self.evidence.start_size, self.evidence.start_rate
+        level, rate = self.evidence.start_size, self.evidence.start_rate(self.system)
         assert level is not None  # it shows both
         assert rate is not None
         return level, rate
@@ -105,9 +106,10 @@ class SaturationPage(AbstractPage):
             norm, drawn = clipped(norm), all_modes(system)
         states = [np.array(x.floats())[:, 0] for x in self._saturation.start.states]
         initial = float(level) * max(states, key=lambda x: float(x @ Q @ x))
-        fastest = max(np.abs(np.linalg.eigvals(mode.A.floats())).max() for mode in system.modes)
-        response = greedy_run(system, norm, initial, _SHARE / float(fastest), _STEPS)
-        bound = (f"exp(-{lower(rate)} t)", np.exp(-float(rate) * response.time))
+        response = greedy_run(system, norm, initial, self._step(), _STEPS)
+        # A step of a sampled loop takes no less than the power of (1 - rate T) says.
+        unit = 1.0 if system.time is Time.CONTINUOUS else float(system.sample_time or 1)
+        bound = (f"exp(-{lower(rate)} t)", np.exp(-float(rate) * response.time * unit))
         cut = _cut_off(share_cut_off(system, response))
         label = "root of V over its first value [1]"
         return Illustration(
@@ -116,6 +118,14 @@ class SaturationPage(AbstractPage):
             _RUN.format(start=self._saturation.start.name, cut=cut),
             draw_run(response, relative_norms(response, norm), bound, drawn, label),
         )
+
+    def _step(self) -> float:
+        """Return how long a step of the run is: in s, or one."""
+        if self.system.time is Time.DISCRETE:
+            return 1.0
+        modes = self.system.modes
+        fastest = max(np.abs(np.linalg.eigvals(mode.A.floats())).max() for mode in modes)
+        return _SHARE / float(fastest)
 
 
 def _cut_off(shares: Mapping[str, float]) -> str:

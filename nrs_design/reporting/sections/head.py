@@ -126,7 +126,7 @@ def saturated(certification: Certification) -> tuple[Fraction, str] | None:
     """Return the proved rate where signals saturate, and from where; None where none is shown."""
     system = certification.system
     for item in certification.statements:
-        rate, size = item.start_rate, item.start_size
+        rate, size = item.start_rate(system), item.start_size
         if rate is not None and size is not None and system.saturation is not None:
             start = system.saturation.start
             return rate, f"at rest with a {start.name} up to {rounded_down(size, start.unit)}"

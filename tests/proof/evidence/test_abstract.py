@@ -34,6 +34,7 @@ from tests.proof.systems import (
     genuine,
     leaning,
     matrix,
+    pushed_away,
 )
 
 
@@ -371,7 +372,7 @@ FACTS = {
     "attains_rate": FREE | RULED,
     "bounds_at_once": FREE,
     "covers_clock": GRAPHS - RULED | {"growing-sequence"},
-    "covers_coupling": {"coupled-axes", "invariant-ellipsoid"},
+    "covers_coupling": {"coupled-axes", "invariant-ellipsoid", "saturated-ellipsoid"},
     "covers_lost_contact": BOUNCING
     | {"constant-force", "invariant-ellipsoid", "no-common-quadratic", "saturated-ellipsoid"}
     | {"safety-layer"},
@@ -399,11 +400,11 @@ def test_a_kind_that_says_nothing_of_itself_claims_nothing(fact):
 
 
 def test_only_what_speaks_of_saturation_says_how_motions_begin():
-    assert Claimed().start_size is Claimed().start_rate is None
+    assert Claimed().start_size is Claimed().start_rate(pushed_away()) is None
     pairs = [genuine(example) for example in SYSTEMS]
-    for fact in ("start_size", "start_rate"):
-        begun = {item.kind for _, item in pairs if getattr(item, fact) is not None}
-        assert begun == {"saturated-ellipsoid"}
+    sized = {item.kind for _, item in pairs if item.start_size is not None}
+    rated = {item.kind for system, item in pairs if item.start_rate(system) is not None}
+    assert sized == rated == {"saturated-ellipsoid"}
 
 
 @pytest.mark.parametrize("example", SYSTEMS)

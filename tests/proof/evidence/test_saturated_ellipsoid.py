@@ -21,6 +21,7 @@ from tests.proof.systems import (
     kept,
     matrix,
     pushed_away,
+    pushed_away_in_steps,
     saturating,
 )
 from tests.proof.truth import holds
@@ -36,7 +37,7 @@ def test_a_scalar_loop_decays_from_inside_of_its_region():
     assert holds(system, HELD)
     assert HELD.shows is Shows.REGION
     assert HELD.start_size == Fraction(13, 16)
-    assert HELD.start_rate == Fraction(1, 32)
+    assert HELD.start_rate(system) == Fraction(1, 32)
     assert HELD.proved_rate(system) is None
     claim = HELD.claim(system)
     assert "a place up to 0.8125 m" in claim
@@ -171,7 +172,8 @@ UNEVEN = replace(
     ("system", "fault"),
     [
         (replace(pushed_away(), saturation=None), "does not say what saturates"),
-        (replace(pushed_away(), time=Time.DISCRETE), "continuous time only"),
+        # In steps this loop doubles its state.
+        (replace(pushed_away(), time=Time.DISCRETE), "does not decrease"),
         (changed(limit=Fraction(0)), "the limit of s is not positive"),
         (changed(columns=()), "has not one column and row for every mode"),
         (changed(rows=SIGNAL.rows * 2), "has not one column and row for every mode"),
@@ -199,7 +201,7 @@ UNEVEN = replace(
                 pushed_away(),
                 couplings=(Coupling("c", (matrix([[1]]),), (matrix([[1]]),)),),
             ),
-            "what axes do to each other",
+            "is of one axis",
         ),
     ],
 )
@@ -247,6 +249,103 @@ def test_every_choice_of_arguments_and_rows_is_needed():
     weak = SaturatedEllipsoid(((16,),), 8, Fraction(1, 64), ((-16,), (-4,)), 5, Fraction(7, 2))
     assert "does not decrease" in weak.find_fault(system)
     assert not holds(system, weak)
+
+
+# For x+ = 3/2 x + sat(-x): h = -9/16, V = (5/8)^2 x^2 nearly, from |x| <= 3/2.
+STEPS = SaturatedEllipsoid(((25,),), 6, Fraction(31, 32), ((-9,),), 4, Fraction(3, 2))
+
+
+def test_a_loop_in_steps_decays_from_inside_of_its_region():
+    system = pushed_away_in_steps()
+    assert STEPS.find_fault(system) is None
+    assert agrees(system, STEPS)
+    assert holds(system, STEPS)
+    # A thirty-second of it is lost in every tenth of a second.
+    assert STEPS.start_rate(system) == Fraction(10, 32)
+    assert STEPS.start_rate(replace(system, sample_time=None)) == Fraction(1, 32)
+    claim = STEPS.claim(system)
+    assert "|w(m)| <= rho^m |w(0)| after m steps with rho = 0.96875" in claim
+    assert "alpha = 0.3125 1/s" in claim
+    assert "A step takes" not in STEPS.claim(replace(system, sample_time=None))
+
+
+@given(
+    st.integers(-30, 0),
+    st.integers(1, 100),
+    st.fractions(Fraction(1, 2), Fraction(2), max_denominator=32),
+    st.fractions(Fraction(1, 2), Fraction(3), max_denominator=32),
+)
+def test_no_region_in_steps_is_larger_than_that_of_the_motions(h, q, rate, level):
+    """It is |x| < 2, by hand."""
+    system = pushed_away_in_steps()
+    evidence = SaturatedEllipsoid(((q,),), 6, rate, ((h,),), 4, level)
+    if evidence.find_fault(system) is None:
+        assert level < 2
+        assert rate < 1
+        assert holds(system, evidence)
+
+
+@pytest.mark.parametrize(
+    ("evidence", "fault"),
+    [
+        (replace(STEPS, H=((-8,),)), "does not decrease"),
+        (replace(STEPS, H=((-11,),)), "beyond its limit"),
+        (replace(STEPS, H=((-9,), (-9,))), "H has not 1 rows"),
+        (replace(STEPS, rate=Fraction(7, 8)), "does not decrease"),
+        (replace(STEPS, rate=Fraction(1)), "not one of exponential decay"),
+        (replace(STEPS, level=Fraction(8, 5)), "does not hold the stated place"),
+        (replace(STEPS, multipliers=(1,)), "one multiplier for each condition"),
+        (replace(STEPS, roundings=(1,)), "one multiplier for each rounding"),
+        (replace(STEPS, taus=(1,)), "one multiplier for each coupling"),
+    ],
+)
+def test_other_numbers_in_steps_are_refused(evidence, fault):
+    assert fault in evidence.find_fault(pushed_away_in_steps())
+
+
+def test_multipliers_are_of_steps():
+    for part in ("multipliers", "roundings", "taus"):
+        assert "has no multipliers" in replace(HELD, **{part: (1,)}).find_fault(pushed_away())
+
+
+def test_rounding_and_other_axes_are_asked_for():
+    system, evidence = genuine("saturated-ellipsoid, axes in steps")
+    assert evidence.covers_rounding
+    assert "on others within the stated bounds" in evidence.claim(system)
+    assert "root of whose sum of squares" in evidence.claim(system)
+    assert "single-precision arithmetic rounds in the law is included" in evidence.claim(system)
+    negative = replace(evidence, taus=tuple(-tau - 1 for tau in evidence.taus))
+    assert "multiplier of a coupling is negative" in negative.find_fault(system)
+    (signal,) = system.saturation.signals
+    for part in ("errors", "pushes"):
+        silent = replace(system.saturation, signals=(replace(signal, **{part: ()}),))
+        fault = "does not say what the arithmetic rounds"
+        assert fault in evidence.find_fault(replace(system, saturation=silent))
+    # Without its roundings it is about exact arithmetic, and need not know of them.
+    plain, exact = replace(evidence, roundings=()), replace(signal, errors=())
+    known = replace(system, saturation=replace(system.saturation, signals=(exact,)))
+    assert plain.find_fault(known) is None
+    assert holds(known, plain)
+    assert "without rounding" in plain.claim(known)
+
+
+def test_rows_may_differ_from_mode_to_mode():
+    """Each is held against its limit, and counts in its own mode."""
+    system, evidence = genuine("saturated-ellipsoid, in steps")
+    each = replace(evidence, H=evidence.H * 3)
+    assert each.find_fault(system) is None
+    assert holds(system, each)
+    far = tuple(21 * entry // 20 for entry in evidence.H[0])
+    for k in range(3):
+        rows = [*evidence.H * 3]
+        rows[k] = far
+        assert "the row of s is beyond" in replace(each, H=tuple(rows)).find_fault(system)
+        rows[k] = tuple(0 for _ in far)
+        other = replace(each, H=tuple(rows))
+        assert "does not decrease" in other.find_fault(system)
+        assert not holds(system, other)
+    ragged = replace(each, H=(*each.H[:2], each.H[2][:1]))
+    assert "H has not 1 rows of 2 entries" in ragged.find_fault(system)
 
 
 def test_fields_are_read_again():

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
+from fractions import Fraction
 
 from nrs_design.axis import current, unit
 
@@ -61,7 +62,7 @@ class Measure:
     upper: bool = False
     doubtful: float | None = None  # SI value beyond which a design without a goal is doubted
 
-    def text(self, value: float) -> str:
+    def text(self, value: float | Fraction) -> str:
         """Write a value with four digits, rounded to its unfavorable side."""
         if math.isnan(value):
             return "not computed"
@@ -70,7 +71,11 @@ class Measure:
         rounding = ROUND_CEILING if self.upper else ROUND_FLOOR
         context = Context(prec=_DIGITS, rounding=rounding)
         scale, shown = self._shown
-        rounded = context.create_decimal(Decimal(value * scale))
+        if isinstance(value, Fraction):
+            exact = value * self.exact_scale
+            rounded = context.divide(Decimal(exact.numerator), Decimal(exact.denominator))
+        else:
+            rounded = context.create_decimal(Decimal(value * scale))
         return f"{rounded.normalize():f} {shown}".rstrip()
 
     def goal_text(self, value: float) -> str:
@@ -78,6 +83,11 @@ class Measure:
         scale, unit_shown = self._shown
         shown = f"{value * scale:.6g} {unit_shown}".rstrip()
         return f"{'at most' if self.upper else 'at least'} {shown}"
+
+    @property
+    def exact_scale(self) -> Fraction:
+        """Shown value over SI value, as the floating-point number that it is."""
+        return Fraction(self._shown[0])
 
     @property
     def _shown(self) -> tuple[float, str]:

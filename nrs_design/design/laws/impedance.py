@@ -37,6 +37,7 @@ from nrs_design.design.measures import (
     Measure,
 )
 from nrs_design.design.passivity import PassiveBand, passive_band
+from nrs_design.design.proved_margins import ranged_loops, with_proofs
 from nrs_design.design.relief import doubt_stiffness
 from nrs_design.design.response_cost import ResponseCost, response_cost
 from nrs_design.design.response_goals import JudgedResponse, judged_responses, response_goals
@@ -174,6 +175,7 @@ def analyze(
     asked = dict(requirement.goals)
     measures = (*_measures(task), *(item for item in HAND_MEASURES if item in asked))
     achieved = requirement.achieved(measures, Mt, Bt)
+    achieved = _with_proofs(task, given, controller, requirement, achieved)
     creep = creep_of(task.spec, task.loop, given, controller) if task.sensor.errors else None
     return ImpedanceAnalysis(
         name=controller.name,
@@ -196,6 +198,22 @@ def analyze(
         lever_arm=_lever_arm(task, given),
         responses=tuple(_responses(task, given, controller)),
     )
+
+
+def _with_proofs(
+    task: Task,
+    given: ImpedanceControllerSpec,
+    controller: Controller,
+    requirement: Requirement,
+    achieved: tuple[Achieved, ...],
+) -> tuple[Achieved, ...]:
+    """Prove margins over the ranges, where the loop is continuous."""
+    if not isinstance(task.axis, ContinuousAxis):
+        return achieved
+    moving = _moving(task, given, controller)
+    loops = ranged_loops(task.axis, controller.law, task.contacts(given), moving)
+    home, desired, bandwidth = given.environment, requirement.desired, requirement.bandwidth
+    return with_proofs(achieved, loops, home, desired, bandwidth)
 
 
 def _given_optimum(problem: ImpedanceProblem, given: ImpedanceControllerSpec) -> ImpedanceOptimum:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -103,8 +103,9 @@ def motion_summary(analysis: DesignAnalysis) -> dict[str, Any]:
     }
 
 
-def meanings(spec: InteractionDesignSpec) -> Iterator[str]:
+def meanings(spec: InteractionDesignSpec, items: Sequence[ImpedanceAnalysis]) -> Iterator[str]:
     """Yield what the values of the table are about."""
+    from nrs_design.design.judged import computed
     from nrs_design.design.measures import (
         COST_MEANING,
         LIMIT_MEANING,
@@ -117,7 +118,7 @@ def meanings(spec: InteractionDesignSpec) -> Iterator[str]:
     yield LIMIT_MEANING
     if spec.coupling is not None:
         yield ONE_AXIS
-    yield MEANING[-1]
+    yield from computed(items)
     yield COST_MEANING
     weights = (getattr(controller, "weights", None) for controller in spec.controllers.values())
     if any(given is not None and (given.transparency or given.accuracy) for given in weights):
@@ -150,7 +151,7 @@ def _summary(spec: InteractionDesignSpec, item: ImpedanceAnalysis) -> dict[str, 
         "disk_margin": worst(measures.DISK_MARGIN),
         "stiffness_limit": finite(item.lowest_limit),
         "stiffness_limit_at": item.limit_at,
-        "over": [*meanings(spec)],
+        "over": [*meanings(spec, [item])],
         "lever_arm_m": item.lever_arm,
         "stiffness_limit_at_arm_N_m": item.limit_at_arm and finite(item.limit_at_arm),
         "passive_up_to_rad_s": passive and lower_float(passive),
@@ -243,14 +244,14 @@ def _print(spec: InteractionDesignSpec, analysis: DesignAnalysis) -> None:
             f"{item.Mt:.6g}",
             f"{item.Bt:.6g}",
             f"{item.cost:.4f}",
-            *(measure.text(item.worst(measure).value) for measure in MARGINS),
+            *(item.shown(measure).text for measure in MARGINS),
             _limit(item.lowest_limit),
         ]
         for item in analysis.impedance
     ]
     if rows:
         print_table("margins and k limit: the worst over the ranges", columns, rows)
-        for line in meanings(spec):
+        for line in meanings(spec, analysis.impedance):
             say(line)
     limits = [
         f"{item.name} {_limit(item.limit_at_arm)} N/m at {item.lever_arm:g} m"

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 
 from nrs_design.errors import InternalError
 from nrs_design.models.interval import Interval
-from nrs_design.proof.largest_ratio import bernstein, largest_ratio
+from nrs_design.proof.largest_ratio import MOST, bernstein, largest_ratio
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Time
 from nrs_design.proof.spectrum import is_stable
@@ -35,7 +35,9 @@ class Quotient(NamedTuple):
 
 
 def is_stable_over(
-    at: Callable[[Mapping[str, Fraction]], Quotient], ranges: Mapping[str, Interval]
+    at: Callable[[Mapping[str, Fraction]], Quotient],
+    ranges: Mapping[str, Interval],
+    most: int = MOST,
 ) -> bool:
     """Tell whether the poles of a response are shown to be on the left in a whole box.
 
@@ -43,9 +45,11 @@ def is_stable_over(
     ----------
     at, ranges
         As for `nrs_design.design.displayed_response.largest_over`.
+    most : int
+        Bernstein coefficients that are looked at.
     """
     poles = [lowest_first(corner.poles) for corner in corners_in(at, ranges)]
-    return _is_stable(poles)
+    return _is_stable(poles, most)
 
 
 def corners_in(
@@ -70,7 +74,7 @@ def corners_in(
     return corners
 
 
-def _is_stable(poles: Sequence[list[Fraction]]) -> bool:
+def _is_stable(poles: Sequence[list[Fraction]], most: int) -> bool:
     """Tell whether polynomials, and all means of them, are shown to have their roots on the left.
 
     The polynomials are those at the corners of a box in which they are affine in each parameter.
@@ -84,7 +88,7 @@ def _is_stable(poles: Sequence[list[Fraction]]) -> bool:
         below = coefficients_between(powers, ZERO, end)
         above = [ONE] * len(below)
         shape = (3,) * parameters + (len(powers[0]),)
-        if largest_ratio(above, below, shape, nearly=None).above is None:
+        if largest_ratio(above, below, shape, nearly=None, most=most).above is None:
             return False
     return True
 

@@ -100,6 +100,11 @@ class AbstractControllerAnalysis(ABC):
     name: str  # Of the controller
     achieved: tuple[Achieved, ...]  # The worst values over the contacts, beside the goals
 
+    @property
+    def judged(self) -> tuple[Achieved, ...]:
+        """The same, with what is proved of them over all values of the ranges."""
+        return self.achieved
+
     def doubts(self) -> Iterator[Doubt]:
         """Yield what is doubtful about the gains, and no goal speaks of it."""
         yield from doubt_values(self.name, self.achieved)

@@ -26,6 +26,7 @@ from nrs_design.proof.bounds import lower, lower_float, upper_float
 
 if TYPE_CHECKING:
     from nrs_design.design.analysis import DesignAnalysis, ImpedanceAnalysis
+    from nrs_design.design.cost_bound import CostBound
     from nrs_design.design.measures import Measure
     from nrs_design.design.sampled_passivity import SampledBand
     from nrs_design.pipeline import Designed
@@ -43,6 +44,14 @@ def optimize(
             "certificate to reports/NAME.cert.json; for goals decay_rate and peak_torque.",
         ),
     ] = None,
+    global_optimum: Annotated[
+        bool,
+        typer.Option(
+            "--global-optimum",
+            help="Prove how far the cost is above the least one within the bounds of Mt and Bt; "
+            "takes a second or two for a controller.",
+        ),
+    ] = False,
 ) -> Answer:
     """Optimize virtual mass Mt and damping Bt for displayed impedance and sensitivity.
 
@@ -60,16 +69,21 @@ def optimize(
         step("cost")
         designed = run_interaction(loaded, "has nothing to design")
         step("margins")
-        analysis = run_analysis(designed)
+        chosen = analysis = run_analysis(designed)
     certified = CertifiedGains.of(designed, analysis, out)
     if certified is not None:
         designed, analysis = certified.designed, certified.analysis
+
+    bounds = _cost_bounds(chosen, analysis) if global_optimum else {}
 
     def facts() -> dict[str, Any]:
         return {
             "motion_loop": motion_summary(analysis),
             "sensor": _sensor(designed),
-            "controllers": [_summary(designed.spec, item) for item in analysis.impedance],
+            "controllers": [
+                _summary(designed.spec, item) | _optimum_facts(bounds.get(item.name))
+                for item in analysis.impedance
+            ],
             "certified": None if certified is None else certified.facts(),
         }
 
@@ -77,6 +91,7 @@ def optimize(
         if not analysis.impedance:
             note("no impedance controllers in this spec; see nrs-design tune for the others")
         _print(designed.spec, analysis)
+        _print_bounds(bounds)
         print_responses(analysis)
         if certified is not None:
             certified.show()
@@ -92,6 +107,45 @@ def optimize(
         proved=proved,
         judged=certified is not None,
     )
+
+
+def _cost_bounds(chosen: DesignAnalysis, shipped: DesignAnalysis) -> dict[str, CostBound | str]:
+    """Bound the least cost of each controller, or say why it is not bounded."""
+    from nrs_design.design.cost_bound import bound_cost, why_no_bound
+
+    found: dict[str, CostBound | str] = {}
+    for item, own in zip(chosen.impedance, shipped.impedance, strict=True):
+        goals = bool(item.requirement.goals) or shipped is not chosen
+        why_not = why_no_bound(item.problem)
+        found[item.name] = why_not or bound_cost(item.problem, own.Mt, own.Bt, goals=goals)
+    return found
+
+
+def _optimum_facts(bound: CostBound | str | None) -> dict[str, Any]:
+    """Return the bounds on the least cost, rounded to their safe sides; nothing if not asked."""
+    if bound is None:
+        return {}
+    if isinstance(bound, str):
+        return {"global_optimum": None, "global_optimum_not_computed": bound}
+    return {
+        "global_optimum": {
+            "cost_at_most": upper_float(bound.above),
+            "least_cost_at_least": lower_float(bound.below),
+            "gap": upper_float(bound.gap),
+            "boxes": bound.boxes,
+            "reached": bound.reached,
+            "without_goals": bound.goals,
+        }
+    }
+
+
+def _print_bounds(bounds: dict[str, CostBound | str]) -> None:
+    from nrs_design.design.measures import OPTIMUM_MEANING
+
+    for name, bound in bounds.items():
+        say(f"{name}: {f'no bound on the cost: {bound}' if isinstance(bound, str) else bound.text}")
+    if any(not isinstance(bound, str) for bound in bounds.values()):
+        say(OPTIMUM_MEANING)
 
 
 def motion_summary(analysis: DesignAnalysis) -> dict[str, Any]:

@@ -11,7 +11,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
-from nrs_design.design.impedance_optimum import NODES, ImpedanceProblem
+from nrs_design.design.impedance_optimum import NODES, ImpedanceProblem, optimize_impedance
 from nrs_design.proof.bounds import upper
 from nrs_design.proof.least_cost import Frequency, cost_at_most, least_cost
 
@@ -29,6 +29,7 @@ class CostBound:
     below: Fraction  # No gains within their bounds, stable or not, cost less
     boxes: int  # That were looked at
     reached: bool  # Whether the search came as near as it was asked to
+    goals: bool  # Whether the gains that ship had goals to meet, which the bound leaves out
 
     @property
     def gap(self) -> Fraction:
@@ -39,11 +40,12 @@ class CostBound:
     def text(self) -> str:
         """The gap in words, rounded up."""
         ended = "" if self.reached else ", where the search ended"
-        return f"global optimum within {upper(self.gap, 2)}, {self.boxes} boxes{ended}"
+        what = "least cost without goals" if self.goals else "global optimum"
+        return f"{what} within {upper(self.gap, 2)}, {self.boxes} boxes{ended}"
 
 
 def bound_cost(
-    problem: ImpedanceProblem, found: float, Mt: float, Bt: float, most: int = MOST
+    problem: ImpedanceProblem, Mt: float, Bt: float, *, goals: bool = False, most: int = MOST
 ) -> CostBound:
     """Bound the least cost over all gains within their bounds.
 
@@ -51,16 +53,16 @@ def bound_cost(
     ----------
     problem : ImpedanceProblem
         Cost and bounds, with no part for transparency or accuracy.
-    found : float
-        The cost that a search has found, without goals.
     Mt, Bt : float
         The gains that ship, kg m^2 and N m s/rad.
+    goals : bool
+        Whether they had goals to meet.
     most : int
         Boxes that are looked at.
     """
     frequencies = [*_frequencies(problem)]
     weights = Fraction(problem.weight_displayed), Fraction(problem.weight_sensitivity)
-    enough = Fraction(found) - NEARLY
+    enough = Fraction(optimize_impedance(problem).cost) - NEARLY
     least = least_cost(
         frequencies,
         weights,
@@ -70,11 +72,15 @@ def bound_cost(
         most=most,
     )
     above = cost_at_most(frequencies, weights, Fraction(Mt), Fraction(Bt))
-    return CostBound(above, least.below, least.boxes, least.below >= enough)
+    return CostBound(above, least.below, least.boxes, least.below >= enough, goals)
 
 
 def why_no_bound(problem: ImpedanceProblem) -> str:
     """Say why a least cost is not bounded; nothing where it is."""
+    if problem.mass_bounds[0] == problem.mass_bounds[1] and (
+        problem.damping_bounds[0] == problem.damping_bounds[1]
+    ):
+        return "Mt and Bt are given"
     if problem.responses:
         return "the weights for transparency and accuracy are not covered"
     return ""

@@ -134,8 +134,6 @@ class _Box:
         else:
             shares = list(self.steep)
         axis = shares.index(max(shares))
-        if not widths[axis]:
-            axis = 1 - axis
         low, high = self.gains[axis]
         # Large ranges of damping are halved by ratio.
         middle = 2 * low if axis == 1 and high > 4 * low else (low + high) / 2

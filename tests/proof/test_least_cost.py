@@ -85,6 +85,9 @@ def test_a_resonance_in_the_box_does_no_harm():
     box = (Fraction(0), Fraction(0)), (HALF, Fraction(2))
     found = least_cost(given, (Fraction(0), ONE), *box, enough=Fraction("0.9"), most=200)
     assert found.below == Fraction("0.9")
+    # Near enough for slopes, which are infinite over the whole box.
+    near = least_cost(given, (Fraction(0), ONE), *box, enough=Fraction("0.6"), most=200)
+    assert near.below == Fraction("0.6")
     # L = Bt/|Bt - 1| is at least 1, at Bt = 1/2.
     at_once = least_cost(given, (Fraction(0), ONE), *box, enough=Fraction("0.9"), most=1)
     assert 0 <= at_once.below <= 1

@@ -41,7 +41,8 @@ def optimize(
         typer.Option(
             metavar="NEW.nrs.yaml",
             help="Write the spec with these gains given, named after the file, and its "
-            "certificate to reports/NAME.cert.json; for goals decay_rate and peak_torque.",
+            "certificate to reports/NAME.cert.json; for goals decay_rate and peak_torque, and for "
+            "--retune.",
         ),
     ] = None,
     global_optimum: Annotated[
@@ -50,6 +51,14 @@ def optimize(
             "--global-optimum",
             help="Prove how far the cost is above the least one within the bounds of Mt and Bt; "
             "takes a second or two for a controller.",
+        ),
+    ] = False,
+    retune: Annotated[
+        bool,
+        typer.Option(
+            "--retune",
+            help="Prove within how many per cent of these gains all Bt may be retuned while the "
+            "robot runs; --out writes the spec with these ranges.",
         ),
     ] = False,
 ) -> Answer:
@@ -62,6 +71,7 @@ def optimize(
     Example: nrs-design optimize specs/neuroboscope/soft-tissue.nrs.yaml
     """
     from nrs_design.cli.certified_gains import CertifiedGains
+    from nrs_design.cli.retuned_gains import RetunedBox
     from nrs_design.pipeline import run_analysis, run_interaction
 
     loaded = take_spec(spec)
@@ -70,11 +80,12 @@ def optimize(
         designed = run_interaction(loaded, "has nothing to design")
         step("margins")
         chosen = analysis = run_analysis(designed)
-    certified = CertifiedGains.of(designed, analysis, out)
+    certified = CertifiedGains.of(designed, analysis, None if retune else out)
     if certified is not None:
         designed, analysis = certified.designed, certified.analysis
 
     bounds = _cost_bounds(chosen, analysis) if global_optimum else {}
+    box = RetunedBox.of(designed, out) if retune else None
 
     def facts() -> dict[str, Any]:
         return {
@@ -85,6 +96,7 @@ def optimize(
                 for item in analysis.impedance
             ],
             "certified": None if certified is None else certified.facts(),
+            "retuned": None if box is None else box.facts(),
         }
 
     def show() -> None:
@@ -95,6 +107,8 @@ def optimize(
         print_responses(analysis)
         if certified is not None:
             certified.show()
+        if box is not None:
+            box.show()
 
     proved = all(found.proved for item in analysis.impedance for found in item.responses)
     proved = proved and (certified is None or certified.proved)

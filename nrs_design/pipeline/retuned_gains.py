@@ -2,7 +2,7 @@
 
 The same share for all impedance controllers, in whole per cent. A proof for a box is one for every
 smaller one, so the largest share is bracketed and bisected. Each proof has passed the exact check,
-and meets the goals of the certificate; no rate is optimized.
+and meets the goals of the certificate.
 """
 
 from __future__ import annotations
@@ -68,20 +68,21 @@ def run_retuned_gains(
 
     def is_proved(percent: int) -> bool:
         progress(f"Bt retuned by {percent} %")
-        loaded = _ranged(designed, names, percent, name)
-        given = search_limits(loaded.spec)
-        limits = replace(given, optimize_rate=False, budget=min(given.budget, BUDGET))
+        loaded = with_gain_ranges(designed, names, percent, name)
+        given, goals = search_limits(loaded.spec), designed.spec.goals
+        rate = goals is not None and goals.decay_rate is not None
+        limits = replace(given, optimize_rate=rate, budget=min(given.budget, BUDGET))
         try:
             result = run_certification(loaded, limits=limits)
         except AssemblyError:
             return False
-        goals = certified_goals(loaded.spec, result.certificate)
-        if result.certification.verdict is not Verdict.PROVED or not all(g.met for g in goals):
+        met = all(goal.met for goal in certified_goals(loaded.spec, result.certificate))
+        if result.certification.verdict is not Verdict.PROVED or not met:
             return False
         proved[percent] = result
         return True
 
-    low, high = _bracket(is_proved)
+    low, high = bracket_share(is_proved)
     while high - low > 1 and high <= LARGEST:
         middle = (low + high) // 2
         low, high = (middle, high) if is_proved(middle) else (low, middle)
@@ -91,8 +92,14 @@ def run_retuned_gains(
     return RetunedGains(share, high if high <= LARGEST else None, ranges, proved.get(low))
 
 
-def _bracket(is_proved: Callable[[int], bool]) -> tuple[int, int]:
-    """Return a share that is proved, or 0, and the next one that is not, or one beyond all."""
+def bracket_share(is_proved: Callable[[int], bool]) -> tuple[int, int]:
+    """Return a share in per cent that is proved, or 0, and one that is not, or is beyond all.
+
+    Parameters
+    ----------
+    is_proved : callable
+        Decides a share.
+    """
     percent = FIRST
     if is_proved(percent):
         while 2 * percent <= LARGEST and is_proved(2 * percent):
@@ -111,8 +118,22 @@ def _shipped(designed: Designed, controller: str, gain: str) -> str:
     return exact_decimal(value)
 
 
-def _ranged(designed: Designed, names: Sequence[str], percent: int, name: str | None) -> LoadedSpec:
-    """Return the spec with its gains given, and ranges of the dampings."""
+def with_gain_ranges(
+    designed: Designed, names: Sequence[str], percent: int, name: str | None
+) -> LoadedSpec:
+    """Return the spec with its gains given, and ranges of the dampings.
+
+    Parameters
+    ----------
+    designed : Designed
+        The spec, and the gains that ship.
+    names : sequence of str
+        The controllers.
+    percent : int
+        Half the width of each range.
+    name : str or None
+        Of the spec; None leaves it.
+    """
     document = SpecDocument(designed.loaded)
     if name is not None:
         document.put(document.root, "name", name)

@@ -25,8 +25,7 @@ if TYPE_CHECKING:
 
 def _print_goals(name: str, items: Iterable[AbstractControllerAnalysis]) -> None:
     """Print what the spec asks for beside what is achieved at worst; nothing without goals."""
-    from nrs_design.design.judged import computed
-    from nrs_design.design.measures import MEANING
+    from nrs_design.design.measures import MEANING, computed
 
     rows = [
         [
@@ -44,7 +43,7 @@ def _print_goals(name: str, items: Iterable[AbstractControllerAnalysis]) -> None
     if rows:
         columns = ["controller", "goal", "wanted", "worst", "at", ""]
         print_table(f"{name}: goals", columns, rows)
-        for line in (*MEANING[:-1], *computed(tuple(items))):
+        for line in (*MEANING[:-1], *computed({item.name: item.proved_titles for item in items})):
             say(line)
 
 

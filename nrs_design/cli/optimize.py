@@ -73,6 +73,7 @@ def optimize(
     from nrs_design.cli.certified_gains import CertifiedGains
     from nrs_design.cli.retuned_gains import RetunedBox
     from nrs_design.pipeline import run_analysis, run_interaction
+    from nrs_design.pipeline.cost_bounds import run_cost_bounds
 
     loaded = take_spec(spec)
     with progress(f"designing {loaded.spec.name}") as step:
@@ -84,7 +85,7 @@ def optimize(
     if certified is not None:
         designed, analysis = certified.designed, certified.analysis
 
-    bounds = _cost_bounds(chosen, analysis) if global_optimum else {}
+    bounds = run_cost_bounds(chosen, analysis) if global_optimum else {}
     box = RetunedBox.of(designed, out) if retune else None
 
     def facts() -> dict[str, Any]:
@@ -121,18 +122,6 @@ def optimize(
         proved=proved,
         judged=certified is not None,
     )
-
-
-def _cost_bounds(chosen: DesignAnalysis, shipped: DesignAnalysis) -> dict[str, CostBound | str]:
-    """Bound the least cost of each controller, or say why it is not bounded."""
-    from nrs_design.design.cost_bound import bound_cost, why_no_bound
-
-    found: dict[str, CostBound | str] = {}
-    for item, own in zip(chosen.impedance, shipped.impedance, strict=True):
-        goals = bool(item.requirement.goals) or shipped is not chosen
-        why_not = why_no_bound(item.problem)
-        found[item.name] = why_not or bound_cost(item.problem, own.Mt, own.Bt, goals=goals)
-    return found
 
 
 def _optimum_facts(bound: CostBound | str | None) -> dict[str, Any]:
@@ -173,20 +162,20 @@ def motion_summary(analysis: DesignAnalysis) -> dict[str, Any]:
 
 def meanings(spec: InteractionDesignSpec, items: Sequence[ImpedanceAnalysis]) -> Iterator[str]:
     """Yield what the values of the table are about."""
-    from nrs_design.design.judged import computed
     from nrs_design.design.measures import (
         COST_MEANING,
         LIMIT_MEANING,
         MEANING,
         ONE_AXIS,
         WEIGHED_MEANING,
+        computed,
     )
 
     yield MEANING[0]
     yield LIMIT_MEANING
     if spec.coupling is not None:
         yield ONE_AXIS
-    yield from computed(items)
+    yield from computed({item.name: item.proved_titles for item in items})
     yield COST_MEANING
     weights = (getattr(controller, "weights", None) for controller in spec.controllers.values())
     if any(given is not None and (given.transparency or given.accuracy) for given in weights):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 from fractions import Fraction
@@ -50,6 +51,26 @@ RESPONSE_MEANING = (
     "rounding and saturation; sampled, with force samples that are all of the same age."
 )
 ONE_AXIS = "Of axes that act on each other, this is one by itself."
+
+
+def computed(proved: Mapping[str, Sequence[str]]) -> Iterator[str]:
+    """Yield how the values of controllers were found.
+
+    Parameters
+    ----------
+    proved : mapping of str to sequence of str
+        By controller, the titles of what is proved over all values of the ranges.
+    """
+    names: dict[str, list[str]] = {}
+    for name, titles in proved.items():
+        if titles:
+            names.setdefault(", ".join(titles), []).append(name)
+    for said, own in names.items():
+        yield (
+            f"Proved in exact arithmetic for all values in the ranges, each of them constant, of "
+            f"{', '.join(own)}: {said}."
+        )
+    yield f"{'All else: computed' if names else 'Computed'}{MEANING[-1].removeprefix('Computed')}"
 
 
 @dataclass(frozen=True, slots=True)

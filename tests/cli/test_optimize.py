@@ -182,7 +182,7 @@ def test_goals_are_respected_and_shown(tmp_path):
     rows = [line for line in result.stdout.splitlines() if "sensitivity peak Ms   " in line]
     assert len(rows) == 2
     assert all("at most 2" in row and row.rstrip().endswith("met") for row in rows)
-    assert "Computed in floating point, not a proof" in result.stdout
+    assert "computed in floating point, not a proof" in result.stdout
 
 
 def test_gains_that_are_given_and_miss_a_goal_end_with_1(tmp_path):

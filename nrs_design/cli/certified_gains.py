@@ -14,7 +14,7 @@ from nrs_design.proof.bounds import lower_float
 if TYPE_CHECKING:
     from nrs_design.certificates.certified_goal import CertifiedGoal
     from nrs_design.design.analysis import DesignAnalysis
-    from nrs_design.pipeline import Designed
+    from nrs_design.pipeline import Designed, Result
     from nrs_design.pipeline.certified_optimum import CertifiedOptimum
     from nrs_design.spec import LoadedSpec
 
@@ -60,17 +60,17 @@ class CertifiedGains:
                 raise OutputError(
                     "only gains that were chosen by a goal of the proof are written",
                     path=out,
-                    remedy="add `goals: {decay_rate: 2 1/s}` and leave a gain free, or leave --out "
-                    "out",
+                    remedy="add `goals: {decay_rate: 2 1/s}` and leave a gain free, ask for "
+                    "--retune, or leave --out out",
                 )
             return None
-        name = None if out is None else _name_for(designed.loaded, out)
+        name = None if out is None else name_for(designed.loaded, out)
         with progress(f"gains with their proof for {designed.spec.name}") as step:
             found = run_certified_optimum(designed, analysis, step, name)
         own = found.result.designed
         assert own is not None, "as it was designed before"
         goals = tuple(certified_goals(own.spec, found.result.certificate))
-        certificate = None if out is None else _write(found, out)
+        certificate = None if out is None else write_certified(found.result, out)
         return cls(found, own, run_analysis(own), goals, out, certificate)
 
     @property
@@ -123,8 +123,14 @@ class CertifiedGains:
         return decay_rate(self.found.result.certificate)
 
 
-def _name_for(loaded: LoadedSpec, out: Path) -> str:
-    """Return the name of the new spec; refuse a place that it cannot be at."""
+def name_for(loaded: LoadedSpec, out: Path) -> str:
+    """Return the name of the new spec; refuse a place that it cannot be at.
+
+    Raises
+    ------
+    OutputError
+        If it cannot be written there.
+    """
     from nrs_design.errors import SpecError
     from nrs_design.gating.recorded import hash_followed
     from nrs_design.output import check_place
@@ -159,13 +165,18 @@ def _certificate_of(name: str) -> Path:
     return Path("reports") / f"{name}.cert.json"
 
 
-def _write(found: CertifiedOptimum, out: Path) -> Path:
-    """Write spec and certificate, both or none."""
+def write_certified(result: Result, out: Path) -> Path:
+    """Write a spec and its certificate, both or none; return where the certificate is.
+
+    Raises
+    ------
+    OutputError
+        If a file cannot be written.
+    """
     from nrs_design.certificates.certificate import dump
     from nrs_design.output import CERTIFICATE, write_outputs
     from nrs_design.ownership import origin_of
 
-    result = found.result
     assert result.certificate is not None, "as its goals are met"
     path = _certificate_of(result.loaded.spec.name)
     content = dump(result.certificate, origin_of(out, path))

@@ -25,25 +25,25 @@ if TYPE_CHECKING:
 
 def _print_goals(name: str, items: Iterable[AbstractControllerAnalysis]) -> None:
     """Print what the spec asks for beside what is achieved at worst; nothing without goals."""
-    from nrs_design.design.measures import MEANING
+    from nrs_design.design.measures import MEANING, computed
 
     rows = [
         [
             item.name,
             found.measure.title,
             found.measure.goal_text(found.goal),
-            found.measure.text(found.value),
+            found.text,
             found.where,
             "met" if found.met else "MISSED",
         ]
         for item in items
-        for found in item.achieved
+        for found in item.judged
         if found.goal is not None
     ]
     if rows:
         columns = ["controller", "goal", "wanted", "worst", "at", ""]
         print_table(f"{name}: goals", columns, rows)
-        for line in MEANING:
+        for line in (*MEANING[:-1], *computed({item.name: item.proved_titles for item in items})):
             detail(line)
 
 
@@ -138,7 +138,14 @@ def _say_unjudged(spec: InteractionDesignSpec) -> None:
 
 def goals_summary(item: AbstractControllerAnalysis) -> list[dict[str, Any]]:
     """Return everything that was measured, with its goal if there is one, in SI units."""
-    return [_summary(found) for found in item.achieved]
+    return [_summary(found) for found in item.judged]
+
+
+def _safe(found: Achieved) -> float | None:
+    """Return what is proved, rounded to its unfavorable side."""
+    if found.proved is None:
+        return None
+    return upper_float(found.proved) if found.measure.upper else lower_float(found.proved)
 
 
 def _summary(found: Achieved) -> dict[str, Any]:
@@ -149,6 +156,8 @@ def _summary(found: Achieved) -> dict[str, Any]:
         # JSON has no infinity: null is a margin that nothing limits, or an error without bound; or
         # what is not computed, as `at` then says.
         "worst": found.value if math.isfinite(found.value) else None,
+        # What no constant values in the ranges are worse than; null is not shown.
+        "proved": _safe(found),
         "unit": measure.si_unit,
         "at": found.where,
         "status": None if found.goal is None else "met" if found.met else "missed",

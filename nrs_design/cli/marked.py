@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
@@ -13,8 +13,6 @@ from nrs_design.proof.bounds import lower
 if TYPE_CHECKING:
     from nrs_design.design.analysis import ImpedanceAnalysis
 
-MARGINS_NOTE = "Margins: floating point at the corners of all ranges, not a proof (-v says more)."
-
 
 def cells(item: ImpedanceAnalysis) -> list[str]:
     """Return the cells of a controller; `marks` says what the marks mean."""
@@ -23,12 +21,18 @@ def cells(item: ImpedanceAnalysis) -> list[str]:
         f"{item.Mt:.6g}{'*' * ('Mt' in item.on_bound)}",
         f"{item.Bt:.6g}{'*' * ('Bt' in item.on_bound)}",
         f"{item.cost:.4f}",
-        *(
-            f"{measure.text(item.worst(measure).value)}{'!' * (measure in item.unusual)}"
-            for measure in MARGINS
-        ),
+        *(f"{item.shown(measure).text}{'!' * (measure in item.unusual)}" for measure in MARGINS),
         _limits(item),
     ]
+
+
+def basis(items: Sequence[ImpedanceAnalysis]) -> str:
+    """Say which margins are proved of all controllers, and what the others are."""
+    proved = [m.title for m in MARGINS if all(m.title in item.proved_titles for item in items)]
+    if not proved:
+        return "Margins: floating point at the corners of all ranges, not a proof (-v says more)."
+    shown = "all margins" if len(proved) == len(MARGINS) else ", ".join(proved)
+    return f"Proved over all values of the ranges: {shown}; the rest is floating point (-v)."
 
 
 def marks(items: Iterable[ImpedanceAnalysis]) -> Iterator[str]:

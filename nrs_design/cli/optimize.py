@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -25,6 +25,7 @@ from nrs_design.proof.bounds import lower_float, upper_float
 
 if TYPE_CHECKING:
     from nrs_design.design.analysis import DesignAnalysis, ImpedanceAnalysis
+    from nrs_design.design.cost_bound import CostBound
     from nrs_design.design.measures import Measure
     from nrs_design.design.sampled_passivity import SampledBand
     from nrs_design.pipeline import Designed
@@ -39,9 +40,26 @@ def optimize(
         typer.Option(
             metavar="NEW.nrs.yaml",
             help="Write the spec with these gains given, named after the file, and its "
-            "certificate to reports/NAME.cert.json; for goals decay_rate and peak_torque.",
+            "certificate to reports/NAME.cert.json; for goals decay_rate and peak_torque, and for "
+            "--retune.",
         ),
     ] = None,
+    global_optimum: Annotated[
+        bool,
+        typer.Option(
+            "--global-optimum",
+            help="Prove how far the cost is above the least one within the bounds of Mt and Bt; "
+            "takes a second or two for a controller.",
+        ),
+    ] = False,
+    retune: Annotated[
+        bool,
+        typer.Option(
+            "--retune",
+            help="Prove within how many per cent of these gains all Bt may be retuned while the "
+            "robot runs; --out writes the spec with these ranges.",
+        ),
+    ] = False,
 ) -> Answer:
     """Optimize virtual mass Mt and damping Bt for displayed impedance and sensitivity.
 
@@ -52,33 +70,45 @@ def optimize(
     Example: nrs-design optimize specs/neuroboscope/soft-tissue.nrs.yaml
     """
     from nrs_design.cli.certified_gains import CertifiedGains
+    from nrs_design.cli.retuned_gains import RetunedBox
     from nrs_design.pipeline import run_analysis, run_interaction
+    from nrs_design.pipeline.cost_bounds import run_cost_bounds
 
     loaded = take_spec(spec)
     with progress(f"designing {loaded.spec.name}") as step:
         step("cost")
         designed = run_interaction(loaded, "has nothing to design")
         step("margins")
-        analysis = run_analysis(designed)
-    certified = CertifiedGains.of(designed, analysis, out)
+        chosen = analysis = run_analysis(designed)
+    certified = CertifiedGains.of(designed, analysis, None if retune else out)
     if certified is not None:
         designed, analysis = certified.designed, certified.analysis
+
+    bounds = run_cost_bounds(chosen, analysis) if global_optimum else {}
+    box = RetunedBox.of(designed, out) if retune else None
 
     def facts() -> dict[str, Any]:
         return {
             "motion_loop": motion_summary(analysis),
             "sensor": _sensor(designed),
-            "controllers": [_summary(designed.spec, item) for item in analysis.impedance],
+            "controllers": [
+                _summary(designed.spec, item) | _optimum_facts(bounds.get(item.name))
+                for item in analysis.impedance
+            ],
             "certified": None if certified is None else certified.facts(),
+            "retuned": None if box is None else box.facts(),
         }
 
     def show() -> None:
         if not analysis.impedance:
             note("no impedance controllers in this spec; see nrs-design tune for the others")
         _print(designed.spec, analysis)
+        _print_bounds(bounds)
         print_responses(analysis)
         if certified is not None:
             certified.show()
+        if box is not None:
+            box.show()
 
     proved = all(found.proved for item in analysis.impedance for found in item.responses)
     proved = proved and (certified is None or certified.proved)
@@ -94,6 +124,33 @@ def optimize(
     )
 
 
+def _optimum_facts(bound: CostBound | str | None) -> dict[str, Any]:
+    """Return the bounds on the least cost, rounded to their safe sides; nothing if not asked."""
+    if bound is None:
+        return {}
+    if isinstance(bound, str):
+        return {"global_optimum": None, "global_optimum_not_computed": bound}
+    return {
+        "global_optimum": {
+            "cost_at_most": upper_float(bound.above),
+            "least_cost_at_least": lower_float(bound.below),
+            "gap": upper_float(bound.gap),
+            "boxes": bound.boxes,
+            "reached": bound.reached,
+            "without_goals": bound.goals,
+        }
+    }
+
+
+def _print_bounds(bounds: dict[str, CostBound | str]) -> None:
+    from nrs_design.design.measures import OPTIMUM_MEANING
+
+    for name, bound in bounds.items():
+        say(f"{name}: {f'no bound on the cost: {bound}' if isinstance(bound, str) else bound.text}")
+    if any(not isinstance(bound, str) for bound in bounds.values()):
+        say(OPTIMUM_MEANING)
+
+
 def motion_summary(analysis: DesignAnalysis) -> dict[str, Any]:
     """Describe which motion loop G is in use."""
     return {
@@ -103,7 +160,7 @@ def motion_summary(analysis: DesignAnalysis) -> dict[str, Any]:
     }
 
 
-def meanings(spec: InteractionDesignSpec) -> Iterator[str]:
+def meanings(spec: InteractionDesignSpec, items: Sequence[ImpedanceAnalysis]) -> Iterator[str]:
     """Yield what the values of the table are about."""
     from nrs_design.design.measures import (
         COST_MEANING,
@@ -111,13 +168,14 @@ def meanings(spec: InteractionDesignSpec) -> Iterator[str]:
         MEANING,
         ONE_AXIS,
         WEIGHED_MEANING,
+        computed,
     )
 
     yield MEANING[0]
     yield LIMIT_MEANING
     if spec.coupling is not None:
         yield ONE_AXIS
-    yield MEANING[-1]
+    yield from computed({item.name: item.proved_titles for item in items})
     yield COST_MEANING
     weights = (getattr(controller, "weights", None) for controller in spec.controllers.values())
     if any(given is not None and (given.transparency or given.accuracy) for given in weights):
@@ -150,7 +208,7 @@ def _summary(spec: InteractionDesignSpec, item: ImpedanceAnalysis) -> dict[str, 
         "disk_margin": worst(measures.DISK_MARGIN),
         "stiffness_limit": finite(item.lowest_limit),
         "stiffness_limit_at": item.limit_at,
-        "over": [*meanings(spec)],
+        "over": [*meanings(spec, [item])],
         "lever_arm_m": item.lever_arm,
         "stiffness_limit_at_arm_N_m": item.limit_at_arm and finite(item.limit_at_arm),
         "passive_up_to_rad_s": passive and lower_float(passive),
@@ -219,7 +277,7 @@ def _print(spec: InteractionDesignSpec, analysis: DesignAnalysis) -> None:
     detail(f"{spec.name}: G(s) = {motion}, {source}")
     if not analysis.impedance:
         return
-    from nrs_design.cli.marked import MARGINS_NOTE, cells, marks
+    from nrs_design.cli.marked import basis, cells, marks
 
     columns = [
         "controller",
@@ -238,10 +296,10 @@ def _print(spec: InteractionDesignSpec, analysis: DesignAnalysis) -> None:
     )
     for line in marks(analysis.impedance):
         say(line)
-    for line in meanings(spec):
+    for line in meanings(spec, analysis.impedance):
         detail(line)
     if not wants_details():
-        say(MARGINS_NOTE)
+        say(basis(analysis.impedance))
 
 
 def _polynomial(coefficients: tuple[float, ...]) -> str:

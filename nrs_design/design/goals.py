@@ -61,6 +61,13 @@ class Achieved:
     value: float  # The worst value, in SI units
     where: str  # The corner at which it is taken, such as ``soft, k = 44.2466 N*m/rad``
     goal: float | None = None  # What the spec asks for, in SI units
+    # What no values in the ranges are worse than, each of them constant; None if not shown.
+    proved: Fraction | None = None
+
+    @property
+    def text(self) -> str:
+        """The value as it is shown: what is proved, else the worst that was found."""
+        return self.measure.text(self.value if self.proved is None else self.proved)
 
     @property
     def met(self) -> bool:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
+from fractions import Fraction
 
 from nrs_design.axis import current, unit
 
@@ -39,12 +41,36 @@ PASSIVITY_NOT_COMPUTED = (
     "a filter of the force, ranges of gains or of the motor, or beside other axes; the frequency "
     "of another law is not shown in its place."
 )
+OPTIMUM_MEANING = (
+    "Global optimum: proved, in ball arithmetic, of the cost as it is minimized, a sum over 256 "
+    "frequencies; no Mt and Bt within their bounds, stable or not, cost less by more than the gap."
+)
 RESPONSE_MEANING = (
     "Transparency and accuracy: proved or refuted over the whole band and all values in the "
     "ranges, each of them constant, of the linear loop with the gains that ship: without friction, "
     "rounding and saturation; sampled, with force samples that are all of the same age."
 )
 ONE_AXIS = "Of axes that act on each other, this is one by itself."
+
+
+def computed(proved: Mapping[str, Sequence[str]]) -> Iterator[str]:
+    """Yield how the values of controllers were found.
+
+    Parameters
+    ----------
+    proved : mapping of str to sequence of str
+        By controller, the titles of what is proved over all values of the ranges.
+    """
+    names: dict[str, list[str]] = {}
+    for name, titles in proved.items():
+        if titles:
+            names.setdefault(", ".join(titles), []).append(name)
+    for said, own in names.items():
+        yield (
+            f"Proved in exact arithmetic for all values in the ranges, each of them constant, of "
+            f"{', '.join(own)}: {said}."
+        )
+    yield f"{'All else: computed' if names else 'Computed'}{MEANING[-1].removeprefix('Computed')}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +87,7 @@ class Measure:
     upper: bool = False
     doubtful: float | None = None  # SI value beyond which a design without a goal is doubted
 
-    def text(self, value: float) -> str:
+    def text(self, value: float | Fraction) -> str:
         """Write a value with four digits, rounded to its unfavorable side."""
         if math.isnan(value):
             return "not computed"
@@ -70,7 +96,11 @@ class Measure:
         rounding = ROUND_CEILING if self.upper else ROUND_FLOOR
         context = Context(prec=_DIGITS, rounding=rounding)
         scale, shown = self._shown
-        rounded = context.create_decimal(Decimal(value * scale))
+        if isinstance(value, Fraction):
+            exact = value * self.exact_scale
+            rounded = context.divide(Decimal(exact.numerator), Decimal(exact.denominator))
+        else:
+            rounded = context.create_decimal(Decimal(value * scale))
         return f"{rounded.normalize():f} {shown}".rstrip()
 
     @property
@@ -84,6 +114,11 @@ class Measure:
         scale, unit_shown = self._shown
         shown = f"{value * scale:.6g} {unit_shown}".rstrip()
         return f"{'at most' if self.upper else 'at least'} {shown}"
+
+    @property
+    def exact_scale(self) -> Fraction:
+        """Shown value over SI value, as the floating-point number that it is."""
+        return Fraction(self._shown[0])
 
     @property
     def _shown(self) -> tuple[float, str]:

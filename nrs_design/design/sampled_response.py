@@ -26,14 +26,8 @@ from typing import Any
 
 from nrs_design.controllers.laws import Admittance, ProportionalDerivative
 from nrs_design.controllers.sensor import LowPass
-from nrs_design.design.displayed_response import (
-    Band,
-    LargestResponse,
-    Polynomial,
-    Quotient,
-    is_stable_over,
-    largest_over,
-)
+from nrs_design.design.affine_family import Polynomial, Quotient, is_stable_over
+from nrs_design.design.displayed_response import Band, LargestResponse, largest_over
 from nrs_design.design.passivity import root_below
 from nrs_design.models.actuator import ActuatorRanges
 from nrs_design.models.interval import Interval

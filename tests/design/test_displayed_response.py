@@ -9,8 +9,8 @@ import pytest
 
 from nrs_design.controllers.laws import Admittance, ProportionalDerivative
 from nrs_design.controllers.sensor import LowPass
+from nrs_design.design.affine_family import Quotient
 from nrs_design.design.displayed_response import (
-    Quotient,
     largest_impedance,
     largest_over,
     largest_tracking_error,

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cached_property
 
 import numpy as np
 
@@ -37,6 +38,7 @@ from nrs_design.design.measures import (
     Measure,
 )
 from nrs_design.design.passivity import PassiveBand, passive_band
+from nrs_design.design.proved_margins import RangedLoop, ranged_loops, with_proofs
 from nrs_design.design.relief import doubt_stiffness
 from nrs_design.design.response_cost import ResponseCost, response_cost
 from nrs_design.design.response_goals import JudgedResponse, judged_responses, response_goals
@@ -92,6 +94,9 @@ class ImpedanceAnalysis(AbstractControllerAnalysis):
         Of everything that it touches, in m; None if there is none, or not the same for all.
     responses : tuple of JudgedResponse
         Goals for its frequency responses, and what is proved of them.
+    loops : tuple of RangedLoop
+        Over whose ranges margins can be proved; empty for a sampled law, a motor with a load, a
+        contact that is neither elastic nor Kelvin-Voigt, or more than two ranges at once.
     """
 
     given: ImpedanceControllerSpec
@@ -110,6 +115,13 @@ class ImpedanceAnalysis(AbstractControllerAnalysis):
     sampled: tuple[SampledBand, ...] = ()
     lever_arm: float | None = None
     responses: tuple[JudgedResponse, ...] = ()
+    loops: tuple[RangedLoop, ...] = ()
+
+    @cached_property
+    def judged(self) -> tuple[Achieved, ...]:
+        """The worst values, with what is proved of them over all values of the ranges."""
+        home, loop = self.given.environment, self.requirement
+        return with_proofs(self.achieved, self.loops, home, loop.desired, loop.bandwidth)
 
     @property
     def limit_at_arm(self) -> float | None:
@@ -124,6 +136,10 @@ class ImpedanceAnalysis(AbstractControllerAnalysis):
     def worst(self, measure: Measure) -> Achieved:
         """Return the worst value of a measure over the ranges, and where it is."""
         return next(found for found in self.achieved if found.measure is measure)
+
+    def shown(self, measure: Measure) -> Achieved:
+        """Return the same with what is proved of it."""
+        return next(found for found in self.judged if found.measure is measure)
 
     def doubts(self) -> Iterator[Doubt]:
         """Yield what is doubtful about the gains, and which of them the bounds have chosen."""
@@ -200,7 +216,18 @@ def analyze(
         sampled=_sampled_bands(task, given, controller),
         lever_arm=_lever_arm(task, given),
         responses=tuple(_responses(task, given, controller)),
+        loops=_ranged_loops(task, given, controller),
     )
+
+
+def _ranged_loops(
+    task: Task, given: ImpedanceControllerSpec, controller: Controller
+) -> tuple[RangedLoop, ...]:
+    """Return the loops over whose ranges margins can be proved."""
+    if not isinstance(task.axis, ContinuousAxis) or task.plant.load_inertia is not None:
+        return ()
+    moving = _moving(task, given, controller)
+    return ranged_loops(task.axis, controller.law, task.contacts(given), moving)
 
 
 def _given_optimum(problem: ImpedanceProblem, given: ImpedanceControllerSpec) -> ImpedanceOptimum:

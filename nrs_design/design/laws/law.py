@@ -107,6 +107,16 @@ class AbstractControllerAnalysis(ABC):
             item.measure for item in self.achieved if is_unusual(item.measure, self.achieved)
         )
 
+    @property
+    def judged(self) -> tuple[Achieved, ...]:
+        """The same, with what is proved of them over all values of the ranges."""
+        return self.achieved
+
+    @property
+    def proved_titles(self) -> tuple[str, ...]:
+        """What is proved over all values of the ranges."""
+        return tuple(found.measure.title for found in self.judged if found.proved is not None)
+
     def doubts(self) -> Iterator[Doubt]:
         """Yield what is doubtful about the gains, and no goal speaks of it."""
         yield from doubt_values(self.name, self.achieved)

@@ -1,0 +1,391 @@
+"""Margins over whole ranges, in exact arithmetic.
+
+The worst margin at the corners of all ranges is floating point, and says nothing of values in
+between. Here it is only a proposal: rounded to its unfavorable side, it is proved for every
+stiffness, gain and motor in their ranges, each unknown but constant. With the open loop ``N/D`` and
+``C = D + N``, of which `nrs_design.switched.cut_loop` gives D and C exactly, everywhere on the
+imaginary axis:
+
+- ``|S| <= Ms`` is ``|D| <= Ms |C|``, and the disk margin d is ``|D - N| <= 2/d |C|``;
+- the gain margin g says that ``D + f N`` keeps its roots on the left for factors f from 1 to g;
+- the phase margin p says that ``D + exp(j a) N``, or ``C + j t (N - D)`` with ``t = tan(a/2)``, is
+  nowhere zero for ``|a| <= p``;
+- the delay margin T says the same of ``a = -omega T'`` with ``0 <= T' <= T``. Below a frequency w,
+  t is between 0 and ``-omega tan(w T/2)/w``; beyond the last gain crossover, nothing is zero.
+
+All of it is affine in each parameter, so squares of magnitudes have Bernstein forms, which
+`nrs_design.proof.largest_ratio` takes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
+from fractions import Fraction
+from itertools import pairwise
+from math import isfinite
+from typing import Any
+
+import numpy as np
+
+from nrs_design.controllers.laws import CompliantLaw
+from nrs_design.design.affine_family import (
+    MIDDLE,
+    ONE,
+    ZERO,
+    Quotient,
+    coefficients_between,
+    corners_in,
+    is_stable_over,
+    lowest_first,
+    squared_magnitude,
+    squared_over,
+    zeros_at_rest,
+)
+from nrs_design.design.displayed_response import over_admittance, parameters_at
+from nrs_design.design.goals import Achieved
+from nrs_design.design.measures import (
+    AT_HOME,
+    DELAY_MARGIN,
+    DISK_MARGIN,
+    GAIN_MARGIN,
+    IMPEDANCE_ERROR,
+    PHASE_MARGIN,
+    SENSITIVITY_PEAK,
+    Measure,
+)
+from nrs_design.design.polynomials import frequencies, squared
+from nrs_design.models.contact import Elastic, KelvinVoigt
+from nrs_design.models.contact.environment import Environment
+from nrs_design.models.interval import Interval
+from nrs_design.proof.enclosure import ball_around, fraction_of, precision
+from nrs_design.proof.largest_ratio import largest_ratio
+from nrs_design.switched.cut_loop import ContinuousAxis, multiply
+
+# Bernstein coefficients that are looked at for one question, and ranges at once.
+_MOST, _RANGES = 40_000, 2
+# Beyond the worst value at the corners: between them it may be worse.
+_SLACK = (ZERO, Fraction(1, 1000), Fraction(1, 100))
+_DIGITS = 4
+# Pieces of the frequencies of a delay, and how far beyond the last crossover they go.
+_PIECES, _BEYOND = 6, Fraction(1_000_001, 1_000_000)
+
+Polynomial = list[Fraction]  # Highest power first
+
+
+@dataclass(frozen=True, slots=True)
+class RangedLoop:
+    """The loops of one controller in one environment, over all ranges."""
+
+    axis: ContinuousAxis  # From which the modes follow
+    law: CompliantLaw  # An admittance with the gains that ship
+    environment: Environment  # Elastic or Kelvin-Voigt
+    ranges: Mapping[str, Interval]  # Where ``Km``, ``tau``, ``Mt``, ``Bt`` and ``Kt`` are
+    desired: Fraction = ONE  # Desired impedance, N m s/rad
+    bandwidth: Fraction = ONE  # Highest frequency of the command, rad/s
+
+    @property
+    def box(self) -> dict[str, Interval]:
+        """The ranges that are more than one value."""
+        given = {**self.ranges, **self.environment.parameters}
+        return {name: r for name, r in given.items() if r.low != r.high}
+
+    @property
+    def stable(self) -> bool:
+        """Whether the loop is shown to be stable in the whole box."""
+        return self._stays_stable(ONE)
+
+    def holds(self, measure: Measure, value: Fraction) -> bool:
+        """Tell whether a stable loop is shown to have nowhere in the box a worse value.
+
+        Parameters
+        ----------
+        measure : Measure
+            One of `PROVABLE`.
+        value : Fraction
+            In SI units, positive.
+        """
+        return _PROOFS[measure](self, value)
+
+    def _cut(self, values: Mapping[str, Fraction]) -> tuple[Polynomial, Polynomial]:
+        """Return D and C, affine in each parameter."""
+        law, place, factor = parameters_at(self.axis, self.law, values)
+        fixed = {name: r.low for name, r in self.environment.parameters.items()}
+        loop = self.axis.cut(law, self.environment.at({**fixed, **values}), place)
+        opened, closed = ([factor * c for c in p] for p in (loop.opened, loop.closed))
+        return opened, closed
+
+    def _stays_stable(self, gain: Fraction) -> bool:
+        """Tell whether ``D + f N`` keeps its roots on the left for f from 1 to a gain."""
+
+        def at(values: Mapping[str, Fraction]) -> Quotient:
+            opened, closed = self._cut(values)
+            f = values.get("factor", ONE)
+            poles = [d + f * (c - d) for d, c in zip(opened, closed, strict=True)]
+            return Quotient(poles, poles, poles)
+
+        box = self.box | ({"factor": Interval(ONE, ONE, gain)} if gain > 1 else {})
+        return gain >= 1 and is_stable_over(at, box, _MOST)
+
+    def _has_sensitivity(self, peak: Fraction) -> bool:
+        return self._is_below(lambda d, c: (d, c), peak)
+
+    def _has_disk(self, margin: Fraction) -> bool:
+        return self._is_below(lambda d, c: (_minus(_minus(d, c), [-x for x in d]), c), 2 / margin)
+
+    def _has_impedance(self, error: Fraction) -> bool:
+        """Tell whether ``N/(H Y C)`` is within a factor of the desired impedance in the band."""
+        # A spring is displayed without bound towards rest.
+        if self.law.gains.get("Kt") or not self.ranges.keys().isdisjoint(self.law.gains):
+            return False
+        below = over_admittance(self.law, self.axis.low_pass)
+
+        def shown(d: Polynomial, c: Polynomial) -> tuple[Polynomial, Polynomial]:
+            return multiply(_minus(c, d), below), c
+
+        return self._is_below(shown, error * self.desired, self.bandwidth) and self._is_below(
+            lambda d, c: shown(d, c)[::-1], error / self.desired, self.bandwidth
+        )
+
+    def _is_below(
+        self,
+        quotient: Callable[[Polynomial, Polynomial], tuple[Polynomial, Polynomial]],
+        limit: Fraction,
+        band: Fraction | None = None,
+    ) -> bool:
+        """Tell whether a response is nowhere above a limit, up to a frequency if there is one."""
+
+        def at(values: Mapping[str, Fraction]) -> Quotient:
+            return Quotient(*quotient(*self._cut(values)), ())
+
+        made = corners_in(at, self.box)
+        sides = [[lowest_first(c[i]) for c in made] for i in (0, 1)]
+        rest = min(zeros_at_rest(p) for side in sides for p in side)
+        grids = [squared_over([p[rest:] for p in side]) for side in sides]
+        size = max(len(p) for grid in grids for p in grid)
+        grids = [[[*p, *[0] * (size - len(p))] for p in grid] for grid in grids]
+        for turned, low, high in _all(MIDDLE) if band is None else ((False, ZERO, band**2),):
+            above, below = (_between(grid, turned, low, high) for grid in grids)
+            shape = self._shape(size)
+            found = largest_ratio(
+                above, below, shape, limit=limit**2, nearly=None, most=_MOST
+            ).above
+            if found is None or found > limit**2:
+                return False
+        return True
+
+    def _shape(self, size: int, more: int = 0) -> tuple[int, ...]:
+        return (3,) * (len(self.box) + more) + (size,)
+
+    def _has_phase(self, margin: Fraction) -> bool:
+        t = _tangent(margin / 2)
+        pieces = _all(Fraction(10))
+        return t is not None and self._nowhere_zero(Interval(ZERO, -t, t), _turned, pieces)
+
+    def _has_delay(self, margin: Fraction) -> bool:
+        last = self._beyond_crossovers()
+        if last is None:
+            return False
+        for low, high in pairwise(last * i / _PIECES for i in range(_PIECES + 1)):
+            t = _tangent(high * margin / 2)
+            if t is None:
+                return False
+            share, piece = Interval(ZERO, ZERO, t / high), (False, low**2, high**2)
+            if not self._nowhere_zero(share, _delayed, (piece,)):
+                return False
+        return True
+
+    def _nowhere_zero(
+        self,
+        share: Interval,
+        square: Callable[[Sequence[Any]], list[Any]],
+        pieces: Sequence[tuple[bool, Fraction, Fraction]],
+    ) -> bool:
+        """Tell whether C, and a share of ``N - D`` beside it, nowhere cancel on the axis."""
+
+        def at(values: Mapping[str, Fraction]) -> Quotient:
+            opened, closed = self._cut(values)
+            beside = [values["share"] * (c - 2 * d) for d, c in zip(opened, closed, strict=True)]
+            return Quotient([*lowest_first(closed), *lowest_first(beside)], (), ())
+
+        made = corners_in(at, {**self.box, "share": share})
+        grid = squared_over([c.above for c in made], square)
+        shape = self._shape(len(grid[0]), more=1)
+        for turned, low, high in pieces:
+            below = _between(grid, turned, low, high)
+            found = largest_ratio([ONE] * len(below), below, shape, nearly=None, most=_MOST)
+            if found.above is None:
+                return False
+        return True
+
+    def _beyond_crossovers(self) -> Fraction | None:
+        """Return a frequency from which on ``|N| < |D|``; None if none is shown."""
+
+        def at(values: Mapping[str, Fraction]) -> Quotient:
+            opened, closed = self._cut(values)
+            return Quotient(_minus(closed, opened), opened, ())
+
+        made = corners_in(at, self.box)
+        proposed = max(map(_last_crossover, made))
+        if not proposed:
+            return None
+        last = Fraction(proposed) * _BEYOND
+        grids = [squared_over([lowest_first(c[i]) for c in made]) for i in (0, 1)]
+        above, below = (_between(grid, True, ZERO, 1 / last**2) for grid in grids)
+        shape = self._shape(len(grids[0][0]))
+        found = largest_ratio(above, below, shape, limit=ONE, nearly=None, most=_MOST).above
+        return last if found is not None and found < 1 else None
+
+
+_PROOFS: dict[Measure, Callable[[RangedLoop, Fraction], bool]] = {
+    SENSITIVITY_PEAK: RangedLoop._has_sensitivity,
+    GAIN_MARGIN: RangedLoop._stays_stable,
+    PHASE_MARGIN: RangedLoop._has_phase,
+    DELAY_MARGIN: RangedLoop._has_delay,
+    DISK_MARGIN: RangedLoop._has_disk,
+    IMPEDANCE_ERROR: RangedLoop._has_impedance,
+}
+PROVABLE = tuple(_PROOFS)
+
+
+def ranged_loops(
+    axis: ContinuousAxis,
+    law: CompliantLaw,
+    environments: Sequence[Environment],
+    ranges: Mapping[str, Interval],
+) -> tuple[RangedLoop, ...]:
+    """Return the loops of a controller in all its contacts; none where not all are covered.
+
+    Contact is elastic or Kelvin-Voigt, and at most two numbers have ranges at once.
+
+    Parameters
+    ----------
+    axis, law, ranges
+        As for `RangedLoop`.
+    environments : sequence of Environment
+        All that it touches.
+    """
+    loops = tuple(RangedLoop(axis, law, environment, ranges) for environment in environments)
+    covered = all(
+        loop.environment.law in (Elastic, KelvinVoigt) and len(loop.box) <= _RANGES
+        for loop in loops
+    )
+    return loops if covered else ()
+
+
+def with_proofs(
+    achieved: Sequence[Achieved],
+    loops: Sequence[RangedLoop],
+    home: str,
+    desired: float,
+    bandwidth: float,
+) -> tuple[Achieved, ...]:
+    """Return measured values with what is proved of them over all ranges: a second's work.
+
+    Parameters
+    ----------
+    achieved : sequence of Achieved
+        The worst at the corners.
+    loops : sequence of RangedLoop
+        As `ranged_loops` returns them.
+    home : str
+        The environment that the gains are designed for.
+    desired : float
+        Desired impedance, N m s/rad.
+    bandwidth : float
+        Highest frequency of the command, rad/s.
+    """
+    if not loops or not all(loop.stable for loop in loops):
+        return tuple(achieved)
+    at_home = [
+        replace(
+            loop,
+            # Taken with the designed gains.
+            ranges={name: r for name, r in loop.ranges.items() if name in ("Km", "tau")},
+            desired=Fraction(desired),
+            bandwidth=Fraction(bandwidth),
+        )
+        for loop in loops
+        if loop.environment.name == home
+    ]
+    return tuple(
+        replace(found, proved=_proved(found, at_home if found.measure in AT_HOME else loops))
+        if found.measure in PROVABLE and isfinite(found.value) and found.value > 0
+        else found
+        for found in achieved
+    )
+
+
+def _proved(found: Achieved, loops: Sequence[RangedLoop]) -> Fraction | None:
+    """Return the best value that is proved for all loops, of those that are proposed."""
+    for value in _proposed(found):
+        if all(loop.holds(found.measure, value) for loop in loops):
+            return value
+    return None
+
+
+def _proposed(found: Achieved) -> Iterator[Fraction]:
+    """Yield values, the best first: as it is shown, the goal, and what is a little worse."""
+    upper, scale = found.measure.upper, found.measure.exact_scale
+    context = Context(prec=_DIGITS, rounding=ROUND_CEILING if upper else ROUND_FLOOR)
+    value = Fraction(found.value) * scale
+    for slack in _SLACK:
+        worse = value * (1 + slack if upper else 1 - slack)
+        shown = Fraction(context.create_decimal(Decimal(float(worse)))) / scale
+        if not found.met or found.goal is None or not _misses(found, shown):
+            yield shown
+        elif not slack:
+            yield Fraction(found.goal)
+
+
+def _misses(found: Achieved, value: Fraction) -> bool:
+    return found.goal is not None and found.measure.violation(float(value), found.goal) > 0
+
+
+def _minus(P: Polynomial, Q: Polynomial) -> Polynomial:
+    return [a - b for a, b in zip(P, Q, strict=True)]
+
+
+def _all(middle: Fraction) -> tuple[tuple[bool, Fraction, Fraction], ...]:
+    """Return all frequencies: up to one, and from it on in powers of one over it."""
+    return (False, ZERO, middle), (True, ZERO, 1 / middle)
+
+
+def _between(grid: list[list[Any]], turned: bool, low: Fraction, high: Fraction) -> list[Any]:
+    return coefficients_between([p[::-1] for p in grid] if turned else grid, low, high)
+
+
+def _tangent(angle: Fraction) -> Fraction | None:
+    """Return a number that is not below a tangent; None from a quarter of a turn on."""
+    if angle > Fraction(3, 2):
+        return None
+    with precision():
+        return fraction_of(ball_around(angle).tan().upper())
+
+
+def _last_crossover(loop: Quotient) -> float:
+    above, below = (np.array([p], dtype=np.float64) for p in loop[:2])
+    return float(np.nanmax(frequencies(squared(above) - squared(below)), initial=0.0))
+
+
+def _turned(both: Sequence[Any]) -> list[Any]:
+    """Return ``|C(j omega) + j E(j omega)|^2`` in omega, of C and E one after the other."""
+    n = len(both) // 2
+    parts: list[list[Any]] = [[0 * both[0]] * n, [0 * both[0]] * n]
+    for i in range(n):
+        for power, c in ((i, both[i]), (i + 1, both[n + i])):
+            parts[power % 2][i] += -c if power % 4 >= 2 else c
+    square = [0 * both[0]] * (2 * n - 1)
+    for part in parts:
+        for i, a in enumerate(part):
+            for k, b in enumerate(part):
+                square[i + k] += a * b
+    return square
+
+
+def _delayed(both: Sequence[Any]) -> list[Any]:
+    """Return ``|C(j omega) - j omega E(j omega)|^2`` in omega^2."""
+    n = len(both) // 2
+    closed, beside = [*both[:n], 0 * both[0]], [0 * both[0], *both[n:]]
+    return squared_magnitude([a - b for a, b in zip(closed, beside, strict=True)])

@@ -1,0 +1,24 @@
+"""How near the gains of every controller are to the least cost."""
+
+from __future__ import annotations
+
+from nrs_design.design.analysis import DesignAnalysis
+from nrs_design.design.cost_bound import CostBound, bound_cost, why_no_bound
+
+
+def run_cost_bounds(chosen: DesignAnalysis, shipped: DesignAnalysis) -> dict[str, CostBound | str]:
+    """Bound the least cost of each impedance controller, or say why it is not bounded.
+
+    Parameters
+    ----------
+    chosen : DesignAnalysis
+        Of the spec, with the bounds of its gains.
+    shipped : DesignAnalysis
+        The same, or of the gains that were chosen by goals of a certificate.
+    """
+    found: dict[str, CostBound | str] = {}
+    for item, own in zip(chosen.impedance, shipped.impedance, strict=True):
+        goals = bool(item.requirement.goals) or shipped is not chosen
+        why_not = why_no_bound(item.problem)
+        found[item.name] = why_not or bound_cost(item.problem, own.Mt, own.Bt, goals=goals)
+    return found

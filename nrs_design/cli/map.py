@@ -66,7 +66,7 @@ def map(
     from nrs_design.cli.exit_codes import OF_VERDICT, worst
     from nrs_design.output import MAP, PNG, check_place, write_outputs
     from nrs_design.pipeline import run_design
-    from nrs_design.pipeline.free_gains import gains_given
+    from nrs_design.pipeline.written_gains import with_own_gains
     from nrs_design.sweeps.tile_map import run_tile_map
     from nrs_design.sweeps.tiles import read_tiles
 
@@ -77,7 +77,7 @@ def map(
         check_place(certificates / "x")
     loaded = take_spec(spec)
     designed = run_design(loaded)
-    grid = read_tiles(loaded if designed is None else gains_given(designed), spec, over)
+    grid = read_tiles(loaded if designed is None else with_own_gains(designed), spec, over)
     with progress(f"map of {loaded.spec.name}") as step:
         found = run_tile_map(grid, designed, step)
     outputs: list[Output] = []

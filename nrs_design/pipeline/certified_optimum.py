@@ -106,7 +106,7 @@ def steering_goals(designed: Designed, analysis: DesignAnalysis) -> tuple[str, .
     """
     goals = designed.spec.goals
     given = [] if goals is None else [key for key, _ in goals.given()]
-    return tuple(key for key in STEERING if key in given and has_free_gains(analysis))
+    return tuple(key for key in STEERING if key in given and has_free_gains(designed, analysis))
 
 
 def run_certified_optimum(

@@ -211,7 +211,7 @@ class DesignEvaluator:
         """
         from nrs_design.design.trust_region import Evaluation
 
-        gains, n = self.gains, len(self.gains.places)
+        gains, n = self.gains, len(self.gains.coordinates)
 
         def system(x: Array) -> SwitchedSystem:
             return gains.system(x[:n], plant(x))

@@ -127,7 +127,7 @@ def run_trade_off(
         If no gain is free, or nothing is proved at any cost.
     """
     with placed(designed.loaded):
-        if not has_free_gains(analysis):
+        if not has_free_gains(designed, analysis):
             raise DesignError(
                 "no gain is free to be chosen",
                 remedy="give Mt or Bt of an impedance controller bounds, {min: ..., max: ...}",
@@ -206,14 +206,14 @@ class _Curve:
             budget = least * (1 + float(share))
             x = self._largest(x, budget, least)
             found.append(self._proved(x, share, budget, least))
-        massless = not any(high for _, high in self.gains.masses)
-        return TradeOffCurve(massless, least, tuple(one for one in found if one is not None))
+        points = tuple(one for one in found if one is not None)
+        return TradeOffCurve(self.gains.massless, least, points)
 
     def _largest(self, start: Array, budget: float, least: float, *, fixed: bool = False) -> Array:
         """Return the point with the largest objective within a cost, or with the same gains."""
         from nrs_design.design.trust_region import ConstrainedProblem, minimize_in_trust_region
 
-        gains, n = self.gains, len(self.gains.places)
+        gains, n = self.gains, len(self.gains.coordinates)
 
         def quick(x: Array) -> Array:
             over = (budget - gains.cost(x[:n])) / (BEYOND * least)
@@ -255,7 +255,7 @@ class _Curve:
         self, x: Array, share: Fraction | None, budget: float, least: float
     ) -> TradeOffPoint | None:
         """Round the gains, and prove the most that is possible with them."""
-        gains, n = self.gains, len(self.gains.places)
+        gains, n = self.gains, len(self.gains.coordinates)
         near = [
             ((max(gains.cost(own) / budget - 1, NO_MORE), _apart(own, x[:n])), own, written)
             for own, written in gains.roundings(x[:n])

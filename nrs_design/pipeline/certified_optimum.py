@@ -19,41 +19,25 @@ import numpy as np
 
 from nrs_design.axis import unit
 from nrs_design.errors import DesignError
-from nrs_design.pipeline.certification import (
-    Result,
-    assemble_spec,
-    run_certification,
-)
-from nrs_design.pipeline.design import Designed, placed
-from nrs_design.pipeline.free_gains import (
-    Array,
-    FreeGains,
-    Written,
-    gain_branches,
-    has_free_gains,
-    in_order,
-)
-from nrs_design.pipeline.proof_constraints import (
-    NOTHING,
-    AbstractProofConstraint,
-    DesignEvaluator,
-    ForceConstraint,
-    RateConstraint,
-)
+from nrs_design.pipeline.certification import Result, assemble_spec, run_certification
+from nrs_design.pipeline.design import Designed, placed, run_analysis
+from nrs_design.pipeline.free_gains import Array, FreeGains, gain_branches, has_free_gains, in_order
+from nrs_design.pipeline.goal_ranges import wanted_age, with_delay
+from nrs_design.pipeline.proof_constraints import NOTHING, DesignEvaluator, constraints_of
+from nrs_design.pipeline.written_gains import Written
 from nrs_design.progress import Progress, silent
-from nrs_design.proof.bounds import rounded_up
+from nrs_design.proof.bounds import rounded_down
 
 if TYPE_CHECKING:
     # What was certified, what ships of the free gains, and the point.
     Proved = tuple[Result, Written, Array]
     from nrs_design.design.analysis import DesignAnalysis
     from nrs_design.design.trust_region import ConstrainedOptimum, ConstrainedProblem, Evaluation
+    from nrs_design.spec import Quantity
     from nrs_design.spec.spec_document import SpecDocument
 
 # Goals that gains are steered by.
-STEERING = (RateConstraint.key, ForceConstraint.key)
-# A rate that only has to be positive is at least so much, 1/s.
-LEAST_RATE = 1e-2
+STEERING = ("decay_rate", "peak_torque", "delay")
 # Roundings that are proved at most.
 MOST_ROUNDINGS = 4
 # Roundings take a little: so much more is asked for of a rate, and less of a bound; where the proof
@@ -65,16 +49,15 @@ NEAR = 5e-3
 LEAST_PRICE = 1e-4
 
 
-Constraints = tuple[AbstractProofConstraint, ...]
-
-
 @dataclass(frozen=True, slots=True)
 class SteeredGoal:
     """A goal of the certificate that gains were chosen by."""
 
     key: str  # In the spec
     wanted: Fraction  # In SI units
-    # What one more in SI units costs, in first order; None where the goal does not bind.
+    binds: bool  # Whether gains would be cheaper without it
+    # What one more in SI units costs, in first order; None where the goal does not bind, or where
+    # what it asks for is counted in whole samples.
     price: float | None
 
     @property
@@ -94,6 +77,8 @@ class CertifiedOptimum:
     free_rate: float  # The best decay rate there in floating point, 1/s
     goals: tuple[SteeredGoal, ...]
     tried: int  # Designs whose rate was found
+    # Gains that `design.free` names and that are on a bound, and on which.
+    at_bounds: tuple[tuple[str, str], ...] = ()
 
 
 def steering_goals(designed: Designed, analysis: DesignAnalysis) -> tuple[str, ...]:
@@ -115,10 +100,11 @@ def run_certified_optimum(
     progress: Progress = silent,
     name: str | None = None,
 ) -> CertifiedOptimum:
-    """Choose virtual mass and damping of all controllers at once, with their proof.
+    """Choose the free gains of all controllers at once, with their proof.
 
     Where a mass may be zero, the best without masses and the best with them are compared: without,
-    a force acts at once, else a sample later.
+    a force acts at once, else a sample later. A goal `delay` beyond what the spec declares is
+    declared in the spec that is proved.
 
     Parameters
     ----------
@@ -137,44 +123,83 @@ def run_certified_optimum(
         If the modes make no switched system.
     """
     with placed(designed.loaded):
-        check_steerable(designed)
-        found, missed = [], []
-        for gains in gain_branches(designed, analysis):
-            try:
-                found.append(_Search(gains, progress, name).run())
-            except DesignError as error:
-                missed.append(error)
-        if not found:
-            raise missed[0]
-        return min(found, key=lambda item: item.cost)
+        if (age := wanted_age(designed)) is None:
+            return _cheapest(designed, analysis, progress, name)
+        try:
+            return _cheapest_at(designed, age, progress, name)
+        except DesignError as error:
+            raise _too_old(designed, age, progress, error) from error
 
 
 def check_steerable(designed: Designed) -> None:
-    """Refuse what no choice of gains, or no form for all modes, could prove.
+    """Refuse what no form for all modes could prove, whatever the gains.
 
     Raises
     ------
     DesignError
-        If the goal for the delay is beyond the declared one, or one form is no proof.
+        If one form is no proof.
     """
     from nrs_design.search.rate_slope import may_have_slope
 
-    goals, sampling = designed.spec.goals, designed.spec.sampling
-    delay = None if goals is None else goals.delay
-    if delay is not None and sampling is not None and sampling.oldest < delay.exact:
-        raise DesignError(
-            f"the goal delay, {delay.text}, is beyond what the spec declares: force samples are "
-            f"at most {rounded_up(sampling.oldest, 's')} old",
-            remedy="declare a longer sampling.delay, or relax the goal",
-            at=("goals", "delay"),
-        )
     if not may_have_slope(assemble_spec(designed.loaded, designed, designed.spec.coordinates)):
         raise DesignError(
             "gains are chosen with their proof only where one quadratic function may be one: not "
             "with two periods, rules that lead through unstable modes, or one state",
             remedy="optimize without a goal of the proof, and let certify-switching try others",
-            at=("goals",) if goals is not None else (),
+            at=("goals",) if designed.spec.goals is not None else (),
         )
+
+
+def _cheapest(
+    designed: Designed, analysis: DesignAnalysis, progress: Progress, name: str | None
+) -> CertifiedOptimum:
+    """Search all branches of gains, and return the cheapest."""
+    check_steerable(designed)
+    found, missed = [], []
+    for gains in gain_branches(designed, analysis):
+        try:
+            found.append(_Search(gains, progress, name).run())
+        except DesignError as error:
+            missed.append(error)
+    if not found:
+        raise missed[0]
+    return min(found, key=lambda item: item.cost)
+
+
+def _cheapest_at(
+    designed: Designed, age: int, progress: Progress, name: str | None
+) -> CertifiedOptimum:
+    """Do the same of a spec that declares an older force."""
+    progress(f"force samples up to {age} periods old")
+    later = with_delay(designed, age)
+    return _cheapest(later, run_analysis(later), progress, name)
+
+
+def _too_old(designed: Designed, age: int, progress: Progress, error: DesignError) -> DesignError:
+    """Say up to which age the other goals are reached, where they are not at the one asked for."""
+    goals, sampling = designed.spec.goals, designed.spec.sampling
+    assert goals is not None, "as one is the delay"
+    assert goals.delay is not None
+    assert sampling is not None
+    low, high, nearest = sampling.delay[1] - 1, age, None  # The declared age is tried as well
+    while high - low > 1:
+        middle = (low + high) // 2
+        try:
+            low, nearest = middle, _cheapest_at(designed, middle, progress, None)
+        except DesignError:
+            high = middle
+    reached = "nor is what the spec declares"
+    if nearest is not None:
+        gains = ", ".join(f"{' '.join(key)} = {text}" for key, text in nearest.gains.items())
+        reached = (
+            f"{rounded_down(low * sampling.outer, 's')} is reached, at a cost of "
+            f"{nearest.cost:.4g}, by {gains}"
+        )
+    return DesignError(
+        f"the goal delay, {goals.delay.text}, is not reached; {reached}. Beyond: {error.message}",
+        remedy=error.remedy,
+        at=("goals", "delay"),
+    )
 
 
 class _Search:
@@ -184,18 +209,10 @@ class _Search:
         self.gains, self.progress, self.name = gains, progress, name
         goals = gains.designed.spec.goals
         assert goals is not None, "as one steers"
-        given = zip(STEERING, (goals.decay_rate, goals.peak_torque), strict=True)
-        self.wanted = {key: value for key, value in given if value is not None}
-        self.constraints = self._constraints(*ROOMS[0])
-
-    def _constraints(self, room: float, room_of_bounds: float) -> Constraints:
-        """Return what is asked for, and a little more, as roundings take some of it."""
-        rate, force = (self.wanted.get(key) for key in STEERING)
-        wanted = LEAST_RATE if rate is None else max(rate.si * (1 + room), LEAST_RATE)
-        decays = RateConstraint(wanted, max(wanted, 1.0))
-        if force is None:
-            return (decays,)
-        return decays, ForceConstraint(force.si * (1 - room_of_bounds))
+        self.goals = goals
+        given = {key: getattr(goals, key) for key in STEERING}
+        self.wanted: dict[str, Quantity] = {k: v for k, v in given.items() if v is not None}
+        self.constraints = constraints_of(goals, *ROOMS[0])
 
     def run(self) -> CertifiedOptimum:
         """Search, round and prove; where the proof falls short, once more with more room."""
@@ -203,7 +220,7 @@ class _Search:
         start = free = self.gains.optimum()
         evaluations, free_rate = 0, None
         for rooms in ROOMS:
-            self.constraints = self._constraints(*rooms)
+            self.constraints = constraints_of(self.goals, *rooms)
             problem, first, found = self._minimum(start)
             evaluations += found.evaluations
             if free_rate is None:
@@ -212,7 +229,9 @@ class _Search:
                 break
             self.progress("proof")
             if (proved := self._proved(found, problem)) is not None:
-                return self._optimum(free, free_rate, proved, found.shadow_prices, evaluations)
+                prices = found.shadow_prices
+                bounds = self.gains.at_bounds(found.last.x)
+                return self._optimum(free, free_rate, proved, prices, evaluations, bounds)
             start = found.last.x
         self.progress("proof")
         # Other functions may prove the optimum of the cost alone; nothing binds there.
@@ -239,7 +258,13 @@ class _Search:
         return problem, first, found
 
     def _optimum(
-        self, free: Array, free_rate: float, proved: Proved, prices: Array, evaluations: int
+        self,
+        free: Array,
+        free_rate: float,
+        proved: Proved,
+        prices: Array,
+        evaluations: int,
+        at_bounds: tuple[tuple[str, str], ...] = (),
     ) -> CertifiedOptimum:
         result, written, x = proved
         return CertifiedOptimum(
@@ -250,14 +275,19 @@ class _Search:
             free_rate,
             tuple(self._goals(prices)),
             evaluations,
+            at_bounds,
         )
 
     def _goals(self, prices: Array) -> Iterator[SteeredGoal]:
         """Yield the goals that steered, with what they cost."""
-        for constraint, price in zip(self.constraints, prices, strict=True):
-            if (wanted := self.wanted.get(constraint.key)) is not None:
-                own = float(price) / constraint.one if price > LEAST_PRICE else None
-                yield SteeredGoal(constraint.key, wanted.exact, own)
+        found = {
+            constraint.key: (price > LEAST_PRICE, float(price) / constraint.one)
+            for constraint, price in zip(self.constraints, prices, strict=True)
+        }
+        for key, wanted in self.wanted.items():
+            # An age is asked for by the modes; what binds is the decay that is to be shown of them.
+            binds, price = found.get(key, (found[self.constraints[0].key][0], None))
+            yield SteeredGoal(key, wanted.exact, binds, price if binds else None)
 
     def _proved(self, found: ConstrainedOptimum, problem: ConstrainedProblem) -> Proved | None:
         """Round to the digits that ship, the cheapest first, and prove one that meets the goals."""

@@ -21,18 +21,18 @@ from nrs_design.certificates.goals import decay_rate
 from nrs_design.design.objective import Objective
 from nrs_design.errors import DesignError
 from nrs_design.pipeline.certification import Result, run_certification
-from nrs_design.pipeline.certified_optimum import LEAST_RATE, check_steerable
+from nrs_design.pipeline.certified_optimum import check_steerable
 from nrs_design.pipeline.design import Designed, placed
 from nrs_design.pipeline.free_gains import (
     Array,
     FreeGains,
-    Written,
     gain_branches,
     has_free_gains,
     in_order,
 )
-from nrs_design.pipeline.proof_constraints import DesignEvaluator, RateConstraint
+from nrs_design.pipeline.proof_constraints import LEAST_RATE, DesignEvaluator, rate_constraint
 from nrs_design.pipeline.stability_map import as_stiff
+from nrs_design.pipeline.written_gains import Written
 from nrs_design.progress import Progress, silent
 from nrs_design.proof.text import exact_text
 
@@ -225,7 +225,7 @@ class _Curve:
             least_y, most_y = log(self.softest) + LEAST_WIDTH, log(WIDEST)
         low, high = (start[:n], start[:n]) if fixed else (gains.low, gains.high)
         # What a search may take is for one point.
-        constraint = RateConstraint(self.least_rate, self.scale)
+        constraint = rate_constraint(self.least_rate, self.scale)
         evaluator = DesignEvaluator.of(gains, (constraint,), self.progress)
         evaluate = partial(self._evaluate, evaluator)
         problem = ConstrainedProblem(

@@ -45,19 +45,41 @@ def with_gains(
     SpecError
         If that is no valid spec, or a comment would be lost.
     """
-    loaded, document = designed.loaded, SpecDocument(designed.loaded)
-    root = document.root
     motion = {gain: text for (name, gain), text in written.items() if name == MOTION}
-    if motion:
-        _put_motion(document, designed, motion)
-    for (name, gain), text in written.items():
-        if name != MOTION:
-            _put(document, designed, name, gain, text)
-    # Factors on gains that are not the same any more.
-    if any(name in designed.spec.design.free for name, _ in written):
-        document.drop(root["design"], "free")
-        if not root["design"]:
-            document.drop(root, "design")
+    free = designed.spec.design.free
+
+    def give(document: SpecDocument) -> None:
+        if motion:
+            _put_motion(document, designed, motion)
+        for (name, gain), text in written.items():
+            if name != MOTION:
+                _put(document, designed, name, gain, text)
+        # Factors on gains that are not the same any more.
+        if any(gain in dict(free[name].given()) for name, gain in written if name in free):
+            document.drop(document.root["design"], "free")
+            if not document.root["design"]:
+                document.drop(document.root, "design")
+        change(document)
+
+    return edited(designed.loaded, give)
+
+
+def edited(loaded: LoadedSpec, change: Callable[[SpecDocument], None]) -> LoadedSpec:
+    """Return a spec that was changed in few places, and its text.
+
+    Parameters
+    ----------
+    loaded : LoadedSpec
+        The spec.
+    change : callable
+        Changes the document.
+
+    Raises
+    ------
+    SpecError
+        If the result is no valid spec, or a comment would be lost.
+    """
+    document = SpecDocument(loaded)
     change(document)
     text = document.text()
     return replace(respecified(loaded, parse_document(text, loaded.path)), text=text)

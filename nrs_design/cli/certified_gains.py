@@ -124,17 +124,19 @@ class CertifiedGains:
 
     def _show_freed(self) -> None:
         """Print gains and ages that are not those of the spec."""
-        units = self.designed.design.units
+        units, bounds = self.designed.design.units, dict(self.found.at_bounds)
         for name, free in self.given.spec.design.free.items():
             own = self.given.design.laws[name].gains
             for gain, _ in free.given():
                 value = self.designed.design.laws[name].gains[gain]
-                factor = float(value / own[gain])
-                unit = units[name][gain]
-                say(f"{name} {gain} = {float(value):.6g} {unit}, {factor:.3g} times the given one")
-        for gain, bound in self.found.at_bounds:
-            say(f"{gain} is on its bound, the {bound}:")
-            say("no noise and no motor effort is in the cost, so look at both before you take it")
+                times = f"{float(value / own[gain]):.3g} times the given one"
+                on = bounds.get(f"{name} {gain}")
+                say(
+                    f"{name} {gain} = {float(value):.6g} {units[name][gain]}, {times}"
+                    + ("" if on is None else f": on its {on} bound, as the cost has neither noise")
+                )
+                if on is not None:
+                    say("of the sensor nor effort of the motor; look at both before you take it")
         if (delay := self._declared) is not None:
             say(f"proved for `sampling.delay: {delay}`, which the spec does not declare yet")
 

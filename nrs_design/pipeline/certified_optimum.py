@@ -18,12 +18,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from nrs_design.axis import unit
+from nrs_design.certificates.certificate import Verdict
+from nrs_design.certificates.goals import certified_goals
 from nrs_design.errors import DesignError
 from nrs_design.pipeline.certification import Result, assemble_spec, run_certification
-from nrs_design.pipeline.design import Designed, placed, run_analysis
+from nrs_design.pipeline.design import Designed, placed
 from nrs_design.pipeline.free_gains import Array, FreeGains, gain_branches, has_free_gains, in_order
 from nrs_design.pipeline.goal_ranges import wanted_age, with_delay
-from nrs_design.pipeline.proof_constraints import NOTHING, DesignEvaluator, constraints_of
+from nrs_design.pipeline.proof_constraints import NOTHING, ROOM, DesignEvaluator, constraints_of
 from nrs_design.pipeline.written_gains import Written
 from nrs_design.progress import Progress, silent
 from nrs_design.proof.bounds import rounded_down
@@ -36,13 +38,12 @@ if TYPE_CHECKING:
     from nrs_design.spec import Quantity
     from nrs_design.spec.spec_document import SpecDocument
 
-# Goals that gains are steered by.
+# Goals that gains are steered by: numbers that a proof shows, and last what is proved about.
 STEERING = ("decay_rate", "peak_torque", "delay")
 # Roundings that are proved at most.
 MOST_ROUNDINGS = 4
-# Roundings take a little: so much more is asked for of a rate, and less of a bound; where the proof
-# falls short, more than that.
-ROOMS = ((5e-4, 4e-3), (4e-3, 1.2e-2), (2e-2, 4e-2))
+# Where the proof falls short, there is more room for roundings.
+ROOMS = (ROOM, (4e-3, 1.2e-2), (2e-2, 4e-2))
 # A goal that is missed by no more than this share may be met by rounding.
 NEAR = 5e-3
 # What costs less does not bind.
@@ -126,9 +127,42 @@ def run_certified_optimum(
         if (age := wanted_age(designed)) is None:
             return _cheapest(designed, analysis, progress, name)
         try:
-            return _cheapest_at(designed, age, progress, name)
+            return _cheapest_at(designed, analysis, age, progress, name)
         except DesignError as error:
-            raise _too_old(designed, age, progress, error) from error
+            raise _too_old(designed, analysis, age, progress, error) from error
+
+
+def cheapest_gains(
+    gains: FreeGains, progress: Progress, name: str | None = None
+) -> CertifiedOptimum:
+    """Choose the gains of one branch, with their proof.
+
+    Parameters
+    ----------
+    gains : FreeGains
+        Those that are free, with the spec, whose goals are met.
+    progress, name
+        As for `run_certified_optimum`.
+
+    Raises
+    ------
+    DesignError
+        If none within the bounds are proved to meet the goals.
+    """
+    return _Search(gains, progress, name).run()
+
+
+def meets_goals(result: Result) -> bool:
+    """Tell whether a spec is proved, with the goals that steer; its ages of the force are its own.
+
+    Parameters
+    ----------
+    result : Result
+        Of the spec with chosen gains.
+    """
+    goals = certified_goals(result.loaded.spec, result.certificate)
+    proved = result.certification.verdict is Verdict.PROVED
+    return proved and all(goal.met for goal in goals if goal.key in STEERING[:-1])
 
 
 def check_steerable(designed: Designed) -> None:
@@ -158,7 +192,7 @@ def _cheapest(
     found, missed = [], []
     for gains in gain_branches(designed, analysis):
         try:
-            found.append(_Search(gains, progress, name).run())
+            found.append(cheapest_gains(gains, progress, name))
         except DesignError as error:
             missed.append(error)
     if not found:
@@ -167,15 +201,24 @@ def _cheapest(
 
 
 def _cheapest_at(
-    designed: Designed, age: int, progress: Progress, name: str | None
+    designed: Designed,
+    analysis: DesignAnalysis,
+    age: int,
+    progress: Progress,
+    name: str | None = None,
 ) -> CertifiedOptimum:
     """Do the same of a spec that declares an older force."""
     progress(f"force samples up to {age} periods old")
-    later = with_delay(designed, age)
-    return _cheapest(later, run_analysis(later), progress, name)
+    return _cheapest(*with_delay(designed, analysis, age), progress, name)
 
 
-def _too_old(designed: Designed, age: int, progress: Progress, error: DesignError) -> DesignError:
+def _too_old(
+    designed: Designed,
+    analysis: DesignAnalysis,
+    age: int,
+    progress: Progress,
+    error: DesignError,
+) -> DesignError:
     """Say up to which age the other goals are reached, where they are not at the one asked for."""
     goals, sampling = designed.spec.goals, designed.spec.sampling
     assert goals is not None, "as one is the delay"
@@ -185,7 +228,7 @@ def _too_old(designed: Designed, age: int, progress: Progress, error: DesignErro
     while high - low > 1:
         middle = (low + high) // 2
         try:
-            low, nearest = middle, _cheapest_at(designed, middle, progress, None)
+            low, nearest = middle, _cheapest_at(designed, analysis, middle, progress)
         except DesignError:
             high = middle
     reached = "nor is what the spec declares"
@@ -207,12 +250,10 @@ class _Search:
 
     def __init__(self, gains: FreeGains, progress: Progress, name: str | None) -> None:
         self.gains, self.progress, self.name = gains, progress, name
-        goals = gains.designed.spec.goals
-        assert goals is not None, "as one steers"
-        self.goals = goals
-        given = {key: getattr(goals, key) for key in STEERING}
+        self.goals = gains.designed.spec.goals
+        given = {key: getattr(self.goals, key, None) for key in STEERING}
         self.wanted: dict[str, Quantity] = {k: v for k, v in given.items() if v is not None}
-        self.constraints = constraints_of(goals, *ROOMS[0])
+        self.constraints = constraints_of(self.goals, *ROOMS[0])
 
     def run(self) -> CertifiedOptimum:
         """Search, round and prove; where the proof falls short, once more with more room."""
@@ -303,11 +344,8 @@ class _Search:
 
     def _certified(self, written: Written) -> Result | None:
         """Certify the spec with these gains; None if a goal that steers is not met."""
-        from nrs_design.certificates.goals import certified_goals
-
         result = run_certification(self.gains.respecified(written, partial(_named, self.name)))
-        goals = certified_goals(result.loaded.spec, result.certificate)
-        return result if all(goal.met for goal in goals if goal.key in STEERING) else None
+        return result if meets_goals(result) else None
 
     def _otherwise(self, free: Array) -> Proved | None:
         """Return the optimum of the cost alone, if its goals are proved."""
@@ -321,7 +359,7 @@ class _Search:
         worst = self.constraints[int(np.argmin(last.values))]
         value, wanted = float(last.values.min()), self.wanted.get(worst.key)
         reached = worst.number(value)
-        at = ("goals", next(iter(self.wanted)) if wanted is None else worst.key)
+        at = ("goals", next(iter(self.wanted), "") if wanted is None else worst.key)
         if in_floats:
             return DesignError(
                 f"the goals are reached in floating point, near {self.gains.said(last.x)}, but "

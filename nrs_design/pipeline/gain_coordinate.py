@@ -81,10 +81,8 @@ class GainCoordinate:
         """Say on which of its bounds a gain is that is free by factors; None if on neither."""
         if self.given is None:
             return None
-        bounds = (("smallest", self.low), ("largest", self.high))
-        on = (one for one, end in zip(bounds, self.ends, strict=True) if abs(x - end) < NEAR)
-        found = next(on, None)
-        return found and f"{found[0]} value, {float(found[1] / self.given):.4g} times the given one"
+        bounds = zip(("lower", "upper"), self.ends, strict=True)
+        return next((name for name, end in bounds if abs(x - end) < NEAR), None)
 
 
 def bounded_gain(

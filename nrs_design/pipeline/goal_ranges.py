@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import ceil
+from typing import TYPE_CHECKING
 
 from nrs_design.errors import DesignError
 from nrs_design.pipeline.design import Designed, run_design
 from nrs_design.pipeline.written_gains import edited
 from nrs_design.spec.sampling import LONGEST_DELAY
 from nrs_design.spec.spec_document import SpecDocument
+
+if TYPE_CHECKING:
+    from nrs_design.design.analysis import DesignAnalysis
 
 
 def wanted_age(designed: Designed) -> int | None:
@@ -36,13 +41,17 @@ def wanted_age(designed: Designed) -> int | None:
     return age
 
 
-def with_delay(designed: Designed, age: int) -> Designed:
-    """Return the design of a spec that declares ages of the force up to another one.
+def with_delay(
+    designed: Designed, analysis: DesignAnalysis, age: int
+) -> tuple[Designed, DesignAnalysis]:
+    """Return a spec that declares ages of the force up to another one, and its problems.
+
+    What its own gains achieve is not asked: others are to be chosen, and these may be unstable.
 
     Parameters
     ----------
-    designed : Designed
-        Of the spec.
+    designed, analysis
+        Of the spec as it stands.
     age : int
         The oldest force sample that the law uses, in samples.
 
@@ -51,6 +60,9 @@ def with_delay(designed: Designed, age: int) -> Designed:
     DesignError
         If no gains within their bounds are stable then.
     """
+    from nrs_design.design.laws.impedance import impedance_problem, requirement_of
+    from nrs_design.design.laws.law import Task
+
     sampling = designed.spec.sampling
     assert sampling is not None, "a delay is of samples"
 
@@ -59,4 +71,9 @@ def with_delay(designed: Designed, age: int) -> Designed:
 
     found = run_design(edited(designed.loaded, change))
     assert found is not None, "as it was one"
-    return found
+    task, items = Task(found.spec, found.plant, found.design.motion), []
+    for item in analysis.impedance:
+        requirement = requirement_of(task, item.given)
+        problem = impedance_problem(task, item.given, requirement)
+        items.append(replace(item, problem=problem, requirement=requirement))
+    return found, replace(analysis, measured=(*items, *analysis.tuned))

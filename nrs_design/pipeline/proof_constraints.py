@@ -27,6 +27,8 @@ STEP = 1e-3
 NOTHING = -1e4
 # A rate that only has to be positive is at least so much, 1/s.
 LEAST_RATE = 1e-2
+# Roundings take a little: so much more is asked for of a rate, and less of a bound.
+ROOM = (5e-4, 4e-3)
 
 # Of a system, about what is expected, and what it may take: what is found; None if nothing is.
 Find = Callable[["SwitchedSystem", "float | None", Allowance], "ConstraintValue | None"]

@@ -21,7 +21,12 @@ from nrs_design.certificates.goals import certified_goals, decay_rate
 from nrs_design.design.objective import Objective
 from nrs_design.errors import DesignError
 from nrs_design.pipeline.certification import run_certification
-from nrs_design.pipeline.certified_optimum import STEERING, cheapest_gains, check_steerable
+from nrs_design.pipeline.certified_optimum import (
+    STEERING,
+    check_steerable,
+    cheapest_gains,
+    meets_goals,
+)
 from nrs_design.pipeline.design import Designed, placed
 from nrs_design.pipeline.free_gains import Array, FreeGains, gain_branches, has_free_gains, in_order
 from nrs_design.pipeline.goal_ranges import wanted_age, with_delay

@@ -90,7 +90,7 @@ def facts_of(
             "decay_rate": "1/s",
             "delay": "s",
             "force": unit("N*m"),
-            "noise": unit("rad/s/(N*m)"),
+            "noise": unit("rad/(s*N*m)"),
         },
     }
 
@@ -211,7 +211,7 @@ def _print(
         "decay\n1/s",
         *(["delay\nms"] if Objective.DELAY in shown else []),
         *([f"force\n{unit('N m')}"] if forces else []),
-        *([f"noise\n{unit('rad/s/(N m)')}"] if Objective.NOISE in shown else []),
+        *([f"noise\n{unit('rad/(s N m)')}"] if Objective.NOISE in shown else []),
         *(f"{name}\n{gain}" for name, gain in gains),
     ]
 

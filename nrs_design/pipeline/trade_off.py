@@ -23,8 +23,8 @@ from nrs_design.errors import DesignError
 from nrs_design.pipeline.certification import run_certification
 from nrs_design.pipeline.certified_optimum import (
     STEERING,
-    check_steerable,
     cheapest_gains,
+    check_steerable,
     meets_goals,
 )
 from nrs_design.pipeline.design import Designed, placed

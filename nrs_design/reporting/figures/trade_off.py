@@ -23,7 +23,7 @@ AXES = {
     Objective.DECAY_RATE: ("Decay rate proved", "1/s", 1.0),
     Objective.DELAY: ("Delay proved up to", "ms", 1e3),
     Objective.PEAK_TORQUE: ("Force proved below", "N m", 1.0),
-    Objective.NOISE: ("Noise in velocity", "rad/s/(N m)", 1.0),
+    Objective.NOISE: ("Noise in velocity", "rad/(s N m)", 1.0),
 }
 
 

@@ -62,7 +62,7 @@ def facts_of(
             "cost": point.cost,
             "stiffness": {name: lower_float(high) for name, high in point.stiffness.items()},
             "decay_rate": lower_float(point.rate),
-            "delay": None if delay is None else lower_float(delay),
+            "delay": None if delay is None else float(delay),  # As it is declared
             "force": None if force is None else upper_float(force),
             "noise": point.noise,
             "dominated": is_dominated(point, every, tuple(objectives)),
@@ -131,7 +131,7 @@ def table_text(
                 point.cost,
                 None if stiffness is None else lower_float(stiffness),
                 lower_float(point.rate),
-                None if point.delay is None else lower_float(point.delay),
+                None if point.delay is None else float(point.delay),
                 None if force is None else upper_float(force),
                 point.noise,
                 is_dominated(point, every, tuple(objectives)),

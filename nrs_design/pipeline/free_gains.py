@@ -47,6 +47,10 @@ Array = NDArray[np.float64]
 LEAST_MASS = Fraction(1, 1000)
 # Of so many points it is kept what controllers are optimized for there.
 MOST_KNOWN = 64
+# How far a descent begins beside a start, as a share of the way to a bound.
+NUDGE = 0.05
+# What a goal may be missed by in floating point.
+MISSED = 1e-6
 
 
 @dataclass(frozen=True)
@@ -297,17 +301,23 @@ class FreeGains:
 
         bounds = [*zip(self.low, self.high, strict=True)]
         goals = NonlinearConstraint(self.spared, 0.0, np.inf) if len(self.spared(start)) else ()
-        found = minimize(
-            self.cost,
-            start,
-            method="SLSQP",
-            bounds=bounds,
-            constraints=goals,
-            options={"ftol": 1e-9, "maxiter": 200},
-        )
-        there = np.asarray(np.clip(found.x, self.low, self.high), dtype=float)
-        better = self.cost(there) < self.cost(start) and (self.spared(there) >= -1e-6).all()
-        return there if better else start
+
+        def descended(x: Array) -> Array:
+            found = minimize(
+                self.cost,
+                x,
+                method="SLSQP",
+                bounds=bounds,
+                constraints=goals,
+                options={"ftol": 1e-9, "maxiter": 200},
+            )
+            return np.asarray(np.clip(found.x, self.low, self.high), dtype=float)
+
+        # The cost has kinks, at which a descent stops: the best Mt and Bt are often on one.
+        beside = [start + NUDGE * (end - start) for end in (self.low, self.high)]
+        ends = [descended(x) for x in (start, *beside)]
+        allowed = [x for x in ends if (self.spared(x) >= -MISSED).all()]
+        return min((start, *allowed), key=self.cost)
 
     def _spared_by_others(self, x: Array) -> list[float]:
         """Return the same of controllers that what `design.free` names changes."""

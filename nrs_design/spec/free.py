@@ -9,7 +9,6 @@ from pydantic import Field
 from nrs_design.spec.check import Row
 from nrs_design.spec.fields import Positive
 from nrs_design.spec.model import SpecModel, optional
-from nrs_design.spec.range_checks import BOUND_CHECKS
 
 
 class FactorBounds(SpecModel):
@@ -19,7 +18,6 @@ class FactorBounds(SpecModel):
     max: Positive = Field(description="largest factor on the given gain, no unit")
 
     checks = (
-        *BOUND_CHECKS,
         Row(
             "",
             lambda s: not s.min <= 1 <= s.max,

@@ -22,8 +22,6 @@ REGION, SMALLEST_REGION = 0.25, 1e-3
 PENALTY = 10.0
 # A step is kept if it brings this share of what was predicted; from the other on, the region grows.
 KEPT, GOOD = 0.1, 0.6
-# How far a descent begins beside where the search stands, as a share of the region.
-NUDGE = 0.1
 # What is less is no improvement.
 CHEAPER = 2e-5
 MOST_EVALUATIONS = 24
@@ -163,26 +161,22 @@ def _cheapest(
         linear = [cut.at(z[:n]) + z[n : n + k] for cut in cuts]
         return np.concatenate([*linear, problem.quick(z[:n]) + z[n + k]])
 
+    # Behind the point there is by how much each constraint may be missed.
+    quick = float(np.maximum(-problem.quick(here), 0.0).max(initial=0.0))
+    start = np.concatenate([here, np.maximum(-_model(cuts, here), 0.0), [quick]])
+
     def merit(z: Array) -> float:
         return problem.cost(np.clip(z[:n], low, high)) + PENALTY * float(z[n:].sum())
 
-    def descended(x: Array) -> Array:
-        # Behind the point there is by how much each constraint may be missed.
-        quick = float(np.maximum(-problem.quick(x), 0.0).max(initial=0.0))
-        start = np.concatenate([x, np.maximum(-_model(cuts, x), 0.0), [quick]])
-        found = minimize(
-            merit,
-            start,
-            method="SLSQP",
-            bounds=[*zip(low, high, strict=True), *[(0.0, None)] * (k + 1)],
-            constraints=NonlinearConstraint(met, 0.0, np.inf),
-            options={"ftol": 1e-9, "maxiter": 200},
-        )
-        return np.asarray(np.clip(found.x[:n], low, high), dtype=float)
-
-    # A cost may have kinks, at which a descent stops; beside one it does not begin there.
-    starts = (here, *(here + NUDGE * (end - here) for end in (low, high)))
-    return min(map(descended, starts), key=lambda x: _merit(problem, x, _model(cuts, x)))
+    found = minimize(
+        merit,
+        start,
+        method="SLSQP",
+        bounds=[*zip(low, high, strict=True), *[(0.0, None)] * (k + 1)],
+        constraints=NonlinearConstraint(met, 0.0, np.inf),
+        options={"ftol": 1e-9, "maxiter": 200},
+    )
+    return np.asarray(np.clip(found.x[:n], low, high), dtype=float)
 
 
 def _shadow_prices(problem: ConstrainedProblem, here: _Cut) -> Iterator[float]:

@@ -322,7 +322,7 @@ class _Search:
     def _goals(self, prices: Array) -> Iterator[SteeredGoal]:
         """Yield the goals that steered, with what they cost."""
         found = {
-            constraint.key: (price > LEAST_PRICE, float(price) / constraint.one)
+            constraint.key: (bool(price > LEAST_PRICE), float(price) / constraint.one)
             for constraint, price in zip(self.constraints, prices, strict=True)
         }
         for key, wanted in self.wanted.items():

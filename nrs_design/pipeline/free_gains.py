@@ -47,8 +47,6 @@ Array = NDArray[np.float64]
 LEAST_MASS = Fraction(1, 1000)
 # Of so many points it is kept what controllers are optimized for there.
 MOST_KNOWN = 64
-# How far a descent begins beside a start, as a share of the way to a bound.
-NUDGE = 0.05
 # What a goal may be missed by in floating point.
 MISSED = 1e-6
 
@@ -253,8 +251,6 @@ class FreeGains:
 
     def _problems(self, x: Array) -> tuple[ImpedanceProblem, ...]:
         """Return what each impedance controller is optimized for at the other gains of a point."""
-        from nrs_design.design.laws.impedance import impedance_problem, with_spring
-
         if not self._moves_cost.any():
             return self._as_given
         key = tuple(x[self._moves_cost])
@@ -262,19 +258,18 @@ class FreeGains:
             # A search asks for the same few over and over.
             while len(self._known) >= MOST_KNOWN:
                 del self._known[next(iter(self._known))]
-            design = self._design(x, Fraction)
-            task = self._task(design)
-            self._known[key] = tuple(
-                self._bounded(
-                    impedance_problem(
-                        task,
-                        with_spring(item.given, design.laws[item.name].gains.get("Kt")),
-                        item.requirement,
-                    )
-                )
-                for item in self.items
-            )
+            self._known[key] = tuple(self._problems_with(self._design(x, Fraction)))
         return self._known[key]
+
+    def _problems_with(self, design: ControllerDesign) -> Iterator[ImpedanceProblem]:
+        from nrs_design.design.laws.impedance import impedance_problem
+
+        task = self._task(design)
+        for item in self.items:
+            problem = self._bounded(impedance_problem(task, item.given, item.requirement))
+            # The spring of the spec is a single-precision number, and has no slope.
+            Kt = float(design.laws[item.name].gains.get("Kt", 0))
+            yield replace(problem, loop=replace(problem.loop, Kt=Kt))
 
     @cached_property
     def _known(self) -> dict[tuple[float, ...], tuple[ImpedanceProblem, ...]]:
@@ -299,25 +294,18 @@ class FreeGains:
         """Descend from a start, where goals of controllers stay met."""
         from scipy.optimize import NonlinearConstraint, minimize
 
-        bounds = [*zip(self.low, self.high, strict=True)]
         goals = NonlinearConstraint(self.spared, 0.0, np.inf) if len(self.spared(start)) else ()
-
-        def descended(x: Array) -> Array:
-            found = minimize(
-                self.cost,
-                x,
-                method="SLSQP",
-                bounds=bounds,
-                constraints=goals,
-                options={"ftol": 1e-9, "maxiter": 200},
-            )
-            return np.asarray(np.clip(found.x, self.low, self.high), dtype=float)
-
-        # The cost has kinks, at which a descent stops: the best Mt and Bt are often on one.
-        beside = [start + NUDGE * (end - start) for end in (self.low, self.high)]
-        ends = [descended(x) for x in (start, *beside)]
-        allowed = [x for x in ends if (self.spared(x) >= -MISSED).all()]
-        return min((start, *allowed), key=self.cost)
+        found = minimize(
+            self.cost,
+            start,
+            method="SLSQP",
+            bounds=[*zip(self.low, self.high, strict=True)],
+            constraints=goals,
+            options={"ftol": 1e-9, "maxiter": 200},
+        )
+        there = np.asarray(np.clip(found.x, self.low, self.high), dtype=float)
+        better = self.cost(there) < self.cost(start) and (self.spared(there) >= -MISSED).all()
+        return there if better else start
 
     def _spared_by_others(self, x: Array) -> list[float]:
         """Return the same of controllers that what `design.free` names changes."""

@@ -64,7 +64,8 @@ def test_a_spring_stays_where_it_may_be_retuned():
     spring = "Kt: {nominal: 2 N*m/rad, range: [1.5 N*m/rad, 3 N*m/rad]}"
     designed = freed(
         "insertion: {Kt: {min: 0.5, max: 2}}",
-        ("environment: soft\n    Mt", f"environment: soft\n    {spring}\n    Mt"),
+        ("type: impedance\n", f"type: impedance\n    {spring}\n"),
+        ("contact: losable", "contact: kept"),
     )
     (Kt,) = freed_gains(designed)
     assert (Kt.low, Kt.high) == (Fraction("1.5"), 3)

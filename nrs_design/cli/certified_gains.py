@@ -110,9 +110,13 @@ class CertifiedGains:
         more, rate = max(found.cost - found.free_cost, 0.0), found.free_rate
         # A rate that is not positive is no decay.
         shows = f"a decay of {rate:.3g} 1/s" if rate > 0 else "no decay"
-        say(f"cost {found.cost:.4f} of all controllers, {more:.4f} above the least without these")
-        say(f"goals, of which one quadratic function shows {shows} (floating point)")
-        for steered in found.goals:
+        if self.analysis.impedance:
+            least = f"{more:.4f} above the least without these"
+            say(f"cost {found.cost:.4f} of all controllers, {least}")
+            say(f"goals, of which one quadratic function shows {shows} (floating point)")
+        else:
+            say(f"no gain here has a cost: goals alone move what is given, which shows {shows}")
+        for steered in found.goals if self.analysis.impedance else ():
             if not steered.binds:
                 say(f"{steered.key} does not bind")
             elif (tighter := steered.price_of_a_percent) is None:

@@ -76,7 +76,8 @@ def rate_constraint(wanted: float, scale: float) -> ProofConstraint:
         """Bracket the rate, from about what is expected."""
         from nrs_design.search.rate_slope import rate_slope
 
-        found = rate_slope(system, None if expected is None else number(expected), allowance)
+        guess = None if expected is None else number(expected)
+        found = rate_slope(system, guess, allowance, wanted=wanted)
         if found is None:
             return None
         return ConstraintValue(

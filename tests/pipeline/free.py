@@ -1,6 +1,7 @@
 """Sampled loops whose gains are free beside Mt and Bt."""
 
 from dataclasses import replace
+from pathlib import Path
 
 from nrs_design.pipeline import run_interaction
 from nrs_design.pipeline.design import Designed
@@ -15,10 +16,10 @@ DIGITS = "significant_digits: 3"
 PD = "motion: {Kp: {min: 0.6, max: 1.6}, Kd: {min: 0.6, max: 1.6}}"
 
 
-def freed(free: str = "", *changes: tuple[str, str], path=SAMPLED) -> Designed:
+def freed(free: str, *changes: tuple[str, str], path: Path = SAMPLED, digits: int = 3) -> Designed:
     """Design a spec with free gains, and other words in some places."""
     text = path.read_text(encoding="utf-8")
-    for old, new in (*changes, (DIGITS, f"{DIGITS}\n  free: {{{free}}}")):
+    for old, new in (*changes, (DIGITS, f"significant_digits: {digits}\n  free: {{{free}}}")):
         assert old in text
         text = text.replace(old, new)
     loaded = read_spec(path)

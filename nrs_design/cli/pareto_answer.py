@@ -66,6 +66,7 @@ def facts_of(
             "force": None if force is None else upper_float(force),
             "noise": point.noise,
             "dominated": is_dominated(point, every, tuple(objectives)),
+            "at_bounds": dict(point.at_bounds),
             "gains": {f"{name}.{gain}": text for (name, gain), text in point.gains.items()},
             "certificate_id": certificate.id,
             "text": point.result.loaded.text,
@@ -161,12 +162,12 @@ def show(
         kind = "no virtual mass" if curve.massless else "with virtual mass"
         caption = f"{loaded.spec.name}: {CAPTIONS[curve.objective]}, {kind}"
         named = [(_above(point, curve), point) for point in curve.points]
-        _print(caption, named, every, shown)
+        _print(caption, "above\nleast", named, every, shown)
         if not named:
             say("nothing was proved at these costs")
     beside = [(name, one) for name, one in given.items() if one is not None]
     if beside:
-        _print("given designs, as they declare their ranges", beside, every, shown)
+        _print("given designs, as they declare their ranges", "design", beside, every, shown)
     for name, one in given.items():
         if one is None:
             say(f"{name}: nothing was proved of it")
@@ -175,6 +176,9 @@ def show(
     if Objective.NOISE in shown:
         say("Noise: velocity by white noise in the force that the admittance takes, the largest of")
         say("the controllers, as standard deviations; in floating point.")
+    for name, bound in dict.fromkeys(one for point in every for one in point.at_bounds):
+        say(f"{name} is on its {bound} bound in some points: the cost has neither noise of the")
+        say("sensor nor effort of the motor; look at both before you take one.")
     for goal in _unasked(every):
         say(f"The goal {goal} is not asked for here, and a point misses it.")
 
@@ -193,6 +197,7 @@ def _unasked(points: Sequence[TradeOffPoint]) -> Iterator[str]:
 
 def _print(
     caption: str,
+    heading: str,
     named: Sequence[tuple[str, TradeOffPoint]],
     every: Sequence[TradeOffPoint],
     shown: Sequence[Objective],
@@ -206,7 +211,7 @@ def _print(
     gains = [*dict.fromkeys(key for _, point in named for key in point.gains)]
     columns = [
         "cost",
-        "above\nleast" if caption.startswith("given") is False else "design",
+        heading,
         *(f"{name}: k up to\n{unit('N m/rad')}" for name in contacts),
         "decay\n1/s",
         *(["delay\nms"] if Objective.DELAY in shown else []),

@@ -138,7 +138,8 @@ def _over_ages(gains: FreeGains, shares: Sequence[Fraction], progress: Progress)
             break
         rate = decay_rate(best.result.certificate)
         assert rate is not None, "as it is proved"
-        found.append(TradeOffPoint(share, best.cost, best.gains, best.result, rate))
+        bounds = best.at_bounds
+        found.append(TradeOffPoint(share, best.cost, best.gains, best.result, rate, bounds))
     return TradeOffCurve(Objective.DELAY, gains.massless, least, tuple(found))
 
 
@@ -232,7 +233,8 @@ class _Curve:
             rate = decay_rate(result.certificate)
             if rate is not None and rate > 0 and meets_goals(result):
                 self.progress(f"proved at cost {gains.cost(own):.5g}")
-                return TradeOffPoint(share, gains.cost(own), written, result, rate)
+                bounds = gains.at_bounds(x[:n])
+                return TradeOffPoint(share, gains.cost(own), written, result, rate, bounds)
         return None
 
 

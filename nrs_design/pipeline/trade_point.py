@@ -26,6 +26,8 @@ class TradeOffPoint:
     gains: Written  # What ships of the free ones
     result: Result  # Of the spec with these gains and ranges; its certificate was checked exactly
     rate: Fraction  # Proved, 1/s
+    # Gains that `design.free` names and that are on a bound, and on which.
+    at_bounds: tuple[tuple[str, str], ...] = ()
 
     @property
     def designed(self) -> Designed:

@@ -93,7 +93,9 @@ def _not_freeable(freed: tuple[Spec, str, str]) -> tuple[str, str, str] | None:
     spec, name, gain = freed
     if name == MOTION:
         loop = spec.motion_loop
-        known = () if loop is None or loop.transfer_function is not None else ("Kp", "Kd")
+        known: tuple[str, ...] = ("Kp", "Kd")
+        if loop is None or loop.transfer_function is not None:
+            known = ()
     else:
         controller = spec.controllers.get(name)
         known = () if controller is None else tuple(controller.freeable)
@@ -404,7 +406,7 @@ INTERACTION_CHECKS: tuple[Row[Spec], ...] = (
         Row[tuple[Spec, str, str]](
             "",
             _not_freeable,
-            "{0!r} has no gain {1} to be freed: {2}",
+            "{0!r} has no gain {1} that can be free; those that can be: {2}",
             "name motion with Kp or Kd, a force controller with Kp, or Ki, or an impedance "
             "controller with the spring Kt that it is given; Mt and Bt are free by min and max",
         ),

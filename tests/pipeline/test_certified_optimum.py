@@ -75,7 +75,9 @@ def test_the_goal_is_proved_and_its_price_is_what_it_costs(tmp_path):
     found = optimum(tmp_path, "decay_rate: 2 1/s, delay: 2 ms")
     assert dampings(found) == [2.15, 1.12]
     assert found.free_cost == pytest.approx(FREE, abs=1e-5)
-    (goal,) = found.goals
+    goal, delay = found.goals
+    # An age is whole samples: it binds, and has no price for a percent.
+    assert (delay.key, delay.binds, delay.price) == ("delay", True, None)
     # From 0.977 1/s to 2 1/s the cost rises by 0.0150, ever faster.
     mean = (found.cost - found.free_cost) / (2 - found.free_rate)
     assert mean < goal.price < 2 * mean

@@ -23,7 +23,7 @@ from nrs_design.design.trust_region import (
 )
 from nrs_design.pipeline import run_analysis, run_interaction
 from nrs_design.pipeline.free_gains import gain_branches
-from nrs_design.pipeline.proof_constraints import DesignEvaluator, RateConstraint
+from nrs_design.pipeline.proof_constraints import DesignEvaluator, rate_constraint
 from nrs_design.progress import silent
 from nrs_design.spec import read_spec
 
@@ -51,7 +51,7 @@ def run(size: Size) -> tuple[Finding, ...]:
         path.write_text(text, encoding="utf-8")
         designed = run_interaction(read_spec(path), "has no gains")
         (gains,) = gain_branches(designed, run_analysis(designed))
-        constraint = RateConstraint(WANTED, WANTED)
+        constraint = rate_constraint(WANTED, WANTED)
 
         def evaluate(x: Array, expected: Array | None) -> Evaluation:
             # Each has its own budget, which the peer would use up.

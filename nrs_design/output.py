@@ -71,6 +71,7 @@ ARCHIVE = (
 MAP_ARCHIVE = ARCHIVE.replace(b"\x00_\x00\x9b?\xcc", b"\x00j@`B\xcc")
 SWEEP = b"point,exit_code,message,"
 MAP = b"verdict,certificate,refuted_in,"
+PARETO = b"curve,cost,stiffness,"
 TABLE = b"theta4_deg,K1,K2,K3,K1_least_squares,K2_least_squares,K3_least_squares\n"
 # Other programs write SARIF and JUnit files, too: ours say that they are.
 GATE = re.compile(

@@ -25,6 +25,7 @@ ENDING = ".nrs.yaml"
 class CertifiedGains:
     """Gains that come with their proof, and where both were written."""
 
+    given: Designed  # The spec as it stands
     found: CertifiedOptimum
     designed: Designed  # The spec with these gains
     analysis: DesignAnalysis
@@ -71,7 +72,7 @@ class CertifiedGains:
         assert own is not None, "as it was designed before"
         goals = tuple(certified_goals(own.spec, found.result.certificate))
         certificate = None if out is None else write_certified(found.result, out)
-        return cls(found, own, run_analysis(own), goals, out, certificate)
+        return cls(designed, found, own, run_analysis(own), goals, out, certificate)
 
     @property
     def proved(self) -> bool:
@@ -86,7 +87,7 @@ class CertifiedGains:
             "cost": found.cost,
             "free_cost": found.free_cost,
             "free_decay_rate": found.free_rate,
-            "binds": [goal.key for goal in found.goals if goal.price is not None],
+            "binds": [goal.key for goal in found.goals if goal.binds],
             "prices": {goal.key: goal.price for goal in found.goals},
             "goals": [
                 {"goal": goal.key, "wanted": goal.wanted, "shown": goal.said, "met": goal.met}
@@ -94,6 +95,8 @@ class CertifiedGains:
             ],
             "decay_rate": None if self.rate is None else lower_float(self.rate),
             "designs_tried": found.tried,
+            "at_bounds": dict(found.at_bounds),
+            "declares_delay": self._declared,
             "spec": None if self.spec is None else str(self.spec),
             "certificate": None if self.certificate is None else str(self.certificate),
         }
@@ -107,13 +110,45 @@ class CertifiedGains:
         more, rate = max(found.cost - found.free_cost, 0.0), found.free_rate
         # A rate that is not positive is no decay.
         shows = f"a decay of {rate:.3g} 1/s" if rate > 0 else "no decay"
-        say(f"cost {found.cost:.4f} of all controllers, {more:.4f} above the least without these")
-        say(f"goals, of which one quadratic function shows {shows} (floating point)")
-        for steered in found.goals:
-            if (tighter := steered.price_of_a_percent) is None:
+        if self.analysis.impedance:
+            least = f"{more:.4f} above the least without these"
+            say(f"cost {found.cost:.4f} of all controllers, {least}")
+            say(f"goals, of which one quadratic function shows {shows} (floating point)")
+        else:
+            say(f"no gain here has a cost: goals alone move what is given, which shows {shows}")
+        for steered in found.goals if self.analysis.impedance else ():
+            if not steered.binds:
                 say(f"{steered.key} does not bind")
+            elif (tighter := steered.price_of_a_percent) is None:
+                say(f"{steered.key} binds")
             else:
-                say(f"{steered.key} binds: 1 % tighter costs about {tighter:.2g}")
+                price = f"1 % tighter costs about {tighter:.2g} before gains are rounded"
+                say(f"{steered.key} binds: {price}")
+        self._show_freed()
+
+    def _show_freed(self) -> None:
+        """Print gains and ages that are not those of the spec."""
+        units, bounds = self.designed.design.units, dict(self.found.at_bounds)
+        for name, free in self.given.spec.design.free.items():
+            own = self.given.design.laws[name].gains
+            for gain, _ in free.given():
+                value = self.designed.design.laws[name].gains[gain]
+                times = f"{float(value / own[gain]):.3g} times the given one"
+                on = bounds.get(f"{name} {gain}")
+                say(
+                    f"{name} {gain} = {float(value):.6g} {units[name][gain]}, {times}"
+                    + ("" if on is None else f": on its {on} bound, as the cost has neither noise")
+                )
+                if on is not None:
+                    say("of the sensor nor effort of the motor; look at both before you take it")
+        if (delay := self._declared) is not None:
+            say(f"proved for `sampling.delay: {delay}`, which the spec does not declare yet")
+
+    @property
+    def _declared(self) -> list[int] | None:
+        """The ages of the force that were declared beyond those of the spec."""
+        old, new = (one.spec.sampling for one in (self.given, self.designed))
+        return None if new is None or old is None or new.delay == old.delay else [*new.delay]
 
     @property
     def rate(self) -> Fraction | None:

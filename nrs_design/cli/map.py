@@ -84,7 +84,7 @@ def map(
     from nrs_design.cli.exit_codes import OF_VERDICT, worst
     from nrs_design.output import MAP, MAP_ARCHIVE, PNG, check_place, write_outputs
     from nrs_design.pipeline import run_design
-    from nrs_design.pipeline.free_gains import gains_given
+    from nrs_design.pipeline.written_gains import with_own_gains
     from nrs_design.sweeps.marks import declared_marks, read_marks
     from nrs_design.sweeps.paint import check_corners, run_tile_map
     from nrs_design.sweeps.refine import refined
@@ -98,7 +98,7 @@ def map(
         check_place(certificates / "x")
     loaded = take_spec(spec)
     designed = run_design(loaded)
-    grid = read_tiles(loaded if designed is None else gains_given(designed), spec, over)
+    grid = read_tiles(loaded if designed is None else with_own_gains(designed), spec, over)
     marks = (*declared_marks(grid), *read_marks(grid, mark or ()))
     if certificates is not None:
         # The ends of the map, so that a long search is not for nothing.

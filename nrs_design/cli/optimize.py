@@ -40,8 +40,8 @@ def optimize(
         typer.Option(
             metavar="NEW.nrs.yaml",
             help="Write the spec with these gains given, named after the file, and its "
-            "certificate to reports/NAME.cert.json; for goals decay_rate and peak_torque, and for "
-            "--retune.",
+            "certificate to reports/NAME.cert.json; for goals decay_rate, peak_torque and delay, "
+            "and for --retune.",
         ),
     ] = None,
     global_optimum: Annotated[
@@ -63,9 +63,9 @@ def optimize(
 ) -> Answer:
     """Optimize virtual mass Mt and damping Bt for displayed impedance and sensitivity.
 
-    Goals of the spec are respected. With decay_rate or peak_torque among them, the gains of all
-    controllers are chosen together, and come with their proof. The exit code is 1 if gains that
-    are given miss a goal, or if one is not proved.
+    Goals of the spec are respected. With decay_rate, peak_torque or delay among them, the gains of
+    all controllers are chosen together, and those that design.free names, and come with their
+    proof. The exit code is 1 if gains that are given miss a goal, or if one is not proved.
 
     Example: nrs-design optimize specs/neuroboscope/soft-tissue.nrs.yaml
     """

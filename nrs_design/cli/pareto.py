@@ -9,20 +9,18 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from nrs_design.axis import unit
-from nrs_design.cli.command import Answer, command, spec_facts
+from nrs_design.cli.command import Answer, command
 from nrs_design.cli.options import SpecFile
-from nrs_design.cli.printing import note, progress, say
+from nrs_design.cli.printing import note, progress
 from nrs_design.cli.reading import take_spec
-from nrs_design.cli.tables import print_table
 from nrs_design.design.objective import Objective
-from nrs_design.proof.bounds import lower, lower_float, upper, upper_float
 
 if TYPE_CHECKING:
-    from nrs_design.pipeline.trade_off import TradeOffCurve, TradeOffPoint
-    from nrs_design.spec import LoadedSpec
+    from nrs_design.output import Output
+    from nrs_design.pipeline.trade_point import TradeOffPoint
 
-FREE, MOST_SHARES = "least", 24
+MOST_SHARES = 24
+COST = "cost"
 
 
 def read_shares(text: str) -> tuple[Fraction, ...]:
@@ -39,114 +37,101 @@ def read_shares(text: str) -> tuple[Fraction, ...]:
     return tuple(sorted(set(shares)))
 
 
+def read_objectives(text: str) -> tuple[Objective, ...]:
+    """Read what cost is traded for; raises `typer.BadParameter` on anything else."""
+    names = dict.fromkeys(part.strip() for part in text.split(","))
+    known = [*map(str, Objective)]
+    unknown = next((name for name in names if name not in (COST, *known)), None)
+    if unknown is not None or not set(names) - {COST}:
+        what = "nothing but cost" if unknown is None else f"{unknown!r}, which is none"
+        raise typer.BadParameter(f"{what}: give some of {', '.join(known)}, beside cost")
+    return tuple(Objective(name) for name in names if name != COST)
+
+
 @command("pareto")
 def pareto(
     spec: SpecFile,
-    objective: Annotated[
-        Objective, typer.Option(help="What is to be as large as can be proved.")
-    ] = Objective.STIFFNESS,
+    objectives: Annotated[
+        str,
+        typer.Option(
+            metavar="NAMES",
+            help="What cost is traded for, each for itself: some of cost,stiffness,decay-rate,"
+            "delay,peak-torque,noise.",
+        ),
+    ] = "cost,stiffness",
     above: Annotated[
         str,
         typer.Option(
             metavar="PERCENT", help="By how much the cost may be above its least: 1,2,5,10,20."
         ),
     ] = "1,2,5,10,20",
+    given: Annotated[
+        list[Path] | None,
+        typer.Option(
+            "--with",
+            metavar="SPEC",
+            help="Prove the design of this spec, too, and draw it in; may be repeated.",
+        ),
+    ] = None,
     figure: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Draw the points as a PNG image.")
     ] = None,
+    table: Annotated[
+        Path | None, typer.Option("--csv", metavar="FILE", help="Write a row for every point.")
+    ] = None,
 ) -> Answer:
-    """Trade cost for stiffness or decay: the most that is proved for each cost, with its gains.
+    """Trade cost for what can be proved: the best for each cost, with its gains.
 
+    For each share that the cost may be above its least: the largest stiffness, the fastest decay,
+    the least bound on the force, or the least noise; and for each age of the force the cheapest
+    gains. Goals decay_rate, peak_torque, delay, and those of each controller, hold in every point.
     Every point is rounded to gains that ship, and its certificate is checked exactly. Where Mt may
     be zero, designs without virtual masses and with them are two curves.
 
     Example: nrs-design pareto specs/neuroboscope/soft-tissue-sampled.nrs.yaml --above 2,5,10
     """
-    from nrs_design.output import PNG, check_place, write_output
+    from nrs_design.cli.pareto_answer import facts_of, show, table_text
+    from nrs_design.output import PARETO, PNG, check_place, write_outputs
     from nrs_design.pipeline import run_analysis, run_interaction
     from nrs_design.pipeline.trade_off import run_trade_off
 
-    shares = read_shares(above)
-    if figure is not None:
-        check_place(figure, PNG)
+    shares, wanted = read_shares(above), read_objectives(objectives)
+    for path, kind in ((figure, PNG), (table, PARETO)):
+        if path is not None:
+            check_place(path, kind)
     loaded = take_spec(spec)
-    with progress(f"trading cost for {objective} of {loaded.spec.name}") as step:
+    with progress(f"trading cost for {', '.join(wanted)} of {loaded.spec.name}") as step:
+        beside = {one.name: _given(one, step) for one in given or ()}
         designed = run_interaction(loaded, "has no gains to choose")
-        curves = run_trade_off(designed, run_analysis(designed), objective, shares, step)
+        curves = run_trade_off(designed, run_analysis(designed), wanted, shares, step)
+    outputs: list[Output] = []
     if figure is not None:
         from nrs_design.reporting.figures.trade_off import draw_trade_off
         from nrs_design.reporting.images import to_png
 
-        write_output(figure, to_png(draw_trade_off(curves, objective)), replaces=PNG)
-        note(f"figure written to {figure}")
+        outputs.append((figure, to_png(draw_trade_off(curves, beside, wanted)), PNG))
+    if table is not None:
+        outputs.append((table, table_text(curves, beside, wanted), PARETO))
+    write_outputs(outputs)
+    for path in (figure, table):
+        if path is not None:
+            note(f"written: {path}")
     return Answer(
-        lambda: _facts(loaded, objective, curves), lambda: _print(loaded, objective, curves)
+        lambda: facts_of(loaded, wanted, curves, beside),
+        lambda: show(loaded, wanted, curves, beside),
     )
 
 
-def _facts(
-    loaded: LoadedSpec, objective: Objective, curves: Sequence[TradeOffCurve]
-) -> dict[str, Any]:
-    return {
-        **spec_facts(loaded),
-        "objective": str(objective),
-        "curves": [
-            {
-                "massless": curve.massless,
-                "least_cost": curve.least_cost,
-                "points": [_point(point) for point in curve.points],
-            }
-            for curve in curves
-        ],
-        "units": {"stiffness": unit("N*m/rad"), "decay_rate": "1/s", "force": unit("N*m")},
-    }
+def _given(path: Path, step: Any) -> TradeOffPoint | None:
+    """Return the design of a spec as it stands; None if nothing is proved of it."""
+    from nrs_design.pipeline.design import interaction_of
+    from nrs_design.pipeline.trade_point import given_point
+
+    loaded = take_spec(path)
+    interaction_of(loaded, "has no gains to be compared")
+    step(f"design of {path.name}")
+    return given_point(loaded)
 
 
-def _point(point: TradeOffPoint) -> dict[str, Any]:
-    certificate = point.result.certificate
-    assert certificate is not None, "a point is proved"
-    force = point.force
-    return {
-        "allowed_above": None if point.share is None else float(point.share),
-        "cost": point.cost,
-        "stiffness": {name: lower_float(high) for name, high in point.stiffness.items()},
-        "decay_rate": lower_float(point.rate),
-        "force": None if force is None else upper_float(force),
-        "gains": {f"{name}.{gain}": text for (name, gain), text in point.gains.items()},
-        "certificate_id": certificate.id,
-        "text": point.result.loaded.text,
-    }
-
-
-def _print(loaded: LoadedSpec, objective: Objective, curves: Sequence[TradeOffCurve]) -> None:
-    contacts = [*curves[0].points[0].stiffness] if curves[0].points else []
-    bounded = any(point.force is not None for curve in curves for point in curve.points)
-    for curve in curves:
-        names = [key for point in curve.points[:1] for key in point.gains]
-        columns = [
-            "cost",
-            "above\nleast",
-            *(f"{name}: k up to\n{unit('N m/rad')}" for name in contacts),
-            "decay\n1/s",
-            *([f"force\n{unit('N m')}"] if bounded else []),
-            *(f"{name}\n{gain}" for name, gain in names),
-        ]
-        rows = [
-            [
-                f"{point.cost:.4f}",
-                FREE
-                if point.share is None
-                else f"{100 * (point.cost / curve.least_cost - 1):.1f} %",
-                *(lower(high, 4) for high in point.stiffness.values()),
-                lower(point.rate, 3),
-                *([upper(point.force, 3) if point.force is not None else "–"] if bounded else []),
-                *(text.split()[0] for text in point.gains.values()),
-            ]
-            for point in curve.points
-        ]
-        kind = "no virtual mass" if curve.massless else "with virtual mass"
-        print_table(f"{loaded.spec.name}: {objective} for cost, {kind}", columns, rows)
-        if not rows:
-            say("nothing was proved at these costs")
-    say("Proved for all stiffness up to k, and all else that the spec declares.")
-    say("Cost: that of optimize at nominal values, of all controllers, in floating point.")
+Given = dict[str, "TradeOffPoint | None"]
+Objectives = Sequence[Objective]

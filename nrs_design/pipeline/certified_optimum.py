@@ -18,54 +18,36 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from nrs_design.axis import unit
+from nrs_design.certificates.certificate import Verdict
+from nrs_design.certificates.goals import certified_goals
 from nrs_design.errors import DesignError
-from nrs_design.pipeline.certification import (
-    Result,
-    assemble_spec,
-    run_certification,
-)
+from nrs_design.pipeline.certification import Result, assemble_spec, run_certification
 from nrs_design.pipeline.design import Designed, placed
-from nrs_design.pipeline.free_gains import (
-    Array,
-    FreeGains,
-    Written,
-    gain_branches,
-    has_free_gains,
-    in_order,
-)
-from nrs_design.pipeline.proof_constraints import (
-    NOTHING,
-    AbstractProofConstraint,
-    DesignEvaluator,
-    ForceConstraint,
-    RateConstraint,
-)
+from nrs_design.pipeline.free_gains import Array, FreeGains, gain_branches, has_free_gains, in_order
+from nrs_design.pipeline.goal_ranges import wanted_age, with_delay
+from nrs_design.pipeline.proof_constraints import NOTHING, ROOM, DesignEvaluator, constraints_of
+from nrs_design.pipeline.written_gains import Written
 from nrs_design.progress import Progress, silent
-from nrs_design.proof.bounds import rounded_up
+from nrs_design.proof.bounds import rounded_down
 
 if TYPE_CHECKING:
     # What was certified, what ships of the free gains, and the point.
     Proved = tuple[Result, Written, Array]
     from nrs_design.design.analysis import DesignAnalysis
     from nrs_design.design.trust_region import ConstrainedOptimum, ConstrainedProblem, Evaluation
+    from nrs_design.spec import Quantity
     from nrs_design.spec.spec_document import SpecDocument
 
-# Goals that gains are steered by.
-STEERING = (RateConstraint.key, ForceConstraint.key)
-# A rate that only has to be positive is at least so much, 1/s.
-LEAST_RATE = 1e-2
+# Goals that gains are steered by: numbers that a proof shows, and last what is proved about.
+STEERING = ("decay_rate", "peak_torque", "delay")
 # Roundings that are proved at most.
 MOST_ROUNDINGS = 4
-# Roundings take a little: so much more is asked for of a rate, and less of a bound; where the proof
-# falls short, more than that.
-ROOMS = ((5e-4, 4e-3), (4e-3, 1.2e-2), (2e-2, 4e-2))
+# Where the proof falls short, there is more room for roundings.
+ROOMS = (ROOM, (4e-3, 1.2e-2), (2e-2, 4e-2))
 # A goal that is missed by no more than this share may be met by rounding.
 NEAR = 5e-3
 # What costs less does not bind.
 LEAST_PRICE = 1e-4
-
-
-Constraints = tuple[AbstractProofConstraint, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,7 +56,9 @@ class SteeredGoal:
 
     key: str  # In the spec
     wanted: Fraction  # In SI units
-    # What one more in SI units costs, in first order; None where the goal does not bind.
+    binds: bool  # Whether gains would be cheaper without it
+    # What one more in SI units costs, in first order; None where the goal does not bind, or where
+    # what it asks for is counted in whole samples.
     price: float | None
 
     @property
@@ -94,6 +78,8 @@ class CertifiedOptimum:
     free_rate: float  # The best decay rate there in floating point, 1/s
     goals: tuple[SteeredGoal, ...]
     tried: int  # Designs whose rate was found
+    # Gains that `design.free` names and that are on a bound, and on which.
+    at_bounds: tuple[tuple[str, str], ...] = ()
 
 
 def steering_goals(designed: Designed, analysis: DesignAnalysis) -> tuple[str, ...]:
@@ -106,7 +92,7 @@ def steering_goals(designed: Designed, analysis: DesignAnalysis) -> tuple[str, .
     """
     goals = designed.spec.goals
     given = [] if goals is None else [key for key, _ in goals.given()]
-    return tuple(key for key in STEERING if key in given and has_free_gains(analysis))
+    return tuple(key for key in STEERING if key in given and has_free_gains(designed, analysis))
 
 
 def run_certified_optimum(
@@ -115,10 +101,11 @@ def run_certified_optimum(
     progress: Progress = silent,
     name: str | None = None,
 ) -> CertifiedOptimum:
-    """Choose virtual mass and damping of all controllers at once, with their proof.
+    """Choose the free gains of all controllers at once, with their proof.
 
     Where a mass may be zero, the best without masses and the best with them are compared: without,
-    a force acts at once, else a sample later.
+    a force acts at once, else a sample later. A goal `delay` beyond what the spec declares is
+    declared in the spec that is proved.
 
     Parameters
     ----------
@@ -137,44 +124,125 @@ def run_certified_optimum(
         If the modes make no switched system.
     """
     with placed(designed.loaded):
-        check_steerable(designed)
-        found, missed = [], []
-        for gains in gain_branches(designed, analysis):
-            try:
-                found.append(_Search(gains, progress, name).run())
-            except DesignError as error:
-                missed.append(error)
-        if not found:
-            raise missed[0]
-        return min(found, key=lambda item: item.cost)
+        if (age := wanted_age(designed)) is None:
+            return _cheapest(designed, analysis, progress, name)
+        try:
+            return _cheapest_at(designed, analysis, age, progress, name)
+        except DesignError as error:
+            raise _too_old(designed, analysis, age, progress, error) from error
 
 
-def check_steerable(designed: Designed) -> None:
-    """Refuse what no choice of gains, or no form for all modes, could prove.
+def cheapest_gains(
+    gains: FreeGains, progress: Progress, name: str | None = None
+) -> CertifiedOptimum:
+    """Choose the gains of one branch, with their proof.
+
+    Parameters
+    ----------
+    gains : FreeGains
+        Those that are free, with the spec, whose goals are met.
+    progress, name
+        As for `run_certified_optimum`.
 
     Raises
     ------
     DesignError
-        If the goal for the delay is beyond the declared one, or one form is no proof.
+        If none within the bounds are proved to meet the goals.
+    """
+    return _Search(gains, progress, name).run()
+
+
+def meets_goals(result: Result) -> bool:
+    """Tell whether a spec is proved, with the goals that steer; its ages of the force are its own.
+
+    Parameters
+    ----------
+    result : Result
+        Of the spec with chosen gains.
+    """
+    goals = certified_goals(result.loaded.spec, result.certificate)
+    proved = result.certification.verdict is Verdict.PROVED
+    return proved and all(goal.met for goal in goals if goal.key in STEERING[:-1])
+
+
+def check_steerable(designed: Designed) -> None:
+    """Refuse what no form for all modes could prove, whatever the gains.
+
+    Raises
+    ------
+    DesignError
+        If one form is no proof.
     """
     from nrs_design.search.rate_slope import may_have_slope
 
-    goals, sampling = designed.spec.goals, designed.spec.sampling
-    delay = None if goals is None else goals.delay
-    if delay is not None and sampling is not None and sampling.oldest < delay.exact:
-        raise DesignError(
-            f"the goal delay, {delay.text}, is beyond what the spec declares: force samples are "
-            f"at most {rounded_up(sampling.oldest, 's')} old",
-            remedy="declare a longer sampling.delay, or relax the goal",
-            at=("goals", "delay"),
-        )
     if not may_have_slope(assemble_spec(designed.loaded, designed, designed.spec.coordinates)):
         raise DesignError(
             "gains are chosen with their proof only where one quadratic function may be one: not "
             "with two periods, rules that lead through unstable modes, or one state",
             remedy="optimize without a goal of the proof, and let certify-switching try others",
-            at=("goals",) if goals is not None else (),
+            at=("goals",) if designed.spec.goals is not None else (),
         )
+
+
+def _cheapest(
+    designed: Designed, analysis: DesignAnalysis, progress: Progress, name: str | None
+) -> CertifiedOptimum:
+    """Search all branches of gains, and return the cheapest."""
+    check_steerable(designed)
+    found, missed = [], []
+    for gains in gain_branches(designed, analysis):
+        try:
+            found.append(cheapest_gains(gains, progress, name))
+        except DesignError as error:
+            missed.append(error)
+    if not found:
+        raise missed[0]
+    return min(found, key=lambda item: item.cost)
+
+
+def _cheapest_at(
+    designed: Designed,
+    analysis: DesignAnalysis,
+    age: int,
+    progress: Progress,
+    name: str | None = None,
+) -> CertifiedOptimum:
+    """Do the same of a spec that declares an older force."""
+    progress(f"force samples up to {age} periods old")
+    return _cheapest(*with_delay(designed, analysis, age), progress, name)
+
+
+def _too_old(
+    designed: Designed,
+    analysis: DesignAnalysis,
+    age: int,
+    progress: Progress,
+    error: DesignError,
+) -> DesignError:
+    """Say up to which age the other goals are reached, where they are not at the one asked for."""
+    goals, sampling = designed.spec.goals, designed.spec.sampling
+    assert goals is not None, "as one is the delay"
+    assert goals.delay is not None
+    assert sampling is not None
+    low, high, nearest = sampling.delay[1] - 1, age, None  # The declared age is tried as well
+    while high - low > 1:
+        middle = (low + high) // 2
+        try:
+            low, nearest = middle, _cheapest_at(designed, analysis, middle, progress)
+        except DesignError:
+            high = middle
+    reached = "nor is what the spec declares"
+    if nearest is not None:
+        gains = ", ".join(f"{' '.join(key)} = {text}" for key, text in nearest.gains.items())
+        reached = (
+            f"{rounded_down(low * sampling.outer, 's')} is reached, at a cost of "
+            f"{nearest.cost:.4g}, by {gains}"
+        )
+    return DesignError(
+        f"the goal delay, {goals.delay.text}, is not reached; {reached}. Beyond: {error.message}",
+        remedy=error.remedy,
+        at=("goals", "delay"),
+    )
 
 
 class _Search:
@@ -182,20 +250,10 @@ class _Search:
 
     def __init__(self, gains: FreeGains, progress: Progress, name: str | None) -> None:
         self.gains, self.progress, self.name = gains, progress, name
-        goals = gains.designed.spec.goals
-        assert goals is not None, "as one steers"
-        given = zip(STEERING, (goals.decay_rate, goals.peak_torque), strict=True)
-        self.wanted = {key: value for key, value in given if value is not None}
-        self.constraints = self._constraints(*ROOMS[0])
-
-    def _constraints(self, room: float, room_of_bounds: float) -> Constraints:
-        """Return what is asked for, and a little more, as roundings take some of it."""
-        rate, force = (self.wanted.get(key) for key in STEERING)
-        wanted = LEAST_RATE if rate is None else max(rate.si * (1 + room), LEAST_RATE)
-        decays = RateConstraint(wanted, max(wanted, 1.0))
-        if force is None:
-            return (decays,)
-        return decays, ForceConstraint(force.si * (1 - room_of_bounds))
+        self.goals = gains.designed.spec.goals
+        given = {key: getattr(self.goals, key, None) for key in STEERING}
+        self.wanted: dict[str, Quantity] = {k: v for k, v in given.items() if v is not None}
+        self.constraints = constraints_of(self.goals, *ROOMS[0])
 
     def run(self) -> CertifiedOptimum:
         """Search, round and prove; where the proof falls short, once more with more room."""
@@ -203,7 +261,7 @@ class _Search:
         start = free = self.gains.optimum()
         evaluations, free_rate = 0, None
         for rooms in ROOMS:
-            self.constraints = self._constraints(*rooms)
+            self.constraints = constraints_of(self.goals, *rooms)
             problem, first, found = self._minimum(start)
             evaluations += found.evaluations
             if free_rate is None:
@@ -212,7 +270,9 @@ class _Search:
                 break
             self.progress("proof")
             if (proved := self._proved(found, problem)) is not None:
-                return self._optimum(free, free_rate, proved, found.shadow_prices, evaluations)
+                prices = found.shadow_prices
+                bounds = self.gains.at_bounds(found.last.x)
+                return self._optimum(free, free_rate, proved, prices, evaluations, bounds)
             start = found.last.x
         self.progress("proof")
         # Other functions may prove the optimum of the cost alone; nothing binds there.
@@ -239,7 +299,13 @@ class _Search:
         return problem, first, found
 
     def _optimum(
-        self, free: Array, free_rate: float, proved: Proved, prices: Array, evaluations: int
+        self,
+        free: Array,
+        free_rate: float,
+        proved: Proved,
+        prices: Array,
+        evaluations: int,
+        at_bounds: tuple[tuple[str, str], ...] = (),
     ) -> CertifiedOptimum:
         result, written, x = proved
         return CertifiedOptimum(
@@ -250,14 +316,19 @@ class _Search:
             free_rate,
             tuple(self._goals(prices)),
             evaluations,
+            at_bounds,
         )
 
     def _goals(self, prices: Array) -> Iterator[SteeredGoal]:
         """Yield the goals that steered, with what they cost."""
-        for constraint, price in zip(self.constraints, prices, strict=True):
-            if (wanted := self.wanted.get(constraint.key)) is not None:
-                own = float(price) / constraint.one if price > LEAST_PRICE else None
-                yield SteeredGoal(constraint.key, wanted.exact, own)
+        found = {
+            constraint.key: (bool(price > LEAST_PRICE), float(price) / constraint.one)
+            for constraint, price in zip(self.constraints, prices, strict=True)
+        }
+        for key, wanted in self.wanted.items():
+            # An age is asked for by the modes; what binds is the decay that is to be shown of them.
+            binds, price = found.get(key, (found[self.constraints[0].key][0], None))
+            yield SteeredGoal(key, wanted.exact, binds, price if binds else None)
 
     def _proved(self, found: ConstrainedOptimum, problem: ConstrainedProblem) -> Proved | None:
         """Round to the digits that ship, the cheapest first, and prove one that meets the goals."""
@@ -273,11 +344,8 @@ class _Search:
 
     def _certified(self, written: Written) -> Result | None:
         """Certify the spec with these gains; None if a goal that steers is not met."""
-        from nrs_design.certificates.goals import certified_goals
-
         result = run_certification(self.gains.respecified(written, partial(_named, self.name)))
-        goals = certified_goals(result.loaded.spec, result.certificate)
-        return result if all(goal.met for goal in goals if goal.key in STEERING) else None
+        return result if meets_goals(result) else None
 
     def _otherwise(self, free: Array) -> Proved | None:
         """Return the optimum of the cost alone, if its goals are proved."""
@@ -291,7 +359,7 @@ class _Search:
         worst = self.constraints[int(np.argmin(last.values))]
         value, wanted = float(last.values.min()), self.wanted.get(worst.key)
         reached = worst.number(value)
-        at = ("goals", next(iter(self.wanted)) if wanted is None else worst.key)
+        at = ("goals", next(iter(self.wanted), "") if wanted is None else worst.key)
         if in_floats:
             return DesignError(
                 f"the goals are reached in floating point, near {self.gains.said(last.x)}, but "

@@ -1,97 +1,98 @@
-"""The gains of all impedance controllers that a spec leaves free, as one point to be chosen.
+"""The gains that a proof may choose, of all controllers, as one point.
 
-A point holds their logarithms. Of its gains, either all virtual masses are zero, or none: they are
+A point holds their logarithms: virtual mass and damping of the impedance controllers, and what
+``design.free`` names beside. Of its gains, either all virtual masses are zero, or none: they are
 different laws.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from itertools import product
-from math import exp, log
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.axis import unit
-from nrs_design.controllers.float32 import (
-    exact_decimal,
-    neighbors,
-    round_significant,
-    to_float32,
-)
+from nrs_design.controllers.float32 import to_float32
 from nrs_design.errors import DesignError
-from nrs_design.pipeline.certification import assemble_spec, gains_text, is_of_gains
+from nrs_design.pipeline.certification import assemble_spec, is_of_gains
 from nrs_design.pipeline.design import Designed, run_design
-from nrs_design.proof.text import exact_text
+from nrs_design.pipeline.gain_coordinate import (
+    BOUNDED,
+    GainCoordinate,
+    bounded_gain,
+    freed_gains,
+)
+from nrs_design.pipeline.written_gains import Written, with_gains
 from nrs_design.spec import LoadedSpec
-from nrs_design.spec.document import parse_document
-from nrs_design.spec.load import respecified
+from nrs_design.spec.interaction_parts import MOTION
 from nrs_design.spec.spec_document import SpecDocument
 
 if TYPE_CHECKING:
     from nrs_design.certificates.certificate import Gains
+    from nrs_design.controllers.controller_design import ControllerDesign
     from nrs_design.design.analysis import DesignAnalysis, ImpedanceAnalysis
+    from nrs_design.design.goals import Requirement
     from nrs_design.design.impedance_optimum import ImpedanceProblem
+    from nrs_design.design.laws.law import Task
     from nrs_design.models.plant import Plant
     from nrs_design.proof.system import SwitchedSystem
 
 Array = NDArray[np.float64]
-# What ships of every free gain, with its unit, by controller and name.
-Written = Mapping[tuple[str, str], str]
-
 # A virtual mass that may be zero is zero, or at least this share of the largest.
-LEAST_MASS = 1e-3
-# A logarithm that is nearer to that of a bound is at the bound.
-CLOSE = 1e-6
-UNITS = {"Mt": "kg*m^2", "Bt": "N*m*s/rad"}
+LEAST_MASS = Fraction(1, 1000)
+# Of so many points it is kept what controllers are optimized for there.
+MOST_KNOWN = 64
+# What a goal may be missed by in floating point.
+MISSED = 1e-6
 
 
 @dataclass(frozen=True)
 class FreeGains:
-    """The free gains of a design, within bounds for the virtual masses."""
+    """The free gains of a design: without virtual masses, or with them."""
 
     designed: Designed  # With the other gains
-    items: tuple[ImpedanceAnalysis, ...]  # What each controller is optimized for
-    masses: tuple[tuple[float, float], ...]  # Bounds of each Mt, kg m^2
+    analysis: DesignAnalysis
+    massless: bool
+
+    @property
+    def items(self) -> tuple[ImpedanceAnalysis, ...]:
+        """What each impedance controller is optimized for."""
+        return self.analysis.impedance
 
     @cached_property
-    def problems(self) -> tuple[ImpedanceProblem, ...]:
-        """What each controller is optimized for, within these bounds."""
-        pairs = zip(self.items, self.masses, strict=True)
-        return tuple(replace(item.problem, mass_bounds=mass) for item, mass in pairs)
-
-    @cached_property
-    def bounds(self) -> tuple[dict[str, tuple[float, float]], ...]:
-        """Ends of each gain, SI units."""
-        return tuple({"Mt": p.mass_bounds, "Bt": p.damping_bounds} for p in self.problems)
-
-    @cached_property
-    def places(self) -> tuple[tuple[int, str], ...]:
-        """Controller and name of each coordinate of a point."""
-        return tuple(
-            (k, name)
-            for k, own in enumerate(self.bounds)
-            for name, (low, high) in own.items()
-            if low < high
-        )
+    def coordinates(self) -> tuple[GainCoordinate, ...]:
+        """The gains that are chosen."""
+        found: list[GainCoordinate | None] = []
+        for item in self.items:
+            units = self.designed.design.units[item.name]
+            Mt, Bt = item.given.Mt, item.given.Bt
+            if not self.massless:
+                least = Mt.min.exact or LEAST_MASS * Mt.max.exact
+                found.append(bounded_gain(item.name, "Mt", Mt, least, units["Mt"]))
+            found.append(bounded_gain(item.name, "Bt", Bt, Bt.min.exact, units["Bt"]))
+        found += freed_gains(self.designed)
+        return tuple(one for one in found if one is not None)
 
     @cached_property
     def low(self) -> Array:
         """Lowest coordinates of a point."""
-        return np.log([self.bounds[k][name][0] for k, name in self.places])
+        return np.array([one.ends[0] for one in self.coordinates])
 
     @cached_property
     def high(self) -> Array:
         """Highest coordinates of a point."""
-        return np.log([self.bounds[k][name][1] for k, name in self.places])
+        return np.array([one.ends[1] for one in self.coordinates])
 
     def optimum(self) -> Array:
         """Return the point of the least cost, whatever a proof shows of it.
+
+        Gains that ``design.free`` names are looked at near what the spec gives.
 
         Raises
         ------
@@ -100,35 +101,67 @@ class FreeGains:
         """
         from nrs_design.design.constrained import optimize_with_goals
 
-        best = [
-            optimize_with_goals(problem, item.requirement)
-            for problem, item in zip(self.problems, self.items, strict=True)
-        ]
-        found = np.log([getattr(best[k], name) for k, name in self.places])
-        return np.asarray(np.clip(found, self.low, self.high))
+        best = {
+            item.name: optimize_with_goals(problem, item.requirement)
+            for item, problem in zip(self.items, self._as_given, strict=True)
+        }
+        found = np.log(
+            [
+                float(one.given) if one.given else getattr(best[one.controller], one.gain)
+                for one in self.coordinates
+            ]
+        )
+        found = np.clip(found, self.low, self.high)
+        return self._cheapest_near(found) if self._moves_cost.any() else np.asarray(found)
 
-    def gains(self, x: Array) -> list[dict[str, float]]:
-        """Return Mt and Bt of every controller at a point, in SI units."""
-        found = [{name: low for name, (low, _) in own.items()} for own in self.bounds]
-        for (k, name), value, low, high in zip(self.places, x, self.low, self.high, strict=True):
-            found[k][name] = exp(min(max(value, low), high))
+    def gains(self, x: Array) -> dict[str, dict[str, float]]:
+        """Return the gains of every controller at a point, in SI units."""
+        laws = self.designed.design.laws
+        found = {
+            name: {gain: float(value) for gain, value in law.gains.items()}
+            for name, law in laws.items()
+        }
+        for item in self.items:
+            Mt, Bt = item.given.Mt, item.given.Bt
+            found[item.name]["Mt"] = 0.0 if self.massless else Mt.min.si
+            found[item.name]["Bt"] = Bt.min.si
+        for one, value in zip(self.coordinates, x, strict=True):
+            found[one.controller][one.gain] = one.value(float(value))
         return found
 
     def cost(self, x: Array) -> float:
-        """Return the cost at a point, summed over the controllers."""
+        """Return the cost at a point, summed over the impedance controllers."""
         from nrs_design.design.impedance_optimum import impedance_cost
 
-        pairs = zip(self.problems, self.gains(x), strict=True)
-        return sum(float(impedance_cost(problem, own["Mt"], own["Bt"])) for problem, own in pairs)
+        gains = self.gains(x)
+        return sum(
+            float(impedance_cost(problem, gains[item.name]["Mt"], gains[item.name]["Bt"]))
+            for item, problem in zip(self.items, self._problems(x), strict=True)
+        )
 
     def spared(self, x: Array) -> Array:
         """Return for each controller with goals by how much they are met; negative if missed."""
-        met = [
-            -item.requirement.violation(np.array([own["Mt"]]), np.array([own["Bt"]]))[0]
-            for item, own in zip(self.items, self.gains(x), strict=True)
-            if item.requirement.goals
-        ]
+        gains, met = self.gains(x), []
+        for item in self.items:
+            if item.requirement.goals:
+                own = (np.array([gains[item.name][gain]]) for gain in BOUNDED)
+                met.append(-self._requirement(item, x).violation(*own)[0])
+        met += self._spared_by_others(x)
         return np.asarray(np.maximum(np.array(met, dtype=float), -1.0))
+
+    def design(self, x: Array) -> ControllerDesign:
+        """Return the design with the single-precision gains next to a point."""
+        return self._design(x, to_float32)
+
+    def _design(self, x: Array, rounded: Callable[[Fraction], Fraction]) -> ControllerDesign:
+        own = self.designed.design
+        gains = {
+            name: {gain: rounded(Fraction(value)) for gain, value in values.items()}
+            for name, values in self.gains(x).items()
+        }
+        motion = own.motion if own.motion.absent else type(own.motion).of(gains[MOTION])
+        controllers = (replace(c, law=c.law.of(gains[c.name])) for c in own.controllers)
+        return replace(own, motion=motion, controllers=tuple(controllers))
 
     def system(self, x: Array, plant: Plant | None = None) -> SwitchedSystem:
         """Assemble the modes with the single-precision gains next to a point.
@@ -145,14 +178,7 @@ class FreeGains:
         AssemblyError
             If they make no switched system.
         """
-        from nrs_design.controllers.gains import design_from_gains
-
-        gains = {name: dict(own) for name, own in gains_text(self.designed).items()}
-        for item, own in zip(self.items, self.gains(x), strict=True):
-            for name, value in own.items():
-                gains[item.name][name] = exact_decimal(to_float32(Fraction(value)))
-        design = design_from_gains(self.designed.spec, gains)
-        designed = replace(self.designed, design=design, plant=plant or self.designed.plant)
+        designed = replace(self.designed, design=self.design(x), plant=plant or self.designed.plant)
         return assemble_spec(designed.loaded, designed, designed.spec.coordinates)
 
     def roundings(self, x: Array) -> Iterator[tuple[Array, Written]]:
@@ -163,67 +189,152 @@ class FreeGains:
         x : ndarray
             The point.
         """
-        for near in product(*(self._near(i, value) for i, value in enumerate(x))):
-            texts = dict(zip(self.places, (text for _, text in near), strict=True))
-            written = {
-                (item.name, name): texts.get((k, name), f"0 {unit(UNITS[name])}")
-                for k, item in enumerate(self.items)
-                for name in free_names(item)
-            }
-            yield np.log([value for value, _ in near]), written
-
-    def _near(self, i: int, x: float) -> list[tuple[float, str]]:
-        """Return values near a gain: its bound, or a few digits."""
-        k, name = self.places[i]
-        given = getattr(self.items[k].given, name)
-        for end in (given.min, given.max):
-            if end.exact > 0 and abs(x - log(end.si)) < CLOSE:
-                return [(end.si, end.text)]
         digits = self.designed.spec.design.significant_digits
-        found = {round_significant(near, digits) for near in neighbors(exp(x), digits)}
-        inside = [v for v in found if given.min.exact <= v <= given.max.exact and v > 0]
-        return [(float(v), f"{exact_text(v)} {unit(UNITS[name])}") for v in sorted(inside)]
+        pairs = zip(self.coordinates, x, strict=True)
+        for near in product(*(one.near(float(value), digits) for one, value in pairs)):
+            texts = {one.name: text for one, (_, text) in zip(self.coordinates, near, strict=True)}
+            zeros = {
+                (item.name, gain): f"0 {unit('kg*m^2')}"
+                for item in self.items
+                for gain in free_names(item)
+                if (item.name, gain) not in texts
+            }
+            yield np.log([value for value, _ in near]), zeros | texts
 
     def respecified(
         self, written: Written, change: Callable[[SpecDocument], None] = lambda document: None
     ) -> LoadedSpec:
-        """Return the spec with gains given, and its text; ranges of gains stay.
-
-        Parameters
-        ----------
-        written : mapping
-            The gains.
-        change : callable
-            Changes the document further.
-
-        Raises
-        ------
-        SpecError
-            If that is no valid spec, or a comment would be lost.
-        """
-        loaded = self.designed.loaded
-        document = SpecDocument(loaded)
-        for (controller, name), text in written.items():
-            given = getattr(self.designed.spec.controllers[controller], name)
-            ends = None if given.range is None else [end.text for end in given.range]
-            said = text if ends is None else {"nominal": text, "range": ends}
-            document.put(document.root["controllers"][controller], name, said)
-        change(document)
-        text = document.text()
-        return replace(respecified(loaded, parse_document(text, loaded.path)), text=text)
+        """Return the spec with gains given, as `with_gains` does."""
+        return with_gains(self.designed, written, change)
 
     def said(self, x: Array) -> str:
-        """Write the gains at a point for people."""
+        """Write the gains at a point for people: those of impedance controllers, and free ones."""
+        gains, units = self.gains(x), self.designed.design.units
+        shown = {item.name: dict.fromkeys(BOUNDED) for item in self.items}
+        for one in self.coordinates:
+            shown.setdefault(one.controller, {})[one.gain] = None
         return "; ".join(
-            f"{item.name} Mt = {own['Mt']:.4g} {unit('kg m^2')}, Bt = {own['Bt']:.4g} "
-            f"{unit('N m s/rad')}"
-            for item, own in zip(self.items, self.gains(x), strict=True)
+            name
+            + " "
+            + ", ".join(
+                f"{gain} = {gains[name][gain]:.4g} {units[name][gain].replace('*', ' ')}"
+                for gain in names
+            )
+            for name, names in shown.items()
         )
+
+    def at_bounds(self, x: Array) -> tuple[tuple[str, str], ...]:
+        """Return the gains freed by factors that are on a bound, and on which."""
+        found = (
+            (" ".join(one.name), one.at_bound(float(value)))
+            for one, value in zip(self.coordinates, x, strict=True)
+        )
+        return tuple((name, bound) for name, bound in found if bound is not None)
+
+    @cached_property
+    def _moves_cost(self) -> NDArray[np.bool_]:
+        """Which coordinates the cost depends on beside Mt and Bt."""
+        costing = {MOTION, *(item.name for item in self.items)} if self.items else set()
+        return np.array(
+            [one.given is not None and one.controller in costing for one in self.coordinates],
+            dtype=bool,
+        )
+
+    @cached_property
+    def _as_given(self) -> tuple[ImpedanceProblem, ...]:
+        """What each impedance controller is optimized for while the other gains are as given."""
+        return tuple(self._bounded(item.problem) for item in self.items)
+
+    def _bounded(self, problem: ImpedanceProblem) -> ImpedanceProblem:
+        low, high = problem.mass_bounds
+        least = low or float(LEAST_MASS) * high
+        return replace(problem, mass_bounds=(0.0, 0.0) if self.massless else (least, high))
+
+    def _problems(self, x: Array) -> tuple[ImpedanceProblem, ...]:
+        """Return what each impedance controller is optimized for at the other gains of a point."""
+        if not self._moves_cost.any():
+            return self._as_given
+        key = tuple(x[self._moves_cost])
+        if key not in self._known:
+            # A search asks for the same few over and over.
+            while len(self._known) >= MOST_KNOWN:
+                del self._known[next(iter(self._known))]
+            self._known[key] = tuple(self._problems_with(self._design(x, Fraction)))
+        return self._known[key]
+
+    def _problems_with(self, design: ControllerDesign) -> Iterator[ImpedanceProblem]:
+        from nrs_design.design.laws.impedance import impedance_problem
+
+        task = self._task(design)
+        for item in self.items:
+            problem = self._bounded(impedance_problem(task, item.given, item.requirement))
+            # The spring of the spec is a single-precision number, and has no slope.
+            Kt = float(design.laws[item.name].gains.get("Kt", 0))
+            yield replace(problem, loop=replace(problem.loop, Kt=Kt))
+
+    @cached_property
+    def _known(self) -> dict[tuple[float, ...], tuple[ImpedanceProblem, ...]]:
+        return {}
+
+    def _requirement(self, item: ImpedanceAnalysis, x: Array) -> Requirement:
+        """Return the goals of an impedance controller at the other gains of a point."""
+        from nrs_design.design.laws.impedance import requirement_of, with_spring
+
+        if not self._moves_cost.any():
+            return item.requirement
+        design = self._design(x, Fraction)
+        spring = design.laws[item.name].gains.get("Kt")
+        return requirement_of(self._task(design), with_spring(item.given, spring))
+
+    def _task(self, design: ControllerDesign) -> Task:
+        from nrs_design.design.laws.law import Task
+
+        return Task(self.designed.spec, self.designed.plant, design.motion)
+
+    def _cheapest_near(self, start: Array) -> Array:
+        """Descend from a start, where goals of controllers stay met."""
+        from scipy.optimize import NonlinearConstraint, minimize
+
+        goals = NonlinearConstraint(self.spared, 0.0, np.inf) if len(self.spared(start)) else ()
+        found = minimize(
+            self.cost,
+            start,
+            method="SLSQP",
+            bounds=[*zip(self.low, self.high, strict=True)],
+            constraints=goals,
+            options={"ftol": 1e-9, "maxiter": 200},
+        )
+        there = np.asarray(np.clip(found.x, self.low, self.high), dtype=float)
+        better = self.cost(there) < self.cost(start) and (self.spared(there) >= -MISSED).all()
+        return there if better else start
+
+    def _spared_by_others(self, x: Array) -> list[float]:
+        """Return the same of controllers that what `design.free` names changes."""
+        from nrs_design.design.laws import LAW_DESIGNS
+
+        named = {one.controller for one in self.coordinates if one.given is not None}
+        spared, design = [], self._design(x, Fraction)
+        for item in self.analysis.tuned:
+            goals = any(found.goal is not None for found in item.achieved)
+            if not goals or named.isdisjoint({MOTION, item.name}):
+                continue
+            (controller,) = (c for c in design.controllers if c.name == item.name)
+            given = self.designed.spec.controllers[item.name]
+            analyze = LAW_DESIGNS[controller.law.name].analyze
+            assert analyze is not None, "as it has been analyzed"
+            try:
+                found = analyze(self._task(design), given, controller)
+            except DesignError:  # Nominal contact is not stable.
+                spared.append(-1.0)
+                continue
+            missed = (a.measure.violation(a.value, a.goal) for a in found.achieved if a.goal)
+            spared.append(-max(missed))
+        return spared
 
 
 def free_names(item: ImpedanceAnalysis) -> tuple[str, ...]:
-    """Return which gains of a controller the spec leaves free."""
-    return tuple(name for name in UNITS if not getattr(item.given, name).fixed)
+    """Return which gains of an impedance controller the spec leaves free by bounds."""
+    return tuple(name for name in BOUNDED if not getattr(item.given, name).fixed)
 
 
 def gain_branches(designed: Designed, analysis: DesignAnalysis) -> Iterator[FreeGains]:
@@ -234,16 +345,14 @@ def gain_branches(designed: Designed, analysis: DesignAnalysis) -> Iterator[Free
     designed, analysis
         The spec, and what its design achieves.
     """
-    items = analysis.impedance
-    bounds = tuple(item.problem.mass_bounds for item in items)
+    bounds = tuple(item.problem.mass_bounds for item in analysis.impedance)
     if not any(low == 0 < high for low, high in bounds):
-        yield FreeGains(designed, items, bounds)
+        yield FreeGains(designed, analysis, massless=not any(high for _, high in bounds))
         return
     if all(low == 0 for low, _ in bounds):
-        yield FreeGains(designed, items, ((0.0, 0.0),) * len(items))
+        yield FreeGains(designed, analysis, massless=True)
     if all(high > 0 for _, high in bounds):
-        above = tuple((low or LEAST_MASS * high, high) for low, high in bounds)
-        yield FreeGains(designed, items, above)
+        yield FreeGains(designed, analysis, massless=False)
 
 
 def check_own_gains(loaded: LoadedSpec, gains: Gains) -> None:
@@ -270,32 +379,15 @@ def check_own_gains(loaded: LoadedSpec, gains: Gains) -> None:
         )
 
 
-def gains_given(designed: Designed) -> LoadedSpec:
-    """Return the spec with all gains that it leaves free given as they ship, and its text.
+def has_free_gains(designed: Designed, analysis: DesignAnalysis) -> bool:
+    """Tell whether there is a gain to choose.
 
-    Raises
-    ------
-    SpecError
-        If a comment would be lost.
+    Parameters
+    ----------
+    designed, analysis
+        The spec, and what its design achieves.
     """
-    loaded, document = designed.loaded, SpecDocument(designed.loaded)
-    laws, units = designed.design.laws, designed.design.units
-    for controller, given in designed.spec.controllers.items():
-        for name, gain in given.gains().items():
-            if gain.fixed:
-                continue
-            # The shortest decimal that single precision holds as this very number.
-            value = f"{np.float32(float(laws[controller].gains[name]))} {units[controller][name]}"
-            ends = None if gain.range is None else [end.text for end in gain.range]
-            said = value if ends is None else {"nominal": value, "range": ends}
-            document.put(document.root["controllers"][controller], name, said)
-    text = document.text()
-    return replace(respecified(loaded, parse_document(text, loaded.path)), text=text)
-
-
-def has_free_gains(analysis: DesignAnalysis) -> bool:
-    """Tell whether an impedance controller has a gain to choose."""
-    return any(free_names(item) for item in analysis.impedance)
+    return bool(designed.spec.design.free) or any(map(free_names, analysis.impedance))
 
 
 def in_order(

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
-from collections.abc import Callable
-from dataclasses import dataclass, field
-from math import log, sqrt
-from typing import TYPE_CHECKING, ClassVar
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from math import exp, log, sqrt
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -20,11 +19,19 @@ if TYPE_CHECKING:
     from nrs_design.design.trust_region import Evaluation
     from nrs_design.models.plant import Plant
     from nrs_design.proof.system import SwitchedSystem
+    from nrs_design.spec import GoalsSpec
 
 # How far a coordinate moves for a slope.
 STEP = 1e-3
 # The value where floating point finds no number.
 NOTHING = -1e4
+# A rate that only has to be positive is at least so much, 1/s.
+LEAST_RATE = 1e-2
+# Roundings take a little: so much more is asked for of a rate, and less of a bound.
+ROOM = (5e-4, 4e-3)
+
+# Of a system, about what is expected, and what it may take: what is found; None if nothing is.
+Find = Callable[["SwitchedSystem", "float | None", Allowance], "ConstraintValue | None"]
 
 
 @dataclass(frozen=True)
@@ -36,131 +43,106 @@ class ConstraintValue:
     said: str  # The number, for people
 
 
-@dataclass
-class AbstractProofConstraint(ABC):
+@dataclass(frozen=True)
+class ProofConstraint:
     """A number that a proof is to show."""
 
-    key: ClassVar[str]  # Of the goal
-    title: ClassVar[str]  # For people
-    unit: ClassVar[str]
+    key: str  # Of the goal
+    title: str  # For people
+    unit: str
+    find: Find
+    number: Callable[[float], float]  # That a value stands for, in SI units
+    # By how much more a number is asked for where the value is one less, in SI units.
+    one: float
 
-    @abstractmethod
-    def value(
-        self, system: SwitchedSystem, expected: float | None, allowance: Allowance
+
+def rate_constraint(wanted: float, scale: float) -> ProofConstraint:
+    """Return the constraint on the best decay rate of one form for all modes.
+
+    Parameters
+    ----------
+    wanted : float
+        In 1/s, with room for roundings.
+    scale : float
+        What a value of one is, in 1/s.
+    """
+
+    def number(value: float) -> float:
+        return value * scale + wanted
+
+    def find(
+        system: SwitchedSystem, expected: float | None, allowance: Allowance
     ) -> ConstraintValue | None:
-        """Return the number; None if floating point finds none.
-
-        Parameters
-        ----------
-        system : SwitchedSystem
-            Of the design.
-        expected : float or None
-            About what the value is.
-        allowance : Allowance
-            Work and memory.
-
-        Raises
-        ------
-        NotAffordableError
-            If work or memory do not suffice.
-        """
-
-    @abstractmethod
-    def number(self, value: float) -> float:
-        """Return the number that a value stands for, in SI units."""
-
-    @property
-    @abstractmethod
-    def one(self) -> float:
-        """By how much more a number is asked for where the value is one less, in SI units."""
-
-
-@dataclass
-class RateConstraint(AbstractProofConstraint):
-    """The best decay rate of one form for all modes."""
-
-    key: ClassVar[str] = "decay_rate"
-    title: ClassVar[str] = "decay rate"
-    unit: ClassVar[str] = "1/s"
-
-    wanted: float  # 1/s, with its room
-    scale: float  # What a value of one is, 1/s
-
-    def value(
-        self, system: SwitchedSystem, expected: float | None, allowance: Allowance
-    ) -> ConstraintValue | None:
-        """Bracket the rate, from about what is expected.
-
-        Parameters
-        ----------
-        system, expected, allowance
-            As for `AbstractProofConstraint`.
-        """
+        """Bracket the rate, from about what is expected."""
         from nrs_design.search.rate_slope import rate_slope
 
-        guess = None if expected is None else self.number(expected)
-        found = rate_slope(system, guess, allowance)
+        guess = None if expected is None else number(expected)
+        found = rate_slope(system, guess, allowance, wanted=wanted)
         if found is None:
             return None
         return ConstraintValue(
-            (found.rate - self.wanted) / self.scale,
-            lambda system: found.change(system) / self.scale,
+            (found.rate - wanted) / scale,
+            lambda system: found.change(system) / scale,
             f"decay rate {found.rate:.4g} 1/s",
         )
 
-    def number(self, value: float) -> float:
-        """Return the rate in 1/s."""
-        return value * self.scale + self.wanted
-
-    @property
-    def one(self) -> float:
-        """The scale, 1/s."""
-        return self.scale
+    return ProofConstraint("decay_rate", "decay rate", "1/s", find, number, scale)
 
 
-@dataclass
-class ForceConstraint(AbstractProofConstraint):
-    """The least bound on the force under all disturbances."""
+def force_constraint(wanted: float) -> ProofConstraint:
+    """Return the constraint on the least bound on the force under all disturbances.
 
-    key: ClassVar[str] = "peak_torque"
-    title: ClassVar[str] = "bound on the force"
-    unit: ClassVar[str] = "N*m"
+    Parameters
+    ----------
+    wanted : float
+        In N m, with room for roundings.
+    """
+    share: float | None = None  # Of the disturbances, that was the best last time
 
-    wanted: float  # N m, with its room
-    share: float | None = field(default=None, init=False)  # That was the best last time
-
-    def value(
-        self, system: SwitchedSystem, expected: float | None, allowance: Allowance
+    def find(
+        system: SwitchedSystem, expected: float | None, allowance: Allowance
     ) -> ConstraintValue | None:
-        """Solve for a few shares, near the one that was the best.
-
-        Parameters
-        ----------
-        system, expected, allowance
-            As for `AbstractProofConstraint`.
-        """
+        """Solve for a few shares, near the one that was the best."""
+        nonlocal share
         from nrs_design.search.force_slope import force_slope
 
         output = next(output for output in system.outputs if output.name == "force")
-        found = force_slope(system, output, allowance, self.share)
+        found = force_slope(system, output, allowance, share)
         if found is None:
             return None
-        self.share = found.share
-        level = found.level * sqrt(system.axes or 1)
+        share, level = found.share, found.level * sqrt(system.axes or 1)
         return ConstraintValue(
-            log(self.wanted / level),
+            log(wanted / level),
             lambda system: -found.change(system),
             f"force up to {level:.4g}",
         )
 
-    def number(self, value: float) -> float:
-        """Return the bound in N m."""
-        return self.wanted * float(np.exp(-value))
+    return ProofConstraint(
+        "peak_torque", "bound on the force", "N*m", find, lambda value: wanted * exp(-value), wanted
+    )
 
-    @property
-    def one(self) -> float:
-        """The bound itself, as values are logarithms, N m."""
-        return self.wanted
+
+def constraints_of(
+    goals: GoalsSpec | None, room: float = 0.0, room_of_bounds: float = 0.0
+) -> tuple[ProofConstraint, ...]:
+    """Return what the goals ask of a proof: a decay first, without which there is none.
+
+    Parameters
+    ----------
+    goals : GoalsSpec or None
+        Those of the spec.
+    room, room_of_bounds : float
+        So much more is asked for of a rate, as a share, and so much less of a bound.
+    """
+
+    def listed() -> Iterator[ProofConstraint]:
+        rate = None if goals is None else goals.decay_rate
+        least = LEAST_RATE if rate is None else max(rate.si * (1 + room), LEAST_RATE)
+        yield rate_constraint(least, max(least, 1.0))
+        if goals is not None and goals.peak_torque is not None:
+            yield force_constraint(goals.peak_torque.si * (1 - room_of_bounds))
+
+    return tuple(listed())
 
 
 @dataclass(frozen=True)
@@ -168,13 +150,13 @@ class DesignEvaluator:
     """Evaluates designs under several constraints."""
 
     gains: FreeGains
-    constraints: tuple[AbstractProofConstraint, ...]
+    constraints: tuple[ProofConstraint, ...]
     progress: Progress
     allowance: Allowance
 
     @classmethod
     def of(
-        cls, gains: FreeGains, constraints: tuple[AbstractProofConstraint, ...], progress: Progress
+        cls, gains: FreeGains, constraints: tuple[ProofConstraint, ...], progress: Progress
     ) -> DesignEvaluator:
         """Take work and memory from the spec.
 
@@ -211,7 +193,7 @@ class DesignEvaluator:
         """
         from nrs_design.design.trust_region import Evaluation
 
-        gains, n = self.gains, len(self.gains.places)
+        gains, n = self.gains, len(self.gains.coordinates)
 
         def system(x: Array) -> SwitchedSystem:
             return gains.system(x[:n], plant(x))
@@ -235,10 +217,10 @@ class DesignEvaluator:
         return Evaluation(x, np.array([one.value for one in found]), jacobian)
 
     def _value(
-        self, constraint: AbstractProofConstraint, system: SwitchedSystem, expected: float | None
+        self, constraint: ProofConstraint, system: SwitchedSystem, expected: float | None
     ) -> ConstraintValue:
         try:
-            found = constraint.value(system, expected, self.allowance)
+            found = constraint.find(system, expected, self.allowance)
         except NotAffordableError as error:
             raise DesignError(
                 f"no gains were found: {error}", remedy="allow more with certification.budget"

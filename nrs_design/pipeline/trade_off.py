@@ -1,96 +1,62 @@
 """What a little more cost buys: the most that is proved for it, of one objective at a time.
 
 The cost is that of `optimize`, summed over the impedance controllers. For each share that it may be
-above its least, gains are searched for the largest stiffness of the contacts, or the fastest decay,
-that is proved; what is reported has been rounded, and checked exactly.
+above its least, gains are searched for the largest stiffness of the contacts, the fastest decay,
+the least bound on the force, or the least noise that is proved; and for each age of the force, the
+cheapest gains. What is reported has been rounded, and checked exactly.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
-from math import exp, floor, log, log10
+from math import exp, floor, log10
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from nrs_design.certificates.bounds import bound_on
-from nrs_design.certificates.goals import decay_rate
+from nrs_design.certificates.goals import certified_goals, decay_rate
 from nrs_design.design.objective import Objective
 from nrs_design.errors import DesignError
-from nrs_design.pipeline.certification import Result, run_certification
-from nrs_design.pipeline.certified_optimum import LEAST_RATE, check_steerable
-from nrs_design.pipeline.design import Designed, placed
-from nrs_design.pipeline.free_gains import (
-    Array,
-    FreeGains,
-    Written,
-    gain_branches,
-    has_free_gains,
-    in_order,
+from nrs_design.pipeline.certification import run_certification
+from nrs_design.pipeline.certified_optimum import (
+    STEERING,
+    cheapest_gains,
+    check_steerable,
+    meets_goals,
 )
-from nrs_design.pipeline.proof_constraints import DesignEvaluator, RateConstraint
-from nrs_design.pipeline.stability_map import as_stiff
+from nrs_design.pipeline.design import Designed, placed
+from nrs_design.pipeline.free_gains import Array, FreeGains, gain_branches, has_free_gains, in_order
+from nrs_design.pipeline.goal_ranges import wanted_age, with_delay
+from nrs_design.pipeline.proof_constraints import DesignEvaluator
+from nrs_design.pipeline.trade_axis import TradeAxis, check_objective, stretchable, trade_axis
+from nrs_design.pipeline.trade_point import TradeOffPoint
 from nrs_design.progress import Progress, silent
 from nrs_design.proof.text import exact_text
+from nrs_design.spec.sampling import LONGEST_DELAY
 
 if TYPE_CHECKING:
     from nrs_design.design.analysis import DesignAnalysis
     from nrs_design.design.trust_region import Evaluation
-    from nrs_design.models.plant import Plant
     from nrs_design.spec.quantity import Quantity
-    from nrs_design.spec.quantity_fields import RangedQuantity
     from nrs_design.spec.spec_document import SpecDocument
 
-# Upper ends of stiffness are looked for up to so many times the declared ones.
-WIDEST = 64.0
 # A cost beyond what is allowed by this share of the least counts as one missed constraint.
 BEYOND = 0.2
-# Roundings take a little of a rate.
-ROOM = 5e-4
 # What is found is claimed with so much less, until it is proved.
 BACK_OFFS = (5e-4, 2e-3, 1e-2, 5e-2)
 # Roundings may cost this share more than is allowed.
 NO_MORE = 2e-3
-# Logarithm of the least factor between the ends of a stiffness.
-LEAST_WIDTH = 1e-3
-# Rates are looked for up to this one, 1/s.
-FASTEST = 1e4
 DIGITS = 4
-
-
-@dataclass(frozen=True, slots=True)
-class TradeOffPoint:
-    """Gains, what they cost, and what is proved of them."""
-
-    share: Fraction | None  # By how much the cost might be above the least; None: the free optimum
-    cost: float  # Summed over the controllers
-    gains: Written  # What ships of the free ones
-    result: Result  # Of the spec with these gains and ranges; its certificate was checked exactly
-    rate: Fraction  # Proved, 1/s
-
-    @property
-    def stiffness(self) -> dict[str, Fraction]:
-        """Upper end of the stiffness of every contact, N m/rad."""
-        designed = self.result.designed
-        assert designed is not None, "as it has gains"
-        touched = designed.plant.among(designed.design.contacts)
-        return {environment.name: environment.stiffness.high for environment in touched}
-
-    @property
-    def force(self) -> Fraction | None:
-        """Proved bound on the force under all disturbances of the spec, N m; None without any."""
-        found = self.result.certificate
-        bound = None if found is None else bound_on(found.system, found.statements, "force")
-        return None if bound is None else bound.level
 
 
 @dataclass(frozen=True, slots=True)
 class TradeOffCurve:
     """The points of designs of one kind."""
 
+    objective: Objective
     massless: bool  # Whether all virtual masses are zero
     least_cost: float  # Without anything to prove
     points: tuple[TradeOffPoint, ...]  # By rising cost
@@ -99,7 +65,7 @@ class TradeOffCurve:
 def run_trade_off(
     designed: Designed,
     analysis: DesignAnalysis,
-    objective: Objective,
+    objectives: Sequence[Objective],
     shares: Sequence[Fraction],
     progress: Progress = silent,
 ) -> tuple[TradeOffCurve, ...]:
@@ -108,9 +74,9 @@ def run_trade_off(
     Parameters
     ----------
     designed, analysis
-        The spec, and what its free optimum achieves.
-    objective : Objective
-        What is to be large.
+        The spec, and what its free optimum achieves; its goals that steer are asked for, too.
+    objectives : sequence of Objective
+        What is to be large or small, each for itself.
     shares : sequence of Fraction
         By which the cost may be above its least.
     progress : callable
@@ -119,27 +85,32 @@ def run_trade_off(
     Returns
     -------
     tuple of TradeOffCurve
-        One without virtual masses and one with them, where the spec allows both.
+        For each objective one without virtual masses and one with them, where the spec allows both.
 
     Raises
     ------
     DesignError
-        If no gain is free, or nothing is proved at any cost.
+        If no gain is free, nothing has a cost, or nothing is proved at any.
     """
     with placed(designed.loaded):
-        if not has_free_gains(analysis):
+        if not (has_free_gains(designed, analysis) and analysis.impedance):
             raise DesignError(
-                "no gain is free to be chosen",
+                "no gain is free to be chosen, or none of them has a cost",
                 remedy="give Mt or Bt of an impedance controller bounds, {min: ..., max: ...}",
                 at=("controllers",),
             )
+        for objective in objectives:
+            check_objective(designed, objective)
+        if (age := wanted_age(designed)) is not None:
+            designed, analysis = with_delay(designed, analysis, age)
         check_steerable(designed)
-        if objective is Objective.STIFFNESS:
-            _stretchable(designed)
-        curves = [
-            _Curve(gains, objective, progress).run(shares)
-            for gains in gain_branches(designed, analysis)
-        ]
+        curves = []
+        for objective in objectives:
+            for gains in gain_branches(designed, analysis):
+                if objective is Objective.DELAY:
+                    curves.append(_over_ages(gains, shares, progress))
+                else:
+                    curves.append(_Curve(gains, trade_axis(gains, objective), progress).run(shares))
     if not any(curve.points for curve in curves):
         raise DesignError(
             "nothing was proved at any of these costs",
@@ -149,132 +120,139 @@ def run_trade_off(
     return tuple(curves)
 
 
-def _stretchable(designed: Designed) -> tuple[tuple[str, RangedQuantity], ...]:
-    """Return the contacts whose stiffness is stretched, and what the spec says of it.
-
-    Raises
-    ------
-    DesignError
-        If one of them has no single stiffness.
-    """
-    touched = designed.plant.among(designed.design.contacts)
-    given = []
-    for environment in touched:
-        spec = designed.spec.environments.get(environment.name)
-        stiffness = getattr(spec, "stiffness", None)
-        if environment.parts or environment.preloaded or stiffness is None:
-            raise DesignError(
-                f"the environment {environment.name} has no stiffness of its own to stretch",
-                remedy="use contacts of one spring, touched one at a time and without a preload",
-                at=("environments", environment.name),
-            )
-        given.append((environment.name, stiffness))
-    return tuple(given)
+def _over_ages(gains: FreeGains, shares: Sequence[Fraction], progress: Progress) -> TradeOffCurve:
+    """Return the cheapest gains for each age of the force, from the declared one on."""
+    designed = gains.designed
+    sampling = designed.spec.sampling
+    assert sampling is not None, "as has been checked"
+    least, found = gains.cost(gains.optimum()), []
+    for age in range(sampling.delay[1], LONGEST_DELAY + 1):
+        progress(f"force samples up to {age} periods old")
+        try:
+            later = FreeGains(*with_delay(designed, gains.analysis, age), gains.massless)
+            best = cheapest_gains(later, progress)
+        except DesignError:
+            break  # With an older force there is less still.
+        share = Fraction(best.cost / least - 1)
+        if share > max(shares) + Fraction(NO_MORE):
+            break
+        rate = decay_rate(best.result.certificate)
+        assert rate is not None, "as it is proved"
+        bounds = best.at_bounds
+        found.append(TradeOffPoint(share, best.cost, best.gains, best.result, rate, bounds))
+    return TradeOffCurve(Objective.DELAY, gains.massless, least, tuple(found))
 
 
 class _Curve:
-    """The points of one kind of designs: behind the gains, the objective is a coordinate.
+    """The points of one kind of designs: behind the gains, the objective is a coordinate."""
 
-    That is the logarithm of the factor on the upper ends of stiffness, or the rate over `scale`.
-    """
-
-    def __init__(self, gains: FreeGains, objective: Objective, progress: Progress) -> None:
-        self.gains, self.objective, self.progress = gains, objective, progress
-        plant, contacts = gains.designed.plant, gains.designed.design.contacts
-        touched = plant.among(contacts)
-        self.contacts = tuple((e.name, e.stiffness.low, e.stiffness.high) for e in touched)
-        # The nominal stiffness, which the cost is of, stays within.
-        self.softest = max(e.stiffness.nominal / e.stiffness.high for e in touched)
-        goals = gains.designed.spec.goals
-        goal = None if goals is None else goals.decay_rate
-        self.wanted = Fraction(0) if goal is None else goal.exact
-        self.least_rate = max(float(self.wanted) * (1 + ROOM), LEAST_RATE)
-        self.scale = max(self.least_rate, 1.0)
-
-    @property
-    def stretches(self) -> bool:
-        """Whether the stiffness is the objective."""
-        return self.objective is Objective.STIFFNESS
+    def __init__(self, gains: FreeGains, axis: TradeAxis, progress: Progress) -> None:
+        self.gains, self.axis, self.progress = gains, axis, progress
+        self.n = len(gains.coordinates)
 
     def run(self, shares: Sequence[Fraction]) -> TradeOffCurve:
         """Return the free optimum, as far as something is proved of it, and all points."""
         free = self.gains.optimum()
         least = self.gains.cost(free)
-        x = np.append(free, max(0.0, log(self.softest) + LEAST_WIDTH) if self.stretches else 0.0)
+        x = np.append(free, self._start(free))
         found = [self._proved(x, None, least, least)]
         for share in sorted(shares):
             budget = least * (1 + float(share))
             x = self._largest(x, budget, least)
             found.append(self._proved(x, share, budget, least))
-        massless = not any(high for _, high in self.gains.masses)
-        return TradeOffCurve(massless, least, tuple(one for one in found if one is not None))
+        points = tuple(one for one in found if one is not None)
+        return TradeOffCurve(self.axis.objective, self.gains.massless, least, points)
+
+    def _start(self, free: Array) -> float:
+        """Return where the objective begins."""
+        if own := self.axis.quick(free, 0.0):
+            return min(own)
+        if not any(self.axis.taken):
+            return self.axis.start(np.zeros(len(self.axis.constraints)))
+        return self.axis.start(self._evaluator().evaluate(free, None).values)
+
+    def _evaluator(self) -> DesignEvaluator:
+        # What a search may take is for one point.
+        return DesignEvaluator.of(self.gains, self.axis.constraints, self.progress)
 
     def _largest(self, start: Array, budget: float, least: float, *, fixed: bool = False) -> Array:
         """Return the point with the largest objective within a cost, or with the same gains."""
         from nrs_design.design.trust_region import ConstrainedProblem, minimize_in_trust_region
 
-        gains, n = self.gains, len(self.gains.places)
+        gains, axis, n = self.gains, self.axis, self.n
 
         def quick(x: Array) -> Array:
             over = (budget - gains.cost(x[:n])) / (BEYOND * least)
-            return np.asarray([min(over, 1.0), *gains.spared(x[:n])])
+            own = axis.quick(x[:n], float(x[n]))
+            return np.asarray([min(over, 1.0), *gains.spared(x[:n]), *own])
 
-        least_y, most_y = -FASTEST / self.scale, FASTEST / self.scale
-        if self.stretches:
-            # A range keeps its two ends, as modes are one for each.
-            least_y, most_y = log(self.softest) + LEAST_WIDTH, log(WIDEST)
         low, high = (start[:n], start[:n]) if fixed else (gains.low, gains.high)
-        # What a search may take is for one point.
-        constraint = RateConstraint(self.least_rate, self.scale)
-        evaluator = DesignEvaluator.of(gains, (constraint,), self.progress)
-        evaluate = partial(self._evaluate, evaluator)
+        evaluate = partial(self._evaluate, self._evaluator())
         problem = ConstrainedProblem(
             lambda x: -float(x[n]),
             evaluate,
-            np.append(low, least_y),
-            np.append(high, most_y),
+            np.append(low, axis.low),
+            np.append(high, axis.high),
             (lambda x: np.zeros(0)) if fixed else quick,
         )
         return minimize_in_trust_region(problem, evaluate(start, None)).last.x
 
     def _evaluate(self, evaluator: DesignEvaluator, x: Array, expected: Array | None) -> Evaluation:
-        """Find the rate of a design: at its stiffness, or beside the rate that is asked for."""
+        """Find what a design shows: of the plant there, or beside what is asked for."""
         from nrs_design.design.trust_region import Evaluation
 
-        if self.stretches:
-            return evaluator.evaluate(x, expected, self._plant)
-        found = evaluator.evaluate(x[:-1], None if expected is None else expected + x[-1])
-        return Evaluation(x, found.values - x[-1], lambda: np.hstack([found.jacobian(), [[-1.0]]]))
-
-    def _plant(self, x: Array) -> Plant:
-        """Return the plant with the upper ends of stiffness at a point."""
-        factor = Fraction(exp(max(float(x[-1]), log(self.softest) + LEAST_WIDTH)))
-        return as_stiff(self.gains.designed.plant, self.contacts, factor)
+        if self.axis.stretches:
+            return evaluator.evaluate(x, expected, lambda x: self.axis.plant(float(x[-1])))
+        taken = np.array(self.axis.taken)
+        own = x[-1] * taken
+        found = evaluator.evaluate(x[:-1], None if expected is None else expected + own)
+        return Evaluation(
+            x, found.values - own, lambda: np.hstack([found.jacobian(), -taken[:, None]])
+        )
 
     def _proved(
         self, x: Array, share: Fraction | None, budget: float, least: float
     ) -> TradeOffPoint | None:
         """Round the gains, and prove the most that is possible with them."""
-        gains, n = self.gains, len(self.gains.places)
+        gains, n = self.gains, self.n
         near = [
             ((max(gains.cost(own) / budget - 1, NO_MORE), _apart(own, x[:n])), own, written)
             for own, written in gains.roundings(x[:n])
         ]
         own, written = in_order(near)[0]
-        rounded = self._largest(np.append(own, x[n:]), budget, least, fixed=True)
-        for back_off in BACK_OFFS:
-            factor = Fraction(exp(float(rounded[-1]))) * (1 - Fraction(back_off))
-            change = partial(_stretched, gains.designed, factor)
-            result = run_certification(
-                gains.respecified(written, change if self.stretches else _unchanged)
-            )
+        changes = [_unchanged]
+        if self.axis.stretches:
+            rounded = self._largest(np.append(own, x[n:]), budget, least, fixed=True)
+            factor = Fraction(exp(float(rounded[-1])))
+            changes = [
+                partial(_stretched, gains.designed, factor * (1 - Fraction(back_off)))
+                for back_off in BACK_OFFS
+            ]
+        for change in changes:
+            result = run_certification(gains.respecified(written, change))
             rate = decay_rate(result.certificate)
-            if rate is not None and rate >= self.wanted:
+            if rate is not None and rate > 0 and meets_goals(result):
                 self.progress(f"proved at cost {gains.cost(own):.5g}")
-                return TradeOffPoint(share, gains.cost(own), written, result, rate)
-            if not self.stretches:
-                break
+                bounds = gains.at_bounds(x[:n])
+                return TradeOffPoint(share, gains.cost(own), written, result, rate, bounds)
         return None
+
+
+def unasked_goals(points: Sequence[TradeOffPoint]) -> Iterator[str]:
+    """Yield the goals of the proof that no gains are chosen by, and that a point misses.
+
+    Parameters
+    ----------
+    points : sequence of TradeOffPoint
+        All that are known.
+    """
+    missed = dict.fromkeys(
+        goal.key
+        for point in points
+        for goal in certified_goals(point.result.loaded.spec, point.result.certificate)
+        if goal.key not in STEERING and not goal.met
+    )
+    yield from missed
 
 
 def _apart(one: Array, other: Array) -> float:
@@ -287,7 +265,7 @@ def _unchanged(document: SpecDocument) -> None:
 
 def _stretched(designed: Designed, factor: Fraction, document: SpecDocument) -> None:
     """Write the upper ends of stiffness, rounded down."""
-    for name, stiffness in _stretchable(designed):
+    for name, stiffness in stretchable(designed):
         low, high = stiffness.range
         top = max(_digits_below(high.value * factor), _in_unit(stiffness.nominal, high))
         said: dict[str, Any] = {

@@ -25,6 +25,8 @@ from nrs_design.search.rung import Facts
 from nrs_design.work import Allowance
 
 RESOLUTION = 5e-4
+# A rate is bracketed no closer than this share of its distance from the one that is wanted.
+COARSE = 0.03
 # There is more to the best rate than forms show beyond the one that they were asked for.
 FURTHER = 1.5
 # Modes are made to decay at least as a contraction to this share.
@@ -104,6 +106,7 @@ def rate_slope(
     guess: float | None = None,
     allowance: Allowance | None = None,
     resolution: float = RESOLUTION,
+    wanted: float | None = None,
 ) -> RateSlope | None:
     """Find the best rate of one form for all modes; negative if they are shown to grow no faster.
 
@@ -117,6 +120,8 @@ def rate_slope(
         Work and memory.
     resolution : float
         The best rate is bracketed to this share of the guess, or of the fastest decay of a mode.
+    wanted : float, optional
+        A rate that is far from this one is bracketed less closely, 1/s.
 
     Returns
     -------
@@ -134,7 +139,7 @@ def rate_slope(
         if program is None:
             return None
         limit = Family.of(system).limit
-        best = _best(program, limit, guess, resolution, allowance)
+        best = _best(program, limit, guess, resolution, allowance, wanted)
         if best is None:
             return None
         # Where the margin is nearly nil, its slope is that of noise.
@@ -189,6 +194,7 @@ def _best(
     guess: float | None,
     resolution: float,
     allowance: Allowance,
+    wanted: float | None,
 ) -> float | None:
     """Bracket the best rate, from the guess: forms for a rate show a better one themselves."""
     fastest = (1 - limit) / _period(program) if program.time is Time.DISCRETE else limit
@@ -204,11 +210,13 @@ def _best(
             high = rate
         if low is None:
             rate, step = rate - step, 2 * step
-        elif high is None:
-            step = max(step, resolution * size)
+            continue
+        close = max(resolution * size, 0.0 if wanted is None else COARSE * abs(low - wanted))
+        if high is None:
+            step = max(step, close)
             rate = low + step
-        elif high - low > resolution * size:
-            rate = min(low + max(step, resolution * size), (low + high) / 2)
+        elif high - low > close:
+            rate = min(low + max(step, close), (low + high) / 2)
             step /= 2
         else:
             return low

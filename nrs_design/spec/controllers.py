@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
+from types import MappingProxyType
 from typing import Annotated, ClassVar, Literal, get_args
 
 from pydantic import (
@@ -134,6 +135,8 @@ class AbstractControllerSpec(SpecModel):
     makes_torques: ClassVar[bool] = False
     # Whether it keeps a state that stays in the command of other controllers, and decays there.
     bleeds: ClassVar[bool] = False
+    # Gains that `design.free` may name, and the key in whose place each may be given.
+    freeable: ClassVar[Mapping[str, str | None]] = MappingProxyType({})
 
     @property
     def own_offset(self) -> Offset | None:
@@ -166,6 +169,7 @@ class ImpedanceControllerSpec(AbstractControllerSpec):
         json_schema_extra={"not": {"required": ["desired_impedance", "desired_impedance_ratio"]}}
     )
     commands: ClassVar[Command] = "velocity"
+    freeable: ClassVar[Mapping[str, str | None]] = MappingProxyType({"Kt": None})
 
     type: Literal["impedance"] = Field(description="impedance: admittance Y = 1/(Mt s + Bt + Kt/s)")
     environment: Label = Field(description=_ENVIRONMENT)
@@ -206,7 +210,7 @@ class ImpedanceControllerSpec(AbstractControllerSpec):
             "Kt.min",
             lambda s: s.Kt is not None and not s.Kt.fixed,
             "the design chooses Mt and Bt only",
-            "give nominal instead of min and max",
+            "give nominal instead of min and max; `design: {{free: ...}}` frees it under proof",
         ),
         *exclusive("desired_impedance", "desired_impedance_ratio"),
     )
@@ -222,6 +226,7 @@ class ForceControllerSpec(AbstractControllerSpec):
     )
     commands: ClassVar[Command] = "position"
     holds_force: ClassVar[bool] = True
+    freeable: ClassVar[Mapping[str, str | None]] = MappingProxyType({"Kp": "damping_ratio"})
 
     type: Literal["force"] = Field(description="force: u = X_i + Kp (Fd - F), see offset")
     environment: Label = Field(description=_ENVIRONMENT)
@@ -270,6 +275,9 @@ class IntegralControllerSpec(AbstractControllerSpec):
     commands: ClassVar[Command] = "position"
     holds_force: ClassVar[bool] = True
     bleeds: ClassVar[bool] = True
+    freeable: ClassVar[Mapping[str, str | None]] = MappingProxyType(
+        {"Kp": "damping_ratio", "Ki": "settling_time"}
+    )
 
     type: Literal["pi-force"] = Field(
         description="pi-force: u = X + Kp (Fd - F) + w with w' = Ki (Fd - F); while another "

@@ -81,6 +81,29 @@ def _named_environments(spec: Spec) -> Iterator[tuple[Location, Reference]]:
                     yield ("controllers", name, "contacts", index), reference(name=key)
 
 
+def _freed(spec: Spec) -> Iterator[tuple[Location, tuple[Spec, str, str]]]:
+    """Yield the gains that are free beside Mt and Bt, each with its spec and controller."""
+    for name, given in spec.design.free.items():
+        for gain, _ in given.given():
+            yield ("design", "free", name, gain), (spec, name, gain)
+
+
+def _not_freeable(freed: tuple[Spec, str, str]) -> tuple[str, str, str] | None:
+    """Return the controller and the gain that it has not, and those that may be free."""
+    spec, name, gain = freed
+    if name == MOTION:
+        loop = spec.motion_loop
+        known: tuple[str, ...] = ("Kp", "Kd")
+        if loop is None or loop.transfer_function is not None:
+            known = ()
+    else:
+        controller = spec.controllers.get(name)
+        known = () if controller is None else tuple(controller.freeable)
+        # A spring that is not there has no value to start from.
+        known = tuple(k for k in known if getattr(controller, k, True) is not None)
+    return None if gain in known else (name, gain, ", ".join(known) or "none")
+
+
 def _named_at_regions(spec: Spec) -> Iterator[tuple[Location, Reference]]:
     """Yield the environments that regions of a body name: those that are proved."""
     touched = {name for c in spec.controllers.values() for name in touched_in(c.contacts)}
@@ -378,6 +401,16 @@ INTERACTION_CHECKS: tuple[Row[Spec], ...] = (
     *each(_named_environments, NO_SUCH),
     *each(_named_at_regions, NO_SUCH),
     *each(_accurate_in, NO_SUCH),
+    *each(
+        _freed,
+        Row[tuple[Spec, str, str]](
+            "",
+            _not_freeable,
+            "{0!r} has no gain {1} that can be free; those that can be: {2}",
+            "name motion with Kp or Kd, a force controller with Kp, or Ki, or an impedance "
+            "controller with the spring Kt that it is given; Mt and Bt are free by min and max",
+        ),
+    ),
     Row(
         "environments.free",
         lambda s: FREE in s.environments,

@@ -116,7 +116,7 @@ INTERACTION_DOUBTS: tuple[Row[Spec], ...] = (
         "goals.delay",
         _older,
         "goals.delay is {0}, and force samples are declared to be at most {1} old",
-        "declare a longer sampling.delay, or relax the goal",
+        "declare a longer sampling.delay, relax the goal, or let `optimize` choose gains for it",
     ),
     Row(
         "limits.command",

@@ -26,6 +26,7 @@ from nrs_design.spec.environment import EnvironmentSpec
 from nrs_design.spec.environment_estimator import EstimatorSpec
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import Digits, Label, Name, Title
+from nrs_design.spec.free import FreeGainsSpec
 from nrs_design.spec.goals import GoalsSpec
 from nrs_design.spec.model import SpecModel, optional
 from nrs_design.spec.monitoring import MonitoringSpec
@@ -66,6 +67,12 @@ class DesignSpec(SpecModel):
     significant_digits: Digits = Field(
         default=4,
         description="designed gains are rounded to so many digits, 1 to 7, then to float32",
+    )
+    free: Annotated[dict[Label, FreeGainsSpec], Field(max_length=MAX_ENTRIES)] = Field(
+        default_factory=dict,
+        description="gains beside Mt and Bt that `optimize` and `pareto` may change where the "
+        "proof steers: motion or the name of a controller -> gain -> {min: ..., max: ...}, as "
+        "factors on the gain that the spec gives; all other commands take that gain",
     )
 
 

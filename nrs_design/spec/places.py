@@ -44,6 +44,16 @@ _OTHER_KEYS = {
         "gain": "k factor",
     }.items()
 }
+# What somebody may want of a proof, by words in a key of goals, and where a spec says it.
+_NO_GOALS = {
+    "stiff": "declare it, `environments: {NAME: {stiffness: {nominal: ..., range: [..., ...]}}}`: "
+    "goals are proved over the whole range, and `pareto` finds the largest",
+    "toleran": "declare it, ranges of gain and time_constant of the actuator: goals are proved "
+    "over the whole ranges",
+    "latency": "declare it, `sampling: {latency: [..., ...]}`: goals are proved over all of it",
+    "passiv": "no gains are chosen by it: `optimize` and `report` tell up to which frequency the "
+    "law is passive; max_impedance_error and transparency are goals for what the robot displays",
+}
 # What `identify` writes into a section: it is listed after what people write.
 _IDENTIFIED = ("provenance", "doubts", "accept_doubt", "range_covers", "range_id", "intervals")
 # How deep that tag is: below a name, or at once.
@@ -193,8 +203,12 @@ def _words(details: ErrorDetails, location: Location, model: type[BaseModel]) ->
         field = fields_at(model, details["loc"][:-1]).get(name, "")
         return f"`{where}` is missing", f"add {name}: {field}"
     if kind == "extra_forbidden":
-        fields = fields_at(model, details["loc"][:-1])
-        return f"unknown key `{where}`", _of_keys(str(location[-1]), fields)
+        fields, key = fields_at(model, details["loc"][:-1]), str(location[-1])
+        if location[-2:-1] == ("goals",):
+            declared = (remedy for word, remedy in _NO_GOALS.items() if word in key.lower())
+            if (remedy := next(declared, None)) is not None:
+                return f"`{where}` is no goal", remedy
+        return f"unknown key `{where}`", _of_keys(key, fields)
     if kind in ("union_tag_not_found", "union_tag_invalid"):
         return _tag_words(where, _CHOICES[str(location[0])], details)
     value, where = details["input"], where or "the file"

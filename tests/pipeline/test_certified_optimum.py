@@ -5,18 +5,22 @@ over both controllers, by sequential programming with a form held fixed; the dec
 read as a logarithm, which is up to 0.4 % more than what is shown here.
 """
 
+from fractions import Fraction
+
 import pytest
 
 from nrs_design.certificates.bounds import bound_on
 from nrs_design.certificates.certificate import Verdict
+from nrs_design.certificates.goals import decay_rate
 from nrs_design.errors import DesignError
 from nrs_design.pipeline import run_analysis, run_interaction
 from nrs_design.pipeline.certified_optimum import run_certified_optimum, steering_goals
 from nrs_design.spec import read_spec
-from tests.support import ROOT
 
-SAMPLED = ROOT / "specs" / "neuroboscope" / "soft-tissue-sampled.nrs.yaml"
+from .free import FORCE, PD, SAMPLED, freed
+
 MASS = "{min: 0.01 kg*m^2, max: 1 kg*m^2}"
+FIXED = (f"Mt: {MASS}", "Mt: 0.01 kg*m^2")
 FREE = 0.23749
 
 
@@ -24,7 +28,12 @@ def designed_of(folder, goals, **changes):
     """Design the sampled loop with goals, and other words in some places."""
     text = SAMPLED.read_text(encoding="utf-8") + f"goals: {{{goals}}}\n"
     for old, new in changes.items():
-        before = {"mass": f"Mt: {MASS}", "delay": "delay: [0, 1]", "digits": "digits: 3"}[old]
+        before = {
+            "mass": f"Mt: {MASS}",
+            "delay": "delay: [0, 1]",
+            "digits": "digits: 3",
+            "damping": "Bt: {min: 0.1 N*m*s/rad, max: 20 N*m*s/rad}",
+        }[old]
         assert before in text
         text = text.replace(before, f"{before.split(':')[0]}: {new}")
     path = folder / "a.nrs.yaml"
@@ -66,7 +75,9 @@ def test_the_goal_is_proved_and_its_price_is_what_it_costs(tmp_path):
     found = optimum(tmp_path, "decay_rate: 2 1/s, delay: 2 ms")
     assert dampings(found) == [2.15, 1.12]
     assert found.free_cost == pytest.approx(FREE, abs=1e-5)
-    (goal,) = found.goals
+    goal, delay = found.goals
+    # An age is whole samples: it binds, and has no price for a percent.
+    assert (delay.key, delay.binds, delay.price) == ("delay", True, None)
     # From 0.977 1/s to 2 1/s the cost rises by 0.0150, ever faster.
     mean = (found.cost - found.free_cost) / (2 - found.free_rate)
     assert mean < goal.price < 2 * mean
@@ -82,14 +93,98 @@ def test_no_gains_reach_it(tmp_path):
     assert caught.value.line
 
 
-def test_a_delay_that_is_not_declared(tmp_path):
-    with pytest.raises(DesignError, match="beyond what the spec declares: force samples are at"):
-        optimum(tmp_path, "decay_rate: 2 1/s, delay: 4 ms")
+@pytest.mark.slow
+def test_two_goals_at_once_one_of_them_not_declared(tmp_path):
+    """The reference for samples of 0 to 2 periods, from a spec that declares 0 to 1."""
+    found = optimum(tmp_path, "decay_rate: 2 1/s, delay: 4 ms", digits="5")
+    assert dampings(found) == pytest.approx((2.149, 1.198), abs=0.005)
+    assert found.cost == pytest.approx(0.2728, abs=5e-4)
+    assert found.result.loaded.spec.sampling.delay == (0, 2)
+    assert found.result.certificate.verdict == Verdict.PROVED
+    assert [(goal.key, goal.binds) for goal in found.goals] == [
+        ("decay_rate", True),
+        ("delay", True),
+    ]
+
+
+@pytest.mark.nightly
+def test_a_rate_and_a_bound_on_the_force_at_once(tmp_path):
+    said = "decay_rate: 2 1/s, peak_torque: 3 N*m}\ndisturbances: {command: 8 deg/s"
+    found = optimum(tmp_path, said)
+    certificate = found.result.certificate
+    assert decay_rate(certificate) >= 2
+    assert bound_on(certificate.system, certificate.statements, "force").level <= 3
+    # Each of them alone costs less: 0.2525, and 0.2420.
+    assert found.cost > 0.2522
+    assert {goal.key for goal in found.goals if goal.binds} <= {"decay_rate", "peak_torque"}
+    assert any(goal.binds for goal in found.goals)
+
+
+@pytest.mark.nightly
+def test_gains_of_the_motion_loop_are_chosen_too():
+    """Reference: Bt 2.152/1.056, Kp x1.6, Kd x1.44, cost 0.2352."""
+    late = ("delay: [0, 1]}", "delay: [0, 2]}\ngoals: {decay_rate: 2 1/s}")
+    designed = freed(PD, late, FIXED, digits=5)
+    found = run_certified_optimum(designed, run_analysis(designed))
+    assert dampings(found) == pytest.approx((2.152, 1.056), abs=0.005)
+    assert found.cost == pytest.approx(0.2352, abs=5e-4)
+    assert found.tried <= 10
+    assert found.at_bounds == (("motion Kp", "upper"),)
+    own, new = designed.design.motion, found.result.designed.design.motion
+    assert float(new.Kp / own.Kp) == pytest.approx(1.6, abs=1e-3)
+    assert float(new.Kd / own.Kd) == pytest.approx(1.44, abs=0.03)
+
+
+@pytest.mark.nightly
+def test_a_force_gain_is_chosen():
+    rate = ("decay_rate: 15 1/s", "decay_rate: 20 1/s")
+    designed = freed("force: {Kp: {min: 0.25, max: 2}}", rate, path=FORCE)
+    found = run_certified_optimum(designed, run_analysis(designed))
+    assert decay_rate(found.result.certificate) >= 20
+    Kp = float(found.gains["force", "Kp"].split()[0])
+    # With the given one, 16.7 1/s are proved.
+    assert 0.012 < Kp < 0.016
+    assert found.cost == found.free_cost == 0
+
+
+@pytest.mark.slow
+def test_other_functions_may_prove_the_optimum_of_the_cost(tmp_path, monkeypatch):
+    """Where one form for all modes shows too little, the certificate of the free optimum counts."""
+    found = optimum(tmp_path, "decay_rate: 0.5 1/s")
+    free = found.cost
+
+    def nothing(system, guess, allowance, wanted):
+        return None
+
+    monkeypatch.setattr("nrs_design.search.rate_slope.rate_slope", nothing)
+    found = optimum(tmp_path, "decay_rate: 0.5 1/s")
+    assert found.cost == pytest.approx(free, abs=1e-5)
+    assert decay_rate(found.result.certificate) >= Fraction(1, 2)
+    assert not any(goal.binds for goal in found.goals)
+    # What it does not prove either is not reached.
+    with pytest.raises(DesignError, match="were found that one quadratic function"):
+        optimum(tmp_path, "decay_rate: 2 1/s")
+
+
+def test_a_delay_that_no_model_has(tmp_path):
+    with pytest.raises(DesignError, match="30 ms, is 15 samples, and at most 10 are modelled"):
+        optimum(tmp_path, "delay: 30 ms")
+
+
+@pytest.mark.nightly
+def test_the_longest_delay_that_is_reached(tmp_path):
+    """Bounds that leave little: 4 ms ask for a withdrawal of at least 1.043."""
+    designed, analysis = designed_of(
+        tmp_path, "delay: 8 ms", damping="{min: 1.03 N*m*s/rad, max: 1.06 N*m*s/rad}"
+    )
+    with pytest.raises(DesignError, match=r"delay, 8 ms, is not reached; 0\.004 s is reached"):
+        run_certified_optimum(designed, analysis)
 
 
 def test_what_steers(tmp_path):
     assert steering_goals(*designed_of(tmp_path, "decay_rate: 1 1/s")) == ("decay_rate",)
-    assert steering_goals(*designed_of(tmp_path, "delay: 2 ms")) == ()
+    assert steering_goals(*designed_of(tmp_path, "delay: 2 ms")) == ("delay",)
+    assert steering_goals(*designed_of(tmp_path, "max_sensitivity_peak: 9")) == ()
 
 
 @pytest.mark.slow

@@ -7,7 +7,7 @@ import pytest
 from nrs_design.certificates.certificate import Verdict, dump
 from nrs_design.certificates.verify import verify
 from nrs_design.pipeline import run_design
-from nrs_design.pipeline.free_gains import gains_given
+from nrs_design.pipeline.written_gains import with_own_gains
 from nrs_design.spec import read_spec
 from nrs_design.sweeps.paint import run_tile_map
 from nrs_design.sweeps.refine import refined
@@ -31,7 +31,7 @@ switching: arbitrary
 def mapped(*said, path):
     loaded = read_spec(path)
     designed = run_design(loaded)
-    given = loaded if designed is None else gains_given(designed)
+    given = loaded if designed is None else with_own_gains(designed)
     return run_tile_map(read_tiles(given, path, list(said)), designed)
 
 
@@ -124,7 +124,7 @@ def test_a_box_has_the_gains_of_the_spec(tmp_path):
     loaded = read_spec(SAMPLED)
     designed = run_design(loaded)
     path = tmp_path / "a.nrs.yaml"
-    given = gains_given(designed)
+    given = with_own_gains(designed)
     path.write_text(given.text, encoding="utf-8")
     grid = read_tiles(read_spec(path), path, ["environments.soft.stiffness=60..80/2 N/m"])
     box = ((0, 1),)

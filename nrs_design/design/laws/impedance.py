@@ -11,7 +11,7 @@ import numpy as np
 
 from nrs_design.axis import unit
 from nrs_design.controllers.controller_design import Controller, ImpedanceOptimum
-from nrs_design.controllers.float32 import neighbors, round_significant, to_float32
+from nrs_design.controllers.float32 import exact_decimal, neighbors, round_significant, to_float32
 from nrs_design.controllers.gain_range import faults_of_ranges, gain_interval
 from nrs_design.controllers.laws import Admittance
 from nrs_design.design.constrained import best_rounding, meets, optimize_with_goals
@@ -48,6 +48,7 @@ from nrs_design.models.interval import Interval
 from nrs_design.proof.bounds import lower, upper_float
 from nrs_design.spec import Doubt, GainSpec, ImpedanceControllerSpec, InteractionDesignSpec
 from nrs_design.spec.controllers import contact_names, names_in, touched_in
+from nrs_design.spec.quantity import Quantity
 from nrs_design.spec.response_goals import AccuracySpec
 from nrs_design.switched.cut_loop import ContinuousAxis
 
@@ -183,7 +184,7 @@ def analyze(
     """
     shipped = controller.law.gains
     Mt, Bt = float(shipped["Mt"]), float(shipped["Bt"])
-    requirement = _requirement(task, given)
+    requirement = requirement_of(task, given)
     problem = impedance_problem(task, given, requirement)
     with naming(controller.name):
         _check_stable(requirement, Mt, Bt)
@@ -349,7 +350,7 @@ def too_stiff(
         With the gains that ship.
     """
     Mt, Bt = (float(controller.law.gains[gain]) for gain in ("Mt", "Bt"))
-    requirement = _requirement(task, given)
+    requirement = requirement_of(task, given)
     yield from doubt_stiffness(controller.name, requirement, task.contacts(given), Mt, Bt)
 
 
@@ -388,6 +389,23 @@ def impedance_problem(
     )
 
 
+def with_spring(given: ImpedanceControllerSpec, Kt: Fraction | None) -> ImpedanceControllerSpec:
+    """Return what a spec says of a controller, with a spring that was chosen.
+
+    Parameters
+    ----------
+    given : ImpedanceControllerSpec
+        What it says.
+    Kt : Fraction or None
+        The spring in SI units; None leaves it out.
+    """
+    if given.Kt is None or Kt is None:
+        return given
+    spring = Quantity(f"{exact_decimal(Kt)} {unit('N*m/rad')}", Kt, unit("N*m/rad"))
+    own = given.Kt.model_copy(update={"min": spring, "max": spring})
+    return given.model_copy(update={"Kt": own})
+
+
 def _response_costs(task: Task, given: ImpedanceControllerSpec) -> Iterator[ResponseCost]:
     """Yield what goals for frequency responses add to the cost."""
     for key, goal in response_goals(task.spec.goals, given.goals).items():
@@ -414,7 +432,14 @@ def desired_impedance(spec: InteractionDesignSpec, controller: ImpedanceControll
     )
 
 
-def _requirement(task: Task, given: ImpedanceControllerSpec) -> Requirement:
+def requirement_of(task: Task, given: ImpedanceControllerSpec) -> Requirement:
+    """Return the goals of one controller, and all that is needed to measure it.
+
+    Parameters
+    ----------
+    task, given
+        As for `impedance_problem`.
+    """
     gains = {name: _ends(gain) for name, gain in given.gains().items()}
     return Requirement(
         axis=task.axis,
@@ -457,7 +482,7 @@ def _ends(gain: GainSpec) -> tuple[Fraction, ...]:
 
 def _optimize(task: Task, given: ImpedanceControllerSpec) -> tuple[Admittance, ImpedanceOptimum]:
     """Optimize an admittance under its goals, and round it so that they are still met."""
-    requirement = _requirement(task, given)
+    requirement = requirement_of(task, given)
     problem = impedance_problem(task, given, requirement)
     optimum = optimize_with_goals(problem, requirement)
     law = Admittance(

@@ -1,0 +1,127 @@
+"""One gain that may be chosen: its bounds, and the values near one that a spec may give."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+from math import exp, log
+from typing import TYPE_CHECKING
+
+from nrs_design.controllers.float32 import neighbors, round_significant
+from nrs_design.proof.text import exact_text
+from nrs_design.spec.interaction_parts import MOTION
+
+if TYPE_CHECKING:
+    from nrs_design.pipeline.design import Designed
+    from nrs_design.spec import GainSpec, Quantity
+
+# A logarithm that is nearer to that of a bound is at the bound.
+CLOSE = 1e-6
+# The same of one that a search has stopped at.
+NEAR = 1e-3
+# The gains that are free by bounds of their own.
+BOUNDED = ("Mt", "Bt")
+
+
+@dataclass(frozen=True)
+class GainCoordinate:
+    """A gain that may be chosen, within positive bounds; a point holds its logarithm."""
+
+    controller: str  # Or ``motion``
+    gain: str
+    unit: str
+    low: Fraction  # SI units
+    high: Fraction
+    # The bounds as the spec writes them; None where they are factors on a given gain.
+    written: tuple[Quantity, Quantity] | None = None
+    given: Fraction | None = None  # The gain that the factors are on
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """Lowest and highest logarithm."""
+        return log(self.low), log(self.high)
+
+    @property
+    def name(self) -> tuple[str, str]:
+        """Controller and gain."""
+        return self.controller, self.gain
+
+    def value(self, x: float) -> float:
+        """Return the gain at a coordinate, within the bounds."""
+        low, high = self.ends
+        return exp(min(max(x, low), high))
+
+    def near(self, x: float, digits: int) -> list[tuple[float, str]]:
+        """Return values near a coordinate as a spec may give them, and their texts.
+
+        Of a gain that a spec gives, and that is free by factors, that is the nearest one only.
+
+        Parameters
+        ----------
+        x : float
+            The coordinate.
+        digits : int
+            How many significant ones are written.
+        """
+        for end in self.written or ():
+            if end.exact > 0 and abs(x - log(end.si)) < CLOSE:
+                return [(end.si, end.text)]
+        value = self.value(x)
+        found = {round_significant(near, digits) for near in neighbors(value, digits)}
+        inside = sorted(v for v in found if self.low <= v <= self.high and v > 0)
+        if self.written is None:
+            # Bounds may be nearer to each other than two numbers of so few digits.
+            at = min(inside, key=lambda v: abs(v - Fraction(value)), default=self.given)
+            assert at is not None, "as factors are on a given gain"
+            inside = [at]
+        return [(float(v), f"{exact_text(v)} {self.unit}") for v in inside]
+
+    def at_bound(self, x: float) -> str | None:
+        """Say on which of its bounds a gain is that is free by factors; None if on neither."""
+        if self.given is None:
+            return None
+        bounds = zip(("lower", "upper"), self.ends, strict=True)
+        return next((name for name, end in bounds if abs(x - end) < NEAR), None)
+
+
+def bounded_gain(
+    controller: str, gain: str, given: GainSpec, low: Fraction, unit: str
+) -> GainCoordinate | None:
+    """Return the coordinate of a gain with bounds; None where they leave nothing to choose.
+
+    Parameters
+    ----------
+    controller, gain
+        What is chosen.
+    given : GainSpec
+        What the spec says of it.
+    low : Fraction
+        Lower bound in SI units; above that of the spec where the spec allows zero.
+    unit : str
+        Of the gain.
+    """
+    if not 0 < low < given.max.exact:
+        return None
+    return GainCoordinate(controller, gain, unit, low, given.max.exact, (given.min, given.max))
+
+
+def freed_gains(designed: Designed) -> Iterator[GainCoordinate]:
+    """Yield the gains that ``design.free`` names, with bounds about what the spec gives.
+
+    Parameters
+    ----------
+    designed : Designed
+        With those gains.
+    """
+    laws, units = designed.design.laws, designed.design.units
+    for name, free in designed.spec.design.free.items():
+        for gain, factors in free.given():
+            at = laws[name].gains[gain]
+            low, high = factors.min * at, factors.max * at
+            own = None if name == MOTION else designed.spec.controllers[name].gains().get(gain)
+            if own is not None and own.range is not None:
+                # What is given must lie where it may be retuned.
+                low, high = max(low, own.range[0].exact), min(high, own.range[1].exact)
+            if low < high:
+                yield GainCoordinate(name, gain, units[name][gain], low, high, given=at)

@@ -1,0 +1,88 @@
+"""The cheapest gains of all, with those of the motion loop and a spring among them."""
+
+from dataclasses import replace
+from math import log
+
+import numpy as np
+import pytest
+
+from nrs_design.design.impedance_optimum import optimize_impedance
+from nrs_design.design.laws.impedance import impedance_problem, requirement_of
+from nrs_design.design.laws.law import Task
+from nrs_design.pipeline import run_analysis, run_design
+from nrs_design.pipeline.free_gains import gain_branches
+from nrs_design.pipeline.written_gains import with_gains
+
+from .free import FORCE, PD, freed
+
+MASS = ("Mt: {min: 0.01 kg*m^2, max: 1 kg*m^2}", "Mt: 0.01 kg*m^2")
+
+
+def anywhere(Mt, Bt):
+    return np.ones(len(Mt), dtype=bool)
+
+
+def branch(designed):
+    (gains,) = gain_branches(designed, run_analysis(designed))
+    return gains
+
+
+def test_the_least_cost_is_at_a_corner_of_the_motion_gains():
+    """By the search of one controller at each corner, which is global in Mt and Bt.
+
+    Nothing in the cost holds the motion gains back: it has neither noise nor effort.
+    """
+    designed = freed(PD, MASS)
+    gains = branch(designed)
+    x = gains.optimum()
+    motion, least = designed.design.motion, {}
+    for Kp in (0.6, 1, 1.6):
+        for Kd in (0.6, 1, 1.6):
+            pd = type(motion)(motion.Kp * round(10 * Kp) / 10, motion.Kd * round(10 * Kd) / 10)
+            task, cost = Task(designed.spec, designed.plant, pd), 0.0
+            for given in designed.spec.controllers.values():
+                requirement = requirement_of(task, given)
+                problem = impedance_problem(task, given, requirement)
+                cost += optimize_impedance(replace(problem, stable=anywhere)).cost
+            least[Kp, Kd] = cost
+    assert min(least, key=least.get) == (1.6, 0.6)
+    assert gains.cost(x) == pytest.approx(least[1.6, 0.6], abs=2e-5)
+    assert gains.at_bounds(x) == (("motion Kp", "upper"), ("motion Kd", "lower"))
+
+
+def test_a_point_is_the_design_of_what_is_written():
+    designed = freed(PD, MASS)
+    gains = branch(designed)
+    x, written = next(iter(gains.roundings(gains.optimum())))
+    own = gains.design(x)
+    found = run_design(with_gains(designed, written)).design
+    assert found.laws["insertion"] == own.laws["insertion"]
+    for gain in ("Kp", "Kd"):
+        exact, near = float(found.motion.gains[gain]), float(own.motion.gains[gain])
+        assert exact == pytest.approx(near, rel=2e-7)
+    assert "motion Kp = " in gains.said(x)
+
+
+def test_goals_of_a_force_controller_hold_beside():
+    goal = ("contact: losable\ngoals: {", "contact: losable\ngoals: {min_phase_margin: 45 deg, ")
+    designed = freed("force: {Kp: {min: 0.25, max: 10}}", goal, path=FORCE)
+    gains = branch(designed)
+    # It is the gain that is given, as no cost says better.
+    assert gains.optimum() == pytest.approx([log(0.02)])
+    spared = [float(gains.spared(np.array([log(0.02 * f)]))[0]) for f in (0.25, 1, 10)]
+    assert spared == sorted(spared, reverse=True)
+    assert spared[0] > 0 > spared[-1]
+
+
+def test_a_spring_moves_the_cost():
+    spring = ("type: impedance\n", "type: impedance\n    Kt: 2 N*m/rad\n")
+    kept = ("contact: losable", "contact: kept")
+    designed = freed("insertion: {Kt: {min: 0.5, max: 2}}", spring, MASS, kept)
+    gains = branch(designed)
+    free = gains.optimum()
+    # The desired impedance has no spring.
+    assert dict(gains.at_bounds(free)) == {"insertion Kt": "lower"}
+    here = free.copy()
+    here[[one.gain for one in gains.coordinates].index("Kt")] = log(2)
+    assert gains.cost(free) < gains.cost(here)
+    assert float(gains.design(free).laws["insertion"].gains["Kt"]) == pytest.approx(1)

@@ -1,0 +1,39 @@
+"""A goal `delay` beyond the declared one is declared in the spec that is proved."""
+
+import pytest
+
+from nrs_design.errors import DesignError
+from nrs_design.pipeline import run_analysis
+from nrs_design.pipeline.goal_ranges import wanted_age, with_delay
+
+from .free import freed
+
+KP = "motion: {Kp: {min: 0.6, max: 1.6}}"
+
+
+def wanting(delay):
+    return freed(KP, ("contact: losable", f"contact: losable\ngoals: {{delay: {delay}}}"))
+
+
+@pytest.mark.parametrize(
+    ("delay", "age"), [("2 ms", None), ("2.1 ms", 2), ("4 ms", 2), ("20 ms", 10)]
+)
+def test_ages_are_whole_samples(delay, age):
+    assert wanted_age(wanting(delay)) == age
+
+
+def test_an_age_that_is_not_modelled():
+    with pytest.raises(DesignError, match="is 11 samples, and at most 10 are modelled"):
+        wanted_age(wanting("20.1 ms"))
+
+
+def test_the_spec_declares_it():
+    designed = wanting("4 ms")
+    later, analysis = with_delay(designed, run_analysis(designed), 2)
+    assert designed.spec.sampling.delay == (0, 1)
+    assert later.spec.sampling.delay == (0, 2)
+    assert "# A period of 2 ms; the force sample comes over a bus" in later.loaded.text
+    # Goals of controllers are held at every age, the oldest included.
+    ages = {corner.place.texts for corner in analysis.impedance[0].requirement.corners}
+    assert any("delay 2" in text for texts in ages for text in texts)
+    assert later.spec.design.free == designed.spec.design.free

@@ -1,0 +1,115 @@
+"""The modes of a loop whose samples and commands come at any time in an interval.
+
+Let a sample be followed by the next one after h, and by the command u that is computed of it after
+d <= h, while the one before, u', is held. Then the plant x' = A x + B u is at the next sample at
+
+    x+ = exp(A h) (x - int_0^d exp(-A s) ds B (u - u')) + int_0^h exp(A s) ds B u
+
+So a period is two stays in turn: in mode ``delay``, for d, x moves by the first integral, and in
+mode ``period``, for h, by A x + B u. Both are exponentials, and d and h do not depend on each
+other: intervals of these times are intervals of stays.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+from nrs_design.proof.matrix import RationalMatrix, identity, multiply
+from nrs_design.proof.mode import Mode, Time
+from nrs_design.proof.switching import Reset, Stay, Switching
+from nrs_design.proof.system import SwitchedSystem
+from nrs_design.switched.assumptions import assume_timing
+
+if TYPE_CHECKING:
+    from nrs_design.spec.sampled_system import SampledSystemSpec
+
+DELAY, PERIOD = "delay", "period"
+# A mode follows another one: where no command is late, periods take turns.
+TURNS = (f"{PERIOD}/1", f"{PERIOD}/2")
+# Of the plant, of what a late command leaves out, of the controller, and the command that is held.
+PLANT, LATE, CONTROLLER, COMMAND = "x", "late", "z", "u"
+
+Rows = Sequence[Sequence[Fraction]]
+
+
+def close_timed_loop(spec: SampledSystemSpec) -> SwitchedSystem:
+    """Return the switched system of a `sampled-system` spec.
+
+    Parameters
+    ----------
+    spec : SampledSystemSpec
+        Plant, controller, and the intervals of period and delay.
+    """
+    sampling = spec.sampling
+    late = sampling.delays[1] > 0
+    sizes = {PLANT: spec.plant.states}
+    if late:
+        sizes[LATE] = spec.plant.states
+    sizes |= {CONTROLLER: spec.controller.states, COMMAND: spec.plant.inputs}
+    A, B = spec.plant.A, spec.plant.B
+    hold = _blocks(sizes, {(PLANT, PLANT): A, (PLANT, COMMAND): B})
+    sample = _sample(spec, sizes)
+    stay = Stay(*sampling.periods)
+    if late:
+        less = _negative(_unit(spec.plant.states))
+        wait = _blocks(sizes, {(PLANT, LATE): less, (LATE, LATE): _negative(A)})
+        same = {name: _unit(sizes[name]) for name in (PLANT, CONTROLLER, COMMAND)}
+        modes = (Mode(DELAY, wait), Mode(PERIOD, hold))
+        stays = ((DELAY, Stay(*sampling.delays)), (PERIOD, stay))
+        resets = (
+            Reset(DELAY, PERIOD, _blocks(sizes, {(n, n): M for n, M in same.items()})),
+            Reset(PERIOD, DELAY, sample),
+        )
+    else:
+        modes = tuple(Mode(name, hold) for name in TURNS)
+        stays = tuple((name, stay) for name in TURNS)
+        resets = (Reset(*TURNS, sample), Reset(*reversed(TURNS), sample))
+    states = tuple(f"{name}{i + 1}" for name, size in sizes.items() for i in range(size))
+    switching = Switching(Fraction(0), resets=resets, stays=stays)
+    return SwitchedSystem(
+        spec.name, Time.CONTINUOUS, states, modes, assume_timing(spec), switching
+    )
+
+
+def _sample(spec: SampledSystemSpec, sizes: Mapping[str, int]) -> RationalMatrix:
+    """Return what a sample does: the controller moves on, and its command is the new one."""
+    plant, controller = spec.plant, spec.controller
+    C = _unit(plant.states) if plant.C is None else plant.C
+    blocks: dict[tuple[str, str], Rows] = {(PLANT, PLANT): _unit(plant.states)}
+    if (gain := controller.K or controller.D) is not None:
+        blocks[COMMAND, PLANT] = multiply(gain, C)
+    if controller.A is not None and controller.B is not None and controller.C is not None:
+        blocks[CONTROLLER, CONTROLLER] = controller.A
+        blocks[CONTROLLER, PLANT] = multiply(controller.B, C)
+        blocks[COMMAND, CONTROLLER] = controller.C
+    if LATE in sizes:
+        blocks |= {
+            (LATE, name): multiply(plant.B, blocks[COMMAND, name])
+            for name in (PLANT, CONTROLLER)
+            if (COMMAND, name) in blocks
+        }
+        blocks[LATE, COMMAND] = _negative(plant.B)
+    return _blocks(sizes, blocks)
+
+
+def _blocks(sizes: Mapping[str, int], blocks: Mapping[tuple[str, str], Rows]) -> RationalMatrix:
+    """Return a matrix by its blocks, each by the states after and before; the others are zero."""
+    first, order = dict[str, int](), 0
+    for name, size in sizes.items():
+        first[name], order = order, order + size
+    rows = [[Fraction(0)] * order for _ in range(order)]
+    for (after, before), block in blocks.items():
+        for i, row in enumerate(block):
+            for j, entry in enumerate(row):
+                rows[first[after] + i][first[before] + j] = entry
+    return RationalMatrix.from_rows(rows)
+
+
+def _unit(size: int) -> Rows:
+    return identity(size).fractions()
+
+
+def _negative(matrix: Rows) -> Rows:
+    return [[-entry for entry in row] for row in matrix]

@@ -8,11 +8,13 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
+from nrs_design.proof.text import exact_text
 from nrs_design.spec.certification import CertificationSpec
 from nrs_design.spec.check import Row, each
 from nrs_design.spec.faults import Location
 from nrs_design.spec.fields import Exact, Name, Title
 from nrs_design.spec.model import SpecModel, optional
+from nrs_design.spec.quantity import Quantity
 from nrs_design.spec.quantity_fields import TimeRange, Times, ends_of
 from nrs_design.spec.switching import LONGEST_DWELL, MAX_DIMENSION, matrix_checks
 
@@ -114,6 +116,11 @@ class SampledControllerSpec(SpecModel):
     )
 
 
+def _up_to(times: Times, longest: Fraction) -> Times:
+    end = Quantity(f"{exact_text(longest)} s", longest, "s")
+    return times._replace(shortest=min(times.shortest, end, key=lambda t: t.exact), longest=end)
+
+
 class TimingSpec(SpecModel):
     """When samples are taken, and when their commands take effect."""
 
@@ -135,6 +142,13 @@ class TimingSpec(SpecModel):
     def delays(self) -> tuple[Fraction, Fraction]:
         """The shortest and the longest time to the command, in s."""
         return ends_of(self.delay)
+
+    def with_longest(self, period: Fraction, delay: Fraction) -> TimingSpec:
+        """Return other longest times, with the same shortest ones unless these are longer."""
+        changed = {"period": _up_to(self.period, period)}
+        if self.delay is not None:
+            changed["delay"] = _up_to(self.delay, delay)
+        return self.model_copy(update=changed)
 
     def _constants(self) -> Iterator[tuple[Location, Times]]:
         for key in ("period", "delay"):

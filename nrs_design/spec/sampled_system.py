@@ -1,10 +1,10 @@
-"""The spec of a sampled loop that is given by its matrices: plant, controller, and when they meet."""
+"""The spec of a sampled loop of given matrices: plant, controller, and when they meet."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from fractions import Fraction
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
@@ -27,17 +27,22 @@ def _shape(matrix: _Matrix) -> Shape:
     return len(matrix), len(matrix[0])
 
 
-def _checks_of(*keys: str) -> tuple[Row[SpecModel], ...]:
+def _checks_of(keys: str) -> tuple[Row[Any], ...]:
     """Return the checks of each of these matrices, as far as they are there."""
-    return tuple(
-        check
-        for key in keys
-        for check in matrix_checks(
+
+    def checks(key: str) -> tuple[Row[Any], ...]:
+        return matrix_checks(
             key,
-            lambda s, key=key: getattr(s, key) or ((),),
-            lambda s, key=key: (entry for row in getattr(s, key) or () for entry in row),
+            lambda s: getattr(s, key) or ((),),
+            lambda s: (entry for row in getattr(s, key) or () for entry in row),
         )
-    )
+
+    return tuple(check for key in keys for check in checks(key))
+
+
+def _shapes(part: SpecModel, keys: str) -> dict[str, Shape]:
+    found = {key: getattr(part, key) for key in keys}
+    return {key: _shape(matrix) for key, matrix in found.items() if matrix is not None}
 
 
 class HeldPlantSpec(SpecModel):
@@ -53,6 +58,11 @@ class HeldPlantSpec(SpecModel):
         return len(self.A)
 
     @property
+    def shapes(self) -> dict[str, Shape]:
+        """Rows and columns of the matrices that are there."""
+        return _shapes(self, "ABC")
+
+    @property
     def inputs(self) -> int:
         """How many commands it takes."""
         return len(self.B[0])
@@ -63,7 +73,7 @@ class HeldPlantSpec(SpecModel):
         return self.states if self.C is None else len(self.C)
 
     checks = (
-        *_checks_of("A", "B", "C"),
+        *_checks_of("ABC"),
         Row(
             "A",
             lambda s: len(set(_shape(s.A))) > 1 and _shape(s.A),
@@ -86,7 +96,7 @@ class HeldPlantSpec(SpecModel):
 
 
 class SampledControllerSpec(SpecModel):
-    """What computes the command from a sample: ``u = K y``, or ``z+ = A z + B y, u = C z + D y``."""
+    """What computes the command: ``u = K y``, or ``z+ = A z + B y`` and ``u = C z + D y``."""
 
     K: _Matrix | None = optional("m x outputs: a gain, u = K y")
     A: _Matrix | None = optional("in the place of K, with B and C: p x p, of the states z")
@@ -102,11 +112,10 @@ class SampledControllerSpec(SpecModel):
     @property
     def shapes(self) -> dict[str, Shape]:
         """Rows and columns of the matrices that are there."""
-        found = {key: getattr(self, key) for key in ("K", "A", "B", "C", "D")}
-        return {key: _shape(matrix) for key, matrix in found.items() if matrix is not None}
+        return _shapes(self, "KABCD")
 
     checks = (
-        *_checks_of("K", "A", "B", "C", "D"),
+        *_checks_of("KABCD"),
         Row(
             "",
             lambda s: s.shapes.keys() not in ({"K"}, {"A", "B", "C"}, {"A", "B", "C", "D"}),
@@ -177,8 +186,8 @@ class TimingSpec(SpecModel):
                 and (s.delay.longest.text, s.period.shortest.text)
             ),
             "a delay of {0} is longer than the shortest period, {1}, and is not modelled",
-            "write what is left after whole periods, and these as states of the controller: for one "
-            "of them, {{A: 0, B: K, C: 1}}",
+            "write what is left after whole periods, and these as states of the controller: of a "
+            "gain K one period late, A: [[0]], B: K, C: [[1]]",
         ),
         *each(
             lambda s: s._constants(),
@@ -228,8 +237,9 @@ class SampledSystemSpec(SpecModel):
         ),
         Row(
             "plant.A",
-            lambda s: (n := s.plant.states + s.controller.states + s.plant.inputs) > MAX_DIMENSION
-            and n,
+            lambda s: (
+                (n := s.plant.states + s.controller.states + s.plant.inputs) > MAX_DIMENSION and n
+            ),
             f"plant, controller and held command have {{0}} states, at most {MAX_DIMENSION} are "
             "read",
             "reduce the model",

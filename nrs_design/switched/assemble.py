@@ -85,7 +85,7 @@ def assemble_from_text(
         If gains or coordinates do not fit the spec, if a stiffness or a gain does not stay
         positive, or if the rules of switching make too many switches.
     """
-    if spec.kind in ("switched-system", "sampled-system"):
+    if spec.kind == "switched-system" or spec.kind == "sampled-system":
         if gains or coordinates is not None:
             raise AssemblyError("given matrices have neither gains nor coordinates")
         return assemble_matrices(spec, scale)

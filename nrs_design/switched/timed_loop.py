@@ -42,34 +42,31 @@ def close_timed_loop(spec: SampledSystemSpec) -> SwitchedSystem:
     spec : SampledSystemSpec
         Plant, controller, and the intervals of period and delay.
     """
-    sampling = spec.sampling
-    late = sampling.delays[1] > 0
-    sizes = {PLANT: spec.plant.states}
-    if late:
-        sizes[LATE] = spec.plant.states
+    n = spec.plant.states
+    late = spec.sampling.delays[1] > 0
+    sizes = {PLANT: n} | ({LATE: n} if late else {})
     sizes |= {CONTROLLER: spec.controller.states, COMMAND: spec.plant.inputs}
     A, B = spec.plant.A, spec.plant.B
-    hold = _blocks(sizes, {(PLANT, PLANT): A, (PLANT, COMMAND): B})
-    sample = _sample(spec, sizes)
-    stay = Stay(*sampling.periods)
+    first = second = _blocks(sizes, {(PLANT, PLANT): A, (PLANT, COMMAND): B})
+    to_first = to_second = _sample(spec, sizes)
+    stays = [Stay(*spec.sampling.periods)] * 2
     if late:
-        less = _negative(_unit(spec.plant.states))
-        wait = _blocks(sizes, {(PLANT, LATE): less, (LATE, LATE): _negative(A)})
-        same = {name: _unit(sizes[name]) for name in (PLANT, CONTROLLER, COMMAND)}
-        modes = (Mode(DELAY, wait), Mode(PERIOD, hold))
-        stays = ((DELAY, Stay(*sampling.delays)), (PERIOD, stay))
-        resets = (
-            Reset(DELAY, PERIOD, _blocks(sizes, {(n, n): M for n, M in same.items()})),
-            Reset(PERIOD, DELAY, sample),
-        )
-    else:
-        modes = tuple(Mode(name, hold) for name in TURNS)
-        stays = tuple((name, stay) for name in TURNS)
-        resets = (Reset(*TURNS, sample), Reset(*reversed(TURNS), sample))
-    states = tuple(f"{name}{i + 1}" for name, size in sizes.items() for i in range(size))
-    switching = Switching(Fraction(0), resets=resets, stays=stays)
+        less = {(PLANT, LATE): _negative(_unit(n)), (LATE, LATE): _negative(A)}
+        first = _blocks(sizes, less)
+        kept = (PLANT, CONTROLLER, COMMAND)
+        to_second = _blocks(sizes, {(name, name): _unit(sizes[name]) for name in kept})
+        stays[0] = Stay(*spec.sampling.delays)
+    one, two = (DELAY, PERIOD) if late else TURNS
     return SwitchedSystem(
-        spec.name, Time.CONTINUOUS, states, modes, assume_timing(spec), switching
+        spec.name,
+        Time.CONTINUOUS,
+        tuple(f"{name}{i + 1}" for name, size in sizes.items() for i in range(size)),
+        (Mode(one, first), Mode(two, second)),
+        assume_timing(spec),
+        Switching(
+            resets=(Reset(one, two, to_second), Reset(two, one, to_first)),
+            stays=tuple(zip((one, two), stays, strict=True)),
+        ),
     )
 
 

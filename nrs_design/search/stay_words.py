@@ -51,6 +51,9 @@ def stay_words(graph: Graph, allowance: Allowance) -> Iterator[tuple[Cycle, Arra
     steps = StepGraph((), sources, targets, sources, jumps, np.array(maps), len(varies), False)
     best: tuple[Cycle, Array] | None = None
     for word, growth in best_words(steps, allowance):
+        # A signal begins with its first mode.
+        start = min(range(len(word)), key=lambda k: int(sources[word[k]]))
+        word = word[start:] + word[:start]
         best = tuple(int(jumps[k]) for k in word), np.array([times[k] for k in word])
         if growth > 1:
             yield best

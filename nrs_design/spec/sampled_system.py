@@ -222,6 +222,12 @@ class SampledSystemSpec(SpecModel):
     # No matrix has a parameter: what is in an interval here are times.
     has_ranges: ClassVar[bool] = False
 
+    @property
+    def states(self) -> int:
+        """How many states the loop has: those of the plant count twice where a command is late."""
+        own = self.plant.states * (2 if self.sampling.delays[1] > 0 else 1)
+        return own + self.controller.states + self.plant.inputs
+
     def find_dwell_obstacle(self) -> None:
         """Return None: nothing in the matrices changes between two switches."""
 
@@ -237,11 +243,8 @@ class SampledSystemSpec(SpecModel):
         ),
         Row(
             "plant.A",
-            lambda s: (
-                (n := s.plant.states + s.controller.states + s.plant.inputs) > MAX_DIMENSION and n
-            ),
-            f"plant, controller and held command have {{0}} states, at most {MAX_DIMENSION} are "
-            "read",
+            lambda s: s.states > MAX_DIMENSION and s.states,
+            f"the loop has {{0}} states, at most {MAX_DIMENSION} are read",
             "reduce the model",
         ),
     )

@@ -152,8 +152,7 @@ sampling: {period: [0.5 s, LONGEST]DELAY}
     ("longest", "delay", "said"),
     [
         # x+ = (1 - h) x.
-        ("1.5 s", "", ["longest period: proved up to 1.9921875 s, refuted from 2.015625 s on"]),
-        ("4 s", "", ["longest period: proved up to 1.98828 s (rounded down), refuted from 2"]),
+        ("1.5 s", "", ["longest period: proved up to 1.9"]),
         # Of a period of 0.5 s, any delay within it.
         (
             "0.5 s",
@@ -168,10 +167,10 @@ def test_how_long_periods_and_delays_may_be(tmp_path, longest, delay, said):
     result = run_certification(read_spec(path))
     found = run_proof_margins(result, Limits(), margin=True, shortest_dwell=False)
     lines = [str(line) for line in margin_lines(found, result.loaded)]
-    assert [line.startswith(start) for line, start in zip(lines, said, strict=True)], lines
+    assert [line[: len(start)] for line, start in zip(lines, said, strict=True)] == said
     facts = margins_facts(found)["longest_times"]
     assert list(facts) == ["period", "delay"][: len(said)]
-    assert facts["period"]["proved"] < 2
+    assert 1.9 < facts["period"]["proved"] < 2 < facts["period"]["refuted"] < 2.1
 
 
 def test_a_sampled_loop_has_no_dwell_time(tmp_path):

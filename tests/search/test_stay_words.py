@@ -15,7 +15,7 @@ GAIN = '{K: [[-50, "-11.8"]]}'
 def words(period, delay, system=None):
     system = system or timed(MOTION, GAIN, period, delay)
     graph = Graph.of(system, np.array([mode.A.floats() for mode in system.modes]))
-    return graph, [*stay_words(graph, Allowance(10.0))]
+    return graph, [*stay_words(graph, Allowance(0.5))]
 
 
 def test_delays_in_turn():

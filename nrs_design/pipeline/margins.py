@@ -129,12 +129,15 @@ def _run_timing(result: Result, limits: Limits, progress: Progress) -> TimingMar
     spec, known = result.loaded.spec, result.certification
     assert spec.kind == "sampled-system"
 
-    def decide(period: Fraction, delay: Fraction) -> Certification:
+    def decide(period: Fraction, delay: Fraction) -> Certification | str:
         timing = spec.sampling.with_longest(period, delay)
+        if timing.rests[1] > timing.periods[0]:
+            return "a delay may then be longer than a period"
         system = assemble_matrices(spec.model_copy(update={"sampling": timing}))
         return certify(system, limits=limits)
 
     (period, longest), (delay, latest) = spec.sampling.periods, spec.sampling.delays
+    most = period * (spec.sampling.waiting + 1)
     return TimingMargin(
         find_longest_time(
             "period", period, longest, None, lambda t: decide(t, latest), known, progress
@@ -142,7 +145,7 @@ def _run_timing(result: Result, limits: Limits, progress: Progress) -> TimingMar
         None
         if spec.sampling.delay is None
         else find_longest_time(
-            "delay", delay, latest, period, lambda t: decide(longest, t), known, progress
+            "delay", delay, latest, most, lambda t: decide(longest, t), known, progress
         ),
     )
 

@@ -139,7 +139,8 @@ class TimingSpec(SpecModel):
     )
     delay: TimeRange | None = optional(
         "time in s from a sample to where its command takes effect: one number, or [shortest, "
-        "longest] for one that may differ every time; at most the shortest period; default: at once"
+        "longest] for one that may differ every time; at most the shortest period, or between two "
+        "whole numbers of a constant one; default: at once"
     )
 
     @property
@@ -151,6 +152,18 @@ class TimingSpec(SpecModel):
     def delays(self) -> tuple[Fraction, Fraction]:
         """The shortest and the longest time to the command, in s."""
         return ends_of(self.delay)
+
+    @property
+    def waiting(self) -> int:
+        """How many whole periods every command waits, where periods are constant."""
+        first, last = self.periods
+        return int(self.delays[0] // first) if first == last and first > 0 else 0
+
+    @property
+    def rests(self) -> tuple[Fraction, Fraction]:
+        """The shortest and the longest delay without the whole periods, in s."""
+        whole = self.waiting * self.periods[0]
+        return self.delays[0] - whole, self.delays[1] - whole
 
     def with_longest(self, period: Fraction, delay: Fraction) -> TimingSpec:
         """Return other longest times, with the same shortest ones unless these are longer."""
@@ -181,13 +194,29 @@ class TimingSpec(SpecModel):
         Row(
             "delay",
             lambda s: (
-                s.delay is not None
-                and s.delay.longest.exact > s.period.shortest.exact > 0
+                len(set(s.periods)) > 1
+                and s.delays[1] > s.periods[0] > 0
                 and (s.delay.longest.text, s.period.shortest.text)
             ),
-            "a delay of {0} is longer than the shortest period, {1}, and is not modelled",
-            "write what is left after whole periods, and these as states of the controller: of a "
-            "gain K one period late, A: [[0]], B: K, C: [[1]]",
+            "a delay of {0} is longer than the shortest period, {1}, and is not modelled where "
+            "periods vary",
+            "write a delay of at most the shortest period, or a constant period",
+        ),
+        Row(
+            "delay",
+            lambda s: (
+                len(set(s.periods)) == 1
+                and s.rests[1] > s.periods[0] > 0
+                and (s.delay.shortest.text, s.delay.longest.text, s.period.longest.text)
+            ),
+            "delays from {0} to {1} are not all between two whole numbers of periods of {2}",
+            "write an interval that is, such as from 0 to 1 period or from 1 to 2",
+        ),
+        Row(
+            "delay",
+            lambda s: s.waiting > MAX_DIMENSION and (s.delay.longest.text, s.waiting),
+            f"a delay of {{0}} is {{1}} whole periods, at most {MAX_DIMENSION} are read",
+            "shorten it, or sample less often",
         ),
         *each(
             lambda s: s._constants(),
@@ -225,8 +254,8 @@ class SampledSystemSpec(SpecModel):
     @property
     def states(self) -> int:
         """How many states the loop has: those of the plant count twice where a command is late."""
-        own = self.plant.states * (2 if self.sampling.delays[1] > 0 else 1)
-        return own + self.controller.states + self.plant.inputs
+        own = self.plant.states * (2 if self.sampling.rests[1] > 0 else 1)
+        return own + self.controller.states + self.plant.inputs * (1 + self.sampling.waiting)
 
     def find_dwell_obstacle(self) -> None:
         """Return None: nothing in the matrices changes between two switches."""

@@ -7,7 +7,8 @@ d <= h, while the one before, u', is held. Then the plant x' = A x + B u is at t
 
 So a period is two stays in turn: in mode ``delay``, for d, x moves by the first integral, and in
 mode ``period``, for h, by A x + B u. Both are exponentials, and d and h do not depend on each
-other: intervals of these times are intervals of stays.
+other: intervals of these times are intervals of stays. Where a command comes whole periods later,
+it waits for so many samples as a state of the controller.
 """
 
 from __future__ import annotations
@@ -28,8 +29,9 @@ if TYPE_CHECKING:
 DELAY, PERIOD = "delay", "period"
 # A mode follows another one: where no command is late, periods take turns.
 TURNS = (f"{PERIOD}/1", f"{PERIOD}/2")
-# Of the plant, of what a late command leaves out, of the controller, and the command that is held.
-PLANT, LATE, CONTROLLER, COMMAND = "x", "late", "z", "u"
+# Of the plant, of what a late command leaves out, of the controller, commands that wait, the newest
+# first, and the one that is held.
+PLANT, LATE, CONTROLLER, WAITING, COMMAND = "x", "late", "z", "waiting", "u"
 
 Rows = Sequence[Sequence[Fraction]]
 
@@ -43,9 +45,10 @@ def close_timed_loop(spec: SampledSystemSpec) -> SwitchedSystem:
         Plant, controller, and the intervals of period and delay.
     """
     n = spec.plant.states
-    late = spec.sampling.delays[1] > 0
+    late = spec.sampling.rests[1] > 0
     sizes = {PLANT: n} | ({LATE: n} if late else {})
-    sizes |= {CONTROLLER: spec.controller.states, COMMAND: spec.plant.inputs}
+    m = spec.plant.inputs
+    sizes |= {CONTROLLER: spec.controller.states, WAITING: spec.sampling.waiting * m, COMMAND: m}
     A, B = spec.plant.A, spec.plant.B
     first = second = _blocks(sizes, {(PLANT, PLANT): A, (PLANT, COMMAND): B})
     to_first = to_second = _sample(spec, sizes)
@@ -53,9 +56,9 @@ def close_timed_loop(spec: SampledSystemSpec) -> SwitchedSystem:
     if late:
         less = {(PLANT, LATE): _negative(_unit(n)), (LATE, LATE): _negative(A)}
         first = _blocks(sizes, less)
-        kept = (PLANT, CONTROLLER, COMMAND)
+        kept = (PLANT, CONTROLLER, WAITING, COMMAND)
         to_second = _blocks(sizes, {(name, name): _unit(sizes[name]) for name in kept})
-        stays[0] = Stay(*spec.sampling.delays)
+        stays[0] = Stay(*spec.sampling.rests)
     one, two = (DELAY, PERIOD) if late else TURNS
     return SwitchedSystem(
         spec.name,
@@ -81,10 +84,21 @@ def _sample(spec: SampledSystemSpec, sizes: Mapping[str, int]) -> RationalMatrix
         blocks[CONTROLLER, CONTROLLER] = controller.A
         blocks[CONTROLLER, PLANT] = multiply(controller.B, C)
         blocks[COMMAND, CONTROLLER] = controller.C
+    sources: tuple[str, ...] = (PLANT, CONTROLLER)
+    if waiting := sizes[WAITING]:
+        # Each waits one sample longer; the oldest one takes effect.
+        blocks |= {
+            (WAITING, name): blocks.pop((COMMAND, name))
+            for name in sources
+            if (COMMAND, name) in blocks
+        }
+        m, unit, sources = plant.inputs, _unit(waiting), (WAITING,)
+        blocks[WAITING, WAITING] = [[Fraction(0)] * waiting] * m + [*unit[:-m]]
+        blocks[COMMAND, WAITING] = unit[-m:]
     if LATE in sizes:
         blocks |= {
             (LATE, name): multiply(plant.B, blocks[COMMAND, name])
-            for name in (PLANT, CONTROLLER)
+            for name in sources
             if (COMMAND, name) in blocks
         }
         blocks[LATE, COMMAND] = _negative(plant.B)

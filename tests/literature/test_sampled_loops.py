@@ -116,6 +116,12 @@ def test_a_constant_delay_against_its_border():
         (("1", "1"), ("0.999", "0.999"), "proved"),
         (("2", "2"), ("0.001", "0.001"), "proved"),
         (("2.1", "2.1"), ("0.04", "0.04"), "refuted"),
+        # A whole period late: x+ = x - h x-, stable up to h = 1.
+        (("0.99", "0.99"), ("0.99", "0.99"), "proved"),
+        (("1.01", "1.01"), ("1.01", "1.01"), "refuted"),
+        # Two of them: z^3 - z^2 + h has its roots at the circle for h = (sqrt(5) - 1)/2.
+        (("0.61", "0.61"), ("1.22", "1.22"), "proved"),
+        (("0.62", "0.62"), ("1.24", "1.24"), "refuted"),
     ],
 )
 def test_one_integrator_by_hand(period, delay, verdict):

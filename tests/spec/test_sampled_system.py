@@ -71,7 +71,7 @@ def test_other_longest_times():
         ("[8 ms, 12 ms]", "[8 ms, 5000 s]", "write the matrices in another unit of time"),
         ("[8 ms, 12 ms]", "{range: [8 ms, 12 ms], varies: false}", "write [shortest, longest]"),
         ("[0 ms, 3 ms]", "[0 ms, 9 ms]", "a delay of 9 ms is longer than the shortest period, 8"),
-        ("[0 ms, 3 ms]", "[0 ms, 9 ms]", "write what is left after whole periods"),
+        ("[0 ms, 3 ms]", "[0 ms, 9 ms]", "is not modelled where periods vary"),
         ("[0 ms, 3 ms]", "3", "3 s"),
         ('[0, "-0.1"]]', '[0, "-0.1"], [1, 1]]', "the matrix is 3 x 2, not square"),
         ('[[0], ["0.1"]]', "[[1]]", "the matrix has 1 rows, and the plant has 2 states"),
@@ -84,6 +84,35 @@ def test_other_longest_times():
 )
 def test_what_is_refused(old, new, said):
     assert_refused(spoiled(GAIN, old, new), said)
+
+
+@pytest.mark.parametrize(
+    ("delay", "waiting", "rest"),
+    [
+        ("[0 ms, 10 ms]", 0, (0, 10)),
+        ("[4 ms, 4 ms]", 0, (4, 4)),
+        ("10 ms", 1, (0, 0)),
+        ("[23 ms, 30 ms]", 2, (3, 10)),
+    ],
+)
+def test_delays_of_whole_periods(delay, waiting, rest):
+    text = spoiled(GAIN, "[8 ms, 12 ms]", "10 ms")
+    spec = parse_spec(spoiled(text, "[0 ms, 3 ms]", delay))
+    assert spec.sampling.waiting == waiting
+    assert tuple(1000 * end for end in spec.sampling.rests) == rest
+    assert spec.states == 3 + waiting + 2 * (rest[1] > 0)
+
+
+@pytest.mark.parametrize(
+    ("delay", "said"),
+    [
+        ("[5 ms, 15 ms]", "delays from 5 ms to 15 ms are not all between two whole numbers of"),
+        ("700 ms", "a delay of 700 ms is 70 whole periods, at most 64 are read"),
+    ],
+)
+def test_delays_that_are_refused(delay, said):
+    text = spoiled(GAIN, "[8 ms, 12 ms]", "10 ms")
+    assert_refused(spoiled(text, "[0 ms, 3 ms]", delay), said)
 
 
 def test_at_most_64_states():

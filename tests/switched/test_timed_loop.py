@@ -99,6 +99,41 @@ def test_the_map_from_sample_to_sample(late, dynamic):
     np.testing.assert_allclose(closed(along(system, times)), closed(expected), rtol=1e-6, atol=1e-9)
 
 
+@pytest.mark.parametrize("rest", [("0.1", "0.3"), ("0", "0.5"), ("0.2", "0.2"), None])
+def test_a_whole_period_of_a_delay_is_a_state_of_the_controller(rest):
+    """By hand, z+ = K y and u = z."""
+    late = None if rest is None else tuple(str(Fraction(end) + Fraction(1, 2)) for end in rest)
+    K = [["-1", "-0.5"], ["0.25", "-1"]]
+    own = timed(TWO_INPUTS, f"{{K: {matrix(K)}}}", ("0.5", "0.5"), late or ("0.5", "0.5"))
+    zero, unit = [[0, 0], [0, 0]], [[1, 0], [0, 1]]
+    by_hand = f"{{A: {matrix(zero)}, B: {matrix(K)}, C: {matrix(unit)}}}"
+    other = timed(TWO_INPUTS, by_hand, ("0.5", "0.5"), rest)
+    assert own.modes == other.modes
+    assert own.switching == other.switching
+    assert "waiting2" in own.states
+    assert "1 whole period" in own.assumptions[-1]
+
+
+@pytest.mark.parametrize("whole", [1, 2, 3])
+def test_commands_that_wait(whole):
+    """Delays of more periods, and a controller with states: registers around the same law."""
+    A, B = map(floats, TWO_INPUTS)
+    C, h = np.array([[1.0, -0.5]]), 0.5
+    z = np.hstack([np.array([[1.0], [0.5]]) @ C, np.array([[0.5, 1], [0, 0.25]])])
+    law = np.hstack([np.array([[-1.0], [0.5]]) @ C, np.array([[-2.0, 1], [0, 3]])])
+    size = 2 * whole
+    shift = np.hstack([np.zeros((size, 4)), np.vstack([np.zeros((2, size)), np.eye(size)[:-2]])])
+    shift[:2, :4] += law
+    oldest = np.hstack([np.zeros((2, 4)), np.eye(size)[-2:]])
+    feedback = np.vstack([np.hstack([z, np.zeros((2, size))]), shift, oldest])
+    delay = (str(whole * h + 0.125), str(whole * h + 0.25))
+    system = timed(TWO_INPUTS, CONTROLLER, ("0.5", "0.5"), delay, [[1, "-0.5"]])
+    expected = sampled(A, B, h, 0.25, feedback) @ sampled(A, B, h, 0.125, feedback)
+    times = [("delay", 0.125), ("period", h), ("delay", 0.25), ("period", h)]
+    found = np.poly(along(system, times))[: len(expected) + 1]
+    np.testing.assert_allclose(found, np.poly(expected), rtol=1e-6, atol=1e-8)
+
+
 def test_names_of_states_and_stays():
     system = timed(TWO_INPUTS, CONTROLLER, ("0.5", 2), ("0.1", "0.4"), [[1, 0]])
     assert system.states == ("x1", "x2", "late1", "late2", "z1", "z2", "u1", "u2")

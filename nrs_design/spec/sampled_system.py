@@ -130,6 +130,11 @@ def _up_to(times: Times, longest: Fraction) -> Times:
     return times._replace(shortest=min(times.shortest, end, key=lambda t: t.exact), longest=end)
 
 
+def _in_words(times: Times) -> str:
+    first, last = times.shortest.text, times.longest.text
+    return first if first == last else f"{first} to {last}"
+
+
 class TimingSpec(SpecModel):
     """When samples are taken, and when their commands take effect."""
 
@@ -153,6 +158,10 @@ class TimingSpec(SpecModel):
         """The shortest and the longest time to the command, in s."""
         return ends_of(self.delay)
 
+    def __str__(self) -> str:
+        """Say period and delay in a few words."""
+        return ", ".join(f"{key} {_in_words(times)}" for (key,), times in self._written())
+
     @property
     def waiting(self) -> int:
         """How many whole periods every command waits, where periods are constant."""
@@ -172,7 +181,7 @@ class TimingSpec(SpecModel):
             changed["delay"] = _up_to(self.delay, delay)
         return self.model_copy(update=changed)
 
-    def _constants(self) -> Iterator[tuple[Location, Times]]:
+    def _written(self) -> Iterator[tuple[Location, Times]]:
         for key in ("period", "delay"):
             if (times := getattr(self, key)) is not None:
                 yield (key,), times
@@ -219,7 +228,7 @@ class TimingSpec(SpecModel):
             "shorten it, or sample less often",
         ),
         *each(
-            lambda s: s._constants(),
+            lambda s: s._written(),
             Row[Times](
                 "varies",
                 lambda times: times.is_constant,

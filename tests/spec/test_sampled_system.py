@@ -33,6 +33,10 @@ def test_what_is_read():
     assert (spec.states, parse_spec(GAIN).states) == (6, 5)
     at_once = parse_spec(spoiled(GAIN, "  delay: [0 ms, 3 ms]\n", ""))
     assert (at_once.sampling.delays, at_once.states) == ((0, 0), 3)
+    assert (str(spec.sampling), str(at_once.sampling)) == (
+        "period 8 ms to 12 ms, delay 0 ms to 3 ms",
+        "period 8 ms to 12 ms",
+    )
     constant = parse_spec(spoiled(GAIN, "[8 ms, 12 ms]", "10 ms"))
     assert constant.sampling.periods == (Fraction(1, 100), Fraction(1, 100))
 

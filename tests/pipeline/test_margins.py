@@ -139,7 +139,7 @@ def test_how_many_deadlines_may_be_missed(tmp_path, rule, proved, refuted, said)
     assert margins_facts(found)["most_misses"]["refuted"] == refuted
 
 
-SAMPLED = """\
+TIMED = """\
 kind: sampled-system
 name: loop
 plant: {A: [[0]], B: [[1]]}
@@ -163,7 +163,7 @@ sampling: {period: [0.5 s, LONGEST]DELAY}
 )
 def test_how_long_periods_and_delays_may_be(tmp_path, longest, delay, said):
     path = tmp_path / "timed.nrs.yaml"
-    path.write_text(SAMPLED.replace("LONGEST", longest).replace("DELAY", delay), encoding="utf-8")
+    path.write_text(TIMED.replace("LONGEST", longest).replace("DELAY", delay), encoding="utf-8")
     result = run_certification(read_spec(path))
     found = run_proof_margins(result, Limits(), margin=True, shortest_dwell=False)
     lines = [str(line) for line in margin_lines(found, result.loaded)]
@@ -175,7 +175,7 @@ def test_how_long_periods_and_delays_may_be(tmp_path, longest, delay, said):
 
 def test_a_sampled_loop_has_no_dwell_time(tmp_path):
     path = tmp_path / "timed.nrs.yaml"
-    path.write_text(SAMPLED.replace("LONGEST", "1 s").replace("DELAY", ""), encoding="utf-8")
+    path.write_text(TIMED.replace("LONGEST", "1 s").replace("DELAY", ""), encoding="utf-8")
     result = run_certification(read_spec(path))
     with pytest.raises(DesignError, match="has a period, and no time between switches"):
         run_proof_margins(result, Limits(), margin=False, shortest_dwell=True)

@@ -333,7 +333,7 @@ def assemble_spec(
     if designed is not None:
         return assemble(designed.spec, designed.plant, designed.design, coordinates, scale)
     # A robot has no design either, but no way here.
-    assert loaded.spec.kind == "switched-system"
+    assert loaded.spec.kind in ("switched-system", "sampled-system")
     if coordinates is not None:
         raise AssemblyError("given matrices have neither gains nor coordinates")
     return assemble_matrices(loaded.spec, scale)

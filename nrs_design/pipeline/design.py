@@ -20,7 +20,11 @@ if TYPE_CHECKING:
     from nrs_design.spec import InteractionDesignSpec
 
 # What other kinds of specs are for.
-_FOR_KIND = {"robot": "`nrs-design robot`", "switched-system": "`nrs-design certify-switching`"}
+_FOR_KIND = {
+    "robot": "`nrs-design robot`",
+    "switched-system": "`nrs-design certify-switching`",
+    "sampled-system": "`nrs-design certify-switching`",
+}
 
 
 @dataclass(frozen=True, slots=True)

@@ -248,6 +248,11 @@ def ball_around(number: Fraction) -> Any:
     return arb(fmpq(number.numerator, number.denominator))
 
 
+def between_zero_and(number: Fraction) -> Any:
+    """Return a ball that contains all numbers from zero to one, at the current precision."""
+    return ball_around(Fraction(0)).union(ball_around(number))
+
+
 def as_balls(values: Iterable[Any]) -> list[Any]:
     """Return balls around rational numbers, of Python or of flint, at the current precision."""
     from flint import arb

@@ -61,9 +61,16 @@ class EnclosedStep:
         """Return integers below ``T' (F - E' G E) T`` for all its lengths, times a positive number.
 
         E is the exponential of the mode plus the rate, and then the switch, in balls. With B its
-        derivative, m the middle of the lengths and d the way from there,
-        ``E T = exp(B m) T exp(T^-1 B T d)``. The form of F is nearly that of the identity for T, so
-        the balls are no larger than it moves; what is positive definite for any T is without it.
+        derivative, m the middle of the lengths, h half of their range and d the way from m, what
+        comes after is ``g(d) = exp(C d)' g(0) exp(C d)`` with ``C = T^-1 B T``. Of second order in
+        h, it is between the ends: with ``s = (1 + d/h)/2`` and the second derivative g'',
+
+            g(d) = (1 - s) g(-h) + s g(h) - r g'',    0 <= r <= h^2/2,
+
+        entry by entry, each at a length of its own. So what is positive definite at both ends for
+        every such r and g'' is so in between: both are the blocks of the form. The form of F is
+        nearly that of the identity for T, so the balls are no larger than it moves; what is
+        positive definite for any T is without it.
 
         Parameters
         ----------
@@ -74,8 +81,8 @@ class EnclosedStep:
         """
         from nrs_design.proof.enclosure import (
             balls,
+            between_zero_and,
             exponential,
-            exponential_near_zero,
             lower_integers,
             precision,
         )
@@ -88,21 +95,42 @@ class EnclosedStep:
                 E = balls(self.edge.map) * E
             F, G = (balls(RationalMatrix(tuple(map(tuple, Q)))) for Q in (before, after))
             left = E.transpose() * G * E
-            if half > 0:
-                T, inner = _own_coordinates(B, tuple(map(tuple, before)))
-                F, left = (T.transpose() * Q * T for Q in (F, left))
-                near = exponential_near_zero(inner, half)
-                left = near.transpose() * left * near
-            return lower_integers(F - left)
+            if half == 0:
+                return lower_integers(F - left)
+            T, C, near, *ways = _own_coordinates(B, tuple(map(tuple, before)), half)
+            F, left = (T.transpose() * Q * T for Q in (F, left))
+            once = C.transpose() * left + left * C
+            twice = near.transpose() * (C.transpose() * once + once * C) * near
+            F += twice * between_zero_and(half**2 / 2)
+            ends = (lower_integers(F - way.transpose() * left * way) for way in ways)
+            return _in_blocks(*ends)
+
+
+def _in_blocks(one: IntegerMatrix, other: IntegerMatrix) -> IntegerMatrix:
+    """Return the form of two forms, each on states of its own."""
+    nothing = [0] * len(one)
+    return [[*row, *nothing] for row in one] + [[*nothing, *row] for row in other]
 
 
 @lru_cache(maxsize=64)
-def _own_coordinates(B: RationalMatrix, form: tuple[tuple[int, ...], ...]) -> tuple[Any, Any]:
-    """Return coordinates T in which a form is nearly round, and ``T^-1 B T``."""
-    from nrs_design.proof.enclosure import balls, unit_coordinates
+def _own_coordinates(
+    B: RationalMatrix, form: tuple[tuple[int, ...], ...], half: Fraction
+) -> tuple[Any, ...]:
+    """Return coordinates T in which a form is nearly round, and what moves the state there.
 
-    T = unit_coordinates(balls(RationalMatrix(form)))
-    return T, T.inv() * balls(B) * T
+    That is ``C = T^-1 B T``; then ``exp(C d)`` for all d from ``-half`` to ``half``, at the first
+    of them, and at the last.
+    """
+    from nrs_design.proof.enclosure import (
+        ball_around,
+        balls,
+        exponential_near_zero,
+        unit_coordinates,
+    )
+
+    T, h = unit_coordinates(balls(RationalMatrix(form))), ball_around(half)
+    C = T.inv() * balls(B) * T
+    return T, C, exponential_near_zero(C, half), (C * -h).exp(), (C * h).exp()
 
 
 def steps_of_stays(
@@ -238,6 +266,8 @@ def power(A: RationalMatrix, exponent: int) -> RationalMatrix:
     return result
 
 
+# Asked for at every length of a stay.
+@lru_cache(maxsize=256)
 def shifted(A: RationalMatrix, rate: Fraction) -> RationalMatrix:
     """Return ``A + rate I``."""
     rows = A.fractions()

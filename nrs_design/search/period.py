@@ -21,6 +21,7 @@ from nrs_design.search.cycle import growing_cycles
 from nrs_design.search.family import Family
 from nrs_design.search.graph import Cycle, Graph
 from nrs_design.search.rounding import digits
+from nrs_design.search.stay_words import stay_words
 from nrs_design.search.step_graph import StepGraph
 from nrs_design.search.walk import growing_walks
 from nrs_design.search.words import growing_words
@@ -43,7 +44,7 @@ LONGEST_STEPS = 2000
 LOOKS = 600
 PER_LOOK = 4e-5
 PER_GREEDY = 8e-6
-# Share of what is left for words of single steps.
+# Share of what is left for words of single steps, or of stays on a grid.
 WORDS = 0.3
 NOTHING_GROWS = "no periodic signal tried makes solutions grow"
 
@@ -95,7 +96,8 @@ def _signals(system: SwitchedSystem, graph: Graph, allowance: Allowance) -> Iter
     """Yield signals that grow in floating point."""
     longer = _longer_signals(system, graph, allowance)
     refine = _refined if system.time is Time.CONTINUOUS else _refined_steps
-    for cycle, start in chain(_twice(growing_cycles(graph, allowance)), longer):
+    words = stay_words(graph, allowance.part(WORDS))
+    for cycle, start in chain(words, _twice(growing_cycles(graph, allowance)), longer):
         times = graph.admissible(cycle, start)
         if graph.growth(cycle, times) > 0:
             yield cycle, times

@@ -66,18 +66,21 @@ def _pieces_of(
     T = round_coordinates(before)
     B = np.array(edge.source.A.floats()) + rate * np.eye(n)
     G = np.eye(n) if edge.map is None else np.array(edge.map.floats())
-    moved = np.abs(np.linalg.inv(T) @ B @ T)
+    C = np.linalg.inv(T) @ B @ T
+    moved = np.abs(C)
     for k in range(first, len(PIECES)):
         half = width / PIECES[k] / 2
         step = expm(B * (2 * half))
         flows = accumulate(repeat(step, PIECES[k] - 1), np.matmul, initial=expm(B * (begin + half)))
         E = G @ np.array(list(flows)) @ T
         left = np.swapaxes(E, 1, 2) @ after @ E
-        # The exponential of a ball reaches so far from the identity.
-        reach = expm(moved * half) - np.eye(n)
-        error = np.abs(left) @ reach
-        error = error + np.swapaxes(error, 1, 2) + reach.T @ error
-        rest = np.eye(n) * (1 - SAFE * error.sum(axis=2)[:, :, None]) - left
-        if float(np.linalg.eigvalsh(rest).min()) > 0:
+        once = left @ C + C.T @ left
+        twice = np.abs(once @ C + C.T @ once)
+        # The exponential of a ball reaches so far from zero.
+        near = expm(moved * half)
+        error = (near.T @ twice @ near).sum(axis=2) * half**2 / 2
+        ends = (expm(C * -half), expm(C * half))
+        rests = (np.eye(n) * (1 - SAFE * error[:, :, None]) - N.T @ left @ N for N in ends)
+        if all(float(np.linalg.eigvalsh(rest).min()) > 0 for rest in rests):
             return k
     return None

@@ -51,6 +51,7 @@ if TYPE_CHECKING:
         RobotControlSpec,
         RobotSpec,
     )
+    from nrs_design.spec.sampled_system import SampledSystemSpec
     from nrs_design.spec.switched_system import ModeSpec, SwitchedSystemSpec
     from nrs_design.spec.switching import DwellTime, ResetSpec, SwitchingSpec
 
@@ -91,6 +92,7 @@ __all__ = [
     "ResetSpec",
     "RobotControlSpec",
     "RobotSpec",
+    "SampledSystemSpec",
     "Spec",
     "SwitchedSystemSpec",
     "SwitchingSpec",
@@ -124,6 +126,7 @@ _HOMES = {
         "quantity_fields": "Bounds RangedQuantity",
         "robot": "BalancedLegSpec BalanceSpec BodySpec "
         "DriveSpec LegSpec RobotControlSpec RobotSpec",
+        "sampled_system": "SampledSystemSpec",
         "switched_system": "ModeSpec SwitchedSystemSpec",
         "switching": "DwellTime ResetSpec SwitchingSpec",
     }.items()

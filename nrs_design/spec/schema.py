@@ -38,7 +38,7 @@ def json_schema() -> dict[str, Any]:
     return {
         "$schema": DIALECT,
         "title": "nrs-design spec",
-        "description": "An interaction design or a switched system, *.nrs.yaml",
+        "description": "An interaction design, a switched system or a sampled one, *.nrs.yaml",
         "type": "object",
         "required": ["kind"],
         "properties": {

@@ -137,3 +137,45 @@ def test_how_many_deadlines_may_be_missed(tmp_path, rule, proved, refuted, said)
     (line,) = margin_lines(found, result.loaded)
     assert str(line) == f"most missed deadlines: {said}"
     assert margins_facts(found)["most_misses"]["refuted"] == refuted
+
+
+TIMED = """\
+kind: sampled-system
+name: loop
+plant: {A: [[0]], B: [[1]]}
+controller: {K: [[-1]]}
+sampling: {period: [0.5 s, LONGEST]DELAY}
+"""
+
+
+@pytest.mark.parametrize(
+    ("longest", "delay", "said"),
+    [
+        # x+ = (1 - h) x.
+        ("1.5 s", "", ["longest period: proved up to 1.9"]),
+        # Of a period of 0.5 s, any delay within it.
+        (
+            "0.5 s",
+            ", delay: [0 s, 0.125 s]",
+            ["longest period: proved up to 1.", "longest delay: proved up to 0.5 s, none of up to"],
+        ),
+    ],
+)
+def test_how_long_periods_and_delays_may_be(tmp_path, longest, delay, said):
+    path = tmp_path / "timed.nrs.yaml"
+    path.write_text(TIMED.replace("LONGEST", longest).replace("DELAY", delay), encoding="utf-8")
+    result = run_certification(read_spec(path))
+    found = run_proof_margins(result, Limits(), margin=True, shortest_dwell=False)
+    lines = [str(line) for line in margin_lines(found, result.loaded)]
+    assert [line[: len(start)] for line, start in zip(lines, said, strict=True)] == said
+    facts = margins_facts(found)["longest_times"]
+    assert list(facts) == ["period", "delay"][: len(said)]
+    assert 1.9 < facts["period"]["proved"] < 2 < facts["period"]["refuted"] < 2.1
+
+
+def test_a_sampled_loop_has_no_dwell_time(tmp_path):
+    path = tmp_path / "timed.nrs.yaml"
+    path.write_text(TIMED.replace("LONGEST", "1 s").replace("DELAY", ""), encoding="utf-8")
+    result = run_certification(read_spec(path))
+    with pytest.raises(DesignError, match="has a period, and no time between switches"):
+        run_proof_margins(result, Limits(), margin=False, shortest_dwell=True)

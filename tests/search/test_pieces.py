@@ -35,9 +35,7 @@ def timed(widths, matrices=(A, B), stays=("1.7", "1.1"), resets=()):
 SMALLER = (Reset("a", "b", RationalMatrix(((9, 1), (0, 8)), 10)),)
 
 
-@pytest.mark.parametrize(
-    ("widths", "resets"), [(("0.02", "0.01"), ()), (("0.08", "0.05"), SMALLER)]
-)
+@pytest.mark.parametrize(("widths", "resets"), [(("0.06", "0.03"), ()), (("0.2", "0.1"), SMALLER)])
 def test_as_many_as_the_check_needs(widths, resets):
     system = timed(widths, resets=resets)
     found = certify(system).evidence

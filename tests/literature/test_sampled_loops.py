@@ -1,0 +1,129 @@
+"""Sampled loops whose periods and delays vary: published examples, from both sides.
+
+Constant periods have borders that anyone can compute: where the map from a sample to the next has
+an eigenvalue of modulus one. Proofs are for any sequence in the interval, and come close to them.
+"""
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+from nrs_design.certificates.certificate import Verdict
+from nrs_design.search.certification import Limits
+from nrs_design.search.certify import certify
+from tests.switched.test_timed_loop import floats, matrix, sampled, timed
+
+# Zhang, Branicky and Phillips, IEEE Control Systems Magazine 21(1), 2001; since then of Fridman,
+# Seuret and Richard, Automatica 40(8), 2004; Naghshtabrizi, Hespanha and Teel, Systems and Control
+# Letters 57(5), 2008, and others: variable periods of up to 0.87 s, 1.11 s and later 1.729 s.
+INTEGRATOR = ([[0, 1], [0, "-0.1"]], [[0], ["0.1"]]), [["-3.75", "-11.5"]]
+# The same authors, and Hetel and others, Automatica 76, 2017: periods of 0.18 s and of 0.54 s are
+# stable, and not in turn.
+IN_TURN = ([[1, 3], [2, 1]], [[1], ["0.6"]]), [[-1, -6]]
+# Cloosterman, van de Wouw, Heemels and Nijmeijer, IEEE Conference on Decision and Control, 2006: a
+# mass that a motor moves, n r_R / (J_M + n^2 J_R) = 126.7, every 1 ms; delays of 0.2 ms and of 0.6
+# ms are stable, and not in turn.
+MOTION = ([[0, 1], [0, 0]], [[0], ["126.7"]]), [[-50, "-11.8"]]
+
+
+def decide(loop, period, delay=None, **limits):
+    plant, K = loop
+    system = timed(plant, f"{{K: {matrix(K)}}}", period, delay)
+    found = certify(system, limits=Limits(**limits))
+    if found.evidence is not None:
+        assert found.evidence.find_fault(system) is None
+    return found
+
+
+def radius(loop, *timings):
+    """Return the spectral radius along periods with their delays."""
+    (A, B), K = loop
+    A, B, K = map(floats, (A, B, K))
+    product = np.eye(len(A) + len(K))
+    for h, d in timings:
+        product = sampled(A, B, h, d, K) @ product
+    return float(max(abs(np.linalg.eigvals(product))))
+
+
+def border(loop, of, low, high):
+    """Return where a constant timing becomes unstable."""
+    return brentq(lambda t: radius(loop, of(t)) - 1, low, high, xtol=1e-12)
+
+
+def test_the_border_of_constant_periods():
+    assert border(INTEGRATOR, lambda h: (h, 0), 1.6, 1.8) == pytest.approx(1.729414279, abs=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("shortest", "longest", "verdict"),
+    [
+        ("0.1", "1.729", "proved"),
+        ("1", "1.7294", "proved"),
+        ("1", "1.7295", "refuted"),
+        ("0.1", "3", "refuted"),
+    ],
+)
+def test_periods_that_vary(shortest, longest, verdict):
+    """Up to the border of constant periods, which no proof can pass: 1.72941."""
+    found = decide(INTEGRATOR, (shortest, longest), optimize_rate=False)
+    assert found.verdict == verdict
+
+
+def test_the_decay_is_below_that_of_every_constant_period():
+    found = decide(INTEGRATOR, ("0.1", "1.7"))
+    slowest = min(-np.log(radius(INTEGRATOR, (h, 0))) / h for h in np.linspace(0.1, 1.7, 33))
+    assert 0.85 * slowest < float(found.evidence.rate) < slowest
+
+
+def test_periods_in_turn():
+    assert max(radius(IN_TURN, (h, 0)) for h in (0.18, 0.54)) < 0.8
+    assert radius(IN_TURN, (0.18, 0), (0.54, 0)) == pytest.approx(1.005, abs=5e-4)
+    assert decide(IN_TURN, ("0.18", "0.54")).verdict is Verdict.REFUTED
+    assert decide(IN_TURN, ("0.2", "0.5")).verdict is Verdict.PROVED
+
+
+def test_delays_in_turn():
+    assert radius(MOTION, (1e-3, 0.2e-3)) < 0.996 > radius(MOTION, (1e-3, 0.6e-3))
+    assert radius(MOTION, (1e-3, 0.2e-3), (1e-3, 0.6e-3)) > 1.01
+    refuted = decide(MOTION, ("1e-3", "1e-3"), ("0.2e-3", "0.6e-3"))
+    assert refuted.verdict is Verdict.REFUTED
+    delays = [time for name, time in refuted.evidence.steps if name == "delay"]
+    # One delay alone does not do.
+    assert len(set(delays)) > 1
+    assert all(Fraction("0.2e-3") <= delay <= Fraction("0.6e-3") for delay in delays)
+    for longest in ("0.4e-3", "0.5e-3"):
+        found = decide(MOTION, ("1e-3", "1e-3"), (0, longest), optimize_rate=False)
+        assert found.verdict is Verdict.PROVED
+
+
+def test_a_constant_delay_against_its_border():
+    last = border(MOTION, lambda d: (1e-3, d), 0.5e-3, 0.9e-3)
+    for share, verdict in ((0.999, Verdict.PROVED), (1.001, Verdict.REFUTED)):
+        delay = str(round(share * last, 9))
+        assert decide(MOTION, ("1e-3", "1e-3"), (delay, delay)).verdict is verdict
+
+
+@pytest.mark.parametrize(
+    ("period", "delay", "verdict"),
+    [
+        # x' = u, u = -x: x+ = (1 - h) x, so any periods below two are stable, in any order.
+        (("0.1", "1.999"), None, "proved"),
+        (("0.1", "2.001"), None, "refuted"),
+        # With u late by d: x+ = (1 - h + d) x - d x-, of which 1 + (1 - h + d) + d is zero at the
+        # longest period for d = (h - 2)/2, and the product of roots is d: below one is stable.
+        (("1", "1"), ("0.999", "0.999"), "proved"),
+        (("2", "2"), ("0.001", "0.001"), "proved"),
+        (("2.1", "2.1"), ("0.04", "0.04"), "refuted"),
+        # A whole period late: x+ = x - h x-, stable up to h = 1.
+        (("0.99", "0.99"), ("0.99", "0.99"), "proved"),
+        (("1.01", "1.01"), ("1.01", "1.01"), "refuted"),
+        # Two of them: z^3 - z^2 + h has its roots at the circle for h = (sqrt(5) - 1)/2.
+        (("0.61", "0.61"), ("1.22", "1.22"), "proved"),
+        (("0.62", "0.62"), ("1.24", "1.24"), "refuted"),
+    ],
+)
+def test_one_integrator_by_hand(period, delay, verdict):
+    found = decide((([[0]], [[1]]), [[-1]]), period, delay, optimize_rate=False)
+    assert found.verdict == verdict

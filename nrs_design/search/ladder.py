@@ -173,6 +173,22 @@ LADDER: tuple[Rung, ...] = (
         in_auto=lambda f: f.has_rules or (f.is_arbitrary and not f.is_continuous),
     ),
     Rung(
+        "quadratic with a memory",
+        Method.MEMORY_QUADRATIC,
+        lambda f: f.is_of_words,
+        _in("memory", "search_memory"),
+        lengths=_in("memory", "memories"),
+        first=QUICK,
+    ),
+    Rung(
+        "quartic with a memory",
+        Method.MEMORY_POLYNOMIAL,
+        lambda f: f.is_of_words,
+        _in("memory", "search_quartic_memory"),
+        lengths=_in("memory", "quartic_memories"),
+        first=QUICK,
+    ),
+    Rung(
         "mixture",
         Method.MIXTURE,
         lambda f: f.is_arbitrary and f.is_continuous,

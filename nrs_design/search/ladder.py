@@ -181,6 +181,12 @@ LADDER: tuple[Rung, ...] = (
         first=QUICK,
     ),
     Rung(
+        "words in the norms of forms",
+        Method.PERIOD,
+        lambda f: f.is_of_words,
+        _in("extremal_words", "search_extremal_words"),
+    ),
+    Rung(
         "quartic with a memory",
         Method.MEMORY_POLYNOMIAL,
         lambda f: f.is_of_words,

@@ -214,7 +214,10 @@ class Rung:
         if self.lengths is not None:
             for length, cost in self.lengths(system).items():
                 fits = allowance.affords(cost)
-                yield f"{self.name} of {counted(length, 'step')}", partial(self.search, length=length)
+                yield (
+                    f"{self.name} of {counted(length, 'step')}",
+                    partial(self.search, length=length),
+                )
                 if not fits:
                     return
             return

@@ -94,11 +94,11 @@ def bound_radius(found: Certification, limits: Limits) -> RadiusBounds | None:
     if found.verdict is Verdict.PROVED and found.evidence is not None:
         known = found.evidence.proved_rate(system), found.method
         bounds = replace(bounds, upper=known[0], method=known[1])
-    bounds = _without_memory(system, bounds, replace(limits, budget=budget, more=False))
-    if graph is None or bounds.lower is None or not Facts.of(system).is_of_words:
-        return bounds
-    with floats_in_silence():
-        return _with_memory(system, graph, bounds, replace(limits, budget=budget))
+    limits = replace(limits, budget=budget, more=False)
+    if graph is not None and bounds.lower is not None and Facts.of(system).is_of_words:
+        with floats_in_silence():
+            bounds = _with_memory(system, graph, bounds, limits)
+    return _without_memory(system, bounds, limits) if bounds.upper is None else bounds
 
 
 def _with_words(
@@ -133,18 +133,14 @@ def _proposed(
 
 
 def _without_memory(system: SwitchedSystem, bounds: RadiusBounds, limits: Limits) -> RadiusBounds:
-    """Lower the upper end to what a form for each mode shows."""
+    """Find the upper end that a form for each mode shows."""
     lower = bounds.lower or Fraction(1)
     for room in ROOM:
-        if bounds.upper is not None and bounds.upper <= lower * Fraction(NEAR):
-            break
         if (shown := _shown(system, room * lower, Method.MODE_QUADRATIC, limits)) is not None:
             # What is claimed is off the best by a share of the room.
             closer = _shown(system, shown[0] * CLOSE, Method.MODE_QUADRATIC, limits)
-            for upper, method in (shown, closer or shown):
-                if bounds.upper is None or upper < bounds.upper:
-                    bounds = replace(bounds, upper=upper, method=method)
-            break
+            upper, method = min(shown, closer or shown)
+            return replace(bounds, upper=upper, method=method)
     return bounds
 
 
@@ -158,8 +154,8 @@ def _with_memory(
     assert bounds.lower is not None
     allowance = Allowance(min(limits.budget, WITH_MEMORY), limits.memory)
     by, at = bounds.lower * ROOM[0], float(1 / ROOM[0])
-    divided, best = _divided(system, by), float(bounds.upper / by) if bounds.upper else 1.0
-    best, found, norms = min(best, 1.0), None, None
+    best = min(1.0, float(bounds.upper / by)) if bounds.upper else 1.0
+    divided, found = _divided(system, by), None
     for length, degree in _by_work(divided, allowance):
         if best <= at * NEAR:
             break
@@ -171,18 +167,14 @@ def _with_memory(
         if least is None:
             continue
         best, found = least[0], (program, length, degree)
-        cost = memories(divided, degree)[length]
-        if degree == 1 and (norms is None or cost.work <= NORMS):
-            norms = program, least[1]
-            words = [*words_in_norms(program, least[1], allowance, at * (1 + 1e-7))]
-            longer = [(word, growth * float(by)) for word, growth in words]
-            bounds = _with_words(bounds, system, graph, longer)
-            at = max(at, float(bounds.lower / by))
-    return (
-        bounds
-        if found is None
-        else _claimed(bounds, by, best, *found, Allowance(limits.budget, limits.memory))
-    )
+        if degree == 1 and memories(divided)[length].work <= NORMS:
+            words = words_in_norms(program, least[1], allowance, at * (1 + 1e-7))
+            grown = [(word, growth * float(by)) for word, growth in words]
+            bounds = _with_words(bounds, system, graph, grown)
+            at = max(at, float((bounds.lower or by) / by))
+    if found is None:
+        return bounds
+    return _claimed(bounds, by, best, *found, Allowance(limits.budget, limits.memory))
 
 
 def _by_work(system: SwitchedSystem, allowance: Allowance) -> list[tuple[int, int]]:

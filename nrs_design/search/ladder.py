@@ -177,7 +177,7 @@ LADDER: tuple[Rung, ...] = (
         Method.MEMORY_QUADRATIC,
         lambda f: f.is_of_words,
         _in("memory", "search_memory"),
-        lengths=_in("memory", "memories"),
+        lengths=_in("memory", "quadratic_memories"),
         first=QUICK,
     ),
     Rung(

@@ -88,7 +88,7 @@ def following(system: SwitchedSystem) -> dict[str, list[str]]:
     """
     names = [mode.name for mode in system.modes]
     if system.switching.is_arbitrary:
-        return {name: names for name in names}
+        return dict.fromkeys(names, names)
     left = left_modes(system)
     found = {name: [] if name in left else [name] for name in names}
     for edge in system.edges():
@@ -132,10 +132,8 @@ def draw_memory(system: SwitchedSystem, length: int, degree: int = 1) -> Drawing
     return Drawing(system, graph, tuple(range(len(found))), coordinates)
 
 
-def memories(system: SwitchedSystem, degree: int = 1) -> dict[int, Cost]:
+def memories(system: SwitchedSystem, degree: int = 1, first: int = 1) -> dict[int, Cost]:
     """Return how many steps forms of degree 2d may remember, with what that takes.
-
-    Under rules, the forms of the modes remember one.
 
     Parameters
     ----------
@@ -143,10 +141,11 @@ def memories(system: SwitchedSystem, degree: int = 1) -> dict[int, Cost]:
         In discrete time, with its rules of switching.
     degree : int
         The d.
+    first : int
+        No fewer steps than these.
     """
     found = dict[int, Cost]()
     order, own, forms = form_sizes(system.order, degree)
-    first = 1 if system.switching.is_arbitrary or degree > 1 else 2
     for length in range(first, LONGEST + 1 if order <= MAX_MONOMIALS else 0):
         if (counts := count_words(system, length)) is None:
             return found
@@ -157,6 +156,17 @@ def memories(system: SwitchedSystem, degree: int = 1) -> dict[int, Cost]:
         checked = cost.work + 2 * edges * PER_CHECK * order**2
         found[length] = replace(cost, work=checked)
     return found
+
+
+def quadratic_memories(system: SwitchedSystem) -> dict[int, Cost]:
+    """Return the same of quadratic forms; under rules, those of the modes remember one step.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        In discrete time, with its rules of switching.
+    """
+    return memories(system, first=1 if system.switching.is_arbitrary else 2)
 
 
 def quartic_memories(system: SwitchedSystem) -> dict[int, Cost]:

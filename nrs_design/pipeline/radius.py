@@ -46,8 +46,8 @@ CLOSE = Fraction(101, 100)
 # Ends that are no farther apart than by this factor are left as they are. A longer memory is used
 # where it narrows the gap by this share of it at least.
 NEAR, GAIN = 1 + 2e-4, 0.25
-# Work for words, for forms without a memory, and for those that have one.
-BUDGET, WITH_MEMORY = 10.0, 2.0
+# Work for words, for forms without a memory, for those that have one, and for words in their norms.
+BUDGET, WITH_MEMORY, IN_NORMS = 10.0, 2.0, 1.0
 # Norms for words are those of forms that take this work.
 NORMS = 0.1
 
@@ -152,7 +152,9 @@ def _with_memory(
     A program is solved once to see whether it narrows the gap; only then is its best bound sought.
     """
     assert bounds.lower is not None
-    allowance = Allowance(min(limits.budget, WITH_MEMORY), limits.memory)
+    allowance, for_words = (
+        Allowance(min(limits.budget, work), limits.memory) for work in (WITH_MEMORY, IN_NORMS)
+    )
     by, at = bounds.lower * ROOM[0], float(1 / ROOM[0])
     best = min(1.0, float(bounds.upper / by)) if bounds.upper else 1.0
     divided, found = _divided(system, by), None
@@ -168,7 +170,7 @@ def _with_memory(
             continue
         best, found = least[0], (program, length, degree)
         if degree == 1 and memories(divided)[length].work <= NORMS:
-            words = words_in_norms(program, least[1], allowance, at * (1 + 1e-7))
+            words = words_in_norms(program, least[1], for_words, at * (1 + 1e-7))
             grown = [(word, growth * float(by)) for word, growth in words]
             bounds = _with_words(bounds, system, graph, grown)
             at = max(at, float((bounds.lower or by) / by))

@@ -200,6 +200,8 @@ def _growth_words(radius: RadiusBounds) -> str:
         low = f"at least {rounded_down(radius.lower)}, by {signal}, and again"
     if radius.upper is not None:
         high = f"at most {rounded_up(radius.upper)} ({radius.method})"
+    if radius.gap is not None:
+        high += f"; {rounded_up(100 * radius.gap)} % apart"
     return f"growth per step, rho: {low}; {high}"
 
 

@@ -63,6 +63,13 @@ class RadiusBounds:
     upper: Fraction | None  # No signal grows by more, but for a constant factor; None if not shown
     method: str | None  # By which rung that was found
 
+    @property
+    def gap(self) -> Fraction | None:
+        """How far the ends are apart, as a share of the lower one; None without both."""
+        if self.lower is None or self.upper is None:
+            return None
+        return self.upper / self.lower - 1
+
 
 def bound_radius(found: Certification, limits: Limits) -> RadiusBounds | None:
     """Bound the growth per step of a system in discrete time, whatever its verdict is.

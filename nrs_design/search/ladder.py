@@ -192,6 +192,7 @@ LADDER: tuple[Rung, ...] = (
         lambda f: f.is_of_words,
         _in("memory", "search_quartic_memory"),
         lengths=_in("memory", "quartic_memories"),
+        degree=4,
         first=QUICK,
     ),
     Rung(

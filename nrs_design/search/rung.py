@@ -146,6 +146,7 @@ class Rung:
     first: float = inf
     # Of a rung that rises in the steps that its forms remember: how many, and what that takes.
     lengths: Callable[[SwitchedSystem], dict[int, Cost]] | None = None
+    degree: int = 2  # Of these forms
     # What it finds of one axis says something about all axes that act on each other; other rungs
     # are not tried where they do.
     coupled: bool = False
@@ -212,6 +213,8 @@ class Rung:
             What is left of the budget.
         """
         if self.lengths is not None:
+            if limits.max_degree is not None and self.degree > limits.max_degree:
+                return
             for length, cost in self.lengths(system).items():
                 fits = allowance.affords(cost)
                 yield (

@@ -47,7 +47,7 @@ CLOSE = Fraction(101, 100)
 # where it narrows the gap by this share of it at least.
 NEAR, GAIN = 1 + 2e-4, 0.25
 # Work for words, for forms without a memory, for those that have one, and for words in their norms.
-BUDGET, WITH_MEMORY, IN_NORMS = 10.0, 2.0, 1.0
+BUDGET, WITH_MEMORY, IN_NORMS = 10.0, 1.5, 0.5
 # Norms for words are those of forms that take this work.
 NORMS = 0.1
 

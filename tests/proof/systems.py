@@ -452,6 +452,8 @@ def leaning(system: SwitchedSystem, *shares: Entry) -> SwitchedSystem:
 
 SYSTEMS = {
     "mode-polynomial": lossy_network,
+    "memory-quadratic": lossy_network,
+    "memory-quadratic, without rules": lambda: ando_shih("0.99"),
     "common-quadratic": lambda: dayawansa_martin(5),
     "common-polynomial": lambda: dayawansa_martin(6),
     "common-polynomial, discrete": lambda: ando_shih("0.72"),
@@ -525,7 +527,9 @@ METHODS = {
     "conewise-mode-quadratic": Method.CONEWISE_MODE_QUADRATIC,
     "conewise-polynomial": Method.CONEWISE_POLYNOMIAL,
     "common-polynomial, discrete": Method.POLYNOMIAL,
+    "mode-polynomial": Method.MODE_POLYNOMIAL,
     "growing-sequence, average": Method.MIXTURE,
+    "memory-quadratic, without rules": Method.MEMORY_QUADRATIC,
 }
 
 

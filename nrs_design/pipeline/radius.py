@@ -48,6 +48,8 @@ CLOSE = Fraction(101, 100)
 NEAR, GAIN = 1 + 2e-4, 0.25
 # Work for words, for forms without a memory, for those that have one, and for words in their norms.
 BUDGET, WITH_MEMORY, IN_NORMS = 10.0, 1.5, 0.5
+# The highest degree of forms that remember.
+QUARTIC = 4
 # Norms for words are those of forms that take this work.
 NORMS = 0.1
 
@@ -165,7 +167,7 @@ def _with_memory(
     by, at = bounds.lower * ROOM[0], float(1 / ROOM[0])
     best = min(1.0, float(bounds.upper / by)) if bounds.upper else 1.0
     divided, found = _divided(system, by), None
-    for length, degree in _by_work(divided, allowance):
+    for length, degree in _by_work(divided, allowance, limits.max_degree or QUARTIC):
         if best <= at * NEAR:
             break
         program = FormsProgram(draw_memory(divided, length, degree))
@@ -186,9 +188,9 @@ def _with_memory(
     return _claimed(bounds, by, best, *found, Allowance(limits.budget, limits.memory))
 
 
-def _by_work(system: SwitchedSystem, allowance: Allowance) -> list[tuple[int, int]]:
+def _by_work(system: SwitchedSystem, allowance: Allowance, highest: int) -> list[tuple[int, int]]:
     """Return how many steps forms may remember, with half their degree, the cheapest first."""
-    degrees = (1, 2) if system.order > 1 else (1,)
+    degrees = (1, 2) if system.order > 1 and highest >= QUARTIC else (1,)
     every = [
         (cost.work, length, degree)
         for degree in degrees

@@ -29,10 +29,7 @@ def test_a_family_that_grows_by_the_golden_ratio():
 
 @pytest.mark.parametrize("scale", ["1", "1.026"])
 def test_the_lossy_network(scale):
-    """Philippe et al. 2016: 0.97482; 0.98635 by degree 4, 0.97494 by degree 10 with a memory of two.
-
-    Proved as it is, and refuted.
-    """
+    """Philippe et al. 2016: 0.97482; 0.98635 by degree 4; proved as it is, and refuted."""
     found, radius = bounds(lossy_network(Fraction(scale)))
     assert found.verdict == ("proved" if scale == "1" else "refuted")
     lower, upper = (float(end) / float(scale) for end in (radius.lower, radius.upper))

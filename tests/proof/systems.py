@@ -452,8 +452,6 @@ def leaning(system: SwitchedSystem, *shares: Entry) -> SwitchedSystem:
 
 SYSTEMS = {
     "mode-polynomial": lossy_network,
-    "memory-quadratic": lossy_network,
-    "memory-quadratic, without rules": lambda: ando_shih("0.99"),
     "common-quadratic": lambda: dayawansa_martin(5),
     "common-polynomial": lambda: dayawansa_martin(6),
     "common-polynomial, discrete": lambda: ando_shih("0.72"),
@@ -529,7 +527,6 @@ METHODS = {
     "common-polynomial, discrete": Method.POLYNOMIAL,
     "mode-polynomial": Method.MODE_POLYNOMIAL,
     "growing-sequence, average": Method.MIXTURE,
-    "memory-quadratic, without rules": Method.MEMORY_QUADRATIC,
 }
 
 

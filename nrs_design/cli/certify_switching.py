@@ -203,6 +203,8 @@ def _growth_words(radius: RadiusBounds) -> str:
     if radius.upper is not None:
         shown = f" ({radius.method})" if wants_details() else ""
         high = f"at most {rounded_up(radius.upper)}{shown}"
+    if radius.gap is not None:
+        high += f"; {rounded_up(100 * radius.gap)} % apart"
     return f"growth per step, rho: {low}; {high}"
 
 

@@ -121,6 +121,7 @@ def radius_facts(radius: RadiusBounds | None) -> dict[str, Any]:
     found = {
         **_number("lower", radius.lower, lower_float),
         **_number("upper", radius.upper, upper_float),
+        **_number("apart", radius.gap, upper_float),
     }
     return {"rho": {**found, "word": word, "method": radius.method}}
 

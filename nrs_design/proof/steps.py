@@ -156,15 +156,14 @@ class Step:
         below += [weight.denominator for weight in self.weights]
         factor = lcm(q * self.over, *below)
         more = factor // (q * self.over)
-        FM = multiply(F, self.rows)
-        FM += [[0] * len(self.units) for _ in range(len(self.units) - len(F))]
+        FM, more_states = multiply(F, self.rows), len(self.units) - len(F)
+        FM += [[0] * len(self.units) for _ in range(more_states)]
+        own = [[*row, *[0] * more_states] for row in F] + FM[len(F) :]
+        twice, kept = -more * q, more * p
         form = [
-            [-more * q * (a + b) for a, b in zip(*rows, strict=True)]
-            for rows in zip(FM, transpose(FM), strict=True)
+            [twice * (a + b) - kept * entry for a, b, entry in zip(*rows, strict=True)]
+            for rows in zip(FM, transpose(FM), own, strict=True)
         ]
-        for i, row in enumerate(F):
-            for j, entry in enumerate(row):
-                form[i][j] -= more * p * entry
         for i, weight in enumerate(self.weights, len(F)):
             form[i][i] = int(weight * factor) << log2
         return form, factor

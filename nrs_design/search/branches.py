@@ -34,7 +34,11 @@ FLAT = 1e-9
 
 
 def best_words(
-    graph: StepGraph, allowance: Allowance, floor: float = 0.0
+    graph: StepGraph,
+    allowance: Allowance,
+    floor: float = 0.0,
+    T: Array | None = None,
+    longest: int = MAX_LENGTH,
 ) -> Iterator[tuple[tuple[int, ...], float]]:
     """Yield closed words, each of which grows more per step than all before it.
 
@@ -46,20 +50,25 @@ def best_words(
         Lengths for which work or memory do not suffice end the search.
     floor : float
         Words that grow by no more per step are not looked for.
+    T : ndarray, shape (nodes, n, n), optional
+        Coordinates of every node, in which norms are taken: those in which what a mean word keeps
+        is round, if none are given.
+    longest : int
+        Steps of a word.
 
     Yields
     ------
     tuple
         The edges of the word, and its growth per step.
     """
-    T = _round(graph)
+    T = _round(graph) if T is None else T
     inner = np.linalg.inv(T)[graph.targets] @ graph.maps @ T[graph.sources]
     if not np.isfinite(inner).all():
         return
     begins = np.searchsorted(graph.sources, np.arange(graph.count + 1))
     words = np.arange(len(inner))[:, None]
     products, bounds, total = inner, np.full(len(inner), np.inf), 0
-    for length in range(1, MAX_LENGTH + 1):
+    for length in range(1, longest + 1):
         total += len(words)
         size = inner.shape[1]
         cost = Cost(len(words) * (PER_MATRIX + PER_PRODUCT * size**3), 64 * products.size)

@@ -354,7 +354,7 @@ def search_modes(family: Family, degree: int = 1) -> Candidates[FormsOnGraph]:
     checked = replace(cost, work=cost.work + work_of_checks(system, degree))
     allowance.require(checked, f"{what}, with the exact check of what it finds,")
     always = family.optimize_rate or not family.stand_ins()
-    limit, ended = _limit_of_cycles(family), None
+    limit, ended = limit_of_cycles(family), None
     if limit <= 0 if system.time is Time.CONTINUOUS else limit >= 1:
         return GROWS
     for drawing in draw_each_mode(family, degree):
@@ -372,10 +372,15 @@ def search_modes(family: Family, degree: int = 1) -> Candidates[FormsOnGraph]:
     return ended
 
 
-def _limit_of_cycles(family: Family) -> float:
+def limit_of_cycles(family: Family) -> float:
     """Return the rate that no form can beat: that of the worst cycle found, under rules.
 
     Without rules, that of the modes that need never be left is near enough.
+
+    Parameters
+    ----------
+    family : Family
+        The modes and their switching.
     """
     system = family.system
     if not system.is_uniform or system.switching.is_arbitrary or system.switching.fixed_ends:
@@ -409,7 +414,7 @@ def draw_each_mode(family: Family, degree: int) -> Iterator[Drawing]:
         d = shared[0] if shared else balance(matrices[name][None])
         coordinates.append(lifted_coordinates(d, degree))
     stays = system.stays()
-    leaving = tuple(m.name for m in system.modes if _is_left(system, m, stays[m.name]))
+    leaving = left_modes(system)
     forms = tuple(number[like[mode.name]] for mode in system.modes)
     nodes = tuple(Node(mode.name, ()) for mode in system.modes)
     graph = FormsOnGraph(nodes, 0, ANY_RATE, degree, stays=Stays(leaving))
@@ -557,6 +562,18 @@ def draw_together(
     if degree == 1:
         own = FormCoordinates(family.exponents, separating_coordinates(Motions.of(family)))
     return Drawing(system, graph, (0,) * len(places), (own,), solved)
+
+
+def left_modes(system: SwitchedSystem) -> tuple[str, ...]:
+    """Return the modes of which every stay is shown.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        With its rules of switching.
+    """
+    stays = system.stays()
+    return tuple(m.name for m in system.modes if _is_left(system, m, stays[m.name]))
 
 
 def _is_left(system: SwitchedSystem, mode: Mode, stay: Stay) -> bool:

@@ -14,6 +14,8 @@ class Method(StrEnum):
     LMI = "lmi"
     GRADIENT = "gradient"
     OBSTRUCTION = "obstruction"
+    MEMORY_POLYNOMIAL = "memory-polynomial"
+    MEMORY_QUADRATIC = "memory-quadratic"
     MIXTURE = "mixture"
     MODE_POLYNOMIAL = "mode-polynomial"
     MODE_QUADRATIC = "mode-quadratic"

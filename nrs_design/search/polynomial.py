@@ -39,7 +39,7 @@ def conewise_cost(system: SwitchedSystem, degree: int) -> tuple[Cost, str]:
 
 def _shared_cost(system: SwitchedSystem, degree: int, free: int) -> tuple[Cost, str]:
     n, modes = system.order, len(system.modes)
-    (order, own, forms), (inner, _, flying) = (_sizes(k, degree) for k in (n, n - 1))
+    (order, own, forms), (inner, _, flying) = (form_sizes(k, degree) for k in (n, n - 1))
     shared = own + 1
     cones = [(order, shared)] * 2 + [(order, shared + forms)] * modes
     cones += [(inner, shared + flying)] * free
@@ -47,8 +47,16 @@ def _shared_cost(system: SwitchedSystem, degree: int, free: int) -> tuple[Cost, 
     return program_cost(unknowns, shared, cones), f"a program in {order} monomials"
 
 
-def _sizes(variables: int, degree: int) -> tuple[int, int, int]:
-    """Return how many monomials there are, forms of them, and forms that vanish."""
+def form_sizes(variables: int, degree: int) -> tuple[int, int, int]:
+    """Return how many monomials there are, forms of them, and forms that vanish.
+
+    Parameters
+    ----------
+    variables : int
+        Of the monomials.
+    degree : int
+        Of the monomials.
+    """
     order = comb(variables + degree - 1, degree)
     own = order * (order + 1) // 2
     return order, own, own - comb(variables + 2 * degree - 1, 2 * degree)
@@ -56,7 +64,7 @@ def _sizes(variables: int, degree: int) -> tuple[int, int, int]:
 
 def functions_cost(system: SwitchedSystem, degree: int) -> tuple[Cost, str]:
     """Predict what a form of degree 2d for each mode takes; say for what."""
-    order, own, forms = _sizes(max(mode.A.shape[0] for mode in system.modes), degree)
+    order, own, forms = form_sizes(max(mode.A.shape[0] for mode in system.modes), degree)
     decreases = _count_decreases(system)
     shared = own * len(system.modes) + 1
     cones = [(order, own)] * (2 * len(system.modes)) + [(order, 2 * own + forms)] * decreases
@@ -66,7 +74,7 @@ def functions_cost(system: SwitchedSystem, degree: int) -> tuple[Cost, str]:
 
 def work_of_checks(system: SwitchedSystem, degree: int) -> float:
     """Predict the work of checking what is found, by us and by the second library."""
-    order, *_ = _sizes(max(mode.A.shape[0] for mode in system.modes), degree)
+    order, *_ = form_sizes(max(mode.A.shape[0] for mode in system.modes), degree)
     return 2 * _count_decreases(system) * PER_CHECK * order**2
 
 

@@ -11,6 +11,7 @@ from nrs_design.proof.evidence import AbstractEvidence, Shows
 from nrs_design.proof.mode import Time
 from nrs_design.proof.spectrum import affordable, is_stable
 from nrs_design.proof.system import SwitchedSystem
+from nrs_design.proof.text import counted
 from nrs_design.search.candidates import Candidates, Search
 from nrs_design.search.certification import Limits
 from nrs_design.search.family import Family
@@ -97,6 +98,15 @@ class Facts:
         return not (self.is_arbitrary or self.has_constant)
 
     @property
+    def is_of_words(self) -> bool:
+        """Whether signals are words of modes in discrete time, and nothing else acts."""
+        system = self.system
+        acting = (system.contact, system.flights, system.clock, system.saturation)
+        if any(acting) or system.roundings or system.couplings or self.has_constant:
+            return False
+        return not self.is_continuous and system.is_uniform and len(system.modes) > 1
+
+    @property
     def has_constant(self) -> bool:
         """Whether a parameter is unknown but constant."""
         return bool(self.system.switching.fixed_ends)
@@ -134,6 +144,9 @@ class Rung:
     only_quadratic: bool = False
     # A degree that is predicted to take more work is tried with the higher ones, at last.
     first: float = inf
+    # Of a rung that rises in the steps that its forms remember: how many, and what that takes.
+    lengths: Callable[[SwitchedSystem], dict[int, Cost]] | None = None
+    degree: int = 2  # Of these forms
     # What it finds of one axis says something about all axes that act on each other; other rungs
     # are not tried where they do.
     coupled: bool = False
@@ -160,6 +173,8 @@ class Rung:
         system : SwitchedSystem
             The modes.
         """
+        if self.lengths is not None:
+            return sum(cost.work <= self.first for cost in self.lengths(system).values())
         if self.cost is None or self.first == inf:
             return FIRST_DEGREES
         degrees = range(2, 2 + FIRST_DEGREES)
@@ -197,6 +212,18 @@ class Rung:
         allowance : Allowance
             What is left of the budget.
         """
+        if self.lengths is not None:
+            if limits.max_degree is not None and self.degree > limits.max_degree:
+                return
+            for length, cost in self.lengths(system).items():
+                fits = allowance.affords(cost)
+                yield (
+                    f"{self.name} of {counted(length, 'step')}",
+                    partial(self.search, length=length),
+                )
+                if not fits:
+                    return
+            return
         if self.cost is None:
             yield self.name, self.search
             return

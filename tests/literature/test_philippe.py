@@ -45,7 +45,7 @@ def test_the_published_rate_of_every_degree(scale, degree):
 def test_proved_by_default():
     found = certify(lossy_network())
     assert found.verdict == "proved"
-    assert shape_of(found.evidence) == "mode-polynomial"
+    assert shape_of(found.evidence) == "memory-quadratic"
 
 
 def test_never_proved_beyond_the_radius():

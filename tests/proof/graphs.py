@@ -102,6 +102,8 @@ def shape_of(evidence: AbstractEvidence | None) -> str | None:
     if not isinstance(evidence, FormsOnGraph):
         return None if evidence is None else evidence.kind
     degree = "quadratic" if evidence.degree == 1 else "polynomial"
+    if any(edge.target is not None for edge in evidence.edges):
+        return f"memory-{degree}"
     if evidence.stays is not None:
         return f"mode-{degree}"
     if evidence.covers_coupling:

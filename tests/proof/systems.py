@@ -560,6 +560,7 @@ METHODS = {
     "conewise-mode-quadratic": Method.CONEWISE_MODE_QUADRATIC,
     "conewise-polynomial": Method.CONEWISE_POLYNOMIAL,
     "common-polynomial, discrete": Method.POLYNOMIAL,
+    "mode-polynomial": Method.MODE_POLYNOMIAL,
     "growing-sequence, average": Method.MIXTURE,
 }
 

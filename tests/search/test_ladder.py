@@ -1,5 +1,6 @@
 """The ladder: its order, and that nothing is found whatever the searches say."""
 
+import re
 from dataclasses import replace
 
 import pytest
@@ -67,6 +68,7 @@ def test_the_order_is_cheapest_first_and_higher_degrees_come_last():
 def test_degrees_of_two_kinds_rise_together():
     quick = replace(lossy_network(), switching=Switching(dwell_time=2))
     found = names(quick, limits=Limits(max_degree=8))
+    found = [name for name in found if "memory" not in name and "norms" not in name]
     start = found.index("polynomial of degree 4")
     assert found[start:] == [
         "polynomial of degree 4",
@@ -79,6 +81,21 @@ def test_degrees_of_two_kinds_rise_together():
         "polynomial of degree 10",
         "mode polynomial of degree 10",
     ]
+
+
+def test_memories_grow_longer_before_degrees_rise():
+    found = names(lossy_network(), limits=Limits(max_degree=2))
+    start = found.index("quadratic with a memory of 2 steps")
+    assert found[start + 1] == "quadratic with a memory of 3 steps"
+    words = found.index("words in the norms of forms")
+    assert start < words < found.index("period")
+    assert not any(name.startswith("quartic") for name in found)
+    higher = names(lossy_network(), limits=Limits(max_degree=4))
+    assert words < higher.index("quartic with a memory of 1 step")
+
+
+def test_nothing_remembers_in_continuous_time():
+    assert not any("memory" in name for name in names(dayawansa_martin(6)))
 
 
 def test_without_a_common_quadratic_none_is_looked_for_again():
@@ -113,7 +130,7 @@ def test_a_method_alone_has_its_own_rungs_and_the_exact_tests(method):
         if method in applicable_methods(system):
             own = {rung.name for rung in LADDER if rung.method in {method, None}}
             asked = names(system, method, limits=Limits(max_degree=4))
-            assert {name.partition(" of degree")[0] for name in asked} <= own
+            assert {re.sub(" of (degree|[0-9]+ steps?).*", "", name) for name in asked} <= own
             assert "every mode" in asked
 
 
@@ -125,7 +142,7 @@ def test_every_method_is_on_the_ladder():
 @pytest.mark.parametrize("rung", LADDER, ids=lambda rung: rung.name)
 def test_every_rung_names_a_search_that_there_is(rung):
     """A search is loaded when its rung is reached; a wrong name would be seen only then."""
-    for named in filter(None, (rung.search, rung.cost)):
+    for named in filter(None, (rung.search, rung.cost, rung.lengths)):
         with pytest.raises(TypeError, match=rf"{named.__name__}\(\) missing"):
             named()
 

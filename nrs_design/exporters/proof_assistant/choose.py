@@ -54,7 +54,7 @@ def _find_uncovered(system: SwitchedSystem, evidence: FormsOnGraph) -> str | Non
         return "its environment could pull where contact is lost"
     if system.clock is not None:
         return "its modes take turns"
-    if evidence.stays is None and not evidence.bounds_at_once:
+    if any(edge.target is not None for edge in evidence.edges):
         return "its steps lead to some of the forms at a place only"
     if system.time is Time.CONTINUOUS:
         left = evidence.stays is not None and evidence.stays.leaving

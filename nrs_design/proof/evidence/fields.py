@@ -265,6 +265,8 @@ def find_unreadable(value: object) -> str | None:
         parts = tuple(value)
         if len(parts) > MAX_ENTRIES:
             return f"a list has {len(parts)} entries, more than {MAX_ENTRIES} are not read"
+        if set(map(type, parts)) == {int}:
+            return _find_long(parts, MAX_INTEGER_BITS)  # A row of a matrix, at once
     elif is_dataclass(value):
         parts = tuple(getattr(value, field.name) for field in fields(value))
     else:

@@ -7,7 +7,6 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import lru_cache
-from itertools import product
 from math import comb, lcm
 from typing import TYPE_CHECKING, ClassVar, NamedTuple, Self, TypeAlias
 
@@ -298,12 +297,17 @@ class FormsOnGraph(AbstractFunction):
 
     def _edges(self, system: SwitchedSystem) -> Iterator[tuple[int, AnyStep, int]]:
         """Yield the edges of the graph: nodes before and after, and the step between them."""
-        at, drawn = self._nodes_at(), frozenset(self.edges)
+        at, leaving = self._nodes_at(), dict[int | None, list[Arc]]()
+        for arc in self.edges:
+            leaving.setdefault(arc.source, []).append(arc)
         for step in self._steps(system):
+            ends = at[step.target]
+            known = frozenset(ends)
             for a in at[step.source]:
-                for b in at[step.target]:
-                    ways = product((None, a), (None, step.mode), (None, b))
-                    if (a == b or not step.is_flow) and not drawn.isdisjoint(ways):
+                arcs = leaving.get(None, []) + leaving.get(a, [])
+                drawn = {arc.target for arc in arcs if arc.mode in {None, step.mode}}
+                for b in ends if None in drawn else sorted(known & drawn):
+                    if a == b or not step.is_flow:
                         yield a, step, b
 
     def _nodes_at(self) -> dict[str, list[int]]:
@@ -480,12 +484,14 @@ class FormsOnGraph(AbstractFunction):
         if not self.vanishing:
             return carried
         key = {}
+        places = [node.place for node in self.nodes]
         for (a, step, b), N in zip(self.edges_in_time(merged), self.vanishing, strict=True):
-            key[self.nodes[a].place, step.mode, self.nodes[b].place, step.time] = N
+            ends = (a, b) if self.stays is None else (places[a], places[b])
+            key[ends, step.mode, step.time] = N
         found = []
         for a, step, b in carried.edges_in_time(system):
-            source, target = (like.get(nodes[k].place, nodes[k].place) for k in (a, b))
-            found.append(key[source, like.get(step.mode, step.mode), target, step.time])
+            ends = (a, b) if self.stays is None else (like[nodes[a].place], like[nodes[b].place])
+            found.append(key[ends, like.get(step.mode, step.mode), step.time])
         return replace(carried, vanishing=tuple(found))
 
 

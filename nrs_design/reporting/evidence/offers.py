@@ -72,7 +72,8 @@ def _graph(e: Any) -> Offer:
     if e.stays is not None:
         forms = tuple(Form(Q, place, e.degree) for place, Q in e.nodes)
         return Offer(forms, e.denominator_log2, leaving=e.stays.leaving)
-    names = {edge.source: edge.mode or "" for edge in e.edges}
+    # A form that remembers steps is of a word, not of the mode that leaves it.
+    names = {edge.source: edge.mode or "" for edge in e.edges if edge.target is None}
     touching, flying = list[Form](), list[Form]()
     for k, (place, Q) in enumerate(e.nodes):
         turn = place.removeprefix(f"{CONTACT} ")

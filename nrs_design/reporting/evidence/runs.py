@@ -206,7 +206,8 @@ def ruled_run(
         Some modes must be left, in which a form may grow.
     """
     names = {form.name for form in forms}
-    of_modes = forms[0].degree == 1 and names >= {mode.name for mode in system.modes}
+    alone = forms[0].degree == 1 and len(forms) == len(names)  # No form remembers steps
+    of_modes = alone and names >= {mode.name for mode in system.modes}
     hardest = hardest_modes(system, None, _RULED_MODES)
     functions = euclidean(system)
     if of_modes:

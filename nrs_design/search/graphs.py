@@ -20,7 +20,7 @@ from nrs_design.proof.steps import CONTACT, COUPLING, FREE, ROUNDING, Stays, cou
 from nrs_design.proof.switching import Clock, Stay
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.balance import balance, own_norm, scale_states
-from nrs_design.search.branches import best_words
+from nrs_design.search.branches import best_words, round_forms
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
 from nrs_design.search.cycle import growing_cycles
 from nrs_design.search.decay import RESOLUTION, SMALLEST, bisect_position, limit_rate
@@ -31,6 +31,7 @@ from nrs_design.search.lifted import monomial_weights
 from nrs_design.search.motions import Motions, separating_coordinates
 from nrs_design.search.polynomial import conewise_cost, family_cost, functions_cost, work_of_checks
 from nrs_design.search.rounding import BACK_OFFS, claims, digits, rate_at
+from nrs_design.search.rounds import turns_graph
 from nrs_design.search.stays import round_stays
 from nrs_design.search.step_graph import StepGraph
 from nrs_design.work import Cost, NotAffordableError
@@ -240,7 +241,7 @@ def draw_turns(family: Family, clock: Clock) -> Drawing:
 
 def _turns(family: Family, clock: Clock) -> list[Array]:
     """Return the modes of the first step of a round, and those of the others."""
-    parts = (on_turn(family.system, clock, step) for step in range(2))
+    parts = (on_turn(family.system, clock, first=first) for first in (True, False))
     return [
         scale_states(to_floats([mode.A for mode in part.modes]), family.exponents) for part in parts
     ]
@@ -252,6 +253,10 @@ def _coordinates(family: Family, clock: Clock) -> Iterator[Array]:
     What a mean mode keeps of the state until it is at rest is round in them.
     """
     means = [matrices.mean(axis=0) for matrices in _turns(family, clock)]
+    if not clock.is_round:
+        graph = StepGraph.of_clock(clock, ("in time", "missed"), np.array(means), (True, False))
+        yield from (_apart(family, P) for P in round_forms(graph))
+        return
     each = [means[min(step, 1)] for step in range(clock.length)]
     n = family.system.order
     whole = np.eye(n)
@@ -264,18 +269,25 @@ def _coordinates(family: Family, clock: Clock) -> Iterator[Array]:
     for mean in reversed(each * 2):
         form = np.eye(n) / len(each) + share**2 * mean.T @ form @ mean
         forms.append(form)
-    for P in forms[: -len(each) - 1 : -1]:
-        if family.system.contact is None:
-            yield np.asarray(np.linalg.inv(np.linalg.cholesky(P)).T)
-            continue
-        T = np.zeros_like(P)
-        T[:-1, :-1] = np.linalg.inv(np.linalg.cholesky(P[:-1, :-1])).T
-        T[-1, -1] = 1 / np.sqrt(P[-1, -1])
-        yield T
+    yield from (_apart(family, P) for P in forms[: -len(each) - 1 : -1])
+
+
+def _apart(family: Family, P: Array) -> Array:
+    """Return coordinates in which a form is nearly round, and which leave the deflection alone."""
+    if family.system.contact is None:
+        return np.asarray(np.linalg.inv(np.linalg.cholesky(P)).T)
+    T = np.zeros_like(P)
+    T[:-1, :-1] = np.linalg.inv(np.linalg.cholesky(P[:-1, :-1])).T
+    T[-1, -1] = 1 / np.sqrt(P[-1, -1])
+    return T
 
 
 def _limit(family: Family, clock: Clock) -> float:
-    """Return the contraction per step of the slowest round of like modes."""
+    """Return the contraction per step of the slowest round of like modes, or of the worst word."""
+    if not clock.is_round:
+        graph = turns_graph(family, clock)
+        words = best_words(graph, family.allowance.part(WORDS))
+        return max((growth for _, growth in words), default=0.0)
     first, others = _turns(family, clock)
     rounds = [np.linalg.matrix_power(B, clock.length - 1) @ A for A in first for B in others]
     slowest = max(limit_rate(whole[None], Time.DISCRETE) for whole in rounds)

@@ -516,19 +516,21 @@ def steps_together(
         return tuple(steps_of(system, acting, grain, lost=lost))
     from nrs_design.proof.clock import on_turn
 
-    length = system.clock.length
-    parts = [
-        tuple(steps_of(on_turn(system, system.clock, k), acting, grain, lost=lost)) for k in (0, 1)
-    ]
+    clock = system.clock
+    parts = {
+        kind: tuple(steps_of(on_turn(system, clock, first=kind), acting, grain, lost=lost))
+        for kind in (True, False)
+    }
+    at = "step" if clock.is_round else "state"
     return tuple(
         replace(
             step,
-            where=f"{step.where}, at step {k}",
+            where=f"{step.where}, at {at} {k}",
             source=_at(step.source, k),
-            target=_at(step.target, (k + 1) % length),
+            target=_at(step.target, target),
         )
-        for k in range(length)
-        for step in parts[min(k, 1)]
+        for k, kind, target in clock.turns()
+        for step in parts[kind]
     )
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from itertools import takewhile
 from math import comb
-from typing import Annotated, Literal, Self
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field
 
@@ -21,7 +21,7 @@ MOST_STATES = 1000
 _Count = Annotated[int, whole(1, MOST_STEPS)]
 
 
-def _checks(example: str, otherwise: str) -> tuple[Row, ...]:
+def _checks(example: str, otherwise: str) -> tuple[Row[Any], ...]:
     """Return what a rule must be.
 
     Parameters
@@ -141,7 +141,8 @@ class DeadlinesSpec(MissRuleSpec):
 
     def __str__(self) -> str:
         """Say the rule in a few words."""
-        return self.said("periods")
+        # Without the words before the number, as sentences go on with it.
+        return self.said("periods").removeprefix("at most ")
 
     checks = (
         *_checks("command: hold, ", ""),

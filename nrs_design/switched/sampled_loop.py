@@ -197,12 +197,9 @@ def _motions(
             parts[c.name] += loop.in_the_air(c.name, laws[c.name])
     if frame.turns[-1].is_miss:
         law = next(iter(laws.values())).law
-        touched = {
-            e.name: e for c in design.controllers for e in map(plant.environment, c.contacts)
-        }
-        parts[f"/{MISS}"] = tuple(
-            loop.missed(law, touched.values() or plant.among(design.contacts))
-        )
+        contacts = dict.fromkeys(name for c in design.controllers for name in c.contacts)
+        touched = [*map(plant.environment, contacts)]
+        parts[f"/{MISS}"] = tuple(loop.missed(law, touched))
         # As for controllers, free motion is among them or beside them.
         if loss == "on the surface":
             free += loop.missed(law, ())
@@ -223,7 +220,7 @@ def _check_periods(sampling: SamplingSpec) -> None:
 
 
 def _clock(sampling: SamplingSpec, begins: tuple[str, ...]) -> Clock | None:
-    """Return which modes may be in force at a sample, of those that begin a round or are in time."""
+    """Return which modes may be in force: some begin a round, or are those in time."""
     if sampling.misses is not None:
         return clock_of(automaton_of(*sampling.misses.window), begins)
     return Clock(sampling.round, begins) if sampling.round > 1 else None

@@ -68,12 +68,11 @@ def test_what_is_in_force_at_a_step():
     (item,) = system.roundings
     wide = tuple(matrix([[*row.fractions()[0], 7]]) for row in item.rows)
     system = replace(system, roundings=(replace(item, rows=wide),))
-    first, other = (on_turn(system, system.clock, step) for step in (0, 1))
+    first, other = (on_turn(system, system.clock, first=first) for first in (True, False))
     assert [mode.name for mode in first.modes] == ["push 1", "push 2"]
     assert [mode.name for mode in first.contact.free] == ["fall"]
     assert [mode.name for mode in other.modes] == ["rest"]
     assert [mode.name for mode in other.contact.free] == ["fall on"]
-    assert on_turn(system, system.clock, 7) == other
     for part, count in ((first, 3), (other, 2)):
         assert part.clock is None
         assert part.outputs == system.outputs
@@ -89,14 +88,14 @@ def test_the_parts_of_a_rounding_are_those_of_their_modes():
     (item,) = system.roundings
     marked = tuple(replace(row, numerators=((k, 0),)) for k, row in enumerate(item.rows, start=1))
     system = replace(system, roundings=(replace(item, rows=marked, columns=item.columns),))
-    first, other = (on_turn(system, system.clock, step) for step in (0, 1))
+    first, other = (on_turn(system, system.clock, first=first) for first in (True, False))
     assert [row.numerators[0][0] for row in first.roundings[0].rows] == [1, 2, 4]
     assert [row.numerators[0][0] for row in other.roundings[0].rows] == [3, 5]
 
 
 def test_kept_contact_has_no_free_modes():
     system = replace(bouncing_in_turns(), contact=None, clock=Clock(2, ("push 1", "push 2")))
-    assert on_turn(system, system.clock, 1).contact is None
+    assert on_turn(system, system.clock, first=False).contact is None
 
 
 def test_a_signal_out_of_turn_refutes_nothing():

@@ -343,7 +343,9 @@ def until_small(response: SwitchedRun, values: Array) -> SwitchedRun:
     if not len(small):
         return response
     end = max(int(small[0]), 2)
-    return SwitchedRun(response.time[: end + 1], response.state[: end + 1], response.mode[:end])
+    turn = None if response.turn is None else response.turn[: end + 1]
+    states = response.state[: end + 1]
+    return SwitchedRun(response.time[: end + 1], states, response.mode[:end], turn)
 
 
 def horizon(system: SwitchedSystem, claimed: float) -> tuple[float, int]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
@@ -53,6 +54,9 @@ KEPT = 0.99
 MOST_ROUNDED = 250
 # Numbers of steps that are each shown for a mode that is stable, too.
 FEW_STAYS = 64
+# Rules for misses with more states first have fewer forms; then a miss so many steps ago is long
+# ago.
+FEW_STATES, LONG_AGO = 12, 2
 # Share of what is left for words that limit the rate.
 WORDS = 0.1
 # The largest rate, where it was not asked for, to this share of it.
@@ -211,19 +215,28 @@ def search_periodic_quadratic(family: Family) -> Candidates[FormsOnGraph]:
         return NO_MARGIN
     if not np.isfinite(family.matrices).all():
         return OUT_OF_RANGE
-    drawing = draw_turns(family, clock)
-    if not drawing.is_finite:
-        return OUT_OF_RANGE
-    checked = (len(system.modes) + len(_free(system))) * clock.length
-    ways = 2 if system.roundings and checked <= MOST_ROUNDED else 1
+    limit, ended = _limit(family, clock), None
+    every = [mode.name for mode in (*system.modes, *_free(system))]
+    kinds = Counter(name in clock.first for name in every)
     # At the largest rate itself there is no room for rounding.
     rates = Rates(0.5, resolution=2.0**-5, nearest=0.99, few=True, bits=digits(24))
-    programs, limit = [FormsProgram(drawing)] * ways, _limit(family, clock)
-    return (yield from propose(programs, family, limit, rates, covers=ways - 1))
+    for drawing in draw_turns(family, clock):
+        if not drawing.is_finite:
+            return OUT_OF_RANGE
+        of = drawing.forms[:: len(drawing.forms) // clock.length]
+        different = {(of[k], first, of[target]) for k, first, target in clock.turns()}
+        checked = sum(kinds[first] for _, first, _ in different)
+        ways = 2 if system.roundings and checked <= MOST_ROUNDED else 1
+        programs = [FormsProgram(drawing)] * ways
+        ended = yield from propose(programs, family, limit, rates, covers=ways - 1)
+    return ended
 
 
-def draw_turns(family: Family, clock: Clock) -> Drawing:
-    """Draw a node for each step of a round; in free motion it has the same form."""
+def draw_turns(family: Family, clock: Clock) -> Iterator[Drawing]:
+    """Draw a node for each step of a round, or state of a rule; in free motion it has its form.
+
+    States of a large rule first have a form for all that are alike.
+    """
     system, lost = family.system, family.system.contact is not None
     places = [CONTACT, FREE] if lost else [CONTACT]
     nodes = tuple(Node(f"{place} {k}", ()) for k in range(clock.length) for place in places)
@@ -234,9 +247,33 @@ def draw_turns(family: Family, clock: Clock) -> Drawing:
         ANY_RATE,
         multipliers=tuple(Multiplier(f"{ROUNDING} {k}", 0) for k in roundings),
     )
+    own = [FormCoordinates(family.exponents, T) for T in _coordinates(family, clock)]
+    if not clock.is_round and clock.length > FEW_STATES:
+        like = _alike(clock)
+        number = {one: i for i, one in enumerate(dict.fromkeys(like))}
+        forms = tuple(number[one] for one in like for _ in places)
+        coordinates = tuple(own[like.index(one)] for one in number)
+        yield Drawing(system, graph, forms, coordinates)
     forms = tuple(k for k in range(clock.length) for _ in places)
-    coordinates = (FormCoordinates(family.exponents, T) for T in _coordinates(family, clock))
-    return Drawing(system, graph, forms, tuple(coordinates))
+    yield Drawing(system, graph, forms, tuple(own))
+
+
+def _alike(clock: Clock) -> list[tuple[int, int]]:
+    """Return for each state how many misses may follow at once, and how long ago the last one was.
+
+    Beyond `LONG_AGO` steps, that makes no difference.
+    """
+    ago = [LONG_AGO] * clock.length
+    for _ in range(LONG_AGO):
+        for state, in_time, target in clock.turns():
+            ago[target] = min(ago[target], ago[state] + 1 if in_time else 0)
+    found = []
+    for state, last in enumerate(ago):
+        more, at = 0, clock.after(state, first=False)
+        while at is not None and more < clock.length:
+            more, at = more + 1, clock.after(at, first=False)
+        found.append((more, last))
+    return found
 
 
 def _turns(family: Family, clock: Clock) -> list[Array]:

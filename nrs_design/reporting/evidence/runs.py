@@ -64,7 +64,7 @@ _BOUNCING = (
     f"possible mode after which the norm is largest. {_NOT_WORST}"
 )
 _ROUNDS = (
-    "Simulated run: at every step the adversary takes the mode, of those whose turn it is and that "
+    "Simulated run: at every step the adversary takes the mode, of those that may be in force and that "
     f"contact allows, after which the norm of that step is largest. {_NOT_WORST}"
 )
 _HOLDS = "The dashed line is the bound of the certificate, which holds for every switching signal"
@@ -91,7 +91,7 @@ _UNPROVED = (
 )
 _UNPROVED_ROUNDS = (
     "Simulated run in kept contact from a deflection: at every step the adversary takes the mode, "
-    "of those whose turn it is, after which the Euclidean norm is largest. There is no bound: "
+    "of those that may be in force, after which the Euclidean norm is largest. There is no bound: "
     "nothing is proved."
 )
 EUCLIDEAN = "|x(t)| / |x(0)|, Euclidean norm [1]"

@@ -102,11 +102,11 @@ class MissRuleSpec(SpecModel):
         Parameters
         ----------
         of : str
-            What may be missed.
+            What may be missed, in the singular.
         """
         if self.consecutive is not None:
-            return f"at most {self.consecutive} {of} in a row"
-        return f"at most {self.at_most} of any {self.of} {of} in a row"
+            return f"at most {self.consecutive} {of}{'s' * (self.consecutive > 1)} in a row"
+        return f"at most {self.at_most} of any {self.of} {of}s in a row"
 
 
 class MissesSpec(MissRuleSpec):
@@ -116,7 +116,7 @@ class MissesSpec(MissRuleSpec):
 
     def __str__(self) -> str:
         """Say the rule in a few words."""
-        return f"{self.said('steps')} in {self.mode}"
+        return f"{self.said('step')} in {self.mode}"
 
     checks = _checks("mode: miss, ", ", or `switching: arbitrary`")
 
@@ -142,7 +142,7 @@ class DeadlinesSpec(MissRuleSpec):
     def __str__(self) -> str:
         """Say the rule in a few words."""
         # Without the words before the number, as sentences go on with it.
-        return self.said("periods").removeprefix("at most ")
+        return self.said("period").removeprefix("at most ")
 
     checks = (
         *_checks("command: hold, ", ""),

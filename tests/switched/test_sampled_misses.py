@@ -170,7 +170,7 @@ def test_one_miss_after_another_is_proved(tmp_path):
     claim = done.evidence.claim(system)
     assert "that the rule for missed deadlines allows" in claim
     text = " ".join(system.assumptions)
-    assert "at most 1 periods in a row miss their deadline" in text
+    assert "at most 1 period in a row miss their deadline" in text
     assert "Any switching signal is possible" not in text
 
 

@@ -64,8 +64,8 @@ _BOUNCING = (
     f"possible mode after which the norm is largest. {_NOT_WORST}"
 )
 _ROUNDS = (
-    "Simulated run: at every step the adversary takes the mode, of those that may be in force and that "
-    f"contact allows, after which the norm of that step is largest. {_NOT_WORST}"
+    "Simulated run: at every step the adversary takes the mode, of those that may be in force and "
+    f"that contact allows, after which the norm of that step is largest. {_NOT_WORST}"
 )
 _HOLDS = "The dashed line is the bound of the certificate, which holds for every switching signal"
 ONE_AXIS = (

@@ -1,7 +1,7 @@
 """A sampled loop that misses deadlines: its maps, its rule, and what is refused."""
 
 from fractions import Fraction
-from itertools import pairwise, product
+from itertools import product
 
 import numpy as np
 import pytest
@@ -14,8 +14,10 @@ from nrs_design.errors import NrsDesignError
 from nrs_design.models.actuator import Actuator, ActuatorRanges
 from nrs_design.proof.clock import keeps_turns
 from nrs_design.search.certify import Limits, certify
+from nrs_design.spec.misses import automaton_of
 from nrs_design.switched.command_timing import CommandTiming
 from nrs_design.switched.held_motor import hold
+from nrs_design.switched.misses import clock_of
 from nrs_design.switched.sampled_frame import Frame, Turn
 from tests.support import SOFT_TISSUE
 from tests.switched.test_sampled_loop import system_of
@@ -147,12 +149,10 @@ def test_what_is_rounded_in_a_missed_period_is_nothing(tmp_path):
             assert in_time or not any(item.rows[k].numerators[0])
 
 
-@pytest.mark.parametrize(
-    ("rule", "most", "of"), [("consecutive: 2", 2, 3), ("at_most: 2, of: 4", 2, 4)]
-)
-def test_words_that_the_clock_allows_are_those_of_every_window(tmp_path, rule, most, of):
-    clock = loop(tmp_path, f"{{{rule}, command: hold}}").clock
-    name = {True: "miss", False: clock.first[0]}
+@pytest.mark.parametrize(("most", "of"), [(2, 3), (2, 4), (1, 5)])
+def test_words_that_the_clock_allows_are_those_of_every_window(most, of):
+    clock = clock_of(automaton_of(most, of), ("in time",))
+    name = {True: "miss", False: "in time"}
     for length in range(1, 7):
         for word in product((False, True), repeat=length):
             forever = word * (of + length)
@@ -163,7 +163,8 @@ def test_words_that_the_clock_allows_are_those_of_every_window(tmp_path, rule, m
 
 def test_one_miss_after_another_is_proved(tmp_path):
     """Nominal motor, contact kept and lost, with what single precision rounds."""
-    system = loop(tmp_path, "{consecutive: 1, command: hold}")
+    rule = "{period: 2 ms, delay: 0, misses: {consecutive: 1, command: hold}}"
+    system = system_of(tmp_path, rule)
     done = certify(system, limits=Limits(optimize_rate=False))
     assert done.verdict is Verdict.PROVED
     assert done.evidence.covers_rounding
@@ -219,11 +220,3 @@ def test_what_misses_are_not_modelled_beside(tmp_path, change, said):
     outer = "{period: 2 ms, outer_period: 4 ms, delay: 0, misses: {consecutive: 1, command: hold}}"
     with pytest.raises(NrsDesignError, match="missed deadlines beside an outer_period"):
         system_of(tmp_path, outer)
-
-
-def test_more_misses_are_more_words(tmp_path):
-    counts = [
-        loop(tmp_path, f"{{at_most: {m}, of: 5, command: hold}}").clock.length for m in (1, 2, 3)
-    ]
-    assert all(a < b for a, b in pairwise([1, counts[0]]))
-    assert counts == [5, 10, 10]

@@ -381,7 +381,8 @@ class FormsOnGraph(AbstractFunction):
         added = iter(self.vanishing)
         decided = set()
         for a, step, b in self.edges_in_time(system):
-            if isinstance(step, Step) and self.degree == 1:
+            shared = system.clock is not None or not isinstance(step, Step) or not step.facts
+            if isinstance(step, Step) and self.degree == 1 and shared:
                 # A landing at the surface often is what free motion is, and nodes may share a form.
                 key = self._decides(step, a, b, system)
                 if key in decided:

@@ -136,6 +136,7 @@ def _facts(
         "steps": run.steps,
         "refused_samples": run.refused,
         "saturated_samples": run.saturated,
+        "missed_samples": run.missed,
         "deviation_from_sampled": None if run.deviation is None else asdict(run.deviation),
         "not_modelled": list(run.left_out),
         "metrics": dict(one.metrics),
@@ -239,6 +240,11 @@ def _print(one: Simulated, bounds: tuple[CertifiedBound, ...], rate: CertifiedRa
         say(f"  certified decay once nothing is commanded{here}: {_rate(rate)}")
         for reason in rate.uncovered:
             say(f"    it is not about this run: {reason}")
+    if run.missed is not None:
+        say(
+            f"  deadlines missed: {run.missed} of {run.steps} samples, drawn from the seed of the "
+            "scenario as the rule of the spec allows"
+        )
     if run.refused:
         say(f"  the law refused {run.refused} samples: an input was beyond its limits")
     if run.saturated:

@@ -38,8 +38,8 @@ WEIGHED_MEANING = (
 )
 PASSIVITY_NOT_COMPUTED = (
     "Where a sampled law is passive is not computed with two periods, a spring Kt, late commands, "
-    "a filter of the force, ranges of gains or of the motor, or beside other axes; the frequency "
-    "of another law is not shown in its place."
+    "a filter of the force, missed deadlines, ranges of gains or of the motor, or beside other "
+    "axes; the frequency of another law is not shown in its place."
 )
 OPTIMUM_MEANING = (
     "Global optimum: proved, in ball arithmetic, of the cost as it is minimized, a sum over 256 "

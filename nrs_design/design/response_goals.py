@@ -219,6 +219,7 @@ def _why_not(
         loaded = spec.actuator is not None and spec.actuator.load_inertia is not None
         cases = {
             "the law is sampled, with two periods": spec.sampling and spec.sampling.round > 1,
+            "the law misses deadlines": spec.sampling and spec.sampling.misses,
             "the law is sampled, with a spring Kt": "Kt" in law.gains,
             "the law is sampled, with a load of the motor": loaded,
             "the robot closes its own motion loop": axis.takes is not None or axis.drive,

@@ -175,16 +175,21 @@ def _sample_time(period: Fraction | None) -> SampleTime | None:
 
 
 def _timing(spec: InteractionDesignSpec) -> str | None:
-    """Say when commands take effect; None where that is at once, in periods of one length."""
-    sampling = spec.sampling
-    if sampling is None or spec.late_at is None:
+    """Say when commands take effect, and which are missed; None for every sample, at once."""
+    sampling, said = spec.sampling, []
+    if sampling is None:
         return None
-    first, last = map(exact_text, spec.late)
-    late = f"{first} s" if first == last else f"{first} s to {last} s"
-    said = f"commands take effect {late} after their sample"
-    if sampling.jitter is None:
-        return said
-    return f"{said}, and a period is up to {exact_text(sampling.unsteady)} s longer or shorter"
+    if spec.late_at is not None:
+        first, last = map(exact_text, spec.late)
+        late = f"{first} s" if first == last else f"{first} s to {last} s"
+        said.append(f"commands take effect {late} after their sample")
+        if sampling.jitter is not None:
+            unsteady = exact_text(sampling.unsteady)
+            said[0] += f", and a period is up to {unsteady} s longer or shorter"
+    if (misses := sampling.misses) is not None:
+        instead = "the command before is held" if misses.command == "hold" else "the command is 0"
+        said.append(f"at most {misses} may be missed: no step is made then, and {instead}")
+    return "; ".join(said) or None
 
 
 def _idle_states(idle: IdleStatesSpec) -> IdleStates:

@@ -193,7 +193,7 @@ def _exported(spec: InteractionDesignSpec, certificate: Certificate, file: Path)
             path=file,
             remedy="name a certificate of a spec with `sampling`",
         )
-    if certificate.system.clock is not None:
+    if certificate.system.clock is not None and certificate.system.clock.is_round:
         raise NrsDesignError(
             "holds a law of one period, and the certificate is about two",
             path=file,

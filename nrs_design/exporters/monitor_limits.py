@@ -98,6 +98,11 @@ def _left_out(
         said.append("Speed over all axes: the spec has no `coupling: speed`, so it is near zero.")
     if record.delay is None:
         said.append("Age of the force sample: the spec has no `sampling`.")
+    if spec.sampling is not None and spec.sampling.misses is not None:
+        said.append(
+            "How many deadlines are missed, and what is commanded then: a period without a step "
+            "is a longer step of time here, and beyond what the caller accepts."
+        )
     if spec.switching.names_contacts:
         said.append("Rules of switching that name contacts: what is touched is not known.")
     return (

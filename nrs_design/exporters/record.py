@@ -147,7 +147,8 @@ class ExportRecord(_Frozen):
     sample_time: SampleTime | None = None
     # Smallest and largest age of the force sample, in samples.
     delay: tuple[int, int] | None = None
-    # When commands take effect, in words; only where that is not at once, in periods of one length.
+    # When commands take effect, and which periods may miss their deadline, in words; only where
+    # that is not at once, in periods of one length, and none.
     timing: str | None = None
     # What no proof covers.
     outside: tuple[str, ...]

@@ -14,7 +14,7 @@ from nrs_design.progress import Progress, silent
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.certification import Certification, Limits
-from nrs_design.spec.misses import MOST_STATES, MissesSpec
+from nrs_design.spec.misses import MOST_STATES, MissRuleSpec
 
 if TYPE_CHECKING:
     from nrs_design.search.loop_margin import Bracket, CommandMargin, MarginBrackets
@@ -90,20 +90,20 @@ def run_proof_margins(
     )
 
 
-def _rule_for_misses(result: Result) -> MissesSpec | None:
+def _rule_for_misses(result: Result) -> MissRuleSpec | None:
     """Return how many deadlines may be missed, if a spec says so."""
+    if result.designed is not None:
+        sampling = result.designed.spec.sampling
+        return None if sampling is None else sampling.misses
     spec = result.loaded.spec
     return spec.misses if spec.kind == "switched-system" else None
 
 
-def _run_misses(rule: MissesSpec, result: Result, limits: Limits, progress: Progress) -> Bracket:
+def _run_misses(rule: MissRuleSpec, result: Result, limits: Limits, progress: Progress) -> Bracket:
     """Find the most misses in the same window, or in a row, with a proof."""
     from nrs_design.search.certify import certify
     from nrs_design.search.misses_margin import find_most_misses
-    from nrs_design.switched.assemble import assemble_matrices
 
-    spec, in_a_row = result.loaded.spec, rule.consecutive is not None
-    assert spec.kind == "switched-system"
     declared, of = rule.window
 
     def decide(number: int) -> Certification | str:
@@ -111,12 +111,12 @@ def _run_misses(rule: MissesSpec, result: Result, limits: Limits, progress: Prog
         if (many := changed.states) > MOST_STATES:
             return f"{many} states, and at most {MOST_STATES} are built"
         try:
-            system = assemble_matrices(spec.model_copy(update={"misses": changed}))
+            system = _with_rule(result, changed)
         except NrsDesignError as error:
             return error.message
         return certify(system, limits=limits)
 
-    most = max(declared, MOST_IN_A_ROW) if in_a_row else of - 1
+    most = max(declared, MOST_IN_A_ROW) if rule.consecutive is not None else of - 1
     return find_most_misses(declared, most, decide, result.certification, progress)
 
 
@@ -148,6 +148,20 @@ def _run_timing(result: Result, limits: Limits, progress: Progress) -> TimingMar
             "delay", delay, latest, most, lambda t: decide(longest, t), known, progress
         ),
     )
+
+
+def _with_rule(result: Result, rule: MissRuleSpec) -> SwitchedSystem:
+    """Return the system of a spec, undisturbed, under another rule for misses."""
+    from nrs_design.switched.assemble import assemble_matrices
+
+    designed, spec = result.designed, result.loaded.spec
+    if designed is None:
+        assert spec.kind == "switched-system"
+        return assemble_matrices(spec.model_copy(update={"misses": rule}))
+    assert designed.spec.sampling is not None
+    sampling = designed.spec.sampling.model_copy(update={"misses": rule})
+    changed = designed.spec.model_copy(update={"sampling": sampling, "disturbances": None})
+    return assemble_spec(result.loaded, replace(designed, spec=changed), result.coordinates)
 
 
 def _run_box(result: Result, limits: Limits, progress: Progress) -> BoxMargin:

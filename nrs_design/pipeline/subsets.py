@@ -1,6 +1,6 @@
-"""What is proved beside two periods under disturbances, of which no bound is proved together.
+"""What is proved beside two periods, or missed deadlines, under disturbances: no bound together.
 
-The decay is proved without the disturbances, and bounds for a common period.
+The decay is proved without the disturbances, and bounds for a common period without misses.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from nrs_design.pipeline.margins import quick_limits
 from nrs_design.progress import Progress, silent
 from nrs_design.search.certification import Limits
 
-_OUTER = "the outer_period"
+_OUTER, _MISSES = "the outer_period", "the missed deadlines"
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,7 +26,7 @@ class Subset:
 
 
 def has_unbounded_turns(result: Result) -> bool:
-    """Tell whether a spec has disturbances and two periods, for which no bound is proved.
+    """Tell whether a spec has disturbances beside two periods or misses: no bound is proved.
 
     Parameters
     ----------
@@ -58,27 +58,30 @@ def find_subsets(
     from nrs_design.search.certify import certify
 
     decay = Subset(("the disturbances",), evidence.claim(result.certification.system))
-    progress("with a common period")
+    turns = result.certification.system.clock
+    outer = turns is not None and turns.is_round
+    part, key = (_OUTER, "outer_period") if outer else (_MISSES, "misses")
+    progress("with a common period" if outer else "without misses")
     spec = designed.spec
     assert spec.sampling is not None
     # A delay that counted samples of the outer loop then counts those of the motion loop.
-    sampling = spec.sampling.model_copy(update={"outer_period": None})
+    sampling = spec.sampling.model_copy(update={key: None})
     spec = spec.model_copy(update={"sampling": sampling})
     other = replace(designed, spec=spec)
     system = assemble_spec(result.loaded, other, result.coordinates)
     decided = certify(system, limits=quick_limits(result, limits))
     bounds = [item for item in decided.statements if item.bound(system) is not None]
     if decided.verdict is not Verdict.PROVED or not bounds:
-        return decay, Subset((_OUTER,), "")
+        return decay, Subset((part,), "")
     claims = " ".join(item.claim(system) for item in bounds)
     known = result.certification.granted
     needs = tuple(text for text in decided.granted if text not in known)
-    return decay, Subset((_OUTER,), claims, needs)
+    return decay, Subset((part,), claims, needs)
 
 
 PARTS_TITLE = (
     "NOT proved: any bound under the disturbances of the spec, since the loop has two "
-    "periods; what is proved instead"
+    "periods or misses deadlines; what is proved instead"
 )
 
 
@@ -98,6 +101,6 @@ def _line(item: Subset) -> str:
     if not item.claim:
         return f"not proved without {left_out} either: no bound under the disturbances was found"
     # Both loops run at other times then: what is left out changes what the robot does.
-    of = "of another loop, " if _OUTER in item.left_out else ""
+    of = "of another loop, " if {_OUTER, _MISSES} & {*item.left_out} else ""
     needs = ("Then taken for granted besides:", *item.needs) if item.needs else ()
     return " ".join((f"proved {of}without {left_out}: {item.claim}", *needs))

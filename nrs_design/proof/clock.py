@@ -1,18 +1,22 @@
-"""TRUSTED: which modes are in force at which steps of a round, and which signals keep to that."""
+"""TRUSTED: which modes may be in force at which steps, and which signals keep to that."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
-from itertools import compress, pairwise
+from itertools import compress
+from typing import TypeAlias
 
 from nrs_design.proof.switching import Clock
 from nrs_design.proof.system import SwitchedSystem
 
+# For each state, where something leads; None where it may not be.
+Leads: TypeAlias = tuple[int | None, ...]
 
-def on_turn(system: SwitchedSystem, clock: Clock, step: int) -> SwitchedSystem:
-    """Return a system with the modes alone that are in force at a step of a round.
+
+def on_turn(system: SwitchedSystem, clock: Clock, *, first: bool) -> SwitchedSystem:
+    """Return a system with the modes of one kind alone.
 
     What disturbs it stays: the rows of roundings are over the states and all disturbances.
 
@@ -22,11 +26,11 @@ def on_turn(system: SwitchedSystem, clock: Clock, step: int) -> SwitchedSystem:
         Whose modes take turns.
     clock : Clock
         Of the system.
-    step : int
-        Zero for the first.
+    first : bool
+        Whether of the first kind.
     """
-    first = frozenset(clock.first)
-    kept = [(mode.name in first) == (step == 0) for mode in system.every_mode]
+    names = frozenset(clock.first)
+    kept = [(mode.name in names) is first for mode in system.every_mode]
     flying = kept[len(system.modes) :]
     contact = system.contact
     if contact is not None:
@@ -54,7 +58,10 @@ def on_turn(system: SwitchedSystem, clock: Clock, step: int) -> SwitchedSystem:
 
 
 def keeps_turns(clock: Clock, steps: Sequence[tuple[str, Fraction]]) -> bool:
-    """Tell whether a signal that is repeated without end lets every mode take its turn.
+    """Tell whether a signal may be repeated without end, from some state.
+
+    Where it leads from each state is a map of states. If it can be made as often as there are
+    states, it has come back to a state at which it began, and goes on for ever.
 
     Parameters
     ----------
@@ -63,15 +70,25 @@ def keeps_turns(clock: Clock, steps: Sequence[tuple[str, Fraction]]) -> bool:
     steps : sequence of (str, Fraction)
         Modes with whole numbers of steps, in order.
     """
-    first, at, begins = frozenset(clock.first), Fraction(0), list[Fraction]()
+    first = frozenset(clock.first)
+    states = range(clock.length)
+    once = {kind: tuple(clock.after(k, first=kind) for k in states) for kind in (True, False)}
+    whole: Leads = tuple(states)
     for name, count in steps:
-        if name in first:
-            if count != 1:
-                return False
-            begins.append(at)
-        at += count
-    if not begins:
-        return False
-    # After the end of the signal, it begins again.
-    rounds = pairwise((*begins, begins[0] + at))
-    return all(end - begin == clock.length for begin, end in rounds)
+        whole = _then(whole, _repeated(once[name in first], int(count)))
+    return any(state is not None for state in _repeated(whole, clock.length))
+
+
+def _then(one: Leads, other: Leads) -> Leads:
+    """Return where two maps lead, one after the other."""
+    return tuple(None if state is None else other[state] for state in one)
+
+
+def _repeated(leads: Leads, count: int) -> Leads:
+    """Return where a map leads that is made so many times."""
+    result: Leads = tuple(range(len(leads)))
+    for bit in bin(count)[2:]:
+        result = _then(result, result)
+        if bit == "1":
+            result = _then(result, leads)
+    return result

@@ -8,6 +8,7 @@ from nrs_design.proof.channels import Coupling, Rounding
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Time
 from nrs_design.proof.saturation import MOST_SIGNALS, CutOff, Start
+from nrs_design.proof.switching import NOWHERE, Clock
 from nrs_design.proof.system import SwitchedSystem
 
 
@@ -145,12 +146,26 @@ def _find_odd_clock(system: SwitchedSystem) -> str | None:
         return "modes take turns without steps, in rounds of less than two, or of unlike size"
     if not system.switching.is_arbitrary:
         return "modes take turns, and have rules of switching besides"
+    if (odd := _find_odd_automaton(system.clock)) is not None:
+        return odd
     first = set(system.clock.first)
     groups = [{mode.name for mode in part} for part in (system.modes, system.free) if part]
     if not first <= set().union(*groups):
         return "a mode that does not exist is to take its turn"
     if not all(first & group and group - first for group in groups):
         return "a step of a round has no mode, in contact or free"
+    return None
+
+
+def _find_odd_automaton(clock: Clock) -> str | None:
+    if clock.is_round:
+        return None
+    if len(clock.ahead) != clock.length or any(len(pair) != 2 for pair in clock.ahead):
+        return "what may follow is not said of every state of an automaton"
+    if any(not NOWHERE <= target < clock.length for pair in clock.ahead for target in pair):
+        return "a step leads to a state that the automaton does not have"
+    if any(set(pair) == {NOWHERE} for pair in clock.ahead):
+        return "no mode may be in force in a state of an automaton"
     return None
 
 

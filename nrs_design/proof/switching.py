@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from fractions import Fraction
 
@@ -125,13 +125,53 @@ class Switching:
 ARBITRARY = Switching()
 
 
+# Where a mode leads that may not be in force.
+NOWHERE = -1
+
+
 @dataclass(frozen=True, slots=True)
 class Clock:
-    """Modes that take turns: some at the first step of a round, the others at its other steps."""
+    """Modes of two kinds, of which an automaton says which may be in force at a step.
 
-    length: int  # Steps of a round, at least two. Time zero may be any of them.
-    # Names of the modes, in contact and free, that are in force at the first steps.
-    first: tuple[str, ...]
+    In a round, the modes of the first kind are in force at its first step, the others at all
+    others. Where deadlines are missed, both kinds may be in force in most states of the automaton:
+    the first kind where a deadline is kept, the others where it is missed.
+    """
+
+    # Steps of a round, or states of the automaton, at least two. Time zero may be any of them.
+    length: int
+    first: tuple[str, ...]  # Names of the modes of the first kind, in contact and free
+    # For each state, where a mode of the first kind and where one of the others leads; -1 where it
+    # may not be in force. Empty for a round.
+    ahead: tuple[tuple[int, int], ...] = ()
+
+    @property
+    def is_round(self) -> bool:
+        """Whether all it says is whose turn it is."""
+        return not self.ahead
+
+    def after(self, state: int, *, first: bool) -> int | None:
+        """Return where a mode leads from a state; None where it may not be in force.
+
+        Parameters
+        ----------
+        state : int
+            Counted from zero.
+        first : bool
+            Whether the mode is of the first kind.
+        """
+        if self.ahead:
+            target = self.ahead[state][not first]
+            return None if target == NOWHERE else target
+        return (state + 1) % self.length if first == (state == 0) else None
+
+    def turns(self) -> Iterator[tuple[int, bool, int]]:
+        """Yield every state, whether a mode of the first kind is in force, and where it leads."""
+        for state in range(self.length):
+            for first in (True, False):
+                target = self.after(state, first=first)
+                if target is not None:
+                    yield state, first, target
 
 
 def constants_words(switching: Switching) -> str:

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from nrs_design.pipeline.margins import ProofMargins
     from nrs_design.search.loop_margin import Bracket
     from nrs_design.spec import LoadedSpec, Spec
+    from nrs_design.spec.misses import MissRuleSpec
 
 # Makes a text lead to a place of the spec.
 _At = Callable[..., str]
@@ -95,12 +96,21 @@ def _dwell_lines(margins: ProofMargins, at: _At) -> Iterator[Sentence]:
 def _misses_lines(margins: ProofMargins, at: _At, spec: Spec) -> Iterator[Sentence]:
     """State the most misses that are proved, and the fewest that are refuted."""
     bracket = margins.misses
-    if bracket is None or spec.kind != "switched-system" or spec.misses is None:
+    if bracket is None:
         return
-    of = spec.misses.of
-    where = " in a row" if of is None else f" of any {of} steps in a row"
+    rule: MissRuleSpec | None
+    keys: tuple[str, ...]
+    if spec.kind == "switched-system":
+        rule, keys, what = spec.misses, ("misses",), "steps"
+    else:
+        sampling = spec.sampling if spec.kind == "interaction-design" else None
+        rule = None if sampling is None else sampling.misses
+        keys, what = ("sampling", "misses"), "periods"
+    if rule is None:
+        return
+    where = " in a row" if rule.of is None else f" of any {rule.of} {what} in a row"
     proved, refuted = (
-        None if end is None else at(str(end), "misses") for end in (bracket.proved, bracket.refuted)
+        None if end is None else at(str(end), *keys) for end in (bracket.proved, bracket.refuted)
     )
     said = ("none is proved",) if proved is None else ("proved up to ", proved, where)
     end = (bracket.end,) if refuted is None else ("refuted from ", refuted, " on")

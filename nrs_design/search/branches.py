@@ -101,6 +101,17 @@ def best_words(
 
 def _round(graph: StepGraph) -> Array:
     """Return coordinates of every node in which what a mean word keeps of the state is round."""
+    return np.array([round_coordinates(P) for P in round_forms(graph)])
+
+
+def round_forms(graph: StepGraph) -> Array:
+    """Return for every node the form of what a mean word keeps of the state; shape (count, n, n).
+
+    Parameters
+    ----------
+    graph : StepGraph
+        The steps.
+    """
     n = graph.maps.shape[1]
     leaving = np.bincount(graph.sources, minlength=graph.count).clip(1)
     unit = np.broadcast_to(np.eye(n), (graph.count, n, n))
@@ -124,4 +135,4 @@ def _round(graph: StepGraph) -> Array:
     for _ in range(SWEEPS):
         forms = unit + kept * mean(forms)
     sizes = np.trace(forms, axis1=1, axis2=2)[:, None, None] / n
-    return np.array([round_coordinates(P) for P in forms + FLAT * sizes * np.eye(n)])
+    return np.asarray(forms + FLAT * sizes * np.eye(n))

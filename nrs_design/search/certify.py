@@ -39,7 +39,10 @@ NO_RATE = "what was found shows no rate of decay"
 CONSTANT_FORCE = "constant force"
 SATURATION = "decay under saturation"
 SAFETY = "limits of the safety layer"
-NOT_IN_TURNS = "not looked for: where the loop has two periods, decay is proved, and no bound"
+NOT_IN_TURNS = (
+    "not looked for: where the loop has two periods or misses deadlines, decay is proved, and no "
+    "bound"
+)
 
 
 def certify(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
@@ -20,7 +21,7 @@ from nrs_design.proof.steps import CONTACT, COUPLING, FREE, ROUNDING, Stays, cou
 from nrs_design.proof.switching import Clock, Stay
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.balance import balance, own_norm, scale_states
-from nrs_design.search.branches import best_words
+from nrs_design.search.branches import best_words, round_forms
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
 from nrs_design.search.cycle import growing_cycles
 from nrs_design.search.decay import (
@@ -37,6 +38,7 @@ from nrs_design.search.lifted import monomial_weights
 from nrs_design.search.motions import Motions, separating_coordinates
 from nrs_design.search.polynomial import conewise_cost, family_cost, functions_cost, work_of_checks
 from nrs_design.search.rounding import BACK_OFFS, claims, digits, position_of, rate_at
+from nrs_design.search.rounds import turns_graph
 from nrs_design.search.stays import round_stays
 from nrs_design.search.step_graph import StepGraph
 from nrs_design.work import Cost, NotAffordableError
@@ -58,6 +60,9 @@ KEPT = 0.99
 MOST_ROUNDED = 250
 # Numbers of steps that are each shown for a mode that is stable, too.
 FEW_STAYS = 64
+# Rules for misses with more states first have fewer forms; then a miss so many steps ago is long
+# ago.
+FEW_STATES, LONG_AGO = 12, 2
 # Share of what is left for words that limit the rate.
 WORDS = 0.1
 # The largest rate to this share, where every solution takes long.
@@ -258,19 +263,28 @@ def search_periodic_quadratic(family: Family) -> Candidates[FormsOnGraph]:
         return NO_MARGIN
     if not np.isfinite(family.matrices).all():
         return OUT_OF_RANGE
-    drawing = draw_turns(family, clock)
-    if not drawing.is_finite:
-        return OUT_OF_RANGE
-    checked = (len(system.modes) + len(_free(system))) * clock.length
-    ways = 2 if system.roundings and checked <= MOST_ROUNDED else 1
+    limit, ended = _limit(family, clock), None
+    every = [mode.name for mode in (*system.modes, *_free(system))]
+    kinds = Counter(name in clock.first for name in every)
     # At the largest rate itself there is no room for rounding.
     rates = Rates(0.5, resolution=2.0**-5, nearest=0.99, few=True, bits=digits(24))
-    programs, limit = [FormsProgram(drawing)] * ways, _limit(family, clock)
-    return (yield from propose(programs, family, limit, rates, covers=ways - 1))
+    for drawing in draw_turns(family, clock):
+        if not drawing.is_finite:
+            return OUT_OF_RANGE
+        of = drawing.forms[:: len(drawing.forms) // clock.length]
+        different = {(of[k], first, of[target]) for k, first, target in clock.turns()}
+        checked = sum(kinds[first] for _, first, _ in different)
+        ways = 2 if system.roundings and checked <= MOST_ROUNDED else 1
+        programs = [FormsProgram(drawing)] * ways
+        ended = yield from propose(programs, family, limit, rates, covers=ways - 1)
+    return ended
 
 
-def draw_turns(family: Family, clock: Clock) -> Drawing:
-    """Draw a node for each step of a round; in free motion it has the same form."""
+def draw_turns(family: Family, clock: Clock) -> Iterator[Drawing]:
+    """Draw a node for each step of a round, or state of a rule; in free motion it has its form.
+
+    States of a large rule first have a form for all that are alike.
+    """
     system, lost = family.system, family.system.contact is not None
     places = [CONTACT, FREE] if lost else [CONTACT]
     nodes = tuple(Node(f"{place} {k}", ()) for k in range(clock.length) for place in places)
@@ -281,14 +295,38 @@ def draw_turns(family: Family, clock: Clock) -> Drawing:
         ANY_RATE,
         multipliers=tuple(Multiplier(f"{ROUNDING} {k}", 0) for k in roundings),
     )
+    own = [FormCoordinates(family.exponents, T) for T in _coordinates(family, clock)]
+    if not clock.is_round and clock.length > FEW_STATES:
+        like = _alike(clock)
+        number = {one: i for i, one in enumerate(dict.fromkeys(like))}
+        forms = tuple(number[one] for one in like for _ in places)
+        coordinates = tuple(own[like.index(one)] for one in number)
+        yield Drawing(system, graph, forms, coordinates)
     forms = tuple(k for k in range(clock.length) for _ in places)
-    coordinates = (FormCoordinates(family.exponents, T) for T in _coordinates(family, clock))
-    return Drawing(system, graph, forms, tuple(coordinates))
+    yield Drawing(system, graph, forms, tuple(own))
+
+
+def _alike(clock: Clock) -> list[tuple[int, int]]:
+    """Return for each state how many misses may follow at once, and how long ago the last one was.
+
+    Beyond `LONG_AGO` steps, that makes no difference.
+    """
+    ago = [LONG_AGO] * clock.length
+    for _ in range(LONG_AGO):
+        for state, in_time, target in clock.turns():
+            ago[target] = min(ago[target], ago[state] + 1 if in_time else 0)
+    found = []
+    for state, last in enumerate(ago):
+        more, at = 0, clock.after(state, first=False)
+        while at is not None and more < clock.length:
+            more, at = more + 1, clock.after(at, first=False)
+        found.append((more, last))
+    return found
 
 
 def _turns(family: Family, clock: Clock) -> list[Array]:
     """Return the modes of the first step of a round, and those of the others."""
-    parts = (on_turn(family.system, clock, step) for step in range(2))
+    parts = (on_turn(family.system, clock, first=first) for first in (True, False))
     return [
         scale_states(to_floats([mode.A for mode in part.modes]), family.exponents) for part in parts
     ]
@@ -300,6 +338,10 @@ def _coordinates(family: Family, clock: Clock) -> Iterator[Array]:
     What a mean mode keeps of the state until it is at rest is round in them.
     """
     means = [matrices.mean(axis=0) for matrices in _turns(family, clock)]
+    if not clock.is_round:
+        graph = StepGraph.of_clock(clock, ("in time", "missed"), np.array(means), (True, False))
+        yield from (_apart(family, P) for P in round_forms(graph))
+        return
     each = [means[min(step, 1)] for step in range(clock.length)]
     n = family.system.order
     whole = np.eye(n)
@@ -312,18 +354,25 @@ def _coordinates(family: Family, clock: Clock) -> Iterator[Array]:
     for mean in reversed(each * 2):
         form = np.eye(n) / len(each) + share**2 * mean.T @ form @ mean
         forms.append(form)
-    for P in forms[: -len(each) - 1 : -1]:
-        if family.system.contact is None:
-            yield np.asarray(np.linalg.inv(np.linalg.cholesky(P)).T)
-            continue
-        T = np.zeros_like(P)
-        T[:-1, :-1] = np.linalg.inv(np.linalg.cholesky(P[:-1, :-1])).T
-        T[-1, -1] = 1 / np.sqrt(P[-1, -1])
-        yield T
+    yield from (_apart(family, P) for P in forms[: -len(each) - 1 : -1])
+
+
+def _apart(family: Family, P: Array) -> Array:
+    """Return coordinates in which a form is nearly round, and which leave the deflection alone."""
+    if family.system.contact is None:
+        return np.asarray(np.linalg.inv(np.linalg.cholesky(P)).T)
+    T = np.zeros_like(P)
+    T[:-1, :-1] = np.linalg.inv(np.linalg.cholesky(P[:-1, :-1])).T
+    T[-1, -1] = 1 / np.sqrt(P[-1, -1])
+    return T
 
 
 def _limit(family: Family, clock: Clock) -> float:
-    """Return the contraction per step of the slowest round of like modes."""
+    """Return the contraction per step of the slowest round of like modes, or of the worst word."""
+    if not clock.is_round:
+        graph = turns_graph(family, clock)
+        words = best_words(graph, family.allowance.part(WORDS))
+        return max((growth for _, growth in words), default=0.0)
     first, others = _turns(family, clock)
     rounds = [np.linalg.matrix_power(B, clock.length - 1) @ A for A in first for B in others]
     slowest = max(limit_rate(whole[None], Time.DISCRETE) for whole in rounds)

@@ -1,4 +1,4 @@
-"""Search for a growing signal of whole rounds, where modes take turns (untrusted)."""
+"""Search for a growing signal of whole rounds, or of missed deadlines (untrusted)."""
 
 from __future__ import annotations
 
@@ -11,9 +11,13 @@ from numpy.typing import NDArray
 from nrs_design.proof.evidence import GrowingSequence
 from nrs_design.proof.evidence.growth import Steps
 from nrs_design.proof.mode import Mode
+from nrs_design.proof.switching import Clock
+from nrs_design.search.balance import scale_states
+from nrs_design.search.branches import best_words
 from nrs_design.search.candidates import Candidates
 from nrs_design.search.family import Family, stand_ins, to_floats
-from nrs_design.search.period import NOTHING_GROWS, powers
+from nrs_design.search.period import NOTHING_GROWS, WORDS, powers
+from nrs_design.search.step_graph import StepGraph
 from nrs_design.search.words import growing_words
 
 Array = NDArray[np.float64]
@@ -33,6 +37,11 @@ def search_rounds(family: Family) -> Candidates[GrowingSequence]:
     system, clock = family.system, family.system.clock
     if clock is None:
         return NOTHING_GROWS
+    if not clock.is_round:
+        graph = turns_graph(family, clock)
+        for word, growth in best_words(graph, family.allowance.part(WORDS), 1.0):
+            yield from powers(system, graph.sequence(word)[0], (), growth ** len(word))
+        return NOTHING_GROWS
     first, others = (
         _distinct([mode for mode in system.modes if (mode.name in clock.first) == begins])
         for begins in (True, False)
@@ -50,6 +59,31 @@ def search_rounds(family: Family) -> Candidates[GrowingSequence]:
     for word, radius in growing_words(matrices, family.allowance):
         yield from powers(system, _signal([rounds[i][1] for i in word], rest), (), radius)
     return NOTHING_GROWS
+
+
+def turns_graph(family: Family, clock: Clock) -> StepGraph:
+    """Return the steps that an automaton allows, of modes that differ by no more than rounding.
+
+    Parameters
+    ----------
+    family : Family
+        The modes.
+    clock : Clock
+        The automaton.
+    """
+    system, names = family.system, frozenset(clock.first)
+    kinds = [
+        _distinct([mode for mode in system.modes if (mode.name in names) is first])
+        for first in (True, False)
+    ]
+    modes = [
+        (mode.name, A, first)
+        for first, kind in zip((True, False), kinds, strict=True)
+        for mode, A in kind
+    ]
+    texts, matrices, first = zip(*modes, strict=True)
+    scaled = scale_states(np.array(matrices), family.exponents)
+    return StepGraph.of_clock(clock, texts, scaled, first)
 
 
 def _signal(rounds: list[tuple[str, str]], rest: int) -> Steps:

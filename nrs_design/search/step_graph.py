@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from nrs_design.proof.evidence.growth import Steps
 from nrs_design.proof.mode import Time
+from nrs_design.proof.switching import Clock
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.graph import Graph
 
@@ -90,6 +91,35 @@ class StepGraph:
         has_choice = any(jump.way for jump in graph.jumps)
         each = np.array(maps)[order]
         return cls(names, sources, targets, modes, ways, each, int(first[-1]), has_choice)
+
+    @classmethod
+    def of_clock(
+        cls, clock: Clock, names: Sequence[str], matrices: Array, first: Sequence[bool]
+    ) -> StepGraph:
+        """Return the graph of an automaton: a node is one of its states.
+
+        Parameters
+        ----------
+        clock : Clock
+            The automaton.
+        names : sequence of str
+            Of the modes.
+        matrices : ndarray, shape (m, n, n)
+            The modes.
+        first : sequence of bool
+            Whether each is of the first kind.
+        """
+        rows = [
+            (state, target, k)
+            for state, kind, target in clock.turns()
+            for k, own in enumerate(first)
+            if own is kind
+        ]
+        sources, targets, modes = np.array(rows, dtype=np.int64).T
+        # Every step is a stay of its own.
+        ways = np.zeros_like(modes)
+        count, maps = clock.length, matrices[modes]
+        return cls(tuple(names), sources, targets, modes, ways, maps, count, has_choice=False)
 
     def sequence(self, word: Sequence[int]) -> tuple[Steps, tuple[int, ...]]:
         """Return a closed word as the stays of a signal, with the resets that it takes.

@@ -19,6 +19,7 @@ from nrs_design.proof.enclosure import characteristic_sign, precision
 from nrs_design.proof.evidence import GrowingSequence
 from nrs_design.proof.evidence.growth import Steps, growth_matrix
 from nrs_design.proof.mode import Mode, Time
+from nrs_design.proof.switching import NOWHERE
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.balance import scale_states
 from nrs_design.search.candidates import Candidate, Candidates
@@ -82,7 +83,8 @@ class _Loop:
     touching: NDArray[np.bool_]
     flying: NDArray[np.bool_]
     pulls: Array  # Shape (p, n). Forces.
-    turns: NDArray[np.bool_]  # Shape (length of a round, m). Which modes are on turn at each step.
+    # Shape (states of the clock, m). Where each mode leads; `NOWHERE` if it may not be in force.
+    turns: NDArray[np.int64]
 
     @classmethod
     def of(cls, family: Family) -> _Loop:
@@ -100,10 +102,12 @@ class _Loop:
         rows = [] if contact is None else contact.pulls
         rows = rows if flights is None else flights.pulls
         pulls = [np.ldexp(np.array(row.floats())[0], family.exponents) for row in rows]
-        turns = np.ones((1, len(names)), dtype=bool)
+        turns = np.zeros((1, len(names)), dtype=np.int64)
         if system.clock is not None:
             begins = np.array([name in first for name in names])
-            turns = np.array([begins, *[~begins] * (system.clock.length - 1)])
+            turns = np.full((system.clock.length, len(names)), NOWHERE)
+            for turn, is_first, target in system.clock.turns():
+                turns[turn, begins == is_first] = target
         return cls(
             system,
             names,
@@ -126,23 +130,26 @@ class _Loop:
 
     def sequences(self) -> Iterator[list[int]]:
         """Yield what motions were in while they came back to their direction, larger."""
-        chosen, states, sizes = self._simulated()
-        round_ = len(self.turns)
+        chosen, states, sizes, turns = self._simulated()
+        clock = self.system.clock
+        # A motion that misses deadlines may come back to a state of the rule at any step.
+        round_ = len(self.turns) if clock is None or clock.is_round else 1
         # How much larger, by the motion and the number of steps since.
         for end in range(LENGTH, LENGTH // 2, -max(1, LENGTH // 8)):
             end -= end % round_
             lengths = np.arange(round_, min(LONGEST, end) + 1, round_)
             cosines = np.einsum("ki,lki->lk", states[end], states[end - lengths])
             growth = sizes[end] - sizes[end - lengths]
-            growth = np.where(cosines > NEAR, growth / lengths[:, None], -np.inf)
+            back = (cosines > NEAR) & (turns[end] == turns[end - lengths])
+            growth = np.where(back, growth / lengths[:, None], -np.inf)
             order = np.argsort(-growth, axis=None)[: LOOKS // 4]
             for place in order:
                 k, motion = np.unravel_index(place, growth.shape)
                 if growth[k, motion] > 0:
                     yield _once([int(i) for i in chosen[end - lengths[k] : end, motion]])
 
-    def _simulated(self) -> tuple[NDArray[np.int64], Array, Array]:
-        """Return chosen modes, shape (steps, motions), directions and logarithms of sizes."""
+    def _simulated(self) -> tuple[NDArray[np.int64], Array, Array, NDArray[np.int64]]:
+        """Return chosen modes (steps, motions), directions, logarithms of sizes, and turns."""
         rng = np.random.default_rng(0)
         count, n = len(self.names), self.matrices.shape[1]
         pairs = [*product(np.flatnonzero(self.touching), np.flatnonzero(self.flying))]
@@ -155,17 +162,20 @@ class _Loop:
         chosen = np.zeros((LENGTH, MOTIONS), dtype=np.int64)
         states, sizes = np.zeros((LENGTH + 1, MOTIONS, n)), np.zeros((LENGTH + 1, MOTIONS))
         states[0] = x
+        turns = np.zeros((LENGTH + 1, MOTIONS), dtype=np.int64)
         for step in range(LENGTH):
             images = np.einsum("mij,kj->kmi", self.matrices, x)
             value = np.linalg.norm(images, axis=2)
             value = np.where(favoured, np.inf, value)
             guess = random[:, None] & (rng.uniform(size=(MOTIONS, 1)) < SHARE)
             value = np.where(guess, rng.uniform(size=value.shape), value)
-            possible = self.allowed(x) & self.turns[step % len(self.turns)]
+            ahead = self.turns[turns[step]]
+            possible = self.allowed(x) & (ahead != NOWHERE)
             # Where no mode is on turn for these signs, any of the turn is followed.
-            possible |= ~possible.any(axis=1)[:, None] & self.turns[step % len(self.turns)]
+            possible |= ~possible.any(axis=1)[:, None] & (ahead != NOWHERE)
             chosen[step] = np.where(possible, value, -np.inf).argmax(axis=1)
             x = images[np.arange(MOTIONS), chosen[step]]
+            turns[step + 1] = ahead[np.arange(MOTIONS), chosen[step]]
             size = np.linalg.norm(x, axis=1)
             moving = np.column_stack([x[:, :-1], np.maximum(x[:, -1], 0)])
             rests = ~(np.linalg.norm(moving, axis=1) > AT_REST * size)
@@ -174,7 +184,7 @@ class _Loop:
             sizes[step + 1] = np.where(rests, -np.inf, sizes[step] + np.log(size))
             sizes[step + 1] = np.where(np.isfinite(sizes[step + 1]), sizes[step + 1], 0.0)
             states[step + 1] = x
-        return chosen, states, sizes
+        return chosen, states, sizes, turns
 
     def candidates(self, sequence: Sequence[int]) -> Iterator[Candidate[GrowingSequence]]:
         """Yield a sequence, for every eigenvalue that grows along a motion with its signs."""

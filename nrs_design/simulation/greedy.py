@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from nrs_design.proof.mode import Time
+from nrs_design.proof.switching import NOWHERE
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.simulation.norms import Array, Indices, Norm
 from nrs_design.simulation.saturation import saturated_step
@@ -32,17 +33,17 @@ def greedy_run(
 
     Modes in contact are possible while the deflection, the last state, is positive, and free modes
     while it is not; in continuous time contact changes at the end of a step only, so steps must be
-    short. A mode of a clock is possible in its turn. It is a bad run, not the worst one: nothing is
-    proved by it.
+    short. A mode of a clock is possible where that allows it. It is a bad run, not the worst one:
+    nothing is proved by it.
 
     Parameters
     ----------
     system : SwitchedSystem
         Modes of one size, without resets.
     norms : callable, or sequence of callable
-        What to make large, of states of shape (..., n); with a clock, one for each of its steps.
+        What to make large, of states of shape (..., n); with a clock, one for each of its states.
     initial : ndarray, shape (n,)
-        State at time zero, where a round of the clock begins.
+        State at time zero, where a round of the clock begins, or no deadline has been missed.
     step : float
         Time between decisions, in s; one in discrete time.
     steps : int
@@ -55,15 +56,20 @@ def greedy_run(
     """
     each = [norms] if callable(norms) else list(norms)
     possible, advance = _possible(system), _advance(system, step)
-    states, chosen = [initial], []
-    for t in range(steps):
-        kept = possible(t, states[-1])
+    states, chosen, turns = [initial], [], [0]
+    for _ in range(steps):
+        kept, ahead = possible(turns[-1], states[-1])
         candidates = advance(states[-1], kept)
-        best = int(each[(t + 1) % len(each)](candidates).argmax())
+        values = np.empty(len(kept))
+        for turn in {*ahead.tolist()}:
+            values[ahead == turn] = each[turn % len(each)](candidates[ahead == turn])
+        best = int(values.argmax())
         chosen.append(int(kept[best]))
+        turns.append(int(ahead[best]))
         states.append(candidates[best])
     unit = 1.0 if system.time is Time.DISCRETE else step
-    return SwitchedRun(sampling_instants(unit, steps), np.array(states), np.array(chosen))
+    instants = sampling_instants(unit, steps)
+    return SwitchedRun(instants, np.array(states), np.array(chosen), np.array(turns))
 
 
 def relative_norms(run: SwitchedRun, norms: Norm | Sequence[Norm]) -> Array:
@@ -79,20 +85,33 @@ def relative_norms(run: SwitchedRun, norms: Norm | Sequence[Norm]) -> Array:
     if callable(norms):
         values = norms(run.state)
     else:
-        values = np.array([norms[t % len(norms)](x) for t, x in enumerate(run.state)])
+        assert run.turn is not None
+        pairs = zip(run.turn.tolist(), run.state, strict=True)
+        values = np.array([norms[turn](x) for turn, x in pairs])
     return np.asarray(values / values[0])
 
 
-def _possible(system: SwitchedSystem) -> Callable[[int, Array], Indices]:
-    """Return the function from a step and a state to the modes that may be taken."""
+def _possible(system: SwitchedSystem) -> Callable[[int, Array], tuple[Indices, Indices]]:
+    """Return the function from the turn and a state to the modes that may be taken.
+
+    With each it returns the turn after it.
+    """
     modes, clock = all_modes(system).modes, system.clock
     free = np.arange(len(modes)) >= len(system.modes)
-    begins = np.array([clock is None or mode.name in clock.first for mode in modes])
+    first = np.array([clock is None or mode.name in clock.first for mode in modes])
 
-    def possible(t: int, x: Array) -> Indices:
-        turn = clock is None or t % clock.length == 0
+    def possible(turn: int, x: Array) -> tuple[Indices, Indices]:
         lost = bool(free.any()) and x[-1] <= 0
-        return np.flatnonzero((begins == turn) & (free == lost))
+        felt = free == lost
+        if clock is None:
+            kept = np.flatnonzero(felt)
+            return kept, np.zeros_like(kept)
+        ahead = np.full(len(modes), NOWHERE)
+        for kind in (True, False):
+            if (target := clock.after(turn, first=kind)) is not None:
+                ahead[first == kind] = target
+        kept = np.flatnonzero(felt & (ahead != NOWHERE))
+        return kept, ahead[kept]
 
     return possible
 

@@ -78,12 +78,10 @@ def run_axes(
     first = axes[0]
     wanted = math.floor(first.scenario.duration / first.T + 1e-9) + 1
     count = min(wanted, max_steps)
-    inputs = [SampleInputs.of(a.scenario, first.T, a.delay, a.late, count) for a in axes]
+    inputs = [SampleInputs.of(a.scenario, first.T, a.delay, a.late, a.misses, count) for a in axes]
     instants = [*inputs[0].times.tolist(), float(inputs[0].times[-1]) + first.T]
-    rows = [
-        list(zip(*(of.tolist() for of in (f.hand, f.noise, f.ages, f.lates)), strict=True))
-        for f in inputs
-    ]
+    drawn = [(f.hand, f.noise, f.ages, f.lates, f.missed) for f in inputs]
+    rows = [list(zip(*(column.tolist() for column in f), strict=True)) for f in drawn]
     stopped = None
     if count < wanted:
         stopped = f"{max_steps} samples by {instants[count - 1]:.6g} s: the budget is used up"

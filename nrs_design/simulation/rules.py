@@ -96,16 +96,17 @@ def _counts(stay: Stay, step: Fraction) -> tuple[int, int | None] | None:
 
 
 def _turns(system: SwitchedSystem, clock: Clock, identity: Array) -> Rules:
-    """Return a node for each step of a round, the first of which any run may begin with.
+    """Return a node for each state of a clock, the first of which any run may begin with.
 
     A run from rest may rest in the first steps, so it may as well begin with the others.
     """
     actions: dict[tuple[int, int, int], int] = {}
     after: dict[int, list[int]] = {}
-    for node in range(clock.length):
-        target = (node + 1) % clock.length
-        own = [k for k, m in enumerate(system.modes) if (m.name in clock.first) == (node == 0)]
-        after[node] = [actions.setdefault((k, 0, target), len(actions)) for k in own]
+    first = [mode.name in clock.first for mode in system.modes]
+    for node, kind, target in clock.turns():
+        own = [k for k, of_first in enumerate(first) if of_first is kind]
+        found = [actions.setdefault((k, 0, target), len(actions)) for k in own]
+        after.setdefault(node, []).extend(found)
     return _packed(actions, [identity[0]], after)
 
 

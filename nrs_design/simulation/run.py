@@ -75,6 +75,8 @@ class Run:
     outer: float | None = None  # Period of filter and admittance in s, which may be another
     deviation: Deviation | None = None  # From the sampled engine, where another one was asked for
 
+    missed: int | None = None  # Samples whose deadline was missed; None where the spec has none
+
     @property
     def chatter(self) -> int:
         """How many times a controller was left within `CHATTER` of its switch."""

@@ -78,4 +78,11 @@ def sampled_axis(
     turns = Turns(int(period / sampling.step), int(outer / sampling.step))
     shortest, longest = map(float, spec.late)
     late = shortest, longest
-    return SampledAxis(plant, design, scenario, program, sampling.step, sampling.delay, turns, late)
+    if sampling.misses is not None and outer != period:
+        raise DesignError(
+            "missed deadlines are simulated for one period of all loops",
+            remedy="leave outer_period out",
+            at=("sampling", "misses"),
+        )
+    times, misses = (sampling.step, sampling.delay), sampling.misses
+    return SampledAxis(plant, design, scenario, program, *times, turns, late, misses)

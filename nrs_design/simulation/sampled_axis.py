@@ -33,9 +33,12 @@ from nrs_design.simulation.scenario import (
 from nrs_design.simulation.step_program import StepProgram
 from nrs_design.simulation.time_response import Signal, TimeResponse, on_axis
 from nrs_design.simulation.tissue import Tissue
+from nrs_design.spec.misses import DeadlinesSpec, automaton_of
 
 # Parts of a step, where tissue moves by itself or loads the motor.
 PARTS = 8
+# Of the samples whose deadline may be missed, the share that is.
+MISSED = 0.5
 # What the motion loop keeps from one of its samples to the next; all else is of the outer loop.
 _OF_MOTION = frozenset({"error_before"})
 _OUTPUTS = (
@@ -67,6 +70,7 @@ class SampleInputs:
     noise: Array
     ages: NDArray[np.int64]  # Shape (N,). Of the force samples.
     lates: Array  # Shape (N,). From a sample to its command, in s.
+    missed: NDArray[np.bool_]  # Shape (N,). Samples whose deadline is missed.
 
     @classmethod
     def of(
@@ -75,6 +79,7 @@ class SampleInputs:
         period: float,
         delay: tuple[int, int],
         late: tuple[float, float],
+        misses: DeadlinesSpec | None,
         count: int,
     ) -> SampleInputs:
         """Draw it from the seed of the scenario.
@@ -89,6 +94,8 @@ class SampleInputs:
             Smallest and largest age.
         late : tuple of (float, float)
             Shortest and longest time from a sample to its command, in s.
+        misses : DeadlinesSpec or None
+            The rule for misses: where it allows one, every second sample or so is missed.
         count : int
             Number of samples N.
         """
@@ -98,7 +105,14 @@ class SampleInputs:
         ages = rng.integers(delay[0], delay[1] + 1, count)
         times = period * np.arange(count) + shifted
         lates = late[0] + (late[1] - late[0]) * rng.random(count)
-        return cls(times, scenario.profile.at(times), noise, ages, lates)
+        missed = np.zeros(count, dtype=bool)
+        if misses is not None:
+            wanted, automaton, state = rng.random(count) < MISSED, automaton_of(*misses.window), 0
+            for k in range(count):
+                after = automaton.miss[state]
+                missed[k] = wanted[k] and after is not None
+                state = automaton.hit[state] if after is None or not wanted[k] else after
+        return cls(times, scenario.profile.at(times), noise, ages, lates, missed)
 
 
 @dataclass
@@ -115,6 +129,7 @@ class SampledAxis:
     turns: Turns = Turns()  # Which samples are those of the motion loop, and of the outer one
     # Shortest and longest time from a sample to where its command takes effect, in s.
     late: tuple[float, float] = (0.0, 0.0)
+    misses: DeadlinesSpec | None = None  # How many deadlines are missed, and what happens then
 
     def __post_init__(self) -> None:
         """Begin at rest, free of contact."""
@@ -182,9 +197,12 @@ class SampledAxis:
             self.saturated,
             stopped,
             outer=float(self.turns.outer * self.period),
+            missed=None if self.misses is None else int(inputs.missed[: len(self.rows)].sum()),
         )
 
-    def sample(self, t: float, hand: float, noise: float, age: int, late: float) -> float:
+    def sample(
+        self, t: float, hand: float, noise: float, age: int, late: float, missed: bool
+    ) -> float:
         """Run the law once; return its command.
 
         Parameters
@@ -197,6 +215,8 @@ class SampledAxis:
             Of the force sample.
         late : float
             After how long its command takes effect, in s.
+        missed : bool
+            Whether its deadline is missed: the law is not run, and the command is held or zero.
         """
         tissue, errors = self.tissue, self.scenario.errors
         torque = tissue.torque(self.theta, self.omega)
@@ -206,6 +226,9 @@ class SampledAxis:
         if outer:
             self.buffer.appendleft(_coarse(torque + noise, errors.force_step))
         felt = self.buffer[age]
+        if missed:
+            assert self.misses is not None
+            return self._miss(hand, torque, depths, late, holds=self.misses.command == "hold")
         if outer:
             self._decide(t, hand, felt, depths)
         seen = {
@@ -237,6 +260,19 @@ class SampledAxis:
             self.commanded += self.T * hand
         self.sent.append((late, command))
         return command
+
+    def _miss(
+        self, hand: float, torque: float, depths: list[float], late: float, *, holds: bool
+    ) -> float:
+        """Send what is sent in the place of a command that was not computed."""
+        self.command = self.command if holds else 0.0
+        now = (self.theta, self.omega, torque, max(0.0, *depths, 0.0), self.command)
+        self.rows.append((self.modes[self.controller], *now, *map(float, self.states)))
+        if not self.holds[self.controller]:
+            self.commanded += self.T * hand
+        self.sent.append((late, self.command))
+        self.turn += 1
+        return self.command
 
     def _decide(self, t: float, hand: float, felt: float, depths: list[float]) -> None:
         """Let schedule and mode logic choose, by what they see at this sample."""

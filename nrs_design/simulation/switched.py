@@ -31,6 +31,8 @@ class SwitchedRun:
     # differ in size, a smaller state is filled up with zeros.
     state: Array
     mode: NDArray[np.int64]  # Shape (N,). Index of the mode that was active in each interval.
+    # Shape (N + 1,). Where modes take turns or miss deadlines, the state of that clock.
+    turn: NDArray[np.int64] | None = None
 
 
 def transition_matrices(system: SwitchedSystem, step: float) -> Array:

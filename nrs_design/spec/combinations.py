@@ -34,6 +34,7 @@ from nrs_design.spec.features import (
     LOADED_ALONE,
     LOSABLE,
     MEMORY,
+    MISSES,
     MOBILE,
     MODE_LOGIC,
     MOTOR_RANGE,
@@ -121,6 +122,8 @@ COMBINATIONS: tuple[Row[Spec], ...] = (
     *_beside(SAMPLED_DWELL, SAMPLED),
     *(not_together(DWELL, *features) for features in CHANGING),
     *_beside(TWO_PERIODS, OTHERS, RULES),
+    # The rule for misses decides what may follow what; its proof is of one axis.
+    *_beside(MISSES, TWO_PERIODS, RULES, OTHERS, COUPLED, SAFE, CONSTANT_MOTOR, CONSTANT_TISSUE),
     # The proof of the layer takes a motor that nothing loads, driven by its reference alone.
     *_beside(SAFE, LOADED, COUPLED, OTHERS, TWO_PERIODS, CONTINUOUS, GIVEN_LOOP, AT_ONCE),
     # Its command is a velocity, and nothing stands where a reference would.
@@ -151,7 +154,7 @@ COMBINATIONS: tuple[Row[Spec], ...] = (
     not_together(SATURATED, COUPLED, CONTINUOUS),
     not_together(SATURATED, OTHERS, CONTINUOUS),
     *_beside(SATURATED, TWO_PERIODS, GIVEN_LOOP, FORCE_COORDINATES, SPRUNG, IDLE_RESET),
-    *_beside(SATURATED, AT_ONCE, SAFE, TORQUES),
+    *_beside(SATURATED, AT_ONCE, SAFE, TORQUES, MISSES),
     *_beside(SATURATED, MEMORY, HAND, PRELOADED),
     not_together(SATURATED, DAMPED, NOT_KEPT),
 )

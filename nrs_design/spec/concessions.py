@@ -166,6 +166,8 @@ def _left_out(spec: InteractionDesignSpec) -> Iterator[Concession]:
             yield _without(("sampling",), other_loop=True, in_all=False)
     if spec.sampling is not None and spec.sampling.outer_period is not None:
         yield _without(("sampling", "outer_period"), other_loop=True)
+    if spec.sampling is not None and spec.sampling.misses is not None:
+        yield _without(("sampling", "misses"))
 
 
 def _with(at: Keys, word: str, asked: str) -> Concession:

@@ -204,6 +204,9 @@ def _sampling(sampling: SamplingSpec) -> Iterator[Line]:
     yield Line("sampling.delay", delay, "", "samples")
     yield from _times("sampling.latency", sampling.latency)
     yield from describe_model(sampling.jitter, "sampling.jitter")
+    if (misses := sampling.misses) is not None:
+        how = f"command: {misses.command}, job: {misses.job}"
+        yield Line("sampling.misses", f"at most {misses}", how, "")
     yield Line("sampling.admittance", sampling.admittance, "", "")
     yield from _provenance("sampling", sampling)
 

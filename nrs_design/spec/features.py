@@ -143,6 +143,12 @@ TWO_PERIODS = _F(
     "leave outer_period out",
     lambda s: s.sampling is not None and s.sampling.round > 1,
 )
+MISSES = _F(
+    "missed deadlines",
+    "sampling.misses",
+    "leave misses out",
+    lambda s: s.sampling is not None and s.sampling.misses is not None,
+)
 TIMED = _F(
     "the {0[1]}",
     "{0[0]}.{0[1]}",

@@ -15,6 +15,7 @@ from nrs_design.spec.features import (
     DISTURBED,
     LOSABLE,
     MEMORY,
+    MISSES,
     OTHERS,
     RESTLESS,
     SPRUNG,
@@ -140,6 +141,13 @@ INTERACTION_DOUBTS: tuple[Row[Spec], ...] = (
         "beside an outer_period, the decay of the undisturbed loop is proved, and no bound under "
         "disturbances",
         "bounds of the loop without outer_period are listed; or remove disturbances",
+    ),
+    Row(
+        "disturbances",
+        lambda s: MISSES.find(s) and DISTURBED.find(s),
+        "beside missed deadlines, the decay of the undisturbed loop is proved, and no bound under "
+        "disturbances",
+        "bounds of the loop without misses are listed; or remove disturbances",
     ),
     Row(
         "coupling",

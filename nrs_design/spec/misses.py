@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from itertools import takewhile
 from math import comb
-from typing import Annotated
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field
 
@@ -21,10 +21,49 @@ MOST_STATES = 1000
 _Count = Annotated[int, whole(1, MOST_STEPS)]
 
 
-class MissesSpec(SpecModel):
-    """In any so many steps in a row, at most some are in the mode of a miss."""
+def _checks(example: str, otherwise: str) -> tuple[Row[Any], ...]:
+    """Return what a rule must be.
 
-    mode: Label = Field(description="name of the mode that a missed deadline brings about")
+    Parameters
+    ----------
+    example : str
+        What stands in a rule beside its numbers, with a comma.
+    otherwise : str
+        What to write where all may be missed.
+    """
+    return (
+        Row(
+            "",
+            lambda s: (s.consecutive is None) == (s.at_most is None and s.of is None),
+            "a rule for misses is a window, or a number of misses in a row",
+            f"write `{{{{{example}at_most: 2, of: 10}}}}`, or `{{{{{example}consecutive: 3}}}}`",
+        ),
+        Row(
+            "",
+            lambda s: s.consecutive is None and (s.at_most is None) != (s.of is None),
+            "at_most and of belong together",
+            "write both, such as `at_most: 2, of: 10`",
+        ),
+        Row(
+            "of",
+            lambda s: None not in (s.at_most, s.of) and s.of <= s.at_most and (s.of, s.at_most),
+            "of any {0} steps, at most {1} may be missed: that is every one",
+            f"write a longer window{otherwise}",
+        ),
+        Row(
+            "of",
+            lambda s: (
+                None not in (s.at_most, s.of) and (n := comb(s.of, s.at_most)) > MOST_STATES and n
+            ),
+            f"the rule has {{0}} states, at most {MOST_STATES} are built",
+            "write a shorter window",
+        ),
+    )
+
+
+class MissRuleSpec(SpecModel):
+    """In any so many steps in a row, at most some are missed."""
+
     at_most: _Count | None = optional("how many of `of` steps in a row may be missed")
     of: _Count | None = optional("length of the window, in steps")
     consecutive: _Count | None = optional(
@@ -46,7 +85,7 @@ class MissesSpec(SpecModel):
         most, of = self.window
         return comb(of, most)
 
-    def with_misses(self, number: int) -> MissesSpec:
+    def with_misses(self, number: int) -> Self:
         """Return the rule with another number of misses, in the same window or in a row.
 
         Parameters
@@ -57,38 +96,63 @@ class MissesSpec(SpecModel):
         what = "at_most" if self.consecutive is None else "consecutive"
         return self.model_copy(update={what: number})
 
+    def said(self, of: str) -> str:
+        """Say the rule in a few words, such as ``at most 2 of any 10 periods in a row``.
+
+        Parameters
+        ----------
+        of : str
+            What may be missed, in the singular.
+        """
+        if self.consecutive is not None:
+            return f"at most {self.consecutive} {of}{'s' * (self.consecutive > 1)} in a row"
+        return f"at most {self.at_most} of any {self.of} {of}s in a row"
+
+
+class MissesSpec(MissRuleSpec):
+    """In any so many steps in a row, at most some are in the mode of a miss."""
+
+    mode: Label = Field(description="name of the mode that a missed deadline brings about")
+
     def __str__(self) -> str:
         """Say the rule in a few words."""
-        if self.consecutive is not None:
-            return f"at most {self.consecutive} steps in a row in {self.mode}"
-        return f"at most {self.at_most} of any {self.of} steps in a row in {self.mode}"
+        return f"{self.said('step')} in {self.mode}"
+
+    checks = _checks("mode: miss, ", ", or `switching: arbitrary`")
+
+
+class DeadlinesSpec(MissRuleSpec):
+    """How many periods of a sampled loop may miss their deadline, and what happens in these.
+
+    A job that misses is dropped (kill): the law keeps its states, and there is no new command. The
+    drive is held or zeroed meanwhile (Maggio et al., Control-System Stability under Consecutive
+    Deadline Misses Constraints, 2020).
+    """
+
+    command: Literal["hold", "zero"] = Field(
+        description="what the drive follows in a period whose deadline is missed: `hold` the "
+        "command of the period before, or `zero`, a command of zero"
+    )
+    job: Literal["kill", "skip"] = Field(
+        default="kill",
+        description="what becomes of a job that misses its deadline: `kill` drops it, and the law "
+        "keeps its states; `skip`, which lets it go on, is refused with what to write instead",
+    )
+
+    def __str__(self) -> str:
+        """Say the rule in a few words."""
+        # Without the words before the number, as sentences go on with it.
+        return self.said("period").removeprefix("at most ")
 
     checks = (
+        *_checks("command: hold, ", ""),
         Row(
-            "",
-            lambda s: (s.consecutive is None) == (s.at_most is None and s.of is None),
-            "a rule for misses is a window, or a number of misses in a row",
-            "write `{{mode: miss, at_most: 2, of: 10}}`, or `{{mode: miss, consecutive: 3}}`",
-        ),
-        Row(
-            "",
-            lambda s: s.consecutive is None and (s.at_most is None) != (s.of is None),
-            "at_most and of belong together",
-            "write both, such as `at_most: 2, of: 10`",
-        ),
-        Row(
-            "of",
-            lambda s: None not in (s.at_most, s.of) and s.of <= s.at_most and (s.of, s.at_most),
-            "of any {0} steps, at most {1} may be missed: that is every one",
-            "write a longer window, or `switching: arbitrary`",
-        ),
-        Row(
-            "of",
-            lambda s: (
-                None not in (s.at_most, s.of) and (n := comb(s.of, s.at_most)) > MOST_STATES and n
-            ),
-            f"the rule has {{0}} states, at most {MOST_STATES} are built",
-            "write a shorter window",
+            "job",
+            lambda s: s.job == "skip",
+            "a job that goes on after its deadline is not modelled as a miss of its own",
+            "write `job: kill`, and as `latency` the range of times to the command of a job that "
+            "goes on, such as `latency: [0 ms, 4 ms]`: the period that it skips is the one that "
+            "counts as missed",
         ),
     )
 

@@ -12,6 +12,7 @@ from nrs_design.proof.text import exact_text
 from nrs_design.spec.check import Row
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import read_exact
+from nrs_design.spec.misses import DeadlinesSpec
 from nrs_design.spec.model import ReadBy, SpecModel, optional
 from nrs_design.spec.provenance import IdentifiedSpec
 from nrs_design.spec.quantity_fields import (
@@ -92,6 +93,9 @@ class SamplingSpec(IdentifiedSpec):
         "time between two samples of the outer loop (filter of the force and "
         "admittance) in s, where it is not that of the motion loop: a whole number of its "
         "periods, or a whole part of one; `delay` counts samples of the force, so these"
+    )
+    misses: DeadlinesSpec | None = optional(
+        "how many periods may miss their deadline, and what happens in these; default: none"
     )
     admittance: Literal["exact", "euler"] = Field(
         default="exact",

@@ -8,7 +8,7 @@ another motor, and neither more nor less.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -149,7 +149,7 @@ def _of_keys(before: dict[str, Data], after: dict[str, Data], at: Place) -> Iter
             yield from _changes(said, after[key], here)
         else:
             keys = _keys(here)
-            weaker = (_ASSUMED | _BESIDE).isdisjoint(keys)
+            weaker = not _is_assumed(keys) and _BESIDE.isdisjoint(keys)
             if keys[-1] in _UNSAID:
                 weaker &= _word(said) == _STRONGER[keys[-1]]
             yield Change(here, f"{_name(here)} is gone, {_said(said)} before", weaker)
@@ -157,9 +157,14 @@ def _of_keys(before: dict[str, Data], after: dict[str, Data], at: Place) -> Iter
         if key not in before:
             here = (*at, key)
             keys = _keys(here)
-            weaker = not _ASSUMED.isdisjoint(keys)
+            weaker = _is_assumed(keys)
             weaker |= keys[-1] in _UNSAID and _word(said) != _STRONGER[keys[-1]]
             yield Change(here, f"{_name(here)} is new: {_said(said)}", weaker)
+
+
+def _is_assumed(keys: Sequence[str]) -> bool:
+    """Tell whether a part is assumed of switching; that a sampled loop misses must be borne."""
+    return not (_ASSUMED - {"misses" if "sampling" in keys else ""}).isdisjoint(keys)
 
 
 def _of_lists(
@@ -225,7 +230,8 @@ def _is_weaker(before: Data, after: Data, at: Place) -> bool:
         return True
     goal = "goals" in path
     most = (goal and key.startswith("max_")) or not _AT_MOST.isdisjoint(path) or _is_limit(path)
-    least = (goal and key.startswith("min_")) or not _AT_LEAST.isdisjoint(path) or _is_borne(path)
+    borne = _is_borne(path) and key not in _AT_MOST
+    least = (goal and key.startswith("min_")) or not _AT_LEAST.isdisjoint(path) or borne
     if at[:2] == _PEOPLE:
         most, least = key in _ALLOWS_MORE, key in _ASSUMES_MORE
         if key == "body_mass" and _number(before) != _number(after):

@@ -7,10 +7,12 @@ from fractions import Fraction
 
 from nrs_design.errors import AssemblyError
 from nrs_design.proof.mode import Mode
-from nrs_design.proof.switching import Stay, Switching
-from nrs_design.spec.misses import MissesSpec, automaton_of
+from nrs_design.proof.switching import NOWHERE, Clock, Stay, Switching
+from nrs_design.spec.misses import MissAutomaton, MissesSpec, automaton_of
 
 MAX_TRANSITIONS = 200_000
+# What modes of a sampled loop are called whose deadline is missed.
+MISS = "miss"
 ONCE = Stay(Fraction(1), Fraction(1))
 
 
@@ -66,3 +68,18 @@ def modes_with_misses(
                 stays.append((source.name, ONCE))
     modes = tuple(mode for corners in reached.values() for mode in corners)
     return modes, Switching(Fraction(1), tuple(transitions), stays=tuple(stays))
+
+
+def clock_of(automaton: MissAutomaton, in_time: tuple[str, ...]) -> Clock:
+    """Return which modes may be in force at a step, by the automaton of a rule.
+
+    Parameters
+    ----------
+    automaton : MissAutomaton
+        Of the rule.
+    in_time : tuple of str
+        The modes of a step that is no miss; all others are misses.
+    """
+    pairs = zip(automaton.hit, automaton.miss, strict=True)
+    ahead = ((hit, NOWHERE if miss is None else miss) for hit, miss in pairs)
+    return Clock(automaton.count, in_time, tuple(ahead))

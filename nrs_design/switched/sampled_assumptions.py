@@ -16,6 +16,7 @@ from nrs_design.models.drive import Drive, Takes
 from nrs_design.models.interval import may_change
 from nrs_design.proof.bounds import rounded_down
 from nrs_design.proof.text import exact_text
+from nrs_design.spec.misses import DeadlinesSpec
 from nrs_design.spec.operating import OperatingConditions
 from nrs_design.spec.sampling import SamplingSpec
 from nrs_design.switched.assumption import Assumption, say
@@ -92,6 +93,7 @@ def assume_sampled(
     inputs = "sampled-position" if "under force control" in loss else "sampled"
     return (
         *_period_texts(sampling, design),
+        *_deadline_texts(sampling.misses),
         *_late_texts(frame.timing, conditions.constant_late),
         _delay_text(*sampling.delay),
         _motor_text(ranges, frame, conditions.axis),
@@ -105,7 +107,11 @@ def assume_sampled(
         say("tissue.linear", ranges_text(environments, conditions.axis)),
         *_loss_texts(loss, design, frame),
         say("at-a-switch.sampled", states="All other states are" if reset else "States are"),
-        *rule_texts(conditions.switching, "controller"),
+        *(
+            rule_texts(conditions.switching, "controller")
+            if sampling.misses is None
+            else (say("any-signal.in-time"),)
+        ),
         say("numbers.coefficients", coefficients=_coefficients(frame, gains)),
         *(() if frame.step.takes else command_texts(design.command, design.axis)),
         *_retuned_texts(gains),
@@ -129,6 +135,12 @@ def _period_texts(sampling: SamplingSpec, design: ControllerDesign) -> Iterator[
     bound = f"{period} s and {outer} s, exactly"
     yield say("period.double", bound, period=period, outer=outer, filtered=filtered)
     yield say("period.order", "the order that is named")
+
+
+def _deadline_texts(misses: DeadlinesSpec | None) -> Iterator[Assumption]:
+    """Say how many deadlines are missed, and what happens then."""
+    if misses is not None:
+        yield say(f"deadlines.{misses.command}", f"at most {misses}", rule=misses)
 
 
 def _late_texts(timing: CommandTiming, constant: str | None) -> Iterator[Assumption]:

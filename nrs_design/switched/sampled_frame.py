@@ -13,12 +13,12 @@ that is held stands after e_before.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from fractions import Fraction
 from functools import lru_cache
-from itertools import takewhile
+from itertools import chain, takewhile
 from typing import TypeVar
 
 from nrs_design.controllers.laws import DiscreteLaw
@@ -78,6 +78,14 @@ class Turn(StrEnum):
     BOTH = "both"
     MOTION = "motion"
     ADMITTANCE = "admittance"
+    # Its deadline is missed: nothing is computed, and the drive is held, or told to stand still.
+    HELD = "miss, held"
+    ZEROED = "miss, zeroed"
+
+    @property
+    def is_miss(self) -> bool:
+        """Whether a deadline is missed."""
+        return self in (Turn.HELD, Turn.ZEROED)
 
 
 @dataclass(frozen=True, slots=True)
@@ -143,8 +151,8 @@ class Frame:
 
     @property
     def holds(self) -> bool:
-        """Whether the command outlasts a sample, at which the motion loop computes nothing."""
-        return Turn.ADMITTANCE in self.turns
+        """Whether the command outlasts a sample, and no command of before is a state anyway."""
+        return Turn.ADMITTANCE in self.turns or (Turn.HELD in self.turns and not self._sent)
 
     @property
     def stored(self) -> dict[str, str]:
@@ -219,8 +227,8 @@ class Frame:
             *reference,
             *(_state(made, self.motor, name, numbers) for name, numbers in taken.items()),
             *([made.after[BEFORE]] if BEFORE in made.after else []),
-            *([made.sent[0]] if self.holds else []),
-            *(combine((ONE, u), (-ONE, delta)) if self._placed else u for u in made.sent[:-1]),
+            *(self._counted(made.sent[0], delta) if self.holds else ()),
+            *chain.from_iterable(self._counted(u, delta) for u in made.sent[:-1]),
             *others,
             *ages[: self.longest_delay],
             delta,
@@ -228,6 +236,10 @@ class Frame:
             made.drive,
             _slip(made, self.motor, values),
         ]
+
+    def _counted(self, u: LinearForm, delta: LinearForm) -> Iterator[LinearForm]:
+        """Yield a command as a state: a position counts from the deflection after the period."""
+        yield combine((ONE, u), (-ONE, delta)) if self._placed else u
 
     def command(self) -> tuple[LinearForm, Sequence[LinearForm]]:
         """Return the command of the motion loop, and how large each rounding in it is at most.
@@ -291,6 +303,10 @@ def _sample(
     step = frame._step(law, at.samples[delay - 1] if delay else _force(frame, *contact))
     nothing = zero(len(at[DELTA]))
     after, drive = dict(at.states), at.forms.get(HELD, nothing)
+    if turn.is_miss:
+        # Of commands that are on their way, the newest is sent again.
+        held = at[HELD if frame.holds else frame._sent[0]] if turn is Turn.HELD else nothing
+        return _made(frame, after, held, nothing, [nothing for _ in shares], at)
     cut = at[CUT_OFF] if turn is not Turn.ADMITTANCE else nothing
     sizes: dict[str, LinearForm] = {}
     following = frame.listed.following
@@ -307,6 +323,18 @@ def _sample(
         moved = (ONE if law.law.commands == "velocity" else ZERO, at[REFERENCE])
         after |= {name: combine((ONE, after[name]), moved) for name in _places(after)}
         sizes |= step.other_sizes(retuned=retuned)
+    return _made(frame, after, drive, cut, [sizes.get(name, nothing) for name in shares], at)
+
+
+def _made(
+    frame: Frame,
+    after: Mapping[str, LinearForm],
+    drive: LinearForm,
+    cut: LinearForm,
+    sizes: Sequence[LinearForm],
+    at: _Signals,
+) -> _Sample:
+    """Return what a sample makes of a state, with the commands that act in its period."""
     sent = [combine((ONE, drive), (ONE, cut)), *(at[name] for name in frame._sent)]
     ages = frame.timing.within
     given = Commands(
@@ -315,7 +343,7 @@ def _sample(
         combine((ONE, sent[-1]), (ONE, at["friction"])),
         tuple(combine((ONE, sent[age]), (-ONE, sent[age + 1])) for age in ages),
     )
-    return _Sample(after, drive, [sizes.get(name, nothing) for name in shares], at, sent, given)
+    return _Sample(after, drive, sizes, at, sent, given)
 
 
 @lru_cache(maxsize=64)
@@ -386,7 +414,8 @@ class _Signals:
         names = (*frame.states, *INPUTS)
         unit = coordinates(len(names) + len(shares))
         forms = dict(zip(names, unit, strict=False))
-        for name in frame._sent if frame._placed else ():
+        positions = (*frame._sent, *([HELD] if frame.holds else [])) if frame._placed else ()
+        for name in positions:
             forms[name] = combine((ONE, forms[name]), (ONE, forms[DELTA]))
         states = {name: forms[text] for name, text in frame.stored.items()}
         if ALONE in states:

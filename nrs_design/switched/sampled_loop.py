@@ -24,6 +24,7 @@ from nrs_design.proof.switching import Clock
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.spec import IdleStatesSpec
 from nrs_design.spec.interaction_parts import FREE
+from nrs_design.spec.misses import automaton_of
 from nrs_design.spec.operating import OperatingConditions
 from nrs_design.spec.sampling import SamplingSpec
 from nrs_design.switched.assumptions import at_once_texts
@@ -40,6 +41,7 @@ from nrs_design.switched.free_motion import (
 from nrs_design.switched.gain_box import GainBox, RangedLaw
 from nrs_design.switched.held_drive import HeldDrive
 from nrs_design.switched.held_motor import HeldMotor, hold
+from nrs_design.switched.misses import MISS, clock_of
 from nrs_design.switched.mobility import Mobility
 from nrs_design.switched.motor_command import motor_command
 from nrs_design.switched.parameter_box import Box
@@ -165,7 +167,7 @@ def close_sampled_loop(
         (*outputs, *(() if driven is None else (driven.output,))),
         tuple(roundings_of(frame, channels, every)),
         couplings,
-        clock=Clock(sampling.round, begins) if sampling.round > 1 else None,
+        clock=_clock(sampling, begins),
         axes=None if links is None or not channels else links.count,
         flights=flights,
     )
@@ -210,6 +212,16 @@ def _motions(
             free += loop.in_the_air(c.name, laws[c.name])
         elif loss.startswith("anywhere"):
             parts[c.name] += loop.in_the_air(c.name, laws[c.name])
+    if frame.turns[-1].is_miss:
+        law = next(iter(laws.values())).law
+        contacts = dict.fromkeys(name for c in design.controllers for name in c.contacts)
+        touched = [*map(plant.environment, contacts)]
+        parts[f"/{MISS}"] = tuple(loop.missed(law, touched))
+        # As for controllers, free motion is among them or beside them.
+        if loss == "on the surface":
+            free += loop.missed(law, ())
+        elif loss.startswith("anywhere"):
+            parts[f"/{MISS}"] += tuple(loop.missed(law, ()))
     if Turn.MOTION in frame.turns:
         law = next(iter(laws.values())).law
         # No controller has a name with a slash.
@@ -224,8 +236,17 @@ def _check_periods(sampling: SamplingSpec) -> None:
         raise AssemblyError(odd, remedy="change both periods", at=("sampling", "outer_period"))
 
 
+def _clock(sampling: SamplingSpec, begins: tuple[str, ...]) -> Clock | None:
+    """Return which modes may be in force: some begin a round, or are those in time."""
+    if sampling.misses is not None:
+        return clock_of(automaton_of(*sampling.misses.window), begins)
+    return Clock(sampling.round, begins) if sampling.round > 1 else None
+
+
 def _turns(sampling: SamplingSpec) -> tuple[Turn, ...]:
-    """Return what is computed at a sample, in a round and in between."""
+    """Return what is computed at a sample, in a round and in between, or in time and missed."""
+    if sampling.misses is not None:
+        return Turn.BOTH, Turn.HELD if sampling.misses.command == "hold" else Turn.ZEROED
     if sampling.round == 1:
         return (Turn.BOTH,)
     faster = sampling.outer < sampling.period.exact
@@ -313,6 +334,39 @@ class _Loop:
         for corner, rows in self.frame.motor.box.corners(rows_at, name):
             yield SampledMode.of(corner, rows, len(self.frame.states), begins=False)
 
+    def missed(
+        self, law: DiscreteLaw, environments: Iterable[Environment]
+    ) -> Iterator[SampledMode]:
+        """Yield the motions of a period whose deadline is missed, in all contacts or in none.
+
+        Parameters
+        ----------
+        law : DiscreteLaw
+            Of any controller: nothing of it is computed.
+        environments : iterable of Environment
+            What may be touched; none for free motion.
+        """
+        turn = self.frame.turns[-1]
+        contacts: list[Environment | None] = [*environments]
+        for environment in contacts or [None]:
+            box, motor = self.frame.motor.box, self.frame.motor
+            if environment is not None:
+                touched = {"k": environment.stiffness, "b": damping_of(environment)}
+                if self.loses and motor.drive is not None and motor.drive.loaded:
+                    touched = anything_of(e for e in contacts if e is not None)
+                motor = motor.touching(touched, forced=self.frame.longest_delay > 0)
+                # The force of a sample that nobody takes matters where it is still on its way.
+                own = Box(touched) if self.frame.longest_delay else Box({})
+                box = own.beside(motor.box)
+            frame = replace(self.frame, motor=motor)
+
+            def rows_at(values: Mapping[str, Fraction], frame: Frame = frame) -> list[LinearForm]:
+                return frame.rows(law, 0, values, turn)
+
+            name = f"{MISS}/{FREE if environment is None else environment.name}"
+            for corner, rows in box.corners(rows_at, name):
+                yield SampledMode.of(corner, rows, len(frame.states), begins=False)
+
     def _corners(self, gains: RangedLaw, box: Box, name: str) -> Iterator[SampledMode]:
         """Yield the motions in one contact, at every delay that makes a difference."""
         box = box.beside(gains.box)
@@ -323,7 +377,7 @@ class _Loop:
         if youngest == oldest:
             ages = ages[:1]
         for turn, delay in product(self.frame.turns, ages):
-            if turn is Turn.MOTION:
+            if turn is Turn.MOTION or turn.is_miss:
                 continue
             late = f"{name}/delay-{delay}" if len(ages) > 1 else name
             late = f"{late}/{turn}" if turn is Turn.ADMITTANCE else late

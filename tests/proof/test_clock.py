@@ -9,11 +9,15 @@ from hypothesis import strategies as st
 
 from nrs_design.proof.clock import keeps_turns, on_turn
 from nrs_design.proof.contradiction import find_contradiction
-from nrs_design.proof.evidence import GrowingSequence
+from nrs_design.proof.evidence import FormsOnGraph, GrowingSequence
+from nrs_design.proof.evidence.graph import Node
 from nrs_design.proof.evidence.growing_sequence import staying
+from nrs_design.proof.mode import Time
+from nrs_design.proof.steps import CONTACT
 from nrs_design.proof.switching import Clock
+from nrs_design.proof.system import SwitchedSystem
 from tests.proof.graphs import common_quadratic
-from tests.proof.systems import bouncing_in_turns, doubled_in_turns, matrix, pushed
+from tests.proof.systems import bouncing_in_turns, doubled_in_turns, family, matrix, pushed
 
 ROUND = Clock(3, ("a", "b"))
 
@@ -68,12 +72,11 @@ def test_what_is_in_force_at_a_step():
     (item,) = system.roundings
     wide = tuple(matrix([[*row.fractions()[0], 7]]) for row in item.rows)
     system = replace(system, roundings=(replace(item, rows=wide),))
-    first, other = (on_turn(system, system.clock, step) for step in (0, 1))
+    first, other = (on_turn(system, system.clock, first=first) for first in (True, False))
     assert [mode.name for mode in first.modes] == ["push 1", "push 2"]
     assert [mode.name for mode in first.contact.free] == ["fall"]
     assert [mode.name for mode in other.modes] == ["rest"]
     assert [mode.name for mode in other.contact.free] == ["fall on"]
-    assert on_turn(system, system.clock, 7) == other
     for part, count in ((first, 3), (other, 2)):
         assert part.clock is None
         assert part.outputs == system.outputs
@@ -89,14 +92,14 @@ def test_the_parts_of_a_rounding_are_those_of_their_modes():
     (item,) = system.roundings
     marked = tuple(replace(row, numerators=((k, 0),)) for k, row in enumerate(item.rows, start=1))
     system = replace(system, roundings=(replace(item, rows=marked, columns=item.columns),))
-    first, other = (on_turn(system, system.clock, step) for step in (0, 1))
+    first, other = (on_turn(system, system.clock, first=first) for first in (True, False))
     assert [row.numerators[0][0] for row in first.roundings[0].rows] == [1, 2, 4]
     assert [row.numerators[0][0] for row in other.roundings[0].rows] == [3, 5]
 
 
 def test_kept_contact_has_no_free_modes():
     system = replace(bouncing_in_turns(), contact=None, clock=Clock(2, ("push 1", "push 2")))
-    assert on_turn(system, system.clock, 1).contact is None
+    assert on_turn(system, system.clock, first=False).contact is None
 
 
 def test_a_signal_out_of_turn_refutes_nothing():
@@ -118,3 +121,74 @@ def test_kinds_that_know_no_turns_show_nothing():
     assert staying("m0").find_fault(replace(system, clock=None)) is None
     assert "not its turn" in staying("m0").find_fault(system)
     assert "every place" in common_quadratic(((1,),), 0, Fraction(1, 2)).find_fault(system)
+
+
+# At most one of any three missed: what may follow after none, after one, and after a step more.
+ONE_OF_THREE = Clock(3, ("m0",), ((0, 1), (2, -1), (0, -1)))
+
+
+@pytest.mark.parametrize(
+    ("text", "keeps"),
+    [
+        ("m0:1", True),
+        ("m0:2 m1:1", True),
+        ("m1:1 m0:2", True),
+        ("m0:1 m1:1 m0:1", True),
+        ("m0:5 m1:1 m0:2 m1:1", True),
+        ("m1:1", False),
+        ("m0:1 m1:1", False),
+        ("m1:2 m0:9", False),
+        # It cannot be repeated, although it can be made once.
+        ("m1:1 m0:2 m1:1", False),
+    ],
+)
+def test_signals_that_miss_deadlines(text, keeps):
+    assert keeps_turns(ONE_OF_THREE, signal(text)) is keeps
+
+
+def test_what_an_automaton_allows():
+    assert not ONE_OF_THREE.is_round
+    assert ONE_OF_THREE.after(0, first=True) == 0
+    assert ONE_OF_THREE.after(0, first=False) == 1
+    assert ONE_OF_THREE.after(1, first=False) is None
+    assert [*ONE_OF_THREE.turns()] == [
+        (0, True, 0),
+        (0, False, 1),
+        (1, True, 2),
+        (2, True, 0),
+    ]
+    assert [*ROUND.turns()] == [(0, True, 1), (1, False, 2), (2, False, 0)]
+
+
+def missing(hit: str, miss: str) -> SwitchedSystem:
+    return replace(family([[hit]], [[miss]], time=Time.DISCRETE), clock=ONE_OF_THREE)
+
+
+def forms_of(values: tuple[int, int, int], rate: str) -> FormsOnGraph:
+    nodes = (Node(f"{CONTACT} {k}", ((value,),)) for k, value in enumerate(values))
+    return FormsOnGraph(tuple(nodes), 0, Fraction(rate))
+
+
+def test_a_form_for_each_state_proves_and_less_does_not():
+    """Halved in time and times 2.5 when missed: 0.625 in three steps, 0.855 per step by hand."""
+    system = missing("1/2", "5/2")
+    good = forms_of((100, 12, 36), "9/10")
+    assert good.find_fault(system) is None
+    assert good.claim(system).startswith("Every solution of x+ = A x, with any mode in force that")
+    assert "with the Q of the state of the rule" in good.claim(system)
+    faster = forms_of((100, 12, 36), "4/5")
+    assert faster.find_fault(system) is not None
+    # A miss more often than the rule says is no step of it; one that grows by more is.
+    assert good.find_fault(missing("1/2", "3")) is not None
+    two = replace(system, clock=Clock(3, ("m0",), ((0, 1), (2, 1), (0, -1))))
+    assert good.find_fault(two) is not None
+    assert "every place" in good.find_fault(replace(system, clock=None))
+
+
+def test_growth_along_a_word_that_the_rule_allows():
+    word = (("m0", Fraction(2)), ("m1", Fraction(1)))
+    assert GrowingSequence(word, 8).find_fault(missing("1/2", "9/2")) is None
+    assert "growth" in GrowingSequence(word, 8).find_fault(missing("1/2", "7/2"))
+    often = GrowingSequence((("m0", Fraction(1)), ("m1", Fraction(1))), 8)
+    assert "not its turn" in often.find_fault(missing("1/2", "7/2"))
+    assert "not its turn" in staying("m1").find_fault(missing("1/2", "7/2"))

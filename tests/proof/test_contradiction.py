@@ -348,6 +348,11 @@ CONTRADICTIONS = [
     ({"clock": Clock(3, ())}, "has no mode"),
     ({"clock": Clock(3, ("m0", "m1"))}, "has no mode"),
     ({"clock": Clock(3, ("m0", "m2"))}, "does not exist"),
+    ({"clock": Clock(3, ("m0",), ((0, 1), (0, -1)))}, "not said of every state"),
+    ({"clock": Clock(2, ("m0",), ((0, 1), (0,)))}, "not said of every state"),
+    ({"clock": Clock(2, ("m0",), ((0, 2), (0, -1)))}, "does not have"),
+    ({"clock": Clock(2, ("m0",), ((0, 1), (-2, 0)))}, "does not have"),
+    ({"clock": Clock(2, ("m0",), ((0, 1), (-1, -1)))}, "no mode may be in force"),
     ({"switching": Switching(Fraction(2))}, "rules of switching besides"),
 ]
 
@@ -357,6 +362,11 @@ def test_turns_that_make_no_sense(changes, reason):
     system = doubled_in_turns(3)
     assert find_contradiction(system) is None
     assert reason in find_contradiction(replace(system, **changes))
+
+
+def test_a_rule_for_misses_makes_sense():
+    rule = Clock(2, ("m0",), ((0, 1), (0, -1)))
+    assert find_contradiction(replace(doubled_in_turns(3), clock=rule)) is None
 
 
 def test_turns_need_steps_of_one_size_and_free_modes_of_their_own():

@@ -43,7 +43,7 @@ DRAWN = [
     (
         search_periodic_quadratic,
         bouncing_in_turns(1, rounded=True),
-        lambda f: draw_turns(f, f.system.clock),
+        lambda f: next(draw_turns(f, f.system.clock)),
     ),
     (
         search_coupled_axes,

@@ -83,6 +83,7 @@ CHANGES = {
     f.SAMPLED: {"sampling": SAMPLING},
     f.CONTINUOUS: {},
     f.TWO_PERIODS: {"sampling": SAMPLING | {"outer_period": "4 ms"}},
+    f.MISSES: {"sampling": SAMPLING | {"misses": {"consecutive": 1, "command": "hold"}}},
     f.TIMED: {"actuator": {"dead_time": "1 ms"}},
     f.LOSABLE: {"contact": "losable"},
     f.NOT_KEPT: {"contact": "losable"},

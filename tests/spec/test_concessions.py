@@ -24,6 +24,9 @@ CONTROLLERS = ["controllers.insertion", "controllers.withdrawal"]
 # What a spec may have besides, and the line that it could be proved without.
 PARTS_OF = {
     "sampling.outer_period": "\nsampling: {period: 2 ms, outer_period: 4 ms, delay: 0}\n",
+    "sampling.misses": (
+        "\nsampling: {period: 2 ms, delay: 0, misses: {consecutive: 1, command: hold}}\n"
+    ),
     "contact": "\ncontact: losable\n",
     "sampling.delay": "\nsampling: {period: 2 ms, delay: [0, 3]}\n",
     "sampling.latency": "\nsampling: {period: 2 ms, delay: 0, latency: [0.3 ms, 1 ms]}\n",

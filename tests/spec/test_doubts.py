@@ -100,12 +100,13 @@ def test_a_size_that_no_surgical_robot_has():
         assert f"is that its unit? did you mean {said}?" in str(found[0])
 
 
-def test_bounds_are_not_proved_beside_two_periods():
+def test_bounds_are_not_proved_beside_two_periods_or_misses():
     pushed = f"{IMPEDANCE}\ndisturbances: {{command: 8 deg/s}}\nsampling: {{period: 2 ms, delay: 0"
     assert [d.at for d in doubts(f"{pushed}}}\n")] == [("environments", "hand")]
-    _, doubt = doubts(f"{pushed}, outer_period: 4 ms}}\n")
-    assert doubt.at == ("disturbances",)
-    assert "no bound" in str(doubt)
+    for more in ("outer_period: 4 ms", "misses: {consecutive: 1, command: hold}"):
+        _, doubt = doubts(f"{pushed}, {more}}}\n")
+        assert doubt.at == ("disturbances",)
+        assert "no bound" in str(doubt)
 
 
 def test_axes_that_act_on_each_other_are_not_proved_beside_two_periods():

@@ -326,3 +326,21 @@ def test_what_an_arm_may_do_and_how_often_steps_are_missed(old, new, weaker):
     (change,) = find_changes(before, after)
     assert change.weaker is weaker
     assert new or [c.weaker for c in find_changes(after, before)] == [True]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "weaker"),
+    [
+        (", misses: {at_most: 2, of: 10, command: hold}", "", True),
+        ("at_most: 2", "at_most: 1", True),
+        ("at_most: 2", "at_most: 3", False),
+        ("of: 10", "of: 11", True),
+        ("of: 10", "of: 9", False),
+    ],
+)
+def test_misses_of_a_sampled_loop_must_be_borne(old, new, weaker):
+    text = "sampling: {period: 2 ms, delay: 0, misses: {at_most: 2, of: 10, command: hold}}\n"
+    before, after = (to_data(parse_document(t)) for t in (text, text.replace(old, new)))
+    (change,) = find_changes(before, after)
+    assert change.weaker is weaker
+    assert [c.weaker for c in find_changes(after, before)] == [not weaker]

@@ -319,6 +319,8 @@ def _sampled_bands(
     sampling = task.spec.sampling
     if sampling is None or sampling.round > 1 or task.sensor.filter or _spring(given):
         return ()
+    if sampling.misses is not None:
+        return ()
     ranged = any(r.low != r.high for r in _gain_ranges(given, controller).values())
     fixed = task.plant.actuator_ranges.fixed and task.spec.late_at is None
     if ranged or not fixed or task.spec.coupling is not None:

@@ -53,7 +53,7 @@ def _find_uncovered(system: SwitchedSystem, evidence: FormsOnGraph) -> str | Non
     if contact is not None and contact.pulls:
         return "its environment could pull where contact is lost"
     if system.clock is not None:
-        return "its modes take turns"
+        return "its modes take turns, or miss deadlines"
     if any(edge.target is not None for edge in evidence.edges):
         return "its steps lead to some of the forms at a place only"
     if system.time is Time.CONTINUOUS:

@@ -32,8 +32,8 @@ MAX_ENTRIES = 100_000
 WITHOUT_RULES = "arbitrary"
 # Deciding a form for every mode takes about rows^3 steps each on their numbers: a minute at this.
 MAX_FAMILY_WORK = 10**10
-# There is a function for every step of a round.
-MAX_ROUND = 100
+# There is a function for every step of a round, and for every state of an automaton.
+MAX_ROUND, MAX_STATES = 100, 1000
 
 
 def written(value: Any) -> Any:
@@ -230,8 +230,10 @@ def read_system(name: str, fields: Mapping[str, Any]) -> SwitchedSystem:
     _check_modes(system.modes, len(system.states))
     if system.contact is not None:
         _check_work(system.contact.free, 1 + len(system.contact.pulls))
-    if system.clock is not None and not 2 <= system.clock.length <= MAX_ROUND:
-        raise ValueError(f"a round has from 2 to {MAX_ROUND} steps")
+    if (clock := system.clock) is not None:
+        most = MAX_ROUND if clock.is_round else MAX_STATES
+        if not 2 <= clock.length <= most or len(clock.ahead) > most:
+            raise ValueError(f"a round, or an automaton, has from 2 to {most} steps or states")
     return system
 
 

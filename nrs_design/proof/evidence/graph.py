@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Hashable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import lru_cache
@@ -385,9 +385,10 @@ class FormsOnGraph(AbstractFunction):
         added = iter(self.vanishing)
         decided = set()
         for a, step, b in self.edges_in_time(system):
-            if isinstance(step, Step) and not step.facts and self.degree == 1:
-                # A landing at the surface often is what free motion is.
-                key = a, id(step.rows), self._after(step, b, system)
+            shared = system.clock is not None or not isinstance(step, Step) or not step.facts
+            if isinstance(step, Step) and self.degree == 1 and shared:
+                # A landing at the surface often is what free motion is, and nodes may share a form.
+                key = self._decides(step, a, b, system)
                 if key in decided:
                     continue
                 decided.add(key)
@@ -396,6 +397,14 @@ class FormsOnGraph(AbstractFunction):
                 f"V does not decrease at the claimed rate {step.where}",
                 form if self.degree == 1 else add(form, next(added)),
             )
+
+    def _decides(self, step: Step, a: int, b: int, system: SwitchedSystem) -> Hashable:
+        """TRUSTED: return what an inequality follows from, while its step lives."""
+        before, after = self._restricted(a, step.states, system), self._after(step, b, system)
+        parts = (step.rows, step.units, step.errors, step.crossings, step.weights)
+        facts = frozenset(self._multipliers_to(b).items()) if step.facts else None
+        numbers = step.states, step.over, step.is_flow, step.time
+        return before, after, facts, numbers, tuple(map(id, parts))
 
     def inequality(
         self, step: AnyStep, a: int, b: int, system: SwitchedSystem, multiply: Product = multiply
@@ -522,19 +531,21 @@ def steps_together(
         return tuple(steps_of(system, acting, grain, lost=lost))
     from nrs_design.proof.clock import on_turn
 
-    length = system.clock.length
-    parts = [
-        tuple(steps_of(on_turn(system, system.clock, k), acting, grain, lost=lost)) for k in (0, 1)
-    ]
+    clock = system.clock
+    parts = {
+        kind: tuple(steps_of(on_turn(system, clock, first=kind), acting, grain, lost=lost))
+        for kind in (True, False)
+    }
+    at = "step" if clock.is_round else "state"
     return tuple(
         replace(
             step,
-            where=f"{step.where}, at step {k}",
+            where=f"{step.where}, at {at} {k}",
             source=_at(step.source, k),
-            target=_at(step.target, (k + 1) % length),
+            target=_at(step.target, target),
         )
-        for k in range(length)
-        for step in parts[min(k, 1)]
+        for k, kind, target in clock.turns()
+        for step in parts[kind]
     )
 
 

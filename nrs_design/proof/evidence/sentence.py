@@ -7,7 +7,7 @@ from fractions import Fraction
 from nrs_design.proof.bounds import rounded_down, rounded_up
 from nrs_design.proof.evidence.fields import rate_words
 from nrs_design.proof.mode import Time
-from nrs_design.proof.switching import Stay
+from nrs_design.proof.switching import Clock, Stay
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.proof.text import counted
 
@@ -64,8 +64,9 @@ def free_sentence(
             f"for any number of axes that act on each other within the stated bounds ({names}), "
             "which are taken on trust, each by itself in any of its modes,"
         )
-    if system.clock is not None:
-        parts.append(f"in rounds of {system.clock.length} steps,")
+    clock = system.clock
+    if clock is not None and clock.is_round:
+        parts.append(f"in rounds of {clock.length} steps,")
     law = "x' = A x" if continuous else "x+ = A x"
     of = "" if x == "w" else f" of {law}"
     among = f"switching arbitrarily among {modes}"
@@ -75,9 +76,12 @@ def free_sentence(
             "with contact lost and made again at any time and switching arbitrarily among "
             f"{counted(len(system.modes), 'mode')} in contact and {free} of free motion"
         )
-    if system.clock is not None:
+    if clock is not None:
         kept = ", with contact lost and made again at any time" if lost else ""
-        among = f"with any mode in force whose turn it is{kept}"
+        which = (
+            "whose turn it is" if clock.is_round else "that the rule for missed deadlines allows"
+        )
+        among = f"with any mode in force {which}{kept}"
     front = "" if once else "c "
     bound = f"{front}exp(-alpha t) |{x}(0)|" if continuous else f"{front}rho^t |{x}(0)|"
     parts.append(
@@ -95,7 +99,7 @@ def _norm(
 ) -> str:
     """Say in which norm the bound is."""
     own = "w_i" if system.couplings else x
-    of = ["of the step of its round"] if system.clock is not None else []
+    of = [] if system.clock is None else [f"of {_turn(system.clock)}"]
     of += [] if alike else ["of contact or of free motion"]
     which = f" with the Q {' and '.join(of)}" if of else ""
     parts = []
@@ -111,7 +115,7 @@ def _norm(
         parts.append(f"|w|^2 = sum of w_i' Q w_i over the axes{which}")
     elif degree > 1:
         form = f"positive definite form{'s' * (count > 1)} of degree {2 * degree} in {x}"
-        which = ", that of the step of its round" if system.clock is not None else ""
+        which = "" if system.clock is None else f", that of {_turn(system.clock)}"
         said = f"the largest of some {form}" if count > 1 else f"a {form}"
         parts.append(f"|{x}|^{2 * degree} is {said}{which}")
     elif count > 1:
@@ -151,3 +155,8 @@ def _time_words(stay: Stay, unit: str) -> str:
 
 def _unit(unit: str, time: Fraction) -> str:
     return "step" if unit == "steps" and time == 1 else unit
+
+
+def _turn(clock: Clock) -> str:
+    """Say what decides which form it is."""
+    return "the step of its round" if clock.is_round else "the state of the rule"

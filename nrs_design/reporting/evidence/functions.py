@@ -8,6 +8,7 @@ from fractions import Fraction
 import numpy as np
 
 from nrs_design.proof.bounds import at_most
+from nrs_design.proof.switching import Clock
 from nrs_design.reporting.document import Block, Paragraph, Section, Table
 from nrs_design.reporting.evidence import words
 from nrs_design.reporting.evidence.norms import (
@@ -55,7 +56,7 @@ class FunctionsPage(AbstractPage):
         degree = 2 * self._form.degree
         text = "quadratic function" if degree == 2 else f"polynomial of degree {degree}"
         if self.system.clock is not None:
-            text += " of each step of a round"
+            text += f" of each {_turn(self.system.clock)}"
         elif len(self._touching) > 1:
             text += " of each mode"
         elif not self._lost and not self.system.couplings:
@@ -159,7 +160,7 @@ class FunctionsPage(AbstractPage):
     def _text(self) -> str:
         """Say what the certificate holds, and how large the constant in another norm is."""
         forms, touching = self.offer.forms, self._touching
-        each = "step of a round" if self.system.clock is not None else "mode"
+        each = "mode" if self.system.clock is None else _turn(self.system.clock)
         text = "The certificate holds one function for all modes"
         if len(touching) > 1:
             text = f"The certificate holds {len(touching)} functions, one for each {each}"
@@ -192,3 +193,8 @@ def _size(forms: tuple[Form, ...], order: int) -> Table:
         ("Longest entry of Q [bit]", str(bits)),
     )
     return Table("The polynomial" if len(forms) == 1 else "The polynomials", ("", "Value"), rows)
+
+
+def _turn(clock: Clock) -> str:
+    """Say what there is a function of."""
+    return "step of a round" if clock.is_round else "state of the rule for misses"

@@ -64,8 +64,8 @@ _BOUNCING = (
     f"possible mode after which the norm is largest. {_NOT_WORST}"
 )
 _ROUNDS = (
-    "Simulated run: at every step the adversary takes the mode, of those whose turn it is and that "
-    f"contact allows, after which the norm of that step is largest. {_NOT_WORST}"
+    "Simulated run: at every step the adversary takes the mode, of those that may be in force and "
+    f"that contact allows, after which the norm of that step is largest. {_NOT_WORST}"
 )
 _HOLDS = "The dashed line is the bound of the certificate, which holds for every switching signal"
 ONE_AXIS = (
@@ -91,7 +91,7 @@ _UNPROVED = (
 )
 _UNPROVED_ROUNDS = (
     "Simulated run in kept contact from a deflection: at every step the adversary takes the mode, "
-    "of those whose turn it is, after which the Euclidean norm is largest. There is no bound: "
+    "of those that may be in force, after which the Euclidean norm is largest. There is no bound: "
     "nothing is proved."
 )
 EUCLIDEAN = "|x(t)| / |x(0)|, Euclidean norm [1]"
@@ -344,7 +344,9 @@ def until_small(response: SwitchedRun, values: Array) -> SwitchedRun:
     if not len(small):
         return response
     end = max(int(small[0]), 2)
-    return SwitchedRun(response.time[: end + 1], response.state[: end + 1], response.mode[:end])
+    turn = None if response.turn is None else response.turn[: end + 1]
+    states = response.state[: end + 1]
+    return SwitchedRun(response.time[: end + 1], states, response.mode[:end], turn)
 
 
 def horizon(system: SwitchedSystem, claimed: float) -> tuple[float, int]:

@@ -23,6 +23,11 @@ _ROUNDS = (
     "A round is what both loops take to meet again, and each step of it has a function of its own, "
     "which decreases to that of the next step. The claim is about every sample of the faster loop."
 )
+_MISSES = (
+    "Each state of the rule for missed deadlines has a function of its own, which decreases to "
+    "that of the state to which a period in time, or a missed one, leads. The claim is about every "
+    "sample."
+)
 _ALL_AXES = (
     "The function is the sum of w' Q w over all axes, with the same Q for each. Every axis may be "
     "under a controller of its own, in contact or not, at any time: for each way in which axes act "
@@ -201,7 +206,7 @@ def function(system: SwitchedSystem, *, lost: bool, each: bool) -> Iterator[str]
         There is one for each mode, or for each step of a round.
     """
     if system.clock is not None:
-        yield _ROUNDS
+        yield _ROUNDS if system.clock.is_round else _MISSES
     elif lost and each:
         yield "Each mode has a function; the largest of them decreases in every step."
     if system.couplings:
@@ -222,7 +227,9 @@ def function_limits(system: SwitchedSystem, *, lost: bool) -> Iterator[str]:
     """
     if lost or system.clock is not None or system.couplings:
         yield _MOVED_REST
-    if system.clock is not None:
+    if system.clock is not None and not system.clock.is_round:
+        yield "More missed deadlines than the rule allows, or others than it says."
+    elif system.clock is not None:
         yield "Two loops whose periods drift against each other: they meet at every round."
     if system.couplings:
         on_trust = any(ON_TRUST in text for text in system.assumptions)

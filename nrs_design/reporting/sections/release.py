@@ -48,6 +48,7 @@ _FOLLOWED = (
     "operator would not command such jumps."
 )
 _TURNS = "Force samples and admittances take turns with the motion loop as the spec says."
+_MISSES = "The adversary also chooses which deadlines are missed, as the rule of the spec allows."
 _ANYWHERE = "Contact may be lost at any deflection; there is no torque then."
 _NO_DEFLECTION = (
     "The deflection is no state: this tissue has no rest position, and its force follows from the "
@@ -108,7 +109,8 @@ def _said(result: Result, system: SwitchedSystem, outputs: Outputs) -> str:
         (_REMEMBERED, any(environment.law.remembers for environment in contacts)),
         (_FOLLOWED, position),
         (_SAMPLED, system.time is Time.DISCRETE),
-        (_TURNS, system.clock is not None),
+        (_TURNS, system.clock is not None and system.clock.is_round),
+        (_MISSES, system.clock is not None and not system.clock.is_round),
         (_ONE_MODE, not system.switching.is_arbitrary),
         (_ANYWHERE, bool(outputs.free)),
         (_ONE_AXIS, bool(system.couplings)),

@@ -26,7 +26,7 @@ from nrs_design.proof.evidence.fields import (
 from nrs_design.proof.exact import MAX_WORK
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
-from nrs_design.proof.switching import FixedParameter, Reset, Stay, Switching
+from nrs_design.proof.switching import Clock, FixedParameter, Reset, Stay, Switching
 from tests.proof.graphs import common_quadratic
 from tests.proof.systems import (
     SYSTEMS,
@@ -256,17 +256,29 @@ def test_whether_contact_may_be_lost_is_a_truth_value(value):
         read_system("bouncing", fields)
 
 
+def test_a_rule_for_misses_is_read_as_it_was_written():
+    system = replace(doubled_in_turns(3), clock=Clock(2, ("m0",), ((0, 1), (0, -1))))
+    fields = system_fields(system)
+    assert fields["clock"] == {"length": 2, "first": ["m0"], "ahead": [[0, 1], [0, -1]]}
+    assert read_system(system.name, fields).clock == system.clock
+
+
 @pytest.mark.parametrize(
     ("clock", "reason"),
     [
-        ({"length": 1, "first": ["m0"]}, "from 2 to 100 steps"),
-        ({"length": 101, "first": ["m0"]}, "from 2 to 100 steps"),
+        ({"length": 1, "first": ["m0"]}, "has from 2 to 100 steps"),
+        ({"length": 101, "first": ["m0"]}, "has from 2 to 100 steps"),
         ({"length": "3", "first": ["m0"]}, "expected an integer"),
         ({"length": 3, "first": "m0"}, "expected a list"),
         ({"length": 3, "first": [0]}, "expected a text"),
+        ({"length": 1001, "first": ["m0"], "ahead": [[0, 1]]}, "from 2 to 1000 steps or states"),
+        ({"length": 2, "first": ["m0"], "ahead": [[0, 1]] * 1001}, "from 2 to 1000 steps or"),
+        ({"length": 2, "first": ["m0"], "ahead": [[0, None]]}, "expected an integer"),
+        ({"length": 2, "first": ["m0"], "ahead": [[0]]}, "zip"),
     ],
 )
 def test_malformed_turns(clock, reason):
+    """Of a round, or of a rule for misses."""
     fields = system_fields(doubled_in_turns(3))
     assert fields["clock"] == {"length": 3, "first": ["m0"]}
     with pytest.raises((TypeError, ValueError), match=reason):

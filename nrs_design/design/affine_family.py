@@ -164,7 +164,15 @@ def squared_magnitude(P: Sequence[Any]) -> list[Any]:
 def coefficients_between(
     powers: Sequence[Sequence[Any]], low: Fraction, high: Fraction
 ) -> list[Any]:
-    """Return Bernstein coefficients in omega^2 too, between two values of it."""
+    """Return Bernstein coefficients in omega^2 too, between two values of it.
+
+    Parameters
+    ----------
+    powers : sequence of sequence
+        Coefficients of powers of omega^2, one polynomial for each corner.
+    low, high : Fraction
+        Ends of omega^2, (rad/s)^2.
+    """
     ends = _fmpq(low), _fmpq(high)
     return [c for p in powers for c in bernstein(p, *ends)]
 

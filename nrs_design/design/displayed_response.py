@@ -147,7 +147,17 @@ def largest_tracking_error(
 def parameters_at(
     axis: ContinuousAxis, law: CompliantLaw, values: Mapping[str, Fraction]
 ) -> tuple[CompliantLaw, Place, Fraction]:
-    """Return law and motor at parameters, and what makes polynomials affine in all of them."""
+    """Return law and motor at parameters, and what makes polynomials affine in all of them.
+
+    Parameters
+    ----------
+    axis : ContinuousAxis
+        With its nominal motor.
+    law : CompliantLaw
+        Of the controller.
+    values : mapping
+        Those that are not as given, by name: ``Km``, ``tau`` or a gain.
+    """
     nominal = axis.places[0].motor
     gain, tau = values.get("Km", nominal.gain), values.get("tau", nominal.time_constant)
     place = Place(replace(nominal, gain=gain, time_constant=tau))

@@ -19,7 +19,9 @@ def designed():
 
 
 def item(*achieved):
-    return SimpleNamespace(name="insertion", achieved=achieved)
+    return SimpleNamespace(
+        name="insertion", achieved=achieved, judged=achieved, proved_titles=()
+    )
 
 
 FREE = Achieved(GAIN_MARGIN, 1.0, "soft")

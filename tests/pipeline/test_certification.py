@@ -109,6 +109,7 @@ def test_functions_are_counted_wherever_they_are_used():
             "optimize_impedance",
             {
                 "design/constrained",
+                "design/cost_bound",
                 "design/impedance_optimum",
                 "design/landscape",
             },

@@ -113,7 +113,7 @@ def test_what_grows_is_not_found():
 def test_too_many_conditions_leave_roundings_out(monkeypatch):
     system = bouncing_in_turns(rounded=True)
     assert found(search_periodic_quadratic, system).covers_rounding
-    monkeypatch.setattr(graphs, "MOST_ROUNDED", 9)
+    monkeypatch.setattr(graphs, "MOST_ROUNDED", 1)
     assert not found(search_periodic_quadratic, system).covers_rounding
 
 

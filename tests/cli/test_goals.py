@@ -19,9 +19,7 @@ def designed():
 
 
 def item(*achieved):
-    return SimpleNamespace(
-        name="insertion", achieved=achieved, judged=achieved, proved_titles=()
-    )
+    return SimpleNamespace(name="insertion", achieved=achieved, judged=achieved, proved_titles=())
 
 
 FREE = Achieved(GAIN_MARGIN, 1.0, "soft")

@@ -11,7 +11,6 @@ from nrs_design.work import Allowance, NotAffordableError
 from tests.proof.systems import (
     bouncing_in_steps,
     bouncing_in_turns,
-    branicky,
     dayawansa_martin,
     family,
     lossy_network,
@@ -82,11 +81,10 @@ def test_where_contact_is_lost():
     assert rate_slope(system) is not None
 
 
-@pytest.mark.parametrize("system", [branicky(), bouncing_in_turns(), lossy_network()])
+@pytest.mark.parametrize("system", [bouncing_in_turns(), lossy_network()])
 def test_what_has_none(system):
-    """Unlike a form for all modes, or without a period in seconds."""
-    shaped = may_have_slope(system)
-    assert shaped == (system.time is Time.CONTINUOUS and system.clock is None)
+    """Unlike one form for all modes: forms of turns, and of modes under rules."""
+    assert not may_have_slope(system)
 
 
 def test_numbers_beyond_floating_point_have_no_slope():

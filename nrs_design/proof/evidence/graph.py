@@ -306,9 +306,8 @@ class FormsOnGraph(AbstractFunction):
             for a in at[step.source]:
                 arcs = leaving.get(None, []) + leaving.get(a, [])
                 drawn = {arc.target for arc in arcs if arc.mode in {None, step.mode}}
-                for b in ends if None in drawn else sorted(known & drawn):
-                    if a == b or not step.is_flow:
-                        yield a, step, b
+                targets = ends if None in drawn else sorted(known & drawn)
+                yield from ((a, step, b) for b in targets if a == b or not step.is_flow)
 
     def _nodes_at(self) -> dict[str, list[int]]:
         """Return the numbers of the nodes at every place."""

@@ -51,9 +51,10 @@ def brief(evidence: AbstractEvidence, system: SwitchedSystem) -> str:
             most = "" if speed is None else f", at most {upper(speed, DIGITS)} rad/s"
             return f"the safety layer keeps its limits whatever is commanded{most}"
         case _:
-            # The signal that grows; after a colon, such a claim says what follows from it.
+            # The signal that grows; what follows from it stands behind a colon, or a sentence.
             claim = evidence.claim_in_scope(system)
-            return (claim.rpartition(": ")[0] or claim) + _growing_contact(evidence, system)
+            signal = claim.rpartition(": ")[0] or claim.partition(". ")[0]
+            return signal + _growing_contact(evidence, system)
 
 
 def _decay(rate: Fraction | None, system: SwitchedSystem) -> str:
@@ -82,6 +83,9 @@ def _scope(evidence: AbstractEvidence, system: SwitchedSystem) -> str:
         signals = f"any switching among {counted(len(system.modes), 'mode')}"
     elif switching.fixed_ends:
         signals = "any switching, at constant parameters"
+    if system.clock is not None:
+        rule = f"in rounds of {system.clock.length} steps"
+        signals += f", {rule}" if system.clock.is_round else ", deadlines missed as the rule allows"
     if system.couplings:
         signals += ", for any number of coupled axes"
     rounded = ", rounding included" if system.roundings and evidence.covers_rounding else ""
@@ -96,6 +100,8 @@ def _contact(evidence: AbstractEvidence, system: SwitchedSystem) -> str:
 
 
 def _growing_contact(evidence: AbstractEvidence, system: SwitchedSystem) -> str:
+    if evidence.covers_lost_contact:
+        return ", contact lost and made as that motion says"
     if evidence.covers_loss(system):
         return ""
     if system.flights is not None:

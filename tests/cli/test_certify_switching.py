@@ -73,11 +73,11 @@ def test_a_constant_force_that_is_not_covered_is_said(tmp_path):
 def test_the_force_that_motions_decay_from_is_said(tmp_path):
     text = (ROOT / "docs" / "examples" / "saturating.nrs.yaml").read_text(encoding="utf-8")
     (tmp_path / "a.nrs.yaml").write_text(text, encoding="utf-8")
-    result = run("certify-switching", "a.nrs.yaml", cwd=tmp_path)
+    result = run("certify-switching", "a.nrs.yaml", "-v", cwd=tmp_path)
     assert "saturating: PROVED" in result.stdout
     assert "at rest with a contact force up to 0.5 N*m" in result.stdout
     assert "friction are not modelled, saturation only where" in result.stdout
-    again = run("verify", "reports/saturating.cert.json", "a.nrs.yaml", cwd=tmp_path, code=0)
+    again = run("verify", "reports/saturating.cert.json", "a.nrs.yaml", "-v", cwd=tmp_path, code=0)
     assert "at rest with a contact force up to 0.5 N*m" in again.stdout
 
 
@@ -124,36 +124,36 @@ def test_inconclusive_with_a_remark_keeps_it(tmp_path):
 @pytest.mark.slow
 def test_two_resets_from_one_mode_to_another(tmp_path):
     path = ROOT / "docs" / "examples" / "contact-either-way.nrs.yaml"
-    result = run("certify-switching", path, cwd=tmp_path, code=1)
+    result = run("certify-switching", path, "-v", cwd=tmp_path, code=1)
     assert "then reset 2 to contact" in result.stdout
     assert "Mode free is left after at most 4 s." in result.stdout
     file = tmp_path / "reports" / "contact-either-way.cert.json"
-    run("verify", file, path, cwd=tmp_path, code=1)
+    run("verify", file, path, "-v", cwd=tmp_path, code=1)
     document = json.loads(file.read_text())
     (statement,) = document["statements"]
     statement["edges"] = [1 - edge for edge in statement["edges"]]
     file.write_text(json.dumps(document | {"id": content_id(document)}))
-    forged = run("verify", file, path, cwd=tmp_path)
+    forged = run("verify", file, path, "-v", cwd=tmp_path)
     assert "rejected" in (forged.stdout + forged.stderr).lower()
-    run("report", path, "--out", "page.html", cwd=tmp_path, code=1)
+    run("report", path, "--out", "page.html", "-v", cwd=tmp_path, code=1)
     assert "reset 2 of 2 to contact" in (tmp_path / "page.html").read_text()
 
 
 @pytest.mark.slow
 def test_a_mode_that_must_be_left(tmp_path):
     path = EXAMPLES / "failing-controller.nrs.yaml"
-    result = run("certify-switching", path, cwd=tmp_path, code=0)
+    result = run("certify-switching", path, "-v", cwd=tmp_path, code=0)
     assert "at most 1 step in both-fail" in result.stdout
     file = tmp_path / "reports" / "failing-controller.cert.json"
-    run("verify", file, path, cwd=tmp_path, code=0)
+    run("verify", file, path, "-v", cwd=tmp_path, code=0)
     document = json.loads(file.read_text())
     document["statements"][0]["stays"]["leaving"].append("works")
     file.write_text(json.dumps(document | {"id": content_id(document)}))
-    forged = run("verify", file, path, cwd=tmp_path, code=1)
+    forged = run("verify", file, path, "-v", cwd=tmp_path, code=1)
     assert "has no longest dwell time" in forged.stdout + forged.stderr
-    run("report", path, "--out", "page.html", cwd=tmp_path, code=0)
+    run("report", path, "--out", "page.html", "-v", cwd=tmp_path, code=0)
     assert "the machine itself must leave in time" in (tmp_path / "page.html").read_text()
-    run("certify-switching", path, "--shortest-dwell", cwd=tmp_path, code=2)
+    run("certify-switching", path, "--shortest-dwell", "-v", cwd=tmp_path, code=2)
 
 
 @pytest.mark.parametrize(
@@ -188,12 +188,12 @@ switching: arbitrary
 def test_constants_are_the_difference_between_refuted_and_proved(tmp_path):
     path = tmp_path / "a.nrs.yaml"
     path.write_text(CORNERS)
-    result = run("certify-switching", path, cwd=tmp_path, code=0)
+    result = run("certify-switching", path, "-v", cwd=tmp_path, code=0)
     assert "For every constant value of k and m in their ranges" in result.stdout
-    run("verify", "reports/corners.cert.json", path, cwd=tmp_path, code=0)
+    run("verify", "reports/corners.cert.json", path, "-v", cwd=tmp_path, code=0)
     path.write_text(CORNERS.replace(", varies: false", ""))
-    run("verify", "reports/corners.cert.json", path, cwd=tmp_path, code=1)
-    assert "Repeating" in run("certify-switching", path, cwd=tmp_path, code=1).stdout
+    run("verify", "reports/corners.cert.json", path, "-v", cwd=tmp_path, code=1)
+    assert "Repeating" in run("certify-switching", path, "-v", cwd=tmp_path, code=1).stdout
 
 
 def test_a_value_inside_refutes(tmp_path):
@@ -436,19 +436,19 @@ def test_the_default_degree_follows_the_budget(tmp_path):
 def test_a_spec_says_how_far_the_search_goes_and_options_override_it(tmp_path):
     path = write_spec(tmp_path / "eleven.nrs.yaml", *HARD).path
     path.write_text(path.read_text() + "certification: {max_degree: 4, budget: 20}\n")
-    result = run("certify-switching", path, cwd=tmp_path)
+    result = run("certify-switching", path, "-v", cwd=tmp_path)
     assert "polynomial of degree 6: not tried: --max-degree is 4" in result.stdout
-    result = run("certify-switching", path, "--max-degree", 2, cwd=tmp_path)
+    result = run("certify-switching", path, "--max-degree", 2, "-v", cwd=tmp_path)
     assert "polynomial of degree 4: not tried: --max-degree is 2" in result.stdout
-    result = run("gate", path, "--max-degree", 2, "--no-reports", cwd=tmp_path, code=3)
+    result = run("gate", path, "--max-degree", 2, "--no-reports", "-v", cwd=tmp_path, code=3)
     assert "not tried: --max-degree is 2" in result.stdout
 
 
 @pytest.mark.slow
 def test_options_of_the_search_are_those_of_a_report_and_of_memory_too(tmp_path):
     path = write_spec(tmp_path / "eleven.nrs.yaml", *HARD).path
-    result = run("report", path, "--max-degree", 2, cwd=tmp_path, code=3)
-    result = run("certify-switching", path, "--memory", "1e-9", cwd=tmp_path)
+    result = run("report", path, "--max-degree", 2, "-v", cwd=tmp_path, code=3)
+    result = run("certify-switching", path, "--memory", "1e-9", "-v", cwd=tmp_path)
     assert "GB are allowed (--memory)" in result.stdout
 
 
@@ -565,8 +565,8 @@ def test_dwell_time_in_steps_is_proved_or_refuted(tmp_path):
             '  - {name: m1, A: [["1/2", 0], [2, "1/2"]]}\n'
             f"switching: {{dwell_time: {steps} steps}}\n"
         )
-        assert said in run("certify-switching", path.name, cwd=tmp_path, code=code).stdout
-        run("verify", "reports/steps.cert.json", path.name, cwd=tmp_path, code=code)
+        assert said in run("certify-switching", path.name, "-v", cwd=tmp_path, code=code).stdout
+        run("verify", "reports/steps.cert.json", path.name, "-v", cwd=tmp_path, code=code)
 
 
 def test_mixed_controllers(tmp_path):
@@ -678,10 +678,10 @@ def test_an_open_verdict_says_which_lines_block_it(tmp_path):
     """Axes, samples and a disturbance: `check` takes them, and nobody has to ask."""
     path = tmp_path / "heavy.nrs.yaml"
     path.write_text(HEAVY, encoding="utf-8")
-    run("check", path, cwd=tmp_path, code=0)
-    said = run("certify-switching", path, cwd=tmp_path, code=3).stdout
+    run("check", path, "-v", cwd=tmp_path, code=0)
+    said = run("certify-switching", path, "-v", cwd=tmp_path, code=3).stdout
     assert said.startswith("soft: INCONCLUSIVE")
-    _, listed = said.split("  proved with any one of these changes (")
+    _, listed = said.split("  proved with any one of these changes; ")
     assert "heavy.nrs.yaml:14: coupling.inertia: up to 1." in listed
     assert "heavy.nrs.yaml:14: without coupling, without actuator.load_inertia" in listed
     assert "bounds under disturbances were not looked for" in listed
@@ -696,7 +696,7 @@ def test_an_open_verdict_says_which_lines_block_it(tmp_path):
     assert told["lines_work"] < 30
     # What is advised is proved by the command.
     path.write_text(HEAVY.replace("inertia: [0 kg*m^2, 1.5 kg*m^2]", line["write"]))
-    assert run("certify-switching", path, "--no-optimize-rate", cwd=tmp_path, code=0).stdout
+    assert run("certify-switching", path, "--no-optimize-rate", "-v", cwd=tmp_path, code=0).stdout
 
 
 def test_the_growth_per_step_is_said_whatever_the_verdict(tmp_path):

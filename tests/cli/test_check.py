@@ -8,7 +8,7 @@ from tests.support import SOFT_TISSUE, document_of, run, typed
 
 
 def test_check_prints_values_as_written_and_in_si(tmp_path: Path) -> None:
-    result = typed("check", SOFT_TISSUE, cwd=tmp_path, code=0)
+    result = typed("check", SOFT_TISSUE, "-v", cwd=tmp_path, code=0)
     line = next(line for line in result.stdout.splitlines() if "limits.velocity" in line)
     assert line.split()[1:] == ["8", "deg/s", "0.139626", "rad/s"]
 

@@ -72,7 +72,7 @@ def test_examples_that_must_fail(gate, capsys, name, rules, words):
 
 
 def test_as_typed(gate, tmp_path):
-    done = typed("gate", "specs", "--no-reports", cwd=tmp_path, code=0)
+    done = typed("gate", "specs", "--no-reports", "-v", cwd=tmp_path, code=0)
     assert "specs/stable.nrs.yaml" in done.stdout
     assert "nrs.lock written" in done.stderr
     assert "1 s" not in done.stdout.replace("1 spec", ""), "times belong on stderr"
@@ -95,7 +95,7 @@ def test_quiet_says_only_what_is_not_fulfilled(gate, capsys):
 
 
 def test_a_narrow_terminal(tmp_path):
-    shown, code = run_on_terminal(50, "gate", PRINT_ERROR, "--no-reports", cwd=tmp_path)
+    shown, code = run_on_terminal(50, "gate", PRINT_ERROR, "--no-reports", "-v", cwd=tmp_path)
     assert code == 1
     assert "\x1b[1;31mrefuted\x1b[0m:" in shown
     plain = re.sub("\x1b\\[[0-9;?]*[A-Za-z]", "", shown).splitlines()

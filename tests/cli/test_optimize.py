@@ -131,10 +131,10 @@ def test_gains_are_sought_where_the_loop_that_is_proved_is_stable(tmp_path):
 
 def test_one_sensitivity_peak_for_one_controller(tmp_path):
     """Withdrawal over soft tissue: 3.75298 is the supremum; the table is rounded up, as warned."""
-    result = run("optimize", SOFT_TISSUE, cwd=tmp_path)
+    result = run("optimize", SOFT_TISSUE, "-v", cwd=tmp_path)
     assert result.stdout.startswith("soft-tissue: G(s) = (0.99739 s + 56.822)")
     row = next(line for line in result.stdout.splitlines() if "withdrawal" in line)
-    for value in ("1.0743", "43.0356", "0.01", "1.04", "3.753"):
+    for value in ("0.01", "1.04", "3.753!"):
         assert value in row
     assert "3.578" not in result.stdout + result.stderr
     assert "the worst of the loop that certify-switching is about" in result.stdout
@@ -178,7 +178,9 @@ GIVEN = (
 
 
 def test_goals_are_respected_and_shown(tmp_path):
-    result = run("optimize", spec_with(tmp_path, "{max_sensitivity_peak: 2}"), cwd=tmp_path, code=0)
+    result = run(
+        "optimize", spec_with(tmp_path, "{max_sensitivity_peak: 2}"), "-v", cwd=tmp_path, code=0
+    )
     rows = [line for line in result.stdout.splitlines() if "sensitivity peak Ms   " in line]
     assert len(rows) == 2
     assert all("at most 2" in row and row.rstrip().endswith("met") for row in rows)
@@ -204,12 +206,12 @@ def test_a_goal_out_of_reach_is_an_error_with_the_best_value(tmp_path):
 
 
 def test_without_goals_a_doubtful_design_is_warned_of_and_the_exit_code_stays(tmp_path):
-    result = run("optimize", SOFT_TISSUE, cwd=tmp_path, code=0)
+    result = run("optimize", SOFT_TISSUE, "-v", cwd=tmp_path, code=0)
     assert "warning: withdrawal: sensitivity peak Ms 3.753 (usual: at most 2)" in result.stderr
     assert "warning: insertion: Mt is on its lower bound 0.01 kg*m^2" in result.stderr
     warnings = document_of("optimize", SOFT_TISSUE, cwd=tmp_path)["warnings"]
     assert [f"warning: {text}" for text in warnings] == result.stderr.splitlines()
-    assert run("optimize", SOFT_TISSUE, "-q", cwd=tmp_path).stderr == ""
+    assert run("optimize", SOFT_TISSUE, "-q", "-v", cwd=tmp_path).stderr == ""
 
 
 GOALS = ROOT / "docs" / "examples" / "gains-with-proof.nrs.yaml"

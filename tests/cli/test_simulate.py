@@ -29,14 +29,14 @@ def spec(tmp_path):
 
 @pytest.mark.slow
 def test_metrics_and_files(spec, tmp_path):
-    result = run("simulate", spec(), "--out", "runs", cwd=tmp_path, code=0)
+    result = run("simulate", spec(), "--out", "runs", "-v", cwd=tmp_path, code=0)
     assert "run: exact engine" in result.stdout
     assert "largest torque" in result.stdout
     names = {path.name for path in (tmp_path / "runs").iterdir()}
     assert names == {f"small.run.{suffix}" for suffix in ("csv", "npz", "svg", "png")}
     table = np.genfromtxt(tmp_path / "runs/small.run.csv", delimiter=",", names=True, dtype=None)
     assert (np.diff(table["time_s"]) > 0).all()
-    again = run("simulate", spec(), "--out", "runs", "--quiet", cwd=tmp_path)
+    again = run("simulate", spec(), "--out", "runs", "--quiet", "-v", cwd=tmp_path)
     assert (again.returncode, again.stdout, again.stderr) == (0, "", "")
 
 
@@ -139,12 +139,14 @@ def test_a_bound_stands_beside_the_peak(spec, tmp_path):
     assert "certified decay once nothing is commanded: " in told
     (unbound,) = document_of("simulate", path, "--no-bound", cwd=tmp_path)["runs"]
     assert unbound["certified_bounds"] == []
-    run("certify-switching", path, "--out", "a.cert.json", cwd=tmp_path, code=0)
-    shown = run("simulate", path, "--certificate", "a.cert.json", "--period", "0.002", cwd=tmp_path)
+    run("certify-switching", path, "--out", "a.cert.json", "-v", cwd=tmp_path, code=0)
+    shown = run(
+        "simulate", path, "--certificate", "a.cert.json", "--period", "0.002", "-v", cwd=tmp_path
+    )
     assert "certified bound on the force" in shown.stdout
     assert "not about this run: the proof is not about the sampled loop" in shown.stdout
     path.write_text(path.read_text().replace("[0.5 s, 8 deg/s]", "[0.5 s, 7 deg/s]"))
-    stale = run("simulate", path, "--certificate", "a.cert.json", cwd=tmp_path, code=2)
+    stale = run("simulate", path, "--certificate", "a.cert.json", "-v", cwd=tmp_path, code=2)
     assert "the spec has changed" in stale.stderr
 
 
@@ -286,7 +288,9 @@ def test_mujoco_says_how_far_it_is_from_the_sampled_engine(spec, tmp_path):
     assert one["metrics"]["peak_torque"] == pytest.approx(
         usual["metrics"]["peak_torque"], abs=43 * apart["angle"]
     )
-    stopped = run("simulate", path, "--engine", "mujoco", "--max-steps", "9", cwd=tmp_path, code=3)
+    stopped = run(
+        "simulate", path, "--engine", "mujoco", "--max-steps", "9", "-v", cwd=tmp_path, code=3
+    )
     assert "from the sampled engine, at most: angle" in stopped.stdout
     assert "STOPPED: 9 samples" in stopped.stdout
     assert not (tmp_path / "MUJOCO_LOG.TXT").exists()

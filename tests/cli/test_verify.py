@@ -42,8 +42,8 @@ def test_the_derivative_gain_is_that_of_a_program(tmp_path):
     """It multiplies by Kd/T, rounded to single precision; at 3 ms that is another Kd."""
     text = (ROBOT / "force-limit-sampled.nrs.yaml").read_text().replace("2 ms", "3 ms")
     (tmp_path / "slow.nrs.yaml").write_text(text)
-    run("certify-switching", "slow.nrs.yaml", "--out", "c.json", cwd=tmp_path, code=0)
-    shown = run("verify", "c.json", "slow.nrs.yaml", cwd=tmp_path, code=0).stdout
+    run("certify-switching", "slow.nrs.yaml", "--out", "c.json", "-v", cwd=tmp_path, code=0)
+    shown = run("verify", "c.json", "slow.nrs.yaml", "-v", cwd=tmp_path, code=0).stdout
     assert "Kd = 2060 rpm*s/rad" in shown
     assert "multiplies by Kd/T = 686666.6875 rpm/rad, which makes its Kd about 2060.000062" in shown
 
@@ -110,8 +110,8 @@ def test_json(certified):
 def test_remark_that_decides_nothing(tmp_path):
     """It holds, and says so, but is no verdict: exit code 3."""
     spec = write_spec(tmp_path / "hard.nrs.yaml", *HARD).path
-    run("certify-switching", spec, "--max-degree", 2, "--out", "c.json", cwd=tmp_path, code=3)
-    result = run("verify", "c.json", spec, cwd=tmp_path, code=3)
+    run("certify-switching", spec, "--max-degree", 2, "--out", "c.json", "-v", cwd=tmp_path, code=3)
+    result = run("verify", "c.json", spec, "-v", cwd=tmp_path, code=3)
     assert result.stdout.startswith("INCONCLUSIVE for this spec, checked exactly")
     assert "does not exist. This alone says nothing about stability." in result.stdout
 

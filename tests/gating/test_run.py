@@ -388,6 +388,6 @@ def test_lines_that_block_a_proof_are_said_and_the_gate_fails(examine):
     (spec,) = examine(HEAVY).specs
     (stable,) = (o for o in spec.obligations if o.rule.id == "NRS102")
     assert stable.status is Status.INCONCLUSIVE
-    assert "; proved with any one of these changes (" in stable.message
+    assert "; proved with any one of these changes; " in stable.message
     assert "s0.nrs.yaml:14: coupling.inertia: up to 1." in stable.message
     assert "s0.nrs.yaml:12: without sampling; takes 9 things more" in stable.message

@@ -50,6 +50,7 @@ def test_a_good_run_is_not_inside_as_its_stiffness_is_estimated(tmp_path, proof)
         *LIMIT,
         "--report",
         "run.pdf",
+        "-v",
         cwd=tmp_path,
         code=3,
     )
@@ -116,8 +117,8 @@ def test_without_a_certificate_nothing_speaks_of_a_proof(tmp_path):
     """Not in the text, not in JSON, not on the page: only that the spec is not proved."""
     page = tmp_path / "run.html"
     log = write(tmp_path)
-    done = run("audit", log, SOFT_TISSUE, *LIMIT, "--report", page, cwd=tmp_path)
-    document = run("audit", log, SOFT_TISSUE, *LIMIT, "--json", cwd=tmp_path).stdout
+    done = run("audit", log, SOFT_TISSUE, *LIMIT, "--report", page, "-v", cwd=tmp_path)
+    document = run("audit", log, SOFT_TISSUE, *LIMIT, "--json", "-v", cwd=tmp_path).stdout
     page_text = page.read_text().partition("<footer")[0]
     for text in (done.stdout, document, page_text):
         assert "the spec, which is not proved" in text

@@ -28,14 +28,14 @@ def test_end_to_end(tmp_path):
     assert all(k["low"] < fit < k["high"] for fit in (768.17, 720.56, 752.69))
     assert k["value"] == pytest.approx(747.14, rel=5e-3)
     assert "data: synthetic" in spec.read_text()
-    run("gate", spec, "--json", "--no-reports", cwd=tmp_path, code=0)
-    check = run("check", spec, cwd=tmp_path).stdout
+    run("gate", spec, "--json", "--no-reports", "-v", cwd=tmp_path, code=0)
+    check = run("check", spec, "-v", cwd=tmp_path).stdout
     assert "silicone-soft-1.csv" in check
     assert "synthetic" in check
 
 
 def test_tissue_table(tmp_path):
-    result = run("identify", "tissue", *SOFT, "--lever-arm", "0.24 m", cwd=tmp_path, code=0)
+    result = run("identify", "tissue", *SOFT, "--lever-arm", "0.24 m", "-v", cwd=tmp_path, code=0)
     assert result.stdout.startswith("SYNTHETIC data")
     for law in ("elastic", "kelvin-voigt", "maxwell", "kelvin-boltzmann", "hunt-crossley"):
         assert law in result.stdout
@@ -96,7 +96,7 @@ def test_offsets_and_cuts_are_said(tmp_path):
     assert fit["used"] < fit["samples"]
     assert any("at the edge of contact" in cut for cut in fit["cuts"])
     command = ("identify", "tissue", path, "--prony", "--report", "page.html")
-    text = run(*command, cwd=tmp_path).stdout
+    text = run(*command, "-v", cwd=tmp_path).stdout
     assert "3 touches" in text
     assert "Prony series of" in text
     assert "Prony series of" in (tmp_path / "page.html").read_text()
@@ -133,7 +133,7 @@ def test_a_law_that_is_not_refused_before_the_fit_does_not_lose_it(tmp_path):
     spec.write_text(text)
     record_, options = damped_csv(tmp_path, b=0.0), ("--contact", "given", "--zero", "0 m")
     arguments = ("identify", "tissue", record_, *options, "--write", spec)
-    result = run(*arguments, cwd=tmp_path, code=2)
+    result = run(*arguments, "-v", cwd=tmp_path, code=2)
     assert "BIC - least" in result.stdout
     assert "choose a simpler law with --model" in result.stderr
     assert spec.read_text() == text

@@ -23,7 +23,7 @@ def test_tool_into_a_spec_that_the_gate_proves(tmp_path):
         assert value < document["center_of_mass_m"][axis]["high"]
     assert "data: synthetic" in spec.read_text()
     assert "Errors in each pose" in page.read_text(encoding="utf-8")
-    again = run("identify", "tool", POSES, "--write", spec, cwd=tmp_path)
+    again = run("identify", "tool", POSES, "--write", spec, "-v", cwd=tmp_path)
     assert "Center of mass [m]" in again.stdout
     optimized = document_of("optimize", spec, cwd=tmp_path)
     assert set(optimized["sensor"]["parts"]) == {"bias", "mass and center of mass of the tool"}

@@ -13,7 +13,7 @@ from benchmarks.measure import Comparison, Finding, Size
 from nrs_design.certificates.certificate import Verdict
 from nrs_design.errors import NrsDesignError
 from nrs_design.pipeline import Designed, run_design
-from nrs_design.pipeline.free_gains import gains_given
+from nrs_design.pipeline.written_gains import with_own_gains
 from nrs_design.pipeline.quick_verdict import Posed, run_quick_growth, run_quick_proof
 from nrs_design.spec import read_spec
 from nrs_design.sweeps.paint import run_tile_map
@@ -29,7 +29,7 @@ def run(size: Size) -> tuple[Comparison | Finding, ...]:
     oldest = size.pick(10, 3, 1)
     designed = run_design(read_spec(SPEC))
     assert designed is not None
-    given = gains_given(designed)
+    given = with_own_gains(designed)
     grid = read_tiles(given, SPEC, [STIFFNESS, f"sampling.delay=0..{oldest}"])
     start = process_time()
     found = run_tile_map(grid, designed)

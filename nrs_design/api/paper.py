@@ -6,9 +6,8 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from nrs_design.proof.bounds import lower, upper
-from nrs_design.proof.evidence import AbstractEvidence, FormsOnGraph
+from nrs_design.proof.evidence import AbstractEvidence
 from nrs_design.proof.mode import Time
-from nrs_design.proof.steps import FREE
 
 if TYPE_CHECKING:
     import numpy as np
@@ -22,15 +21,13 @@ _DIGITS = 4
 
 def form_of(evidence: AbstractEvidence | None) -> NDArray[np.float64] | None:
     """Return the P of one quadratic function in contact, shape (n, n); None of anything else."""
-    if not isinstance(evidence, FormsOnGraph) or evidence.degree != 1 or evidence.stays is not None:
-        return None
-    forms = [node.form for node in evidence.nodes if not node.place.startswith(FREE)]
-    if len(forms) != 1:
+    known = None if evidence is None else evidence.quadratic
+    if known is None:
         return None
     import numpy as np
 
-    scale = 2**evidence.denominator_log2
-    return np.array([[float(Fraction(entry, scale)) for entry in row] for row in forms[0]])
+    form, power = known
+    return np.array([[float(Fraction(entry, 2**power)) for entry in row] for row in form])
 
 
 def latex_of(

@@ -21,8 +21,8 @@ import numpy as np
 from nrs_design.controllers.float32 import float32_not_above, float32_not_below, to_float32
 from nrs_design.controllers.operations import StepLaw
 from nrs_design.exporters.export import Export
-from nrs_design.proof.evidence import SaturatedEllipsoid
-from nrs_design.proof.exact import is_positive_definite
+from nrs_design.proof.evidence import Shows
+from nrs_design.proof.exact import IntegerMatrix, is_positive_definite
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.taylor import exponential_between
 from nrs_design.spec.build_plant import build_environments
@@ -64,9 +64,9 @@ def region_of(export: Export, law: StepLaw) -> MonitoredRegion | str:
     certificate, spec, designed = export.certificate, export.spec, export.designed
     if certificate is None or spec is None or designed is None:
         return _NONE
-    shown = (item for item in certificate.statements if isinstance(item, SaturatedEllipsoid))
+    shown = (item for item in certificate.statements if item.shows is Shows.REGION)
     evidence, system = next(shown, None), certificate.system
-    if evidence is None or system.sample_time is None:
+    if evidence is None or evidence.quadratic is None or system.sample_time is None:
         return _NONE
     if system.couplings:
         return "it is one of all axes together, and a monitor sees one"
@@ -84,7 +84,7 @@ def region_of(export: Export, law: StepLaw) -> MonitoredRegion | str:
         return "a state of it counts from a rest that the monitor does not know"
     if any(c.law.commands == "position" for c in designed.design.controllers):
         return "under position and force control it counts from a rest that it does not know"
-    rows = _factor(evidence)
+    rows = _factor(*evidence.quadratic)
     if rows is None:
         return "single precision loses it"
     T, motor = system.sample_time, designed.plant.actuator_ranges
@@ -110,9 +110,9 @@ def _way(T: Fraction, tau: Fraction) -> Iterator[Fraction]:
     yield from (E / (tau * (1 - E)) for E in exponential_between(-T / tau))
 
 
-def _factor(evidence: SaturatedEllipsoid) -> tuple[tuple[Fraction, ...], ...] | None:
+def _factor(form: IntegerMatrix, power: int) -> tuple[tuple[Fraction, ...], ...] | None:
     """Return U with ``U'U > Q`` of single precision, checked exactly; None where none is found."""
-    wanted = [[Fraction(v, 2**evidence.denominator_log2) for v in row] for row in evidence.Q]
+    wanted = [[Fraction(v, 2**power) for v in row] for row in form]
     scale = np.array([float(row[i]) ** 0.5 for i, row in enumerate(wanted)])
     unit = np.array([[float(v) for v in row] for row in wanted]) / np.outer(scale, scale)
     U = np.linalg.cholesky(unit * float(1 + ROOM)).T * scale

@@ -146,6 +146,10 @@ def memories(system: SwitchedSystem, degree: int = 1, first: int = 1) -> dict[in
     """
     found = dict[int, Cost]()
     order, own, forms = form_sizes(system.order, degree)
+    names = [mode.name for mode in system.modes]
+    if not all(any(name in ends for ends in following(system).values()) for name in names):
+        # A mode that nothing leads to ends no word, and a run may begin in it.
+        return found
     for length in range(first, LONGEST + 1 if order <= MAX_MONOMIALS else 0):
         if (counts := count_words(system, length)) is None:
             return found

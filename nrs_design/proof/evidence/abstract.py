@@ -171,6 +171,11 @@ class AbstractEvidence(ABC):
         return self.shows
 
     @property
+    def quadratic(self) -> tuple[IntegerMatrix, int] | None:
+        """The Q of one quadratic function in contact: numerators over two to a power; or None."""
+        return None
+
+    @property
     def start_size(self) -> Fraction | None:
         """Size of the start of a saturating system that motions decay from, if it shows one."""
         return None

@@ -119,6 +119,13 @@ class FormsOnGraph(AbstractFunction):
         return self.stays is None and any(node.place.startswith(FREE) for node in self.nodes)
 
     @property
+    def quadratic(self) -> tuple[IntegerMatrix, int] | None:
+        """The form in contact, if it is the only one there and quadratic."""
+        forms = [node.form for node in self.nodes if not node.place.startswith(FREE)]
+        single = len(forms) == 1 and self.degree == 1 and self.stays is None
+        return ([list(row) for row in forms[0]], self.denominator_log2) if single else None
+
+    @property
     def covers_clock(self) -> bool:
         """Whether its places know of turns."""
         return self.stays is None

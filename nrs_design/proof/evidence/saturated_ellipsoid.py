@@ -86,6 +86,11 @@ class SaturatedEllipsoid(AbstractEvidence):
         return Shows.REGION
 
     @property
+    def quadratic(self) -> tuple[IntegerMatrix, int]:
+        """The Q of the ellipsoid."""
+        return [list(row) for row in self.Q], self.denominator_log2
+
+    @property
     def start_size(self) -> Fraction:
         """The level."""
         return self.level

@@ -468,3 +468,14 @@ def test_evidence_about_every_mode_holds_for_its_equals_too():
     system, evidence = genuine("common-quadratic")
     assert evidence.spread(system, twice(system)) == evidence
     assert evidence.find_fault(twice(system)) is None
+
+
+def test_the_matrix_of_one_quadratic_function():
+    """Of a graph with one form in contact, and of an ellipsoid; of nothing else."""
+    _, common = genuine("common-quadratic")
+    (node,) = common.nodes
+    assert common.quadratic == ([list(row) for row in node.form], common.denominator_log2)
+    _, region = genuine("saturated-ellipsoid")
+    assert region.quadratic == ([list(row) for row in region.Q], region.denominator_log2)
+    assert genuine("common-polynomial")[1].quadratic is None
+    assert genuine("growing-sequence, average")[1].quadratic is None

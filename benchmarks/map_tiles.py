@@ -13,8 +13,8 @@ from benchmarks.measure import Comparison, Finding, Size
 from nrs_design.certificates.certificate import Verdict
 from nrs_design.errors import NrsDesignError
 from nrs_design.pipeline import Designed, run_design
-from nrs_design.pipeline.written_gains import with_own_gains
 from nrs_design.pipeline.quick_verdict import Posed, run_quick_growth, run_quick_proof
+from nrs_design.pipeline.written_gains import with_own_gains
 from nrs_design.spec import read_spec
 from nrs_design.sweeps.paint import run_tile_map
 from nrs_design.sweeps.tiles import TileGrid, read_tiles

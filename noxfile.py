@@ -86,11 +86,11 @@ def tests(session: nox.Session) -> None:
 
 @nox.session(**IN_ENVIRONMENT)
 def accessibility(session: nox.Session) -> None:
-    """Hold pages against the rules of axe-core, which npm fetches, in Chromium."""
+    """Hold reports and the pages in site/ against the rules of axe-core, in Chromium."""
     folder = session.create_tmp()
     session.run("npm", "install", "--prefix", folder, "axe-core@4.14.1", external=True, silent=True)
     axe = f"{folder}/node_modules/axe-core/axe.min.js"
-    run_there(session, "pytest", "-k", "accessibility", "tests/reporting", AXE=axe)
+    run_there(session, "pytest", "-k", "accessibility", "tests/reporting", "tests/docs", AXE=axe)
 
 
 @nox.session(**IN_ENVIRONMENT)

@@ -41,6 +41,7 @@ class RetunedGains:
     beyond: int | None  # Smallest share in per cent that was tried and not proved; None if none
     ranges: dict[str, tuple[Fraction, Fraction]]  # Of Bt of each controller, N m s/rad
     result: Result | None  # Of the spec with these ranges; None at share 0
+    goals: bool  # Whether goals of the proof had to be met, too
 
 
 def run_retuned_gains(
@@ -89,7 +90,9 @@ def run_retuned_gains(
     share = Fraction(low, 100)
     gains = {n: Fraction(_shipped(designed, n, "Bt")) for n in names}
     ranges = {n: (Bt * (1 - share), Bt * (1 + share)) for n, Bt in gains.items()}
-    return RetunedGains(share, high if high <= LARGEST else None, ranges, proved.get(low))
+    beyond = high if high <= LARGEST else None
+    asked = any(certified_goals(designed.spec, None))
+    return RetunedGains(share, beyond, ranges, proved.get(low), asked)
 
 
 def bracket_share(is_proved: Callable[[int], bool]) -> tuple[int, int]:

@@ -185,7 +185,7 @@ def _print(loaded: LoadedSpec, found: TileMap, idle: tuple[str, ...]) -> None:
         say("--figure, --csv or --json have the tiles")
     granted = max((len(one.granted) for one in found.certificates), default=0)
     if granted:
-        say(f"takes up to {counted(granted, 'thing')} for granted (--certificates or --json)")
+        say(f"  takes up to {counted(granted, 'thing')} for granted (--certificates or --json)")
     for path in idle:
         note(f"warning: {path} has no part in what is decided: its tiles say nothing about it")
     wrong = next((tile.wrong for tile in found.tiles.values() if tile.wrong), None)

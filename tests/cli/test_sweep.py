@@ -11,8 +11,10 @@ from time import sleep
 import pytest
 
 from nrs_design.certificates.certificate import content_id
-from nrs_design.cli import exit_codes, sweep, sweep_point
+from nrs_design.cli import exit_codes
 from nrs_design.cli.sweep import SWEPT
+from nrs_design.cli.sweep_point import Job, answer_point
+from nrs_design.sweeps.grid import read_grid
 from nrs_design.sweeps.store import Store
 from tests.support import SOFT_TISSUE, document_of, run
 
@@ -286,18 +288,19 @@ def test_options_belong_to_the_command_and_to_the_name_of_its_answer(tmp_path, s
 
 def test_an_answer_stays_until_it_is_replaced(tmp_path, spec, monkeypatch):
     """Another run in the same folder may be about to read it."""
-    where = tmp_path / "mine.sweep"
-    job = sweep._job(tmp_path / spec, [f"{STIFFNESS}=700 N/m"], ["optimize"], where)
-    first = sweep_point.answer_point(job, 0)
-    computed, there = sweep_point._computed, []
+    path, what = tmp_path / spec, ("optimize",)
+    grid = read_grid(path, [f"{STIFFNESS}=700 N/m"])
+    job = Job(path, grid, what, (), what, Store(tmp_path / "mine.sweep"))
+    first = answer_point(job, 0)
+    write, there = Store.write, []
 
-    def watched(job, key):
-        there.append(job.store.read(key))
-        return computed(job, key)
+    def watched(store, key, kept):
+        there.append(store.read(key))
+        write(store, key, kept)
 
-    monkeypatch.setattr(sweep_point, "_computed", watched)
+    monkeypatch.setattr(Store, "write", watched)
     # What `optimize` proves is computed again in every run.
-    assert sweep_point.answer_point(job, 0) == first
+    assert answer_point(job, 0) == first
     assert [kept.id(first.key) for kept in there] == [first.id]
 
 

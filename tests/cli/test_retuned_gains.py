@@ -38,3 +38,11 @@ def test_without_a_box_it_says_so(capsys):
     assert "with the goals of the proof" in said
     assert box.facts()["share"] == 0
     assert box.facts()["not_proved_at"] == 0.01
+
+
+def test_nothing_proved_is_inconclusive(tmp_path):
+    path = tmp_path / "wide.nrs.yaml"
+    path.write_text(SOFT_TISSUE.read_text().replace("768.17 N/m", "1300 N/m"))
+    done = run("optimize", "--retune", "--out", "new.nrs.yaml", path, cwd=tmp_path, code=3)
+    assert "within ±1 % of all controllers, not proved" in done.stdout
+    assert not (tmp_path / "new.nrs.yaml").exists()

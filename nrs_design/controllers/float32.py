@@ -6,6 +6,8 @@ import math
 import struct
 from fractions import Fraction
 
+import numpy as np
+
 from nrs_design.errors import DesignError
 
 # Bits of the significand, exponent of the smallest step, exponent beyond the largest number.
@@ -88,6 +90,17 @@ def exact_decimal(value: Fraction) -> str:
     digits = f"{abs(value.numerator) * 5**exponent:0{exponent + 1}d}"
     whole, part = digits[: len(digits) - exponent], digits[len(digits) - exponent :].rstrip("0")
     return ("-" if value < 0 else "") + whole + ("." + part if part else "")
+
+
+def shortest_decimal(value: Fraction) -> str:
+    """Return the shortest decimal that single precision holds as this very number.
+
+    Parameters
+    ----------
+    value : Fraction
+        A single-precision number.
+    """
+    return str(np.float32(float(value)))
 
 
 def round_significant(value: float, digits: int) -> Fraction:

@@ -77,3 +77,16 @@ def test_specs_of_certificates_find_the_files_that_they_name(tmp_path):
     spec = ROOT / "specs/neuroboscope/soft-tissue-axes.nrs.yaml"
     assert "names files beside itself" in run("map", spec, *asked, cwd=tmp_path, code=2).stderr
     assert not list(tmp_path.iterdir())
+
+
+def test_a_spec_that_was_changed_is_not_replaced(tmp_path):
+    over = "--over", "environments.soft.stiffness=500,600 N/m"
+    command = "map", ROOT / "specs/neuroboscope/soft-tissue.nrs.yaml", *over
+    for _ in range(2):
+        run(*command, "--certificates", "folder", cwd=tmp_path)
+    (spec,) = (tmp_path / "folder").glob("*.nrs.yaml")
+    changed = spec.read_text() + "# mine\n"
+    spec.write_text(changed)
+    refused = run(*command, "--certificates", "folder", cwd=tmp_path, code=2)
+    assert "is not overwritten" in refused.stderr.replace("\n ", "")
+    assert spec.read_text() == changed

@@ -6,8 +6,6 @@ import math
 import struct
 from fractions import Fraction
 
-import numpy as np
-
 from nrs_design.errors import DesignError
 
 # Bits of the significand, exponent of the smallest step, exponent beyond the largest number.
@@ -100,7 +98,9 @@ def shortest_decimal(value: Fraction) -> str:
     value : Fraction
         A single-precision number.
     """
-    return str(np.float32(float(value)))
+    from numpy import float32
+
+    return str(float32(float(value)))
 
 
 def round_significant(value: float, digits: int) -> Fraction:

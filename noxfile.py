@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import ast
 import os
+import shutil
+from pathlib import Path
 
 import nox
 from nox.command import CommandFailed
@@ -23,6 +25,8 @@ PLACES = {
     "find-links": "UV_FIND_LINKS",
     "no-index": "UV_NO_INDEX",
 }
+# What the package is installed on; as pyproject.toml says.
+PYTHONS = ("3.11", "3.12", "3.13")
 SOURCES = ("nrs_design", "tests", "benchmarks", "docs", "noxfile.py")
 
 
@@ -86,11 +90,11 @@ def tests(session: nox.Session) -> None:
 
 @nox.session(**IN_ENVIRONMENT)
 def accessibility(session: nox.Session) -> None:
-    """Hold pages against the rules of axe-core, which npm fetches, in Chromium."""
+    """Hold reports and the pages in site/ against the rules of axe-core, in Chromium."""
     folder = session.create_tmp()
     session.run("npm", "install", "--prefix", folder, "axe-core@4.14.1", external=True, silent=True)
     axe = f"{folder}/node_modules/axe-core/axe.min.js"
-    run_there(session, "pytest", "-k", "accessibility", "tests/reporting", AXE=axe)
+    run_there(session, "pytest", "-k", "accessibility", "tests/reporting", "tests/docs", AXE=axe)
 
 
 @nox.session(**IN_ENVIRONMENT)
@@ -132,6 +136,28 @@ def docs(session: nox.Session) -> None:
     """Build the documentation as plain files in site/; a broken link fails."""
     install(session, ".[docs]")
     session.run("python", "-m", "mkdocs", "build", *session.posargs)
+
+
+@nox.session
+def package(session: nox.Session) -> None:
+    """Build sdist and wheel; from the wheel, re-check what is committed on each Python here."""
+    session.install("build", "twine", "uv", *CONSTRAINTS)
+    folder = Path(session.create_tmp()).resolve()
+    shutil.rmtree(folder)
+    session.run("python", "-m", "build", "--outdir", str(folder))
+    source, wheel = sorted(map(str, folder.iterdir()), reverse=True)
+    session.run("twine", "check", "--strict", source, wheel)
+    env = places_of_pip(session) | {"UV_PYTHON_DOWNLOADS": "never"}
+    for python in PYTHONS:
+        place = folder / f"python{python}"
+        # 2: this machine has no such Python, which is no fault of the package.
+        create = ("uv", "venv", "--quiet", "--python", python, str(place))
+        session.run(*create, env=env, success_codes=(0, 2))
+        if place.exists():
+            of = ("--quiet", "--python", str(place), *CONSTRAINTS)
+            session.run("uv", "pip", "install", *of, wheel, env=env)
+            program = str(place / "bin" / "nrs-design")
+            session.run(program, "gate", "specs/", "--locked", external=True)
 
 
 @nox.session

@@ -1,11 +1,12 @@
 """What mkdocs calls: pages and figures that are made from the package, and what stops the build.
 
 mkdocs knows the functions by their names (``on_files``, ``on_page_markdown``, ``on_page_content``,
-``on_post_page``).
+``on_post_page``, ``on_post_build``).
 """
 
 from __future__ import annotations
 
+import json
 import re
 from itertools import count
 from pathlib import Path
@@ -31,9 +32,8 @@ ROOT = Path(__file__).parents[1]
 NOTEBOOK = ROOT / "docs" / "tutorial_python.py"
 COST_SPEC = ROOT / "specs" / "neuroboscope" / "soft-tissue.nrs.yaml"
 SCROLLED = '<div class="table-scroll" role="region" aria-label="Table {}" tabindex="0">'
-# What scripts of the theme look for although highlighting and search are off; without it they stop.
+# What scripts of the theme look for although highlighting is off; without it they stop.
 SWITCHED = '<style id="hljs-light"></style><style id="hljs-dark"></style>'
-OPENED = '<div id="mkdocs_search_modal" hidden><b id="mkdocs-search-results"></b></div>'
 # Where a page says so, what is made stands in its place.
 MADE = re.compile(r"^<!-- made: (\w+) -->$", re.MULTILINE)
 
@@ -104,4 +104,15 @@ def on_page_content(html: str, page: Page, config: MkDocsConfig, files: Files) -
 def on_post_page(output: str, page: Page, config: MkDocsConfig) -> str:
     """Stop the build where a page would load something from a network."""
     refuse(f"{page.file.src_uri} loads from elsewhere", loaded_from_elsewhere(output))
-    return output.replace("</head>", f"{SWITCHED}</head>").replace("</body>", f"{OPENED}</body>")
+    return output.replace("</head>", f"{SWITCHED}</head>")
+
+
+def on_post_build(config: MkDocsConfig) -> None:
+    """Make the texts that are searched a script, which a page may load from a folder."""
+    folder = Path(config.site_dir) / "search"
+    index = folder / "search_index.json"
+    documents = json.loads(index.read_text(encoding="utf-8"))["docs"]
+    script = f"const search_documents = {json.dumps(documents)};\n"
+    (folder / "index.js").write_text(script, encoding="utf-8")
+    index.unlink()
+    (folder / "worker.js").unlink()

@@ -27,7 +27,10 @@ import pytest
 from hypothesis import settings
 
 from nrs_design.cli import COLLECT_AFTER
+from tests.browser import axe, browser
 from tests.costs import mark_by_cost, seconds_of
+
+__all__ = ["axe", "browser"]
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 # Lines are found whole; how they are broken is tested by itself.

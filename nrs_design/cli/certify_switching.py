@@ -37,6 +37,7 @@ if TYPE_CHECKING:
     from nrs_design.pipeline.radius import RadiusBounds
     from nrs_design.pipeline.subsets import Subset
     from nrs_design.search.certification import Certification
+    from nrs_design.spec import Spec
 
 
 LargestBox = Annotated[
@@ -252,7 +253,7 @@ def _print(result: Result) -> None:
 
     certification = result.certification
     system, statements = certification.system, certification.statements
-    verdict, shown = str(certification.verdict), _briefs(certification)
+    verdict, shown = str(certification.verdict), _briefs(certification, result.loaded.spec)
     say(f"{result.loaded.spec.name}: {verdict.upper()}{_after(certification)}", verdict=verdict)
     for statement, short in zip(statements, shown, strict=True):
         say(f"  {statement.claim(system) if wants_details() else short}")
@@ -272,10 +273,14 @@ def _print(result: Result) -> None:
     _print_granted(result)
 
 
-def _briefs(certification: Certification) -> list[str]:
+def _briefs(certification: Certification, spec: Spec) -> list[str]:
     from nrs_design.certificates.brief import brief
 
-    return [brief(item, certification.system) for item in certification.statements]
+    touched = spec.environments.values() if spec.kind == "interaction-design" else ()
+    given = (environment.lever_arm for environment in touched)
+    # Where a force is largest: at the shortest arm.
+    arm = min((length.exact for length in given if length is not None), default=None)
+    return [brief(item, certification.system, arm) for item in certification.statements]
 
 
 def _after(certification: Certification) -> str:

@@ -40,12 +40,12 @@ def parse_arm(text: str | None, *, rotational: bool) -> float | None:
     return arm
 
 
-def parse_offset(option: str, text: str | None, *, rotational: bool) -> float | None:
-    """Read ``--zero``, a position, or ``--tare``, a force.
+def parse_offset(setting: str, text: str | None, *, rotational: bool) -> float | None:
+    """Read ``zero``, a position, or ``tare``, a force.
 
     Parameters
     ----------
-    option : {"--zero", "--tare"}
+    setting : {"zero", "tare"}
         Which.
     text : str or None
         As in ``0.1 m``; ``fit`` or nothing is None.
@@ -59,8 +59,8 @@ def parse_offset(option: str, text: str | None, *, rotational: bool) -> float | 
     """
     if text is None or text == "fit":
         return None
-    kinds = {"--zero": (LENGTH, ANGLE), "--tare": (FORCE, TORQUE)}
-    return _parse(option, text, kinds[option][rotational])
+    kinds = {"zero": (LENGTH, ANGLE), "tare": (FORCE, TORQUE)}
+    return _parse(setting, text, kinds[setting][rotational])
 
 
 def parse_preload(text: str | None, *, rotational: bool) -> tuple[float, float] | None:

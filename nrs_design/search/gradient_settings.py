@@ -9,6 +9,7 @@ from math import isfinite
 from typing import Any, Self
 
 from nrs_design.errors import DesignError
+from nrs_design.named_values import read_named_values
 
 
 class Coordinates(StrEnum):
@@ -95,23 +96,11 @@ class Gradient:
         Raises
         ------
         DesignError
-            If there is no such setting, or its value is none.
+            If there is no such setting, it is given twice, or its value is none.
         """
-        known: dict[str, Any] = {f.name: f.default for f in fields(cls) if f.name != "tell"}
-        read: dict[str, Any] = {}
-        for entry in entries:
-            name, sign, text = entry.partition("=")
-            if not sign or name not in known:
-                remedy = f"write NAME=VALUE, with one of {', '.join(known)}"
-                wrong = f"{entry!r} is no setting of the gradient iteration"
-                raise DesignError(wrong, remedy=remedy)
-            kind: Callable[[str], Any] = str if known[name] is None else type(known[name])
-            try:
-                read[name] = kind(text)
-            except ValueError:
-                remedy = f"by default it is {known[name]}"
-                raise DesignError(f"{text!r} is no value of {name}", remedy=remedy) from None
-        return cls(**read)
+        defaults = {field.name: field.default for field in fields(cls) if field.name != "tell"}
+        readers = {name: _reader(default) for name, default in defaults.items()}
+        return cls(**read_named_values(entries, readers, "the gradient iteration"))
 
     def briefly(self, updates: int) -> Gradient:
         """Return settings for a try of at most so many updates, which nobody is told about."""
@@ -121,6 +110,16 @@ class Gradient:
     def is_told(self) -> bool:
         """Whether anybody listens to how the iteration goes."""
         return self.tell is not _tell_nobody
+
+
+def _reader(default: Any) -> Callable[[str], Any]:
+    def read(text: str) -> Any:
+        try:
+            return text if default is None else type(default)(text)
+        except ValueError:
+            raise ValueError(f"by default it is {default}") from None
+
+    return read
 
 
 def _require(holds: bool, name: str, value: object, wanted: str) -> None:

@@ -231,16 +231,31 @@ class Rung:
             return
         from nrs_design.search.polynomial import HELD, highest_degree
 
-        for d in range(2, highest_degree(system.order) + 1):
-            step = f"{self.name} of degree {2 * d}"
-            if limits.max_degree is not None and 2 * d > limits.max_degree:
-                yield step, _refuse(f"not tried: --max-degree is {limits.max_degree}")
-                return
+        highest = highest_degree(system.order)
+        asked = highest if limits.max_degree is None else limits.max_degree // 2
+        for d in _rising(min(highest, asked)):
             fits = allowance.affords(self.cost(system, d)[0])
-            yield step, partial(self.search, degree=d)
+            yield f"{self.name} of degree {2 * d}", partial(self.search, degree=d)
             if not fits:
                 return
+        if asked < highest:
+            step = f"{self.name} of degree {2 * asked + 2}"
+            yield step, _refuse(f"not tried: --max-degree is {limits.max_degree}")
+            return
         yield f"{self.name} of higher degree", _refuse(f"not tried: {HELD}")
+
+
+def _rising(highest: int) -> Iterator[int]:
+    """Yield halves of degrees up to the highest: each form takes about four times the one before.
+
+    What all lower degrees took is then a part of what the last one takes.
+    """
+    d = 2
+    while d < highest:
+        yield d
+        d += max(1, d // 3)
+    if highest >= 2:
+        yield highest
 
 
 def _refuse(reason: str) -> Search:

@@ -6,7 +6,6 @@ import pytest
 
 from nrs_design.assurance.gsn import GsnElement, GsnKind, goal, solution
 from nrs_design.assurance.gsn_svg import render_svg
-from tests.support import program_named
 
 SVG = "{http://www.w3.org/2000/svg}"
 WORDS = "a text that goes on for longer than one line of its shape, by far " * 3
@@ -44,34 +43,26 @@ def test_the_same_argument_gives_the_same_text():
 
 @pytest.mark.browser
 @pytest.mark.slow
-def test_in_a_browser_texts_fit_and_shapes_do_not_overlap(tmp_path, sampled_folder):
-    chromium, driver = map(program_named, ("chromium", "chromedriver"))
-    from selenium import webdriver
-
-    options = webdriver.ChromeOptions()
-    options.binary_location = chromium
-    for argument in ("--headless=new", "--no-sandbox", "--disable-gpu"):
-        options.add_argument(argument)
+def test_in_a_browser_texts_fit_and_shapes_do_not_overlap(browser, tmp_path, sampled_folder):
     (tmp_path / "example.svg").write_text(render_svg(example()))
-    with webdriver.Chrome(options=options, service=webdriver.ChromeService(driver)) as window:
-        for file in (tmp_path / "example.svg", sampled_folder / "argument.svg"):
-            window.get(file.as_uri())
-            wide, shapes = window.execute_script(
-                "const box = e => { const r = e.getBoundingClientRect();"
-                " return [r.left, r.top, r.right, r.bottom]; };"
-                "return [[...document.querySelectorAll('g[id]')].flatMap(g => {"
-                " const s = g.querySelector('rect,ellipse,circle,polygon');"
-                " const [l, t, r, b] = box(s);"
-                " return [...g.querySelectorAll('text')]"
-                "  .filter(e => !/^[AJ]$/.test(e.textContent))"
-                "  .filter(e => { const [x, y, u, v] = box(e);"
-                "   return x < l || u > r || y < t - 1 || v > b + 1; })"
-                "  .map(e => e.textContent); }),"
-                " [...document.querySelectorAll('g[id]')].map(g =>"
-                "  [g.id, box(g.querySelector('rect,ellipse,circle,polygon'))])]"
-            )
-            assert wide == []
-            assert [pair for pair in pairs_of(shapes) if overlap(*pair)] == []
+    for file in (tmp_path / "example.svg", sampled_folder / "argument.svg"):
+        browser.get(file.as_uri())
+        wide, shapes = browser.execute_script(
+            "const box = e => { const r = e.getBoundingClientRect();"
+            " return [r.left, r.top, r.right, r.bottom]; };"
+            "return [[...document.querySelectorAll('g[id]')].flatMap(g => {"
+            " const s = g.querySelector('rect,ellipse,circle,polygon');"
+            " const [l, t, r, b] = box(s);"
+            " return [...g.querySelectorAll('text')]"
+            "  .filter(e => !/^[AJ]$/.test(e.textContent))"
+            "  .filter(e => { const [x, y, u, v] = box(e);"
+            "   return x < l || u > r || y < t - 1 || v > b + 1; })"
+            "  .map(e => e.textContent); }),"
+            " [...document.querySelectorAll('g[id]')].map(g =>"
+            "  [g.id, box(g.querySelector('rect,ellipse,circle,polygon'))])]"
+        )
+        assert wide == []
+        assert [pair for pair in pairs_of(shapes) if overlap(*pair)] == []
 
 
 def pairs_of(shapes):

@@ -5,11 +5,9 @@ import hashlib
 import html
 import io
 import json
-import os
 import re
 from fractions import Fraction
 from itertools import pairwise
-from pathlib import Path
 
 import pytest
 from pypdf import PdfReader
@@ -18,6 +16,7 @@ from nrs_design.certificates.certificate import canonical
 from nrs_design.thesis.figures import draw_counterparts, gallery_page
 from nrs_design.thesis.page import render_page
 from nrs_design.thesis.table import reproduce
+from tests.browser import faults_of, open_file, overflow_of, severe
 from tests.certificates.attacks import (
     ATTACKS,
     BOTH,
@@ -29,7 +28,6 @@ from tests.certificates.attacks import (
     shipped,
 )
 from tests.reporting.conftest import KINDS
-from tests.support import program_named
 
 CASES = ["proved", "dwell"]
 MORE = ["force", "refuted", "discrete", *(name for name in KINDS if name not in CASES)]
@@ -43,32 +41,10 @@ def slow(case):
     return pytest.param(case, marks=pytest.mark.slow)
 
 
-@pytest.fixture(scope="module")
-def browser():
-    """Headless Chromium; without it the tests are skipped, except in CI."""
-    chromium, driver = map(program_named, ("chromium", "chromedriver"))
-    from selenium import webdriver
-
-    options = webdriver.ChromeOptions()
-    options.binary_location = chromium
-    for argument in ("--headless=new", "--no-sandbox", "--disable-gpu", "--hide-scrollbars"):
-        options.add_argument(argument)
-    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
-    window = webdriver.Chrome(options=options, service=webdriver.ChromeService(driver))
-    yield window
-    window.quit()
-
-
 def open_page(browser, text, folder, width, scheme="light"):
     path = folder / "report.html"
     path.write_text(text, encoding="utf-8")
-    browser.execute_cdp_cmd(
-        "Emulation.setDeviceMetricsOverride",
-        {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": False},
-    )
-    preference = {"name": "prefers-color-scheme", "value": scheme}
-    browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [preference]})
-    browser.get(path.as_uri())
+    open_file(browser, path, width, scheme)
 
 
 def unfold(browser):
@@ -82,15 +58,14 @@ def unfold(browser):
 def test_page_renders(browser, report, page, tmp_path, case, width):
     open_page(browser, page(case), tmp_path, width)
     unfold(browser)
-    assert [entry for entry in browser.get_log("browser") if entry["level"] == "SEVERE"] == []
+    assert severe(browser) == []
     sizes = browser.execute_script(
         "return [...document.querySelectorAll('figure svg')].map(s => {"
         "const r = s.getBoundingClientRect(); return [r.width, r.height, s.getBBox().width]})"
     )
     assert len(sizes) == len(list(report(case).illustrations))
     assert all(w > 250 and h > 60 and inner > 0 for w, h, inner in sizes)
-    overflow = "return document.documentElement.scrollWidth - document.documentElement.clientWidth"
-    assert browser.execute_script(overflow) == 0
+    assert overflow_of(browser) == 0
 
 
 @pytest.mark.parametrize("case", ALL)
@@ -243,7 +218,7 @@ def pressed(browser, text, folder):
 
     told = browser.find_element("css selector", "#check output")
     WebDriverWait(browser, 60).until(lambda _: told.get_attribute("class"))
-    assert [entry for entry in browser.get_log("browser") if entry["level"] == "SEVERE"] == []
+    assert severe(browser) == []
     return told.get_attribute("class"), told.text
 
 
@@ -385,28 +360,6 @@ def test_printed_pages_are_light_and_numbered(browser, page, tmp_path):
     shown = browser.execute_script(paper)
     browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": ""})
     assert shown == "rgb(255, 255, 255)"
-
-
-@pytest.fixture(scope="module")
-def axe():
-    """The rules of axe-core, whose file AXE names; `nox -s accessibility` brings it along.
-
-    Tests ask for them first: without them, no browser is started.
-    """
-    path = os.environ.get("AXE")
-    if path is None:
-        pytest.skip("AXE does not name axe.min.js")
-    return Path(path).read_text(encoding="utf-8")
-
-
-def faults_of(browser, axe):
-    """Serious faults of the page that is open."""
-    browser.execute_script(axe)
-    found = browser.execute_async_script(
-        "axe.run().then(r => arguments[0](r.violations.map("
-        "v => [v.impact, v.id, v.nodes.map(n => n.target + ': ' + n.failureSummary)])))"
-    )
-    return [fault for fault in found if fault[0] in ("serious", "critical")]
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])

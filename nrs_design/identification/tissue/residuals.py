@@ -108,8 +108,8 @@ def doubt_signs(trial: Trial, residuals: Array, offsets: Array) -> Iterator[str]
     (softest, _), (_, damping) = _ends(trial, [trial.deflection, velocity], offsets)
     if stiffest < 0 or (damping < 0 and softest <= 0):
         yield (
-            "force and deflection have opposite signs (--negate-force if the sensor measures the "
-            "force on the probe)"
+            "force and deflection have opposite signs (--set negate=true if the sensor measures "
+            "the force on the probe)"
         )
 
 
@@ -227,5 +227,5 @@ def _conditioning(trial: Trial, residuals: Array) -> Iterator[str]:
         word = "stiffer" if more > 0 else "softer"
         yield (
             f"the first loading cycle is {100 * abs(more):.2g} % {word} than the later ones "
-            "(conditioning): --skip-cycles sets it apart"
+            "(conditioning): --set skip_cycles=1 sets it apart"
         )

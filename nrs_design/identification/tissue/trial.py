@@ -215,7 +215,7 @@ def _assemble(
         raise DataError(
             f"{used.sum()} samples in {len(x)} are left to fit, at least {FEWEST} are needed",
             path=record.source.path,
-            remedy="record longer, or say with --contact given, --from or --to what to use",
+            remedy="record longer, or say by --set contact=given, start=S or end=S what to use",
         )
     force = side * kept.force
     air = used & ~touching
@@ -263,14 +263,14 @@ def _window(record: TissueRecord, wanted: Preparation) -> tuple[TissueRecord, li
     inside = (time >= start) & (time <= end)
     if inside.sum() < FEWEST:
         raise DataError(
-            f"{inside.sum()} samples lie between --from and --to, at least {FEWEST} are needed",
+            f"{inside.sum()} samples lie between start and end, at least {FEWEST} are needed",
             path=record.source.path,
             remedy=f"the record lasts from 0 s to {record.duration:.6g} s",
         )
     kept = _rows(record, inside)
     if wanted.negate:
         kept = replace(kept, force=-kept.force)
-    return kept, _cut(time, ~inside, "outside --from and --to")
+    return kept, _cut(time, ~inside, "outside start and end")
 
 
 def _rows(record: TissueRecord, rows: slice | Flags) -> TissueRecord:
@@ -298,7 +298,7 @@ def _skipped(time: Array, cycles: tuple[slice, ...], wanted: Preparation, cuts: 
     if wanted.skip_cycles >= len(cycles):
         raise DataError(
             f"{wanted.skip_cycles} cycles are to be set apart, and there are {len(cycles)}",
-            remedy="leave at least one: give a smaller --skip-cycles",
+            remedy="leave at least one: set a smaller skip_cycles",
         )
     skipped[: cycles[wanted.skip_cycles].start] = True
     cuts += _cut(time, skipped, "first loading cycles, set apart")

@@ -24,23 +24,14 @@ from nrs_design.identification.cli.identify.common import (
     read_all,
 )
 from nrs_design.identification.cli.identify.tissue_options import (
-    Contact,
-    ContactOption,
     Covers,
-    Drift,
-    DriftOption,
-    End,
     EnvironmentName,
     LeverArm,
     Model,
     ModelOption,
-    NegateForce,
     Preload,
     Prony,
-    SkipCycles,
-    Start,
-    Tare,
-    Zero,
+    Settings,
 )
 from nrs_design.proof.text import counted
 
@@ -57,14 +48,7 @@ def tissue(
     data: DataFiles,
     model: Model = ModelOption.AUTO,
     columns: ColumnMap = None,
-    start: Start = None,
-    end: End = None,
-    contact: Contact = ContactOption.AUTO,
-    zero: Zero = "fit",
-    tare: Tare = "fit",
-    drift: Drift = DriftOption.AUTO,
-    skip_cycles: SkipCycles = 0,
-    negate_force: NegateForce = False,
+    settings: Settings = None,
     covers: Covers = CoversOption.CONFIDENCE,
     preload: Preload = None,
     prony: Prony = False,
@@ -79,7 +63,8 @@ def tissue(
     Columns: time_s, deflection_m, force_N, or time_s, angle_rad, torque_Nm (mm, mN, deg, ms and
     the like are converted). One file is one record; the spread between records goes into the
     intervals. Air before, between and after touches is found, and so are a rupture and what follows
-    it. The position of contact and the force in air are fitted with the law, unless they are given.
+    it. The position of contact and the force in air are fitted with the law, unless --set gives
+    them.
     --write keeps the law of the environment, unless --model names another.
     What the fit leaves in doubt is written into the spec, and the gate fails on it until
     accept_doubt says why the range is used.
@@ -87,9 +72,10 @@ def tissue(
     Example: nrs-design identify tissue specs/data/silicone-soft-*.csv --lever-arm '0.24 m'
     """
     from nrs_design.identification.datasets import read_tissue
-    from nrs_design.identification.lever import parse_arm, parse_offset, parse_preload
+    from nrs_design.identification.lever import parse_arm, parse_preload
     from nrs_design.identification.reporting.tissue import tissue_report
-    from nrs_design.identification.tissue import Preparation, identify_tissue
+    from nrs_design.identification.tissue import identify_tissue
+    from nrs_design.identification.tissue.preparation_settings import read_preparation
     from nrs_design.identification.tissue.prony import fit_series
     from nrs_design.identification.write_spec import law_to_write, merge_tissue
 
@@ -97,16 +83,7 @@ def tissue(
     records = read_all(data, read_tissue, columns or [])
     rotational = any(record.rotational for record in records)
     arm = parse_arm(lever_arm, rotational=rotational)
-    preparation = Preparation(
-        start=start,
-        end=end,
-        contact=contact.value,
-        zero=parse_offset("--zero", zero, rotational=rotational),
-        tare=parse_offset("--tare", tare, rotational=rotational),
-        drift=drift.value,
-        skip_cycles=skip_cycles,
-        negate=negate_force,
-    )
+    preparation = read_preparation(settings or (), rotational=rotational)
     deflections = parse_preload(preload, rotational=rotational)
     law = asked = None if model is ModelOption.AUTO else str(model)
     if outputs.spec is not None:

@@ -20,37 +20,16 @@ class ModelOption(StrEnum):
         vars()[law.replace("-", "_").upper()] = law
 
 
-class ContactOption(StrEnum):
-    """Whether air is looked for."""
-
-    AUTO = "auto"
-    GIVEN = "given"
-
-
-class DriftOption(StrEnum):
-    """Whether the tare of the force moves."""
-
-    AUTO = "auto"
-    FIT = "fit"
-    NONE = "none"
-
-
 Model = Annotated[ModelOption, typer.Option(help="Law to choose; auto compares them all.")]
-Start = Annotated[
-    float | None, typer.Option("--from", metavar="S", help="First second that is used.")
+Settings = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set",
+        metavar="NAME=VALUE",
+        help="What is used of a record: start, end (s), contact (auto, given), zero, tare (fit, or "
+        "such as '0.1 m', '-1.3 N'), drift (auto, fit, none), skip_cycles, negate (true).",
+    ),
 ]
-End = Annotated[float | None, typer.Option("--to", metavar="S", help="Last second that is used.")]
-Contact = Annotated[
-    ContactOption,
-    typer.Option(help="Find air and touches, or take the whole record as in contact."),
-]
-Zero = Annotated[str, typer.Option(metavar="POSITION", help="Position of contact, as in '0.1 m'.")]
-Tare = Annotated[str, typer.Option(metavar="FORCE", help="Force in air, as in '-1.3 N' (or N*m).")]
-Drift = Annotated[DriftOption, typer.Option(help="Let the tare move with time; auto asks the air.")]
-SkipCycles = Annotated[
-    int, typer.Option(min=0, metavar="N", help="First loading cycles to set apart.")
-]
-NegateForce = Annotated[bool, typer.Option("--negate-force", help="Change the sign of the force.")]
 Covers = Annotated[
     CoversOption,
     typer.Option(help="What the range holds: the mean, 95 % of specimens, or the next one."),

@@ -131,7 +131,7 @@ def test_a_law_that_is_not_refused_before_the_fit_does_not_lose_it(tmp_path):
     """Records of a spring do not tell the damper of the spec: what was found is printed."""
     spec, text = tmp_path / "copy.nrs.yaml", SOFT_TISSUE.read_text().replace(*VOIGT)
     spec.write_text(text)
-    record_, options = damped_csv(tmp_path, b=0.0), ("--contact", "given", "--zero", "0 m")
+    record_, options = damped_csv(tmp_path, b=0.0), ("--set", "contact=given", "--set", "zero=0 m")
     arguments = ("identify", "tissue", record_, *options, "--write", spec)
     result = run(*arguments, "-v", cwd=tmp_path, code=2)
     assert "BIC - least" in result.stdout
@@ -208,10 +208,10 @@ def test_another_unit_or_sign_is_no_success(tmp_path, scales, said):
 @pytest.mark.parametrize(
     ("option", "message"),
     [
-        (("--zero", "3 N"), "--zero: "),
-        (("--tare", "3 m"), "--tare: "),
-        (("--from", "99"), "lie between --from and --to"),
-        (("--skip-cycles", "9"), "9 cycles are to be set apart"),
+        (("--set", "zero=3 N"), "zero: "),
+        (("--set", "tare=3 m"), "tare: "),
+        (("--set", "start=99"), "lie between start and end"),
+        (("--set", "skip_cycles=9"), "9 cycles are to be set apart"),
         (("--covers", "tolerance"), "needs several records"),
         (("--preload", "1 mm..2 mm", "--model", "elastic"), "the same at every preload"),
         (("--preload", "1 mm..2 m"), "not within the deflections"),

@@ -1,0 +1,42 @@
+"""How records are prepared, as it is typed."""
+
+from math import pi
+
+import pytest
+
+from nrs_design.errors import DataError, DesignError
+from nrs_design.identification.tissue import Preparation
+from nrs_design.identification.tissue.preparation_settings import read_preparation
+
+
+def test_every_field_can_be_set():
+    entries = (
+        "start=0.5", "end=2", "contact=given", "zero=10 mm", "tare=-1.3 N", "drift=none",
+        "skip_cycles=2", "negate=true",
+    )  # fmt: skip
+    wanted = Preparation(0.5, 2.0, "given", 0.01, -1.3, "none", 2, True)
+    assert read_preparation(entries, rotational=False) == wanted
+    assert read_preparation((), rotational=False) == Preparation()
+    turned = read_preparation(("zero=180 deg", "tare=fit"), rotational=True)
+    assert turned.zero == pytest.approx(pi)
+    assert turned.tare is None
+
+
+@pytest.mark.parametrize(
+    ("entry", "error", "message"),
+    [
+        ("start=nan", DesignError, "'nan' is no value of start"),
+        ("end=soon", DesignError, "'soon' is no value of end"),
+        ("contact=maybe", DesignError, "'maybe' is no value of contact"),
+        ("skip_cycles=-1", DesignError, "'-1' is no value of skip_cycles"),
+        ("negate=yes", DesignError, "'yes' is no value of negate"),
+        ("zero=3 N", DataError, "zero: "),
+        ("tare=1 N*m", DataError, "tare: "),
+        ("side=1", DesignError, "'side=1' is no setting of a record"),
+    ],
+)
+def test_what_is_none_is_refused_with_what_to_write(entry, error, message):
+    with pytest.raises(error) as caught:
+        read_preparation((entry,), rotational=False)
+    assert caught.value.message.startswith(message)
+    assert caught.value.remedy

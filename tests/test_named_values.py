@@ -1,0 +1,30 @@
+"""Settings that are typed as NAME=VALUE."""
+
+import pytest
+
+from nrs_design.errors import DesignError
+from nrs_design.named_values import read_named_values
+
+READERS = {"length": float, "name": str}
+
+
+def test_values_are_read_by_name():
+    assert read_named_values((), READERS, "a rod") == {}
+    read = read_named_values(("name=a=b", "length=1e-3"), READERS, "a rod")
+    assert read == {"name": "a=b", "length": 1e-3}
+
+
+@pytest.mark.parametrize(
+    ("entries", "message"),
+    [
+        (("width=1",), "'width=1' is no setting of a rod"),
+        (("length",), "'length' is no setting of a rod"),
+        (("length=1", "length=2"), "length is set twice"),
+        (("length=long",), "'long' is no value of length"),
+    ],
+)
+def test_what_is_no_setting_is_refused(entries, message):
+    with pytest.raises(DesignError) as caught:
+        read_named_values(entries, READERS, "a rod")
+    assert caught.value.message == message
+    assert caught.value.remedy

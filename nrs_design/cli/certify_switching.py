@@ -17,9 +17,9 @@ from nrs_design.cli.facts import (
     margins_facts,
     radius_facts,
 )
+from nrs_design.cli.granted import print_granted
 from nrs_design.cli.options import Budget, LoopCoordinates, MaxDegree, Memory, SpecFile
 from nrs_design.cli.printing import (
-    detail,
     note,
     progress,
     say,
@@ -28,7 +28,7 @@ from nrs_design.cli.printing import (
     wants_text,
 )
 from nrs_design.cli.reading import take_spec
-from nrs_design.proof.text import counted, exact_text
+from nrs_design.proof.text import exact_text
 from nrs_design.search.gradient_settings import Gradient
 from nrs_design.search.method import Method
 
@@ -270,7 +270,7 @@ def _print(result: Result) -> None:
     for goal in certified_goals(result.loaded.spec, result.certificate):
         ends = "met" if goal.met else "NOT PROVED"
         say(f"  goal {goal.key}, {goal.wanted}: {ends}: {goal.said}")
-    _print_granted(result)
+    print_granted(result)
 
 
 def _briefs(certification: Certification, spec: Spec) -> list[str]:
@@ -289,19 +289,3 @@ def _after(certification: Certification) -> str:
     if refuted is not None:
         return f" (refuted {refuted}; open where contact may be lost)"
     return "" if certification.evidence is not None else ": no proof, and no signal that grows"
-
-
-def _print_granted(result: Result) -> None:
-    """Print what is taken for granted: all of it, or how much and what is not modelled."""
-    certification = result.certification
-    granted, names = certification.granted, [mode.name for mode in certification.system.modes]
-    detail(f"  common quadratic function: {certification.common_quadratic}")
-    detail(f"  modes: {', '.join(names)}")
-    if wants_details():
-        say("  taken for granted (nrs-design report says how to test each):")
-        for assumption in granted:
-            say(f"    - {assumption}")
-    elif granted:
-        without = "; ".join(result.omits)
-        besides = f"; not modelled: {without}" if without else ""
-        say(f"  takes {counted(len(granted), 'thing')} for granted (-v){besides}")

@@ -46,7 +46,11 @@ def brief(evidence: AbstractEvidence, system: SwitchedSystem, arm: Fraction | No
             assert system.saturation is not None
             start, size = system.saturation.start, evidence.start_size
             unit = f" {start.unit}".rstrip()
-            of = "" if size is None else f" with a {start.name} up to {lower(size, DIGITS)}{unit}"
+            of = ""
+            if size is not None:
+                several = " of all axes (root of the sum of squares)" if system.couplings else ""
+                of = f" with a {start.name}{several} up to {lower(size, DIGITS)}{unit}"
+                of += start.beside
             return f"although signals saturate, decays from rest{of}{_contact(evidence, system)}"
         case Shows.SAFETY:
             speed = evidence.kept_speed

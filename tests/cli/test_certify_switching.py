@@ -703,7 +703,7 @@ def test_the_growth_per_step_is_said_whatever_the_verdict(tmp_path):
     """Philippe et al. 2016: 0.97482, and forms with a memory; one rung alone decides nothing."""
     lossy = ROOT / "docs" / "examples" / "lossy-network.nrs.yaml"
     alone = ("--method", "mode-quadratic", "--max-degree", "4", "--out", "a.cert.json")
-    result = typed("certify-switching", lossy, *alone, cwd=tmp_path, code=3)
+    result = typed("certify-switching", lossy, *alone, "-v", cwd=tmp_path, code=3)
     wanted = "growth per step, rho: at least 0.974817 (rounded down), by n1, n3, n1, n2, n3 4 times"
     assert wanted in result.stdout
     assert "at most 0.97499" in result.stdout

@@ -37,7 +37,6 @@ if TYPE_CHECKING:
     from nrs_design.pipeline.radius import RadiusBounds
     from nrs_design.pipeline.subsets import Subset
     from nrs_design.search.certification import Certification
-    from nrs_design.spec import Spec
 
 
 LargestBox = Annotated[
@@ -253,7 +252,7 @@ def _print(result: Result) -> None:
 
     certification = result.certification
     system, statements = certification.system, certification.statements
-    verdict, shown = str(certification.verdict), _briefs(certification, result.loaded.spec)
+    verdict, shown = str(certification.verdict), _briefs(result)
     say(f"{result.loaded.spec.name}: {verdict.upper()}{_after(certification)}", verdict=verdict)
     for statement, short in zip(statements, shown, strict=True):
         say(f"  {statement.claim(system) if wants_details() else short}")
@@ -273,10 +272,11 @@ def _print(result: Result) -> None:
     print_granted(result)
 
 
-def _briefs(certification: Certification, spec: Spec) -> list[str]:
+def _briefs(result: Result) -> list[str]:
     from nrs_design.certificates.brief import brief
 
-    touched = spec.environments.values() if spec.kind == "interaction-design" else ()
+    certification, designed = result.certification, result.designed
+    touched = () if designed is None else designed.spec.environments.values()
     given = (environment.lever_arm for environment in touched)
     # Where a force is largest: at the shortest arm.
     arm = min((length.exact for length in given if length is not None), default=None)

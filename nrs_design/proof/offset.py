@@ -29,7 +29,6 @@ from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.steps import CONTACT, FREE, Acting, Row, Step, steps_of
 from nrs_design.proof.system import SwitchedSystem
 
-
 Matrices = tuple[RationalMatrix, ...]
 
 
@@ -71,7 +70,8 @@ def _products(step: Step, channels: int) -> Iterator[tuple[str, Row, Row]]:
     for i, (left, right) in enumerate(own):
         yield f"{step.where}: {i}", left, right
     # What crosses the surface, or pulls, is not positive; what stays in contact is.
-    signs = [(name, [-entry for entry in row]) for name, row, _ in step.crossings]
+    signs: list[tuple[str, Row]] = []
+    signs += ((name, [-entry for entry in row]) for name, row, _ in step.crossings)
     if not step.is_flow and step.target == CONTACT:
         signs.append(("after", step.rows[-1]))
     kind = step.where.removesuffix(step.mode)
@@ -94,7 +94,7 @@ def _with_one(system: SwitchedSystem) -> SwitchedSystem:
 
     def below(columns: Sequence[RationalMatrix], size: Fraction | int = 1) -> Matrices:
         return tuple(
-            RationalMatrix.from_rows([[0], *([size * b] for (b,) in column.fractions())])
+            RationalMatrix.from_rows([(0,), *((size * b,) for (b,) in column.fractions())])
             for column in columns
         )
 

@@ -93,7 +93,8 @@ class Step:
     @property
     def facts(self) -> tuple[str, ...]:
         """Names of what is known."""
-        return tuple(name for name, *_ in (*self.errors, *self.crossings, *self.products))
+        known = (self.errors, self.crossings, self.products)
+        return tuple(str(fact[0]) for facts in known for fact in facts)
 
     def form(
         self,
@@ -136,11 +137,11 @@ class Step:
         for name, c, below in self.crossings:
             weight = multiplier(name) * (factor // below) * self.units[last]
             form = with_crossing(form, last, [weight * entry for entry in c])
-        for name, left, right in self.products:
-            weight = factor * multiplier(name)
-            for i, entry in enumerate(left):
+        for name, row, other in self.products:
+            weight = -factor * multiplier(name)
+            for i, entry in enumerate(row):
                 if entry:
-                    form = with_crossing(form, i, [-weight * entry * other for other in right])
+                    form = with_crossing(form, i, [weight * entry * right for right in other])
         return form
 
     def _left(self, before: IntegerMatrix, keeps: Fraction, log2: int) -> list[list[int]]:

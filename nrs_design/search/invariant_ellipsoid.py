@@ -114,6 +114,7 @@ def search_ellipsoid(
 
 
 def short(number: float) -> Fraction:
+    """Return a number with seven digits."""
     return Fraction(f"{number:.6e}")
 
 
@@ -148,9 +149,20 @@ def reach_and_level(problem: DisturbedProblem, T: Array) -> tuple[float, float]:
     return size, level
 
 
-def best_share(
-    attempt: Callable[[float], float], limit: float, time: Time
-) -> tuple[float, float]:
+def largest_share(limit: float, time: Time) -> float:
+    """Return the share that no form can beat.
+
+    Parameters
+    ----------
+    limit : float
+        The rate that no form can beat.
+    time : Time
+        Of which it is.
+    """
+    return 2 * limit if time is Time.CONTINUOUS else 1 - limit**2
+
+
+def best_share(attempt: Callable[[float], float], limit: float, time: Time) -> tuple[float, float]:
     """Return the least value found, and the share that gives it.
 
     Parameters
@@ -162,7 +174,7 @@ def best_share(
     time : Time
         Of which it is.
     """
-    top = 2 * limit if time is Time.CONTINUOUS else 1 - limit**2
+    top = largest_share(limit, time)
     tried: dict[float, float] = {}
 
     def value(share: float) -> float:

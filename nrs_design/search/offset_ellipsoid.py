@@ -6,7 +6,8 @@ form, the multipliers and the level. They are made of the very steps that the ex
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections import Counter
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import isfinite
@@ -16,19 +17,41 @@ from numpy.typing import NDArray
 
 from nrs_design.proof.channels import Channel, Output
 from nrs_design.proof.evidence import OffsetEllipsoid
-from nrs_design.proof.mode import Time
-from nrs_design.proof.steps import CONTACT, Step
+from nrs_design.proof.steps import Step
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
 from nrs_design.search.disturbed import BITS, balanced, problem_of, transformed
 from nrs_design.search.family import NEARLY, Family
-from nrs_design.search.invariant_ellipsoid import SLACKS, best_share, reach_and_level, short
+from nrs_design.search.invariant_ellipsoid import (
+    SLACKS,
+    SMALLEST_SHARE,
+    largest_share,
+    reach_and_level,
+    short,
+)
 from nrs_design.search.motions import Motions, numerators, separating_coordinates
 from nrs_design.search.rounding import unscale
-from nrs_design.search.sdp import Sparse, begin, maximize_margin, pack, program_cost, symmetric_basis
-from nrs_design.work import Allowance
+from nrs_design.search.sdp import (
+    Sparse,
+    begin,
+    maximize_margin,
+    pack,
+    program_cost,
+    symmetric_basis,
+)
+from nrs_design.work import Allowance, Cost
 
 Array = NDArray[np.float64]
+
+# Where shares are tried first, relative to the largest, and by what factor the next one differs.
+USUAL, STEP = 0.38, 1.25
+# How much less than the others a disturbance pushes whose products are left out.
+WEAK = 1e-3
+# What is less in a product, relative to it, is no factor of it.
+FELT = 1e-2
+# Programs that are solved, at most as a rule, before the roundings are added.
+PROGRAMS = 4
+WHAT = "an ellipsoid off the origin"
 
 
 def search_offset_ellipsoid(
@@ -53,30 +76,50 @@ def search_offset_ellipsoid(
     size, level = reach_and_level(raw, T)
     if not (np.isfinite(T).all() and isfinite(size) and isfinite(level) and size * level > 0):
         return OUT_OF_RANGE
-    errors = 1 / np.sqrt(balanced(transformed(raw, T, size, level))[1])
+    moved, balance = balanced(transformed(raw, T, size, level))
+    pushes = np.abs(moved.contact[:, :, moved.order :][:, :, : len(channels)]).max(axis=(0, 1))
     names = tuple(channel.name for channel in channels)
     empty = OffsetEllipsoid(names, output.name, (), 0, (Fraction(1, 2),), Fraction(1))
-    units = _Units(np.ldexp(size * T, family.exponents[:, None]), len(channels), errors, level)
-    exact = _Program.of(empty, system, units)
+    units = _Units(
+        np.ldexp(size * T, family.exponents[:, None]),
+        len(channels),
+        balance**-0.5,
+        level,
+        tuple(np.flatnonzero(pushes < WEAK * pushes.max())),
+    )
+    every = replace(empty, roundings=(0,) * len(system.roundings))
+    exact, whole = (_Program.of(item, system, units) for item in (empty, every))
+    work = PROGRAMS * exact.cost.work + whole.cost.work
+    allowance.require(replace(whole.cost, work=work), WHAT)
 
     def attempt(share: float) -> float:
         found = exact.solve(share, allowance)
         return np.inf if found is None else found.last
 
-    best, share = best_share(attempt, family.limit, system.time)
+    best, share = _downhill(attempt, largest_share(family.limit, system.time))
     if not isfinite(best):
         return NO_MARGIN
-    every = replace(empty, roundings=(0,) * len(system.roundings))
-    for item in [every, empty] if system.roundings else [empty]:
-        own = _Program.of(item, system, units) if item is every else exact
-        for slack in SLACKS:
+    tried = ((every, whole), (empty, exact)) if system.roundings else ((empty, exact),)
+    for item, own in tried:
+        for slack in SLACKS[1:]:
             found = own.solve(share, allowance, best * slack)
             if found is not None:
-                claim = replace(
-                    item, shares=(short(share),), level=short(level * best * slack)
-                )
+                claim = replace(item, shares=(short(share),), level=short(level * best * slack))
                 yield from map(Candidate, _rounded(claim, own, found, family.exponents))
     return None
+
+
+def _downhill(attempt: Callable[[float], float], top: float) -> tuple[float, float]:
+    """Follow the values of shares down from a usual one, and return the least with its share."""
+    start = USUAL * top
+    best = attempt(start), start
+    for factor in (1 / STEP, STEP):
+        share = factor * start
+        while SMALLEST_SHARE * top < share < top and (found := (attempt(share), share)) < best:
+            best, share = found, factor * share
+        if best[1] != start:
+            break
+    return best
 
 
 @dataclass(frozen=True)
@@ -87,6 +130,7 @@ class _Units:
     disturbances: int  # How many there are; each is at most one
     errors: Array
     level: float
+    weak: tuple[int, ...]  # Disturbances that do next to nothing: little is to be gained from them
 
     def of(self, states: int) -> Array:
         """Return the map to a one, the first states, disturbances and errors."""
@@ -106,7 +150,8 @@ class _Condition:
     kind: tuple[object, ...]
     S: Array  # The state before, of z
     M: Array
-    facts: dict[str, Array]  # What a multiplier takes away
+    facts: dict[str, Array]  # What each multiplier takes away
+    names: tuple[str, ...]  # Of the multipliers; those without a fact are zero
     is_flow: bool
 
     @classmethod
@@ -122,16 +167,34 @@ class _Condition:
             ]
             return np.array([row + [0.0] * (count - len(row)) for row in found]) @ T
 
-        facts = {}
+        facts, names = dict[str, Array](), list[str]()
+        weak = [step.states + k for k in units.weak]
         for name, left, right in step.products:
-            l, r = floats([left, right])
-            facts[name] = np.outer(l, r) + np.outer(r, l)
+            one, other = floats([left, right])
+            form = np.outer(one, other) + np.outer(other, one)
+            felt = [k for k in weak if np.abs(form[k]).max() > FELT * np.abs(form).max()]
+            # The square of a disturbance is needed whatever it does.
+            if all(form[k, k] for k in felt):
+                facts[name] = form
+            names.append(name)
         for name, i, q, below in step.errors:
             (row,) = floats([q], below)
             e = np.eye(count)[i] * T[i, i]
             facts[name] = np.outer(row, row) - np.outer(e, e)
+            names.append(name)
         kind = step.source, step.target, len(step.rows), len(facts), step.is_flow
-        return cls(kind, np.eye(step.states, count), after @ floats(step.rows, step.over), facts, step.is_flow)
+        M = after @ floats(step.rows, step.over)
+        return cls(kind, np.eye(step.states, count), M, facts, tuple(names), step.is_flow)
+
+    def images(self, basis: Array, share: float) -> Array:
+        """Return what it makes of every form of a basis."""
+        S, M = self.S, self.M
+        before = basis[:, : len(S), : len(S)]
+        if self.is_flow:
+            half = S.T @ (before @ M)
+            return np.asarray(-(half + np.swapaxes(half, 1, 2)) - share * (S.T @ before @ S))
+        after = basis[:, : len(M), : len(M)]
+        return np.asarray((1 - share) * (S.T @ before @ S) - M.T @ after @ M)
 
     def is_near(self, other: _Condition) -> bool:
         """Tell whether floating point tells it from another."""
@@ -166,7 +229,7 @@ class _Program:
             if like is None:
                 kept.append(own)
                 like = own
-            for name, other in zip(own.facts, like.facts, strict=True):
+            for name, other in zip(own.names, like.names, strict=True):
                 stands.setdefault(name, other)
         for condition in kept:
             for name, form in condition.facts.items():
@@ -177,75 +240,86 @@ class _Program:
         ]
         stands |= {name: name for name, _ in rows}
         scales |= {name: float(units.states[-1, -1]) for name, _ in rows}
-        return cls(units, tuple(kept), stands, {k: v or 1.0 for k, v in scales.items()}, tuple(rows))
+        return cls(
+            units, tuple(kept), stands, {k: v or 1.0 for k, v in scales.items()}, tuple(rows)
+        )
+
+    @property
+    def order(self) -> int:
+        """Entries of the form."""
+        return len(self.units.states) + 1
+
+    @property
+    def cost(self) -> Cost:
+        """What solving it is predicted to take."""
+        k = self.order * (self.order + 1) // 2
+        felt = Counter(name for item in self.conditions for name in item.facts)
+        shared = k + 1 + sum(count > 1 for count in felt.values())
+        cones = [(item.M.shape[1], k + 1 + len(item.facts)) for item in self.conditions]
+        cones += [(self.order, k + 2)] * (1 + len(self.ends)) + [(1, 1)] * len(self.scales)
+        return program_cost(k + 1 + len(self.scales), shared, cones)
 
     def solve(
         self, share: float, allowance: Allowance, level: float | None = None
     ) -> _Found | None:
         """Minimize the level; or, for a given one, leave as much to spare as possible."""
-        side = len(self.units.states) + 1
-        basis = symmetric_basis(side)
-        k, names = len(basis), list(self.scales)
-        place = {name: k + i for i, name in enumerate(names)}
-        last = k + len(names)
-        strict = level is not None
-        rows, columns, values = list[Array](), list[Array](), list[Array]()
-        offsets, sizes, at = list[Array](), list[int](), 0
-
-        def add(block: Array, images: dict[int, Array], *, spare: bool = True) -> None:
-            nonlocal at
-            size = len(block)
-            if strict and spare:
-                images = {**images, last: -np.eye(size)}
-            for column, image in images.items():
-                entries = -pack(image)
-                (where,) = np.nonzero(entries)
-                rows.append(at + where)
-                columns.append(np.full(len(where), column))
-                values.append(entries[where])
-            offsets.append(pack(block))
-            sizes.append(size)
-            at += size * (size + 1) // 2
-
+        begun = begin(allowance, self.cost, WHAT)
+        basis = symmetric_basis(self.order)
+        place = {name: len(basis) + i for i, name in enumerate(self.scales)}
+        cones = _Cones(len(basis) + len(place), strict=level is not None)
         for item in self.conditions:
-            before, after = len(item.S), len(item.M)
-            Q = basis[:, :before, :before]
-            if item.is_flow:
-                half = item.S.T @ (Q @ item.M)
-                stack = -(half + np.swapaxes(half, 1, 2)) - share * (item.S.T @ Q @ item.S)
-            else:
-                stack = (1 - share) * (item.S.T @ Q @ item.S)
-                stack = stack - item.M.T @ basis[:, :after, :after] @ item.M
-            images = dict(enumerate(stack))
+            images = dict(enumerate(item.images(basis, share)))
             images |= {place[f]: -form / self.scales[f] for f, form in item.facts.items()}
-            add(np.zeros(stack.shape[1:]), images)
-        add(np.zeros((side - 1, side - 1)), dict(enumerate(basis[:, 1:, 1:])))
-        add(np.zeros((1, 1)), dict(enumerate(-basis[:, :1, :1])), spare=False)
+            cones.add(0.0, images)
+        cones.add(0.0, dict(enumerate(basis[:, 1:, 1:])))
+        cones.add(0.0, dict(enumerate(-basis[:, :1, :1])), spare=False)
+        one = np.zeros((self.order, self.order))
+        one[0, 0] = 1.0
         for name, row in self.ends:
-            block, image = np.zeros((side, side)), np.zeros((side, side))
+            block, image = np.zeros_like(one), np.zeros_like(one)
             block[0, 1:] = block[1:, 0] = -row / 2
             image[0, -1] = image[-1, 0] = -0.5
             images = {**dict(enumerate(basis)), place[name]: image}
-            one = np.zeros((side, side))
-            one[0, 0] = 1.0
-            if strict:
-                block = block + level * one
-            else:
-                images[last] = -one
-            add(block, images)
-        for name in names:
-            add(np.zeros((1, 1)), {place[name]: np.ones((1, 1))}, spare=False)
-        if strict:
-            add(np.ones((1, 1)), {last: -np.ones((1, 1))}, spare=False)
-        cones = [(size, min(last + 1, k + size)) for size in sizes]
-        begun = begin(allowance, program_cost(last + 1, last + 1, cones), "an ellipsoid off the origin")
-        matrix = Sparse.of(*map(np.concatenate, (values, rows, columns)), (at, last + 1))
-        x = maximize_margin(matrix, np.concatenate(offsets), sizes, begun)
-        if x is None or (strict and x[-1] <= 0) or (not strict and x[-1] >= 0):
+            if level is None:
+                images[cones.last] = -one
+            cones.add(block + (level or 0.0) * one, images)
+        for column in place.values():
+            cones.add(0.0, {column: np.ones((1, 1))}, spare=False)
+        if level is not None:
+            cones.add(1.0, {cones.last: -np.ones((1, 1))}, spare=False)
+        x = maximize_margin(*cones.program(), begun)
+        if x is None or (level is None) == (x[-1] >= 0) or not x[-1]:
             return None
-        found = {name: float(x[place[name]] / self.scales[name]) for name in names}
-        Q = np.asarray(np.tensordot(x[:k], basis, axes=1))
+        found = {name: float(x[place[name]] / scale) for name, scale in self.scales.items()}
+        Q = np.asarray(np.tensordot(x[: len(basis)], basis, axes=1))
         return _Found(Q, found, float(-x[-1]))
+
+
+class _Cones:
+    """Blocks that must stay positive, of images of the unknowns, of which most are in few."""
+
+    def __init__(self, last: int, *, strict: bool) -> None:
+        # The last unknown is a level, or what is left to spare.
+        self.last, self._strict = last, strict
+        self._sizes, self._offsets, self._count = list[int](), list[Array](), 0
+        self._entries: list[tuple[Array, NDArray[np.int64], NDArray[np.int64]]] = []
+
+    def add(self, block: Array | float, images: dict[int, Array], *, spare: bool = True) -> None:
+        size = len(next(iter(images.values())))
+        if self._strict and spare:
+            images = {**images, self.last: -np.eye(size)}
+        for column, image in images.items():
+            entries = -pack(image)
+            (rows,) = np.nonzero(entries)
+            self._entries.append((entries[rows], self._count + rows, np.full(len(rows), column)))
+        self._offsets.append(pack(np.broadcast_to(block, (size, size))))
+        self._sizes.append(size)
+        self._count += size * (size + 1) // 2
+
+    def program(self) -> tuple[Sparse, Array, list[int]]:
+        values, rows, columns = (np.concatenate(part) for part in zip(*self._entries, strict=True))
+        matrix = Sparse.of(values, rows, columns, (self._count, self.last + 1))
+        return matrix, np.concatenate(self._offsets), self._sizes
 
 
 def _rounded(
@@ -258,7 +332,7 @@ def _rounded(
     size = int(np.frexp(np.abs(np.diag(Q)[1:] * 4.0**exponents).max())[1]) // 2
     shifts = np.concatenate([[0], exponents - size]).astype(np.int64)
     near = np.ldexp(Q, shifts[:, None] + shifts[None, :])
-    given = np.array([found.multipliers[program.stands[name]] for name in program.stands])
+    given = np.array([found.multipliers.get(name, 0.0) for name in program.stands.values()])
     for bits in BITS:
         rows, log2 = unscale(near, shifts, bits)
         if log2 < 0:

@@ -98,22 +98,20 @@ def _with_one(system: SwitchedSystem) -> SwitchedSystem:
             for column in columns
         )
 
-    def behind(rows: Sequence[RationalMatrix], *sizes: Fraction) -> Matrices:
-        found = []
-        for (row,) in (q.fractions() for q in rows):
-            scales = [1] * (len(row) - len(sizes)) + [*sizes]
-            found.append([0, *(x * size for x, size in zip(row, scales, strict=True))])
-        return tuple(RationalMatrix.from_rows([row]) for row in found)
+    def behind(row: RationalMatrix) -> RationalMatrix:
+        sizes = [*(Fraction(1) for _ in system.states), *(c.bound for c in system.channels)]
+        scaled = (x * size for x, size in zip(row.fractions()[0], sizes, strict=True))
+        return RationalMatrix.from_rows([(Fraction(0), *scaled)])
 
-    bounds = [c.bound for c in system.channels]
+    pulls = (RationalMatrix(((0, *q.numerators[0]),), q.denominator) for q in contact.pulls)
     return replace(
         system,
         states=("one", *system.states),
         modes=moved(system.modes),
-        contact=replace(contact, free=moved(contact.free), pulls=behind(contact.pulls)),
+        contact=replace(contact, free=moved(contact.free), pulls=tuple(pulls)),
         channels=tuple(replace(c, columns=below(c.columns, c.bound)) for c in system.channels),
         roundings=tuple(
-            Rounding(r.name, below(r.columns), behind(r.rows, *bounds)) for r in system.roundings
+            Rounding(r.name, below(r.columns), tuple(map(behind, r.rows))) for r in system.roundings
         ),
     )
 

@@ -197,10 +197,16 @@ class _Condition:
         return np.asarray((1 - share) * (S.T @ before @ S) - M.T @ after @ M)
 
     def is_near(self, other: _Condition) -> bool:
-        """Tell whether floating point tells it from another."""
-        return self.kind == other.kind and bool(
-            np.abs(self.M - other.M).max() <= NEARLY * np.abs(self.M).max()
+        """Tell whether floating point can hardly tell it from another."""
+        return self.kind == other.kind and all(
+            np.abs(one - two).max() <= NEARLY * np.abs(one).max()
+            for one, two in zip(self.numbers(), other.numbers(), strict=True)
         )
+
+    def numbers(self) -> Iterator[Array]:
+        """Yield all that distinguishes it from others of its kind."""
+        yield self.M
+        yield from self.facts.values()
 
 
 @dataclass(frozen=True)

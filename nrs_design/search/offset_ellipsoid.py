@@ -57,7 +57,7 @@ WHAT = "an ellipsoid off the origin"
 def search_offset_ellipsoid(
     system: SwitchedSystem, channels: Sequence[Channel], output: Output, allowance: Allowance
 ) -> Candidates[OffsetEllipsoid]:
-    """Yield ellipsoids off the origin, as `search_ellipsoid` does those around it.
+    """Yield ellipsoids off the origin, as `search_ellipsoid` does; with the roundings, or none.
 
     Parameters
     ----------
@@ -99,13 +99,11 @@ def search_offset_ellipsoid(
     best, share = _downhill(attempt, largest_share(family.limit, system.time))
     if not isfinite(best):
         return NO_MARGIN
-    tried = ((every, whole), (empty, exact)) if system.roundings else ((empty, exact),)
-    for item, own in tried:
-        for slack in SLACKS[1:]:
-            found = own.solve(share, allowance, best * slack)
-            if found is not None:
-                claim = replace(item, shares=(short(share),), level=short(level * best * slack))
-                yield from map(Candidate, _rounded(claim, own, found, family.exponents))
+    for slack in SLACKS[1:]:
+        found = whole.solve(share, allowance, best * slack)
+        if found is not None:
+            claim = replace(every, shares=(short(share),), level=short(level * best * slack))
+            yield from map(Candidate, _rounded(claim, whole, found, family.exponents))
     return None
 
 

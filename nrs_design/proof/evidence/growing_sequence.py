@@ -302,8 +302,7 @@ class GrowingSequence(AbstractEvidence):
         return (
             f"{first} Wherever the environment acts, the deflection is positive along it and "
             "nothing pulls, and elsewhere it is not, so contact is lost and made as that motion "
-            f"says, and {law} is unstable with contact that may be lost, already on a surface that "
-            "stays in its place."
+            f"says, and {law} is unstable with contact that may be lost."
         )
 
     def find_unsayable(self, system: SwitchedSystem) -> str | None:

@@ -11,7 +11,6 @@ from nrs_design.proof.bounds import rounded_down, rounded_up
 from nrs_design.proof.channels import Channel, Output
 from nrs_design.proof.evidence.abstract import AbstractEvidence, Bound, Shows, find_odd_form
 from nrs_design.proof.evidence.fields import Matrix
-from nrs_design.proof.evidence.sentence import ANY_SURFACE
 from nrs_design.proof.exact import IntegerMatrix
 from nrs_design.proof.matrix import RationalMatrix, bordered, leading
 from nrs_design.proof.mode import Time
@@ -62,6 +61,7 @@ class InvariantEllipsoid(AbstractEvidence):
     covers_mixtures: ClassVar[bool] = True
     covers_lost_contact: ClassVar[bool] = True
     covers_coupling: ClassVar[bool] = True
+    surface: ClassVar[str] = ""  # What its claim says of the surface that may be lost
 
     channels: tuple[str, ...]  # Names of the disturbances that act at once
     output: str  # Name of the output
@@ -179,7 +179,7 @@ class InvariantEllipsoid(AbstractEvidence):
         """State how far the output goes, from rest and in the long run."""
         bound = self.bound(system)
         output, named = bound.output, bound.channels
-        lost = "" if system.contact is None else f", contact lost and made again {ANY_SURFACE}"
+        lost = f", contact lost and made again at any time{self.surface}" if system.contact else ""
         sizes = [f"|{c.name}| <= {rounded_down(c.bound, c.unit)}" for c in named]
         steps = " at a step" if system.time is Time.DISCRETE else ""
         among = ""

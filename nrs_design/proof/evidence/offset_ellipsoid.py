@@ -35,6 +35,7 @@ class OffsetEllipsoid(InvariantEllipsoid):
 
     kind: ClassVar[str] = "offset-ellipsoid"
     covers_coupling: ClassVar[bool] = False
+    surface: ClassVar[str] = " (the surface stays in its place, or follows the axis)"
 
     def find_misfit(self, system: SwitchedSystem) -> str | None:
         """Check names, shapes, rest, and the signs of share, level and multipliers."""

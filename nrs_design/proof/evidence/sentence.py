@@ -12,8 +12,6 @@ from nrs_design.proof.system import SwitchedSystem
 from nrs_design.proof.text import counted
 
 MAX_NAMED = 8
-# What is said of contact that may be lost: in the air, no proof follows the deflection.
-ANY_SURFACE = "at any time, on a surface that stays in its place or follows the axis"
 
 
 def ruled_sentence(system: SwitchedSystem, rate: Fraction) -> str:
@@ -75,11 +73,11 @@ def free_sentence(
     if lost and system.contact is not None:
         free = counted(len(system.contact.free), "mode")
         among = (
-            f"with contact lost and made again {ANY_SURFACE}, and switching arbitrarily among "
+            "with contact lost and made again at any time and switching arbitrarily among "
             f"{counted(len(system.modes), 'mode')} in contact and {free} of free motion"
         )
     if clock is not None:
-        kept = f", with contact lost and made again {ANY_SURFACE}" if lost else ""
+        kept = ", with contact lost and made again at any time" if lost else ""
         which = (
             "whose turn it is" if clock.is_round else "that the rule for missed deadlines allows"
         )

@@ -732,8 +732,7 @@ def test_words_and_fields_of_contact():
         "Repeating the sequence (m0 for 1 steps, free for 1 steps) makes some motion larger by a "
         "factor = 1.9416 each time. Wherever the environment acts, the deflection is positive "
         "along it and nothing pulls, and elsewhere it is not, so contact is lost and made as that "
-        "motion says, and x+ = A x is unstable with contact that may be lost, already on a surface "
-        "that stays in its place."
+        "motion says, and x+ = A x is unstable with contact that may be lost."
     )
     fields = BOUNCE.to_fields()
     assert fields == {"steps": [["m0", "1"], ["free", "1"]], "factor": ["2427/1250", "19417/10000"]}

@@ -53,8 +53,7 @@ def test_lost_contact_is_said_with_its_modes_and_its_rate_in_seconds():
         system, ((40, 20), (20, 60)), 0, Fraction(99, 100), crossings=(16,), lost=True
     )
     assert evidence.claim(system) == (
-        "Every solution, with contact lost and made again at any time, on a surface that stays in "
-        "its place or follows the axis, and switching "
+        "Every solution, with contact lost and made again at any time and switching "
         "arbitrarily among 2 modes in contact and 1 mode of free motion, satisfies "
         "|w(t)| <= rho^t |w(0)| with rho = 0.99, where w holds the states other than the "
         "deflection, and the deflection where it is positive, and |w| = sqrt(w' Q w). Where free "

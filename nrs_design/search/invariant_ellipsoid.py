@@ -96,8 +96,8 @@ def search_ellipsoid(
                 output.name,
                 (),
                 0,
-                tuple(map(short, found.shares.tolist())),
-                short(level * float(np.sqrt(best * (system.axes or 1))) * slack),
+                tuple(map(seven_digits, found.shares.tolist())),
+                seven_digits(level * float(np.sqrt(best * (system.axes or 1))) * slack),
             )
             for numbers in roundings(family, found, T, units, size):
                 yield Candidate(
@@ -113,7 +113,7 @@ def search_ellipsoid(
     return None
 
 
-def short(number: float) -> Fraction:
+def seven_digits(number: float) -> Fraction:
     """Return a number with seven digits."""
     return Fraction(f"{number:.6e}")
 

@@ -27,7 +27,7 @@ from nrs_design.search.invariant_ellipsoid import (
     SMALLEST_SHARE,
     largest_share,
     reach_and_level,
-    short,
+    seven_digits,
 )
 from nrs_design.search.motions import Motions, numerators, separating_coordinates
 from nrs_design.search.rounding import unscale
@@ -102,7 +102,9 @@ def search_offset_ellipsoid(
     for slack in SLACKS[1:]:
         found = whole.solve(share, allowance, best * slack)
         if found is not None:
-            claim = replace(every, shares=(short(share),), level=short(level * best * slack))
+            claim = replace(
+                every, shares=(seven_digits(share),), level=seven_digits(level * best * slack)
+            )
             yield from map(Candidate, _rounded(claim, whole, found, family.exponents))
     return None
 

@@ -10,7 +10,7 @@ from nrs_design.proof.contact import Contact, Flights
 from nrs_design.proof.evidence import GrowingSequence
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.search.certify import certify, first_accepted, refuted_at_once
+from nrs_design.search.certify import Limits, certify, first_accepted, refuted_at_once
 from nrs_design.search.family import Family
 from nrs_design.search.method import Method
 from nrs_design.search.unstable_contact import NOTHING_GROWS, search_contact
@@ -171,3 +171,14 @@ def test_growth_on_a_surface_that_follows_is_found(k):
     parts = {name.split("/")[-1] for name, _ in evidence.steps}
     assert "met" in parts
     assert any(name.startswith("c0/soft") for name, _ in evidence.steps)
+
+
+@pytest.mark.parametrize(("Bt", "delay", "border"), [("2.15", 1, 133.6), ("1.04", 5, 39.4)])
+def test_proofs_reach_to_the_border_of_kept_contact_and_not_beyond(Bt, delay, border):
+    """Just above it, where kept contact grows, nothing is shown and nothing is refuted."""
+    for share, verdict in ((0.995, "proved"), (1.005, "inconclusive")):
+        k = f"{share * border:.3f}"
+        sampling = f"{{period: 2 ms, delay: {delay}}}"
+        system = thesis_robot((k, k), (Bt,), "0.01", sampling=sampling, contact="losable")
+        found = certify(system, limits=Limits(optimize_rate=False, budget=20.0))
+        assert str(found.verdict) == verdict

@@ -6,7 +6,8 @@ disturbs it (d), what its arithmetic rounds (r) and what other axes do (w), the 
 
 - an error: ``e^2 <= (q z)^2``, for an entry e of r, or for one of w, summed over all axes;
 - a crossing: ``delta (c z) <= 0``, with delta the last state: contact is lost, or would pull;
-- a product: ``(l z) (r z) >= 0``, as both factors have one sign: see `nrs_design.proof.offset`.
+- a product: ``(l z) (r z) >= 0``, as neither factor is negative; the forms below then have
+  ``- sum 2 m (l z) (r z)`` as well (see `nrs_design.proof.offset`).
 
 With F before and G after the step and a multiplier m >= 0 for each fact, positive definiteness of
 

@@ -622,7 +622,7 @@ def test_bounds_in_json(tmp_path):
         "bounds"
     ]
     assert (force["output"], force["unit"], force["limit"]) == ("force", "N*m", 0.3)
-    assert 1.0 < force["level"] < 1.2
+    assert 0.8 < force["level"] < 0.9
     (command,) = force["under"]
     assert command["bound"] == pytest.approx(0.1396263)
     assert velocity["output"] == "velocity"

@@ -112,25 +112,6 @@ def worst_rows(case: WorstCase, lever_arm: float | None) -> list[list[str]]:
     return rows
 
 
-def ratio_sentences(case: WorstCase, lever_arm: float | None) -> Iterator[str]:
-    """Yield what is proved of each bounded quantity, what was found, and how far that is apart.
-
-    Parameters
-    ----------
-    case, lever_arm
-        As for `worst_rows`.
-    """
-    for (name, found, unit, _, bound, ratio), item in zip(
-        worst_rows(case, lever_arm), found_in(case), strict=True
-    ):
-        if item.ratio is not None:
-            reached = found.removesuffix(ABOVE)
-            yield (
-                f"{name}: at most {bound} {unit}; an adversary reached {reached} {unit}; "
-                f"ratio {ratio}"
-            )
-
-
 def left_out(system: SwitchedSystem) -> str:
     """Say which effects the adversary does not use.
 

@@ -18,7 +18,7 @@ from typer.main import get_command
 from nrs_design.cli.app import make_app
 from tests.docs.pages import commands_of, pages, python_of, session_of
 from tests.support import ROOT
-from tests.test_readme import squeeze
+from tests.test_readme import assert_same
 
 # The README has a test of its own, in process.
 SESSIONS = [page for page in pages() if session_of(page) and page != "README.md"]
@@ -69,7 +69,7 @@ def test_a_session_prints_what_is_shown(page: str, checkout: Path, tmp_path: Pat
             check=False,
             env=settings,
         )
-        assert squeeze(result.stdout) == squeeze(shown), (command, result.stderr)
+        assert_same(result.stdout, shown)
         assert not re.search("^error", result.stderr, re.MULTILINE), (command, result.stderr)
     written = {path.name for path in folder.rglob("*")}
     assert WRITTEN.get(page, set()) <= written

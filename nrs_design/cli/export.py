@@ -15,6 +15,7 @@ from nrs_design.cli.reading import take_spec
 from nrs_design.cli.tables import print_table
 from nrs_design.errors import NrsDesignError, OutputError
 from nrs_design.exporters import ROBOT_FORMATS, Format, format_names, format_of
+from nrs_design.facts.export import export_facts
 
 if TYPE_CHECKING:
     from nrs_design.exporters.export import Execution, Export
@@ -175,7 +176,7 @@ def _export_design(
         with placed(loaded):
             remarks = _write(result, format_, files, None if certificate else proof, spec)
     written = list(files.values()) if result.may_be_written else []
-    summary = _summary(name, result, written, proof)
+    summary = export_facts(name, result, written, proof)
     return Answer(
         lambda: summary | {"remarks": remarks},
         lambda: _show(name, result, written, proof, remarks),
@@ -218,17 +219,3 @@ def _write(
         write_output(proof, text, replaces=CERTIFICATE)
     write_files(format_of(format_), files, contents)
     return remarks_on(format_, contents)
-
-
-def _summary(name: str, result: Export, written: list[Path], proof: Path) -> dict[str, Any]:
-    record = result.record
-    certified = result.may_be_written and result.certificate is not None
-    return {
-        "spec": name,
-        "verdict": result.verdict,
-        "reason": result.reason or None,
-        "file": str(written[0]) if written else None,
-        "files": list(map(str, written)),
-        "certificate": str(proof) if certified else None,
-        "record": record.model_dump(mode="json", by_alias=True) if record else None,
-    }

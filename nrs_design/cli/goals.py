@@ -7,9 +7,10 @@ from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any
 
 from nrs_design.cli import exit_codes
-from nrs_design.cli.command import Answer, spec_facts
+from nrs_design.cli.command import Answer
 from nrs_design.cli.printing import detail, note, say, wants_details
 from nrs_design.cli.tables import print_table
+from nrs_design.facts.spec import spec_facts
 from nrs_design.proof.bounds import lower_float, upper_float
 
 if TYPE_CHECKING:

@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from nrs_design.cli.command import Answer, command, spec_facts
+from nrs_design.cli.command import Answer, command
 from nrs_design.cli.options import SpecFile
 from nrs_design.cli.printing import note, progress, say
 from nrs_design.cli.reading import take_spec
+from nrs_design.facts.spec import spec_facts
 
 if TYPE_CHECKING:
     from nrs_design.output import Output

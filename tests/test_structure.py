@@ -38,8 +38,8 @@ REACHED = {
     ("nrs_design.pipeline.scenarios", "robot", "pipeline"),
     ("nrs_design.simulation.bodies", "robot", "simulation.bodies"),
     # Records and runs, from the library.
-    ("nrs_design.api.measured", "identification", "library"),
-    ("nrs_design.api.study", "identification", "library"),
+    ("nrs_design.api.measured", "identification", "api.library"),
+    ("nrs_design.api.study", "identification", "api.library"),
     # A recorded command is a record.
     ("nrs_design.simulation.build_scenario", "identification", "tables.table"),
 }

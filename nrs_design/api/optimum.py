@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import cached_property
-from html import escape
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from nrs_design import pipeline
-from nrs_design.errors import DesignError
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+from nrs_design.api.paper import latex_of_gains
+from nrs_design.api.result import AbstractResult, Figures, drawn
+from nrs_design.axis import about
 
 
 @dataclass(frozen=True, repr=False)
-class Optimum:
+class Optimum(AbstractResult):
     """The design of a spec.
 
     Parameters
@@ -63,30 +63,35 @@ class Optimum:
         analysis = pipeline.run_analysis(self.designed)
         return {item.name: float(item.cost) for item in analysis.impedance}
 
-    def plot(self, name: str = "displayed-impedance") -> Figure:
-        """Return a figure of the design by name.
-
-        Raises
-        ------
-        DesignError
-            If there is no figure of that name; the message lists those that there are.
-        """
+    def drawings(self) -> Figures:
+        """Return the figures of the design by name."""
         from nrs_design.reporting.document import Illustration
         from nrs_design.reporting.sections.design import design_sections
 
-        sections = design_sections(self.designed, pipeline.run_analysis(self.designed))
-        found = {
-            block.name: block.figure
+        with about(self.designed.spec.axis):
+            sections = design_sections(self.designed, pipeline.run_analysis(self.designed))
+        found = [
+            block
             for section in sections
             if section is not None
             for block in section.blocks
             if isinstance(block, Illustration)
+        ]
+        return drawn(found, "displayed-impedance")
+
+    def gain_rows(self) -> Iterator[tuple[str, str, str, str]]:
+        """Return controller, gain, value and unit of each gain."""
+        for name, gains in self.gains.items():
+            for gain, value in gains.items():
+                yield name, gain, f"{value:.6g}", self.units[name][gain]
+
+    def latex(self) -> str:
+        """Return the gains for a paper; one that is rounded is said to be."""
+        exact = {
+            name: {gain: str(Fraction(value)) for gain, value in gains.items()}
+            for name, gains in self.gains.items()
         }
-        if name not in found:
-            raise DesignError(
-                f"there is no figure {name!r}", remedy=f"figures here: {', '.join(found)}"
-            )
-        return found[name]
+        return latex_of_gains(exact, self.units)
 
     def to_dict(self) -> dict[str, Any]:
         """Return gains, units, margins and costs, in SI."""
@@ -97,24 +102,21 @@ class Optimum:
             "cost": self.cost,
         }
 
-    def _rows(self) -> list[tuple[str, str]]:
-        return [
-            (name, ", ".join(f"{k} = {v:.6g} {self.units[name][k]}".rstrip() for k, v in g.items()))
-            for name, g in self.gains.items()
-        ]
+    def _drawings(self) -> Figures:
+        return self.drawings()
 
-    def __repr__(self) -> str:
-        """Name the spec."""
-        return f"<Optimum of {self.designed.spec.name}>"
+    def _headline(self) -> str:
+        return f"{self.designed.spec.name}: designed gains"
+
+    def _rows(self) -> Iterator[Sequence[str]]:
+        yield "controller", "gain", "value", "unit"
+        yield from self.gain_rows()
 
     def __str__(self) -> str:
         """Say the gains."""
-        return "\n".join(f"{name}: {gains}" for name, gains in self._rows())
-
-    def _repr_html_(self) -> str:
-        """Show the gains in a notebook."""
-        rows = "".join(
-            f"<tr><th>{escape(name)}</th><td>{escape(gains)}</td></tr>"
-            for name, gains in self._rows()
-        )
-        return f"<table>{rows}</table>"
+        lines = []
+        for name, gains in self.gains.items():
+            units = self.units[name]
+            shown = (f"{gain} = {value:.6g} {units[gain]}" for gain, value in gains.items())
+            lines.append(f"{name}: {', '.join(text.rstrip() for text in shown)}")
+        return "\n".join(lines)

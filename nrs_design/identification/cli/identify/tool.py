@@ -19,6 +19,7 @@ from nrs_design.identification.cli.identify.common import (
     read_all,
 )
 from nrs_design.identification.facts.tool import tool_facts
+from nrs_design.identification.tool import STANDARD_GRAVITY
 from nrs_design.proof.text import counted
 
 if TYPE_CHECKING:
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
 def tool(
     data: DataFiles,
     columns: ColumnMap = None,
-    gravity: Annotated[float, typer.Option(min=1e-3, help="In m/s^2.")] = 9.81,
+    gravity: Annotated[float, typer.Option(min=1e-3, help="In m/s^2.")] = STANDARD_GRAVITY,
     write: WriteTo = None,
     report: ReportTo = None,
     date: Date = None,

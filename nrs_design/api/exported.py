@@ -1,0 +1,82 @@
+"""Gains with their proof, as the library gives them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from nrs_design.api.optimum import Optimum
+from nrs_design.api.paper import latex_of_gains
+from nrs_design.api.result import AbstractResult, Figures
+from nrs_design.certificates.units import gain_units
+from nrs_design.facts.export import export_facts
+
+if TYPE_CHECKING:
+    from nrs_design.certificates.certificate import Certificate
+    from nrs_design.exporters.export import Export
+    from nrs_design.exporters.record import ExportRecord
+
+
+@dataclass(frozen=True, repr=False)
+class Exported(AbstractResult):
+    """The gains that ship with their proof, or why there are none.
+
+    Parameters
+    ----------
+    name : str
+        Of the spec.
+    export : nrs_design.exporters.export.Export
+        What may be exported.
+    """
+
+    name: str
+    export: Export
+
+    @property
+    def verdict(self) -> str:
+        """``proved``, ``refuted``, ``inconclusive``; ``rejected`` of a certificate that fails."""
+        return self.export.verdict
+
+    @property
+    def reason(self) -> str:
+        """Why nothing may be exported; empty if something may."""
+        return self.export.reason
+
+    @property
+    def record(self) -> ExportRecord | None:
+        """What is exported: gains, exactly and as float32, and what is proved of them."""
+        return self.export.record
+
+    @property
+    def certificate(self) -> Certificate | None:
+        """The proof of the record, or what refutes it."""
+        return self.export.certificate
+
+    def latex(self) -> str:
+        """Return the gains for a paper; empty if nothing may be exported."""
+        proof = self.certificate
+        if proof is None or self.record is None:
+            return ""
+        return latex_of_gains(proof.gains, gain_units(proof))
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return what ``export --json`` prints; no file is written."""
+        return export_facts(self.name, self.export)
+
+    def _drawings(self) -> Figures:
+        designed = self.export.designed
+        return {} if designed is None else Optimum(designed).drawings()
+
+    def _headline(self) -> str:
+        return f"{self.name}: {self.verdict}" + (f", {self.reason}" if self.reason else "")
+
+    def _rows(self) -> Iterator[Sequence[str]]:
+        yield "controller", "gain", "value", "unit"
+        designed = self.export.designed
+        if designed is not None:
+            yield from Optimum(designed).gain_rows()
+
+    def __bool__(self) -> bool:
+        """Whether it is proved."""
+        return self.verdict == "proved"

@@ -1,0 +1,126 @@
+"""What every result of the library can do: be drawn, be shown in a notebook, be told as facts."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import partial
+from html import escape
+from typing import TYPE_CHECKING, Any
+
+from nrs_design.errors import DesignError
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from nrs_design.reporting import Report
+    from nrs_design.reporting.document import Illustration
+
+# Widths of one column and of both in papers of the IEEE, in.
+WIDTHS = {"ieee": 3.5, "ieee-two": 7.16}
+
+# Figures by name, each drawn when it is asked for.
+Figures = Mapping[str, Callable[[], "Figure"]]
+
+
+class AbstractResult(ABC):
+    """What a verb of the library returns."""
+
+    @abstractmethod
+    def to_dict(self) -> dict[str, Any]:
+        """Return the facts, plain and in SI: what the command of this name prints by ``--json``."""
+
+    @abstractmethod
+    def _drawings(self) -> Figures:
+        """Return the figures; the first is the one of most use."""
+
+    @abstractmethod
+    def _headline(self) -> str:
+        """Return what it is, in a line."""
+
+    @abstractmethod
+    def _rows(self) -> Iterable[Sequence[str]]:
+        """Return the rows of a small table, its heads first."""
+
+    @property
+    def figures(self) -> tuple[str, ...]:
+        """Names of its figures."""
+        return tuple(self._drawings())
+
+    def plot(self, name: str | None = None, width: str | None = None) -> Figure:
+        """Return a figure.
+
+        Parameters
+        ----------
+        name : str, optional
+            One of `figures`; by default the first.
+        width : {"ieee", "ieee-two"}, optional
+            Width of one or two columns of a paper of the IEEE, 3.5 or 7.16 in, with letters of
+            8 pt. ``savefig`` writes it as PDF, SVG, PNG or, with a TeX, PGF.
+
+        Raises
+        ------
+        DesignError
+            If there is no such figure or width; the message lists those that there are.
+        """
+        from nrs_design.reporting.style import for_paper
+
+        if width is not None and width not in WIDTHS:
+            raise DesignError(f"there is no width {width!r}", remedy=f"{' or '.join(WIDTHS)}")
+        with for_paper(None if width is None else WIDTHS[width]):
+            drawings = self._drawings()
+            chosen = next(iter(drawings), None) if name is None else name
+            if chosen is None:
+                raise DesignError("there is nothing to draw", remedy=self._headline())
+            if chosen not in drawings:
+                raise DesignError(
+                    f"there is no figure {chosen!r}", remedy=f"figures here: {', '.join(drawings)}"
+                )
+            return drawings[chosen]()
+
+    def __repr__(self) -> str:
+        """Say what it is, in a line."""
+        return f"<{type(self).__name__} {self._headline()}>"
+
+    def __str__(self) -> str:
+        """Say what it is, and its rows."""
+        heads, *rows = self._rows()
+        lines = [f"{row[0]}: {', '.join(_named(heads, row))}" for row in rows]
+        return "\n".join([self._headline(), *(f"  {line}" for line in lines)])
+
+    def _repr_html_(self) -> str:
+        """Show it in a notebook."""
+        heads, *rows = ([escape(cell) for cell in row] for row in self._rows())
+        head = "".join(f"<th>{cell}</th>" for cell in heads)
+        body = "".join(f"<tr>{''.join(f'<td>{cell}</td>' for cell in row)}</tr>" for row in rows)
+        table = f"<table><tr>{head}</tr>{body}</table>" if rows else ""
+        return f"<p><strong>{escape(self._headline())}</strong></p>{table}"
+
+
+def drawn(illustrations: Iterable[Illustration], first: str = "") -> Figures:
+    """Return figures that are there already, one of them first.
+
+    Parameters
+    ----------
+    illustrations : iterable of Illustration
+        In order.
+    first : str
+        Name of the one to come first.
+    """
+    found = sorted(illustrations, key=lambda item: item.name != first)
+    return {item.name: partial(_same, item.figure) for item in found}
+
+
+def _same(figure: Figure) -> Figure:
+    return figure
+
+
+def drawings_of(page: Report, first: str = "") -> Figures:
+    """Return the figures of a page; see `drawn`."""
+    return drawn(page.illustrations, first)
+
+
+def _named(heads: Sequence[str], row: Sequence[str]) -> list[str]:
+    """Return the other cells of a row that say something, each after its head."""
+    named = zip(heads[1:], row[1:], strict=True)
+    return [f"{head} {cell}".strip() for head, cell in named if cell]

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from nrs_design import pipeline
 from nrs_design.api.paper import form_of, latex_of, latex_of_gains
-from nrs_design.api.result import AbstractResult, Figures, drawings_of
+from nrs_design.api.result import AbstractResult, Figures, drawings_of, evidence_drawings
 from nrs_design.certificates.certificate import dump
 from nrs_design.errors import DesignError, OutputError, SpecError
 from nrs_design.facts.certification import certification_facts
@@ -132,8 +132,12 @@ class Decision(AbstractResult):
         return certification_facts(self.result, None)
 
     def _drawings(self) -> Figures:
-        # The run beside its bound says most.
-        return drawings_of(self._page(), "run")
+        # The run beside its bound says most; those of the design take longer.
+        seen = set()
+        for name, draw in evidence_drawings(self.result.certification):
+            seen.add(name)
+            yield name, draw
+        yield from ((name, draw) for name, draw in drawings_of(self._page()) if name not in seen)
 
     def _headline(self) -> str:
         return f"{self.result.loaded.spec.name}: {self.verdict}"

@@ -66,7 +66,7 @@ class Exported(AbstractResult):
 
     def _drawings(self) -> Figures:
         designed = self.export.designed
-        return {} if designed is None else Optimum(designed).drawings()
+        return [] if designed is None else Optimum(designed).drawings()
 
     def _headline(self) -> str:
         return f"{self.name}: {self.verdict}" + (f", {self.reason}" if self.reason else "")

@@ -105,7 +105,7 @@ class LyapunovCheck(AbstractResult):
         }
 
     def _drawings(self) -> Figures:
-        return {"value": self._draw}
+        return [("value", self._draw)]
 
     def _draw(self) -> Figure:
         from nrs_design.reporting.figures.value import draw_value

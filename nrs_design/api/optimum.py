@@ -10,7 +10,7 @@ from typing import Any
 
 from nrs_design import pipeline
 from nrs_design.api.paper import latex_of_gains
-from nrs_design.api.result import AbstractResult, Figures, drawn
+from nrs_design.api.result import AbstractResult, Figures, illustrated
 from nrs_design.axis import about
 
 
@@ -65,19 +65,11 @@ class Optimum(AbstractResult):
 
     def drawings(self) -> Figures:
         """Return the figures of the design by name."""
-        from nrs_design.reporting.document import Illustration
         from nrs_design.reporting.sections.design import design_sections
 
         with about(self.designed.spec.axis):
             sections = design_sections(self.designed, pipeline.run_analysis(self.designed))
-        found = [
-            block
-            for section in sections
-            if section is not None
-            for block in section.blocks
-            if isinstance(block, Illustration)
-        ]
-        return drawn(found, "displayed-impedance")
+        return illustrated(sections, "displayed-impedance")
 
     def gain_rows(self) -> Iterator[tuple[str, str, str, str]]:
         """Return controller, gain, value and unit of each gain."""

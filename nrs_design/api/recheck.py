@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from nrs_design import pipeline
-from nrs_design.api.result import AbstractResult, Figures, drawn
+from nrs_design.api.result import AbstractResult, Figures, evidence_drawings
 from nrs_design.certificates.prove import Verification
 from nrs_design.facts.verification import verification_facts
 
@@ -66,15 +66,8 @@ class Recheck(AbstractResult):
     def _drawings(self) -> Figures:
         kept = self._valid()
         if kept is None:
-            return {}
-        from nrs_design.axis import about, axis_with
-        from nrs_design.reporting.document import Illustration
-        from nrs_design.reporting.sections.evidence import evidence_sections
-
-        with about(axis_with(kept.system.states)):
-            sections = tuple(evidence_sections(pipeline.recorded_certification(kept, self.file)))
-        blocks = [block for section in sections for block in section.blocks]
-        return drawn((b for b in blocks if isinstance(b, Illustration)), "run")
+            return []
+        return evidence_drawings(pipeline.recorded_certification(kept, self.file))
 
     def _headline(self) -> str:
         where = "" if self.spec is None else f" for {self.spec.name}"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from html import escape
 from typing import TYPE_CHECKING, Any
@@ -14,13 +14,14 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from nrs_design.reporting import Report
-    from nrs_design.reporting.document import Illustration
+    from nrs_design.reporting.document import Illustration, Section
+    from nrs_design.search.certification import Certification
 
 # Widths of one column and of both in papers of the IEEE, in.
 WIDTHS = {"ieee": 3.5, "ieee-two": 7.16}
 
-# Figures by name, each drawn when it is asked for.
-Figures = Mapping[str, Callable[[], "Figure"]]
+# Figures with their names, each drawn when it is asked for.
+Figures = Iterable[tuple[str, Callable[[], "Figure"]]]
 
 
 class AbstractResult(ABC):
@@ -32,7 +33,7 @@ class AbstractResult(ABC):
 
     @abstractmethod
     def _drawings(self) -> Figures:
-        """Return the figures; the first is the one of most use."""
+        """Yield the figures, that of most use first."""
 
     @abstractmethod
     def _headline(self) -> str:
@@ -45,7 +46,7 @@ class AbstractResult(ABC):
     @property
     def figures(self) -> tuple[str, ...]:
         """Names of its figures."""
-        return tuple(self._drawings())
+        return tuple(name for name, _ in self._drawings())
 
     def plot(self, name: str | None = None, width: str | None = None) -> Figure:
         """Return a figure.
@@ -68,15 +69,14 @@ class AbstractResult(ABC):
         if width is not None and width not in WIDTHS:
             raise DesignError(f"there is no width {width!r}", remedy=f"{' or '.join(WIDTHS)}")
         with for_paper(None if width is None else WIDTHS[width]):
-            drawings = self._drawings()
-            chosen = next(iter(drawings), None) if name is None else name
-            if chosen is None:
-                raise DesignError("there is nothing to draw", remedy=self._headline())
-            if chosen not in drawings:
-                raise DesignError(
-                    f"there is no figure {chosen!r}", remedy=f"figures here: {', '.join(drawings)}"
-                )
-            return drawings[chosen]()
+            for known, draw in self._drawings():
+                if name in (None, known):
+                    return draw()
+        if name is None:
+            raise DesignError("there is nothing to draw", remedy=self._headline())
+        raise DesignError(
+            f"there is no figure {name!r}", remedy=f"figures here: {', '.join(self.figures)}"
+        )
 
     def __repr__(self) -> str:
         """Say what it is, in a line."""
@@ -108,16 +108,41 @@ def drawn(illustrations: Iterable[Illustration], first: str = "") -> Figures:
         Name of the one to come first.
     """
     found = sorted(illustrations, key=lambda item: item.name != first)
-    return {item.name: partial(_same, item.figure) for item in found}
+    return [(item.name, partial(_same, item.figure)) for item in found]
 
 
 def _same(figure: Figure) -> Figure:
     return figure
 
 
-def drawings_of(page: Report, first: str = "") -> Figures:
-    """Return the figures of a page; see `drawn`."""
-    return drawn(page.illustrations, first)
+def evidence_drawings(certification: Certification) -> Figures:
+    """Return the figures of what was shown; a run beside its bound comes first."""
+    from nrs_design.axis import about, axis_with
+    from nrs_design.reporting.sections.evidence import evidence_sections
+
+    with about(axis_with(certification.system.states)):
+        return illustrated(evidence_sections(certification), "run")
+
+
+def illustrated(sections: Iterable[Section | None], first: str) -> Figures:
+    """Return the figures of sections, one of them first.
+
+    Parameters
+    ----------
+    sections : iterable of Section or None
+        In order.
+    first : str
+        Name of the figure.
+    """
+    from nrs_design.reporting.document import Illustration
+
+    blocks = [block for section in sections if section is not None for block in section.blocks]
+    return drawn((block for block in blocks if isinstance(block, Illustration)), first)
+
+
+def drawings_of(page: Report) -> Figures:
+    """Return the figures of a page."""
+    return drawn(page.illustrations)
 
 
 def _named(heads: Sequence[str], row: Sequence[str]) -> list[str]:

@@ -121,7 +121,7 @@ class ScenarioRun(AbstractResult):
         return run_facts(self.simulated, self.bounds, self.rate)
 
     def _drawings(self) -> Figures:
-        return {"run": self._draw}
+        return [("run", self._draw)]
 
     def _draw(self) -> Figure:
         from nrs_design.reporting.figures.simulated import draw_simulated
@@ -222,12 +222,12 @@ class Simulation(AbstractResult):
         return named[key]
 
     def to_dict(self) -> dict[str, Any]:
-        """Return what ``simulate --json`` prints, in SI."""
+        """Return what ``simulate --json`` prints, in SI; with bounds, if a proof was given."""
         runs = [one.to_dict() for one in self.runs]
         return spec_facts(self.designed.loaded) | {"runs": runs, "files": []}
 
     def _drawings(self) -> Figures:
-        return {one.name: one.plot for one in self.runs}
+        return [(one.name, one.plot) for one in self.runs]
 
     def _headline(self) -> str:
         count = len(self.runs)

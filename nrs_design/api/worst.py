@@ -69,7 +69,7 @@ class WorstFound(AbstractResult):
         return spec_facts(self.designed.loaded) | facts | {"files": []}
 
     def _drawings(self) -> Figures:
-        return {run.output.name: partial(self._draw, run) for run in self.runs}
+        return [(run.output.name, partial(self._draw, run)) for run in self.runs]
 
     def _draw(self, run: WorstRun) -> Figure:
         from nrs_design.reporting.worst_case import draw_worst

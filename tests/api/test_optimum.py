@@ -16,7 +16,7 @@ def test_gains_and_margins_of_the_thesis():
     assert optimum.cost["insertion"] == pytest.approx(0.1552, abs=1e-4)
     assert set(optimum.to_dict()) == {"gains", "units", "margins", "cost"}
     assert str(optimum).startswith("insertion: Mt = 0.01 kg*m^2, Bt = 2.15 N*m*s/rad\n")
-    assert "<th>withdrawal</th>" in optimum._repr_html_()
+    assert "<td>withdrawal</td>" in optimum._repr_html_()
 
 
 def test_its_figures_have_names():

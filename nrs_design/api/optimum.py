@@ -6,12 +6,18 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from nrs_design import pipeline
 from nrs_design.api.paper import latex_of_gains
 from nrs_design.api.result import AbstractResult, Figures, illustrated
 from nrs_design.axis import about
+from nrs_design.facts.design import optimum_facts
+from nrs_design.facts.spec import spec_facts
+from nrs_design.spec import doubt_spec
+
+if TYPE_CHECKING:
+    from nrs_design.design.analysis import DesignAnalysis
 
 
 @dataclass(frozen=True, repr=False)
@@ -46,29 +52,31 @@ class Optimum(AbstractResult):
         }
 
     @cached_property
+    def _analysis(self) -> DesignAnalysis:
+        return pipeline.run_analysis(self.designed)
+
+    @property
     def margins(self) -> dict[str, dict[str, float]]:
         """Worst values over the corners of all ranges, by controller and goal, in SI.
 
         Floating point, not a proof; see `nrs-design explain margins`.
         """
-        analysis = pipeline.run_analysis(self.designed)
         return {
             item.name: {found.measure.goal: float(found.value) for found in item.achieved}
-            for item in analysis.measured
+            for item in self._analysis.measured
         }
 
-    @cached_property
+    @property
     def cost(self) -> dict[str, float]:
         """The cost of displayed impedance and sensitivity, by impedance controller."""
-        analysis = pipeline.run_analysis(self.designed)
-        return {item.name: float(item.cost) for item in analysis.impedance}
+        return {item.name: float(item.cost) for item in self._analysis.impedance}
 
     def drawings(self) -> Figures:
         """Return the figures of the design by name."""
         from nrs_design.reporting.sections.design import design_sections
 
         with about(self.designed.spec.axis):
-            sections = design_sections(self.designed, pipeline.run_analysis(self.designed))
+            sections = design_sections(self.designed, self._analysis)
         return illustrated(sections, "displayed-impedance")
 
     def gain_rows(self) -> Iterator[tuple[str, str, str, str]]:
@@ -86,8 +94,14 @@ class Optimum(AbstractResult):
         return latex_of_gains(exact, self.units)
 
     def to_dict(self) -> dict[str, Any]:
-        """Return gains, units, margins and costs, in SI."""
+        """Return what ``optimize --json`` prints, with gains, units, margins and costs, in SI."""
+        spec, analysis = self.designed.spec, self._analysis
+        with about(spec.axis):
+            facts = optimum_facts(self.designed, analysis, {})
         return {
+            **spec_facts(self.designed.loaded),
+            **facts,
+            "warnings": [str(doubt) for doubt in (*doubt_spec(spec), *analysis.warnings)],
             "gains": self.gains,
             "units": self.units,
             "margins": self.margins,

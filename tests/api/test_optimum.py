@@ -1,10 +1,12 @@
 """`Study.optimize`: floats with units, as a student takes them into a notebook."""
 
+import json
+
 import pytest
 
 import nrs_design as nrs
 from nrs_design.errors import DesignError
-from tests.support import COMMUTING, SOFT_TISSUE
+from tests.support import COMMUTING, ROOT, SOFT_TISSUE, document_of
 
 
 def test_gains_and_margins_of_the_thesis():
@@ -14,9 +16,19 @@ def test_gains_and_margins_of_the_thesis():
     # Reference: 3.75298, by Sturm chains on the family.
     assert optimum.margins["withdrawal"]["max_sensitivity_peak"] == pytest.approx(3.75298, abs=1e-4)
     assert optimum.cost["insertion"] == pytest.approx(0.1552, abs=1e-4)
-    assert set(optimum.to_dict()) == {"gains", "units", "margins", "cost"}
     assert str(optimum).startswith("insertion: Mt = 0.01 kg*m^2, Bt = 2.15 N*m*s/rad\n")
     assert "<td>withdrawal</td>" in optimum._repr_html_()
+
+
+def test_facts_are_those_of_the_command():
+    found = nrs.load(SOFT_TISSUE).optimize().to_dict()
+    said = document_of("optimize", SOFT_TISSUE, cwd=ROOT)
+    # Of the goals of a certificate, and of a box for retuning.
+    rest = {key: said.pop(key) for key in ("schema", "certified", "retuned")}
+    assert rest["certified"] is rest["retuned"] is None
+    assert json.loads(json.dumps(found)) | said == json.loads(json.dumps(found))
+    assert {"gains", "units", "margins", "cost"} == found.keys() - said.keys()
+    assert found["gains"]["insertion"]["Bt"] == pytest.approx(2.15)
 
 
 def test_its_figures_have_names():

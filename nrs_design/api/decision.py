@@ -17,6 +17,7 @@ from nrs_design.errors import DesignError, OutputError, SpecError
 from nrs_design.facts.certification import certification_facts
 from nrs_design.output import CERTIFICATE, PAGE, check_html, write_output
 from nrs_design.ownership import check_certificate, origin_of
+from nrs_design.proof.text import counted
 from nrs_design.search.certification import Attempt
 from nrs_design.spec import LoadedSpec, read_spec
 
@@ -140,12 +141,13 @@ class Decision(AbstractResult):
         yield from ((name, draw) for name, draw in drawings_of(self._page()) if name not in seen)
 
     def _headline(self) -> str:
-        return f"{self.result.loaded.spec.name}: {self.verdict}"
+        where = "" if self.refuted_in is None else f" (refuted {self.refuted_in})"
+        return f"{self.result.loaded.spec.name}: {self.verdict.upper()}{where}"
 
     def _rows(self) -> Iterator[Sequence[str]]:
         yield "", ""
         yield "claim", self.claim
-        yield "taken for granted", "; ".join(self.assumptions)
+        yield "taken for granted", counted(len(self.assumptions), "thing")
 
     def report(self, file: str | Path | None = None) -> str:
         """Return the report as one HTML page, and write it if a file is named.
@@ -223,18 +225,11 @@ class Decision(AbstractResult):
         """Whether it is proved; neither a refutation nor an open question counts."""
         return self.verdict == "proved"
 
-    def __str__(self) -> str:
-        """Say verdict and claim."""
-        return f"{self.result.loaded.spec.name}: {self.verdict.upper()}\n{self.claim}"
-
     def _repr_html_(self) -> str:
         """Show verdict, claim and assumptions in a notebook."""
         items = "".join(f"<li>{escape(text)}</li>" for text in self.assumptions)
-        return (
-            f"<p><strong>{escape(self.result.loaded.spec.name)}: {self.verdict.upper()}</strong>"
-            f"</p><p>{escape(self.claim)}</p>"
-            f"<details><summary>taken for granted</summary><ul>{items}</ul></details>"
-        )
+        granted = f"<details><summary>taken for granted</summary><ul>{items}</ul></details>"
+        return super()._repr_html_() + granted
 
 
 def _holds(path: Path, loaded: LoadedSpec) -> bool:

@@ -93,7 +93,8 @@ class AbstractResult(ABC):
         heads, *rows = ([escape(cell) for cell in row] for row in self._rows())
         head = "".join(f"<th>{cell}</th>" for cell in heads)
         body = "".join(f"<tr>{''.join(f'<td>{cell}</td>' for cell in row)}</tr>" for row in rows)
-        table = f"<table><tr>{head}</tr>{body}</table>" if rows else ""
+        first = f"<tr>{head}</tr>" if any(heads) else ""
+        table = f"<table>{first}{body}</table>" if rows else ""
         return f"<p><strong>{escape(self._headline())}</strong></p>{table}"
 
 

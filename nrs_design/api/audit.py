@@ -59,8 +59,7 @@ class Audit(AbstractResult):
     facts: Mapping[str, Any]
     page: Callable[[], Report]
 
-    def to_dict(self) -> dict[str, Any]:
-        """Return what ``audit --json`` prints."""
+    def _facts(self) -> dict[str, Any]:
         return dict(self.facts)
 
     def _drawings(self) -> Figures:

@@ -128,8 +128,10 @@ class Decision(AbstractResult):
             return shown
         return f"{shown}\n{latex_of_gains(proof.gains, gain_units(proof))}"
 
-    def to_dict(self) -> dict[str, Any]:
-        """Return what ``certify-switching --json`` prints of the verdict and its proof."""
+    def _axis(self) -> object:
+        return getattr(self.result.loaded.spec, "axis", None)
+
+    def _facts(self) -> dict[str, Any]:
         return certification_facts(self.result, None)
 
     def _drawings(self) -> Figures:

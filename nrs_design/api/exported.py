@@ -60,8 +60,10 @@ class Exported(AbstractResult):
             return ""
         return latex_of_gains(proof.gains, gain_units(proof))
 
-    def to_dict(self) -> dict[str, Any]:
-        """Return what ``export --json`` prints; no file is written."""
+    def _axis(self) -> object:
+        return None if self.export.spec is None else self.export.spec.axis
+
+    def _facts(self) -> dict[str, Any]:
         return export_facts(self.name, self.export)
 
     def _drawings(self) -> Figures:

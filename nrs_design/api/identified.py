@@ -76,8 +76,7 @@ class Identification(AbstractResult):
         """Return the ranges for a paper, their ends rounded outwards."""
         return latex_of_ranges((n, r.low, r.high, r.unit) for n, r in self.ranges.items())
 
-    def to_dict(self) -> dict[str, Any]:
-        """Return what ``identify --json`` prints."""
+    def _facts(self) -> dict[str, Any]:
         return dict(self.facts)
 
     def _drawings(self) -> Figures:

@@ -86,8 +86,7 @@ class LyapunovCheck(AbstractResult):
         """Return the rate, on the side that stays true, and P, rounded for reading."""
         return latex_of("check-lyapunov", self._headline(), self.rate, self.time, self.P)
 
-    def to_dict(self) -> dict[str, Any]:
-        """Return what ``check-lyapunov --json`` prints; each number exactly, as a text."""
+    def _facts(self) -> dict[str, Any]:
         failing = self.counterexample
         return {
             "time": str(self.time),

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 from nrs_design import pipeline
 from nrs_design.api.paper import latex_of_gains
 from nrs_design.api.result import AbstractResult, Figures, illustrated
-from nrs_design.axis import about
 from nrs_design.facts.design import optimum_facts
 from nrs_design.facts.spec import spec_facts
 from nrs_design.spec import doubt_spec
@@ -75,8 +74,7 @@ class Optimum(AbstractResult):
         """Return the figures of the design by name."""
         from nrs_design.reporting.sections.design import design_sections
 
-        with about(self.designed.spec.axis):
-            sections = design_sections(self.designed, self._analysis)
+        sections = design_sections(self.designed, self._analysis)
         return illustrated(sections, "displayed-impedance")
 
     def gain_rows(self) -> Iterator[tuple[str, str, str, str]]:
@@ -93,14 +91,14 @@ class Optimum(AbstractResult):
         }
         return latex_of_gains(exact, self.units)
 
-    def to_dict(self) -> dict[str, Any]:
-        """Return what ``optimize --json`` prints, with gains, units, margins and costs, in SI."""
+    def _axis(self) -> object:
+        return self.designed.spec.axis
+
+    def _facts(self) -> dict[str, Any]:
         spec, analysis = self.designed.spec, self._analysis
-        with about(spec.axis):
-            facts = optimum_facts(self.designed, analysis, {})
         return {
             **spec_facts(self.designed.loaded),
-            **facts,
+            **optimum_facts(self.designed, analysis, {}),
             "warnings": [str(doubt) for doubt in (*doubt_spec(spec), *analysis.warnings)],
             "gains": self.gains,
             "units": self.units,

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from nrs_design import pipeline
 from nrs_design.api.result import AbstractResult, Figures, evidence_drawings
+from nrs_design.axis import axis_with
 from nrs_design.certificates.prove import Verification
 from nrs_design.facts.verification import verification_facts
 
@@ -56,8 +57,10 @@ class Recheck(AbstractResult):
         kept = self._valid()
         return () if kept is None else tuple(s.claim(kept.system) for s in kept.statements)
 
-    def to_dict(self) -> dict[str, Any]:
-        """Return what ``verify --json`` prints of the proof."""
+    def _axis(self) -> object:
+        return None if self.certificate is None else axis_with(self.certificate.system.states)
+
+    def _facts(self) -> dict[str, Any]:
         return verification_facts(self.outcome, self.file, self.spec)
 
     def _valid(self) -> Certificate | None:

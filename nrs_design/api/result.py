@@ -8,6 +8,7 @@ from functools import partial
 from html import escape
 from typing import TYPE_CHECKING, Any
 
+from nrs_design.axis import about
 from nrs_design.errors import DesignError
 
 if TYPE_CHECKING:
@@ -28,8 +29,8 @@ class AbstractResult(ABC):
     """What a verb of the library returns."""
 
     @abstractmethod
-    def to_dict(self) -> dict[str, Any]:
-        """Return the facts, plain and in SI: what the command of this name prints by ``--json``."""
+    def _facts(self) -> dict[str, Any]:
+        """Return what the command of this name prints by ``--json``, plain and in SI."""
 
     @abstractmethod
     def _drawings(self) -> Figures:
@@ -43,10 +44,20 @@ class AbstractResult(ABC):
     def _rows(self) -> Iterable[Sequence[str]]:
         """Return the rows of a small table, its heads first."""
 
+    def _axis(self) -> object:
+        """Return the axis that its words and units are about; what is none is one that turns."""
+        return None
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the facts, plain and in SI: what the command of this name prints by ``--json``."""
+        with about(self._axis()):
+            return self._facts()
+
     @property
     def figures(self) -> tuple[str, ...]:
         """Names of its figures."""
-        return tuple(name for name, _ in self._drawings())
+        with about(self._axis()):
+            return tuple(name for name, _ in self._drawings())
 
     def plot(self, name: str | None = None, width: str | None = None) -> Figure:
         """Return a figure.
@@ -68,15 +79,19 @@ class AbstractResult(ABC):
 
         if width is not None and width not in WIDTHS:
             raise DesignError(f"there is no width {width!r}", remedy=f"{' or '.join(WIDTHS)}")
-        with for_paper(None if width is None else WIDTHS[width]):
+        with about(self._axis()), for_paper(None if width is None else WIDTHS[width]):
+            seen = []
             for known, draw in self._drawings():
                 if name in (None, known):
                     return draw()
-        if name is None:
+                seen.append(known)
+        if not seen:
             raise DesignError("there is nothing to draw", remedy=self._headline())
-        raise DesignError(
-            f"there is no figure {name!r}", remedy=f"figures here: {', '.join(self.figures)}"
-        )
+        raise DesignError(f"there is no figure {name!r}", remedy=f"figures here: {', '.join(seen)}")
+
+    def _table(self) -> list[Sequence[str]]:
+        with about(self._axis()):
+            return list(self._rows())
 
     def __repr__(self) -> str:
         """Say what it is, in a line."""
@@ -84,13 +99,13 @@ class AbstractResult(ABC):
 
     def __str__(self) -> str:
         """Say what it is, and its rows."""
-        heads, *rows = self._rows()
+        heads, *rows = self._table()
         lines = [f"{row[0]}: {', '.join(_named(heads, row))}" for row in rows]
         return "\n".join([self._headline(), *(f"  {line}" for line in lines)])
 
     def _repr_html_(self) -> str:
         """Show it in a notebook."""
-        heads, *rows = ([escape(cell) for cell in row] for row in self._rows())
+        heads, *rows = ([escape(cell) for cell in row] for row in self._table())
         head = "".join(f"<th>{cell}</th>" for cell in heads)
         body = "".join(f"<tr>{''.join(f'<td>{cell}</td>' for cell in row)}</tr>" for row in rows)
         first = f"<tr>{head}</tr>" if any(heads) else ""
@@ -118,11 +133,9 @@ def _same(figure: Figure) -> Figure:
 
 def evidence_drawings(certification: Certification) -> Figures:
     """Return the figures of what was shown; a run beside its bound comes first."""
-    from nrs_design.axis import about, axis_with
     from nrs_design.reporting.sections.evidence import evidence_sections
 
-    with about(axis_with(certification.system.states)):
-        return illustrated(evidence_sections(certification), "run")
+    return illustrated(evidence_sections(certification), "run")
 
 
 def illustrated(sections: Iterable[Section | None], first: str) -> Figures:

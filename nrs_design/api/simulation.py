@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, overload
 
 from nrs_design import pipeline
 from nrs_design.api.result import AbstractResult, Figures
-from nrs_design.axis import about, unit
+from nrs_design.axis import unit
 from nrs_design.errors import DesignError
 from nrs_design.facts.simulation import run_facts
 from nrs_design.facts.spec import spec_facts
@@ -116,8 +116,10 @@ class ScenarioRun(AbstractResult):
             raise DesignError(f"there is no signal {name!r}", remedy=f"signals here: {known}")
         return self.response[name]
 
-    def to_dict(self) -> dict[str, Any]:
-        """Return what ``simulate --json`` prints of the run, in SI."""
+    def _axis(self) -> object:
+        return self.designed.spec.axis
+
+    def _facts(self) -> dict[str, Any]:
         return run_facts(self.simulated, self.bounds, self.rate)
 
     def _drawings(self) -> Figures:
@@ -130,14 +132,13 @@ class ScenarioRun(AbstractResult):
         spec = self.designed.spec
         touched = [surface.environment for surface in self.scenario.surfaces]
         level = next(((b.level, not b.uncovered) for b in self.bounds if b.output == "force"), None)
-        with about(spec.axis):
-            return draw_simulated(
-                self.response,
-                spec.limits.torque.si,
-                spec.limits.velocity.si,
-                common_lever_arm(spec, touched),
-                level,
-            )
+        return draw_simulated(
+            self.response,
+            spec.limits.torque.si,
+            spec.limits.velocity.si,
+            common_lever_arm(spec, touched),
+            level,
+        )
 
     def _headline(self) -> str:
         stopped = f", STOPPED: {self.run.stopped}" if self.run.stopped else ""
@@ -147,8 +148,7 @@ class ScenarioRun(AbstractResult):
         from nrs_design.reporting.simulation import metric_rows
 
         yield "", "value", "unit", "limit"
-        with about(self.designed.spec.axis):
-            yield from metric_rows(self.metrics, self.scenario.limits)
+        yield from metric_rows(self.metrics, self.scenario.limits)
 
 
 @dataclass(frozen=True, repr=False)
@@ -221,8 +221,10 @@ class Simulation(AbstractResult):
             raise DesignError(f"there is no run of {key!r}", remedy=remedy)
         return named[key]
 
-    def to_dict(self) -> dict[str, Any]:
-        """Return what ``simulate --json`` prints, in SI; with bounds, if a proof was given."""
+    def _axis(self) -> object:
+        return self.designed.spec.axis
+
+    def _facts(self) -> dict[str, Any]:
         runs = [one.to_dict() for one in self.runs]
         return spec_facts(self.designed.loaded) | {"runs": runs, "files": []}
 
@@ -236,11 +238,10 @@ class Simulation(AbstractResult):
     def _rows(self) -> Iterator[Sequence[str]]:
         from nrs_design.reporting.simulation import four_digits_up
 
-        with about(self.designed.spec.axis):
-            yield "run", *(f"{name.replace('_', ' ')}" for name, _ in _SHOWN), "stopped"
-            for one in self.runs:
-                shown = (
-                    f"{four_digits_up(float(one.metrics[name]))} {unit(turning)}".rstrip()
-                    for name, turning in _SHOWN
-                )
-                yield one.name, *shown, one.run.stopped or ""
+        yield "run", *(f"{name.replace('_', ' ')}" for name, _ in _SHOWN), "stopped"
+        for one in self.runs:
+            shown = (
+                f"{four_digits_up(float(one.metrics[name]))} {unit(turning)}".rstrip()
+                for name, turning in _SHOWN
+            )
+            yield one.name, *shown, one.run.stopped or ""

@@ -204,8 +204,9 @@ class Study:
 
         wanted = _runs(scenarios, engine, period, delay, draw)
         designed = self._interaction()
-        proof = self._proof(designed, certificate)
-        return Simulation.of(designed, tuple(run_scenarios(designed, wanted)), proof)
+        with pipeline.placed(self.loaded):
+            proof = self._proof(designed, certificate)
+            return Simulation.of(designed, tuple(run_scenarios(designed, wanted)), proof)
 
     def worst_case(
         self, certificate: str | Path | None = None, *, seed: int = 0, rounds: int | None = None
@@ -241,8 +242,9 @@ class Study:
         from nrs_design.pipeline.worst_case import run_worst_case
 
         designed = self._interaction()
-        proof = self._proof(designed, certificate)
-        case = run_worst_case(designed, proof, seed=seed, rounds=rounds)
+        with pipeline.placed(self.loaded):
+            proof = self._proof(designed, certificate)
+            case = run_worst_case(designed, proof, seed=seed, rounds=rounds)
         return WorstFound(designed, case, seed)
 
     def export(self, certificate: str | Path | None = None) -> Exported:
@@ -263,7 +265,8 @@ class Study:
         from nrs_design.exporters.export import export_design
 
         file = None if certificate is None else Path(certificate)
-        return Exported(self.loaded.spec.name, export_design(self.loaded, file))
+        with pipeline.placed(self.loaded):
+            return Exported(self.loaded.spec.name, export_design(self.loaded, file))
 
     def _interaction(self) -> pipeline.Designed:
         """Design what interacts; refuse another kind of spec."""

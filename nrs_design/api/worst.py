@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 
 from nrs_design import pipeline
 from nrs_design.api.result import AbstractResult, Figures
-from nrs_design.axis import about
 from nrs_design.facts.spec import spec_facts
 from nrs_design.facts.worst_case import worst_case_facts
 
@@ -63,8 +62,10 @@ class WorstFound(AbstractResult):
         """Whether the spec says what disturbs; otherwise it is any command up to its limit."""
         return self.case.declared
 
-    def to_dict(self) -> dict[str, Any]:
-        """Return what ``simulate --worst-case --json`` prints, in SI."""
+    def _axis(self) -> object:
+        return self.designed.spec.axis
+
+    def _facts(self) -> dict[str, Any]:
         facts = worst_case_facts(self.case, self.seed)
         return spec_facts(self.designed.loaded) | facts | {"files": []}
 
@@ -74,8 +75,7 @@ class WorstFound(AbstractResult):
     def _draw(self, run: WorstRun) -> Figure:
         from nrs_design.reporting.worst_case import draw_worst
 
-        with about(self.designed.spec.axis):
-            return draw_worst(self.case, run, self._arm())
+        return draw_worst(self.case, run, self._arm())
 
     def _arm(self) -> float | None:
         from nrs_design.simulation.run import common_lever_arm
@@ -89,5 +89,4 @@ class WorstFound(AbstractResult):
         from nrs_design.reporting.worst_case import COLUMNS, worst_rows
 
         yield COLUMNS
-        with about(self.designed.spec.axis):
-            yield from worst_rows(self.case, self._arm())
+        yield from worst_rows(self.case, self._arm())

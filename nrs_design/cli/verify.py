@@ -14,7 +14,6 @@ from nrs_design.cli.options import CoordinatesOption
 from nrs_design.cli.printing import is_quiet, progress, say, wants_details
 from nrs_design.cli.reading import take_spec
 from nrs_design.errors import CertificateError, NrsDesignError
-from nrs_design.facts.verification import verification_facts
 
 if TYPE_CHECKING:
     from fractions import Fraction
@@ -191,6 +190,8 @@ def _facts(
     faults: list[str] | None,
     on_trust: Path | None,
 ) -> dict[str, Any]:
+    from nrs_design.facts.verification import verification_facts
+
     files = {name: None if path is None else str(path) for name, path in given.items()}
     differences = None if place is None else place.differences
     facts = verification_facts(outcome, given["certificate"], given["spec"])

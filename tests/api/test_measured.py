@@ -26,7 +26,6 @@ def test_a_tissue():
     assert tissue.latex() == r"$k \in [685.8,\, 809.1]\,\mathrm{N/m}$"
 
 
-@pytest.mark.slow
 def test_facts_are_those_of_the_command():
     found = nrs.identify(TISSUE).to_dict()
     said = document_of("identify", "tissue", *TISSUE, cwd=ROOT, code=0)

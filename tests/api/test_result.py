@@ -106,3 +106,17 @@ def test_names_are_escaped_in_a_notebook():
     check = nrs.check_lyapunov({"<script>": [[1]]}, [[1]])
     assert "<script>" not in check._repr_html_()
     assert "&lt;script&gt;" in check._repr_html_()
+
+
+def test_words_and_units_are_those_of_the_axis():
+    """Of one that slides, in whichever verb and whichever method."""
+    study = nrs.load(ROOT / "docs/examples/insertion-axis.nrs.yaml")
+    worst = study.worst_case(rounds=0)
+    assert "mm/s" in worst._repr_html_()
+    (run,) = study.simulate()
+    assert (run.units["torque"], run.units["depth"]) == ("N", "m")
+    labels = [axes.get_ylabel() for axes in run.plot().axes]
+    assert labels == ["Torque [N]", "Deflection [mm]", "Velocity [mm/s]"]
+    optimum = study.optimize()
+    assert optimum.to_dict()["controllers"][0]["units"]["Bt"] == "N*s/m"
+    assert r"\mathrm{N\,s/m}" in optimum.latex()

@@ -4,8 +4,6 @@ import re
 import subprocess
 import sys
 
-import pytest
-
 from tests.support import ROOT
 
 WAY = """
@@ -87,7 +85,6 @@ def mypy(folder, text):
     return done.stdout
 
 
-@pytest.mark.slow
 def test_the_whole_way_is_typed(tmp_path):
     lines = [f"reveal_type({expression})" for expression in REVEALED]
     said = mypy(tmp_path, "\n".join([WAY, *lines, ""]))
@@ -97,7 +94,6 @@ def test_the_whole_way_is_typed(tmp_path):
     assert dict(zip(REVEALED, plain, strict=True)) == REVEALED
 
 
-@pytest.mark.slow
 def test_a_slip_is_told_before_it_runs(tmp_path):
     said = mypy(
         tmp_path,

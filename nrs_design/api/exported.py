@@ -71,13 +71,16 @@ class Exported(AbstractResult):
         return [] if designed is None else Optimum(designed).drawings()
 
     def _headline(self) -> str:
-        return f"{self.name}: {self.verdict}" + (f", {self.reason}" if self.reason else "")
+        return f"{self.name}: {self.verdict if self else f'not exported, {self.verdict}'}"
 
     def _rows(self) -> Iterator[Sequence[str]]:
-        yield "controller", "gain", "value", "unit"
         designed = self.export.designed
-        if designed is not None:
-            yield from Optimum(designed).gain_rows()
+        if designed is None:
+            yield "", ""
+            yield "why", self.reason
+            return
+        yield "controller", "gain", "value", "unit"
+        yield from Optimum(designed).gain_rows()
 
     def __bool__(self) -> bool:
         """Whether it is proved."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from nrs_design import pipeline
 from nrs_design.api.paper import latex_of_gains
 from nrs_design.api.result import AbstractResult, Figures, illustrated
-from nrs_design.facts.design import optimum_facts
+from nrs_design.facts.design import finite, optimum_facts
 from nrs_design.facts.spec import spec_facts
 from nrs_design.spec import doubt_spec
 
@@ -102,8 +102,9 @@ class Optimum(AbstractResult):
             "warnings": [str(doubt) for doubt in (*doubt_spec(spec), *analysis.warnings)],
             "gains": self.gains,
             "units": self.units,
-            "margins": self.margins,
-            "cost": self.cost,
+            # JSON has no infinity: null is what nothing limits.
+            "margins": {name: _finite(found) for name, found in self.margins.items()},
+            "cost": _finite(self.cost),
         }
 
     def _drawings(self) -> Figures:
@@ -120,7 +121,14 @@ class Optimum(AbstractResult):
         """Say the gains."""
         lines = []
         for name, gains in self.gains.items():
+            if not gains:
+                lines.append(f"{name}: no gain, the motion loop alone")
+                continue
             units = self.units[name]
             shown = (f"{gain} = {value:.6g} {units[gain]}" for gain, value in gains.items())
             lines.append(f"{name}: {', '.join(text.rstrip() for text in shown)}")
         return "\n".join(lines)
+
+
+def _finite(values: Mapping[str, float]) -> dict[str, float | None]:
+    return {name: finite(value) for name, value in values.items()}

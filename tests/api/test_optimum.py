@@ -1,6 +1,7 @@
 """`Study.optimize`: floats with units, as a student takes them into a notebook."""
 
 import json
+import math
 
 import pytest
 
@@ -42,3 +43,11 @@ def test_its_figures_have_names():
 def test_matrices_have_nothing_to_optimize():
     with pytest.raises(DesignError, match="has nothing to optimize"):
         nrs.load(COMMUTING).optimize()
+
+
+def test_what_nothing_limits_is_null_in_json():
+    """A controller of position has margins without end, and no gain of its own."""
+    optimum = nrs.load(ROOT / "docs/examples/mixed-controllers.nrs.yaml").optimize()
+    assert any(math.isinf(v) for found in optimum.margins.values() for v in found.values())
+    assert json.dumps(optimum.to_dict(), allow_nan=False)
+    assert "approach: no gain" in str(optimum)

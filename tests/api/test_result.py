@@ -64,7 +64,7 @@ def results(tmp_path_factory):
 @pytest.mark.parametrize("kind", sorted(RESULTS))
 def test_each_is_drawn_shown_and_told(results, kind):
     one = results[kind]
-    assert json.dumps(one.to_dict())
+    assert json.dumps(one.to_dict(), allow_nan=False)
     shown = one._repr_html_()
     assert "<p>" in shown
     assert "<script" not in shown

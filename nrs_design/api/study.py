@@ -248,7 +248,7 @@ class Study:
         return WorstFound(designed, case, seed)
 
     def export(self, certificate: str | Path | None = None) -> Exported:
-        """Return the gains that ship with their proof, or why there are none.
+        """Return the gains that ship with their proof, or why there are none; `save` writes them.
 
         Parameters
         ----------
@@ -266,7 +266,7 @@ class Study:
 
         file = None if certificate is None else Path(certificate)
         with pipeline.placed(self.loaded):
-            return Exported(self.loaded.spec.name, export_design(self.loaded, file))
+            return Exported(self.loaded, export_design(self.loaded, file))
 
     def _interaction(self) -> pipeline.Designed:
         """Design what interacts; refuse another kind of spec."""

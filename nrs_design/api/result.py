@@ -68,7 +68,8 @@ class AbstractResult(ABC):
             One of `figures`; by default the first.
         width : {"ieee", "ieee-two"}, optional
             Width of one or two columns of a paper of the IEEE, 3.5 or 7.16 in, with letters of
-            8 pt. ``savefig`` writes it as PDF, SVG, PNG or, with a TeX, PGF.
+            8 pt. ``savefig`` writes it as PDF, SVG, PNG or, with XeLaTeX or LuaLaTeX, PGF. Where
+            a publisher takes no Type 3 fonts, set ``matplotlib.rcParams["pdf.fonttype"] = 42``.
 
         Raises
         ------

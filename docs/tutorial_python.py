@@ -85,7 +85,7 @@ print(wide.verdict)
 
 # %% [markdown]
 # Poles say nothing about switching. Which range would do? Lower its end until there is a proof;
-# from the shell, `certify-switching --margin` [does this for you](how-to/largest-range.md).
+# from the shell, `certify-switching --margin` [does this for you](sweeps.md#margin).
 
 # %%
 from pathlib import Path

@@ -168,8 +168,12 @@ def write_outputs(outputs: Collection[Output]) -> None:
     OutputError
         As `write_output` raises it, for the first that is refused.
     """
+    places = set[Path]()
     for path, _, replaces in outputs:
         check_place(path, replaces)
+        if (place := path.absolute()) in places:
+            raise OutputError("is named for two files", path=path, remedy="name another file")
+        places.add(place)
     written: list[tuple[str, Path]] = []
     try:
         for path, content, _ in outputs:

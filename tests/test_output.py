@@ -262,3 +262,10 @@ def test_a_page_is_what_its_name_ends_in(tmp_path):
     check_html(Path("a.htm"))
     with pytest.raises(OutputError, match="not the name of a page in HTML"):
         check_html(Path("a.pdf"))
+
+
+def test_two_files_of_one_name_are_refused(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(OutputError, match="is named for two files"):
+        write_outputs([(Path("a"), "one", b""), (tmp_path / "a", "two", b"")])
+    assert not list(tmp_path.iterdir())

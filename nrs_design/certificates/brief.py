@@ -19,7 +19,7 @@ from nrs_design.proof.text import counted
 DIGITS = 4
 
 
-def brief(evidence: AbstractEvidence, system: SwitchedSystem) -> str:
+def brief(evidence: AbstractEvidence, system: SwitchedSystem, arm: Fraction | None = None) -> str:
     """Say what a statement shows: its number first, and for which signals and contact.
 
     Parameters
@@ -28,6 +28,8 @@ def brief(evidence: AbstractEvidence, system: SwitchedSystem) -> str:
         A statement that was checked.
     system : SwitchedSystem
         What it is about.
+    arm : Fraction, optional
+        Distance from the pivot in m, at which a bound of a torque is said as a force, too.
     """
     match evidence.shows:
         case Shows.STABILITY:
@@ -35,7 +37,7 @@ def brief(evidence: AbstractEvidence, system: SwitchedSystem) -> str:
         case Shows.BOUND:
             bound = evidence.bound(system)
             assert bound is not None
-            return _bound(bound) + _contact(evidence, system)
+            return _bound(bound, arm) + _contact(evidence, system)
         case Shows.CONVERGENCE:
             return "under a constant force that pushes in, contact settles; no rate is claimed"
         case Shows.NO_COMMON_QUADRATIC:
@@ -44,7 +46,11 @@ def brief(evidence: AbstractEvidence, system: SwitchedSystem) -> str:
             assert system.saturation is not None
             start, size = system.saturation.start, evidence.start_size
             unit = f" {start.unit}".rstrip()
-            of = "" if size is None else f" with a {start.name} up to {lower(size, DIGITS)}{unit}"
+            of = ""
+            if size is not None:
+                several = " of all axes (root of the sum of squares)" if system.couplings else ""
+                of = f" with a {start.name}{several} up to {lower(size, DIGITS)}{unit}"
+                of += start.beside
             return f"although signals saturate, decays from rest{of}{_contact(evidence, system)}"
         case Shows.SAFETY:
             speed = evidence.kept_speed
@@ -109,7 +115,9 @@ def _growing_contact(evidence: AbstractEvidence, system: SwitchedSystem) -> str:
     return f", {IN_KEPT_CONTACT}" if system.contact is not None else ""
 
 
-def _bound(bound: Bound) -> str:
+def _bound(bound: Bound, arm: Fraction | None) -> str:
     sizes = [f"|{c.name}| <= {lower(c.bound, DIGITS)} {c.unit}".rstrip() for c in bound.channels]
     level = f"{upper(bound.level, DIGITS)} {bound.output.unit}".rstrip()
+    if arm is not None and bound.output.unit == "N*m":
+        level += f" ({upper(bound.level / arm, DIGITS)} N at {float(arm):g} m)"
     return f"|{bound.output.name}| <= {level} from rest while {', '.join(sizes)}"

@@ -7,6 +7,8 @@ from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
+from nrs_design.cli.destinations import check_beside
+from nrs_design.cli.granted import print_granted
 from nrs_design.cli.printing import note, progress, say
 from nrs_design.errors import OutputError
 from nrs_design.proof.bounds import lower_float
@@ -107,6 +109,7 @@ class CertifiedGains:
         for goal in self.goals:
             ends = "PROVED" if goal.met else "NOT PROVED"
             say(f"goal {goal.key}, {goal.wanted}: {ends}: {goal.said}")
+        print_granted(found.result)
         more, rate = max(found.cost - found.free_cost, 0.0), found.free_rate
         # A rate that is not positive is no decay.
         shows = f"a decay of {rate:.3g} 1/s" if rate > 0 else "no decay"
@@ -167,7 +170,6 @@ def name_for(loaded: LoadedSpec, out: Path) -> str:
         If it cannot be written there.
     """
     from nrs_design.errors import SpecError
-    from nrs_design.gating.recorded import hash_followed
     from nrs_design.output import check_place
     from nrs_design.ownership import check_certificate
     from nrs_design.spec.edits import changed
@@ -185,14 +187,7 @@ def name_for(loaded: LoadedSpec, out: Path) -> str:
         remedy = error.faults[0].remedy
         raise OutputError(error.faults[0].message, path=out, remedy=remedy) from error
     check_certificate(out, _certificate_of(name))
-    beside = out.parent.resolve() == loaded.path.parent.resolve()
-    named = loaded.robot is not None or loaded.arm is not None or hash_followed(loaded)
-    if named and not beside:
-        raise OutputError(
-            "the spec names files beside itself",
-            path=out,
-            remedy=f"write into {loaded.path.parent}, too",
-        )
+    check_beside(loaded, out)
     return name
 
 

@@ -11,9 +11,9 @@ import typer
 
 from nrs_design.cli import exit_codes
 from nrs_design.cli.command import Answer, Together, command
+from nrs_design.cli.granted import print_granted
 from nrs_design.cli.options import Budget, LoopCoordinates, MaxDegree, Memory, SpecFile
 from nrs_design.cli.printing import (
-    detail,
     note,
     progress,
     say,
@@ -28,7 +28,7 @@ from nrs_design.facts.certification import (
     margins_facts,
     radius_facts,
 )
-from nrs_design.proof.text import counted, exact_text
+from nrs_design.proof.text import exact_text
 from nrs_design.search.gradient_settings import Gradient
 from nrs_design.search.method import Method
 
@@ -252,7 +252,7 @@ def _print(result: Result) -> None:
 
     certification = result.certification
     system, statements = certification.system, certification.statements
-    verdict, shown = str(certification.verdict), _briefs(certification)
+    verdict, shown = str(certification.verdict), _briefs(result)
     say(f"{result.loaded.spec.name}: {verdict.upper()}{_after(certification)}", verdict=verdict)
     for statement, short in zip(statements, shown, strict=True):
         say(f"  {statement.claim(system) if wants_details() else short}")
@@ -269,13 +269,18 @@ def _print(result: Result) -> None:
     for goal in certified_goals(result.loaded.spec, result.certificate):
         ends = "met" if goal.met else "NOT PROVED"
         say(f"  goal {goal.key}, {goal.wanted}: {ends}: {goal.said}")
-    _print_granted(result)
+    print_granted(result)
 
 
-def _briefs(certification: Certification) -> list[str]:
+def _briefs(result: Result) -> list[str]:
     from nrs_design.certificates.brief import brief
 
-    return [brief(item, certification.system) for item in certification.statements]
+    certification, designed = result.certification, result.designed
+    touched = () if designed is None else designed.spec.environments.values()
+    given = (environment.lever_arm for environment in touched)
+    # Where a force is largest: at the shortest arm.
+    arm = min((length.exact for length in given if length is not None), default=None)
+    return [brief(item, certification.system, arm) for item in certification.statements]
 
 
 def _after(certification: Certification) -> str:
@@ -284,19 +289,3 @@ def _after(certification: Certification) -> str:
     if refuted is not None:
         return f" (refuted {refuted}; open where contact may be lost)"
     return "" if certification.evidence is not None else ": no proof, and no signal that grows"
-
-
-def _print_granted(result: Result) -> None:
-    """Print what is taken for granted: all of it, or how much and what is not modelled."""
-    certification = result.certification
-    granted, names = certification.granted, [mode.name for mode in certification.system.modes]
-    detail(f"  common quadratic function: {certification.common_quadratic}")
-    detail(f"  modes: {', '.join(names)}")
-    if wants_details():
-        say("  taken for granted (nrs-design report says how to test each):")
-        for assumption in granted:
-            say(f"    - {assumption}")
-    elif granted:
-        without = "; ".join(result.omits)
-        besides = f"; not modelled: {without}" if without else ""
-        say(f"  takes {counted(len(granted), 'thing')} for granted (-v){besides}")

@@ -137,3 +137,31 @@ def _write_spec(spec: LoadedSpec, text: str) -> None:
     for line in lost:
         insist(f"warning: no longer there: {line}")
     note(f"merged into {spec.path}; run nrs-design gate {spec.path} to prove it")
+
+
+def check_beside(loaded: LoadedSpec, out: Path) -> None:
+    """Refuse a place for a changed spec at which the files that it names are not found.
+
+    Parameters
+    ----------
+    loaded : LoadedSpec
+        The spec that is changed.
+    out : Path
+        Where the result is to be written.
+
+    Raises
+    ------
+    OutputError
+        If it names files relative to its own folder, and is to be written elsewhere.
+    """
+    from nrs_design.errors import OutputError
+    from nrs_design.gating.recorded import hash_followed
+
+    beside = out.parent.resolve() == loaded.path.parent.resolve()
+    named = loaded.robot is not None or loaded.arm is not None or hash_followed(loaded)
+    if named and not beside:
+        raise OutputError(
+            "the spec names files beside itself",
+            path=out,
+            remedy=f"write into {loaded.path.parent}, too",
+        )

@@ -93,8 +93,11 @@ def design_answer(
         _print_goals(spec.name, items)
         if not judged:
             _say_unjudged(spec)
+        about = {item.name for item in items}
         for doubt in doubts:
-            if wants_details() or not (marked and doubt.flagged):
+            # Of a controller that another command shows, that command says it.
+            own = not doubt.flagged or (not marked and doubt.at[1] in about)
+            if own or wants_details():
                 note(f"warning: {doubt}")
 
     return Answer(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
@@ -10,10 +11,12 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from nrs_design.cli.command import Answer, command
+from nrs_design.cli.destinations import check_beside
 from nrs_design.cli.options import SpecFile
 from nrs_design.cli.printing import note, progress, say
 from nrs_design.cli.reading import take_spec
 from nrs_design.facts.spec import spec_facts
+from nrs_design.proof.text import counted
 
 if TYPE_CHECKING:
     from nrs_design.output import Output
@@ -86,6 +89,7 @@ def map(
     from nrs_design.output import MAP, MAP_ARCHIVE, PNG, check_place, write_outputs
     from nrs_design.pipeline import run_design
     from nrs_design.pipeline.written_gains import with_own_gains
+    from nrs_design.sweeps.idle import idle_fields
     from nrs_design.sweeps.marks import declared_marks, read_marks
     from nrs_design.sweeps.paint import check_corners, run_tile_map
     from nrs_design.sweeps.refine import refined
@@ -95,15 +99,17 @@ def map(
     for path, kind in ((figure, PNG), (table, MAP), (npz, MAP_ARCHIVE)):
         if path is not None:
             check_place(path, kind)
+    loaded = take_spec(spec)
     if certificates is not None:
         check_place(certificates / "x")
-    loaded = take_spec(spec)
+        check_beside(loaded, certificates / "x")
     designed = run_design(loaded)
     grid = read_tiles(loaded if designed is None else with_own_gains(designed), spec, over)
     marks = (*declared_marks(grid), *read_marks(grid, mark or ()))
     if certificates is not None:
         # The ends of the map, so that a long search is not for nothing.
         check_corners(grid, designed)
+    idle = idle_fields(grid, designed)
     with progress(f"map of {loaded.spec.name}") as step:
         found = refined(run_tile_map(grid, designed, step), designed, refine, step)
     outputs: list[Output] = []
@@ -123,10 +129,11 @@ def map(
         if path is not None:
             note(f"written: {path}")
     codes = {OF_VERDICT[str(tile.verdict)] for tile in found.tiles.values()}
-    return Answer(partial(_facts, loaded, found), partial(_print, loaded, found), worst(codes))
+    asked = loaded, found, idle
+    return Answer(partial(_facts, *asked), partial(_print, *asked), worst(codes))
 
 
-def _facts(loaded: LoadedSpec, found: TileMap) -> dict[str, Any]:
+def _facts(loaded: LoadedSpec, found: TileMap, idle: tuple[str, ...]) -> dict[str, Any]:
     return {
         **spec_facts(loaded),
         "fields": [
@@ -149,19 +156,24 @@ def _facts(loaded: LoadedSpec, found: TileMap) -> dict[str, Any]:
             for place, tile in found.tiles.items()
         ],
         "certificates": [
-            {"id": certificate.id, "box": [list(span) for span in box]}
+            {
+                "id": certificate.id,
+                "box": [list(span) for span in box],
+                "assumptions": certificate.granted,
+            }
             for certificate, box in zip(found.certificates, found.boxes, strict=True)
         ],
+        "without_effect": idle,
         "programs": found.proofs,
         "forms_carried": found.carried,
         "witnesses_sought": found.witnesses,
     }
 
 
-def _print(loaded: LoadedSpec, found: TileMap) -> None:
-    counted = ", ".join(f"{count} {name}" for name, count in found.counts().items())
+def _print(loaded: LoadedSpec, found: TileMap, idle: tuple[str, ...]) -> None:
+    verdicts = ", ".join(f"{count} {name}" for name, count in found.counts().items())
     say(
-        f"{loaded.spec.name}: {len(found.tiles)} tiles: {counted}; "
+        f"{loaded.spec.name}: {len(found.tiles)} tiles: {verdicts}; "
         f"{found.proofs} programs, {found.carried} forms carried on, growth looked for "
         f"{found.witnesses} times"
     )
@@ -173,6 +185,11 @@ def _print(loaded: LoadedSpec, found: TileMap) -> None:
             say(f"  {fields[0].text(place[0])}: {tile.shown}")
     else:
         say("--figure, --csv or --json have the tiles")
+    granted = max((len(one.granted) for one in found.certificates), default=0)
+    if granted:
+        say(f"  takes up to {counted(granted, 'thing')} for granted (--certificates or --json)")
+    for path in idle:
+        note(f"warning: {path} has no part in what is decided: its tiles say nothing about it")
     wrong = next((tile.wrong for tile in found.tiles.values() if tile.wrong), None)
     if wrong is not None:
         note(f"warning: some tiles make no system: {wrong}")
@@ -202,4 +219,6 @@ def _certificates(found: TileMap, folder: Path) -> Iterator[Output]:
         name = certificate.id[:SHORT]
         text = found.grid.text_of(box)
         yield folder / f"{name}.cert.json", dump(certificate, f"{name}.nrs.yaml"), CERTIFICATE
-        yield folder / f"{name}.nrs.yaml", text, b""
+        # In the place of the same text only: whoever changed it works with it.
+        same = re.compile(re.escape(text.encode()) + rb"\Z")
+        yield folder / f"{name}.nrs.yaml", text, same

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -9,6 +10,7 @@ import typer
 
 from nrs_design.axis import unit
 from nrs_design.cli.command import Answer, command
+from nrs_design.cli.exit_codes import INCONCLUSIVE, worst
 from nrs_design.cli.goals import (
     design_answer,
     print_responses,
@@ -58,7 +60,8 @@ def optimize(
 
     Goals of the spec are respected. With decay_rate, peak_torque or delay among them, the gains of
     all controllers are chosen together, and those that design.free names, and come with their
-    proof. The exit code is 1 if gains that are given miss a goal, or if one is not proved.
+    proof. The exit code is 1 if gains that are given miss a goal, or if one is not proved; 3 if
+    --retune proves nothing.
 
     Example: nrs-design optimize specs/neuroboscope/soft-tissue.nrs.yaml
     """
@@ -100,7 +103,7 @@ def optimize(
 
     proved = all(found.proved for item in analysis.impedance for found in item.responses)
     proved = proved and (certified is None or certified.proved)
-    return design_answer(
+    answer = design_answer(
         designed,
         analysis,
         analysis.impedance,
@@ -110,6 +113,9 @@ def optimize(
         judged=certified is not None,
         marked=True,
     )
+    # What --retune asks for was not proved, which refutes nothing.
+    open_ = box is not None and box.found.result is None
+    return replace(answer, code=worst({answer.code, INCONCLUSIVE})) if open_ else answer
 
 
 def _print_bounds(bounds: dict[str, CostBound | str]) -> None:

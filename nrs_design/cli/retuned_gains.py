@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 from nrs_design.axis import unit
 from nrs_design.cli.certified_gains import name_for, write_certified
+from nrs_design.cli.granted import print_granted
 from nrs_design.cli.printing import note, progress, say
 from nrs_design.proof.bounds import lower, lower_float, upper, upper_float
 
@@ -74,7 +75,11 @@ class RetunedBox:
         """Print the box."""
         found = self.found
         if found.result is None:
-            say(f"Bt may not be retuned: within ±{found.beyond} % of all controllers not proved")
+            goals = ", with the goals of the proof" if found.goals else ""
+            say(
+                f"Bt may not be retuned: within ±{found.beyond} % of all controllers{goals}, "
+                "not proved"
+            )
             return
         ends = ", ".join(
             f"{name} {upper(low)} to {lower(high)}" for name, (low, high) in found.ranges.items()
@@ -83,3 +88,4 @@ class RetunedBox:
         say(f"PROVED: Bt may be retuned while running, within ±{percent} %: {ends}")
         if found.beyond is not None:
             say(f"of all controllers at once; ±{found.beyond} % was tried and is not proved")
+        print_granted(found.result)

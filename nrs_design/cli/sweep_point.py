@@ -84,7 +84,7 @@ def answer_point(job: Job, index: int) -> PointAnswer:
             kept = job.store.read(key)
             if kept is not None and _holds(kept, _shown(job.store.certificate(key), axes)):
                 return PointAnswer(texts, kept.code, key, kept.id(key), reused=True)
-            job.store.drop(key)
+            job.store.drop_certificate(key)
             kept = _computed(job, key)
             job.store.write(key, kept)
             return PointAnswer(texts, kept.code, key, kept.id(key))

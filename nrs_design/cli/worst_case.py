@@ -62,11 +62,14 @@ def _show(name: str, case: WorstCase, arm: float | None, seed: int) -> None:
         NO_BOUND,
         UNDECLARED,
         left_out,
+        ratio_sentences,
         worst_rows,
     )
 
     title = f"{name}: the worst that an adversary found, seed {seed}"
     print_table(title, COLUMNS, worst_rows(case, arm))
+    for sentence in ratio_sentences(case, arm):
+        say(sentence)
     say(MEANING if case.bounds else f"{MEANING.partition(';')[0]}. {NO_BOUND}")
     if not case.declared:
         say(UNDECLARED)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from nrs_design.design.analysis import DesignAnalysis
 from nrs_design.design.cost_bound import CostBound, bound_cost, why_no_bound
 
@@ -14,11 +16,17 @@ def run_cost_bounds(chosen: DesignAnalysis, shipped: DesignAnalysis) -> dict[str
     chosen : DesignAnalysis
         Of the spec, with the bounds of its gains.
     shipped : DesignAnalysis
-        The same, or of the gains that were chosen by goals of a certificate.
+        The same, or of the gains that were chosen by goals of a certificate. The bound is about its
+        loop, which `design.free` may have changed.
     """
     found: dict[str, CostBound | str] = {}
     for item, own in zip(chosen.impedance, shipped.impedance, strict=True):
         goals = bool(item.requirement.goals) or shipped is not chosen
-        why_not = why_no_bound(item.problem)
-        found[item.name] = why_not or bound_cost(item.problem, own.Mt, own.Bt, goals=goals)
+        problem = replace(
+            own.problem,
+            mass_bounds=item.problem.mass_bounds,
+            damping_bounds=item.problem.damping_bounds,
+        )
+        why_not = why_no_bound(problem)
+        found[item.name] = why_not or bound_cost(problem, own.Mt, own.Bt, goals=goals)
     return found

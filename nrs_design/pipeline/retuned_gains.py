@@ -14,7 +14,7 @@ from fractions import Fraction
 from nrs_design.axis import unit
 from nrs_design.certificates.certificate import Verdict
 from nrs_design.certificates.goals import certified_goals
-from nrs_design.controllers.float32 import exact_decimal, round_significant, to_float32
+from nrs_design.controllers.float32 import shortest_decimal
 from nrs_design.errors import AssemblyError, DesignError
 from nrs_design.pipeline.certification import Result, run_certification, search_limits
 from nrs_design.pipeline.design import Designed, placed
@@ -29,8 +29,6 @@ from nrs_design.spec.spec_document import SpecDocument
 FIRST, LARGEST = 8, 64
 # Of the search at one share.
 BUDGET = 3.0
-# Nine digits tell all single-precision numbers apart.
-_DIGITS = 9
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,6 +39,7 @@ class RetunedGains:
     beyond: int | None  # Smallest share in per cent that was tried and not proved; None if none
     ranges: dict[str, tuple[Fraction, Fraction]]  # Of Bt of each controller, N m s/rad
     result: Result | None  # Of the spec with these ranges; None at share 0
+    goals: bool  # Whether goals of the proof had to be met, too
 
 
 def run_retuned_gains(
@@ -89,7 +88,9 @@ def run_retuned_gains(
     share = Fraction(low, 100)
     gains = {n: Fraction(_shipped(designed, n, "Bt")) for n in names}
     ranges = {n: (Bt * (1 - share), Bt * (1 + share)) for n, Bt in gains.items()}
-    return RetunedGains(share, high if high <= LARGEST else None, ranges, proved.get(low))
+    beyond = high if high <= LARGEST else None
+    asked = any(certified_goals(designed.spec, None))
+    return RetunedGains(share, beyond, ranges, proved.get(low), asked)
 
 
 def bracket_share(is_proved: Callable[[int], bool]) -> tuple[int, int]:
@@ -109,13 +110,8 @@ def bracket_share(is_proved: Callable[[int], bool]) -> tuple[int, int]:
 
 
 def _shipped(designed: Designed, controller: str, gain: str) -> str:
-    """Return the shortest decimal that the single-precision gain is read from."""
-    found = next(c for c in designed.design.controllers if c.name == controller)
-    value = found.law.gains[gain]
-    for digits in range(1, _DIGITS + 1):
-        if value and to_float32(near := round_significant(float(value), digits)) == value:
-            return exact_text(near)
-    return exact_decimal(value)
+    """Return a gain as a spec gives it: the shortest decimal of its single-precision number."""
+    return shortest_decimal(designed.design.laws[controller].gains[gain])
 
 
 def with_gain_ranges(

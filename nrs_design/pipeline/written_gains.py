@@ -7,8 +7,7 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
+from nrs_design.controllers.float32 import shortest_decimal
 from nrs_design.controllers.laws import LAWS
 from nrs_design.proof.text import exact_text
 from nrs_design.spec import LoadedSpec
@@ -95,8 +94,7 @@ def with_own_gains(designed: Designed) -> LoadedSpec:
     """
     laws, units = designed.design.laws, designed.design.units
     written = {
-        # The shortest decimal that single precision holds as this very number.
-        (name, gain): f"{np.float32(float(laws[name].gains[gain]))} {units[name][gain]}"
+        (name, gain): f"{shortest_decimal(laws[name].gains[gain])} {units[name][gain]}"
         for name, given in designed.spec.controllers.items()
         for gain, own in given.gains().items()
         if not own.fixed

@@ -10,6 +10,34 @@ a sample,
 does otherwise than one of fixed numbers is a disturbance of d and of w+, in proportion to w and u:
 sums of the responses of that one motor bound everything, if the bounds that they begin with hold
 for what they end with. All of it is rational; the responses are exact.
+
+**Motion.** e, w and u are sums ``z(k) = sum c(j) r(k-1-j)`` of one response c each, so with steps
+of at most W, ``|z| <= W sum |c|``. Steps of the signs of c attain it. Nothing in it depends on who
+chose the steps.
+
+**Ranges, friction, encoder, rounding.** Another motor, from sample to sample another, adds
+``ds w + dg u`` to d and ``dE w + dh u`` to w+; friction and the roundings of the command, f, add
+``g f`` and ``h f``. While ``|w|`` and ``|u|`` have kept bounds, all of this is bounded, and the
+sums bound the next sample: if that is within the same bounds, it holds for ever. An error n of the
+angle changes e by ``n(k+1) - n(k)``, so it counts with ``sum |c(j) - c(j-1)|``. Sums are exact up
+to a horizon N; behind it ``|A^N| v <= q v`` with q < 1 bounds what is left.
+
+**Torque.** Let j be the last sample at which the reference moved inward, and ``b = j - a``, a at
+most `oldest`, the one whose torque it saw: there ``F <= torque``, so the deflection was
+``y(b) <= torque/low``. The angle follows a unit step of the reference by ``h(n) = 1 - c(n)``. M
+samples after b, since behind j all steps are outward and h is not negative,
+
+    y - y(b) = sum r(i) (h(b+M-1-i) - h(b-1-i)) <= W max over M of sum |h(q+M) - h(q)|
+
+over ``q >= -(oldest + 1)``: W times `carry`. What ranges and noise add to the error counts twice,
+and between samples the angle goes on by at most ``V T/2``, V the bound on the velocity: all
+together `depth`. With a constant k, ``k y <= torque + k depth``. A damping b presses by at most
+``b V`` more, and hides as much of the spring while the tissue is left. If the reference never moved
+inward, y is not beyond that of the start.
+
+**Work.** What is spent stays in [0, `energy`], so the books of n samples sum up to at most
+`energy`, and the refill for each. Products and sums are rounded once each, and the reference,
+rounded to its own last place, goes on by up to twice what is booked, or stays where a step out is.
 """
 
 from __future__ import annotations

@@ -5,7 +5,9 @@ disturbs it (d), what its arithmetic rounds (r) and what other axes do (w), the 
 ``M z`` (a map), or ``M z`` is its derivative (a flow). What is known besides are *facts*:
 
 - an error: ``e^2 <= (q z)^2``, for an entry e of r, or for one of w, summed over all axes;
-- a crossing: ``delta (c z) <= 0``, with delta the last state: contact is lost, or would pull.
+- a crossing: ``delta (c z) <= 0``, with delta the last state: contact is lost, or would pull;
+- a product: ``(l z) (r z) >= 0``, as neither factor is negative; the forms below then have
+  ``- sum 2 m (l z) (r z)`` as well (see `nrs_design.proof.offset`).
 
 With F before and G after the step and a multiplier m >= 0 for each fact, positive definiteness of
 
@@ -83,6 +85,8 @@ class Step:
     errors: tuple[tuple[str, int, Row, int], ...] = ()
     # Name, c in these units, and its denominator.
     crossings: tuple[tuple[str, Row, int], ...] = ()
+    # Name, l and r in these units, without a denominator; the form has ``-2 m (l z) (r z)``.
+    products: tuple[tuple[str, Row, Row], ...] = ()
     weights: tuple[Fraction, ...] = ()  # Of the disturbances, which are next to the state in z
     is_flow: bool = False
     time: int = 1  # Steps that a map takes; a switch at once takes none
@@ -90,7 +94,8 @@ class Step:
     @property
     def facts(self) -> tuple[str, ...]:
         """Names of what is known."""
-        return (*(name for name, *_ in self.errors), *(name for name, *_ in self.crossings))
+        known = (self.errors, self.crossings, self.products)
+        return tuple(str(fact[0]) for facts in known for fact in facts)
 
     def form(
         self,
@@ -133,6 +138,11 @@ class Step:
         for name, c, below in self.crossings:
             weight = multiplier(name) * (factor // below) * self.units[last]
             form = with_crossing(form, last, [weight * entry for entry in c])
+        for name, row, other in self.products:
+            weight = -factor * multiplier(name)
+            for i, entry in enumerate(row):
+                if entry:
+                    form = with_crossing(form, i, [weight * entry * right for right in other])
         return form
 
     def _left(self, before: IntegerMatrix, keeps: Fraction, log2: int) -> list[list[int]]:

@@ -31,14 +31,15 @@ COLUMNS = ("", "worst found", "unit", "limit", "certified bound", "bound / found
 MEANING = (
     "An adversary chose controllers, contact, delay and disturbances within what the spec allows. "
     "What he found may happen in the model, and is a lower bound of the worst that may; the "
-    "certified bound is an upper one. The limit of the velocity is that of its command; the axis "
-    "itself may go beyond."
+    "certified bound is an upper one. In his runs a surface that is lost stays in its place. The "
+    "limit of the velocity is that of its command; the axis itself may go beyond."
 )
 NO_BOUND = "No bound is certified beside it: the worst that may happen may be any larger."
 UNDECLARED = (
     "The spec names no disturbances, so the velocity command took any course up to its limit; "
     "with `disturbances` a bound can be certified."
 )
+ABOVE = " (above)"
 _LEFT_OUT = "roundings of the law, jitter, noise without a bound, and the limit of the command"
 _LINKS = ", and what other axes do through the links"
 _COMMAND = "velocity command"
@@ -106,9 +107,28 @@ def worst_rows(case: WorstCase, lever_arm: float | None) -> list[list[str]]:
         ratio = "–" if item.ratio is None else upper(Fraction(item.ratio), 3)
         found = lower(Fraction(factor * item.value), 4)
         if item.exceeds:
-            found += " (above)"
+            found += ABOVE
         rows.append([item.name, found, unit, limit, bound, ratio])
     return rows
+
+
+def ratio_sentences(case: WorstCase, lever_arm: float | None) -> Iterator[str]:
+    """Yield what is proved of each bounded quantity, what was found, and how far that is apart.
+
+    Parameters
+    ----------
+    case, lever_arm
+        As for `worst_rows`.
+    """
+    for (name, found, unit, _, bound, ratio), item in zip(
+        worst_rows(case, lever_arm), found_in(case), strict=True
+    ):
+        if item.ratio is not None:
+            reached = found.removesuffix(ABOVE)
+            yield (
+                f"{name}: at most {bound} {unit}; an adversary reached {reached} {unit}; "
+                f"ratio {ratio}"
+            )
 
 
 def left_out(system: SwitchedSystem) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 from time import perf_counter
@@ -35,6 +36,8 @@ from nrs_design.search.structure import merge_equal_modes, stand_in, triangular_
 from nrs_design.work import Allowance, Fuse, NotAffordableError
 
 # The end of a search that had a solution, but no rate to claim for it.
+# Share of the work on a bound for ellipsoids off the origin.
+OFF_THE_ORIGIN = 0.7
 NO_RATE = "what was found shows no rate of decay"
 CONSTANT_FORCE = "constant force"
 SATURATION = "decay under saturation"
@@ -215,19 +218,32 @@ def _bounds(
         return (), ()
     if system.clock is not None:
         return (), tuple(Attempt(_bound_name(*pair), NOT_IN_TURNS, 0.0) for pair in pairs)
-    from nrs_design.search.invariant_ellipsoid import search_ellipsoid
-
     found: list[AbstractEvidence] = []
     attempts: list[Attempt] = []
     for count, (channels, output) in enumerate(pairs):
         name = _bound_name(channels, output)
         progress(name)
         own = allowance.part(1 / (len(pairs) - count))
-        search = partial(search_ellipsoid, system, channels, output, own)
+        search = partial(_ellipsoids, system, channels, output, own)
         evidence, attempt = _attempted(name, search, system, own)
         found += evidence
         attempts += attempt
     return tuple(found), tuple(attempts)
+
+
+def _ellipsoids(
+    system: SwitchedSystem, channels: Sequence[Channel], output: Output, allowance: Allowance
+) -> Candidates[AbstractEvidence]:
+    """Yield ellipsoids off the origin, where contact may be lost, before those around it."""
+    from nrs_design.search.invariant_ellipsoid import search_ellipsoid
+
+    if system.contact is not None and not system.couplings:
+        from nrs_design.search.offset_ellipsoid import search_offset_ellipsoid
+
+        own = allowance.part(OFF_THE_ORIGIN)
+        with suppress(NotAffordableError):
+            yield from search_offset_ellipsoid(system, channels, output, own)
+    return (yield from search_ellipsoid(system, channels, output, allowance))
 
 
 def _bound_name(channels: Sequence[Channel], output: Output) -> str:

@@ -114,7 +114,12 @@ def force_slope(
             best = min(tried, key=lambda one: tried[one])
             least = tried[best]
         else:
-            least, best = best_share(own, limit, allowance)
+
+            def attempt(share: float) -> float:
+                found = least_level(own, share, allowance)
+                return np.inf if found is None else found.last
+
+            least, best = best_share(attempt, limit, own.time)
     if not isfinite(least):
         return None
     return ForceSlope(level * sqrt(least), best, output, frame, allowance)

@@ -7,7 +7,7 @@ little above the best one, and the conditions are satisfied with as much to spar
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from math import isfinite
@@ -77,7 +77,12 @@ def search_ellipsoid(
         return OUT_OF_RANGE
     whole, units = balanced(transformed(raw, T, size, level))
     exact = whole.without_roundings().distinct()
-    best, share = best_share(exact, family.limit, allowance)
+
+    def attempt(share: float) -> float:
+        found = least_level(exact, share, allowance)
+        return np.inf if found is None else found.last
+
+    best, share = best_share(attempt, family.limit, system.time)
     if not isfinite(best):
         return NO_MARGIN
     names = tuple(channel.name for channel in channels)
@@ -91,8 +96,8 @@ def search_ellipsoid(
                 output.name,
                 (),
                 0,
-                tuple(map(_short, found.shares.tolist())),
-                _short(level * float(np.sqrt(best * (system.axes or 1))) * slack),
+                tuple(map(seven_digits, found.shares.tolist())),
+                seven_digits(level * float(np.sqrt(best * (system.axes or 1))) * slack),
             )
             for numbers in roundings(family, found, T, units, size):
                 yield Candidate(
@@ -108,7 +113,8 @@ def search_ellipsoid(
     return None
 
 
-def _short(number: float) -> Fraction:
+def seven_digits(number: float) -> Fraction:
+    """Return a number with seven digits."""
     return Fraction(f"{number:.6e}")
 
 
@@ -143,38 +149,45 @@ def reach_and_level(problem: DisturbedProblem, T: Array) -> tuple[float, float]:
     return size, level
 
 
-def best_share(own: DisturbedProblem, limit: float, allowance: Allowance) -> tuple[float, float]:
-    """Return the least square of the level, relative to the scale, and its share.
+def largest_share(limit: float, time: Time) -> float:
+    """Return the share that no form can beat.
 
     Parameters
     ----------
-    own : DisturbedProblem
-        In coordinates of like size, with outputs over a scale.
     limit : float
         The rate that no form can beat.
-    allowance : Allowance
-        Work and memory.
-
-    Raises
-    ------
-    NotAffordableError
-        If work or memory do not suffice.
+    time : Time
+        Of which it is.
     """
-    top = 2 * limit if own.time is Time.CONTINUOUS else 1 - limit**2
+    return 2 * limit if time is Time.CONTINUOUS else 1 - limit**2
+
+
+def best_share(attempt: Callable[[float], float], limit: float, time: Time) -> tuple[float, float]:
+    """Return the least value found, and the share that gives it.
+
+    Parameters
+    ----------
+    attempt : callable
+        Of a share.
+    limit : float
+        The rate that no form can beat.
+    time : Time
+        Of which it is.
+    """
+    top = largest_share(limit, time)
     tried: dict[float, float] = {}
 
-    def attempt(share: float) -> float:
+    def value(share: float) -> float:
         if share not in tried:
-            found = least_level(own, share, allowance)
-            tried[share] = np.inf if found is None else found.last
+            tried[share] = attempt(share)
         return tried[share]
 
     shares = np.geomspace(SMALLEST_SHARE * top, 0.98 * top, SHARES).tolist()
-    k = min(range(SHARES), key=lambda i: attempt(shares[i]))
+    k = min(range(SHARES), key=lambda i: value(shares[i]))
     low, high = np.log(shares[max(k - 1, 0)]), np.log(shares[min(k + 1, SHARES - 1)])
     for _ in range(REFINED):
         left, right = high - (high - low) * GOLDEN, low + (high - low) * GOLDEN
-        if attempt(float(np.exp(left))) <= attempt(float(np.exp(right))):
+        if value(float(np.exp(left))) <= value(float(np.exp(right))):
             high = right
         else:
             low = left

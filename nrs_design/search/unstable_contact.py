@@ -37,7 +37,7 @@ PAIRS, GREEDY = 96, 48
 # How often others choose at random.
 SHARE = 0.1
 # When a direction has come back, and how many sequences are looked at closely.
-NEAR, LOOKS, PROPOSED = 0.9, 400, 8
+NEAR, LOOKS, PROPOSED = 0.9, 2000, 8
 # What is at rest in the air begins anew.
 AT_REST = 1e-9
 # An eigenvalue is sought so near to the one of floating point, and enclosed with so many halvings.
@@ -129,11 +129,15 @@ class _Loop:
         return felt | unclear | ~(self.touching | self.flying)
 
     def sequences(self) -> Iterator[list[int]]:
-        """Yield what motions were in while they came back to their direction, larger."""
+        """Yield what motions were in while they came back to their direction, larger; each once.
+
+        What stays in one mode turns but little from step to step, and would crowd out the others.
+        """
         chosen, states, sizes, turns = self._simulated()
         clock = self.system.clock
         # A motion that misses deadlines may come back to a state of the rule at any step.
         round_ = len(self.turns) if clock is None or clock.is_round else 1
+        seen: set[tuple[int, ...]] = set()
         # How much larger, by the motion and the number of steps since.
         for end in range(LENGTH, LENGTH // 2, -max(1, LENGTH // 8)):
             end -= end % round_
@@ -142,11 +146,15 @@ class _Loop:
             growth = sizes[end] - sizes[end - lengths]
             back = (cosines > NEAR) & (turns[end] == turns[end - lengths])
             growth = np.where(back, growth / lengths[:, None], -np.inf)
-            order = np.argsort(-growth, axis=None)[: LOOKS // 4]
+            order = np.argsort(-growth, axis=None)[: 2 * LOOKS]
             for place in order:
                 k, motion = np.unravel_index(place, growth.shape)
-                if growth[k, motion] > 0:
-                    yield _once([int(i) for i in chosen[end - lengths[k] : end, motion]])
+                if not growth[k, motion] > 0:
+                    break
+                found = _once([int(i) for i in chosen[end - lengths[k] : end, motion]])
+                if len(found) > 1 and tuple(found) not in seen:
+                    seen.add(tuple(found))
+                    yield found
 
     def _simulated(self) -> tuple[NDArray[np.int64], Array, Array, NDArray[np.int64]]:
         """Return chosen modes (steps, motions), directions, logarithms of sizes, and turns."""

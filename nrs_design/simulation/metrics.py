@@ -2,7 +2,7 @@
 
 Throughout, ``t`` are the instants of a run in s, shape (N,), which need not be equally far apart,
 and ``y`` is a signal at them, a straight line between two: velocities in rad/s, torques in N m.
-Numbers of the thesis stand beside the equations; `docs/design/scenarios.md` has them all.
+Numbers of the thesis stand beside the equations.
 """
 
 from __future__ import annotations

@@ -42,6 +42,7 @@ from nrs_design.spec.features import (
     OFFSET,
     OTHERS,
     PARALLEL,
+    PLACED,
     PRELOADED,
     REGIONS,
     RULES,
@@ -60,6 +61,7 @@ from nrs_design.spec.features import (
     TWO_PERIODS,
     UNPARALLEL,
     UNSPRUNG,
+    ZEROED,
 )
 from nrs_design.spec.interaction_parts import AbstractInteractionSpec as Spec
 
@@ -124,6 +126,8 @@ COMBINATIONS: tuple[Row[Spec], ...] = (
     *_beside(TWO_PERIODS, OTHERS, RULES),
     # The rule for misses decides what may follow what; its proof is of one axis.
     *_beside(MISSES, TWO_PERIODS, RULES, OTHERS, COUPLED, SAFE, CONSTANT_MOTOR, CONSTANT_TISSUE),
+    # A position of zero is a place of the robot, and nothing says where the contact is from there.
+    not_together(ZEROED, PLACED),
     # The proof of the layer takes a motor that nothing loads, driven by its reference alone.
     *_beside(SAFE, LOADED, COUPLED, OTHERS, TWO_PERIODS, CONTINUOUS, GIVEN_LOOP, AT_ONCE),
     # Its command is a velocity, and nothing stands where a reference would.

@@ -75,6 +75,11 @@ def _first(names: Iterable[str]) -> str | None:
     return next(iter(names), None)
 
 
+def _zeroed(spec: Spec) -> bool:
+    misses = None if spec.sampling is None else spec.sampling.misses
+    return misses is not None and misses.command == "zero"
+
+
 def _motor_range(spec: Spec) -> tuple[str, str] | None:
     return next((at for at, item in spec.motor_ranges.items() if not item.fixed), None)
 
@@ -149,6 +154,12 @@ MISSES = _F(
     "leave misses out",
     lambda s: s.sampling is not None and s.sampling.misses is not None,
 )
+ZEROED = _F(
+    "a command of zero where a deadline is missed",
+    "sampling.misses.command",
+    "write `command: hold`",
+    _zeroed,
+)
 TIMED = _F(
     "the {0[1]}",
     "{0[0]}.{0[1]}",
@@ -176,6 +187,12 @@ STREAMED = _F(
     "{0}",
     "write actuator and motion_loop",
     lambda s: _first(k for k in s.drives if s.followed),
+)
+PLACED = _F(
+    "a position_interface",
+    "position_interface",
+    "write velocity_interface",
+    _given("position_interface"),
 )
 TORQUES = _F(
     "a torque_interface",

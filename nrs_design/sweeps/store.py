@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -74,10 +75,11 @@ class Store:
         """Keep an answer, in the place of what is there."""
         write_output(self.entry(key), kept.text(key))
 
-    def drop(self, key: str) -> None:
-        """Forget an answer and its certificate."""
-        self.entry(key).unlink(missing_ok=True)
-        self.certificate(key).unlink(missing_ok=True)
+    def drop_certificate(self, key: str) -> None:
+        """Forget what shows the claims of an answer; another run may be reading the answer."""
+        # Where that is refused, so is writing another one, with a message of its own.
+        with suppress(OSError):
+            self.certificate(key).unlink()
 
 
 def key_of(meaning: Data, asked: Data, version: str) -> str:

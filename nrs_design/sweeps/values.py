@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import sys
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import TypeAlias
@@ -53,7 +54,7 @@ def parse_values(text: str) -> Values:
     Raises
     ------
     SpecError
-        If there is no value, one is there twice, or a range is empty or reversed.
+        If there is no value, one is there twice, or a range is empty, reversed or too long.
     """
     text = text.strip()
     if found := _RANGE.fullmatch(text):
@@ -82,6 +83,11 @@ def _spaced(low_text: str, high_text: str, count_text: str | None, unit: str | N
         raise SpecError(
             f"a range has two ends, and {said} is to have {count} of them",
             remedy="give a count of 2 or more, or a list of values",
+        )
+    if count > sys.maxsize:
+        raise SpecError(
+            f"{said} has more values than a sequence may have",
+            remedy="give a smaller count, such as 1..250/16",
         )
     return Spaced(low, high, count, unit or "")
 

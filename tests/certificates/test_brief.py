@@ -3,6 +3,7 @@
 import re
 from dataclasses import replace
 from fractions import Fraction
+from unittest.mock import patch
 
 import pytest
 
@@ -48,3 +49,12 @@ def test_turns_and_missed_deadlines_are_no_arbitrary_switching():
     assert "in rounds of 2 steps" in brief(evidence, system)
     ahead = replace(system.clock, ahead=((0, 1), (0, -1)))
     assert "deadlines missed as the rule allows" in brief(evidence, replace(system, clock=ahead))
+
+
+def test_a_torque_is_said_as_a_force_rounded_up():
+    system, evidence = genuine("invariant-ellipsoid")
+    bound = evidence.bound(system)
+    torque = replace(bound, level=Fraction(1), output=replace(bound.output, unit="N*m"))
+    with patch.object(type(evidence), "bound", return_value=torque):
+        assert "<= 1 N*m (3.334 N at 0.3 m) from rest" in brief(evidence, system, Fraction(3, 10))
+        assert "<= 1 N*m from rest" in brief(evidence, system)

@@ -622,7 +622,7 @@ def test_bounds_in_json(tmp_path):
         "bounds"
     ]
     assert (force["output"], force["unit"], force["limit"]) == ("force", "N*m", 0.3)
-    assert 1.0 < force["level"] < 1.2
+    assert 0.8 < force["level"] < 0.9
     (command,) = force["under"]
     assert command["bound"] == pytest.approx(0.1396263)
     assert velocity["output"] == "velocity"
@@ -703,7 +703,7 @@ def test_the_growth_per_step_is_said_whatever_the_verdict(tmp_path):
     """Philippe et al. 2016: 0.97482, and forms with a memory; one rung alone decides nothing."""
     lossy = ROOT / "docs" / "examples" / "lossy-network.nrs.yaml"
     alone = ("--method", "mode-quadratic", "--max-degree", "4", "--out", "a.cert.json")
-    result = typed("certify-switching", lossy, *alone, cwd=tmp_path, code=3)
+    result = typed("certify-switching", lossy, *alone, "-v", cwd=tmp_path, code=3)
     wanted = "growth per step, rho: at least 0.974817 (rounded down), by n1, n3, n1, n2, n3 4 times"
     assert wanted in result.stdout
     assert "at most 0.97499" in result.stdout

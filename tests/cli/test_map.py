@@ -48,8 +48,45 @@ def test_bad_requests(tmp_path):
         ("environments.soft.stiffness=5..1/4 N/m", "reversed"),
         ("environments.hard.stiffness=1..5/4 N/m", "there is no field"),
         ("environments.soft.stiffness=1..1000000000 N/m", "more than"),
+        (f"environments.soft.stiffness=1..5/{'9' * 30} N/m", "more values than"),
         ("environments.soft.stiffness", "sets nothing"),
     ):
         refused = run("map", SAMPLED, "--over", said, cwd=tmp_path, code=2)
         assert words in refused.stderr
     assert not list(tmp_path.iterdir())
+
+
+def test_a_field_without_effect_is_named(tmp_path):
+    """All tiles of a stiffness that nobody touches are proved: that says nothing about it."""
+    ghost = "  ghost: {model: elastic, stiffness: 100 N*m/rad}\n"
+    text = (ROOT / "specs/neuroboscope/soft-tissue.nrs.yaml").read_text()
+    path = tmp_path / "ghost.nrs.yaml"
+    path.write_text(text.replace("environments:\n", "environments:\n" + ghost))
+    over = "--over", "environments.ghost.stiffness=100,1000 N*m/rad"
+    done = run("map", path, *over, cwd=tmp_path)
+    warned = "warning: environments.ghost.stiffness has no part in what is decided"
+    assert warned in done.stderr.replace("\n ", "")
+    assert "takes up to 12 things for granted" in done.stdout
+    document = document_of("map", path, *over, cwd=tmp_path)
+    assert document["without_effect"] == ["environments.ghost.stiffness"]
+    assert len(document["certificates"][0]["assumptions"]) == 12
+
+
+def test_specs_of_certificates_find_the_files_that_they_name(tmp_path):
+    asked = "--over", STIFFNESS, "--certificates", "elsewhere"
+    spec = ROOT / "specs/neuroboscope/soft-tissue-axes.nrs.yaml"
+    assert "names files beside itself" in run("map", spec, *asked, cwd=tmp_path, code=2).stderr
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_spec_that_was_changed_is_not_replaced(tmp_path):
+    over = "--over", "environments.soft.stiffness=500,600 N/m"
+    command = "map", ROOT / "specs/neuroboscope/soft-tissue.nrs.yaml", *over
+    for _ in range(2):
+        run(*command, "--certificates", "folder", cwd=tmp_path)
+    (spec,) = (tmp_path / "folder").glob("*.nrs.yaml")
+    changed = spec.read_text() + "# mine\n"
+    spec.write_text(changed)
+    refused = run(*command, "--certificates", "folder", cwd=tmp_path, code=2)
+    assert "is not overwritten" in refused.stderr.replace("\n ", "")
+    assert spec.read_text() == changed

@@ -224,7 +224,7 @@ def test_gains_with_their_proof_are_written_with_it(tmp_path):
     document = document_of("optimize", GOALS, "--out", new, cwd=tmp_path, code=0)
     certified = document["certified"]
     assert certified["decay_rate"] >= 2
-    assert certified["binds"] == ["decay_rate"]
+    assert certified["binds"] == ["decay_rate", "delay"]
     assert certified["cost"] > certified["free_cost"]
     assert all(goal["met"] for goal in certified["goals"])
     assert new.read_text() == REDESIGNED.read_text()

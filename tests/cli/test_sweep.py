@@ -13,6 +13,8 @@ import pytest
 from nrs_design.certificates.certificate import content_id
 from nrs_design.cli import exit_codes
 from nrs_design.cli.sweep import SWEPT
+from nrs_design.cli.sweep_point import Job, answer_point
+from nrs_design.sweeps.grid import read_grid
 from nrs_design.sweeps.store import Store
 from tests.support import SOFT_TISSUE, document_of, run
 
@@ -282,6 +284,31 @@ def test_options_belong_to_the_command_and_to_the_name_of_its_answer(tmp_path, s
     assert "1 computed" in run(*command, "--method", "lmi", cwd=tmp_path).stderr
     assert "0 computed" in run(*command, "--method=lmi", cwd=tmp_path).stderr
     assert "0 computed" in run(*command, "--", "--method", "lmi", cwd=tmp_path).stderr
+
+
+def test_an_answer_stays_until_it_is_replaced(tmp_path, spec, monkeypatch):
+    """Another run in the same folder may be about to read it."""
+    path, what = tmp_path / spec, ("optimize",)
+    grid = read_grid(path, [f"{STIFFNESS}=700 N/m"])
+    job = Job(path, grid, what, (), what, Store(tmp_path / "mine.sweep"))
+    first = answer_point(job, 0)
+    write, there = Store.write, []
+
+    def watched(store, key, kept):
+        there.append(store.read(key))
+        write(store, key, kept)
+
+    monkeypatch.setattr(Store, "write", watched)
+    # What `optimize` proves is computed again in every run.
+    assert answer_point(job, 0) == first
+    assert [kept.id(first.key) for kept in there] == [first.id]
+
+
+def test_a_store_that_cannot_be_one_is_no_defect(tmp_path, spec):
+    (tmp_path / "file").touch()
+    command = "sweep", spec, "--set", f"{STIFFNESS}=700 N/m", "--store", "file"
+    for what in ("check", "certify-switching"):
+        assert "cannot be written" in run(*command, what, cwd=tmp_path, code=2).stdout
 
 
 def test_no_store_keeps_nothing(tmp_path, spec):

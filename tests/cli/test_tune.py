@@ -71,8 +71,8 @@ def test_gains_beyond_single_precision(tmp_path):
 @pytest.mark.parametrize(("goal", "code", "word"), [("0.55", 0, "met"), ("0.5", 1, "MISSED")])
 def test_goal_of_the_force_error(tmp_path, goal, code, word):
     """Kp = 0.02 leaves 1/(1 + 0.02 * 41.5043) of the command at the softest tissue."""
-    goals = f"goals: {{max_force_error: {goal}}}\nswitching:"
-    (tmp_path / "goals.nrs.yaml").write_text(FORCE_LIMIT.read_text().replace("switching:", goals))
+    text = FORCE_LIMIT.read_text().replace("max_force_error: 0.55", f"max_force_error: {goal}")
+    (tmp_path / "goals.nrs.yaml").write_text(text)
     result = run("tune", "goals.nrs.yaml", cwd=tmp_path, code=code)
     row = next(line for line in result.stdout.splitlines() if "steady force error" in line)
     assert "0.5465" in row
@@ -82,7 +82,16 @@ def test_goal_of_the_force_error(tmp_path, goal, code, word):
 
 
 def test_a_force_error_without_goal_is_warned_of(tmp_path):
-    result = run("tune", FORCE_LIMIT, cwd=tmp_path, code=0)
+    text = FORCE_LIMIT.read_text().replace("    goals: {max_force_error: 0.55}\n", "")
+    (tmp_path / "free.nrs.yaml").write_text(text)
+    result = run("tune", "free.nrs.yaml", cwd=tmp_path, code=0)
     for words in ("force-limit: motion loop", "force-limit: force loop", "2060"):
         assert words in result.stdout
     assert "warning: force: steady force error over command 0.5465" in result.stderr
+
+
+@pytest.mark.parametrize("name", ["soft-tissue", "force-limit", "nose"])
+def test_what_optimize_marks_is_not_warned_of_here(tmp_path, name):
+    for command in ("tune", "optimize"):
+        result = run(command, ROBOT / f"{name}.nrs.yaml", cwd=tmp_path, code=0)
+        assert "warning" not in result.stderr, command

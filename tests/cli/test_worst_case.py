@@ -1,5 +1,7 @@
 """`nrs-design simulate --worst-case`, as a user types it."""
 
+import re
+
 import pytest
 
 from tests.simulation.interactions import text_of
@@ -36,6 +38,14 @@ def test_the_worst_case_beside_limits_and_bounds(spec, tmp_path):
     told = run("simulate", spec, "--worst-case", "--no-bound", cwd=tmp_path).stdout
     assert "worst found" in told
     assert "No bound is certified" in told
+    assert "; ratio " not in told
+    words = run("simulate", spec, "--worst-case", cwd=tmp_path).stdout.splitlines()
+    (said,) = (line for line in words if line.startswith("force: at most "))
+    numbers = [float(word) for word in re.findall(r"[0-9.]+[0-9]", said)]
+    bound, reached, ratio = numbers
+    assert reached <= found["force"]["worst_found"] < found["force"]["certified_bound"] <= bound
+    assert found["force"]["bound_over_found"] <= ratio < 1.02 * found["force"]["bound_over_found"]
+    assert said.endswith(f"N m; an adversary reached {reached} N m; ratio {ratio}")
 
 
 def test_options_that_nothing_would_heed_are_refused(spec, tmp_path):

@@ -21,7 +21,7 @@ def test_the_sum_of_the_answers_to_one_sample(Mt, Bt, method):
 
 
 def test_shares_of_the_mass():
-    """Mt = 0.01 makes 0.46 and 0.32 of the noise that Mt = 0 makes (docs/design)."""
+    """Mt = 0.01 makes 0.46 and 0.32 of the noise that Mt = 0 makes."""
     for Bt, share in ((2.15, 0.46), (1.04, 0.32)):
         with_mass, without = (noise_gain(Mt, Bt, 0.002, "exact") for Mt in (0.01, 0.0))
         assert with_mass / without == pytest.approx(share, abs=5e-3)

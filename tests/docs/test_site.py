@@ -1,4 +1,4 @@
-"""The pages as a whole: four kinds of them, a glossary, records of decisions."""
+"""The pages as a whole: four kinds of them, a glossary, decisions."""
 
 import re
 
@@ -41,17 +41,10 @@ def test_every_kind_of_evidence_has_its_page_and_its_row():
     assert [kind for kind in KINDS if not (DOCS / f"certificates/{kind}.md").is_file()] == []
 
 
-def test_records_of_decisions_are_short_and_whole():
-    records = sorted((DOCS / "decisions").glob("0*.md"))
-    listed = re.findall(r"\[(\d{4})\]\((\S+)\)", text_of("docs/decisions/README.md"))
-    assert [name for _, name in listed] == [path.name for path in records]
-    for number, path in enumerate(records, 1):
-        text = path.read_text(encoding="utf-8")
-        assert path.name.startswith(f"{number:04}-")
-        assert text.startswith(f"# Decision {number}: ")
-        marks = re.findall(r"^\*\*(\w+)\.\*\*", text, re.MULTILINE)
-        assert marks == ["Context", "Decision", "Consequences"]
-        assert len(text.splitlines()) <= 20
+def test_decisions_are_questions_with_an_answer():
+    entries = text_of("docs/decisions.md").split("\n\n")[1:]
+    assert len(entries) == 11
+    assert [entry for entry in entries if not re.match(r"\*\*[^*]+\?\*\* \w", entry)] == []
 
 
 def test_the_glossary_is_in_order_and_explains():
@@ -64,5 +57,5 @@ def test_the_glossary_is_in_order_and_explains():
         assert len(terms) > 15
 
 
-def test_decisions_that_a_table_gives_in_short_are_linked():
-    assert "decisions/README.md" in text_of("docs/architecture.md")
+def test_decisions_are_linked():
+    assert "(decisions.md)" in text_of("docs/architecture.md")

@@ -1,7 +1,7 @@
 """How often 95 % intervals of a tissue hold the truth: every law under every option.
 
-``python -m tests.identification.coverage`` prints the table of docs/identification, in about ten
-minutes; names of laws and options after it choose cells.
+``python -m tests.identification.coverage`` prints the table of `coverage.md`, in about ten minutes;
+names of laws and options after it choose cells.
 """
 
 from __future__ import annotations
@@ -119,17 +119,17 @@ class Option:
 
 OPTIONS: Mapping[str, Option] = {
     "in contact, both given": Option(touching, replace(GIVEN, zero=ZERO, tare=TARE)),
-    "in contact, `--zero`": Option(touching, replace(GIVEN, zero=ZERO)),
-    "in contact, `--tare`": Option(touching, replace(GIVEN, tare=TARE)),
+    "in contact, `zero`": Option(touching, replace(GIVEN, zero=ZERO)),
+    "in contact, `tare`": Option(touching, replace(GIVEN, tare=TARE)),
     "in contact, both fitted": Option(touching),
-    "`--from`, `--to`": Option(touching, Preparation(start=3.0, end=60.0)),
-    "`--skip-cycles 1`": Option(touching, Preparation(skip_cycles=1)),
+    "`start`, `end`": Option(touching, Preparation(start=3.0, end=60.0)),
+    "`skip_cycles=1`": Option(touching, Preparation(skip_cycles=1)),
     "coarse position": Option(coarse, GIVEN),
     "noise with a memory": Option(colored, GIVEN),
     "air, both fitted": Option(airy),
-    "air, `--zero`": Option(airy, Preparation(zero=ZERO)),
-    "air, `--tare`": Option(airy, Preparation(tare=TARE)),
-    "air, `--drift none`": Option(airy, Preparation(drift="none")),
+    "air, `zero`": Option(airy, Preparation(zero=ZERO)),
+    "air, `tare`": Option(airy, Preparation(tare=TARE)),
+    "air, `drift=none`": Option(airy, Preparation(drift="none")),
     "air, tare that drifts": Option(drifting),
 }
 

@@ -3,6 +3,8 @@
 Of 200, 95 % are 190 with a standard deviation of 3: 92 to 98 % is what chance alone leaves.
 """
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -11,7 +13,6 @@ from nrs_design.models.contact import Elastic, HuntCrossley, KelvinVoigt, Maxwel
 from tests.identification import synthetic
 from tests.identification.coverage import OPTIONS, SEEDS, TISSUES, rates
 from tests.identification.support import holds, quick, record, slow
-from tests.support import ROOT
 
 
 def off_grid(seed):
@@ -54,14 +55,14 @@ def test_one_record(law, motion, noise, q):
     assert (shares <= 0.98).all(), shares
 
 
-# Of the table in docs/identification; the rest is the same work in other words.
+# Of the table in `coverage.md`; the rest is the same work in other words.
 CELLS = [
     *((tissue, "air, both fitted") for tissue in TISSUES),
     *((tissue, "noise with a memory") for tissue in TISSUES),
-    ("hunt-crossley", "air, `--zero`"),
+    ("hunt-crossley", "air, `zero`"),
     ("elastic", "air, tare that drifts"),
-    ("maxwell", "`--from`, `--to`"),
-    ("kelvin-boltzmann", "`--from`, `--to`"),
+    ("maxwell", "`start`, `end`"),
+    ("kelvin-boltzmann", "`start`, `end`"),
     ("nose", "air, both fitted"),
 ]
 # Wider than it need be: an exponent ends at the bounds of the thesis, and a jackknife errs so.
@@ -73,8 +74,8 @@ BEYOND = {
 }
 
 
-def test_the_docs_have_every_law_and_option():
-    text = (ROOT / "docs" / "identification" / "README.md").read_text()
+def test_the_table_has_every_law_and_option():
+    text = Path(__file__).with_name("coverage.md").read_text(encoding="utf-8")
     rows = [line.strip("| ").split(" | ") for line in text.splitlines()]
     table = {row[0]: row[1:] for row in rows if len(row) == 1 + len(TISSUES)}
     assert table["record and option"] == list(TISSUES)

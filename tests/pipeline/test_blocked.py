@@ -108,7 +108,7 @@ def test_an_end_of_a_range_is_what_bisection_by_hand_finds(tmp_path):
         "60 N*m/rad",
     )
     top = Fraction(line.proved.split(" ")[0])
-    # `docs/design/sampling.md`: in kept contact, 52.0 is proved and 57.5 refuted.
+    # `tests/search/test_sampled_map.py`: in kept contact, 52.0 is proved and 57.5 refuted.
     assert 45 < top < 57.5
     assert line.write == f"range: [20 N*m/rad, {line.proved}]"
     assert verdict(tmp_path, soft("20", line.proved.split(" ")[0]), 1) is Verdict.PROVED

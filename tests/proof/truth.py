@@ -23,6 +23,7 @@ from nrs_design.proof.evidence import (
     GrowingSequence,
     InvariantEllipsoid,
     NoCommonQuadratic,
+    OffsetEllipsoid,
     ParameterQuadratic,
     SafetyLayer,
     SaturatedEllipsoid,
@@ -687,6 +688,82 @@ def _invariant_ellipsoid(system: SwitchedSystem, item: InvariantEllipsoid) -> bo
     return all(map(is_definite, forms))
 
 
+def _offset_ellipsoid(system: SwitchedSystem, item: OffsetEllipsoid) -> bool:
+    """For a one, the state and what acts: what raises W only if a sign is not as it must be."""
+    named = [c for name in item.channels for c in system.channels if c.name == name]
+    output = next((o for o in system.outputs if o.name == item.output), None)
+    discrete, n = system.time is Time.DISCRETE, system.order
+    if not named or len(named) < len(item.channels) or output is None or item.taus:
+        return False
+    if system.contact is None or system.couplings or len(item.Q) != n + 1:
+        return False
+    if len(item.shares) != 1 or item.shares[0] <= 0 or (discrete and item.shares[0] >= 1):
+        return False
+    if item.roundings and len(item.roundings) != len(system.roundings):
+        return False
+    if item.level <= 0 or item.Q[0][0] > 0 or min(*item.multipliers, *item.roundings, 0) < 0:
+        return False
+    scale = Fraction(1, 2**item.denominator_log2)
+    W = combine((scale, [list(map(Fraction, row)) for row in item.Q]))
+    if not is_definite([row[1:] for row in W[1:]]):
+        return False
+    keeps = 1 - item.shares[0] if discrete else item.shares[0]
+    known = {f"rounding {i}": scale * entry for i, entry in enumerate(item.roundings, 1)}
+    acting = [system.channels.index(channel) for channel in named]
+    left, count, used = list(item.multipliers), len(named), {}
+
+    def of(name: object) -> Fraction:
+        if name not in used:
+            used[name] = left.pop(0) if left else -1
+        return scale * used[name]
+
+    for move in moves(system, lost=True, channels=acting, rounding=bool(item.roundings)):
+        if not move.strict or (move.where.startswith("where contact is made at the surface")):
+            continue
+        rows, m = [[0, *row] for row in move.image], move.states + 1
+        one = [Fraction(i == 0) for i in range(len(rows[0]))]
+        image = [one if discrete else [0 * entry for entry in one], *rows]
+        sizes = [(name, [0, *q]) for name, q in move.sizes]
+        wide = replace(move, image=image, states=m, sizes=sizes, crossings=())
+        form = inequality(wide, W, W, keeps, known.__getitem__, [Fraction(0)] * count)
+        within = []
+        for k, channel in enumerate(named, m):
+            for sign in (1, -1):
+                within.append([1 if i == 0 else sign / channel.bound * (i == k)
+                               for i in range(len(one))])  # fmt: skip
+        deep = [[Fraction(i == m - 1) for i in range(len(one))]] * (move.source == "modes")
+        pairs = list(zip(within[::2], within[1::2], strict=True))
+        pairs += [(delta, side) for delta in deep for side in within]
+        facts = [((move.where, i), *pair) for i, pair in enumerate(pairs)]
+        scales = [q.denominator if move.flows else 1 for q in system.contact.pulls]
+        signs = []
+        for name, row in move.crossings:
+            by = scales[int(name.split()[1]) - 1] if name.startswith("pull") else 1
+            signs.append((name, [0, *(-by * entry for entry in row)]))
+        if discrete and move.target == "modes":
+            signs.append(("after", rows[-1]))
+        for name, row in signs:
+            for i, other in enumerate((*deep, *within)):
+                facts.append(((move.where.removesuffix(move.mode), name, i), row, other))
+        for name, a, b in facts:
+            cross = times([[entry] for entry in a], [b])
+            form = combine((1, form), (-of(name), cross), (-of(name), transpose(cross)))
+        if not is_definite(form):
+            return False
+    for k, row in enumerate(output.rows):
+        for sign in (1, -1):
+            form = [[Fraction(entry) for entry in line] for line in W]
+            form[0][0] += item.level
+            added = [-sign * entry / 2 for entry in row.fractions()[0]]
+            added[-1] -= of((k, sign)) / 2
+            for i, entry in enumerate(added, 1):
+                form[0][i] += entry
+                form[i][0] += entry
+            if not is_definite(form):
+                return False
+    return not left and -1 not in used.values()
+
+
 def _basis(n: int, d: int) -> list[tuple[int, ...]]:
     return sorted((a for a in product(range(d + 1), repeat=n) if sum(a) == d), reverse=True)
 
@@ -1104,6 +1181,7 @@ _ORACLES = {
     GrowingSequence: _growing_sequence,
     InvariantEllipsoid: _invariant_ellipsoid,
     NoCommonQuadratic: _no_common_quadratic,
+    OffsetEllipsoid: _offset_ellipsoid,
     ParameterQuadratic: _parameter_quadratic,
     SafetyLayer: _safety_layer,
     SaturatedEllipsoid: _saturated_ellipsoid,

@@ -17,6 +17,7 @@ from nrs_design.proof.contradiction import find_contradiction
 from nrs_design.proof.evidence import (
     FormsOnGraph,
     InvariantEllipsoid,
+    OffsetEllipsoid,
 )
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.switching import Clock
@@ -32,7 +33,7 @@ ROOM = 1 + 1e-9
 ATTACKED = {
     "conewise-mode-quadratic",
     "conewise-quadratic",
-    "invariant-ellipsoid",
+    "offset-ellipsoid",
     "periodic-quadratic",
 }
 
@@ -155,6 +156,15 @@ def size(Q, denominator_log2: int, x: np.ndarray) -> np.ndarray:
     return np.einsum("ni,ij,nj->n", w, np.array(Q, dtype=float) / 2.0**denominator_log2, w)
 
 
+def inside(evidence: InvariantEllipsoid, w: np.ndarray) -> np.ndarray:
+    """Return what is at most one in the ellipsoid."""
+    Q = np.array(evidence.Q, dtype=float)
+    if not isinstance(evidence, OffsetEllipsoid):
+        return np.einsum("ni,ij,nj->n", w, Q / 2.0**evidence.denominator_log2, w)
+    z = np.column_stack([np.ones(len(w)), w])
+    return 1 - np.einsum("ni,ij,nj->n", z, Q / Q[0, 0], z)
+
+
 def largest(evidence: FormsOnGraph, x: np.ndarray, step: int) -> np.ndarray:
     """Return the norm of the claim, squared: the largest of all functions of contact, or free."""
     scale = 2.0**evidence.denominator_log2
@@ -184,8 +194,8 @@ def attack(system: SwitchedSystem, evidence, rng: np.random.Generator, rounds: i
         rows = [np.array(q.floats())[0] for q in system.outputs[0].rows]
         for step in range(4 * rounds):
             x = oracle.step(x, step, 1.0)
-            assert size(evidence.Q, evidence.denominator_log2, x).max() <= ROOM
             w = np.column_stack([x[:, :2], np.maximum(x[:, 2], 0)])
+            assert (inside(evidence, w) <= ROOM).all()
             assert max(np.abs(w @ q).max() for q in rows) <= float(evidence.level) * ROOM
         return
     rate = float(evidence.rate) ** 2

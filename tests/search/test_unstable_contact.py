@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from nrs_design.certificates.certificate import Verdict
-from nrs_design.proof.contact import Contact
+from nrs_design.proof.contact import Contact, Flights
 from nrs_design.proof.evidence import GrowingSequence
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.search.certify import certify, first_accepted, refuted_at_once
+from nrs_design.search.certify import Limits, certify, first_accepted, refuted_at_once
 from nrs_design.search.family import Family
 from nrs_design.search.method import Method
 from nrs_design.search.unstable_contact import NOTHING_GROWS, search_contact
@@ -24,6 +24,7 @@ from tests.proof.systems import (
     matrix,
     sucking_in,
 )
+from tests.search.support import thesis_robot
 from tests.search.test_losable_brute_force import rounded
 
 
@@ -129,3 +130,55 @@ def test_growth_in_kept_contact_leaves_the_verdict_open():
     assert certify(replace(system, contact=None)).verdict is Verdict.REFUTED
     slower = turning("-1/2")
     assert refuted_at_once(slower) is None
+
+
+def following(system: SwitchedSystem) -> SwitchedSystem:
+    """Let the surface follow the axis: it stays behind it, or meets it wherever it moves in.
+
+    A flight keeps its distance, or ends with the deflection that is the way of the last step.
+    """
+
+    def cut(mode: Mode, *, meets: bool) -> Mode:
+        *rows, last = mode.A.fractions()
+        stays = [*(0 for _ in rows), 1]
+        row = [*last[:-1], 0] if meets else stays
+        return Mode(f"{mode.name}/{'met' if meets else 'away'}", matrix([*rows, row]))
+
+    flying = tuple(cut(mode, meets=meets) for mode in system.free for meets in (True, False))
+    names = [tuple(mode.name for mode in part) for part in (system.modes, flying)]
+    return replace(
+        system,
+        modes=(*system.modes, *flying),
+        contact=None,
+        roundings=(),
+        flights=Flights(*names),
+    )
+
+
+@pytest.mark.parametrize("k", ["3000", "8000"])
+def test_growth_on_a_surface_that_follows_is_found(k):
+    """The robot of the thesis, withdrawal, a force sample of five periods; kept contact: 39.4.
+
+    A positive control of the search, at stiffnesses at which nothing grows on a surface that stays.
+    """
+    sampling = "{period: 2 ms, delay: 5}"
+    system = thesis_robot((k, k), ("1.04",), "0.01", sampling=sampling, contact="losable")
+    evidence, _ = found_in(following(system))
+    assert isinstance(evidence, GrowingSequence)
+    assert evidence.find_fault(following(system)) is None
+    assert found_in(system)[0] is None
+    # Each of both is needed: contact, and flights that end where the surface comes.
+    parts = {name.split("/")[-1] for name, _ in evidence.steps}
+    assert "met" in parts
+    assert any(name.startswith("c0/soft") for name, _ in evidence.steps)
+
+
+@pytest.mark.parametrize(("Bt", "delay", "border"), [("2.15", 1, 133.6), ("1.04", 5, 39.4)])
+def test_proofs_reach_to_the_border_of_kept_contact_and_not_beyond(Bt, delay, border):
+    """Just above it, where kept contact grows, nothing is shown and nothing is refuted."""
+    for share, verdict in ((0.995, "proved"), (1.005, "inconclusive")):
+        k = f"{share * border:.3f}"
+        sampling = f"{{period: 2 ms, delay: {delay}}}"
+        system = thesis_robot((k, k), (Bt,), "0.01", sampling=sampling, contact="losable")
+        found = certify(system, limits=Limits(optimize_rate=False, budget=20.0))
+        assert str(found.verdict) == verdict

@@ -84,6 +84,7 @@ CHANGES = {
     f.CONTINUOUS: {},
     f.TWO_PERIODS: {"sampling": SAMPLING | {"outer_period": "4 ms"}},
     f.MISSES: {"sampling": SAMPLING | {"misses": {"consecutive": 1, "command": "hold"}}},
+    f.ZEROED: {"sampling": SAMPLING | {"misses": {"consecutive": 1, "command": "zero"}}},
     f.TIMED: {"actuator": {"dead_time": "1 ms"}},
     f.LOSABLE: {"contact": "losable"},
     f.NOT_KEPT: {"contact": "losable"},
@@ -162,6 +163,11 @@ CHANGES = {
         "velocity_interface": {
             "time_constant": {"nominal": "0.03 s", "range": ["0.029 s", "0.031 s"]}
         },
+    },
+    f.PLACED: {
+        "actuator": None,
+        "motion_loop": None,
+        "position_interface": {"time_constant": "0.03 s"},
     },
     f.SLIDING: {"axis": "prismatic"},
     f.MODE_LOGIC: {

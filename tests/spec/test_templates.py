@@ -68,7 +68,7 @@ def test_rules_between_controllers_are_right(name: str) -> None:
 
 
 def test_goals_of_the_templates_are_right() -> None:
-    for name, count in (("interaction-design", 6), ("hybrid-force", 3)):
+    for name, count in (("interaction-design", 7), ("hybrid-force", 3)):
         spec = parse_spec(uncommented(name))
         assert isinstance(spec, InteractionDesignSpec)
         assert spec.goals is not None

@@ -62,8 +62,8 @@ def test_no_file_of_an_answer_is_waited_for_or_followed(store):
     assert store.read(KEY) is None
 
 
-def test_dropped_with_its_certificate(store):
+def test_a_dropped_certificate_leaves_the_answer(store):
     store.certificate(KEY).touch()
-    store.drop(KEY)
-    store.drop(KEY)
-    assert [path for path in store.folder.rglob("*") if path.is_file()] == []
+    store.drop_certificate(KEY)
+    store.drop_certificate(KEY)
+    assert [path for path in store.folder.rglob("*") if path.is_file()] == [store.entry(KEY)]

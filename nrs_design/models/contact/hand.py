@@ -1,4 +1,13 @@
-"""A hand that holds the robot, ``F = k delta + b delta' + m delta''`` (thesis 7.2)."""
+"""A hand that holds the robot, ``F = k delta + b delta' + m delta''`` (thesis 7.2).
+
+In an admittance with inertia the velocity vm is a state, so the acceleration of the robot follows
+from the states at once, without the force. With the states xp of the motion loop,
+
+    Mt vm' = -Bt vm + k delta + b Cp xp + m Cp (Ap xp - Bp vm),
+
+which is affine in k, b, m, 1/Mt and Bt, and with ranges of the motor in Km and 1/tau, each for
+itself: corners suffice, for a mass too that changes as fast as it likes.
+"""
 
 from __future__ import annotations
 

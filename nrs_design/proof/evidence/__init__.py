@@ -26,6 +26,7 @@ if TYPE_CHECKING:
         InvariantEllipsoid as InvariantEllipsoid,
     )
     from nrs_design.proof.evidence.no_common_quadratic import NoCommonQuadratic as NoCommonQuadratic
+    from nrs_design.proof.evidence.offset_ellipsoid import OffsetEllipsoid as OffsetEllipsoid
     from nrs_design.proof.evidence.parameter_quadratic import (
         ParameterQuadratic as ParameterQuadratic,
     )
@@ -43,6 +44,7 @@ KINDS: Mapping[str, str] = {
     "growing-sequence": "GrowingSequence",
     "invariant-ellipsoid": "InvariantEllipsoid",
     "no-common-quadratic": "NoCommonQuadratic",
+    "offset-ellipsoid": "OffsetEllipsoid",
     "parameter-quadratic": "ParameterQuadratic",
     "safety-layer": "SafetyLayer",
     "saturated-ellipsoid": "SaturatedEllipsoid",

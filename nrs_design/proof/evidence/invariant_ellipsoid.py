@@ -61,6 +61,7 @@ class InvariantEllipsoid(AbstractEvidence):
     covers_mixtures: ClassVar[bool] = True
     covers_lost_contact: ClassVar[bool] = True
     covers_coupling: ClassVar[bool] = True
+    surface: ClassVar[str] = ""  # What its claim says of the surface that may be lost
 
     channels: tuple[str, ...]  # Names of the disturbances that act at once
     output: str  # Name of the output
@@ -178,7 +179,7 @@ class InvariantEllipsoid(AbstractEvidence):
         """State how far the output goes, from rest and in the long run."""
         bound = self.bound(system)
         output, named = bound.output, bound.channels
-        lost = "" if system.contact is None else ", contact lost and made again at any time"
+        lost = f", contact lost and made again at any time{self.surface}" if system.contact else ""
         sizes = [f"|{c.name}| <= {rounded_down(c.bound, c.unit)}" for c in named]
         steps = " at a step" if system.time is Time.DISCRETE else ""
         among = ""

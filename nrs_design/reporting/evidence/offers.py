@@ -128,6 +128,8 @@ OFFERS: Mapping[str, Callable[[Any], Offer]] = {
     "growing-sequence": _sequence,
     "invariant-ellipsoid": _one,
     "no-common-quadratic": _traces,
+    # Its form is of the state behind a one, and not positive: nothing to draw.
+    "offset-ellipsoid": lambda e: Offer(),
     "parameter-quadratic": _ends,
     "safety-layer": _limits,
     "saturated-ellipsoid": _one,

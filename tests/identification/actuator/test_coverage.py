@@ -1,7 +1,7 @@
 """A 95 % interval holds the truth in 92 to 98 % of 200 synthetic records of any command.
 
 In a closed loop with measured velocity the gain is held in 91.5 % of these, by chance: of 200
-others it is 96 %, as docs/identification says.
+others it is 96 %, as `coverage.md` says.
 """
 
 import numpy as np

@@ -363,7 +363,7 @@ BOUNCING = {
 CONSTANT = {"parameter-quadratic", "constants-quadratic"}
 FREE = {"common-quadratic", "common-polynomial"} | CONSTANT | BOUNCING
 SETS = {"common-quadratic", "conewise-quadratic", "coupled-axes", "invariant-ellipsoid"}
-SETS |= {"periodic-quadratic"}
+SETS |= {"offset-ellipsoid", "periodic-quadratic"}
 RULED = {"mode-quadratic", "mode-polynomial"}
 GRAPHS = {"common-quadratic", "common-polynomial"} | BOUNCING | RULED
 FACTS = {
@@ -375,7 +375,7 @@ FACTS = {
     "covers_coupling": {"coupled-axes", "invariant-ellipsoid", "saturated-ellipsoid"},
     "covers_lost_contact": BOUNCING
     | {"constant-force", "invariant-ellipsoid", "no-common-quadratic", "saturated-ellipsoid"}
-    | {"safety-layer"},
+    | {"offset-ellipsoid", "safety-layer"},
     "covers_mixtures": SETS
     | BOUNCING
     | {"common-polynomial", "constant-force", "block-triangular", "saturated-ellipsoid"}

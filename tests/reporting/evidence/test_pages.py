@@ -24,6 +24,7 @@ LONG = frozenset(
         "coupled-axes",
         "invariant-ellipsoid",
         "mode-quadratic",
+        "offset-ellipsoid",
         "parameter-quadratic",
         "periodic-quadratic",
         "saturated-ellipsoid",

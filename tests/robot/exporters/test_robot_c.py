@@ -28,7 +28,7 @@ from tests.exporters.programs import (
 from tests.robot.exporters.robot_programs import program, wild
 
 COUNT = 10_000
-# Instructions of an emulated Cortex-M4F at most, -O2: see docs/exports/c.md.
+# Instructions of an emulated Cortex-M4F at most, -O2.
 SIZES = {
     "base": 170,
     "pd": 110,

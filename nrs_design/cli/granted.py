@@ -1,0 +1,33 @@
+"""What stands behind a proof that is printed: how much it takes for granted, or all of it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from nrs_design.cli.printing import detail, say, wants_details
+from nrs_design.proof.text import counted
+
+if TYPE_CHECKING:
+    from nrs_design.pipeline import Result
+
+
+def print_granted(result: Result) -> None:
+    """Print what is taken for granted: all of it, or how much and what is not modelled.
+
+    Parameters
+    ----------
+    result : Result
+        What was certified.
+    """
+    certification = result.certification
+    granted, names = certification.granted, [mode.name for mode in certification.system.modes]
+    detail(f"  common quadratic function: {certification.common_quadratic}")
+    detail(f"  modes: {', '.join(names)}")
+    if wants_details():
+        say("  taken for granted (nrs-design report says how to test each):")
+        for assumption in granted:
+            say(f"    - {assumption}")
+    elif granted:
+        without = "; ".join(result.omits)
+        besides = f"; not modelled: {without}" if without else ""
+        say(f"  takes {counted(len(granted), 'thing')} for granted (-v){besides}")

@@ -1,0 +1,140 @@
+"""Ellipsoids off the origin: what is refused, and why each number must be as it is."""
+
+from dataclasses import replace
+from fractions import Fraction
+
+import pytest
+
+from nrs_design.proof.evidence import OffsetEllipsoid
+from nrs_design.proof.exact import is_positive_definite
+from nrs_design.proof.mode import Mode
+from nrs_design.proof.second_opinion import agrees
+from tests.proof.systems import bouncing_in_steps, genuine, leaning, matrix, pushed
+from tests.proof.truth import holds
+
+EXAMPLES = (
+    "offset-ellipsoid",
+    "offset-ellipsoid, pulling",
+    "offset-ellipsoid, in steps",
+    "offset-ellipsoid, pulling in steps",
+)
+
+
+def with_entry(Q, i, j, value):
+    rows = [list(row) for row in Q]
+    rows[i][j] = rows[j][i] = value
+    return tuple(tuple(row) for row in rows)
+
+
+@pytest.mark.parametrize("example", EXAMPLES)
+def test_what_the_search_finds_holds_by_the_definition(example):
+    system, item = genuine(example)
+    assert item.find_fault(system) is None
+    assert holds(system, item)
+    assert agrees(system, item)
+    assert OffsetEllipsoid.from_fields(item.to_fields(), system) == item
+    assert item.Q[0][0] < 0
+    assert any(item.multipliers)
+
+
+@pytest.mark.parametrize("example", EXAMPLES)
+@pytest.mark.parametrize(
+    ("change", "fault"),
+    [
+        (lambda e: {"multipliers": (-1, *e.multipliers[1:])}, "a multiplier is negative"),
+        (lambda e: {"multipliers": (*e.multipliers[:-1], -1)}, "a multiplier is negative"),
+        (lambda e: {"multipliers": e.multipliers[1:]}, "one multiplier for each product"),
+        (lambda e: {"multipliers": (*e.multipliers, 0)}, "one multiplier for each product"),
+        (lambda e: {"roundings": (1,)}, "one multiplier for each rounding"),
+        (lambda e: {"taus": (1,)}, "one axis"),
+        (lambda e: {"Q": with_entry(e.Q, 0, 0, 1)}, "rest is not within it"),
+        (lambda e: {"Q": with_entry(e.Q, 1, 1, -e.Q[1][1])}, "the block of w in Q is not positive"),
+        (lambda e: {"Q": with_entry(e.Q, 2, 2, 0)}, "the block of w in Q is not positive"),
+        (lambda e: {"Q": [[*e.Q[0][:-1], e.Q[0][-1] + 1], *e.Q[1:]]}, "Q is not symmetric"),
+        (lambda e: {"Q": tuple(row[1:] for row in e.Q[1:])}, "Q is not a 3 x 3 matrix"),
+        (lambda e: {"shares": ()}, "there is not one share"),
+        (lambda e: {"shares": e.shares * 2}, "there is not one share"),
+        (lambda e: {"shares": (Fraction(0),)}, "the share is not that"),
+        (lambda e: {"shares": (Fraction(50),)}, ("the share is not that", "can be left")),
+        (lambda e: {"level": Fraction(0)}, "the level is not positive"),
+        (lambda e: {"level": e.level * 19 / 20}, "force can be beyond the level"),
+        (lambda e: {"channels": ("gust",)}, "no disturbance of that name"),
+        (lambda e: {"output": "speed"}, "no output of that name"),
+    ],
+)
+def test_wrong_numbers_are_refused(example, change, fault):
+    system, item = genuine(example)
+    found = replace(item, **change(item)).find_fault(system)
+    assert any(words in found for words in (fault if isinstance(fault, tuple) else (fault,)))
+
+
+@pytest.mark.parametrize("example", EXAMPLES)
+def test_every_multiplier_counts(example):
+    """A much larger one takes more away than there is; without any, the proof fails."""
+    system, item = genuine(example)
+    most = 64 * max(item.multipliers)
+    for k in range(len(item.multipliers)):
+        changed = (*item.multipliers[:k], most, *item.multipliers[k + 1 :])
+        assert replace(item, multipliers=changed).find_fault(system) is not None
+    none = replace(item, multipliers=(0,) * len(item.multipliers))
+    assert "can be left" in none.find_fault(system)
+
+
+def test_it_is_about_contact_that_may_be_lost_and_one_axis():
+    system, item = genuine("offset-ellipsoid, in steps")
+    kept = pushed(replace(bouncing_in_steps(), contact=None))
+    assert "one axis" in item.find_fault(kept)
+    assert "what axes do to each other" in item.find_fault(leaning(system, "1/8"))
+    assert "one axis" in item.find_misfit(leaning(system, "1/8"))
+
+
+@pytest.mark.parametrize("push", ["1/3", "1", "100"])
+def test_a_larger_push_needs_another(push):
+    _, item = genuine("offset-ellipsoid, in steps")
+    system = pushed(bouncing_in_steps(), push)
+    assert "can be left" in item.find_fault(system)
+    assert not holds(system, item)
+
+
+def test_the_sign_after_a_step_is_that_of_its_place():
+    """A mode whose deflection turns round makes of a fact of contact one of its loss."""
+    system, item = genuine("offset-ellipsoid, in steps")
+    rows = system.modes[0].A.fractions()
+    turned = Mode(system.modes[0].name, matrix([rows[0], [-entry for entry in rows[1]]]))
+    other = replace(system, modes=(turned, *system.modes[1:]))
+    assert (item.find_fault(other) is None) is holds(other, item)
+    assert item.find_fault(other) is not None
+
+
+def test_averages_of_modes_stay_inside():
+    """The forms of an average, with the multipliers that averages are given in the argument."""
+    system, item = genuine("offset-ellipsoid, in steps")
+    one, two = system.modes
+    for share in (Fraction(1, 3), Fraction(1, 2), Fraction(9, 10)):
+        mixed = [
+            [share * a + (1 - share) * b for a, b in zip(*rows, strict=True)]
+            for rows in zip(one.A.fractions(), two.A.fractions(), strict=True)
+        ]
+        middle = replace(system, modes=(Mode(one.name, matrix(mixed)), two))
+        facts = item.facts(system)
+        known = dict(zip(facts, item.multipliers, strict=True))
+        own = {
+            name: share * known[name] + (1 - share) * known[name.replace(one.name, two.name)]
+            for name in facts
+        }
+        whole = 1000
+        scaled = replace(
+            item,
+            Q=tuple(tuple(whole * entry for entry in row) for row in item.Q),
+            multipliers=tuple(int(whole * m) for m in own.values()),
+        )
+        forms = (form for words, form in scaled.forms(middle) if "left" in words)
+        assert all(map(is_positive_definite, forms))
+
+
+def test_it_says_what_it_bounds():
+    system, item = genuine("offset-ellipsoid, in steps")
+    claim = item.claim(system)
+    assert "at any time (the surface stays in its place, or follows the axis): from rest" in claim
+    assert "|force| at a step never exceeds" in claim
+    assert item.bound(system).share == item.shares[0]

@@ -9,10 +9,21 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from nrs_design.api import (
+        Audit,
+        AuditCheck,
+        Counterexample,
         Decision,
+        Exported,
+        FittedRange,
         Gradient,
+        Identification,
+        LyapunovCheck,
         Optimum,
+        Recheck,
+        ScenarioRun,
+        Simulation,
         Study,
+        WorstFound,
         certify,
         check_lyapunov,
         identify,
@@ -23,10 +34,21 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 
 __all__ = [
+    "Audit",
+    "AuditCheck",
+    "Counterexample",
     "Decision",
+    "Exported",
+    "FittedRange",
     "Gradient",
+    "Identification",
+    "LyapunovCheck",
     "Optimum",
+    "Recheck",
+    "ScenarioRun",
+    "Simulation",
     "Study",
+    "WorstFound",
     "certify",
     "check_lyapunov",
     "identify",
@@ -34,11 +56,13 @@ __all__ = [
     "verify",
 ]
 
+# A type checker knows the names above, and is to tell of any other.
+if not TYPE_CHECKING:
 
-def __getattr__(name: str) -> Any:
-    if name not in __all__:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module("nrs_design.api"), name)
+    def __getattr__(name: str) -> Any:
+        if name not in __all__:
+            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        return getattr(import_module("nrs_design.api"), name)
 
 
 def __dir__() -> list[str]:

@@ -24,6 +24,7 @@ with contextlib.chdir(Path(_found.origin).with_name("mpl-data")):
     from matplotlib.ft2font import FT2Font
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch, Rectangle
+    from matplotlib.text import Text
     from matplotlib.ticker import (
         FixedFormatter,
         Formatter,
@@ -48,6 +49,7 @@ __all__ = [
     "QuadMesh",
     "Rectangle",
     "ScalarFormatter",
+    "Text",
     "findfont",
     "get_data_path",
     "style",

@@ -38,8 +38,8 @@ REACHED = {
     ("nrs_design.pipeline.scenarios", "robot", "pipeline"),
     ("nrs_design.simulation.bodies", "robot", "simulation.bodies"),
     # Records and runs, from the library.
-    ("nrs_design.api.measured", "identification", "library"),
-    ("nrs_design.api.study", "identification", "library"),
+    ("nrs_design.api.measured", "identification", "api.library"),
+    ("nrs_design.api.study", "identification", "api.library"),
     # A recorded command is a record.
     ("nrs_design.simulation.build_scenario", "identification", "tables.table"),
 }
@@ -256,7 +256,7 @@ def test_tests_use_what_is_public():
     assert not private
 
 
-@pytest.mark.parametrize("above", ["cli", "gating", "exporters"])
+@pytest.mark.parametrize("above", ["cli", "gating", "facts", "exporters"])
 def test_stages_are_known_to_the_pipeline_only(above):
     """A command asks the pipeline; it takes types of a stage, to print them."""
     inside = [

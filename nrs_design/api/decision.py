@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from html import escape
@@ -9,17 +10,19 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from nrs_design import pipeline
-from nrs_design.api.paper import WIDTHS, form_of, latex_of
+from nrs_design.api.paper import form_of, latex_of, latex_of_gains
+from nrs_design.api.result import AbstractResult, Figures, drawings_of, evidence_drawings
 from nrs_design.certificates.certificate import dump
 from nrs_design.errors import DesignError, OutputError, SpecError
+from nrs_design.facts.certification import certification_facts
 from nrs_design.output import CERTIFICATE, PAGE, check_html, write_output
 from nrs_design.ownership import check_certificate, origin_of
+from nrs_design.proof.text import counted
 from nrs_design.search.certification import Attempt
 from nrs_design.spec import LoadedSpec, read_spec
 
 if TYPE_CHECKING:
     import numpy as np
-    from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
     from nrs_design.proof.evidence import AbstractEvidence
@@ -27,7 +30,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, repr=False)
-class Decision:
+class Decision(AbstractResult):
     """A verdict on stability under switching, with all that carries it.
 
     Parameters
@@ -115,54 +118,38 @@ class Decision:
         return form_of(self.evidence)
 
     def latex(self) -> str:
-        """Return claim and P for a paper, each number on the side that stays true."""
-        certification = self.result.certification
+        """Return claim, gains and P for a paper, each number on the side that stays true."""
+        from nrs_design.certificates.units import gain_units
+
+        certification, proof = self.result.certification, self.result.certificate
         name, time = self.result.loaded.spec.name, certification.system.time
-        return latex_of(name, self.verdict, self.decay_rate, time, self.P)
+        shown = latex_of(name, self.verdict, self.decay_rate, time, self.P)
+        if proof is None or not proof.gains:
+            return shown
+        return f"{shown}\n{latex_of_gains(proof.gains, gain_units(proof))}"
 
-    def to_dict(self) -> dict[str, Any]:
-        """Return verdict, rate, claim, assumptions and gains; the rate exactly, as a text."""
-        certificate = self.result.certificate
-        return {
-            "spec": self.result.loaded.spec.name,
-            "verdict": self.verdict,
-            "refuted_in": self.refuted_in,
-            "common_quadratic": self.common_quadratic,
-            "decay_rate": None if self.decay_rate is None else str(self.decay_rate),
-            "claim": self.claim,
-            "assumptions": [str(text) for text in self.assumptions],
-            "gains": {} if certificate is None else dict(certificate.gains),
-        }
+    def _axis(self) -> object:
+        return getattr(self.result.loaded.spec, "axis", None)
 
-    def plot(self, name: str | None = None, width: str | None = None) -> Figure:
-        """Return a figure of the report: the run beside its bound, or another one by name.
+    def _facts(self) -> dict[str, Any]:
+        return certification_facts(self.result, None)
 
-        Parameters
-        ----------
-        name : str, optional
-            Of the figure.
-        width : {"ieee", "ieee-two"}, optional
-            Width of one or two columns of a paper of the IEEE, 3.5 or 7.16 in; the figure keeps its
-            height. ``savefig`` writes it as PDF, SVG, PNG or, with a TeX, PGF.
+    def _drawings(self) -> Figures:
+        # The run beside its bound says most; those of the design take longer.
+        seen = set()
+        for name, draw in evidence_drawings(self.result.certification):
+            seen.add(name)
+            yield name, draw
+        yield from ((name, draw) for name, draw in drawings_of(self._page()) if name not in seen)
 
-        Raises
-        ------
-        DesignError
-            If there is no figure of that name; the message lists those that there are.
-        """
-        figures = {item.name: item.figure for item in self._page().illustrations}
-        default = "run" if "run" in figures else next(iter(figures), None)
-        chosen = default if name is None else name
-        if chosen is None or chosen not in figures:
-            raise DesignError(
-                f"there is no figure {chosen!r}", remedy=f"figures here: {', '.join(figures)}"
-            )
-        figure = figures[chosen]
-        if width is not None:
-            if width not in WIDTHS:
-                raise DesignError(f"there is no width {width!r}", remedy=f"{' or '.join(WIDTHS)}")
-            figure.set_size_inches(WIDTHS[width], figure.get_size_inches()[1])
-        return figure
+    def _headline(self) -> str:
+        where = "" if self.refuted_in is None else f" (refuted {self.refuted_in})"
+        return f"{self.result.loaded.spec.name}: {self.verdict.upper()}{where}"
+
+    def _rows(self) -> Iterator[Sequence[str]]:
+        yield "", ""
+        yield "claim", self.claim
+        yield "taken for granted", counted(len(self.assumptions), "thing")
 
     def report(self, file: str | Path | None = None) -> str:
         """Return the report as one HTML page, and write it if a file is named.
@@ -240,22 +227,11 @@ class Decision:
         """Whether it is proved; neither a refutation nor an open question counts."""
         return self.verdict == "proved"
 
-    def __repr__(self) -> str:
-        """Name the system and the verdict."""
-        return f"<Decision on {self.result.loaded.spec.name}: {self.verdict}>"
-
-    def __str__(self) -> str:
-        """Say verdict and claim."""
-        return f"{self.result.loaded.spec.name}: {self.verdict.upper()}\n{self.claim}"
-
     def _repr_html_(self) -> str:
         """Show verdict, claim and assumptions in a notebook."""
         items = "".join(f"<li>{escape(text)}</li>" for text in self.assumptions)
-        return (
-            f"<p><strong>{escape(self.result.loaded.spec.name)}: {self.verdict.upper()}</strong>"
-            f"</p><p>{escape(self.claim)}</p>"
-            f"<details><summary>taken for granted</summary><ul>{items}</ul></details>"
-        )
+        granted = f"<details><summary>taken for granted</summary><ul>{items}</ul></details>"
+        return super()._repr_html_() + granted
 
 
 def _holds(path: Path, loaded: LoadedSpec) -> bool:

@@ -13,7 +13,10 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from operator import mul
+from typing import TYPE_CHECKING, Any
 
+from nrs_design.api.paper import latex_of
+from nrs_design.api.result import AbstractResult, Figures
 from nrs_design.proof.exact import (
     MAX_WORK,
     IntegerMatrix,
@@ -26,6 +29,11 @@ from nrs_design.proof.exact import (
 )
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
+
+if TYPE_CHECKING:
+    import numpy as np
+    from matplotlib.figure import Figure
+    from numpy.typing import NDArray
 
 # A rate is sharpened to one part in two to this power of the range that it may lie in.
 RATE_BITS = 20
@@ -48,8 +56,8 @@ class Counterexample:
     value: Fraction
 
 
-@dataclass(frozen=True, slots=True)
-class LyapunovCheck:
+@dataclass(frozen=True, repr=False)
+class LyapunovCheck(AbstractResult):
     """What a quadratic function shows about a family of modes, decided exactly."""
 
     # P is positive definite, and V decreases strictly in every mode at the rate asked for.
@@ -61,6 +69,72 @@ class LyapunovCheck:
     # if V does not decrease strictly at any rate, or if the numbers are too large to look for one.
     rate: Fraction | None
     counterexample: Counterexample | None  # Why it does not hold
+    # modes, form, time, asked: what was decided about, and at which rate; None for any of decay.
+    modes: tuple[Mode, ...]
+    form: RationalMatrix
+    time: Time
+    asked: Fraction | None = None
+
+    @property
+    def P(self) -> NDArray[np.float64]:
+        """The matrix of the function, shape (n, n), rounded to doubles."""
+        import numpy as np
+
+        return np.array(self.form.fractions(), dtype=float)
+
+    def latex(self) -> str:
+        """Return the rate, on the side that stays true, and P, rounded for reading."""
+        return latex_of("check-lyapunov", self._headline(), self.rate, self.time, self.P)
+
+    def _facts(self) -> dict[str, Any]:
+        failing = self.counterexample
+        return {
+            "time": str(self.time),
+            "modes": [mode.name for mode in self.modes],
+            "holds": self.holds,
+            "weak": self.weak,
+            "rate_asked": None if self.asked is None else str(self.asked),
+            "rate": None if self.rate is None else str(self.rate),
+            "counterexample": failing
+            and {
+                "mode": failing.mode,
+                "vector": [str(entry) for entry in failing.vector],
+                "value": str(failing.value),
+            },
+        }
+
+    def _drawings(self) -> Figures:
+        return [("value", self._draw)]
+
+    def _draw(self) -> Figure:
+        from nrs_design.reporting.figures.value import draw_value
+
+        start = None if self.counterexample is None else self.counterexample.vector
+        matrices = {mode.name: mode.A for mode in self.modes}
+        line = None
+        if self.holds and self.rate is not None:
+            line = ("proved bound", self.rate)
+        elif self.asked is not None:
+            line = ("at the rate asked for", self.asked)
+        return draw_value(matrices, self.form, self.time, start, line)
+
+    def _headline(self) -> str:
+        asked = "" if self.asked is None else " at the rate asked for"
+        return f"x' P x {'holds' if self.holds else 'does not hold'}{asked}"
+
+    def _rows(self) -> Iterator[Sequence[str]]:
+        from nrs_design.proof.bounds import nearly
+        from nrs_design.proof.evidence.fields import rate_words
+
+        yield "", ""
+        if self.rate is not None:
+            yield "proved", rate_words(self.rate, self.time)
+        if self.counterexample is not None:
+            where = self.counterexample.mode
+            yield "fails", "P is not positive definite" if where is None else f"in mode {where}"
+            yield "at x, nearly", ", ".join(map(nearly, self.counterexample.vector))
+        if self.weak and self.rate is None:
+            yield "weak", "V increases in no mode: stability, but no decay"
 
     def __bool__(self) -> bool:
         """Whether it holds."""
@@ -111,9 +185,10 @@ def check_quadratic(
             best = None
             if affordable and _is_proved(modes, P, time, still):
                 best = _best_rate(modes, P, time)
-            return LyapunovCheck(False, weak, best, _counterexample(mode, form, P, asked, time))
+            failing = _counterexample(mode, form, P, asked, time)
+            return LyapunovCheck(False, weak, best, failing, tuple(modes), P, time, rate)
     best = _best_rate(modes, P, time) if rate is None and affordable else rate
-    return LyapunovCheck(True, True, best, None)
+    return LyapunovCheck(True, True, best, None, tuple(modes), P, time, rate)
 
 
 def _work(modes: Sequence[Mode], P: RationalMatrix, time: Time, rate: Fraction) -> int:

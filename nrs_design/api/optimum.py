@@ -2,20 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import cached_property
-from html import escape
 from typing import TYPE_CHECKING, Any
 
 from nrs_design import pipeline
-from nrs_design.errors import DesignError
+from nrs_design.api.paper import latex_of_gains
+from nrs_design.api.result import AbstractResult, Figures, illustrated
+from nrs_design.facts.design import finite, optimum_facts
+from nrs_design.facts.spec import spec_facts
+from nrs_design.spec import doubt_spec
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+    from nrs_design.design.analysis import DesignAnalysis
 
 
 @dataclass(frozen=True, repr=False)
-class Optimum:
+class Optimum(AbstractResult):
     """The design of a spec.
 
     Parameters
@@ -46,75 +51,84 @@ class Optimum:
         }
 
     @cached_property
+    def _analysis(self) -> DesignAnalysis:
+        return pipeline.run_analysis(self.designed)
+
+    @property
     def margins(self) -> dict[str, dict[str, float]]:
         """Worst values over the corners of all ranges, by controller and goal, in SI.
 
         Floating point, not a proof; see `nrs-design explain margins`.
         """
-        analysis = pipeline.run_analysis(self.designed)
         return {
             item.name: {found.measure.goal: float(found.value) for found in item.achieved}
-            for item in analysis.measured
+            for item in self._analysis.measured
         }
 
-    @cached_property
+    @property
     def cost(self) -> dict[str, float]:
         """The cost of displayed impedance and sensitivity, by impedance controller."""
-        analysis = pipeline.run_analysis(self.designed)
-        return {item.name: float(item.cost) for item in analysis.impedance}
+        return {item.name: float(item.cost) for item in self._analysis.impedance}
 
-    def plot(self, name: str = "displayed-impedance") -> Figure:
-        """Return a figure of the design by name.
-
-        Raises
-        ------
-        DesignError
-            If there is no figure of that name; the message lists those that there are.
-        """
-        from nrs_design.reporting.document import Illustration
+    def drawings(self) -> Figures:
+        """Return the figures of the design by name."""
         from nrs_design.reporting.sections.design import design_sections
 
-        sections = design_sections(self.designed, pipeline.run_analysis(self.designed))
-        found = {
-            block.name: block.figure
-            for section in sections
-            if section is not None
-            for block in section.blocks
-            if isinstance(block, Illustration)
-        }
-        if name not in found:
-            raise DesignError(
-                f"there is no figure {name!r}", remedy=f"figures here: {', '.join(found)}"
-            )
-        return found[name]
+        sections = design_sections(self.designed, self._analysis)
+        return illustrated(sections, "displayed-impedance")
 
-    def to_dict(self) -> dict[str, Any]:
-        """Return gains, units, margins and costs, in SI."""
+    def gain_rows(self) -> Iterator[tuple[str, str, str, str]]:
+        """Return controller, gain, value and unit of each gain."""
+        for name, gains in self.gains.items():
+            for gain, value in gains.items():
+                yield name, gain, f"{value:.6g}", self.units[name][gain]
+
+    def latex(self) -> str:
+        """Return the gains for a paper; one that is rounded is said to be."""
+        exact = {
+            name: {gain: str(Fraction(value)) for gain, value in gains.items()}
+            for name, gains in self.gains.items()
+        }
+        return latex_of_gains(exact, self.units)
+
+    def _axis(self) -> object:
+        return self.designed.spec.axis
+
+    def _facts(self) -> dict[str, Any]:
+        spec, analysis = self.designed.spec, self._analysis
         return {
+            **spec_facts(self.designed.loaded),
+            **optimum_facts(self.designed, analysis, {}),
+            "warnings": [str(doubt) for doubt in (*doubt_spec(spec), *analysis.warnings)],
             "gains": self.gains,
             "units": self.units,
-            "margins": self.margins,
-            "cost": self.cost,
+            # JSON has no infinity: null is what nothing limits.
+            "margins": {name: _finite(found) for name, found in self.margins.items()},
+            "cost": _finite(self.cost),
         }
 
-    def _rows(self) -> list[tuple[str, str]]:
-        return [
-            (name, ", ".join(f"{k} = {v:.6g} {self.units[name][k]}".rstrip() for k, v in g.items()))
-            for name, g in self.gains.items()
-        ]
+    def _drawings(self) -> Figures:
+        return self.drawings()
 
-    def __repr__(self) -> str:
-        """Name the spec."""
-        return f"<Optimum of {self.designed.spec.name}>"
+    def _headline(self) -> str:
+        return f"{self.designed.spec.name}: designed gains"
+
+    def _rows(self) -> Iterator[Sequence[str]]:
+        yield "controller", "gain", "value", "unit"
+        yield from self.gain_rows()
 
     def __str__(self) -> str:
         """Say the gains."""
-        return "\n".join(f"{name}: {gains}" for name, gains in self._rows())
+        lines = []
+        for name, gains in self.gains.items():
+            if not gains:
+                lines.append(f"{name}: no gain, the motion loop alone")
+                continue
+            units = self.units[name]
+            shown = (f"{gain} = {value:.6g} {units[gain]}" for gain, value in gains.items())
+            lines.append(f"{name}: {', '.join(text.rstrip() for text in shown)}")
+        return "\n".join(lines)
 
-    def _repr_html_(self) -> str:
-        """Show the gains in a notebook."""
-        rows = "".join(
-            f"<tr><th>{escape(name)}</th><td>{escape(gains)}</td></tr>"
-            for name, gains in self._rows()
-        )
-        return f"<table>{rows}</table>"
+
+def _finite(values: Mapping[str, float]) -> dict[str, float | None]:
+    return {name: finite(value) for name, value in values.items()}

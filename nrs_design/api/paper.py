@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable, Iterable, Mapping
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
@@ -14,9 +16,11 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 
-# Widths of one column and of both in papers of the IEEE, in.
-WIDTHS = {"ieee": 3.5, "ieee-two": 7.16}
 _DIGITS = 4
+# Of gains, which are given as they ship.
+_GAIN_DIGITS = 6
+# Letters of what is a symbol, such as Bt or k_1, and no word.
+_LONGEST_SYMBOL = 3
 
 
 def form_of(evidence: AbstractEvidence | None) -> NDArray[np.float64] | None:
@@ -57,6 +61,68 @@ def latex_of(
         )
         lines.append(rf"$P \approx \begin{{bmatrix}} {rows} \end{{bmatrix}}$")
     return "\n".join(lines)
+
+
+def latex_of_gains(
+    gains: Mapping[str, Mapping[str, str]], units: Mapping[str, Mapping[str, str]]
+) -> str:
+    """Return a line for each controller; a gain that is rounded for reading is said to be.
+
+    Parameters
+    ----------
+    gains, units : mapping
+        Numbers as they ship, exactly, and their units, by controller and name.
+    """
+    lines = []
+    for controller, own in gains.items():
+        shown = ", ".join(
+            f"${_symbol(name)} {_nearly(value)}{_unit(units[controller][name])}$"
+            for name, value in own.items()
+        )
+        if shown:
+            lines.append(f"% {controller}\n{shown}")
+    return "\n".join(lines)
+
+
+def latex_of_ranges(ranges: Iterable[tuple[str, float, float, str]]) -> str:
+    """Return a line for each range, its ends rounded outwards.
+
+    Parameters
+    ----------
+    ranges : iterable of (str, float, float, str)
+        Name, low and high end, and unit of each.
+    """
+    return "\n".join(
+        rf"${_symbol(name)} \in [{_end(low, lower)},\, {_end(high, upper)}]"
+        rf"{_unit(unit)}$"
+        for name, low, high, unit in ranges
+    )
+
+
+def _nearly(value: str) -> str:
+    """Return a number for reading, after the sign that says whether it is that number."""
+    exact = Fraction(value)
+    short = f"{float(exact):.{_GAIN_DIGITS}g}"
+    sign = "=" if Fraction(short) == exact else r"\approx"
+    return f"{sign} {_power(short)}"
+
+
+def _symbol(name: str) -> str:
+    """Write a name: of a gain, its first letter, and the others as an index; or in words."""
+    if len(name) > _LONGEST_SYMBOL:
+        words = name.replace("_", r"\ ")
+        return rf"\mathrm{{{words}}}"
+    first, rest = name[:1], name[1:].lstrip("_")
+    return rf"{first}_{{\mathrm{{{rest}}}}}" if rest else first
+
+
+def _unit(unit: str) -> str:
+    spaced = unit.replace("*", r"\,").replace(" ", r"\,")
+    return rf"\,\mathrm{{{spaced}}}" if unit else ""
+
+
+def _end(value: float, rounded: Callable[[Fraction, int], str]) -> str:
+    return _power(rounded(Fraction(value), _DIGITS)) if math.isfinite(value) else r"\infty"
 
 
 def _power(text: str) -> str:

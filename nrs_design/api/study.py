@@ -5,11 +5,15 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from nrs_design import pipeline
+from nrs_design.api.audit import Audit
 from nrs_design.api.decision import Decision
+from nrs_design.api.exported import Exported
 from nrs_design.api.optimum import Optimum
+from nrs_design.api.simulation import Simulation
+from nrs_design.api.worst import WorstFound
 from nrs_design.errors import DesignError
 from nrs_design.search.certification import Limits
 from nrs_design.search.gradient_settings import Gradient
@@ -18,11 +22,10 @@ from nrs_design.spec import LoadedSpec, read_spec
 from nrs_design.wings import load_wing
 
 if TYPE_CHECKING:
+    from nrs_design.certificates.certificate import Certificate
     from nrs_design.controllers.controller_design import ControllerDesign
-    from nrs_design.exporters.export import Export
     from nrs_design.exporters.state_space import StateSpaces
-    from nrs_design.pipeline.scenarios import Runs, Simulated
-    from nrs_design.pipeline.worst_case import WorstCase
+    from nrs_design.pipeline.scenarios import Runs
     from nrs_design.spec import Spec
 
 
@@ -74,7 +77,7 @@ class Study:
         """Certify, and return the report as one HTML page; write it if a file is named."""
         return self.certify().report(file)
 
-    def audit(self, log: str | Path, certificate: str | Path | None = None) -> Any:
+    def audit(self, log: str | Path, certificate: str | Path | None = None) -> Audit:
         """Judge whether a run of the robot stayed inside what was proved.
 
         Parameters
@@ -86,8 +89,8 @@ class Study:
 
         Returns
         -------
-        RunJudgement
-            Of `nrs_design.identification.running`, with its verdict and every check.
+        Audit
+            With its verdict and every check.
 
         Raises
         ------
@@ -95,7 +98,9 @@ class Study:
             If a file cannot be used.
         """
         file = None if certificate is None else Path(certificate)
-        return load_wing("identification", "library").judge_log(Path(log), self.loaded, file)
+        library = load_wing("identification", "api.library")
+        judged: Audit = library.judge_log(Path(log), self.loaded, file)
+        return judged
 
     def state_spaces(self) -> StateSpaces:
         """Design, and return actuator, motion loop and controllers for python-control.
@@ -157,7 +162,8 @@ class Study:
         period: float | None = None,
         delay: int | None = None,
         draw: int | None = None,
-    ) -> tuple[Simulated, ...]:
+        certificate: str | Path | None = None,
+    ) -> Simulation:
         """Simulate scenarios of the spec, or the one of a spec that has none.
 
         Parameters
@@ -170,29 +176,41 @@ class Study:
             Of the sampled engine, in s and in samples; by default those of the spec.
         draw : int, optional
             Seed with which every parameter of tissue and motor, and every gain, is drawn uniformly
-            from its range; `Simulated.parameters` has them. By default the scenario's own.
+            from its range; `ScenarioRun.parameters` has them. By default the scenario's own.
+        certificate : path-like, optional
+            Checked against the spec; its bounds stand beside the runs.
+
+        Returns
+        -------
+        Simulation
+            One run after the other, by place or by name: ``simulation["shaken"]["torque"]``.
 
         Raises
         ------
         DesignError, DataError
             If the spec is no interaction design, or a scenario cannot be simulated.
+        CertificateError
+            If the file is no certificate of the spec.
 
         Examples
         --------
         >>> import nrs_design as nrs
         >>> study = nrs.load("docs/examples/scenarios.nrs.yaml")
-        >>> (one,) = study.simulate("profile-of-the-thesis")
-        >>> bool(abs(one.run.response["torque"]).max() < 0.3)
-        True
+        >>> (run,) = study.simulate("profile-of-the-thesis")
+        >>> bool(abs(run["torque"]).max() < 0.3), run.units["torque"], float(run.time[0])
+        (True, 'N*m', 0.0)
         """
         from nrs_design.pipeline.scenarios import run_scenarios
 
         wanted = _runs(scenarios, engine, period, delay, draw)
-        return tuple(run_scenarios(self._interaction(), wanted))
+        designed = self._interaction()
+        with pipeline.placed(self.loaded):
+            proof = self._proof(designed, certificate)
+            return Simulation.of(designed, tuple(run_scenarios(designed, wanted)), proof)
 
     def worst_case(
         self, certificate: str | Path | None = None, *, seed: int = 0, rounds: int | None = None
-    ) -> WorstCase:
+    ) -> WorstFound:
         """Let an adversary choose all that the spec leaves open, and return his worst runs.
 
         What he finds may happen in the model: a lower bound of the worst that may. There is a run
@@ -218,21 +236,19 @@ class Study:
         --------
         >>> import nrs_design as nrs
         >>> case = nrs.load("docs/examples/scenarios.nrs.yaml").worst_case(rounds=1)
-        >>> force = case.runs[0]
-        >>> force.output.name, force.value > case.limits["force"]
-        ('force', True)
+        >>> case.worst["force"] > case.limits["force"]
+        True
         """
         from nrs_design.pipeline.worst_case import run_worst_case
 
         designed = self._interaction()
-        proof = None
-        if certificate is not None:
-            file = Path(certificate)
-            proof = pipeline.read_valid_certificate(file, self.loaded, designed)
-        return run_worst_case(designed, proof, seed=seed, rounds=rounds)
+        with pipeline.placed(self.loaded):
+            proof = self._proof(designed, certificate)
+            case = run_worst_case(designed, proof, seed=seed, rounds=rounds)
+        return WorstFound(designed, case, seed)
 
-    def export(self, certificate: str | Path | None = None) -> Export:
-        """Return the gains that ship with their proof, or why there are none.
+    def export(self, certificate: str | Path | None = None) -> Exported:
+        """Return the gains that ship with their proof, or why there are none; `save` writes them.
 
         Parameters
         ----------
@@ -248,11 +264,21 @@ class Study:
         """
         from nrs_design.exporters.export import export_design
 
-        return export_design(self.loaded, None if certificate is None else Path(certificate))
+        file = None if certificate is None else Path(certificate)
+        with pipeline.placed(self.loaded):
+            return Exported(self.loaded, export_design(self.loaded, file))
 
     def _interaction(self) -> pipeline.Designed:
         """Design what interacts; refuse another kind of spec."""
         return pipeline.run_interaction(self.loaded, "describes no interaction")
+
+    def _proof(
+        self, designed: pipeline.Designed, certificate: str | Path | None
+    ) -> Certificate | None:
+        """Return what a file proves of this spec, checked; None without a file."""
+        if certificate is None:
+            return None
+        return pipeline.read_valid_certificate(Path(certificate), self.loaded, designed)
 
 
 def _runs(

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from nrs_design.certificates.verify import Verification
+from nrs_design.api.recheck import Recheck
 from nrs_design.certificates.verify import verify as verify_file
 from nrs_design.spec import read_spec
 
 
-def verify(certificate: str | Path, spec: str | Path | None = None) -> Verification:
+def verify(certificate: str | Path, spec: str | Path | None = None) -> Recheck:
     """Re-check a certificate file, exactly and without a solver.
 
     Parameters
@@ -22,13 +22,16 @@ def verify(certificate: str | Path, spec: str | Path | None = None) -> Verificat
 
     Returns
     -------
-    Verification
-        Its `fault` says why the certificate is rejected, None if it is valid. What is shown,
-        ``certificate.verdict``, may be a refutation; true in a condition if it is a proof.
+    Recheck
+        Its `fault` says why the certificate is rejected, None if it is valid. Its
+        `verdict` may be ``refuted``; true in a condition if it is a proof.
 
     Raises
     ------
     SpecError, CertificateError
         If a file cannot be read at all.
     """
-    return verify_file(Path(certificate), None if spec is None else read_spec(spec))
+    file = Path(certificate)
+    if spec is None:
+        return Recheck(file, None, verify_file(file))
+    return Recheck(file, Path(spec), verify_file(file, read_spec(spec)))

@@ -11,12 +11,6 @@ import typer
 
 from nrs_design.cli import exit_codes
 from nrs_design.cli.command import Answer, Together, command
-from nrs_design.cli.facts import (
-    blocked_facts,
-    certification_facts,
-    margins_facts,
-    radius_facts,
-)
 from nrs_design.cli.granted import print_granted
 from nrs_design.cli.options import Budget, LoopCoordinates, MaxDegree, Memory, SpecFile
 from nrs_design.cli.printing import (
@@ -28,6 +22,12 @@ from nrs_design.cli.printing import (
     wants_text,
 )
 from nrs_design.cli.reading import take_spec
+from nrs_design.facts.certification import (
+    blocked_facts,
+    certification_facts,
+    margins_facts,
+    radius_facts,
+)
 from nrs_design.proof.text import exact_text
 from nrs_design.search.gradient_settings import Gradient
 from nrs_design.search.method import Method

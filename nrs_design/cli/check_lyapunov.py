@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -65,31 +65,10 @@ def check_lyapunov(
     found = check(proposal.modes, proposal.P, wanted, time=time)
     time, names = time or "continuous", list(proposal.modes)
     return Answer(
-        lambda: _document(file, found, time, names, wanted),
+        lambda: {"file": str(file)} | found.to_dict(),
         lambda: _show(found, time, names, asked=wanted is not None),
         exit_codes.unless(not found.holds),
     )
-
-
-def _document(
-    file: Path, found: LyapunovCheck, time: str, modes: list[str], asked: object
-) -> dict[str, Any]:
-    failing = found.counterexample
-    return {
-        "file": str(file),
-        "time": time,
-        "modes": modes,
-        "holds": found.holds,
-        "weak": found.weak,
-        "rate_asked": None if asked is None else str(asked),
-        "rate": None if found.rate is None else str(found.rate),
-        "counterexample": failing
-        and {
-            "mode": failing.mode,
-            "vector": [str(entry) for entry in failing.vector],
-            "value": str(failing.value),
-        },
-    }
 
 
 def _show(found: LyapunovCheck, time: str, modes: list[str], *, asked: bool) -> None:

@@ -6,7 +6,7 @@ import inspect
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import wraps
-from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
+from typing import Annotated, Any, TypeAlias
 
 import typer
 
@@ -21,9 +21,6 @@ from nrs_design.cli.printing import (
     wants_text,
 )
 from nrs_design.errors import NrsDesignError
-
-if TYPE_CHECKING:
-    from nrs_design.spec import LoadedSpec
 
 # A line, if there is one, and facts.
 Together: TypeAlias = tuple[str | None, dict[str, Any]]
@@ -151,8 +148,3 @@ def _for_each_axis(
         lambda: None if line is None else say(line),
         worst(codes),
     )
-
-
-def spec_facts(loaded: LoadedSpec) -> dict[str, Any]:
-    """Return which spec a result is about, as every document begins."""
-    return {"spec": loaded.spec.name, "spec_sha256": loaded.sha256}

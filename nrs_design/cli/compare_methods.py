@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from nrs_design.cli import exit_codes
-from nrs_design.cli.command import Answer, command, spec_facts
+from nrs_design.cli.command import Answer, command
 from nrs_design.cli.gradient_options import MaxUpdates, Radius, Relaxation, Seed, StartMode
 from nrs_design.cli.options import Budget, LoopCoordinates, Memory, SpecFile
 from nrs_design.cli.printing import note, progress, say
 from nrs_design.cli.reading import take_spec
 from nrs_design.cli.tables import print_table
+from nrs_design.facts.spec import spec_facts
 from nrs_design.search.gradient_settings import Gradient
 
 if TYPE_CHECKING:
@@ -76,7 +77,7 @@ def compare_methods(
 def _summary(
     loaded: LoadedSpec, system: SwitchedSystem, runs: tuple[MethodRun, ...]
 ) -> dict[str, Any]:
-    from nrs_design.cli.facts import rate_facts
+    from nrs_design.facts.certification import rate_facts
 
     return {
         **spec_facts(loaded),

@@ -14,7 +14,8 @@ from nrs_design.cli.printing import note, progress, say
 from nrs_design.cli.reading import take_spec
 from nrs_design.cli.tables import print_table
 from nrs_design.errors import NrsDesignError, OutputError
-from nrs_design.exporters import ROBOT_FORMATS, Format, format_names, format_of
+from nrs_design.exporters import ROBOT_FORMATS, Format, format_names, format_of, known_format
+from nrs_design.facts.export import export_facts
 
 if TYPE_CHECKING:
     from nrs_design.exporters.export import Execution, Export
@@ -106,15 +107,7 @@ def _format(name: str) -> Format:
         raise NrsDesignError(
             f"{name} is not a format of this command", remedy=f"use `nrs-design {group} export`"
         )
-    if name not in format_names():
-        from nrs_design.spec.faults import did_you_mean
-
-        raise NrsDesignError(
-            f"there is no format {name!r}",
-            remedy=f"{did_you_mean(name, format_names(), 'one of')}; `nrs-design export --list` "
-            "explains them",
-        )
-    return format_of(name)
+    return known_format(name)
 
 
 def _execution(chosen: Format, sample_time: str | None, *, unproved: bool) -> Execution | None:
@@ -150,7 +143,7 @@ def _export_design(
     execution: Execution | None,
 ) -> Answer:
     from nrs_design.exporters.export import export_design, export_proof
-    from nrs_design.exporters.write import check_places, places
+    from nrs_design.exporters.write import check_places, places, write_export
     from nrs_design.ownership import check_certificate
     from nrs_design.pipeline import placed
 
@@ -173,9 +166,9 @@ def _export_design(
     if result.may_be_written:
         # A design of which there is no program is told at its place in the spec.
         with placed(loaded):
-            remarks = _write(result, format_, files, None if certificate else proof, spec)
+            remarks = write_export(result, format_, files, None if certificate else proof, spec)
     written = list(files.values()) if result.may_be_written else []
-    summary = _summary(name, result, written, proof)
+    summary = export_facts(name, result, written, proof)
     return Answer(
         lambda: summary | {"remarks": remarks},
         lambda: _show(name, result, written, proof, remarks),
@@ -200,35 +193,3 @@ def _show(
         note(f"certificate: {proof}")
     for remark in remarks:
         note(remark)
-
-
-def _write(
-    result: Export, format_: str, files: dict[str, Path], proof: Path | None, spec: Path
-) -> tuple[str, ...]:
-    """Write the certificate first: there is never an export without its proof; return remarks."""
-    from nrs_design.certificates.certificate import dump
-    from nrs_design.exporters import remarks_on, rendered
-    from nrs_design.exporters.write import write_files
-    from nrs_design.output import CERTIFICATE, write_output
-    from nrs_design.ownership import origin_of
-
-    contents = rendered(format_, result)
-    if proof is not None and result.certificate is not None:
-        text = dump(result.certificate, origin_of(spec, proof))
-        write_output(proof, text, replaces=CERTIFICATE)
-    write_files(format_of(format_), files, contents)
-    return remarks_on(format_, contents)
-
-
-def _summary(name: str, result: Export, written: list[Path], proof: Path) -> dict[str, Any]:
-    record = result.record
-    certified = result.may_be_written and result.certificate is not None
-    return {
-        "spec": name,
-        "verdict": result.verdict,
-        "reason": result.reason or None,
-        "file": str(written[0]) if written else None,
-        "files": list(map(str, written)),
-        "certificate": str(proof) if certified else None,
-        "record": record.model_dump(mode="json", by_alias=True) if record else None,
-    }

@@ -10,11 +10,12 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from nrs_design.cli.command import Answer, command, spec_facts
+from nrs_design.cli.command import Answer, command
 from nrs_design.cli.destinations import check_beside
 from nrs_design.cli.options import SpecFile
 from nrs_design.cli.printing import note, progress, say
 from nrs_design.cli.reading import take_spec
+from nrs_design.facts.spec import spec_facts
 from nrs_design.proof.text import counted
 
 if TYPE_CHECKING:

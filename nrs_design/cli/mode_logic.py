@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from nrs_design.cli.command import Answer, command, spec_facts
+from nrs_design.cli.command import Answer, command
 from nrs_design.cli.options import SpecFile
 from nrs_design.cli.printing import say
 from nrs_design.cli.reading import take_spec
 from nrs_design.cli.tables import print_table
+from nrs_design.facts.spec import spec_facts
 
 if TYPE_CHECKING:
     from nrs_design.spec import InteractionDesignSpec, LoadedSpec

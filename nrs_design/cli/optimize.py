@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -15,22 +13,17 @@ from nrs_design.cli.command import Answer, command
 from nrs_design.cli.exit_codes import INCONCLUSIVE, worst
 from nrs_design.cli.goals import (
     design_answer,
-    goals_summary,
     print_responses,
-    responses_summary,
 )
 from nrs_design.cli.options import SpecFile
 from nrs_design.cli.printing import detail, note, progress, say, wants_details
 from nrs_design.cli.reading import take_spec
 from nrs_design.cli.tables import print_table
-from nrs_design.proof.bounds import lower_float, upper_float
+from nrs_design.facts.design import meanings, optimum_facts
 
 if TYPE_CHECKING:
-    from nrs_design.design.analysis import DesignAnalysis, ImpedanceAnalysis
+    from nrs_design.design.analysis import DesignAnalysis
     from nrs_design.design.cost_bound import CostBound
-    from nrs_design.design.measures import Measure
-    from nrs_design.design.sampled_passivity import SampledBand
-    from nrs_design.pipeline import Designed
     from nrs_design.spec import InteractionDesignSpec
 
 
@@ -92,12 +85,7 @@ def optimize(
 
     def facts() -> dict[str, Any]:
         return {
-            "motion_loop": motion_summary(analysis),
-            "sensor": _sensor(designed),
-            "controllers": [
-                _summary(designed.spec, item) | _optimum_facts(bounds.get(item.name))
-                for item in analysis.impedance
-            ],
+            **optimum_facts(designed, analysis, bounds),
             "certified": None if certified is None else certified.facts(),
             "retuned": None if box is None else box.facts(),
         }
@@ -130,24 +118,6 @@ def optimize(
     return replace(answer, code=worst({answer.code, INCONCLUSIVE})) if open_ else answer
 
 
-def _optimum_facts(bound: CostBound | str | None) -> dict[str, Any]:
-    """Return the bounds on the least cost, rounded to their safe sides; nothing if not asked."""
-    if bound is None:
-        return {}
-    if isinstance(bound, str):
-        return {"global_optimum": None, "global_optimum_not_computed": bound}
-    return {
-        "global_optimum": {
-            "cost_at_most": upper_float(bound.above),
-            "least_cost_at_least": lower_float(bound.below),
-            "gap": upper_float(bound.gap),
-            "boxes": bound.boxes,
-            "reached": bound.reached,
-            "without_goals": bound.goals,
-        }
-    }
-
-
 def _print_bounds(bounds: dict[str, CostBound | str]) -> None:
     from nrs_design.design.measures import OPTIMUM_MEANING
 
@@ -155,125 +125,6 @@ def _print_bounds(bounds: dict[str, CostBound | str]) -> None:
         say(f"{name}: {f'no bound on the cost: {bound}' if isinstance(bound, str) else bound.text}")
     if any(not isinstance(bound, str) for bound in bounds.values()):
         say(OPTIMUM_MEANING)
-
-
-def motion_summary(analysis: DesignAnalysis) -> dict[str, Any]:
-    """Describe which motion loop G is in use."""
-    return {
-        "source": analysis.motion_source,
-        "numerator": list(analysis.motion.numerator),
-        "denominator": list(analysis.motion.denominator),
-    }
-
-
-def meanings(spec: InteractionDesignSpec, items: Sequence[ImpedanceAnalysis]) -> Iterator[str]:
-    """Yield what the values of the table are about."""
-    from nrs_design.design.measures import (
-        COST_MEANING,
-        LIMIT_MEANING,
-        MEANING,
-        ONE_AXIS,
-        WEIGHED_MEANING,
-        computed,
-    )
-
-    yield MEANING[0]
-    yield LIMIT_MEANING
-    if spec.coupling is not None:
-        yield ONE_AXIS
-    yield from computed({item.name: item.proved_titles for item in items})
-    yield COST_MEANING
-    weights = (getattr(controller, "weights", None) for controller in spec.controllers.values())
-    if any(given is not None and (given.transparency or given.accuracy) for given in weights):
-        yield WEIGHED_MEANING
-
-
-def _summary(spec: InteractionDesignSpec, item: ImpedanceAnalysis) -> dict[str, Any]:
-    from nrs_design.design import measures
-
-    def worst(measure: Measure) -> float | None:
-        return finite(item.worst(measure).value)
-
-    band = item.band
-    passive, broken = (None, None) if band is None else (band.passive, band.broken)
-    return {
-        "name": item.name,
-        "desired_impedance": item.problem.desired,
-        "environment": item.problem.loop.contact.given(),
-        "stiffness": item.problem.loop.contact.stiffness,
-        "Mt": item.Mt,
-        "Bt": item.Bt,
-        "Kt": item.problem.loop.Kt,
-        "cost": item.cost,
-        "given": [gain for gain in ("Mt", "Bt") if getattr(item.given, gain).fixed],
-        "optimum": {"Mt": item.optimum.Mt, "Bt": item.optimum.Bt, "cost": item.optimum.cost},
-        "sensitivity_peak": worst(measures.SENSITIVITY_PEAK),
-        "gain_margin": worst(measures.GAIN_MARGIN),
-        "phase_margin_rad": worst(measures.PHASE_MARGIN),
-        "delay_margin_s": worst(measures.DELAY_MARGIN),
-        "disk_margin": worst(measures.DISK_MARGIN),
-        "stiffness_limit": finite(item.lowest_limit),
-        "stiffness_limit_at": item.limit_at,
-        "over": [*meanings(spec, [item])],
-        "lever_arm_m": item.lever_arm,
-        "stiffness_limit_at_arm_N_m": item.limit_at_arm and finite(item.limit_at_arm),
-        "passive_up_to_rad_s": passive and lower_float(passive),
-        "not_passive_at_rad_s": broken and upper_float(broken),
-        "passivity_not_computed": None
-        if item.sampled or spec.sampling is None
-        else measures.PASSIVITY_NOT_COMPUTED,
-        "sampled_passivity": [_band(band) for band in item.sampled],
-        "creep": _creep(item),
-        "goals": goals_summary(item),
-        "responses": responses_summary(item),
-        "units": {
-            "Mt": unit("kg*m^2"),
-            "Bt": unit("N*m*s/rad"),
-            "Kt": unit("N*m/rad"),
-            "impedance": unit("N*m*s/rad"),
-            "stiffness": unit("N*m/rad"),
-        },
-    }
-
-
-def _band(band: SampledBand) -> dict[str, Any]:
-    """Return where a sampled law is passive, and the exact witness that it is not beyond."""
-    between = band.broken and [lower_float(band.broken[0]), upper_float(band.broken[1])]
-    return {
-        "delay": band.age,
-        "passive_up_to_rad_s": lower_float(band.passive),
-        "not_passive_between_rad_s": between,
-        "not_passive_at_tangent": band.tangent and str(band.tangent),
-    }
-
-
-def _sensor(designed: Designed) -> dict[str, Any]:
-    """Return what may last of the errors of the force signal, N m, rounded up."""
-    sensor = designed.design.sensor
-    return {
-        "lasting_error": upper_float(sensor.lasting),
-        "parts": {name: upper_float(error) for name, error in sensor.errors.items()},
-        "unit": unit("N*m"),
-    }
-
-
-def _creep(item: ImpedanceAnalysis) -> dict[str, Any] | None:
-    """Return the bounds on the creep, rounded up; None without a sensor whose errors are known."""
-    if item.creep is None:
-        return None
-    angle, way = item.creep.angle, unit("rad")
-    return {
-        f"velocity_{way}_s": upper_float(item.creep.velocity),
-        f"{'angle_rad' if way == 'rad' else 'way_m'}": None
-        if angle is None
-        else upper_float(angle),
-        f"noise_rms_{way}_s": item.creep.noise,
-    }
-
-
-def finite(value: float) -> float | None:
-    """Return a number for JSON, which has no infinity; None says unbounded."""
-    return value if math.isfinite(value) else None
 
 
 def _print(spec: InteractionDesignSpec, analysis: DesignAnalysis) -> None:

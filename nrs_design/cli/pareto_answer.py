@@ -9,10 +9,10 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 from nrs_design.axis import unit
-from nrs_design.cli.command import spec_facts
 from nrs_design.cli.printing import say
 from nrs_design.cli.tables import print_table
 from nrs_design.design.objective import Objective
+from nrs_design.facts.spec import spec_facts
 from nrs_design.pipeline.trade_point import TradeOffPoint, is_dominated
 from nrs_design.proof.bounds import lower, lower_float, upper, upper_float
 

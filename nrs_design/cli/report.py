@@ -10,11 +10,12 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from nrs_design.cli import exit_codes
-from nrs_design.cli.command import Answer, command, spec_facts
+from nrs_design.cli.command import Answer, command
 from nrs_design.cli.options import Budget, Date, MaxDegree, Memory, SpecFile
 from nrs_design.cli.printing import note, progress, say
 from nrs_design.cli.reading import take_spec
 from nrs_design.errors import DesignError, OutputError
+from nrs_design.facts.spec import spec_facts
 from nrs_design.progress import Progress
 
 if TYPE_CHECKING:

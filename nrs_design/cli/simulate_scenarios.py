@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import math
-from dataclasses import asdict
 from fractions import Fraction
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from nrs_design.axis import unit
 from nrs_design.cli import exit_codes
-from nrs_design.cli.command import Answer, spec_facts
+from nrs_design.cli.command import Answer
 from nrs_design.cli.printing import note, say, wants_details
 from nrs_design.cli.run_files import RunFiles, write_runs
 from nrs_design.cli.tables import print_table
+from nrs_design.facts.simulation import run_facts
+from nrs_design.facts.spec import spec_facts
 from nrs_design.progress import Progress
 
 if TYPE_CHECKING:
@@ -74,7 +75,7 @@ def simulate_scenarios(
 
     facts = spec_facts(designed.loaded)
     return Answer(
-        lambda: facts | {"runs": [_facts(*run) for run in runs], "files": files},
+        lambda: facts | {"runs": [run_facts(*run) for run in runs], "files": files},
         show,
         exit_codes.INCONCLUSIVE if any(one.run.stopped for one in found) else exit_codes.PROVED,
     )
@@ -122,50 +123,6 @@ def _write(designed: Designed, out: Path, runs: Sequence[Bounded]) -> list[str]:
     written = write_runs(outputs)
     note(f"written to {out}")
     return written
-
-
-def _facts(
-    one: Simulated, bounds: tuple[CertifiedBound, ...], rate: CertifiedRate | None
-) -> dict[str, Any]:
-    run = one.run
-    return {
-        "scenario": run.scenario,
-        "engine": run.engine,
-        "seed": one.scenario.seed,
-        "stopped": run.stopped,
-        "steps": run.steps,
-        "refused_samples": run.refused,
-        "saturated_samples": run.saturated,
-        "missed_samples": run.missed,
-        "deviation_from_sampled": None if run.deviation is None else asdict(run.deviation),
-        "not_modelled": list(run.left_out),
-        "metrics": dict(one.metrics),
-        "limits": dict(one.scenario.limits),
-        "switches": [{"time": time, "to": name} for time, name in run.switches],
-        "contacts": [
-            {"time": time, "environment": name, "made": made} for time, name, made in run.contacts
-        ],
-        "certified_bounds": [
-            {
-                "output": b.output,
-                "unit": b.unit,
-                "level": b.level,
-                "holds_for_this_run": not b.uncovered,
-                "uncovered": list(b.uncovered),
-            }
-            for b in bounds
-        ],
-        "certified_rate": None
-        if rate is None
-        else {
-            "rate": rate.rate,
-            "unit": rate.unit,
-            "attained": rate.attained,
-            "from": rate.start,
-            "holds_for_this_run": not rate.uncovered,
-            "uncovered": list(rate.uncovered),
-        },
-    }
 
 
 def _print_briefly(runs: Sequence[Bounded]) -> None:

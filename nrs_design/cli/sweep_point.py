@@ -125,7 +125,7 @@ def _shown(certificate: Path, axes: Sequence[LoadedSpec]) -> dict[str, Any]:
     if len(axes) != 1 or not certificate.is_file():
         return {}
     from nrs_design.certificates.verify import verify
-    from nrs_design.cli.facts import shown_facts
+    from nrs_design.facts.certification import shown_facts
 
     (loaded,) = axes
     with about(getattr(loaded.spec, "axis", None)):

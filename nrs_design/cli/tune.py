@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING, Any
 
 from nrs_design.axis import current, unit
 from nrs_design.cli.command import Answer, command
-from nrs_design.cli.goals import design_answer, goals_summary
-from nrs_design.cli.optimize import motion_summary
+from nrs_design.cli.goals import design_answer
 from nrs_design.cli.options import SpecFile
 from nrs_design.cli.printing import progress, say
 from nrs_design.cli.reading import take_spec
 from nrs_design.cli.tables import print_table
+from nrs_design.facts.design import motion_summary
+from nrs_design.facts.goals import goals_summary
 from nrs_design.proof.bounds import lower_float
 
 if TYPE_CHECKING:

@@ -190,24 +190,14 @@ def _facts(
     faults: list[str] | None,
     on_trust: Path | None,
 ) -> dict[str, Any]:
-    from nrs_design.certificates.units import gain_units
+    from nrs_design.facts.verification import verification_facts
 
-    checked = outcome.certificate if outcome.fault is None else None
-    # What stands in a certificate beside its modes is held against a spec, or against nothing.
-    compared = checked if given["spec"] is not None else None
     files = {name: None if path is None else str(path) for name, path in given.items()}
     differences = None if place is None else place.differences
+    facts = verification_facts(outcome, given["certificate"], given["spec"])
     return {
-        "verdict": checked.verdict if checked and not (differences or faults) else "rejected",
-        "refuted_in": checked.refuted_in if checked else None,
-        "fault": outcome.fault,
-        "claims": [item.claim(checked.system) for item in checked.statements] if checked else None,
-        "gains": dict(compared.gains) if compared else None,
-        "gain_units": gain_units(compared) if compared else None,
-        "assumptions": list(compared.granted) if compared else None,
-        "certificate": files["certificate"],
-        "certificate_id": checked.id if checked else None,
-        "spec": files["spec"],
+        **facts,
+        "verdict": "rejected" if differences or faults else facts["verdict"],
         "deployed": files["deployed"],
         "differences": None if differences is None else list(differences),
         "compared": None if place is None else [file.name for file in place.comparison.compared],

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from nrs_design.cli.command import Answer, spec_facts
+from nrs_design.cli.command import Answer
 from nrs_design.cli.printing import note, say
 from nrs_design.cli.run_files import RunFiles, write_runs
 from nrs_design.cli.tables import print_table
+from nrs_design.facts.spec import spec_facts
+from nrs_design.facts.worst_case import worst_case_facts
 from nrs_design.progress import Progress
 
 if TYPE_CHECKING:
@@ -48,7 +50,7 @@ def worst_case(
     arm = common_lever_arm(designed.spec, designed.spec.touched)
     written = [] if out is None else _write(designed, case, arm, out)
     return Answer(
-        lambda: spec_facts(designed.loaded) | _facts(case, seed) | {"files": written},
+        lambda: spec_facts(designed.loaded) | worst_case_facts(case, seed) | {"files": written},
         lambda: _show(designed.spec.name, case, arm, seed),
     )
 
@@ -88,34 +90,3 @@ def _write(designed: Designed, case: WorstCase, arm: float | None, out: Path) ->
     written = write_runs(outputs)
     note(f"written to {out}")
     return written
-
-
-def _facts(case: WorstCase, seed: int) -> dict[str, Any]:
-    from nrs_design.reporting.worst_case import found_in, left_out
-
-    found = [
-        {
-            "output": item.name,
-            "unit": item.unit,
-            "worst_found": item.value,
-            "limit": item.limit,
-            "certified_bound": item.bound,
-            "bound_over_found": item.ratio,
-            "exceeds_limit": item.exceeds,
-            "duration": float(run.time[-1]),
-            "starts": [float(value) for value in run.starts],
-        }
-        for item, run in zip(found_in(case), case.runs, strict=True)
-    ]
-    return {
-        "worst_case": {
-            "seed": seed,
-            "disturbances": [
-                {"name": c.name, "unit": c.unit, "bound": float(c.bound)}
-                for c in case.system.channels
-            ],
-            "disturbances_declared": case.declared,
-            "found": found,
-            "not_modelled": [left_out(case.system)],
-        },
-    }

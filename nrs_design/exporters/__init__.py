@@ -11,6 +11,7 @@ from pkgutil import iter_modules
 from types import MappingProxyType
 from typing import Any
 
+from nrs_design.errors import NrsDesignError
 from nrs_design.output import C_HEADER, C_SOURCE
 
 DESIGN = "a proof of the design"
@@ -44,6 +45,25 @@ def format_of(name: str) -> Format:
     """Return what a format of a design is for, by one of `format_names`."""
     found: Format = _module(name).FORMAT
     return found
+
+
+def known_format(name: str) -> Format:
+    """Return what a format of a design is for, by a name that may be none.
+
+    Raises
+    ------
+    NrsDesignError
+        If there is no such format.
+    """
+    if name not in format_names():
+        from nrs_design.spec.faults import did_you_mean
+
+        raise NrsDesignError(
+            f"there is no format {name!r}",
+            remedy=f"{did_you_mean(name, format_names(), 'one of')}; `nrs-design export --list` "
+            "explains them",
+        )
+    return format_of(name)
 
 
 def rendered(name: str, export: object) -> dict[str, bytes]:

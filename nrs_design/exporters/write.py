@@ -5,11 +5,16 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from pathlib import Path
+from typing import TYPE_CHECKING
 
+from nrs_design.certificates.certificate import dump
 from nrs_design.errors import OutputError
-from nrs_design.exporters import Format
-from nrs_design.output import check_place, write_outputs
-from nrs_design.ownership import check_name
+from nrs_design.exporters import Format, format_of, remarks_on, rendered
+from nrs_design.output import CERTIFICATE, check_place, write_output, write_outputs
+from nrs_design.ownership import check_name, origin_of
+
+if TYPE_CHECKING:
+    from nrs_design.exporters.export import Export
 
 # Of a file, such as .txt or .h5; a version of a folder, such as .2, is not one.
 _ENDING = re.compile(r"\.[A-Za-z]\w{0,7}")
@@ -98,3 +103,29 @@ def write_files(format_: Format, files: Mapping[str, Path], contents: Mapping[st
     """
     check_places(format_, files)
     write_outputs([(path, contents[end], format_.files[end]) for end, path in files.items()])
+
+
+def write_export(
+    result: Export, format_: str, files: Mapping[str, Path], proof: Path | None, spec: Path
+) -> tuple[str, ...]:
+    """Write the certificate first: there is never an export without its proof; return remarks.
+
+    Parameters
+    ----------
+    result : Export
+        That may be written.
+    format_ : str
+        Name of the format.
+    files : mapping of str to Path
+        As `places` gives them.
+    proof : Path or None
+        Where the certificate goes; None if it is in a file already.
+    spec : Path
+        That the certificate names as its own.
+    """
+    contents = rendered(format_, result)
+    if proof is not None and result.certificate is not None:
+        text = dump(result.certificate, origin_of(spec, proof))
+        write_output(proof, text, replaces=CERTIFICATE)
+    write_files(format_of(format_), files, contents)
+    return remarks_on(format_, contents)

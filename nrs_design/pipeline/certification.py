@@ -177,10 +177,6 @@ def run_recorded(loaded: LoadedSpec, file: Path, progress: Progress = silent) ->
         If the file is no certificate, does not hold for this spec, or has other gains than are
         designed here.
     """
-    from nrs_design.certificates.certificate import verdict_of
-    from nrs_design.search.family import floats_in_silence
-    from nrs_design.search.rate_limit import rate_limit
-
     progress("design")
     designed = run_design(loaded)
     progress(f"checking {file.name}")
@@ -190,19 +186,38 @@ def run_recorded(loaded: LoadedSpec, file: Path, progress: Progress = silent) ->
     if not is_of_gains(kept.gains, designed):
         message = "it is about other gains than are designed here"
         raise CertificateError(message, path=file, remedy=_ANEW)
+    certification = recorded_certification(kept, file, taken)
+    return Result(loaded, designed, kept.coordinates, certification, kept)
+
+
+def recorded_certification(kept: Certificate, file: Path, seconds: float = 0.0) -> Certification:
+    """Return what a certificate that was checked shows, as if it had been found just now.
+
+    Parameters
+    ----------
+    kept : Certificate
+        Checked exactly.
+    file : Path
+        That holds it.
+    seconds : float
+        That the check took.
+    """
+    from nrs_design.certificates.certificate import verdict_of
+    from nrs_design.search.family import floats_in_silence
+    from nrs_design.search.rate_limit import rate_limit
+
     outcome = f"{file.name}: each of its statements was checked again exactly"
     with floats_in_silence():
         limit = rate_limit(kept.system)
-    certification = Certification(
+    return Certification(
         kept.system,
         verdict_of(kept.system, kept.statements),
         kept.common_quadratic,
         "certificate",
         kept.statements,
-        (Attempt("certificate", outcome, taken),),
+        (Attempt("certificate", outcome, seconds),),
         limit,
     )
-    return Result(loaded, designed, kept.coordinates, certification, kept)
 
 
 def read_valid_certificate(

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from contextvars import ContextVar
+from dataclasses import dataclass
 from functools import wraps
 from typing import TYPE_CHECKING, Any, ParamSpec
 
@@ -52,6 +54,8 @@ THEMED = {
 # In inches: the text of a figure this wide is read on a telephone, where it is as wide as the page.
 _WIDTH = 5.4
 _LABEL_LETTERS = 24
+# In points.
+_LETTERS = 10.0
 _LEGEND_LETTERS, _LEGEND_LINE, _LEGEND_GAP = 46, 0.175, 0.055
 
 _SETTINGS = {
@@ -61,7 +65,7 @@ _SETTINGS = {
     # A name with two dollars is no formula; the axes' own numbers need none either.
     "text.parse_math": False,
     "font.family": ["DejaVu Sans"],
-    "font.size": 10.0,
+    "font.size": _LETTERS,
     "axes.edgecolor": MUTED,
     "axes.labelcolor": INK,
     "axes.grid": True,
@@ -78,7 +82,53 @@ _SETTINGS = {
     "text.color": INK,
 }
 
+# Letters of a paper, in points, and the settings that go with them.
+_PAPER_LETTERS = 8.0
+_PAPER = {
+    "font.size": _PAPER_LETTERS,
+    "axes.labelsize": _PAPER_LETTERS,
+    "axes.titlesize": _PAPER_LETTERS,
+    "legend.fontsize": _PAPER_LETTERS,
+    "xtick.labelsize": _PAPER_LETTERS,
+    "ytick.labelsize": _PAPER_LETTERS,
+    "lines.linewidth": 1.2,
+}
+
 P = ParamSpec("P")
+
+
+@dataclass(frozen=True, slots=True)
+class _Sheet:
+    """What a figure is drawn for."""
+
+    width: float = _WIDTH  # In inches
+    letters: float = _LETTERS  # In points
+    paper: bool = False
+
+    @property
+    def room(self) -> float:
+        """How many letters there is room for, over those in a figure of the report."""
+        return self.width / _WIDTH * _LETTERS / self.letters
+
+
+_PAGE = _Sheet()
+_SHEET: ContextVar[_Sheet] = ContextVar("sheet", default=_PAGE)
+
+
+@contextmanager
+def for_paper(width: float | None) -> Iterator[None]:
+    """Draw figures as wide as a paper wants them, with its letters; None leaves what is.
+
+    Parameters
+    ----------
+    width : float or None
+        In inches.
+    """
+    token = _SHEET.set(_SHEET.get() if width is None else _Sheet(width, _PAPER_LETTERS, paper=True))
+    try:
+        yield
+    finally:
+        _SHEET.reset(token)
 
 
 @contextmanager
@@ -86,7 +136,7 @@ def figure_style() -> Iterator[None]:
     """Use the report's settings whatever any matplotlib file says."""
     from nrs_design.plotting import style
 
-    with style.context(["default", _SETTINGS]):
+    with style.context(["default", _SETTINGS | (_PAPER if _SHEET.get().paper else {})]):
         yield
 
 
@@ -101,10 +151,21 @@ def styled(draw: Callable[P, Figure]) -> Callable[P, Figure]:
     def drawn(*args: P.args, **kwargs: P.kwargs) -> Figure:
         with figure_style():
             figure = draw(*args, **kwargs)
+            _shrink(figure)
             settle(figure)
             return figure
 
     return drawn
+
+
+def _shrink(figure: Figure) -> None:
+    """Let no text of a figure for a paper be larger than its letters."""
+    from nrs_design.plotting import Text
+
+    if _SHEET.get().paper:
+        for text in figure.findobj(Text):
+            assert isinstance(text, Text)
+            text.set_fontsize(min(text.get_fontsize(), _PAPER_LETTERS))
 
 
 def settle(figure: Figure) -> None:
@@ -126,10 +187,12 @@ def settle(figure: Figure) -> None:
 
 
 def new_figure(height: float = 3.9) -> Figure:
-    """Return an empty figure of the report's width and a height in inches."""
+    """Return an empty figure of the width of report or paper, and a height in inches."""
     from nrs_design.plotting import Figure
 
-    return Figure(figsize=(_WIDTH, height), layout="constrained")
+    sheet = _SHEET.get()
+    high = height * sheet.letters / _LETTERS
+    return Figure(figsize=(sheet.width, high), layout="constrained")
 
 
 def new_axes(height: float = 3.9) -> tuple[Figure, Axes]:
@@ -173,7 +236,8 @@ def curve(index: int, count: int, points: int) -> dict[str, Any]:
 
 def row_labels(names: Sequence[str]) -> tuple[list[str], float]:
     """Return names in full as labels of rows, and the height in inches that one row needs."""
-    labels = [wrapped_label(name, _LABEL_LETTERS) for name in names]
+    room = _SHEET.get().room
+    labels = [wrapped_label(name, round(_LABEL_LETTERS * min(room, 1.0))) for name in names]
     lines = max((label.count("\n") for label in labels), default=0) + 1
     return labels, 0.11 + 0.16 * lines
 
@@ -195,11 +259,13 @@ def legend(figure: Figure, axes: Axes, columns: int = 2) -> None:
     handles, labels = axes.get_legend_handles_labels()
     if len(handles) < 2:
         return
-    texts = [wrapped_label(label, _LEGEND_LETTERS) for label in labels]
+    sheet = _SHEET.get()
+    texts = [wrapped_label(label, round(_LEGEND_LETTERS * sheet.room)) for label in labels]
     longest = max(len(line) for text in texts for line in text.splitlines())
-    columns = max(1, min(columns, len(handles), 66 // (longest + 6)))
+    columns = max(1, min(columns, len(handles), round(66 * sheet.room) // (longest + 6)))
     rows = -(-len(handles) // columns)
     lines = rows + sum(text.count("\n") for text in texts) / columns
     more = _LEGEND_LINE * (lines - 1) + _LEGEND_GAP * (rows - 1)
+    more *= sheet.letters / _LETTERS
     figure.set_figheight(figure.get_figheight() + more)
     figure.legend(handles, texts, loc="outside lower center", ncols=columns)

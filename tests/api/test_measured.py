@@ -1,32 +1,75 @@
+"""Records and runs, as the library takes them."""
+
+import json
+import random
+
 import pytest
 
 import nrs_design as nrs
 from nrs_design.errors import DataError
-from tests.support import ROOT, SOFT_TISSUE
+from tests.support import ROOT, SOFT_TISSUE, document_of
 
 DATA = ROOT / "specs/data"
+TISSUE = [DATA / f"silicone-soft-{i}.csv" for i in (1, 2, 3)]
 
 
-def test_tissue_and_actuator():
-    tissue = nrs.identify([DATA / f"silicone-soft-{i}.csv" for i in (1, 2, 3)])
-    assert tissue.chosen.law.name == "elastic"
-    (stiffness,) = tissue.chosen.ranges
+def test_a_tissue():
+    tissue = nrs.identify(TISSUE)
+    assert (tissue.chosen, tissue.doubts, tissue.synthetic) == ("elastic", (), True)
+    stiffness = tissue.ranges["k"]
     assert stiffness.low < 747.1461 < stiffness.high
+    assert stiffness.unit == "N/m"
+    assert tissue.files == tuple(TISSUE)
+    # Synthetic data are said to be, wherever they are shown.
+    assert "SYNTHETIC" in repr(tissue)
+    assert "SYNTHETIC" in tissue._repr_html_()
+    assert tissue.latex() == r"$k \in [685.8,\, 809.1]\,\mathrm{N/m}$"
+
+
+def test_facts_are_those_of_the_command():
+    found = nrs.identify(TISSUE).to_dict()
+    said = document_of("identify", "tissue", *TISSUE, cwd=ROOT, code=0)
+    assert said.pop("schema")
+    assert json.loads(json.dumps(found)) == said
+
+
+def test_an_actuator_and_a_tool():
     motor = nrs.identify(sorted(DATA.glob("actuator-*hz.csv")), "actuator")
-    assert motor.ranges[1].value == pytest.approx(0.0351, rel=1e-3)
+    assert motor.ranges["time_constant"].value == pytest.approx(0.0351, rel=1e-3)
+    assert motor.ranges["gain"].unit == "(rad/s)/rpm"
+    tool = nrs.identify(DATA / "tool-poses.csv", "tool")
+    assert tool.ranges["mass"].low < 0.796 < tool.ranges["mass"].high
+    assert tool.plot().axes
+
+
+def test_a_delay_between_columns_of_ones_own(tmp_path):
+    """Of a random command that is seen three samples later, whatever the columns are called."""
+    generator = random.Random(1)
+    sent = [generator.gauss(0, 1) for _ in range(400)]
+    rows = [f"{i / 500},{u},{sent[i - 3] if i >= 3 else 0}" for i, u in enumerate(sent)]
+    log = tmp_path / "log.csv"
+    log.write_text("\n".join(["time_s,raw_N,used_N", *rows]) + "\n")
+    columns = {"command": "raw_N", "measured": "used_N"}
+    found = nrs.identify(log, "delay", columns=columns)
+    assert found.ranges["samples"].low <= 3 <= found.ranges["samples"].high
+    assert found.ranges["delay"].value == pytest.approx(0.006, abs=1e-3)
 
 
 @pytest.mark.parametrize(
-    ("kind", "law", "words"),
+    ("arguments", "law", "words"),
     [
-        ("bone", None, "no kind 'bone'"),
-        ("tissue", "rubber", "no law 'rubber'"),
-        ("actuator", "elastic", "has no law"),
+        ((TISSUE[0], "bone"), None, "no kind 'bone'"),
+        ((TISSUE[0], "tissue"), "rubber", "no law 'rubber'"),
+        ((TISSUE[0], "actuator"), "elastic", "actuator have no law"),
+        (("tissue", [TISSUE[0]]), None, "arguments are swapped"),
+        (("actuator", TISSUE[0]), None, "arguments are swapped"),
+        ((TISSUE[0], [TISSUE[1]]), None, "no kind"),
+        ((TISSUE, "delay"), None, "one record"),
     ],
 )
-def test_wrong_words(kind, law, words):
+def test_wrong_words(arguments, law, words):
     with pytest.raises(DataError, match=words):
-        nrs.identify(DATA / "silicone-soft-1.csv", kind, law=law)
+        nrs.identify(*arguments, law=law)
 
 
 def test_a_run_is_judged_against_its_spec(tmp_path):
@@ -34,8 +77,28 @@ def test_a_run_is_judged_against_its_spec(tmp_path):
     rows = "\n".join(f"{i / 500},0,0,0,insertion" for i in range(100))
     log.write_text(f"time_s,angle_rad,torque_Nm,velocity_rad_s,mode\n{rows}\n")
     study = nrs.load(SOFT_TISSUE)
-    study.certify().save(tmp_path)
-    judged = study.audit(log, tmp_path / "soft-tissue.cert.json")
-    # Contact is estimated, and no reading says how far off it is.
+    cert = study.certify().save(tmp_path)
+    judged = study.audit(log, cert)
+    # Nothing tells the stiffness, without an angle.
     assert judged.verdict == "inconclusive"
+    assert not judged
     assert judged.first is None
+    assert {check.name: check.status for check in judged.checks}["stiffness"] == "not judged"
+    assert study.audit(log).unproved_because
+    assert "UNPROVED SPEC" in repr(study.audit(log))
+    said = document_of("audit", log, SOFT_TISSUE, "--certificate", cert, cwd=tmp_path)
+    assert said.pop("schema")
+    assert json.loads(json.dumps(judged.to_dict())) == said
+
+
+def test_what_left_its_bounds_first_is_named(tmp_path):
+    """A torque far above the limit of 0.3 N m."""
+    log = tmp_path / "run.csv"
+    rows = "\n".join(f"{i / 500},0,{5 * (i > 50)},0,insertion" for i in range(100))
+    log.write_text(f"time_s,angle_rad,torque_Nm,velocity_rad_s,mode\n{rows}\n")
+    judged = nrs.load(SOFT_TISSUE).audit(log)
+    assert judged.verdict == "outside"
+    assert judged.first is not None
+    assert judged.first in judged.checks
+    assert judged.first.time == pytest.approx(51 / 500)
+    assert judged.first.violation

@@ -1,10 +1,13 @@
 """`Study.optimize`: floats with units, as a student takes them into a notebook."""
 
+import json
+import math
+
 import pytest
 
 import nrs_design as nrs
 from nrs_design.errors import DesignError
-from tests.support import COMMUTING, SOFT_TISSUE
+from tests.support import COMMUTING, ROOT, SOFT_TISSUE, document_of
 
 
 def test_gains_and_margins_of_the_thesis():
@@ -14,9 +17,19 @@ def test_gains_and_margins_of_the_thesis():
     # Reference: 3.75298, by Sturm chains on the family.
     assert optimum.margins["withdrawal"]["max_sensitivity_peak"] == pytest.approx(3.75298, abs=1e-4)
     assert optimum.cost["insertion"] == pytest.approx(0.1552, abs=1e-4)
-    assert set(optimum.to_dict()) == {"gains", "units", "margins", "cost"}
     assert str(optimum).startswith("insertion: Mt = 0.01 kg*m^2, Bt = 2.15 N*m*s/rad\n")
-    assert "<th>withdrawal</th>" in optimum._repr_html_()
+    assert "<td>withdrawal</td>" in optimum._repr_html_()
+
+
+def test_facts_are_those_of_the_command():
+    found = nrs.load(SOFT_TISSUE).optimize().to_dict()
+    said = document_of("optimize", SOFT_TISSUE, cwd=ROOT)
+    # Of the goals of a certificate, and of a box for retuning.
+    rest = {key: said.pop(key) for key in ("schema", "certified", "retuned")}
+    assert rest["certified"] is rest["retuned"] is None
+    assert json.loads(json.dumps(found)) | said == json.loads(json.dumps(found))
+    assert {"gains", "units", "margins", "cost"} == found.keys() - said.keys()
+    assert found["gains"]["insertion"]["Bt"] == pytest.approx(2.15)
 
 
 def test_its_figures_have_names():
@@ -30,3 +43,11 @@ def test_its_figures_have_names():
 def test_matrices_have_nothing_to_optimize():
     with pytest.raises(DesignError, match="has nothing to optimize"):
         nrs.load(COMMUTING).optimize()
+
+
+def test_what_nothing_limits_is_null_in_json():
+    """A controller of position has margins without end, and no gain of its own."""
+    optimum = nrs.load(ROOT / "docs/examples/mixed-controllers.nrs.yaml").optimize()
+    assert any(math.isinf(v) for found in optimum.margins.values() for v in found.values())
+    assert json.dumps(optimum.to_dict(), allow_nan=False)
+    assert "approach: no gain" in str(optimum)

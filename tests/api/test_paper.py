@@ -1,8 +1,9 @@
+from fractions import Fraction
+
 import numpy as np
-import pytest
 
 import nrs_design as nrs
-from nrs_design.errors import DesignError
+from nrs_design.api.paper import latex_of_gains, latex_of_ranges
 
 STABLE = [[[-1, 1], [-1, -1]], [[-2, 3], [-3, -2]]]
 # Dayawansa and Martin 1999: no quadratic function.
@@ -30,14 +31,23 @@ def test_large_and_small_numbers_are_powers_of_ten():
     assert r"\cdot 10^{" in nrs.certify([[["-1e-7"]]]).latex()
 
 
-def test_a_figure_in_the_width_of_a_column():
-    decision = nrs.certify(STABLE)
-    assert decision.plot(width="ieee").get_size_inches()[0] == 3.5
-    with pytest.raises(DesignError, match="no width 'wide'"):
-        decision.plot(width="wide")
+def test_a_gain_that_is_rounded_is_said_to_be():
+    gains = {"insertion": {"Bt": "2.150000095367431640625", "Kd": "2060"}}
+    units = {"insertion": {"Bt": "N*m*s/rad", "Kd": "rpm*s/rad"}}
+    shown = latex_of_gains(gains, units)
+    assert r"$B_{\mathrm{t}} \approx 2.15\,\mathrm{N\,m\,s/rad}$" in shown
+    assert r"$K_{\mathrm{d}} = 2060\,\mathrm{rpm\,s/rad}$" in shown
+
+
+def test_ends_of_a_range_are_rounded_outwards():
+    ranges = [("k", 685.8776, 809.0161, "N/m"), ("time_constant", 0.0, float("inf"), "s")]
+    first, second = latex_of_ranges(ranges).splitlines()
+    assert first == r"$k \in [685.8,\, 809.1]\,\mathrm{N/m}$"
+    assert second == r"$\mathrm{time\ constant} \in [0,\, \infty]\,\mathrm{s}$"
 
 
 def test_facts_are_plain():
     facts = nrs.certify(STABLE).to_dict()
     assert facts["verdict"] == "proved"
-    assert isinstance(facts["decay_rate"], str)
+    # The double is on the side that is proved.
+    assert facts["decay_rate"] <= Fraction(facts["decay_rate_exact"])

@@ -196,7 +196,8 @@ def test_options_of_programs(export, capsys, monkeypatch):
         assert export(SPEC, *option) == 2
         assert "for programs" in capsys.readouterr().err
     program = replace(format_of("json"), executable=True)
-    monkeypatch.setattr("nrs_design.cli.export.format_of", lambda name: program)
+    for reader in ("format_of", "known_format"):
+        monkeypatch.setattr(f"nrs_design.cli.export.{reader}", lambda name: program)
     for wrong in ("2", "0 s", "-1 ms", "2 Hz"):
         assert export(SPEC, "--format", "json", "--sample-time", wrong) == 2
     assert export(SPEC, "--format", "json", "--sample-time", "2 ms") == 3

@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 
 from nrs_design.certificates.certificate import Verdict
-from nrs_design.cli.facts import margins_facts
 from nrs_design.errors import AssemblyError, DesignError
+from nrs_design.facts.certification import margins_facts
 from nrs_design.pipeline import margins, run_certification
 from nrs_design.pipeline.certification import assemble_spec
 from nrs_design.pipeline.design import run_design

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -13,12 +13,12 @@ from nrs_design.cli.destinations import Destinations
 from nrs_design.cli.options import Date, ReportTo
 from nrs_design.cli.printing import detail, progress, say, wants_details
 from nrs_design.cli.tables import print_table
-from nrs_design.identification.cli.identify.common import SYNTHETIC, ColumnMap, read_all, sources
+from nrs_design.identification.cli.identify.common import SYNTHETIC, ColumnMap, read_all
+from nrs_design.identification.facts.running import run_judgement_facts
 
 if TYPE_CHECKING:
     from nrs_design.identification.running import Check, RunJudgement
     from nrs_design.reporting import Report
-    from nrs_design.spec import LoadedSpec
 
 _EXIT = {
     "inside": exit_codes.PROVED,
@@ -91,7 +91,7 @@ def audit(
         )
     return outputs.deliver(
         Answer(
-            lambda: _summary(found, loaded, certificate, reason),
+            lambda: run_judgement_facts(found, loaded, certificate, reason),
             lambda: _print(found, loaded.spec.name, reason),
             _EXIT[found.verdict],
         ),
@@ -163,49 +163,3 @@ def _cell(text: str) -> str:
 
 def _when(check: Check) -> str:
     return "" if check.first is None else f"{check.first.time:.6g}"
-
-
-def _summary(
-    found: RunJudgement, loaded: LoadedSpec, certificate: Path | None, reason: str
-) -> dict[str, Any]:
-    first = found.first
-    return {
-        "verdict": found.verdict,
-        "proved": found.bounds.proved,
-        "unproved_because": reason or None,
-        "synthetic": found.log.source.synthetic,
-        "log": sources([found.log.source]),
-        "spec": {"name": loaded.spec.name, "sha256": loaded.sha256},
-        "certificate": None if certificate is None else str(certificate),
-        "first_violation": _violation(first) if first is not None else None,
-        "checks": [
-            {
-                "name": c.name,
-                "status": str(c.status),
-                "measured": c.measured,
-                "allowed": c.allowed or None,
-                "basis": c.basis or None,
-                "first_violation": _violation(c),
-            }
-            for c in found.checks
-        ],
-        "estimated_share_of_time": found.share,
-        "judged_share_of_rows": found.judged,
-        "stiffness_not_tested_because": found.hint or None,
-        "stiffness": [
-            {
-                "from_s": found.log.begin + float(found.log.time[w.first]),
-                "to_s": found.log.begin + float(found.log.time[w.last - 1]),
-                "value_Nm_rad": w.value,
-                "low_Nm_rad": w.low,
-                "high_Nm_rad": w.high,
-            }
-            for w in found.windows
-        ],
-    }
-
-
-def _violation(check: Check) -> dict[str, Any] | None:
-    if check.first is None:
-        return None
-    return {"check": check.name, "time_s": check.first.time, "what": check.first.words}

@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import Any
 
-from nrs_design.cli.command import Answer, command, spec_facts
+from nrs_design.cli.command import Answer, command
 from nrs_design.cli.options import SpecFile
 from nrs_design.cli.tables import print_table
+from nrs_design.facts.spec import spec_facts
 from nrs_design.robot.cli.options import Figures, write_figures
 
 _COLUMNS = {

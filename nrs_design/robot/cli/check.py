@@ -6,10 +6,11 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from nrs_design.cli import exit_codes
-from nrs_design.cli.command import Answer, command, spec_facts
+from nrs_design.cli.command import Answer, command
 from nrs_design.cli.options import SpecFile
 from nrs_design.cli.printing import insist, say
 from nrs_design.cli.tables import print_table
+from nrs_design.facts.spec import spec_facts
 
 if TYPE_CHECKING:
     from nrs_design.robot.models import Robot, WorkspaceSurvey

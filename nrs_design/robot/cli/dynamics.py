@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from nrs_design.cli.command import Answer, command, spec_facts
+from nrs_design.cli.command import Answer, command
 from nrs_design.cli.options import SpecFile
+from nrs_design.facts.spec import spec_facts
 from nrs_design.robot.cli.options import (
     Acceleration,
     Figures,

@@ -10,11 +10,12 @@ from typing import Annotated
 import typer
 
 from nrs_design.cli import exit_codes
-from nrs_design.cli.command import Answer, command, spec_facts
+from nrs_design.cli.command import Answer, command
 from nrs_design.cli.options import SpecFile
 from nrs_design.cli.printing import note, progress, say
 from nrs_design.errors import NrsDesignError
 from nrs_design.exporters import ROBOT_FORMATS, Format
+from nrs_design.facts.spec import spec_facts
 
 INCONCLUSIVE = "inconclusive"
 

@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from nrs_design.cli.command import Answer, command, spec_facts
+from nrs_design.cli.command import Answer, command
 from nrs_design.cli.options import SpecFile
+from nrs_design.facts.spec import spec_facts
 from nrs_design.robot.cli.options import Figures, Pose, read_pose, three_numbers, write_figures
 from nrs_design.robot.cli.printing import JOINTS, LEGS, ONE, POSE, Tables, lists, print_quantities
 

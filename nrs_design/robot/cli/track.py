@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from nrs_design.cli.command import Answer, command, spec_facts
+from nrs_design.cli.command import Answer, command
 from nrs_design.cli.options import SpecFile
 from nrs_design.cli.printing import progress, say
 from nrs_design.cli.tables import print_table
+from nrs_design.facts.spec import spec_facts
 from nrs_design.progress import Progress
 from nrs_design.robot.cli.options import Figures, Tilt, write_figures
 

@@ -15,16 +15,15 @@ from nrs_design.identification.cli.identify.common import (
     ColumnMap,
     CoversOption,
     DataFiles,
-    Facts,
     WriteTo,
     deliver,
-    estimate_numbers,
     print_fits,
     read_all,
 )
+from nrs_design.identification.facts.actuator import actuator_facts
 
 if TYPE_CHECKING:
-    from nrs_design.identification.actuator import ActuatorFit, ActuatorIdentification
+    from nrs_design.identification.actuator import ActuatorIdentification
 
 
 @command("identify-actuator")
@@ -77,7 +76,7 @@ def actuator(
             check_actuator(outputs.spec, record.unit)
     with progress("fitting") as step:
         found = identify_actuator(records, motor, covers.value, step)
-    return deliver(outputs, found, _facts, _print, actuator_report, merge_actuator)
+    return deliver(outputs, found, actuator_facts, _print, actuator_report, merge_actuator)
 
 
 def _print(found: ActuatorIdentification) -> None:
@@ -101,43 +100,3 @@ def _print(found: ActuatorIdentification) -> None:
         detail(f"R = {found.figures.resistance} ohm")
         detail(f"speed over torque = {found.figures.gradient} rpm/(N m)")
         detail(f"both for a motor with {found.figures.sheet}; options give another data sheet")
-
-
-def _facts(found: ActuatorIdentification) -> Facts:
-    figures = found.figures
-    return {
-        "command_unit": found.unit,
-        "sampling_step_s": found.step,
-        "chosen": found.chosen.method,
-        "reason": found.reason,
-        "fits": [_fit(fit, found) for fit in found.fits],
-        "range": {
-            f"gain_rad_s_{found.unit}": estimate_numbers(found.ranges[0]),
-            "time_constant_s": estimate_numbers(found.ranges[1]),
-        },
-        "range_covers": found.coverage,
-        "range_covers_words": found.covers,
-        "resistance_ohm": estimate_numbers(figures.resistance) if figures else None,
-        "speed_torque_gradient_rpm_per_Nm": estimate_numbers(figures.gradient) if figures else None,
-        "response": [
-            {"frequency_rad_s": w, "real": value.real, "imaginary": value.imag}
-            for w, value in zip(found.frequency.tolist(), found.response.tolist(), strict=True)
-        ],
-    }
-
-
-def _fit(fit: ActuatorFit, found: ActuatorIdentification) -> Facts:
-    late = fit.dead_time
-    return {
-        "method": fit.method,
-        "order": fit.order,
-        f"gain_rad_s_{found.unit}": estimate_numbers(fit.gain),
-        "time_constant_s": estimate_numbers(fit.time_constant),
-        "damping_ratio": fit.motor.damping if fit.motor else None,
-        f"friction_{found.unit}": estimate_numbers(fit.friction) if fit.friction else None,
-        "dead_time_s": estimate_numbers(late) if late else None,
-        "dead_time_samples": estimate_numbers(late.scaled(1 / found.step))
-        if late and found.step
-        else None,
-        "whiteness_p": fit.uncertainty.whiteness,
-    }

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import math
 import sys
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, TypeVar
+from typing import TYPE_CHECKING, Annotated, TypeVar
 
 import typer
 
@@ -17,12 +16,11 @@ from nrs_design.cli.command import Answer
 from nrs_design.cli.destinations import Destinations
 from nrs_design.cli.printing import is_quiet, say, wants_details
 from nrs_design.cli.tables import print_table
+from nrs_design.identification.facts.finding import Facts, finding_facts
 from nrs_design.identification.finding import Finding, is_synthetic
 from nrs_design.printable import printable
 
 if TYPE_CHECKING:
-    from nrs_design.identification.datasets import Source
-    from nrs_design.identification.statistics import Estimate
     from nrs_design.reporting import Report
     from nrs_design.reporting.document import Table
     from nrs_design.spec import LoadedSpec
@@ -45,9 +43,6 @@ class CoversOption(StrEnum):
     TOLERANCE = "tolerance"
     PREDICTION = "prediction"
 
-
-# Of JSON.
-Facts = dict[str, Any]
 
 SYNTHETIC = "SYNTHETIC data: made by a simulation, not measured."
 
@@ -102,12 +97,6 @@ def print_fits(table: Table) -> None:
         print_table("", table.columns, table.rows)
 
 
-def estimate_numbers(estimate: Estimate) -> dict[str, float | None]:
-    """Return an estimate for JSON, which has no infinity; None says unlimited."""
-    low, high = (end if math.isfinite(end) else None for end in (estimate.low, estimate.high))
-    return {"value": estimate.value, "low": low, "high": high}
-
-
 def deliver(
     outputs: Destinations,
     found: F,
@@ -132,16 +121,6 @@ def deliver(
         Returns the text of a spec with the result in it.
     """
 
-    def all_facts() -> Facts:
-        return {
-            "synthetic": is_synthetic(found.sources),
-            "records": sources(found.sources),
-            **facts(found),
-            "remarks": list(found.remarks),
-            "doubts": list(found.doubts),
-            "caveats": list(found.caveats),
-        }
-
     def show_all() -> None:
         if is_synthetic(found.sources):
             say(SYNTHETIC)
@@ -152,7 +131,7 @@ def deliver(
             say(f"doubt: {doubt}")
 
     code = exit_codes.INCONCLUSIVE if found.doubts else exit_codes.PROVED
-    answer = Answer(all_facts, show_all, code)
+    answer = Answer(lambda: finding_facts(found, facts(found)), show_all, code)
     return outputs.deliver(
         answer,
         lambda: page(found),
@@ -160,11 +139,3 @@ def deliver(
         found.doubts,
         found.caveats,
     )
-
-
-def sources(files: Iterable[Source]) -> list[dict[str, Any]]:
-    """Return what identifies the data files, for JSON."""
-    return [
-        {"file": str(file.path), "sha256": file.sha256, "synthetic": file.synthetic}
-        for file in files
-    ]

@@ -14,13 +14,12 @@ from nrs_design.cli.options import Date, ReportTo
 from nrs_design.cli.printing import progress, say
 from nrs_design.identification.cli.identify.common import (
     ColumnMap,
-    Facts,
     WriteTo,
     deliver,
-    estimate_numbers,
     print_fits,
     read_all,
 )
+from nrs_design.identification.facts.delay import delay_facts
 
 if TYPE_CHECKING:
     from nrs_design.identification.delay import DelayIdentification
@@ -96,7 +95,7 @@ def delay(
     with progress("fitting"):
         found = identify_delay(record)
     return deliver(
-        outputs, found, _facts, _print, delay_report, merge_latency if late else merge_delay
+        outputs, found, delay_facts, _print, delay_report, merge_latency if late else merge_delay
     )
 
 
@@ -112,29 +111,3 @@ def _print(found: DelayIdentification) -> None:
     say(f"delay = {found.delay} s, beside {found.chosen.follower.name}")
     whole = span(*found.whole_samples)
     say(f"whole samples that hold it, and every part of the record: {whole}")
-
-
-def _facts(found: DelayIdentification) -> Facts:
-    record = found.record
-    return {
-        "columns": {"command": record.names[0], "measured": record.names[1]},
-        "sampling_step_s": record.step,
-        "correlation_peak": {"lag_s": found.peak[0], "correlation": found.peak[1]},
-        "chosen": found.chosen.follower.name,
-        "delay_s": estimate_numbers(found.delay),
-        "delay_samples": estimate_numbers(found.samples),
-        "parts": [
-            {"time_s": time, "samples": estimate_numbers(part)} for time, part in found.parts
-        ],
-        "whole_samples": list(found.whole_samples),
-        "fits": [
-            {
-                "beside": fit.follower.name,
-                "delay_s": fit.delay,
-                "bic": fit.bic,
-                "whiteness_p": fit.uncertainty.whiteness,
-            }
-            for fit in found.fits
-        ],
-        "smooth_between_samples": found.smooth,
-    }

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -16,10 +16,8 @@ from nrs_design.identification.cli.identify.common import (
     ColumnMap,
     CoversOption,
     DataFiles,
-    Facts,
     WriteTo,
     deliver,
-    estimate_numbers,
     print_fits,
     read_all,
 )
@@ -33,14 +31,12 @@ from nrs_design.identification.cli.identify.tissue_options import (
     Prony,
     Settings,
 )
+from nrs_design.identification.facts.tissue import tissue_facts
 from nrs_design.proof.text import counted
 
 if TYPE_CHECKING:
-    from nrs_design.identification.statistics import Estimate
-    from nrs_design.identification.tissue import ModelFit, RecordFit, TissueIdentification
-    from nrs_design.identification.tissue.prony import Series
+    from nrs_design.identification.tissue import RecordFit, TissueIdentification
     from nrs_design.identification.tissue.tangent import Tangent
-    from nrs_design.models.contact import AbstractContactLaw
 
 
 @command("identify-tissue")
@@ -112,7 +108,7 @@ def tissue(
     return deliver(
         outputs,
         found,
-        partial(_facts, arm=arm, series=series),
+        partial(tissue_facts, arm=arm, series=series),
         partial(_print, arm=arm, texts=texts),
         partial(tissue_report, arm=arm, series=texts),
         partial(merge_tissue, environment=environment, arm=lever_arm),
@@ -168,95 +164,3 @@ def _offsets(fit: RecordFit, rotational: bool) -> list[str]:
         unit = OFFSET_UNITS[offset.name][rotational]
         texts.append(f"{OFFSET_WORDS[offset.name]} {value} {unit}{rest}")
     return texts
-
-
-def _facts(found: TissueIdentification, arm: float | None, series: list[Series] | None) -> Facts:
-    law, about = found.chosen.law, found.tangent
-    listed = {} if series is None else {"prony": [_series_facts(item) for item in series]}
-    return {
-        "chosen": law.name,
-        "reason": found.reason,
-        "ranges": _parameters(law, found.chosen.ranges, found.rotational),
-        "tangent": None if about is None else _tangent(about, found.rotational),
-        "range_covers": found.chosen.coverage,
-        "range_covers_words": found.covers,
-        "box": found.chosen.box or None,
-        "at_pivot": None
-        if arm is None
-        else dict(zip(law.parameters(), law.at_pivot(arm).values, strict=True)),
-        "models": [_model(model, found.rotational) for model in found.models],
-        **listed,
-    }
-
-
-def _parameters(law: AbstractContactLaw, estimates: Iterable[Estimate], rotational: bool) -> Facts:
-    from nrs_design.identification.lever import named
-
-    return {
-        name: estimate_numbers(estimate) | {"unit": unit}
-        for name, estimate, unit in named(law, estimates, rotational)
-    }
-
-
-def _tangent(about: Tangent, rotational: bool) -> Facts:
-    *power, exponent = about.power
-    law = _parameters(about.law, power, rotational) | {"phi": estimate_numbers(exponent)}
-    return {
-        "preload": [about.low, about.high],
-        "ranges": _parameters(about.law, about.ranges, rotational),
-        "about": about.about,
-        "law": law,
-    }
-
-
-def _series_facts(series: Series) -> Facts:
-    law = series.reduced
-    return {
-        "record": series.record,
-        "rest": series.rest,
-        "arms": list(series.arms),
-        "times_s": list(series.times),
-        "rmse": series.rmse,
-        "bic": list(series.bic),
-        "reduced": None
-        if law is None
-        else {"law": law.name, **dict(zip(law.parameters(), law.values, strict=True))},
-    }
-
-
-def _model(model: ModelFit, rotational: bool) -> Facts:
-    return {
-        "law": model.law.name,
-        "parameters": _parameters(model.law, model.estimates, rotational),
-        "relaxation_time_s": model.law.relaxation_time,
-        "aic": model.aic,
-        "bic": model.bic,
-        "doubts": list(model.doubts),
-        "records": [
-            _record(fit, rotational) | {"rmse_pooled": pooled}
-            for fit, pooled in zip(model.fits, model.rmse, strict=True)
-        ],
-    }
-
-
-def _record(fit: RecordFit, rotational: bool) -> Facts:
-    return {
-        "parameters": _parameters(fit.law, fit.estimates, rotational),
-        "rmse": fit.rmse,
-        "aic": fit.aic,
-        "bic": fit.bic,
-        "offsets": {
-            offset.name: estimate_numbers(offset.estimate)
-            | {"fitted": offset.fitted, "provided": offset.provided or None}
-            for offset in fit.offsets
-        },
-        "used": int(fit.trial.used.sum()),
-        "samples": len(fit.record.force),
-        "cuts": list(map(str, fit.trial.cuts)),
-        "remarks": list(fit.trial.remarks),
-        "r2": fit.r2,
-        "residual_over_range": fit.rmse / fit.trial.span,
-        "whiteness_p": fit.uncertainty.whiteness,
-        "starts": fit.starts,
-        "agreeing": fit.agreeing,
-    }

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -14,17 +13,16 @@ from nrs_design.cli.printing import progress, say
 from nrs_design.identification.cli.identify.common import (
     ColumnMap,
     DataFiles,
-    Facts,
     WriteTo,
     deliver,
-    estimate_numbers,
     print_fits,
     read_all,
 )
+from nrs_design.identification.facts.tool import tool_facts
+from nrs_design.identification.tool import STANDARD_GRAVITY
 from nrs_design.proof.text import counted
 
 if TYPE_CHECKING:
-    from nrs_design.identification.statistics import Estimate
     from nrs_design.identification.tool import ToolIdentification
 
 
@@ -32,7 +30,7 @@ if TYPE_CHECKING:
 def tool(
     data: DataFiles,
     columns: ColumnMap = None,
-    gravity: Annotated[float, typer.Option(min=1e-3, help="In m/s^2.")] = 9.81,
+    gravity: Annotated[float, typer.Option(min=1e-3, help="In m/s^2.")] = STANDARD_GRAVITY,
     write: WriteTo = None,
     report: ReportTo = None,
     date: Date = None,
@@ -57,7 +55,7 @@ def tool(
     records = read_all(data, read_poses, columns or [])
     with progress("fitting"):
         found = identify_tool(records, gravity)
-    return deliver(outputs, found, _facts, _print, tool_report, merge_tool)
+    return deliver(outputs, found, tool_facts, _print, tool_report, merge_tool)
 
 
 def _print(found: ToolIdentification) -> None:
@@ -65,18 +63,3 @@ def _print(found: ToolIdentification) -> None:
 
     say(f"mass = {found.mass} kg [95 %], from {counted(len(found.force_errors), 'pose')}")
     print_fits(estimates(found))
-
-
-def _facts(found: ToolIdentification) -> Facts:
-    def along(values: Sequence[Estimate]) -> Facts:
-        return {axis: estimate_numbers(e) for axis, e in zip("xyz", values, strict=True)}
-
-    return {
-        "poses": len(found.force_errors),
-        "gravity_m_s2": found.gravity,
-        "mass_kg": estimate_numbers(found.mass),
-        "center_of_mass_m": along(found.center),
-        "force_bias_N": along(found.force_bias),
-        "torque_bias_Nm": along(found.torque_bias),
-        "rmse": {"force_N": found.rmse[0], "torque_Nm": found.rmse[1]},
-    }

@@ -1,17 +1,10 @@
-"""What all identifications share: columns by name, and where results go."""
+"""What all identifications share: where results go."""
 
 import pytest
 
 from nrs_design.cli.destinations import Destinations
 from nrs_design.errors import OutputError, SpecError
-from nrs_design.identification.cli.identify.common import estimate_numbers
-from nrs_design.identification.statistics import Estimate
 from tests.support import SOFT_TISSUE
-
-
-def test_unlimited_is_null_in_json():
-    assert estimate_numbers(Estimate(2.0, 1.0, 3.0)) == {"value": 2.0, "low": 1.0, "high": 3.0}
-    assert estimate_numbers(Estimate(2.0, 1.0, float("inf")))["high"] is None
 
 
 def checked(write=None, report=None):

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from nrs_design.axis import unit
-from nrs_design.cli.command import spec_facts
+from nrs_design.facts.spec import spec_facts
 from nrs_design.proof.bounds import lower_float, upper_float
 
 if TYPE_CHECKING:

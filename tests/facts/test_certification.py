@@ -6,7 +6,7 @@ from fractions import Fraction
 
 import pytest
 
-from nrs_design.cli.facts import loop_facts
+from nrs_design.facts.certification import loop_facts
 from nrs_design.pipeline.margins import ProofMargins
 from nrs_design.reporting.document import Linked, parts_of
 from nrs_design.reporting.margins import margin_lines

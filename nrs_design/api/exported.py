@@ -1,0 +1,138 @@
+"""Gains with their proof, as the library gives them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from nrs_design.api.optimum import Optimum
+from nrs_design.api.paper import latex_of_gains
+from nrs_design.api.result import AbstractResult, Figures
+from nrs_design.certificates.units import gain_units
+from nrs_design.errors import DesignError
+from nrs_design.exporters import known_format
+from nrs_design.exporters.write import check_places, places, write_export
+from nrs_design.facts.export import export_facts
+from nrs_design.ownership import check_certificate
+from nrs_design.pipeline import placed
+
+if TYPE_CHECKING:
+    from nrs_design.certificates.certificate import Certificate
+    from nrs_design.exporters.export import Export
+    from nrs_design.exporters.record import ExportRecord
+    from nrs_design.spec import LoadedSpec
+
+
+@dataclass(frozen=True, repr=False)
+class Exported(AbstractResult):
+    """The gains that ship with their proof, or why there are none.
+
+    Parameters
+    ----------
+    loaded : nrs_design.spec.LoadedSpec
+        The spec.
+    export : nrs_design.exporters.export.Export
+        What may be exported.
+    """
+
+    loaded: LoadedSpec
+    export: Export
+
+    @property
+    def name(self) -> str:
+        """Of the spec."""
+        return self.loaded.spec.name
+
+    @property
+    def verdict(self) -> str:
+        """``proved``, ``refuted``, ``inconclusive``; ``rejected`` of a certificate that fails."""
+        return self.export.verdict
+
+    @property
+    def reason(self) -> str:
+        """Why nothing may be exported; empty if something may."""
+        return self.export.reason
+
+    @property
+    def record(self) -> ExportRecord | None:
+        """What is exported: gains, exactly and as float32, and what is proved of them."""
+        return self.export.record
+
+    @property
+    def certificate(self) -> Certificate | None:
+        """The proof of the record, or what refutes it."""
+        return self.export.certificate
+
+    def save(self, folder: str | Path, format: str = "json") -> tuple[Path, ...]:
+        """Write the files of a format, and the certificate beside them first.
+
+        Parameters
+        ----------
+        folder : path-like
+            For the files.
+        format : str
+            As `nrs-design export --list` names it.
+
+        Returns
+        -------
+        tuple of Path
+            The files of the format; ``NAME.cert.json`` is beside them.
+
+        Raises
+        ------
+        DesignError
+            If nothing may be exported, or a processor is to run what is proved in continuous time
+            only.
+        NrsDesignError
+            If there is no such format.
+        OutputError
+            If a file cannot be written, or another stands in its place.
+        """
+        chosen, place, record = known_format(format), Path(folder), self.export.shipped()
+        if chosen.executable and record.sample_time is None:
+            raise DesignError(
+                "the proof is in continuous time, and a processor runs this format",
+                remedy="add `sampling: {period: 2 ms, delay: 1}` to the spec",
+            )
+        files = places(chosen, self.name, place)
+        proof = next(iter(files.values())).parent / f"{self.name}.cert.json"
+        check_places(chosen, files, self.name)
+        check_certificate(self.loaded.path, proof)
+        with placed(self.loaded):
+            write_export(self.export, format, files, proof, self.loaded.path)
+        return tuple(files.values())
+
+    def latex(self) -> str:
+        """Return the gains for a paper; empty if nothing may be exported."""
+        proof = self.certificate
+        if proof is None or self.record is None:
+            return ""
+        return latex_of_gains(proof.gains, gain_units(proof))
+
+    def _axis(self) -> object:
+        return None if self.export.spec is None else self.export.spec.axis
+
+    def _facts(self) -> dict[str, Any]:
+        return export_facts(self.name, self.export)
+
+    def _drawings(self) -> Figures:
+        designed = self.export.designed
+        return [] if designed is None else Optimum(designed).drawings()
+
+    def _headline(self) -> str:
+        return f"{self.name}: {self.verdict if self else f'not exported, {self.verdict}'}"
+
+    def _rows(self) -> Iterator[Sequence[str]]:
+        designed = self.export.designed
+        if designed is None:
+            yield "", ""
+            yield "why", self.reason
+            return
+        yield "controller", "gain", "value", "unit"
+        yield from Optimum(designed).gain_rows()
+
+    def __bool__(self) -> bool:
+        """Whether it is proved."""
+        return self.verdict == "proved"

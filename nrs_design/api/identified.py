@@ -1,0 +1,96 @@
+"""What records say about a tissue, an actuator, a delay or a tool, as the library gives it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from nrs_design.api.paper import latex_of_ranges
+from nrs_design.api.result import AbstractResult, Figures, drawings_of
+from nrs_design.proof.bounds import lower, upper
+
+if TYPE_CHECKING:
+    from nrs_design.reporting import Report
+
+
+@dataclass(frozen=True, slots=True)
+class FittedRange:
+    """A number with its interval."""
+
+    value: float  # The estimate
+    # low, high: ends of the interval; 0 and infinity where the records say nothing.
+    low: float
+    high: float
+    unit: str = ""
+
+    def __str__(self) -> str:
+        """Value and interval, its ends rounded outwards."""
+        high = "inf" if self.high == float("inf") else upper(Fraction(self.high), 5)
+        low = lower(Fraction(self.low), 5)
+        return f"{self.value:.5g} [{low}, {high}] {self.unit}".rstrip()
+
+
+@dataclass(frozen=True, repr=False)
+class Identification(AbstractResult):
+    """What records say: an estimate, not a proof.
+
+    Parameters
+    ----------
+    kind : str
+        What they are records of.
+    chosen : str
+        Which law or method was chosen.
+    reason : str
+        Why that one, or what it is about.
+    ranges : mapping of str to FittedRange
+        The numbers, at 95 %: of what covers more, `facts` says it.
+    files : tuple of Path
+        The records.
+    synthetic : bool
+        Whether a simulation made some of them.
+    remarks, doubts, caveats : tuple of str
+        What the numbers rest on, what speaks against them, and what a proof that uses them must
+        know.
+    facts : mapping
+        What the command prints by ``--json``.
+    page : callable
+        Draws its page.
+    """
+
+    kind: str
+    chosen: str
+    reason: str
+    ranges: Mapping[str, FittedRange]
+    files: tuple[Path, ...]
+    synthetic: bool
+    remarks: tuple[str, ...]
+    doubts: tuple[str, ...]
+    caveats: tuple[str, ...]
+    facts: Mapping[str, Any]
+    page: Callable[[], Report]
+
+    def latex(self) -> str:
+        """Return the ranges for a paper, their ends rounded outwards."""
+        return latex_of_ranges((n, r.low, r.high, r.unit) for n, r in self.ranges.items())
+
+    def _facts(self) -> dict[str, Any]:
+        return dict(self.facts)
+
+    def _drawings(self) -> Figures:
+        return drawings_of(self.page())
+
+    def _headline(self) -> str:
+        made = "SYNTHETIC data, " if self.synthetic else ""
+        count = len(self.doubts)
+        doubts = f"{count} doubt{'s' * (count != 1)}" if count else "no doubts"
+        return f"{self.kind}: {self.chosen}, {made}{doubts}"
+
+    def _rows(self) -> Iterator[Sequence[str]]:
+        yield "", "value [95 % interval]"
+        for name, found in self.ranges.items():
+            yield name, str(found)
+        for doubt in self.doubts:
+            yield "doubt", doubt

@@ -1,0 +1,88 @@
+"""The re-check of a certificate file, as the library gives it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from nrs_design import pipeline
+from nrs_design.api.result import AbstractResult, Figures, evidence_drawings
+from nrs_design.axis import axis_with
+from nrs_design.certificates.prove import Verification
+from nrs_design.facts.verification import verification_facts
+
+if TYPE_CHECKING:
+    from nrs_design.certificates.certificate import Certificate
+
+
+@dataclass(frozen=True, repr=False)
+class Recheck(AbstractResult):
+    """What a re-check says of a certificate.
+
+    Parameters
+    ----------
+    file : Path
+        The certificate.
+    spec : Path or None
+        That it was held against.
+    outcome : nrs_design.certificates.prove.Verification
+        Of the check.
+    """
+
+    file: Path
+    spec: Path | None
+    outcome: Verification
+
+    @property
+    def fault(self) -> str | None:
+        """Why the certificate is rejected; None if it is valid."""
+        return self.outcome.fault
+
+    @property
+    def certificate(self) -> Certificate | None:
+        """What the file holds; a proof or a refutation if it is valid."""
+        return self.outcome.certificate
+
+    @property
+    def verdict(self) -> str:
+        """``rejected``; of a valid certificate, what it shows."""
+        kept = self._valid()
+        return "rejected" if kept is None else kept.verdict
+
+    @property
+    def claims(self) -> tuple[str, ...]:
+        """What is shown, in words; empty if it is rejected."""
+        kept = self._valid()
+        return () if kept is None else tuple(s.claim(kept.system) for s in kept.statements)
+
+    def _axis(self) -> object:
+        return None if self.certificate is None else axis_with(self.certificate.system.states)
+
+    def _facts(self) -> dict[str, Any]:
+        return verification_facts(self.outcome, self.file, self.spec)
+
+    def _valid(self) -> Certificate | None:
+        return self.certificate if self.fault is None else None
+
+    def _drawings(self) -> Figures:
+        kept = self._valid()
+        if kept is None:
+            return []
+        return evidence_drawings(pipeline.recorded_certification(kept, self.file))
+
+    def _headline(self) -> str:
+        where = "" if self.spec is None else f" for {self.spec.name}"
+        return f"{self.file.name}{where}: {self.verdict}"
+
+    def _rows(self) -> Iterator[Sequence[str]]:
+        yield "", ""
+        if self.fault is not None:
+            yield "fault", self.fault
+        for claim in self.claims:
+            yield "claim", claim
+
+    def __bool__(self) -> bool:
+        """Whether the certificate is valid and proves; one that refutes is valid, too."""
+        return bool(self.outcome)

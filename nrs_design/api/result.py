@@ -1,0 +1,166 @@
+"""What every result of the library can do: be drawn, be shown in a notebook, be told as facts."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterable, Sequence
+from functools import partial
+from html import escape
+from typing import TYPE_CHECKING, Any
+
+from nrs_design.axis import about
+from nrs_design.errors import DesignError
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from nrs_design.reporting import Report
+    from nrs_design.reporting.document import Illustration, Section
+    from nrs_design.search.certification import Certification
+
+# Widths of one column and of both in papers of the IEEE, in.
+WIDTHS = {"ieee": 3.5, "ieee-two": 7.16}
+
+# Figures with their names, each drawn when it is asked for.
+Figures = Iterable[tuple[str, Callable[[], "Figure"]]]
+
+
+class AbstractResult(ABC):
+    """What a verb of the library returns."""
+
+    @abstractmethod
+    def _facts(self) -> dict[str, Any]:
+        """Return what the command of this name prints by ``--json``, plain and in SI."""
+
+    @abstractmethod
+    def _drawings(self) -> Figures:
+        """Yield the figures, that of most use first."""
+
+    @abstractmethod
+    def _headline(self) -> str:
+        """Return what it is, in a line."""
+
+    @abstractmethod
+    def _rows(self) -> Iterable[Sequence[str]]:
+        """Return the rows of a small table, its heads first."""
+
+    def _axis(self) -> object:
+        """Return the axis that its words and units are about; what is none is one that turns."""
+        return None
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the facts, plain and in SI: what the command of this name prints by ``--json``."""
+        with about(self._axis()):
+            return self._facts()
+
+    @property
+    def figures(self) -> tuple[str, ...]:
+        """Names of its figures."""
+        with about(self._axis()):
+            return tuple(name for name, _ in self._drawings())
+
+    def plot(self, name: str | None = None, width: str | None = None) -> Figure:
+        """Return a figure.
+
+        Parameters
+        ----------
+        name : str, optional
+            One of `figures`; by default the first.
+        width : {"ieee", "ieee-two"}, optional
+            Width of one or two columns of a paper of the IEEE, 3.5 or 7.16 in, with letters of
+            8 pt. ``savefig`` writes it as PDF, SVG, PNG or, with XeLaTeX or LuaLaTeX, PGF. Where
+            a publisher takes no Type 3 fonts, set ``matplotlib.rcParams["pdf.fonttype"] = 42``.
+
+        Raises
+        ------
+        DesignError
+            If there is no such figure or width; the message lists those that there are.
+        """
+        from nrs_design.reporting.style import for_paper
+
+        if width is not None and width not in WIDTHS:
+            raise DesignError(f"there is no width {width!r}", remedy=f"{' or '.join(WIDTHS)}")
+        with about(self._axis()), for_paper(None if width is None else WIDTHS[width]):
+            seen = []
+            for known, draw in self._drawings():
+                if name in (None, known):
+                    return draw()
+                seen.append(known)
+        if not seen:
+            raise DesignError("there is nothing to draw", remedy=self._headline())
+        raise DesignError(f"there is no figure {name!r}", remedy=f"figures here: {', '.join(seen)}")
+
+    def _table(self) -> list[Sequence[str]]:
+        with about(self._axis()):
+            return list(self._rows())
+
+    def __repr__(self) -> str:
+        """Say what it is, in a line."""
+        return f"<{type(self).__name__} {self._headline()}>"
+
+    def __str__(self) -> str:
+        """Say what it is, and its rows."""
+        heads, *rows = self._table()
+        lines = [f"{row[0]}: {', '.join(_named(heads, row))}" for row in rows]
+        return "\n".join([self._headline(), *(f"  {line}" for line in lines)])
+
+    def _repr_html_(self) -> str:
+        """Show it in a notebook."""
+        heads, *rows = ([escape(cell) for cell in row] for row in self._table())
+        head = "".join(f"<th>{cell}</th>" for cell in heads)
+        body = "".join(f"<tr>{''.join(f'<td>{cell}</td>' for cell in row)}</tr>" for row in rows)
+        first = f"<tr>{head}</tr>" if any(heads) else ""
+        table = f"<table>{first}{body}</table>" if rows else ""
+        return f"<p><strong>{escape(self._headline())}</strong></p>{table}"
+
+
+def drawn(illustrations: Iterable[Illustration], first: str = "") -> Figures:
+    """Return figures that are there already, one of them first.
+
+    Parameters
+    ----------
+    illustrations : iterable of Illustration
+        In order.
+    first : str
+        Name of the one to come first.
+    """
+    found = sorted(illustrations, key=lambda item: item.name != first)
+    return [(item.name, partial(_same, item.figure)) for item in found]
+
+
+def _same(figure: Figure) -> Figure:
+    return figure
+
+
+def evidence_drawings(certification: Certification) -> Figures:
+    """Return the figures of what was shown; a run beside its bound comes first."""
+    from nrs_design.reporting.sections.evidence import evidence_sections
+
+    return illustrated(evidence_sections(certification), "run")
+
+
+def illustrated(sections: Iterable[Section | None], first: str) -> Figures:
+    """Return the figures of sections, one of them first.
+
+    Parameters
+    ----------
+    sections : iterable of Section or None
+        In order.
+    first : str
+        Name of the figure.
+    """
+    from nrs_design.reporting.document import Illustration
+
+    blocks = [block for section in sections if section is not None for block in section.blocks]
+    return drawn((block for block in blocks if isinstance(block, Illustration)), first)
+
+
+def drawings_of(page: Report) -> Figures:
+    """Return the figures of a page."""
+    return drawn(page.illustrations)
+
+
+def _named(heads: Sequence[str], row: Sequence[str]) -> list[str]:
+    """Return the other cells of a row that say something, each after its head."""
+    named = zip(heads[1:], row[1:], strict=True)
+    return [f"{head} {cell}".strip() for head, cell in named if cell]

@@ -1,0 +1,247 @@
+"""Runs of the scenarios of a spec, as the library gives them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, overload
+
+from nrs_design import pipeline
+from nrs_design.api.result import AbstractResult, Figures
+from nrs_design.axis import unit
+from nrs_design.errors import DesignError
+from nrs_design.facts.simulation import run_facts
+from nrs_design.facts.spec import spec_facts
+
+if TYPE_CHECKING:
+    import numpy as np
+    from matplotlib.figure import Figure
+    from numpy.typing import NDArray
+
+    from nrs_design.certificates.certificate import Certificate
+    from nrs_design.pipeline.certified_runs import CertifiedBound, CertifiedRate
+    from nrs_design.pipeline.scenarios import Simulated
+    from nrs_design.simulation.run import Run
+    from nrs_design.simulation.scenario import Scenario
+    from nrs_design.simulation.time_response import Signal, TimeResponse
+
+# What is shown of a run: the name of a metric, and the unit on an axis that turns.
+_SHOWN = (
+    ("peak_torque", "N*m"),
+    ("peak_velocity", "rad/s"),
+    ("peak_depth", "rad"),
+    ("switches", ""),
+)
+
+
+@dataclass(frozen=True, repr=False)
+class ScenarioRun(AbstractResult):
+    """A scenario that has been simulated: it proves nothing.
+
+    Parameters
+    ----------
+    designed : nrs_design.pipeline.Designed
+        The spec and its gains.
+    simulated : nrs_design.pipeline.scenarios.Simulated
+        The run.
+    bounds, rate
+        What is certified beside it.
+    """
+
+    designed: pipeline.Designed
+    simulated: Simulated
+    bounds: tuple[CertifiedBound, ...] = ()
+    rate: CertifiedRate | None = None
+
+    @property
+    def name(self) -> str:
+        """Of the scenario."""
+        return self.simulated.scenario.name
+
+    @property
+    def scenario(self) -> Scenario:
+        """What was simulated, in SI."""
+        return self.simulated.scenario
+
+    @property
+    def run(self) -> Run:
+        """How the engine ran it: its steps, switches and contacts, and why it stopped."""
+        return self.simulated.run
+
+    @property
+    def metrics(self) -> Mapping[str, Any]:
+        """Of the run, in SI."""
+        return self.simulated.metrics
+
+    @property
+    def parameters(self) -> Mapping[str, float]:
+        """What was drawn from its range, in SI."""
+        return self.simulated.parameters
+
+    @property
+    def response(self) -> TimeResponse:
+        """All signals over time, as arrays with time last."""
+        return self.run.response
+
+    @property
+    def time(self) -> NDArray[np.float64]:
+        """In s, shape (N,)."""
+        return self.response.t
+
+    @property
+    def signals(self) -> tuple[Signal, ...]:
+        """Names and units of outputs, inputs and states."""
+        return (*self.response.outputs, *self.response.inputs, *self.response.states)
+
+    @property
+    def units(self) -> dict[str, str]:
+        """Units of the signals, by name."""
+        return {signal.name: signal.unit for signal in reversed(self.signals)}
+
+    @property
+    def active(self) -> list[str]:
+        """Name of the controller in force at every instant."""
+        return self.response.active
+
+    def __getitem__(self, name: str) -> NDArray[np.float64]:
+        """Return a signal by its name, shape (N,).
+
+        Raises
+        ------
+        DesignError
+            If there is no such signal; the message lists those that there are.
+        """
+        if name not in self.units:
+            known = ", ".join(signal.name for signal in self.signals)
+            raise DesignError(f"there is no signal {name!r}", remedy=f"signals here: {known}")
+        return self.response[name]
+
+    def _axis(self) -> object:
+        return self.designed.spec.axis
+
+    def _facts(self) -> dict[str, Any]:
+        return run_facts(self.simulated, self.bounds, self.rate)
+
+    def _drawings(self) -> Figures:
+        return [("run", self._draw)]
+
+    def _draw(self) -> Figure:
+        from nrs_design.reporting.figures.simulated import draw_simulated
+        from nrs_design.simulation.run import common_lever_arm
+
+        spec = self.designed.spec
+        touched = [surface.environment for surface in self.scenario.surfaces]
+        level = next(((b.level, not b.uncovered) for b in self.bounds if b.output == "force"), None)
+        return draw_simulated(
+            self.response,
+            spec.limits.torque.si,
+            spec.limits.velocity.si,
+            common_lever_arm(spec, touched),
+            level,
+        )
+
+    def _headline(self) -> str:
+        stopped = f", STOPPED: {self.run.stopped}" if self.run.stopped else ""
+        return f"{self.name}: {len(self.time)} instants, {self.time[-1]:.6g} s{stopped}"
+
+    def _rows(self) -> Iterator[Sequence[str]]:
+        from nrs_design.reporting.simulation import metric_rows
+
+        yield "", "value", "unit", "limit"
+        yield from metric_rows(self.metrics, self.scenario.limits)
+
+
+@dataclass(frozen=True, repr=False)
+class Simulation(AbstractResult):
+    """Runs of one spec, in the order of its scenarios.
+
+    Parameters
+    ----------
+    designed : nrs_design.pipeline.Designed
+        The spec and its gains.
+    runs : tuple of ScenarioRun
+        One for each scenario, and for each axis where one moves several.
+    """
+
+    designed: pipeline.Designed
+    runs: tuple[ScenarioRun, ...]
+
+    @classmethod
+    def of(
+        cls, designed: pipeline.Designed, found: Sequence[Simulated], proof: Certificate | None
+    ) -> Simulation:
+        """Return the runs, beside what is certified.
+
+        Parameters
+        ----------
+        designed : Designed
+            The spec and its gains.
+        found : sequence of Simulated
+            Its runs.
+        proof : Certificate or None
+            Checked against the spec.
+        """
+        from nrs_design.pipeline.certified_runs import hold_bounds, hold_rate
+
+        if proof is None:
+            return cls(designed, tuple(ScenarioRun(designed, one) for one in found))
+        held = (
+            (one, hold_bounds(designed, proof, one), hold_rate(designed, proof, one))
+            for one in found
+        )
+        return cls(designed, tuple(ScenarioRun(designed, *parts) for parts in held))
+
+    def __iter__(self) -> Iterator[ScenarioRun]:
+        """Run after run."""
+        return iter(self.runs)
+
+    def __len__(self) -> int:
+        """How many runs there are."""
+        return len(self.runs)
+
+    @overload
+    def __getitem__(self, key: int | str) -> ScenarioRun: ...
+
+    @overload
+    def __getitem__(self, key: slice) -> tuple[ScenarioRun, ...]: ...
+
+    def __getitem__(self, key: int | str | slice) -> ScenarioRun | tuple[ScenarioRun, ...]:
+        """Return a run by its place or by the name of its scenario.
+
+        Raises
+        ------
+        DesignError
+            If there is no such scenario; the message lists those that there are.
+        """
+        if not isinstance(key, str):
+            return self.runs[key]
+        named = {one.name: one for one in self.runs}
+        if key not in named:
+            remedy = f"scenarios here: {', '.join(named)}"
+            raise DesignError(f"there is no run of {key!r}", remedy=remedy)
+        return named[key]
+
+    def _axis(self) -> object:
+        return self.designed.spec.axis
+
+    def _facts(self) -> dict[str, Any]:
+        runs = [one.to_dict() for one in self.runs]
+        return spec_facts(self.designed.loaded) | {"runs": runs, "files": []}
+
+    def _drawings(self) -> Figures:
+        return [(one.name, one.plot) for one in self.runs]
+
+    def _headline(self) -> str:
+        count = len(self.runs)
+        return f"{self.designed.spec.name}: {count} run{'s' * (count != 1)}, which prove nothing"
+
+    def _rows(self) -> Iterator[Sequence[str]]:
+        from nrs_design.reporting.simulation import four_digits_up
+
+        yield "run", *(f"{name.replace('_', ' ')}" for name, _ in _SHOWN), "stopped"
+        for one in self.runs:
+            shown = (
+                f"{four_digits_up(float(one.metrics[name]))} {unit(turning)}".rstrip()
+                for name, turning in _SHOWN
+            )
+            yield one.name, *shown, one.run.stopped or ""

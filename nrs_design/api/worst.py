@@ -1,0 +1,92 @@
+"""The worst runs that an adversary found, as the library gives them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from nrs_design import pipeline
+from nrs_design.api.result import AbstractResult, Figures
+from nrs_design.facts.spec import spec_facts
+from nrs_design.facts.worst_case import worst_case_facts
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from nrs_design.pipeline.worst_case import WorstCase
+    from nrs_design.simulation.worst_case import WorstRun
+
+
+@dataclass(frozen=True, repr=False)
+class WorstFound(AbstractResult):
+    """What an adversary found: a lower bound of the worst that may happen in the model.
+
+    Parameters
+    ----------
+    designed : nrs_design.pipeline.Designed
+        The spec and its gains.
+    case : nrs_design.pipeline.worst_case.WorstCase
+        His runs.
+    seed : int
+        Of the search.
+    """
+
+    designed: pipeline.Designed
+    case: WorstCase
+    seed: int
+
+    @property
+    def runs(self) -> tuple[WorstRun, ...]:
+        """One for each quantity: force, velocity and deflection."""
+        return self.case.runs
+
+    @property
+    def worst(self) -> dict[str, float]:
+        """The worst value that was found of each quantity, in SI."""
+        return {run.output.name: run.value for run in self.runs}
+
+    @property
+    def limits(self) -> Mapping[str, float]:
+        """Of the quantities, as far as the spec has any, in SI."""
+        return self.case.limits
+
+    @property
+    def bounds(self) -> Mapping[str, float]:
+        """Of the quantities, not below what is certified, in SI."""
+        return self.case.bounds
+
+    @property
+    def declared(self) -> bool:
+        """Whether the spec says what disturbs; otherwise it is any command up to its limit."""
+        return self.case.declared
+
+    def _axis(self) -> object:
+        return self.designed.spec.axis
+
+    def _facts(self) -> dict[str, Any]:
+        facts = worst_case_facts(self.case, self.seed)
+        return spec_facts(self.designed.loaded) | facts | {"files": []}
+
+    def _drawings(self) -> Figures:
+        return [(run.output.name, partial(self._draw, run)) for run in self.runs]
+
+    def _draw(self, run: WorstRun) -> Figure:
+        from nrs_design.reporting.worst_case import draw_worst
+
+        return draw_worst(self.case, run, self._arm())
+
+    def _arm(self) -> float | None:
+        from nrs_design.simulation.run import common_lever_arm
+
+        return common_lever_arm(self.designed.spec, self.designed.spec.touched)
+
+    def _headline(self) -> str:
+        return f"{self.designed.spec.name}: the worst that was found, a lower bound"
+
+    def _rows(self) -> Iterator[Sequence[str]]:
+        from nrs_design.reporting.worst_case import COLUMNS, worst_rows
+
+        yield COLUMNS
+        yield from worst_rows(self.case, self._arm())

@@ -1,0 +1,48 @@
+"""What an adversary found, beside limits and certified bounds."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from nrs_design.pipeline.worst_case import WorstCase
+
+
+def worst_case_facts(case: WorstCase, seed: int) -> dict[str, Any]:
+    """Return what the adversary found, in SI.
+
+    Parameters
+    ----------
+    case : WorstCase
+        His runs.
+    seed : int
+        Of the search.
+    """
+    from nrs_design.reporting.worst_case import found_in, left_out
+
+    found = [
+        {
+            "output": item.name,
+            "unit": item.unit,
+            "worst_found": item.value,
+            "limit": item.limit,
+            "certified_bound": item.bound,
+            "bound_over_found": item.ratio,
+            "exceeds_limit": item.exceeds,
+            "duration": float(run.time[-1]),
+            "starts": [float(value) for value in run.starts],
+        }
+        for item, run in zip(found_in(case), case.runs, strict=True)
+    ]
+    return {
+        "worst_case": {
+            "seed": seed,
+            "disturbances": [
+                {"name": c.name, "unit": c.unit, "bound": float(c.bound)}
+                for c in case.system.channels
+            ],
+            "disturbances_declared": case.declared,
+            "found": found,
+            "not_modelled": [left_out(case.system)],
+        },
+    }

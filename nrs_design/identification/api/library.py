@@ -1,0 +1,243 @@
+"""What the library asks of this wing: records and runs, as results of its own kind."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from nrs_design.api.audit import Audit, AuditCheck
+from nrs_design.api.identified import FittedRange, Identification
+from nrs_design.errors import DataError
+from nrs_design.identification.actuator import (
+    THESIS_MOTOR,
+    ActuatorIdentification,
+    identify_actuator,
+)
+from nrs_design.identification.datasets import (
+    FrequencyResponse,
+    read_actuator,
+    read_poses,
+    read_signals,
+    read_tissue,
+)
+from nrs_design.identification.delay import DelayIdentification, identify_delay
+from nrs_design.identification.facts.actuator import actuator_facts
+from nrs_design.identification.facts.delay import delay_facts
+from nrs_design.identification.facts.finding import Facts, finding_facts
+from nrs_design.identification.facts.running import run_judgement_facts
+from nrs_design.identification.facts.tissue import tissue_facts
+from nrs_design.identification.facts.tool import tool_facts
+from nrs_design.identification.finding import Finding, is_synthetic
+from nrs_design.identification.lever import named
+from nrs_design.identification.reporting.actuator import actuator_report
+from nrs_design.identification.reporting.delay import delay_report
+from nrs_design.identification.reporting.running import run_report
+from nrs_design.identification.reporting.tissue import tissue_report
+from nrs_design.identification.reporting.tool import tool_report
+from nrs_design.identification.running import Check, judge_run, read_run, read_run_bounds
+from nrs_design.identification.running.proof import proof_of
+from nrs_design.identification.tables.columns import parse_mapping
+from nrs_design.identification.tissue import TissueIdentification, identify_tissue
+from nrs_design.identification.tool import STANDARD_GRAVITY, ToolIdentification, identify_tool
+from nrs_design.identification.write_spec import check_turning
+from nrs_design.models.contact import LAWS
+
+if TYPE_CHECKING:
+    from nrs_design.identification.statistics import Estimate
+    from nrs_design.reporting import Report
+    from nrs_design.spec import LoadedSpec
+
+Columns = Mapping[str, str]  # From a name in the file to ours
+
+# How the columns of a delay are called by those who name them.
+_OF_DELAY = {"command": "input_any", "measured": "output_any"}
+
+
+@dataclass(frozen=True, slots=True)
+class _Answer:
+    """What is taken of an identification of any kind."""
+
+    chosen: str
+    reason: str
+    ranges: Mapping[str, FittedRange]
+    facts: Facts
+    page: Callable[[], Report]
+
+
+def identify_records(
+    files: Sequence[str | Path], kind: str, law: str | None, columns: Mapping[str, str]
+) -> Identification:
+    """Identify what records are of; see `nrs_design.api.identify`.
+
+    Parameters
+    ----------
+    files : sequence of path-like
+        CSV files.
+    kind : {"tissue", "actuator", "tool", "delay"}
+        What they are records of.
+    law : str or None
+        Of the tissue.
+    columns : mapping of str to str
+        From our names of columns to those in the files.
+
+    Raises
+    ------
+    DataError
+        If a file is no such record, or there is no such kind, law or column.
+    """
+    _check(files, kind, law)
+    named_ours = {_OF_DELAY.get(k, k) if kind == "delay" else k: v for k, v in columns.items()}
+    mapping = parse_mapping([f"{ours}={theirs}" for ours, theirs in named_ours.items()])
+    found, answer = _KINDS[kind]([Path(file) for file in files], mapping, law)
+    return Identification(
+        kind=kind,
+        chosen=answer.chosen,
+        reason=answer.reason,
+        ranges=answer.ranges,
+        files=tuple(source.path for source in found.sources),
+        synthetic=is_synthetic(found.sources),
+        remarks=tuple(found.remarks),
+        doubts=tuple(found.doubts),
+        caveats=tuple(found.caveats),
+        facts=finding_facts(found, answer.facts),
+        page=answer.page,
+    )
+
+
+def _check(files: Sequence[str | Path], kind: object, law: str | None) -> None:
+    """Refuse words that are none, and arguments in each other's place."""
+    kinds = tuple(_KINDS)
+    if kind not in kinds:
+        if any(file in kinds for file in files):
+            raise DataError(
+                "the arguments are swapped", remedy="the records come first: identify(files, kind)"
+            )
+        raise DataError(f"there is no kind {kind!r}", remedy=f"write {', '.join(kinds)}")
+    if law is not None and kind != "tissue":
+        raise DataError(f"records of kind {kind} have no law", remedy="leave law out")
+    if law is not None and law not in LAWS:
+        raise DataError(f"there is no law {law!r}", remedy=f"one of {', '.join(LAWS)}")
+    if kind == "delay" and len(files) != 1:
+        raise DataError("a delay is that of one record", remedy="name one file")
+
+
+def _tissue(
+    files: Sequence[Path], mapping: Columns, law: str | None
+) -> tuple[TissueIdentification, _Answer]:
+    found = identify_tissue([read_tissue(file, mapping) for file in files], law)
+    parameters = named(found.chosen.law, found.chosen.ranges, found.rotational)
+    return found, _Answer(
+        found.chosen.law.name,
+        found.reason,
+        {name: _range(estimate, unit) for name, estimate, unit in parameters},
+        tissue_facts(found),
+        partial(tissue_report, found),
+    )
+
+
+def _actuator(
+    files: Sequence[Path], mapping: Columns, law: str | None
+) -> tuple[ActuatorIdentification, _Answer]:
+    items = [read_actuator(file, mapping) for file in files]
+    series = [(item,) if isinstance(item, FrequencyResponse) else item for item in items]
+    found = identify_actuator([record for group in series for record in group], THESIS_MOTOR)
+    gain, time_constant = found.ranges
+    ranges = {
+        "gain": _range(gain, f"(rad/s)/{found.unit}"),
+        "time_constant": _range(time_constant, "s"),
+    }
+    page = partial(actuator_report, found)
+    return found, _Answer(found.chosen.method, found.reason, ranges, actuator_facts(found), page)
+
+
+def _delay(
+    files: Sequence[Path], mapping: Columns, law: str | None
+) -> tuple[DelayIdentification, _Answer]:
+    (file,) = files
+    found = identify_delay(read_signals(file, mapping))
+    sent, seen = found.record.names
+    ranges = {"delay": _range(found.delay, "s"), "samples": _range(found.samples, "samples")}
+    chosen, about = found.chosen.follower.name, f"from {sent} to {seen}"
+    return found, _Answer(chosen, about, ranges, delay_facts(found), partial(delay_report, found))
+
+
+def _tool(
+    files: Sequence[Path], mapping: Columns, law: str | None
+) -> tuple[ToolIdentification, _Answer]:
+    found = identify_tool([read_poses(file, mapping) for file in files], STANDARD_GRAVITY)
+    ranges = {"mass": _range(found.mass, "kg")}
+    for name, values, unit in (
+        ("center_of_mass", found.center, "m"),
+        ("force_bias", found.force_bias, "N"),
+        ("torque_bias", found.torque_bias, "N m"),
+    ):
+        ranges |= {f"{name}_{a}": _range(v, unit) for a, v in zip("xyz", values, strict=True)}
+    about = f"from {len(found.force_errors)} poses, with {found.gravity} m/s^2"
+    page = partial(tool_report, found)
+    return found, _Answer("least squares", about, ranges, tool_facts(found), page)
+
+
+def _range(estimate: Estimate, unit: str) -> FittedRange:
+    return FittedRange(estimate.value, estimate.low, estimate.high, unit)
+
+
+_KINDS: Mapping[str, Callable[[Sequence[Path], Columns, str | None], tuple[Finding, _Answer]]] = {
+    "tissue": _tissue,
+    "actuator": _actuator,
+    "tool": _tool,
+    "delay": _delay,
+}
+
+
+def judge_log(log: Path, loaded: LoadedSpec, certificate: Path | None) -> Audit:
+    """Judge whether a run stayed inside what was proved; see `nrs_design.api.Study.audit`.
+
+    Parameters
+    ----------
+    log : Path
+        CSV file of the run.
+    loaded : LoadedSpec
+        The spec.
+    certificate : Path or None
+        Checked against the spec.
+
+    Raises
+    ------
+    DataError, CertificateError
+        If a file cannot be used.
+    """
+    check_turning(loaded.spec, loaded.path)
+    reason, losable = proof_of(certificate, loaded)
+    found = judge_run(read_run(log), read_run_bounds(loaded), proved=not reason, losable=losable)
+    checks = {id(check): told for check, told in _told(found.checks)}
+    return Audit(
+        name=loaded.spec.name,
+        verdict=found.verdict,
+        unproved_because=reason,
+        checks=tuple(checks.values()),
+        first=None if found.first is None else checks[id(found.first)],
+        synthetic=found.log.source.synthetic,
+        facts=run_judgement_facts(found, loaded, certificate, reason),
+        page=partial(run_report, found, loaded.spec.name, reason),
+    )
+
+
+def _told(checks: Sequence[Check]) -> Iterator[tuple[Check, AuditCheck]]:
+    for check in checks:
+        first = check.first
+        when, what = (None, "") if first is None else (first.time, first.words)
+        yield (
+            check,
+            AuditCheck(
+                check.name,
+                str(check.status),
+                check.measured,
+                check.allowed,
+                check.basis,
+                when,
+                what,
+            ),
+        )

@@ -1,0 +1,1 @@
+"""What JSON documents say of identifications and audits: one file each."""

@@ -16,6 +16,7 @@ from nrs_design.cli.options import Budget, MaxDegree, Memory
 from nrs_design.cli.printing import note, progress, say, say_failure, wants_details, wants_json
 from nrs_design.cli.tables import print_table
 from nrs_design.errors import NrsDesignError, OutputError
+from nrs_design.proof.text import counted
 
 if TYPE_CHECKING:
     from nrs_design.gating.obligations import GateOutcome
@@ -109,8 +110,13 @@ def gate(
 
         outcome = compare_with_base(outcome, paths, against, lock)
     _deliver(outcome, chosen, out)
-    for item in (caution for spec in outcome.specs for caution in spec.cautions):
+    cautions = [caution for spec in outcome.specs for caution in spec.cautions]
+    shown = [item for item in cautions if wants_details() or not item.flagged]
+    for item in shown:
         note(f"warning: {item.path}:{item.line}:{item.column}: {item.message}")
+    if len(shown) < len(cautions):
+        remarks = counted(len(cautions) - len(shown), "remark")
+        note(f"note: {remarks} on designs, which `optimize` marks (-v lists them)")
     for text in outcome.notes:
         note(f"note: {text}")
     note(f"{perf_counter() - start:.1f} s")

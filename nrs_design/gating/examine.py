@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import isnan
 from pathlib import Path
@@ -387,7 +387,7 @@ class Examiner:
     def cautions(self, analysis: DesignAnalysis | None) -> Iterator[Caution]:
         """Yield what is doubtful about the spec and its design."""
         for doubt in (*doubt_spec(self.loaded.spec), *(analysis.warnings if analysis else ())):
-            yield self.caution(str(doubt), *doubt.at)
+            yield replace(self.caution(str(doubt), *doubt.at), flagged=doubt.flagged)
 
 
 def _met(reached: bool) -> Status:

@@ -60,6 +60,7 @@ class Caution:
     # line, column: place in the spec, counted from 1.
     line: int
     column: int
+    flagged: bool = False  # Whether the table of `optimize` marks it
 
 
 _SEVERITY = {

@@ -12,7 +12,7 @@ CERTIFICATE = SimpleNamespace(spec_name="arm", spec_sha256="1" * 64, id="2" * 64
 # As `nrs_design.exporters.binary_record` writes it.
 RECORD = {
     "schema": "nrs-design/binary/1",
-    "package": "0.1.0",
+    "package": "1.0.0",
     "spec": {"name": "arm", "sha256": "1" * 64},
     "certificate": "2" * 64,
     "compiler": {"version": "gcc 13.2", "target": "arm-none-eabi"},

@@ -26,7 +26,7 @@ def test_sinusoids_and_a_ready_response(tmp_path):
     assert document["range_covers"] == "confidence"
     assert "gain: {nominal: 4.84" in spec.read_text()
     assert "range_covers: confidence" in spec.read_text()
-    text = run("identify", "actuator", DATA / "actuator-response.csv", cwd=tmp_path).stdout
+    text = run("identify", "actuator", DATA / "actuator-response.csv", "-v", cwd=tmp_path).stdout
     assert text.startswith("SYNTHETIC data")
     assert "ready frequency response" in text
     assert "both for a motor with K_T = 0.0115 N m/A" in text

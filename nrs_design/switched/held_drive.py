@@ -103,18 +103,20 @@ class HeldDrive(HeldMotor):
             own |= {s: nothing if touched is None else touched.get(s, nothing) for s in LOAD}
         times = {"T": timing.lengths}
         times |= {f"h{age}": timing.left(age) for age in timing.within}
+        reached = _reached(times) if drive.speed is not None else {}
         with precision(BITS):
-            entries = dict(_entries(drive, own, times))
+            entries = dict(_entries(drive, own, times, reached))
         offs = {e.symbol: Interval(ZERO, -e.off, e.off) for e in entries.values() if e.off}
         renamed = dict(zip(LOAD, load, strict=True))
+        numbers = own | times | dict.fromkeys(reached.values(), Interval(ONE, ZERO, ONE))
         ranges = {
             renamed.get(s, s): interval
-            for s, interval in (own | times).items()
+            for s, interval in numbers.items()
             if interval.low < interval.high and (s not in LOAD or load != LOAD)
         }
         inverse = drive.inverse & ranges.keys()
         box = Box(ranges, inverse, hull=around(offs))
-        return cls(box, drive, timing, own | times, entries, load)
+        return cls(box, drive, timing, numbers, entries, load)
 
     @property
     def drive(self) -> Drive:
@@ -207,8 +209,19 @@ class HeldDrive(HeldMotor):
             yield symbol, (value - low) / (high - low)
 
 
+def _reached(times: Mapping[str, Interval]) -> dict[str, str]:
+    """Return symbols of whether a command takes effect in the period, where it may come later.
+
+    By the times that are then left. A velocity that jumps has jumped, or not, where none is left.
+    """
+    return {time: f"in{time[1:]}" for time, left in times.items() if left.low == 0}
+
+
 def _entries(
-    drive: Drive, numbers: Mapping[str, Interval], times: Mapping[str, Interval]
+    drive: Drive,
+    numbers: Mapping[str, Interval],
+    times: Mapping[str, Interval],
+    reached: Mapping[str, str],
 ) -> Iterator[tuple[tuple[int, int, int], PeriodEntry]]:
     """Yield what is not zero."""
     n, count = drive.order, 0
@@ -239,7 +252,12 @@ def _entries(
             found = _rounded(values, off)
             if found is None:
                 raise _too_long()
-            yield (span, row, column), PeriodEntry(f"off{count}", tuple(moving), *found)
+            depends, (corners, error) = moving, found
+            if row == n and time in reached:
+                # Of a jump that is still to come, nothing is there.
+                depends = [*moving, reached[time]]
+                corners = {(*c, end): v * end for c, v in corners.items() for end in (0, 1)}
+            yield (span, row, column), PeriodEntry(f"off{count}", tuple(depends), corners, error)
             count += 1
 
 

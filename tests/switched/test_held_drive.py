@@ -322,3 +322,26 @@ def test_what_is_touched_may_change_within_a_period(pieces, late):
             off[row, 2] += float(entry.off)
     assert (abs(found - wanted) <= off + 1e-13).all()
     assert off.max() < 0.002
+
+
+@pytest.mark.parametrize("late", [0.5, 1.0, 1.25, 1.5])
+def test_a_velocity_has_not_jumped_before_its_command_takes_effect(late):
+    """Of a robot with ``tau theta' = u - theta`` under commands half a period to 1.5 late."""
+    tau, step = 0.01, float(T)
+    timing = CommandTiming(T, T / 2, F(3, 2) * T)
+    held = HeldDrive.of(lagging_drive(Interval.point(F(1, 100))), timing)
+    theta, u0, u1, u2 = 0.3, 1.0, -2.0, 5.0
+    # The last command but one comes half a period late, the newest after `late` periods.
+    where = u1 + (theta - u1) * np.exp(-step / tau)
+    speed = (u1 - where) / tau  # Between -200 and 500
+    left = max(1 - late, 0.0)
+    if late < 1:
+        where = u1 + (theta - u1) * np.exp(-(1 - left) * step / tau)
+        where = u2 + (where - u2) * np.exp(-left * step / tau)
+        speed = (u2 - where) / tau
+    values = {"h1": T, "h0": F(left) * T, "in0": F(int(late < 1))}
+    assert {*held.numbers} >= {*values}
+    found = forms(held, values, 2) @ [theta, u0, u1, u2]
+    off = float(sum(entry.off for entry in held.entries.values()))
+    assert found == pytest.approx([speed, where], abs=off * max(abs(u0 - u1), abs(u1 - u2)))
+    assert off < 1

@@ -135,18 +135,24 @@ def known_entries(frame: Frame, channels: Sequence[Channel]) -> list[int]:
     return [*range(n), *(n + i for i, name in enumerate(INPUTS) if name in named)]
 
 
-def anything_of(environments: Iterable[Environment]) -> dict[str, Interval]:
+def anything_of(environments: Iterable[Environment], *, lost: bool) -> dict[str, Interval]:
     """Return where stiffness and damping are of any of some environments, or of nothing.
 
     Parameters
     ----------
     environments : iterable of Environment
         At least one.
+    lost : bool
+        Whether nothing may be touched.
     """
     each = [(e.stiffness, damping_of(e)) for e in environments]
     zero = Fraction(0)
     return {
-        symbol: Interval(ranges[0].nominal, zero, max(r.high for r in ranges))
+        symbol: Interval(
+            ranges[0].nominal,
+            zero if lost else min(r.low for r in ranges),
+            max(r.high for r in ranges),
+        )
         for symbol, ranges in zip(("k", "b"), zip(*each, strict=True), strict=True)
     }
 

@@ -311,9 +311,9 @@ class _Loop:
         environments = tuple(environments)
         for environment in environments:
             touched = {"k": environment.stiffness, "b": damping_of(environment)}
-            if self.loses and self.frame.motor.drive is not None and self.frame.motor.drive.loaded:
-                # Within a period, too, anything may be touched, or nothing.
-                touched = anything_of(environments)
+            if self.frame.motor.drive is not None and self.frame.motor.drive.loaded:
+                # It may be another one within a period, too, or nothing where contact is lost.
+                touched = anything_of(environments, lost=self.loses)
             forced = any(FORCE_GAIN in law.numbers for law in self.frame.laws)
             motor = self.frame.motor.touching(touched, forced=forced)
             loop = replace(self, frame=replace(self.frame, motor=motor))
@@ -352,8 +352,9 @@ class _Loop:
             box, motor = self.frame.motor.box, self.frame.motor
             if environment is not None:
                 touched = {"k": environment.stiffness, "b": damping_of(environment)}
-                if self.loses and motor.drive is not None and motor.drive.loaded:
-                    touched = anything_of(e for e in contacts if e is not None)
+                if motor.drive is not None and motor.drive.loaded:
+                    every = (e for e in contacts if e is not None)
+                    touched = anything_of(every, lost=self.loses)
                 motor = motor.touching(touched, forced=self.frame.longest_delay > 0)
                 # The force of a sample that nobody takes matters where it is still on its way.
                 own = Box(touched) if self.frame.longest_delay else Box({})

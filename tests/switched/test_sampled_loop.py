@@ -659,3 +659,37 @@ def test_a_robot_that_closes_the_loop_of_the_thesis_has_its_modes(tmp_path):
         loaded = read_spec(path)
         systems.append(assemble_spec(loaded, run_design(loaded), "deflection"))
     assert systems[0].modes == systems[1].modes == systems[2].modes
+
+
+TWO_TISSUES = """\
+kind: interaction-design
+name: two-tissues
+title: Torques, and two tissues in turn
+torque_interface: {inertia: 0.2 kg*m^2, friction: 0.5 N*m*s/rad}
+limits: {velocity: 8 deg/s, torque: 3 N*m, bandwidth: 2 Hz}
+environments:
+  soft: {model: elastic, stiffness: 10 N*m/rad}
+  hard: {model: elastic, stiffness: 60 N*m/rad}
+controllers:
+  heavy: {type: torque-impedance, environment: soft, contacts: [soft, hard], stiffness: 20 N*m/rad,
+          damping: 6 N*m*s/rad, inertia_ratio: 3}
+switching: arbitrary
+contact: kept"""
+
+
+def test_another_tissue_may_be_touched_within_a_period(tmp_path):
+    """The hard one at every sample, the soft one after it: what is taken off F is too much.
+
+    By hand, every period ``J omega' = K/R e + D/(R T) (e - e before) + (1 - 1/R) 60 delta - 10
+    delta - B omega``.
+    """
+    J, B, K, D, R, step = 0.2, 0.5, 20.0, 6.0, 3.0, 1e-3
+    G = np.array([[0, 1, 0], [-10 / J, -B / J, 1 / J], [0, 0, 0]])
+    E = expm(G * step)
+    u = np.array([-K / R - D / (R * step) + (1 - 1 / R) * 60, 0, -D / (R * step)])
+    own = np.array([*(E[:2, :2] @ np.eye(2, 3) + np.outer(E[:2, 2], u)), [-1, 0, 0]])
+    grows = abs(np.linalg.eigvals(own)).max()
+    assert grows > 1.006
+    system = system_of(tmp_path, "{period: 1 ms, delay: 0}", text=TWO_TISSUES)
+    worst = max(radius(system, mode.name) for mode in system.modes)
+    assert 0 <= worst - grows < 5e-4

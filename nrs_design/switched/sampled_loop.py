@@ -132,6 +132,9 @@ def close_sampled_loop(
     outputs: tuple[Output, ...] = ()
     if channels:
         outputs = outputs_of(velocity, frame.states, environments, conditions.torque)
+        if motor.drive is not None and motor.drive.speed is not None:
+            # It jumps after the sample, and the force of what is damped with it.
+            outputs = () if pulls else outputs[:1]
     driven = None
     if coupling is None:
         driven = motor_command(conditions.largest_command, conditions.command, frame, channels)

@@ -693,3 +693,25 @@ def test_another_tissue_may_be_touched_within_a_period(tmp_path):
     system = system_of(tmp_path, "{period: 1 ms, delay: 0}", text=TWO_TISSUES)
     worst = max(radius(system, mode.name) for mode in system.modes)
     assert 0 <= worst - grows < 5e-4
+
+
+@pytest.mark.parametrize(
+    ("drive", "tissue", "bounded"),
+    [
+        ("position_interface: {time_constant: 0.5 ms}", "elastic", ["force"]),
+        ("position_interface: {time_constant: 0.5 ms}", "kelvin-voigt", []),
+        ("velocity_interface: {time_constant: 0.5 ms}", "kelvin-voigt", ["force", "velocity"]),
+    ],
+)
+def test_no_bound_on_a_velocity_that_jumps_after_the_sample(tmp_path, drive, tissue, bounded):
+    """At a sample it has decayed to exp(-4) of what it was: no such bound is about the robot."""
+    damping = ", damping: 1 N*m*s/rad" if tissue == "kelvin-voigt" else ""
+    text = (
+        f"kind: interaction-design\nname: jumps\ntitle: A fast robot\n{drive}\n"
+        "limits: {velocity: 8 deg/s, torque: 0.3 N*m, bandwidth: 2 Hz}\nenvironments:\n"
+        f"  tissue: {{model: {tissue}, stiffness: 5 N*m/rad{damping}}}\ncontrollers:\n"
+        "  firm: {type: impedance, environment: tissue, Mt: 0.02 kg*m^2, Bt: 2 N*m*s/rad}\n"
+        "disturbances: {command: 8 deg/s}\nswitching: arbitrary\ncontact: kept"
+    )
+    system = system_of(tmp_path, "{period: 2 ms, delay: 0}", text=text)
+    assert [output.name for output in system.outputs] == bounded

@@ -95,6 +95,7 @@ def assume_sampled(
         *_period_texts(sampling, design),
         *_deadline_texts(sampling.misses),
         *_late_texts(frame.timing, conditions.constant_late),
+        *_jump_texts(frame),
         _delay_text(*sampling.delay),
         _motor_text(ranges, frame, conditions.axis),
         *([] if design.takes is Takes.TORQUE else [say("unloaded.sampled")]),
@@ -154,6 +155,12 @@ def _late_texts(timing: CommandTiming, constant: str | None) -> Iterator[Assumpt
         yield say("command-age.constant", f"{earliest} s to {late} s", earliest=earliest, late=late)
     else:
         yield say("command-age.range", f"{earliest} s to {late} s", earliest=earliest, late=late)
+
+
+def _jump_texts(frame: Frame) -> Iterator[Assumption]:
+    """Say what a sample shows of a velocity that jumps at that moment."""
+    if frame.motor.drive is not None and frame.motor.drive.speed is not None:
+        yield say("command-age.before", "the order that is named")
 
 
 def _motor_text(ranges: ActuatorRanges, frame: Frame, axis: AxisType) -> Assumption:

@@ -19,7 +19,7 @@ from nrs_design.identification.statistics import Estimate, student_quantile
 from nrs_design.spec.plausible import doubt_size
 
 # In m/s^2, where nobody says another.
-STANDARD_GRAVITY = 9.81
+GRAVITY = 9.81
 # Three poses determine all; from so many on, an error of one of them shows.
 _FEWEST, _ENOUGH = 3, 6
 # Spread of the directions of gravity, as a part of their length: below it poses are alike.

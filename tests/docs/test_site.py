@@ -5,7 +5,7 @@ import re
 from ruamel.yaml import YAML
 
 from nrs_design.proof.evidence import KINDS
-from tests.docs.pages import DOCS, text_of
+from tests.docs.pages import DOCS, pages, text_of
 from tests.support import ROOT
 
 NAV = YAML(typ="safe").load((ROOT / "mkdocs.yml").read_text(encoding="utf-8"))["nav"]
@@ -30,6 +30,17 @@ def test_navigation_has_four_kinds():
 def test_no_page_is_named_twice():
     named = list(pages_in(NAV))
     assert len(named) == len(set(named)) > 60
+
+
+def words_of(text):
+    """Words have a letter or a digit: signs of tables are none."""
+    return sum(bool(re.search(r"\w", word)) for word in text.split())
+
+
+def test_pages_are_short_one_by_one_and_together():
+    lengths = {page: words_of(text_of(page)) for page in [*pages(), "CHANGELOG.md"]}
+    assert {page: n for page, n in lengths.items() if n > 900 and page != "README.md"} == {}
+    assert sum(lengths.values()) <= 30_500
 
 
 def test_every_kind_of_evidence_has_its_page_and_its_row():

@@ -41,7 +41,7 @@ from nrs_design.identification.running import Check, judge_run, read_run, read_r
 from nrs_design.identification.running.proof import proof_of
 from nrs_design.identification.tables.columns import parse_mapping
 from nrs_design.identification.tissue import TissueIdentification, identify_tissue
-from nrs_design.identification.tool import STANDARD_GRAVITY, ToolIdentification, identify_tool
+from nrs_design.identification.tool import GRAVITY, ToolIdentification, identify_tool
 from nrs_design.identification.write_spec import check_turning
 from nrs_design.models.contact import LAWS
 
@@ -167,7 +167,7 @@ def _delay(
 def _tool(
     files: Sequence[Path], mapping: Columns, law: str | None
 ) -> tuple[ToolIdentification, _Answer]:
-    found = identify_tool([read_poses(file, mapping) for file in files], STANDARD_GRAVITY)
+    found = identify_tool([read_poses(file, mapping) for file in files], GRAVITY)
     ranges = {"mass": _range(found.mass, "kg")}
     for name, values, unit in (
         ("center_of_mass", found.center, "m"),

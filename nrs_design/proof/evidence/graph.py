@@ -1,4 +1,57 @@
-"""Forms on a graph: every step of the system leads from a form to one that is smaller."""
+"""Forms on a graph: every step of the system leads from a form to one that is smaller.
+
+What the pages claim of graphs is shown here.
+
+*Along a path.* The facts of a step make each added term at most zero, so a map gives ``F_b(x+) <=
+rho^2d F_a(x)`` and a flow ``F_a' <= -2 d alpha F_a`` (S-procedure). For any sequence of steps there
+is a path through the graph (subset construction; Ahmadi, Jungers, Parrilo, Roozbehani 2014;
+Philippe, Essick, Dullerud, Jungers 2016), so ``F(x(t)) <= rho^(2dt) F(x(0))`` with F of its first
+and last node. All forms are positive definite: ``|x(t)| <= c rho^t |x(0)|``, one c for all
+sequences.
+
+*No factor in front.* Where every edge leads to every node of its target place, let V be the largest
+of the forms at a place. A step from x has an edge from some node a to every node b, so ``V(x+) =
+max F_b(x+) <= rho^2d F_a(x) <= rho^2d V(x)``. Other graphs, and places that are modes, have the
+factor c: in a mode that must be left a value may grow meanwhile by no more than a factor, as the
+stay is not longer than declared.
+
+*Strict and not strict.* A step that takes time is strict, so that the rate itself holds. One that
+takes none (a switch without dwell time, the surface between contact and free motion) may happen as
+often as one likes in no time, so its form need only not rise. In continuous time there is one node
+at each place: with two, a run that slides along a switch would need a path of infinitely many
+edges.
+
+*Averages.* Let ``M = sum p_i M_i`` with weights ``p_i >= 0`` of sum one. A flow is affine in M, so
+one form falls for all of them. For a map with d = 1 let a_i be a node that takes the step of mode
+i; F_b is convex, so ``F_b(M z) <= sum p_i F_b(M_i z) <= sum p_i (rho^2 F_(a_i)(x) + facts of
+M_i)``. A multiplier belongs to (target, fact), and to no mode, so the crossings add up to ``2 m
+delta (sum p_i c_i z)``, which is a fact of M; errors to ``m (sum p_i (q_i z)^2 - e^2)``, which is
+at least ``m ((sum p_i q_i z)^2 - e^2)``. So ``F_b(M z) <= rho^2 V(x)`` for every b. With a
+multiplier for each mode this would be false. Only the force of a flow that would pull has one for
+each free mode: there the fact is the same for all.
+
+*Contact and free motion.* Let delta be the last state, y the others, ``w = (y, max(delta, 0))``. In
+continuous time a mode rules while ``delta > 0``, else a free mode, of y alone; both forms agree
+where delta is zero, so V of w is continuous, and where delta stays at zero its derivative is zero
+and both flows agree. An environment that would pull lags: a free mode rules the whole state, and as
+the force is an average of those at the corners, ``delta (q x) <= 0`` at one corner q: a fact, and a
+step for every corner. In discrete time, with N the rows of y of a map and c that of delta, a step
+in contact leads to contact by (N, c), or to free motion by N with the fact ``delta (c x) <= 0``. A
+step of a free mode stays free by N, or lands between 0 and ``c y``; F_b is convex there, so both
+ends suffice. For d > 1 it need not be convex.
+
+*Axes that act on each other.* Each axis is at a place of its own, with ``sum |e_i|^2 <= sum |q_i
+z_i|^2`` over all axes only. The multiplier of a coupling is one for all steps, so its terms add up
+over the axes to at most zero, whatever situation each is in, and the sum of their forms falls.
+
+*Turns.* A step of a round leads from ``modes k`` to ``modes k+1``, and from the last to the first.
+A mode need not be stable by itself.
+
+*Stays.* A mode is followed by its own steps until its shortest stay T is left; those T and the
+switch are one step, ``G exp(A T)`` or ``G A^T`` (Geromel and Colaneri 2006; resets: thesis 5.13). A
+mode of ``leaving`` is not followed by itself, may be unstable, and every length of its stay is a
+step; in continuous time they are enclosed (`nrs_design.proof.stays`).
+"""
 
 from __future__ import annotations
 

@@ -19,7 +19,6 @@ from nrs_design.identification.cli.identify.common import (
     read_all,
 )
 from nrs_design.identification.facts.tool import tool_facts
-from nrs_design.identification.tool import STANDARD_GRAVITY
 from nrs_design.proof.text import counted
 
 if TYPE_CHECKING:
@@ -30,7 +29,9 @@ if TYPE_CHECKING:
 def tool(
     data: DataFiles,
     columns: ColumnMap = None,
-    gravity: Annotated[float, typer.Option(min=1e-3, help="In m/s^2.")] = STANDARD_GRAVITY,
+    gravity: Annotated[
+        float | None, typer.Option(min=1e-3, help="In m/s^2; 9.81 if left out.")
+    ] = None,
     write: WriteTo = None,
     report: ReportTo = None,
     date: Date = None,
@@ -46,7 +47,7 @@ def tool(
     """
     from nrs_design.identification.datasets import read_poses
     from nrs_design.identification.reporting.tool import tool_report
-    from nrs_design.identification.tool import identify_tool
+    from nrs_design.identification.tool import GRAVITY, identify_tool
     from nrs_design.identification.write_spec import check_interaction, merge_tool
 
     outputs = Destinations.checked(write, report, date)
@@ -54,7 +55,7 @@ def tool(
         check_interaction(outputs.spec)
     records = read_all(data, read_poses, columns or [])
     with progress("fitting"):
-        found = identify_tool(records, gravity)
+        found = identify_tool(records, gravity or GRAVITY)
     return deliver(outputs, found, tool_facts, _print, tool_report, merge_tool)
 
 

@@ -117,7 +117,12 @@ def _growing_contact(evidence: AbstractEvidence, system: SwitchedSystem) -> str:
 
 def _bound(bound: Bound, arm: Fraction | None) -> str:
     sizes = [f"|{c.name}| <= {lower(c.bound, DIGITS)} {c.unit}".rstrip() for c in bound.channels]
-    level = f"{upper(bound.level, DIGITS)} {bound.output.unit}".rstrip()
-    if arm is not None and bound.output.unit == "N*m":
-        level += f" ({upper(bound.level / arm, DIGITS)} N at {float(arm):g} m)"
-    return f"|{bound.output.name}| <= {level} from rest while {', '.join(sizes)}"
+    unit, limit, notes = bound.output.unit, bound.output.limit, []
+    if arm is not None and unit == "N*m":
+        notes.append(f"{upper(bound.level / arm, DIGITS)} N at {float(arm):g} m")
+    if limit is not None:
+        kept = "within" if bound.level <= limit else "not shown to keep"
+        notes.append(f"{kept} its limit of {lower(limit, DIGITS)} {unit}")
+    level = f"{upper(bound.level, DIGITS)} {unit}".rstrip()
+    beside = f" ({'; '.join(notes)})" if notes else ""
+    return f"|{bound.output.name}| <= {level}{beside} from rest while {', '.join(sizes)}"

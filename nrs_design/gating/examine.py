@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from nrs_design.axis import unit
-from nrs_design.certificates.bounds import bounds_summary
+from nrs_design.certificates.bounds import bound_on, bounds_summary
 from nrs_design.certificates.certificate import (
     Certificate,
     Verdict,
@@ -37,7 +37,7 @@ from nrs_design.gating.rules import (
     SWITCHING_STABLE,
     Rule,
 )
-from nrs_design.proof.bounds import upper
+from nrs_design.proof.bounds import lower, upper
 from nrs_design.proof.evidence import AbstractEvidence, Shows
 from nrs_design.proof.evidence.fields import rate_text
 from nrs_design.proof.evidence.growing_sequence import decides
@@ -383,6 +383,27 @@ class Examiner:
                 "if it is, or `contact: losable` to insist"
             )
             yield self.caution(message, "kind")
+
+    def limits(self, certificate: Certificate | None) -> Iterator[Caution]:
+        """Yield that a limit of the torque is not shown to be kept, and no goal asks for that."""
+        spec = self.loaded.spec
+        if certificate is None or spec.kind != "interaction-design":
+            return
+        if spec.goals is not None and spec.goals.peak_torque is not None:
+            return
+        bound = bound_on(certificate.system, certificate.statements, "force")
+        if (
+            bound is not None
+            and bound.output.limit is not None
+            and bound.level > bound.output.limit
+        ):
+            unit = bound.output.unit
+            message = (
+                f"the limit of {lower(bound.output.limit)} {unit} is not shown to be kept: up to "
+                f"{upper(bound.level)} {unit} are proved under all disturbances at once; "
+                "`goals: peak_torque` asks for it"
+            )
+            yield self.caution(message, "limits", "torque")
 
     def cautions(self, analysis: DesignAnalysis | None) -> Iterator[Caution]:
         """Yield what is doubtful about the spec and its design."""

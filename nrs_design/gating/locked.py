@@ -149,7 +149,7 @@ def _confirmed(
     stability = examiner.stability(certificate.system, certificate.statements, "as locked")
     others, on_trust = _others(examiner, certificate, entry, file)
     found = (*stability, examiner.certificate(place, None), *others)
-    cautions = (*on_trust, *examiner.cautions(None))
+    cautions = (*on_trust, *examiner.limits(certificate), *examiner.cautions(None))
     return examiner.outcome(certificate, place, certificate, found, cautions)
 
 

@@ -132,8 +132,9 @@ SWITCHING_STABLE = Rule(
     "has passed an exact check. Stable modes alone do not suffice, and that no common quadratic "
     "function exists refutes nothing.",
     "If refuted by a mode, mend that mode first (NRS101). If refuted by a signal, take it away: "
-    "declare a longer dwell time or only the transitions that really occur, narrow the ranges, or "
-    "add damping (raise Bt). If inconclusive, neither was found: do the same, or search longer "
+    "declare a longer dwell time or only the transitions that really occur (not beside "
+    "`sampling`), narrow the ranges, let force samples have one age, the oldest (`delay: 2` in "
+    "place of [1, 2]: hold fresh ones back), or add damping (raise Bt). If inconclusive, neither was found: do the same, or search longer "
     "with a larger --budget, more --memory or a higher --max-degree, whichever the message says "
     "has ended the search (certify-switching, report and gate take them, and a spec says budget "
     "and max_degree under `certification`); certify-switching --margin finds the largest box of "

@@ -277,7 +277,8 @@ def _examine(
     recorded = hash_recorded(loaded)
     simulated = tuple(judge_scenarios(result, examiner, progress))
     analysis, goals = judge_margins(result, examiner, progress)
-    cautions = (*examiner.contact(certificate), *examiner.cautions(analysis))
+    kept = (*examiner.contact(certificate), *examiner.limits(certificate))
+    cautions = (*kept, *examiner.cautions(analysis))
     if files.html:
         progress("report")
         page = files.report(loaded.spec.name)

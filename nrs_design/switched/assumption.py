@@ -88,8 +88,15 @@ def omitted(granted: Iterable[str]) -> tuple[str, ...]:
     granted : iterable of str
         Those that are no `Assumption` say nothing of their kind.
     """
-    said = (item.kind.omits for item in granted if isinstance(item, Assumption))
+    said = (_omits(item) for item in granted if isinstance(item, Assumption))
     return tuple(dict.fromkeys(words for words in said if words))
+
+
+def _omits(assumption: Assumption) -> str:
+    words = assumption.kind.omits
+    # What `disturbances` bound is modelled; the sentence begins with "Otherwise".
+    bounded = words and "-disturbed" in assumption.id
+    return f"{words} beyond the bounds that are declared" if bounded else words
 
 
 @cache

@@ -54,7 +54,18 @@ def test_turns_and_missed_deadlines_are_no_arbitrary_switching():
 def test_a_torque_is_said_as_a_force_rounded_up():
     system, evidence = genuine("invariant-ellipsoid")
     bound = evidence.bound(system)
-    torque = replace(bound, level=Fraction(1), output=replace(bound.output, unit="N*m"))
+    output = replace(bound.output, unit="N*m", limit=None)
+    torque = replace(bound, level=Fraction(1), output=output)
     with patch.object(type(evidence), "bound", return_value=torque):
         assert "<= 1 N*m (3.334 N at 0.3 m) from rest" in brief(evidence, system, Fraction(3, 10))
         assert "<= 1 N*m from rest" in brief(evidence, system)
+
+
+@pytest.mark.parametrize(("limit", "said"), [(1, "within"), (Fraction(1, 2), "not shown to keep")])
+def test_a_limit_stands_beside_its_bound(limit, said):
+    system, evidence = genuine("invariant-ellipsoid")
+    bound = evidence.bound(system)
+    output = replace(bound.output, unit="N*m", limit=Fraction(limit))
+    torque = replace(bound, level=Fraction(1), output=output)
+    with patch.object(type(evidence), "bound", return_value=torque):
+        assert f"1 N*m ({said} its limit of {float(limit):g} N*m) from" in brief(evidence, system)

@@ -13,10 +13,11 @@ from nrs_design.design.measures import GAIN_MARGIN
 from nrs_design.errors import DesignError
 from nrs_design.gating.examine import Examiner, certified_rate
 from nrs_design.gating.obligations import Status
+from nrs_design.pipeline import run_certification
 from nrs_design.proof.evidence.growing_sequence import staying
 from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import ARBITRARY, Stay, Switching
-from nrs_design.search.certify import certify
+from nrs_design.search.certify import Limits, certify
 from nrs_design.spec import read_spec
 from tests.proof.graphs import common_quadratic
 from tests.proof.systems import genuine
@@ -285,3 +286,16 @@ def test_a_rate_is_only_what_is_proved(example, name):
     rate, found = certified_rate(certificate)
     assert found == name
     assert (rate is None) is (name is None)
+
+
+def test_a_limit_that_no_proof_keeps_is_warned_of(tmp_path):
+    """Soft tissue, two controllers: 1.12 N m are proved at 8 deg/s, and the limit is 0.3 N m."""
+    for goals, warned in (("", True), ("goals: {peak_torque: 2 N*m}\n", False)):
+        path = tmp_path / f"{warned}.nrs.yaml"
+        disturbed = f"contact: kept\ndisturbances: {{command: 8 deg/s}}\n{goals}"
+        path.write_text(SOFT_TISSUE.read_text(encoding="utf-8") + disturbed, encoding="utf-8")
+        loaded = read_spec(path)
+        certificate = run_certification(loaded, limits=Limits(optimize_rate=False)).certificate
+        found = [item.message for item in Examiner.of(loaded).limits(certificate)]
+        assert bool(found) == warned
+        assert not warned or found[0].startswith("the limit of 0.3 N*m is not shown to be kept")

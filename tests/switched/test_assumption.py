@@ -100,3 +100,10 @@ def test_a_copy_keeps_id_and_bound():
     copy = pickle.loads(pickle.dumps(say("links.axes", "at night", drive=2)))
     assert (copy.id, copy.kind.id, copy.bound) == ("links.axes", "links", "at night")
     assert "with a drive of 2 kg*m^2" in copy
+
+
+def test_what_disturbances_bound_is_not_said_to_be_left_out():
+    plain, disturbed = say("not-quantized.sampled"), say("not-quantized.sampled-disturbed")
+    assert omitted([plain]) == ("quantization, friction, saturation",)
+    (words,) = omitted([disturbed])
+    assert words == "quantization, friction, saturation beyond the bounds that are declared"

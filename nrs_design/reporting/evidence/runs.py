@@ -94,7 +94,7 @@ _UNPROVED_ROUNDS = (
     "of those that may be in force, after which the Euclidean norm is largest. There is no bound: "
     "nothing is proved."
 )
-EUCLIDEAN = "|x(t)| / |x(0)|, Euclidean norm [1]"
+EUCLIDEAN = "|x(t)| / |x(0)|\nEuclidean norm [1]"
 AGAINST = "Switching against the proved bound"
 BESIDE = "Switching beside the proved rate"
 _PATH = "Path of the state, one color for each active mode."
@@ -169,7 +169,7 @@ def bounded_run(
         how, letter = _BOUNCING, "w"
     holds = f"{_HOLDS}{' and any loss of contact' if played.contact is not None else ''}."
     said = " ".join(text for text in (how, note, holds) if text)
-    label = f"|{letter}(t)| / |{letter}(0)| {label} [1]"
+    label = f"|{letter}(t)| / |{letter}(0)|\n{label} [1]"
     response, run = greedy.draw(AGAINST, said, label, "proved bound, ")
     if played.contact is not None or not callable(greedy.norms):
         return simulated(run)

@@ -100,7 +100,7 @@ def _draw_deflection(axes: Axes, response: SwitchedRun, name: str) -> None:
         response.time, 0, 1, where=free, transform=place, color=MUTED, alpha=0.25, linewidth=0
     )
     axes.set_ylabel("Deflection over\nits largest value [1]")
-    axes.set_title(f"{name}; shaded: no contact", loc="left", fontsize=9.5)
+    axes.set_title(f"{name.partition(' [')[0]}; shaded: no contact", loc="left", fontsize=9.5)
 
 
 @styled

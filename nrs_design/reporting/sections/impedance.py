@@ -310,7 +310,7 @@ def _draw_sensitivity(items: Sequence[ImpedanceAnalysis]) -> Figure:
                 at, peak, marker(index), color=color(index), markeredgecolor=INK, markersize=8
             )
     axes.axhline(1.0, color=MUTED, linewidth=1.0)
-    _finish(axes, items, "Sensitivity magnitude |L| [1]")
+    _finish(axes, items, "Sensitivity magnitude [1]")
     legend(figure, axes)
     return figure
 

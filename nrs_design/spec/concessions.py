@@ -291,6 +291,11 @@ def _delay(least: int, most: int) -> Iterator[Concession]:
         def says(step: int) -> Data:
             return (str(least), str(least + step))
 
+        # Firmware cannot make a sample newer, but hold fresh ones back until they are as old.
+        held = f"{_samples(most)} always, fresh ones held back"
+        yield Concession(
+            at, Way(WITH, lambda k: str(most), lambda k: held, _samples(most)), in_all=False
+        )
         form = Way(UP, says, lambda k: _samples(least + k), _samples(most), most - least)
         yield Concession(at, form)
     elif most:

@@ -43,6 +43,12 @@ def test_pages_are_short_one_by_one_and_together():
     assert sum(lengths.values()) <= 30_500
 
 
+def test_no_heading_begins_with_a_digit():
+    """The theme looks headings up by their ids, and an id of CSS begins with a letter."""
+    headings = [line for page in pages() for line in re.findall(r"^#+ \d.*", text_of(page), re.M)]
+    assert headings == []
+
+
 def test_every_kind_of_evidence_has_its_page_and_its_row():
     rows = re.findall(
         r"^\| `([\w-]+)` \| .* \| \[", text_of("docs/certificates/README.md"), re.MULTILINE

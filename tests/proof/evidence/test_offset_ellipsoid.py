@@ -7,7 +7,7 @@ import pytest
 
 from nrs_design.proof.evidence import OffsetEllipsoid
 from nrs_design.proof.exact import is_positive_definite
-from nrs_design.proof.mode import Mode
+from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.second_opinion import agrees
 from tests.proof.systems import bouncing_in_steps, genuine, leaning, matrix, pushed
 from tests.proof.truth import holds
@@ -66,6 +66,16 @@ def test_wrong_numbers_are_refused(example, change, fault):
     system, item = genuine(example)
     found = replace(item, **change(item)).find_fault(system)
     assert any(words in found for words in (fault if isinstance(fault, tuple) else (fault,)))
+
+
+@pytest.mark.parametrize("example", EXAMPLES)
+def test_borders_of_rest_and_share(example):
+    """Rest may lie on the border; a share of one leaves nothing of a map, and is no end of a flow."""
+    system, item = genuine(example)
+    assert replace(item, Q=with_entry(item.Q, 0, 0, 0)).find_misfit(system) is None
+    for share in (Fraction(1), Fraction(3, 2)):
+        found = replace(item, shares=(share,)).find_misfit(system)
+        assert (found is None) == (system.time is Time.CONTINUOUS)
 
 
 @pytest.mark.parametrize("example", EXAMPLES)

@@ -70,7 +70,7 @@ def test_wrong_numbers_are_refused(example, change, fault):
 
 @pytest.mark.parametrize("example", EXAMPLES)
 def test_borders_of_rest_and_share(example):
-    """Rest may lie on the border; a share of one leaves nothing of a map, and is no end of a flow."""
+    """Rest may lie on the border; a share of one leaves nothing of a map, but of a flow."""
     system, item = genuine(example)
     assert replace(item, Q=with_entry(item.Q, 0, 0, 0)).find_misfit(system) is None
     for share in (Fraction(1), Fraction(3, 2)):

@@ -1,7 +1,17 @@
 """All axes of a robot at once: what the inertia of the links does to the modes of one axis.
 
-The numbers of a coupling are declared, or computed from a robot;
-docs/certificates/coupled-axes.md derives what is made of them.
+The numbers of a coupling are declared, or computed from a robot. With N axes, J the inertia of a
+drive and M(q) that of the links, ``(J I + M) q'' = J a - C q' - (G(q) - G(q0))``, where a_i is the
+row of omega in the mode of axis i. Divided by J, with ``Lambda = (I + M/J)^-1``, ``l = 1/(1 +
+mbar/J)``, ``u = 1/(1 + m/J)``, ``s = (l + u)/2`` and ``r = (u - l)/2``:
+
+- ``|(Lambda - s I) a| <= r |a|``, as Lambda is symmetric with eigenvalues in [l, u];
+- ``|(Lambda/J) C q'| <= (u c/J) |q'|`` where ``|C(q, q') q'| <= c |q'|``, so below some speed only;
+- ``|(Lambda/J) (G(q) - G(q0))| <= (u g/J) |q - q0|`` where ``|G(q) - G(q0)| <= g |q - q0|``: a mean
+  of a gradient along the straight way is no larger than its largest norm there.
+
+So a mode has its row of omega times s, and three couplings on omega. Averages of modes have the
+same averages of columns and rows, since s, r, u, c, g and J are the same everywhere.
 """
 
 from __future__ import annotations

@@ -5,8 +5,29 @@ stiffness over them. With ``y = J^(1/2) (velocities)``,
 
     y' = S a,    a = u - g y - k (deflections),    S = J^(1/2) Lambda(q)^-1 J^(1/2)
 
-with the eigenvalues of S in a range. docs/certificates/coupled-axes.md derives what follows for the
-map of one axis over a period; it is about that axis alone, so axes need not be alike.
+with the eigenvalues of S in [l, u], s near their middle, ``r = max(u - s, s - l)``. So ``h = (S - s
+I) a`` has ``sum h_i^2 <= r^2 sum a_i^2`` at every moment, and the means of these squares over the
+period, eta_i^2 and alpha_i^2, too. All else is about one axis, so axes need not be alike; divided
+by its inertia, G and K are the largest g and k, w_g and w_k how wide they are.
+
+1. Beside the axis alone with the inertia J/s, the difference p has ``p_omega' = -s (g p_omega + k
+   p_delta) + h``. As the integral of ``|h|`` up to t is at most ``(t T)^(1/2) eta``, with ``1 - c =
+   1 - s T (G + K T)``, if that is positive, ``|p_omega| <= T eta/(1 - c)`` and ``|p_delta| <= (2/3)
+   T^2 eta/(1 - c)``.
+2. Let a_0 be a where the period begins, with the mean of k and g over it. In the root of the mean
+   of squares, as ``|omega - omega(0)| <= (t T)^(1/2) (s alpha + eta)``, ``alpha <= A + nu (s alpha
+   + eta)`` with ``A = |a_0| + (w_g + K T/3^(1/2)) |omega(0)| + w_k |delta(0)|`` and ``nu = G
+   T/2^(1/2) + K T^2/3``. So ``alpha^2 <= ((1 + nu) A^2 + (1 + nu) nu eta^2)/(1 - s nu)^2``, and
+   with ``theta = 1 - r^2 (1 + nu) nu/(1 - s nu)^2``, if that is positive, ``sum theta_i eta_i^2 <=
+   sum r^2 (1 + nu_i)/(1 - s nu_i)^2 A_i^2``.
+3. For any ``e > 0``, ``A^2 <= (1 + e) a_0^2 + 2 (1 + 1/e) (...)^2 omega(0)^2 + 2 (1 + 1/e) w_k^2
+   delta(0)^2``, and for any share v, ``v (p_omega (1 - c)/T)^2 + (1 - v) (p_delta (1 - c) 3/(2
+   T^2))^2 <= eta^2``.
+
+So ``sum w_1^2 + w_2^2 <= sum of three squares``, with w_1 and w_2 what remains of p_omega and
+p_delta: three couplings of one name, with one multiplier tau. The sums are in y: an axis has there
+J_i times what it has by itself, so divided by tau_i and multiplied by J_i, ``sum J_i V_i/tau_i``
+falls by the largest rho_i^2 in every step.
 """
 
 from __future__ import annotations

@@ -1,11 +1,26 @@
 """All axes of a robot at once in the sampled loop: what their links do within a period.
 
-docs/certificates/coupled-axes.md derives it. Let the slip z be the difference between the motor
-speeds and their steady state under the held commands, and Lambda = (I + M/J)^-1:
+Let ``z = omega - v`` be the slip, v the speeds that the motors come to under the held commands,
+``D = diag(1/tau_i)`` with entries in [d, D1], and ``Lambda = (I + M/J)^-1``, symmetric at every
+moment, with eigenvalues in [l, u], s among them and ``r = max(u - s, s - l)``:
 
-    z' = -Lambda D z + h,    |h| <= kappa |omega| + gamma |delta|,    D = diag(1/tau_i)
+    z' = -Lambda D z + h,    |h| <= kappa |omega| + gamma |delta|,    kappa = u c/J,  gamma = u g/J
 
-and what an axis does differs from what it does by itself with a motor of the time constant tau/s.
+With ``y = D^(1/2) z`` the slope of ``|y|^2/2`` is ``-(D^(1/2) y)' Lambda (D^(1/2) y) + y' D^(1/2)
+h``, so with H the largest ``|h|`` in the period ``|D z(t)| <= D1 (exp(-l d t) |z(0)| + t H)``. Each
+axis by itself with a motor of the time constant tau/s has the slip ``exp(-s D t) z(0)``. The
+difference p has ``p' = -s D p - (Lambda - s I) D z + h`` and ``p(0) = 0``, so, as ``l <= s``,
+
+    |p(t)| <= r D1 t exp(-l d t) |z(0)| + t H (1 + r D1 t/2),    exp(-x) <= 1/(1 + x)
+
+and the angles differ by at most ``T^2/2 (r D1 |z(0)| + H (1 + r D1 T/2))``. Speeds change by at
+most ``T (u D1 |z(0)| + u D1 T H + H)``, angles by T times the largest speed. So with ``kappa' =
+kappa + gamma T``, if ``e = 1 - kappa' T (1 + u D1 T)`` is positive,
+
+    H <= (kappa' |omega(0)| + kappa' T u D1 |z(0)| + gamma |delta(0)|)/e
+
+A vector of at most a sum of three numbers is a sum of three vectors, each within its own: up to six
+couplings, on the speed and on the way, by slip, speed and deflection.
 """
 
 from __future__ import annotations

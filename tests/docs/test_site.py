@@ -40,7 +40,7 @@ def words_of(text):
 def test_pages_are_short_one_by_one_and_together():
     lengths = {page: words_of(text_of(page)) for page in [*pages(), "CHANGELOG.md"]}
     assert {page: n for page, n in lengths.items() if n > 900 and page != "README.md"} == {}
-    assert sum(lengths.values()) <= 30_500
+    assert sum(lengths.values()) <= 30_600
 
 
 def test_no_heading_begins_with_a_digit():

@@ -5,6 +5,7 @@ from dataclasses import replace
 from fractions import Fraction
 from functools import cache
 from itertools import product
+from random import Random
 
 from nrs_design.controllers.laws import Admittance
 from nrs_design.models.contact import KelvinVoigt
@@ -456,6 +457,38 @@ def pushed(system: SwitchedSystem, push: Entry = "1/4") -> SwitchedSystem:
         system,
         channels=(Channel("push", "N", Fraction(push), (column,) * count),),
         outputs=(Output("force", "N", rows, Fraction(1)),),
+    )
+
+
+def crowded(time: Time) -> SwitchedSystem:
+    """Several of everything that an axis which may lose contact can have, of any numbers.
+
+    No two numbers have a reason to be equal: what is mistaken for something else shows.
+    """
+    rng = Random(5)
+
+    def drawn(n: int, m: int) -> RationalMatrix:
+        numbers = [Fraction(k, d) for k in (-7, -4, -1, 1, 2, 5) for d in (1, 2, 3, 5)]
+        return matrix([[rng.choice(numbers) for _ in range(m)] for _ in range(n)])
+
+    def each(n: int, m: int) -> tuple[RationalMatrix, ...]:
+        return tuple(drawn(n, m) for _ in range(4))
+
+    free, corner = [drawn(3, 2).fractions() for _ in range(2)], int(time is Time.DISCRETE)
+    flights = ([[*row, k == 2 and corner] for k, row in enumerate(rows)] for rows in free)
+    bounds = zip(("push", "gust", "jerk"), ("1/3", "7", "5/2"), strict=True)
+    return replace(
+        family(drawn(3, 3).fractions(), drawn(3, 3).fractions(), time=time),
+        contact=Contact(
+            tuple(Mode(f"f{k}", matrix(A)) for k, A in enumerate(flights)),
+            (drawn(1, 3), drawn(1, 3)),
+        ),
+        channels=tuple(Channel(name, "N", Fraction(size), each(3, 1)) for name, size in bounds),
+        outputs=(
+            Output("speed", "m/s", (drawn(1, 3),)),
+            Output("force", "N", (drawn(1, 3), drawn(1, 3))),
+        ),
+        roundings=tuple(Rounding(name, each(3, 1), each(1, 6)) for name in ("u", "v")),
     )
 
 

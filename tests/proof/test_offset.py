@@ -7,8 +7,10 @@ from random import Random
 import pytest
 
 from nrs_design.proof.channels import Channel, Rounding
+from nrs_design.proof.mode import Time
 from nrs_design.proof.offset import offset_steps
-from tests.proof.systems import bouncing, bouncing_in_steps, matrix, pushed
+from tests.proof.systems import bouncing, bouncing_in_steps, crowded, matrix, pushed
+from tests.proof.truth import offset_moves
 
 TRIALS = 300
 LAGGING = "while the environment lags, mode free"
@@ -55,6 +57,34 @@ def moved(system, rng, x, d):
         (False, False): "in free motion, mode {}",
     }[touches, lands]
     return where.format(chosen.name), after
+
+
+@pytest.mark.parametrize("time", Time)
+def test_steps_and_products_are_those_of_the_definition(time):
+    """With several of everything, one disturbance left out and the others in another order."""
+    system = crowded(time)
+    channels = (system.channels[2], system.channels[0])
+    steps = list(offset_steps(system, channels, 1, rounding=True))
+    wanted = list(offset_moves(system, channels, rounding=True))
+    assert [step.where for step in steps] == [move.where for move, _ in wanted]
+    names = set()
+    for step, (move, facts) in zip(steps, wanted, strict=True):
+        sizes = [*(1 for _ in range(step.states)), *(c.bound for c in channels), 1, 1]
+        units = [unit * size for unit, size in zip(step.units, sizes, strict=True)]
+
+        def plain(row, over=1, units=units):
+            # A force is known over the state alone.
+            whole = [*row, *(0 for _ in units[len(row) :])]
+            return [Fraction(a, over) / unit for a, unit in zip(whole, units, strict=True)]
+
+        assert [plain(row, step.over) for row in step.rows] == move.image
+        assert [(name, plain(q, below)) for name, _, q, below in step.errors] == move.sizes
+        assert [(plain(a), plain(b)) for _, a, b in step.products] == [(a, b) for _, a, b in facts]
+        assert step.weights == (0, 0)
+        pairs = zip(step.products, facts, strict=True)
+        names |= {(name, wanted) for (name, *_), (wanted, *_) in pairs}
+    # The same products have one multiplier.
+    assert len(names) == len({name for name, _ in names}) == len({name for _, name in names})
 
 
 @pytest.mark.parametrize("turned", [None, "after", "lost"])

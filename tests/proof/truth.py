@@ -14,6 +14,7 @@ from random import Random
 
 import numpy as np
 
+from nrs_design.proof.channels import Channel
 from nrs_design.proof.evidence import (
     AbstractEvidence,
     BlockTriangular,
@@ -689,11 +690,11 @@ def _invariant_ellipsoid(system: SwitchedSystem, item: InvariantEllipsoid) -> bo
 
 
 def _offset_ellipsoid(system: SwitchedSystem, item: OffsetEllipsoid) -> bool:
-    """For a one, the state and what acts: what raises W only if a sign is not as it must be."""
     named = [c for name in item.channels for c in system.channels if c.name == name]
-    output = next((o for o in system.outputs if o.name == item.output), None)
     discrete, n = system.time is Time.DISCRETE, system.order
-    if not named or len(named) < len(item.channels) or output is None or item.taus:
+    if not named or len(named) < len(item.channels) or item.taus:
+        return False
+    if item.output not in {output.name for output in system.outputs}:
         return False
     if system.contact is None or system.couplings or len(item.Q) != n + 1:
         return False
@@ -703,29 +704,63 @@ def _offset_ellipsoid(system: SwitchedSystem, item: OffsetEllipsoid) -> bool:
         return False
     if item.level <= 0 or item.Q[0][0] > 0 or min(*item.multipliers, *item.roundings, 0) < 0:
         return False
+    return all(map(is_definite, offset_forms(system, item)))
+
+
+def offset_forms(system: SwitchedSystem, item: OffsetEllipsoid) -> Iterator[Rows]:
+    """For a one, the state and what acts: what raises W only if a sign is not as it must be.
+
+    If there is not one multiplier for each fact, a form comes last that is not definite.
+    """
+    named = [c for name in item.channels for c in system.channels if c.name == name]
+    output = next(o for o in system.outputs if o.name == item.output)
     scale = Fraction(1, 2**item.denominator_log2)
     W = combine((scale, [list(map(Fraction, row)) for row in item.Q]))
-    if not is_definite([row[1:] for row in W[1:]]):
-        return False
-    keeps = 1 - item.shares[0] if discrete else item.shares[0]
+    yield [row[1:] for row in W[1:]]
+    share = item.shares[0]
+    keeps = 1 - share if system.time is Time.DISCRETE else share
     known = {f"rounding {i}": scale * entry for i, entry in enumerate(item.roundings, 1)}
-    acting = [system.channels.index(channel) for channel in named]
-    left, count, used = list(item.multipliers), len(named), {}
+    left, used = list(item.multipliers), {}
 
     def of(name: object) -> Fraction:
         if name not in used:
             used[name] = left.pop(0) if left else -1
         return scale * used[name]
 
-    for move in moves(system, lost=True, channels=acting, rounding=bool(item.roundings)):
+    for move, facts in offset_moves(system, named, rounding=bool(item.roundings)):
+        form = inequality(move, W, W, keeps, known.__getitem__, [Fraction(0)] * len(named))
+        for name, a, b in facts:
+            cross = times([[entry] for entry in a], [b])
+            form = combine((1, form), (-of(name), cross), (-of(name), transpose(cross)))
+        yield form
+    for k, row in enumerate(output.rows):
+        for sign in (1, -1):
+            form = [[Fraction(entry) for entry in line] for line in W]
+            form[0][0] += item.level
+            added = [-sign * entry / 2 for entry in row.fractions()[0]]
+            added[-1] -= of((k, sign)) / 2
+            for i, entry in enumerate(added, 1):
+                form[0][i] += entry
+                form[i][0] += entry
+            yield form
+    if left or -1 in used.values():
+        yield [[Fraction(-1)]]
+
+
+def offset_moves(
+    system: SwitchedSystem, named: Sequence[Channel], *, rounding: bool
+) -> Iterator[tuple[Move, list[tuple[object, list[Fraction], list[Fraction]]]]]:
+    """Yield every move that takes time, over a one and the rest, with products that are known."""
+    discrete = system.time is Time.DISCRETE
+    acting = [system.channels.index(channel) for channel in named]
+    for move in moves(system, lost=True, channels=acting, rounding=rounding):
         if not move.strict or (move.where.startswith("where contact is made at the surface")):
             continue
-        rows, m = [[0, *row] for row in move.image], move.states + 1
+        rows, m = [[Fraction(0), *row] for row in move.image], move.states + 1
         one = [Fraction(i == 0) for i in range(len(rows[0]))]
         image = [one if discrete else [0 * entry for entry in one], *rows]
         sizes = [(name, [0, *q]) for name, q in move.sizes]
         wide = replace(move, image=image, states=m, sizes=sizes, crossings=())
-        form = inequality(wide, W, W, keeps, known.__getitem__, [Fraction(0)] * count)
         within = []
         for k, channel in enumerate(named, m):
             for sign in (1, -1):
@@ -745,23 +780,7 @@ def _offset_ellipsoid(system: SwitchedSystem, item: OffsetEllipsoid) -> bool:
         for name, row in signs:
             for i, other in enumerate((*deep, *within)):
                 facts.append(((move.where.removesuffix(move.mode), name, i), row, other))
-        for name, a, b in facts:
-            cross = times([[entry] for entry in a], [b])
-            form = combine((1, form), (-of(name), cross), (-of(name), transpose(cross)))
-        if not is_definite(form):
-            return False
-    for k, row in enumerate(output.rows):
-        for sign in (1, -1):
-            form = [[Fraction(entry) for entry in line] for line in W]
-            form[0][0] += item.level
-            added = [-sign * entry / 2 for entry in row.fractions()[0]]
-            added[-1] -= of((k, sign)) / 2
-            for i, entry in enumerate(added, 1):
-                form[0][i] += entry
-                form[i][0] += entry
-            if not is_definite(form):
-                return False
-    return not left and -1 not in used.values()
+        yield wide, facts
 
 
 def _basis(n: int, d: int) -> list[tuple[int, ...]]:

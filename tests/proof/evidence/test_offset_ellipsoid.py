@@ -9,8 +9,8 @@ from nrs_design.proof.evidence import OffsetEllipsoid
 from nrs_design.proof.exact import is_positive_definite
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.second_opinion import agrees
-from tests.proof.systems import bouncing_in_steps, genuine, leaning, matrix, pushed
-from tests.proof.truth import holds
+from tests.proof.systems import bouncing_in_steps, crowded, genuine, leaning, matrix, pushed
+from tests.proof.truth import holds, is_in_other_units, offset_forms
 
 EXAMPLES = (
     "offset-ellipsoid",
@@ -35,6 +35,25 @@ def test_what_the_search_finds_holds_by_the_definition(example):
     assert OffsetEllipsoid.from_fields(item.to_fields(), system) == item
     assert item.Q[0][0] < 0
     assert any(item.multipliers)
+
+
+@pytest.mark.parametrize("time", Time)
+def test_forms_are_those_of_the_definition(time):
+    """With several of everything, and numbers that prove nothing."""
+    system = crowded(time)
+    item = OffsetEllipsoid(
+        channels=("jerk", "push"),
+        output="force",
+        Q=((-3, 1, 2, -5), (1, 7, -2, 3), (2, -2, 11, 4), (-5, 3, 4, 13)),
+        denominator_log2=3,
+        shares=(Fraction(2, 9),),
+        level=Fraction(7, 3),
+        roundings=(5, 17),
+    )
+    item = replace(item, multipliers=tuple(range(2, len(item.facts(system)) + 2)))
+    forms = [form for _, form in item.forms(system)]
+    pairs = zip(forms, offset_forms(system, item), strict=True)
+    assert all(is_in_other_units(form, wanted) for form, wanted in pairs)
 
 
 @pytest.mark.parametrize("example", EXAMPLES)

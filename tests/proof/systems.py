@@ -468,7 +468,7 @@ def crowded(time: Time) -> SwitchedSystem:
     rng = Random(5)
 
     def drawn(n: int, m: int) -> RationalMatrix:
-        numbers = [Fraction(k, d) for k in (-7, -4, -1, 1, 2, 5) for d in (1, 2, 3, 5)]
+        numbers = [Fraction(k, d) for k in (-7, -4, -1, 1, 2, 5) for d in (1, 2, 3)]
         return matrix([[rng.choice(numbers) for _ in range(m)] for _ in range(n)])
 
     def each(n: int, m: int) -> tuple[RationalMatrix, ...]:
@@ -477,6 +477,13 @@ def crowded(time: Time) -> SwitchedSystem:
     free, corner = [drawn(3, 2).fractions() for _ in range(2)], int(time is Time.DISCRETE)
     flights = ([[*row, k == 2 and corner] for k, row in enumerate(rows)] for rows in free)
     bounds = zip(("push", "gust", "jerk"), ("1/3", "7", "5/2"), strict=True)
+    # In free motion, what is rounded is nothing of the deflection.
+    sizes = [[drawn(1, 6).fractions()[0] for _ in range(4)] for _ in ("u", "v")]
+    rows = [
+        tuple(matrix([[*q[:2], q[2] * (k < 2), *q[3:]]]) for k, q in enumerate(own))
+        for own in sizes
+    ]
+    roundings = (Rounding(name, each(3, 1), own) for name, own in zip("uv", rows, strict=True))
     return replace(
         family(drawn(3, 3).fractions(), drawn(3, 3).fractions(), time=time),
         contact=Contact(
@@ -488,7 +495,7 @@ def crowded(time: Time) -> SwitchedSystem:
             Output("speed", "m/s", (drawn(1, 3),)),
             Output("force", "N", (drawn(1, 3), drawn(1, 3))),
         ),
-        roundings=tuple(Rounding(name, each(3, 1), each(1, 6)) for name in ("u", "v")),
+        roundings=tuple(roundings) if corner else (),
     )
 
 

@@ -69,8 +69,9 @@ def test_steps_and_products_are_those_of_the_definition(time):
     assert [step.where for step in steps] == [move.where for move, _ in wanted]
     names = set()
     for step, (move, facts) in zip(steps, wanted, strict=True):
-        sizes = [*(1 for _ in range(step.states)), *(c.bound for c in channels), 1, 1]
-        units = [unit * size for unit, size in zip(step.units, sizes, strict=True)]
+        units = list(step.units)
+        for k, channel in enumerate(channels, step.states):
+            units[k] *= channel.bound
 
         def plain(row, over=1, units=units):
             # A force is known over the state alone.

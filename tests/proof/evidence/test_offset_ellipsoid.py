@@ -37,10 +37,8 @@ def test_what_the_search_finds_holds_by_the_definition(example):
     assert any(item.multipliers)
 
 
-@pytest.mark.parametrize("time", Time)
-def test_forms_are_those_of_the_definition(time):
-    """With several of everything, and numbers that prove nothing."""
-    system = crowded(time)
+def supposed(system):
+    """Numbers that prove nothing, of the right shape and with the right signs."""
     item = OffsetEllipsoid(
         channels=("jerk", "push"),
         output="force",
@@ -48,12 +46,37 @@ def test_forms_are_those_of_the_definition(time):
         denominator_log2=3,
         shares=(Fraction(2, 9),),
         level=Fraction(7, 3),
-        roundings=(5, 17),
+        roundings=(5, 17) if system.roundings else (),
     )
-    item = replace(item, multipliers=tuple(range(2, len(item.facts(system)) + 2)))
+    return replace(item, multipliers=tuple(range(2, len(item.facts(system)) + 2)))
+
+
+@pytest.mark.parametrize("time", Time)
+def test_forms_are_those_of_the_definition(time):
+    """With several of everything."""
+    system = crowded(time)
+    item = supposed(system)
+    assert item.find_unfit(system) is None
     forms = [form for _, form in item.forms(system)]
     pairs = zip(forms, offset_forms(system, item), strict=True)
     assert all(is_in_other_units(form, wanted) for form, wanted in pairs)
+
+
+@pytest.mark.parametrize(
+    ("roundings", "fault"),
+    [
+        ((5, 17), None),
+        ((), None),
+        ((5,), "there is not one multiplier for each rounding"),
+        ((5, 17, 0), "there is not one multiplier for each rounding"),
+        ((-1, 17), "a multiplier is negative"),
+        ((5, -1), "a multiplier is negative"),
+    ],
+)
+def test_all_roundings_or_none(roundings, fault):
+    system = crowded(Time.DISCRETE)
+    item = replace(supposed(system), roundings=roundings)
+    assert item.find_unfit(system) == fault
 
 
 @pytest.mark.parametrize("example", EXAMPLES)

@@ -25,7 +25,7 @@ GROUPS = {
     "Start": ("init", "check", "explain", "schema"),
     "Design": ("optimize", "pareto", "tune", "mode-logic", "simulate"),
     "Prove": ("certify-switching", "verify", "map", "sweep", "compare-methods", "check-lyapunov"),
-    "Ship": ("report", "gate", "export", "evidence", "diff"),
+    "Ship": ("report", "gate", "export", "diff"),
     "Measure": ("identify", "audit"),
     "Robot": ("robot", "ros2", "reproduce"),
 }

@@ -8,34 +8,11 @@ from typing import TYPE_CHECKING
 from nrs_design.errors import DesignError
 from nrs_design.gating.examine import Examiner
 from nrs_design.gating.obligations import Obligation
-from nrs_design.gating.rules import SWITCHING_STABLE
 from nrs_design.pipeline import Result, run_analysis
-from nrs_design.progress import Progress, silent
+from nrs_design.progress import Progress
 
 if TYPE_CHECKING:
     from nrs_design.design.analysis import DesignAnalysis
-
-
-def judge_result(result: Result, progress: Progress = silent) -> tuple[Obligation, ...]:
-    """Return what the gate asks of a spec beside files, single modes and robots.
-
-    Parameters
-    ----------
-    result : Result
-        Of the certification.
-    progress : callable
-        Told the name of each step.
-    """
-    examiner, decided = Examiner.of(result.loaded), result.certification
-    stability = examiner.stability(decided.system, decided.statements, "")
-    _, margins = judge_margins(result, examiner, progress)
-    return (
-        *(item for item in stability if item.rule is SWITCHING_STABLE),
-        *examiner.certified_goals(result.certificate),
-        *margins,
-        *judge_scenarios(result, examiner, progress),
-        *examiner.identified(),
-    )
 
 
 def judge_margins(

@@ -48,7 +48,7 @@ def test_the_drawing_shows_every_floor():
     names = re.findall(r'text-anchor="end">([^<]+)</text>', drawn)
     assert names == [label(floor) for floor in floors_of(ARCHITECTURE)]
     assert len(names) == 1 + 10  # The wings, and at most ten floors of the core.
-    assert "<title>cli, assurance, ... import pipeline: " in drawn
+    assert "<title>cli, gating, ... import pipeline: " in drawn
     assert "<!-- made: floors -->" in ARCHITECTURE
 
 

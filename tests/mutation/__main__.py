@@ -19,7 +19,6 @@ from time import process_time
 import hypothesis
 import pytest
 
-from nrs_design.assurance.tool import keep_record
 from tests.mutation.graft import graft
 from tests.mutation.mutants import Mutant, mutants
 
@@ -132,9 +131,6 @@ def main(names: list[str]) -> int:
     os.chdir(ROOT)
     total = sum((examine(path, listed()) for path in chosen(names)), Counter())
     print(in_words(total))
-    if not names:
-        # A folder of evidence quotes it.
-        keep_record(total)
     return total["unnoticed"]
 
 

@@ -102,7 +102,7 @@ def _spec(controllers: tuple[str, ...], inertia: str, contact: str) -> LoadedSpe
         "sampling: {period: 2 ms, delay: [0, 1]}\n"
         f"disturbances: {{command: {SPEED} deg/s, largest_angle: {LARGEST_ANGLE} deg}}\n"
     )
-    return LoadedSpec("bounded-runs", "", whole, parse_spec(whole))
+    return LoadedSpec(path="bounded-runs", sha256="", text=whole, spec=parse_spec(whole))
 
 
 def _largest_force(

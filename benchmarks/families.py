@@ -56,7 +56,13 @@ def dayawansa_martin(a: Fraction) -> SwitchedSystem:
     one = RationalMatrix(((-1, -1), (1, -1)))
     other = RationalMatrix.from_rows([[Fraction(-1), -a], [1 / a, Fraction(-1)]])
     modes = (Mode("one", one), Mode("other", other))
-    return SwitchedSystem("dayawansa-martin", Time.CONTINUOUS, ("x1", "x2"), modes, ())
+    return SwitchedSystem(
+        name="dayawansa-martin",
+        time=Time.CONTINUOUS,
+        states=("x1", "x2"),
+        modes=modes,
+        assumptions=(),
+    )
 
 
 def to_system(matrices: Matrices, decimals: int) -> SwitchedSystem:
@@ -67,7 +73,9 @@ def to_system(matrices: Matrices, decimals: int) -> SwitchedSystem:
         for i, A in enumerate(np.rint(matrices * scale))
     )
     states = tuple(f"x{i + 1}" for i in range(matrices.shape[1]))
-    return SwitchedSystem("family", Time.CONTINUOUS, states, modes, ())
+    return SwitchedSystem(
+        name="family", time=Time.CONTINUOUS, states=states, modes=modes, assumptions=()
+    )
 
 
 def _gram(rng: np.random.Generator, m: int, n: int, rank: int) -> Matrices:

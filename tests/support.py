@@ -78,7 +78,7 @@ def family(*matrices: Sequence[Sequence[Entry]], time: Time = Time.CONTINUOUS) -
     """Make a switched system with modes m0, m1, ..."""
     modes = tuple(Mode(f"m{i}", matrix(rows)) for i, rows in enumerate(matrices))
     states = tuple(f"x{i + 1}" for i in range(len(matrices[0])))
-    return SwitchedSystem("family", time, states, modes, ())
+    return SwitchedSystem(name="family", time=time, states=states, modes=modes, assumptions=())
 
 
 def dayawansa_martin(a: Entry, scale: Entry = 1) -> SwitchedSystem:

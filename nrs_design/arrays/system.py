@@ -205,4 +205,6 @@ def _validated(document: Document, name: str) -> LoadedSpec:
         # Lines of a file that nobody has seen would mislead.
         faults = tuple(replace(fault, line=None, column=None) for fault in found)
         raise SpecError.of(faults, None) from None
-    return LoadedSpec(Path(f"{name}.nrs.yaml"), hash_meaning(document), text, spec)
+    return LoadedSpec(
+        path=Path(f"{name}.nrs.yaml"), sha256=hash_meaning(document), text=text, spec=spec
+    )

@@ -214,7 +214,9 @@ def _certify(
     check_place(lock, LOCK)
     known = read_lock_if_any(lock)
     with progress("gate") as step:
-        files = Files(reports, html, certificates_of(known, lock), bounds_of(known))
+        files = Files(
+            folder=reports, html=html, locked=certificates_of(known, lock), bounds=bounds_of(known)
+        )
         outcome = run_gate(specs, files, step, Overrides(*search), jobs)
     return _with_not_examined(write_lock(outcome, lock, prune=prune), paths)
 

@@ -53,7 +53,7 @@ if TYPE_CHECKING:
 BUDGET = 1800.0
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Files:
     """Where the files of a spec go: ``NAME.cert.json`` and, if asked for, ``NAME.html``."""
 

@@ -18,7 +18,7 @@ ZERO, ONE = Fraction(0), Fraction(1)
 OF_TERMS, OF_ANGLES = Fraction(1, 2**22), Fraction(1, 2**22)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class CutOff:
     """A signal ``s`` that saturates: ``s = min(max(a, -limit), limit)``.
 

@@ -13,7 +13,7 @@ from nrs_design.proof.saturation import Governed, Saturation
 from nrs_design.proof.switching import ARBITRARY, Clock, Edge, Stay, Switching
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class SwitchedSystem:
     """A linear switched system."""
 
@@ -67,7 +67,14 @@ class SwitchedSystem:
         switching : Switching
             Their rules.
         """
-        return SwitchedSystem(self.name, self.time, states, modes, self.assumptions, switching)
+        return SwitchedSystem(
+            name=self.name,
+            time=self.time,
+            states=states,
+            modes=modes,
+            assumptions=self.assumptions,
+            switching=switching,
+        )
 
     @property
     def is_losable(self) -> bool:

@@ -187,11 +187,11 @@ def close_axis(law: AdmittanceLaw, axis: Axis, around: Surroundings) -> Switched
         none = Box({"k": Interval.point(Fraction(0))}).beside(others)
         free = Contact(tuple(_modes(frame, none, around.delays, "free")))
     return SwitchedSystem(
-        f"{law.node.name}: axis {axis.name}",
-        Time.DISCRETE,
-        frame.states,
-        modes,
-        assumptions(around),
+        name=f"{law.node.name}: axis {axis.name}",
+        time=Time.DISCRETE,
+        states=frame.states,
+        modes=modes,
+        assumptions=assumptions(around),
         contact=free,
         sample_time=around.period,
     )

@@ -207,7 +207,14 @@ def _rounded(
             numerators, power = unscale(unit, shifts, bits)
             if power < 0:
                 numerators = tuple(tuple(v << -power for v in row) for row in numerators)
-            yield SaturatedEllipsoid(numerators, max(power, 0), alpha, rows, log2, level)
+            yield SaturatedEllipsoid(
+                Q=numerators,
+                denominator_log2=max(power, 0),
+                rate=alpha,
+                H=rows,
+                H_denominator_log2=log2,
+                level=level,
+            )
 
 
 def _fitted(

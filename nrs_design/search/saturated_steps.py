@@ -359,13 +359,13 @@ def _rounded(
     family, T, _, units = loop.whole(H, rounding=rounding)
     for numbers in roundings(family, found, T, units):
         yield SaturatedEllipsoid(
-            numbers.Q,
-            numbers.log2,
-            rate,
-            rows,
-            log2,
-            level,
-            numbers.multipliers,
-            numbers.roundings,
-            numbers.couplings,
+            Q=numbers.Q,
+            denominator_log2=numbers.log2,
+            rate=rate,
+            H=rows,
+            H_denominator_log2=log2,
+            level=level,
+            multipliers=numbers.multipliers,
+            roundings=numbers.roundings,
+            taus=numbers.couplings,
         )

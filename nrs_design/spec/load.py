@@ -53,7 +53,7 @@ if TYPE_CHECKING:
 SPEC_KINDS = ("interaction-design", "switched-system", "sampled-system", "robot", KIND)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class LoadedSpec:
     """A spec together with the file that it came from."""
 
@@ -186,7 +186,7 @@ def _loaded(file: Path, text: str, root: Node, syntax: tuple[Fault, ...]) -> Loa
     if spec.kind == "interaction-design" and spec.coupling is not None and spec.coupling.arm:
         used = _hash_of_arm(file, spec.coupling.arm.model, root)
         sha256 = hash_meaning({"spec": sha256, "arm": used})
-    return LoadedSpec(file, sha256, text, spec, root, used)
+    return LoadedSpec(path=file, sha256=sha256, text=text, spec=spec, parsed=root, bounds=used)
 
 
 def _hash_of_arm(spec: Path, model: str, root: Node) -> str:

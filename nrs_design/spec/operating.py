@@ -23,7 +23,7 @@ Bounds = Mapping[str, tuple[Fraction, str]]
 Preload = tuple["type[AbstractNonlinearLaw]", str, str]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class OperatingConditions:
     """Processor, switching, contact and bounds of a loop; numbers are exact and in SI units."""
 

@@ -125,12 +125,12 @@ def assemble_matrices(
         modes = tuple(chain.from_iterable(corners.values()))
         switching = assemble_switching(spec.switching, groups, resets)
     system = SwitchedSystem(
-        spec.name,
-        Time(spec.time),
-        tuple(f"x{i + 1}" for i in range(spec.dimension)),
-        modes,
-        assume_matrices(spec, parameters, scale),
-        switching,
+        name=spec.name,
+        time=Time(spec.time),
+        states=tuple(f"x{i + 1}" for i in range(spec.dimension)),
+        modes=modes,
+        assumptions=assume_matrices(spec, parameters, scale),
+        switching=switching,
     )
     return with_constants(system, constant_parameters(parameters))
 

@@ -70,13 +70,13 @@ def close_loop(
         names = (mode.name for mode in modes)
         flights = flights_among(names, state.environments, pulls_of(state))
     return SwitchedSystem(
-        name,
-        Time.CONTINUOUS,
-        state.names,
-        modes,
-        assume_loop(state, rules, losable=losable is not None, free=free),
-        assemble_switching(rules, groups, _resets(state)),
-        losable,
+        name=name,
+        time=Time.CONTINUOUS,
+        states=state.names,
+        modes=modes,
+        assumptions=assume_loop(state, rules, losable=losable is not None, free=free),
+        switching=assemble_switching(rules, groups, _resets(state)),
+        contact=losable,
         flights=flights,
     )
 

@@ -82,18 +82,18 @@ def with_saturation(
     command_limit = float32_not_above(conditions.largest_command)
     signals = (
         CutOff(
-            "velocity command",
-            conditions.axis.unit("rad/s"),
-            velocity_limit,
-            (_column(columns[0]),) * len(modes),
-            tuple(RationalMatrix.from_rows([_command(mode, motion)]) for mode in modes),
+            name="velocity command",
+            unit=conditions.axis.unit("rad/s"),
+            limit=velocity_limit,
+            columns=(_column(columns[0]),) * len(modes),
+            rows=tuple(RationalMatrix.from_rows([_command(mode, motion)]) for mode in modes),
         ),
         CutOff(
-            "motor command",
-            conditions.command,
-            command_limit,
-            tuple(_column([share * entry for entry in columns[1]]) for share in drives),
-            (motor,) * len(modes),
+            name="motor command",
+            unit=conditions.command,
+            limit=command_limit,
+            columns=tuple(_column([share * entry for entry in columns[1]]) for share in drives),
+            rows=(motor,) * len(modes),
         ),
     )
     lags = () if low_pass is None else low_pass.states
@@ -138,15 +138,15 @@ def with_sampled_saturation(
     n, wide = len(frame.states), len(frame.states) + len(INPUTS)
     limit, cut = float32_not_above(conditions.largest_command), INPUTS.index(CUT_OFF)
     signal = CutOff(
-        MOTOR_COMMAND,
-        conditions.command,
-        limit,
-        tuple(motion.column(cut) for motion in motions),
-        tuple(RationalMatrix.from_rows([motion.command[:n]]) for motion in motions),
-        tuple(RationalMatrix.from_rows([motion.command[wide:]]) for motion in motions)
+        name=MOTOR_COMMAND,
+        unit=conditions.command,
+        limit=limit,
+        columns=tuple(motion.column(cut) for motion in motions),
+        rows=tuple(RationalMatrix.from_rows([motion.command[:n]]) for motion in motions),
+        errors=tuple(RationalMatrix.from_rows([motion.command[wide:]]) for motion in motions)
         if system.roundings
         else (),
-        tuple(
+        pushes=tuple(
             RationalMatrix.from_rows([[item.rows[k].fractions()[0][0] for item in acted]])
             for k in range(len(motions) if acted else 0)
         ),
@@ -186,13 +186,13 @@ def _clamped(
     k = frame.states.index(INTEGRAL)
     rows = [motion.moves[k] for motion in motions]
     yield CutOff(
-        "integral of the force error",
-        conditions.axis.unit("rad"),
-        float32_not_above(conditions.largest_integral),
-        (_column(coordinates(n)[k]),) * len(motions),
+        name="integral of the force error",
+        unit=conditions.axis.unit("rad"),
+        limit=float32_not_above(conditions.largest_integral),
+        columns=(_column(coordinates(n)[k]),) * len(motions),
         # The signal before it, the command, plays no part in it.
-        tuple(RationalMatrix.from_rows([[*row[:n], Fraction(0)]]) for row in rows),
-        tuple(RationalMatrix.from_rows([row[wide:]]) for row in rows) if rounded else (),
+        rows=tuple(RationalMatrix.from_rows([[*row[:n], Fraction(0)]]) for row in rows),
+        errors=tuple(RationalMatrix.from_rows([row[wide:]]) for row in rows) if rounded else (),
     )
 
 

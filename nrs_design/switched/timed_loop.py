@@ -61,12 +61,12 @@ def close_timed_loop(spec: SampledSystemSpec) -> SwitchedSystem:
         stays[0] = Stay(*spec.sampling.rests)
     one, two = (DELAY, PERIOD) if late else TURNS
     return SwitchedSystem(
-        spec.name,
-        Time.CONTINUOUS,
-        tuple(f"{name}{i + 1}" for name, size in sizes.items() for i in range(size)),
-        (Mode(one, first), Mode(two, second)),
-        assume_timing(spec),
-        Switching(
+        name=spec.name,
+        time=Time.CONTINUOUS,
+        states=tuple(f"{name}{i + 1}" for name, size in sizes.items() for i in range(size)),
+        modes=(Mode(one, first), Mode(two, second)),
+        assumptions=assume_timing(spec),
+        switching=Switching(
             resets=(Reset(one, two, to_second), Reset(two, one, to_first)),
             stays=tuple(zip((one, two), stays, strict=True)),
         ),

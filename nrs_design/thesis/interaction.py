@@ -76,7 +76,9 @@ def run_scenario(controllers: dict[str, str], scenario: str, more: str = "") -> 
         As `interaction` takes them.
     """
     text = interaction(controllers, scenario, more)
-    designed = run_design(LoadedSpec(Path("runs.nrs.yaml"), "", text, parse_spec(text)))
+    designed = run_design(
+        LoadedSpec(path=Path("runs.nrs.yaml"), sha256="", text=text, spec=parse_spec(text))
+    )
     assert designed is not None
     (found,) = run_scenarios(designed, Runs(engine="exact"))
     return found.run

@@ -61,4 +61,6 @@ def family(name: str, *modes: Rows) -> SwitchedSystem:
     """Return the switched system of some matrices."""
     named = tuple(Mode(f"A{i + 1}", RationalMatrix.from_rows(rows)) for i, rows in enumerate(modes))
     states = tuple(f"x{i + 1}" for i in range(len(modes[0])))
-    return SwitchedSystem(name, Time.CONTINUOUS, states, named, ())
+    return SwitchedSystem(
+        name=name, time=Time.CONTINUOUS, states=states, modes=named, assumptions=()
+    )

@@ -36,7 +36,7 @@ def gain(low, nominal, high):
 
 def loaded(mass, damping):
     text = TEXT.replace("MASS", mass).replace("DAMPING", damping)
-    return LoadedSpec("hand", "", text, parse_spec(text))
+    return LoadedSpec(path="hand", sha256="", text=text, spec=parse_spec(text))
 
 
 @given(st.lists(numbers, min_size=4, max_size=4))

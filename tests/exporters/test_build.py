@@ -42,7 +42,9 @@ def test_the_same_motor_in_volts(continuous_export):
     text = (SPECS / "neuroboscope/soft-tissue.nrs.yaml").read_text()
     text = text.replace("gain: 4.8417e-4 rad/s/rpm", "gain: 0.123947520 rad/s/V\n  command: V")
     text = text.replace("2060 rpm*s/rad", "8046.875 mV*s/rad")
-    found = run_certification(LoadedSpec(Path("volts.nrs.yaml"), 64 * "0", text, parse_spec(text)))
+    found = run_certification(
+        LoadedSpec(path=Path("volts.nrs.yaml"), sha256=64 * "0", text=text, spec=parse_spec(text))
+    )
     system, before = found.certificate.system, continuous_export.certificate.system
     assert [mode.A for mode in system.modes] == [mode.A for mode in before.modes]
     assert set(system.assumptions) - set(before.assumptions) == {

@@ -20,7 +20,9 @@ VOLTS = (
 
 @pytest.mark.parametrize(("text", "unit"), [(SOFT_TISSUE.read_text(), "rpm"), (VOLTS, "V")])
 def test_the_unit_of_commands_is_named(text, unit):
-    loaded = LoadedSpec(Path("volts.nrs.yaml"), 64 * "0", text, parse_spec(text))
+    loaded = LoadedSpec(
+        path=Path("volts.nrs.yaml"), sha256=64 * "0", text=text, spec=parse_spec(text)
+    )
     designed = run_design(loaded)
     law = shipped_law(designed.spec, designed.design, Fraction(1, 500))
     assert law.units == {"command": unit}

@@ -53,7 +53,7 @@ def gated(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder.mkdir()
     (folder / "stable.nrs.yaml").write_text(STABLE)
     shutil.copy(SOFT_TISSUE, folder)
-    outcome = run_gate(find_specs([folder]), Files(root / "reports", html=False))
+    outcome = run_gate(find_specs([folder]), Files(folder=root / "reports", html=False))
     write_lock(outcome, root / "nrs.lock")
     assert make_lock(outcome.specs, root / "nrs.lock").specs
     return root

@@ -36,7 +36,7 @@ def broken(outcome):
 def gate_twice(project, spec):
     """Gate a spec and lock it; return what was found, and what is found again."""
     lock = project / "nrs.lock"
-    first = run_gate([spec], Files(project / "reports", html=False))
+    first = run_gate([spec], Files(folder=project / "reports", html=False))
     write_lock(first, lock)
     return first, run_locked([spec], read_lock(lock), lock)
 

@@ -21,7 +21,9 @@ def drawn(tmp_path, monkeypatch):
 
     def gate(**overrides):
         calls.clear()
-        outcome = run_gate([spec], Files(tmp_path / "reports"), overrides=Overrides(**overrides))
+        outcome = run_gate(
+            [spec], Files(folder=tmp_path / "reports"), overrides=Overrides(**overrides)
+        )
         assert not outcome.broken
         return bool(calls), (tmp_path / "reports/given.html").read_bytes()
 

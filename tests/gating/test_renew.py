@@ -18,7 +18,7 @@ from .conftest import BROKEN, STABLE
 def gate(project, *names, prune=False):
     specs = find_specs([project / name for name in names])
     file = project / "nrs.lock"
-    outcome = run_gate(specs, Files(project / "reports", html=False))
+    outcome = run_gate(specs, Files(folder=project / "reports", html=False))
     return write_lock(outcome, file, prune=prune)
 
 
@@ -33,13 +33,17 @@ def re_check(project):
 
 def test_lock_is_the_same_on_repeat(project):
     before = (project / "nrs.lock").read_bytes()
-    outcome = run_gate(find_specs([project / "specs"]), Files(project / "reports", html=False))
+    outcome = run_gate(
+        find_specs([project / "specs"]), Files(folder=project / "reports", html=False)
+    )
     write_lock(outcome, project / "nrs.lock")
     assert (project / "nrs.lock").read_bytes() == before
 
 
 def test_lock_elsewhere_names_the_same_files(project):
-    outcome = run_gate(find_specs([project / "specs"]), Files(project / "reports", html=False))
+    outcome = run_gate(
+        find_specs([project / "specs"]), Files(folder=project / "reports", html=False)
+    )
     lock = make_lock(outcome.specs, project / "reports/nrs.lock")
     assert lock.specs[0].path == "../specs/soft-tissue.nrs.yaml"
     assert lock.specs[0].certificate.file == "soft-tissue.cert.json"
@@ -120,7 +124,9 @@ def test_missed_goals_and_gains_are_locked(project):
 
 @pytest.mark.parametrize("text", ["", "precious", '{"schema": "nrs-design/lock/1"}'])
 def test_what_is_no_lock_is_not_overwritten(project, text):
-    outcome = run_gate([project / "specs/stable.nrs.yaml"], Files(project / "reports", html=False))
+    outcome = run_gate(
+        [project / "specs/stable.nrs.yaml"], Files(folder=project / "reports", html=False)
+    )
     (project / "nrs.lock").write_text(text)
     with pytest.raises(CertificateError):
         write_lock(outcome, project / "nrs.lock")
@@ -128,7 +134,9 @@ def test_what_is_no_lock_is_not_overwritten(project, text):
 
 
 def test_unwritable_lock(project):
-    outcome = run_gate([project / "specs/stable.nrs.yaml"], Files(project / "ci", html=False))
+    outcome = run_gate(
+        [project / "specs/stable.nrs.yaml"], Files(folder=project / "ci", html=False)
+    )
     with pytest.raises(OutputError, match="below the folder of the lock"):
         write_lock(outcome, project / "reports/nrs.lock")
     with pytest.raises(CertificateError, match="not a regular file"):
@@ -137,7 +145,9 @@ def test_unwritable_lock(project):
 
 def test_what_another_run_has_replaced_is_not_locked(project):
     """Two runs in one tree: the certificate on the disk must be the one that is locked."""
-    outcome = run_gate([project / "specs/stable.nrs.yaml"], Files(project / "reports", html=False))
+    outcome = run_gate(
+        [project / "specs/stable.nrs.yaml"], Files(folder=project / "reports", html=False)
+    )
     lock, file = project / "nrs.lock", project / "reports/stable.cert.json"
     before, ours = lock.read_bytes(), file.read_text()
     file.write_text(ours.replace(outcome.specs[0].certificate_id, 64 * "0"))
@@ -158,7 +168,7 @@ def test_nobody_reads_a_lock_that_another_run_is_about_to_write(project):
     lock.unlink()
     names = ("specs/stable.nrs.yaml", "specs/soft-tissue.nrs.yaml")
     one, other = (
-        run_gate([project / name], Files(project / "reports", html=False)) for name in names
+        run_gate([project / name], Files(folder=project / "reports", html=False)) for name in names
     )
     with alone_in(project):
         waiting = threading.Thread(target=write_lock, args=(one, lock))
@@ -192,7 +202,7 @@ def test_the_certificate_of_a_locked_spec_is_not_overwritten_even_where_it_is_mi
     (project / "reports/stable.cert.json").unlink()
     shutil.copy(project / "specs/stable.nrs.yaml", project / "mine.nrs.yaml")
     owners = certificates_of(read_lock(project / "nrs.lock"), project / "nrs.lock")
-    files = Files(project / "reports", html=False, locked=owners)
+    files = Files(folder=project / "reports", html=False, locked=owners)
     (broken,) = run_gate([project / "mine.nrs.yaml"], files).broken
     assert broken.rule.id == "NRS005"
     assert "is locked for specs/stable.nrs.yaml" in broken.message

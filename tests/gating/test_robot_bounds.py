@@ -36,7 +36,7 @@ def gate(root, *names):
     specs = [root / name for name in names or ("axes.nrs.yaml",)]
     lock = root / "nrs.lock"
     known = bounds_of(read_lock_if_any(lock))
-    outcome = run_gate(specs, Files(root / "reports", html=False, bounds=known))
+    outcome = run_gate(specs, Files(folder=root / "reports", html=False, bounds=known))
     write_lock(outcome, lock)
     return outcome
 

@@ -29,7 +29,7 @@ def examine(tmp_path):
         paths = [tmp_path / f"s{i}.nrs.yaml" for i in range(len(texts))]
         for path, text in zip(paths, texts, strict=True):
             path.write_text(text)
-        return run_gate(paths, Files(tmp_path / "reports", html=False))
+        return run_gate(paths, Files(folder=tmp_path / "reports", html=False))
 
     return run
 
@@ -59,7 +59,7 @@ def test_the_outcome_is_the_same_for_any_number_of_processes(tmp_path):
     paths = [tmp_path / f"s{i}.nrs.yaml" for i in range(len(texts))]
     for path, text in zip(paths, texts, strict=True):
         path.write_text(text)
-    files = Files(tmp_path / "reports", html=False)
+    files = Files(folder=tmp_path / "reports", html=False)
     alone = run_gate(paths, files)
     assert run_gate(paths, files, jobs=2) == alone
     assert [spec.path for spec in alone.specs] == paths
@@ -115,7 +115,7 @@ def test_a_broken_spec_does_not_keep_the_others_from_being_examined(examine):
 def test_missing_and_misnamed_files_are_errors(tmp_path):
     missing = tmp_path / "missing.nrs.yaml"
     not_utf8 = tmp_path / "\udcff.nrs.yaml"
-    outcome = run_gate([missing, not_utf8], Files(tmp_path, html=False))
+    outcome = run_gate([missing, not_utf8], Files(folder=tmp_path, html=False))
     assert [spec.obligations[0].rule.id for spec in outcome.specs] == ["NRS001", "NRS001"]
     assert "not UTF-8" in outcome.specs[1].obligations[0].message
 
@@ -171,7 +171,7 @@ def test_a_certificate_that_does_not_hold_when_read_back_is_reported(examine, mo
 def test_unwritable_folder_is_an_error_of_every_spec(tmp_path):
     spec = tmp_path / "s.nrs.yaml"
     spec.write_text(STABLE)
-    outcome = run_gate([spec], Files(spec / "reports", html=False))
+    outcome = run_gate([spec], Files(folder=spec / "reports", html=False))
     assert outcome.broken[0].rule.id == "NRS005"
     assert outcome.broken[0].line is None
     assert outcome.severity == 3
@@ -179,7 +179,7 @@ def test_unwritable_folder_is_an_error_of_every_spec(tmp_path):
 
 class TestStiffnessRange:
     def test_goal_is_met_but_not_called_proved(self, tmp_path):
-        (spec,) = run_gate([SOFT_TISSUE], Files(tmp_path, html=False)).specs
+        (spec,) = run_gate([SOFT_TISSUE], Files(folder=tmp_path, html=False)).specs
         goals = [item for item in spec.obligations if item.rule.id == "NRS103"]
         assert [item.subject for item in goals] == ["insertion", "withdrawal"]
         assert {item.status for item in goals} == {Status.MET}
@@ -191,7 +191,7 @@ class TestStiffnessRange:
         text = SOFT_TISSUE.read_text().replace("768.17 N/m]}", "90000 N/m]}")
         path = tmp_path / "stiff.nrs.yaml"
         path.write_text(text)
-        outcome = run_gate([path], Files(tmp_path, html=False))
+        outcome = run_gate([path], Files(folder=tmp_path, html=False))
         missed = [item for item in outcome.broken if item.rule.id == "NRS103"]
         assert {item.status for item in missed} == {Status.MISSED}
         assert outcome.specs[0].verdict == "refuted"
@@ -208,7 +208,7 @@ class TestStiffnessRange:
         path = tmp_path / "retuned.nrs.yaml"
         for low, status in (("1.04 N*m*s/rad", Status.MISSED), ("2 N*m*s/rad", Status.MET)):
             path.write_text(text.replace("LOW", low))
-            (spec,) = run_gate([path], Files(tmp_path, html=False)).specs
+            (spec,) = run_gate([path], Files(folder=tmp_path, html=False)).specs
             (goal,) = [item for item in spec.obligations if item.rule.id == "NRS103"]
             assert goal.status is status
             assert "at the worst corner of the other ranges" in goal.message

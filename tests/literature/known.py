@@ -86,7 +86,13 @@ def robot(name, Mt, contacts, coordinates="deflection") -> SwitchedSystem:
             rows = to_force_coordinates(rows, motion, contact)
         modes.append(Mode(f"k={k} Bt={Bt}", RationalMatrix.from_rows(rows)))
     states = tuple(f"x{i}" for i in range(len(modes[0].A.numerators)))
-    return SwitchedSystem(name, Time.CONTINUOUS, states, tuple(modes), GIVEN_MATRICES)
+    return SwitchedSystem(
+        name=name,
+        time=Time.CONTINUOUS,
+        states=states,
+        modes=tuple(modes),
+        assumptions=GIVEN_MATRICES,
+    )
 
 
 def settle(name: str, coordinates: str = "deflection") -> Certification:

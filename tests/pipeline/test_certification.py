@@ -81,7 +81,7 @@ def test_a_gated_spec_is_built_once_and_optimized_once(tmp_path, monkeypatch):
         optimize_impedance=("design.constrained",),
         design_controllers=("design.design",),
     )
-    outcome = run_gate([SOFT_TISSUE], Files(tmp_path, html=True))
+    outcome = run_gate([SOFT_TISSUE], Files(folder=tmp_path, html=True))
     assert outcome.severity == 0
     # One plant, and one optimum for each of the two controllers.
     assert calls == {"build_plant": 1, "design_controllers": 1, "optimize_impedance": 2}

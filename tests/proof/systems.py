@@ -44,7 +44,9 @@ def family(
     labels = names or [f"m{i}" for i in range(len(matrices))]
     modes = tuple(Mode(label, matrix(A)) for label, A in zip(labels, matrices, strict=True))
     states = tuple(f"x{i + 1}" for i in range(max(len(A) for A in matrices)))
-    return SwitchedSystem("family", time, states, modes, (), switching)
+    return SwitchedSystem(
+        name="family", time=time, states=states, modes=modes, assumptions=(), switching=switching
+    )
 
 
 def dayawansa_martin(a: Entry, switching: Switching = ARBITRARY) -> SwitchedSystem:
@@ -299,8 +301,8 @@ def saturating() -> SwitchedSystem:
     """
     column, first, second = matrix([[1], [0]]), matrix([[-1, 0]]), matrix([[-1, 0, 1]])
     signals = (
-        CutOff("s1", "N", Fraction(2), (column,) * 3, (first,) * 3),
-        CutOff("s2", "N", Fraction(1), (column,) * 3, (second,) * 3),
+        CutOff(name="s1", unit="N", limit=Fraction(2), columns=(column,) * 3, rows=(first,) * 3),
+        CutOff(name="s2", unit="N", limit=Fraction(1), columns=(column,) * 3, rows=(second,) * 3),
     )
     start = Start("force", "N", tuple(matrix([[0], [Fraction(1, k)]]) for k in (1, 2)))
     return replace(bouncing(), saturation=Saturation(signals, start))
@@ -345,7 +347,13 @@ def kept(system: SwitchedSystem) -> SwitchedSystem:
 
 def pushed_away(pull: Entry = 3) -> SwitchedSystem:
     """``x' = x + sat(-pull x)``, cut off at 1: it decays from ``|x| < 1`` exactly."""
-    signal = CutOff("s", "N", Fraction(1), (matrix([[1]]),), (matrix([[-Fraction(pull)]]),))
+    signal = CutOff(
+        name="s",
+        unit="N",
+        limit=Fraction(1),
+        columns=(matrix([[1]]),),
+        rows=(matrix([[-Fraction(pull)]]),),
+    )
     start = Start("place", "m", (matrix([[1]]),))
     system = family([[1 - Fraction(pull)]])
     return replace(system, saturation=Saturation((signal,), start))
@@ -353,7 +361,9 @@ def pushed_away(pull: Entry = 3) -> SwitchedSystem:
 
 def pushed_away_in_steps() -> SwitchedSystem:
     """``x+ = 3/2 x + sat(-x)``, cut off at 1: it decays from ``|x| < 2`` exactly."""
-    signal = CutOff("s", "N", Fraction(1), (matrix([[1]]),), (matrix([[-1]]),))
+    signal = CutOff(
+        name="s", unit="N", limit=Fraction(1), columns=(matrix([[1]]),), rows=(matrix([[-1]]),)
+    )
     start = Start("place", "m", (matrix([[1]]),))
     system = family([["1/2"]], time=Time.DISCRETE)
     return replace(system, saturation=Saturation((signal,), start), sample_time=Fraction(1, 10))
@@ -372,7 +382,13 @@ def saturating_in_steps(*, axes: bool = False) -> SwitchedSystem:
     coupling = (Coupling("c", (column,) * 3, seen),) if axes else ()
     pushes = (matrix([[part]]),) * 3 if axes else ()
     signal = CutOff(
-        "s", "N", Fraction(1, 2), (column,) * 3, (row,) * 3, (matrix([[1]]),) * 3, pushes
+        name="s",
+        unit="N",
+        limit=Fraction(1, 2),
+        columns=(column,) * 3,
+        rows=(row,) * 3,
+        errors=(matrix([[1]]),) * 3,
+        pushes=pushes,
     )
     start = Start("force", "N", tuple(matrix([[0], [Fraction(1, k)]]) for k in (1, 2)))
     return replace(

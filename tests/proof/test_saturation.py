@@ -155,8 +155,12 @@ def test_every_choice_is_a_matrix():
 
 def test_a_signal_in_another_is_replaced_in_it_too():
     """By hand: x' = x + s1 + s2 with s1 = sat(-x) and s2 = sat(s1 - x)."""
-    s1 = CutOff("s1", "N", Fraction(2), (matrix([[1]]),), (matrix([[-1]]),))
-    s2 = CutOff("s2", "N", Fraction(1), (matrix([[1]]),), (matrix([[-1, 1]]),))
+    s1 = CutOff(
+        name="s1", unit="N", limit=Fraction(2), columns=(matrix([[1]]),), rows=(matrix([[-1]]),)
+    )
+    s2 = CutOff(
+        name="s2", unit="N", limit=Fraction(1), columns=(matrix([[1]]),), rows=(matrix([[-1, 1]]),)
+    )
     what = Saturation((s1, s2), WHAT.start)
     found = what.between(matrix([[-2]]), 0, [[Fraction(-1, 2)], [Fraction(-3, 4)]])
     # s1 in {-x, -x/2}; s2 in {s1 - x, -3x/4}.

@@ -30,7 +30,7 @@ def rows_of(name, *replacements):
     for old, new in replacements:
         assert old in text
         text = text.replace(old, new)
-    designed = run_design(LoadedSpec(name, "", text, parse_spec(text)))
+    designed = run_design(LoadedSpec(path=name, sha256="", text=text, spec=parse_spec(text)))
     section = impedance_section(designed, run_analysis(designed).impedance)
     (table,) = (block for block in section.blocks if isinstance(block, Table))
     said = " ".join(block.text for block in section.blocks if isinstance(block, Paragraph))

@@ -74,6 +74,6 @@ def thesis_robot(
     if load is not None:
         text = text.replace("time_constant:", f"load_inertia: {load} kg*m^2, time_constant:")
     text += "".join(f"{name}: {section}\n" for name, section in sections.items())
-    designed = run_design(LoadedSpec("soft", "", text, parse_spec(text)))
+    designed = run_design(LoadedSpec(path="soft", sha256="", text=text, spec=parse_spec(text)))
     assert designed is not None
     return assemble(designed.spec, designed.plant, designed.design, "deflection")

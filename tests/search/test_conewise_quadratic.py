@@ -4,13 +4,14 @@ The rates were found by an independent program, and proved in exact arithmetic t
 what a good search reaches at least, to two percent.
 """
 
+from dataclasses import replace
 from math import log
 
 import pytest
 
 from nrs_design.certificates.certificate import Verdict
 from nrs_design.proof.contact import Contact
-from nrs_design.proof.mode import Mode, Time
+from nrs_design.proof.mode import Mode
 from nrs_design.search.certify import Limits, certify
 from nrs_design.search.graphs import search_together
 from tests.proof.graphs import shape_of
@@ -34,14 +35,7 @@ def test_a_bouncing_mass(system, optimize_rate):
 def test_free_motion_that_does_not_slow_down_is_not_found():
     free = Mode("free", matrix([[0, 0], [1, 0]]))
     system = bouncing()
-    sliding = type(system)(
-        system.name,
-        Time.CONTINUOUS,
-        system.states,
-        system.modes,
-        (),
-        contact=Contact((free,)),
-    )
+    sliding = replace(system, assumptions=(), contact=Contact((free,)))
     evidence, why = outcome(search_together, sliding)
     assert evidence is None
     assert why

@@ -81,7 +81,14 @@ class Misses:
         groups = {name: (Mode(name, of[0].A),) for name, of in groups.items()}
         rule = MissesSpec(mode="miss", at_most=self.most, of=self.of)
         each, rules = modes_with_misses(groups, rule)
-        return SwitchedSystem("late", Time.DISCRETE, first.states, each, (), rules)
+        return SwitchedSystem(
+            name="late",
+            time=Time.DISCRETE,
+            states=first.states,
+            modes=each,
+            assumptions=(),
+            switching=rules,
+        )
 
     def lets_repeat(self, word):
         long = word * (self.of + 1)
@@ -169,7 +176,14 @@ def check_timed(seed):
         for name, A in zip("ab", modes, strict=True)
     )
     states = tuple(f"x{k}" for k in range(size))
-    system = SwitchedSystem("timed", Time.CONTINUOUS, states, each, (), switching)
+    system = SwitchedSystem(
+        name="timed",
+        time=Time.CONTINUOUS,
+        states=states,
+        modes=each,
+        assumptions=(),
+        switching=switching,
+    )
     known = 0.0
     for length in (1, 1, 1, 2, 2, 3):
         whole = np.eye(size)

@@ -76,11 +76,11 @@ def drawn(seed: int) -> SwitchedSystem:
         outputs = (Output("force", "N", tuple(map(rounded_row, forces))),)
     states = ("velocity", "other", "delta")
     return SwitchedSystem(
-        f"drawn-{seed}",
-        Time.DISCRETE,
-        states,
-        touching,
-        (),
+        name=f"drawn-{seed}",
+        time=Time.DISCRETE,
+        states=states,
+        modes=touching,
+        assumptions=(),
         contact=contact,
         channels=channels,
         outputs=outputs,

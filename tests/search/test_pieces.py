@@ -29,7 +29,14 @@ def timed(widths, matrices=(A, B), stays=("1.7", "1.1"), resets=()):
     )
     states = tuple(f"x{i}" for i in range(len(matrices[0])))
     switching = Switching(resets=resets, stays=each)
-    return SwitchedSystem("timed", Time.CONTINUOUS, states, modes, (), switching)
+    return SwitchedSystem(
+        name="timed",
+        time=Time.CONTINUOUS,
+        states=states,
+        modes=modes,
+        assumptions=(),
+        switching=switching,
+    )
 
 
 SMALLER = (Reset("a", "b", RationalMatrix(((9, 1), (0, 8)), 10)),)

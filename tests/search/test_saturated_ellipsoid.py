@@ -37,18 +37,18 @@ def thesis(*dampings, lost=False, wanted=None):
     unit = [matrix([[int(i == j)] for j in range(4)]) for i in range(3)]
     signals = (
         CutOff(
-            "velocity command",
-            "rad/s",
-            Fraction("0.13962634"),
-            (unit[0],) * count,
-            (matrix([[0, 0, -1, 0]]),) * count,
+            name="velocity command",
+            unit="rad/s",
+            limit=Fraction("0.13962634"),
+            columns=(unit[0],) * count,
+            rows=(matrix([[0, 0, -1, 0]]),) * count,
         ),
         CutOff(
-            "motor command",
-            "rpm",
-            Fraction(2000),
-            (matrix([[0], [DRIVE], [0], [0]]),) * count,
-            (matrix([[KP, -KD, 0, 0, KD]]),) * count,
+            name="motor command",
+            unit="rpm",
+            limit=Fraction(2000),
+            columns=(matrix([[0], [DRIVE], [0], [0]]),) * count,
+            rows=(matrix([[KP, -KD, 0, 0, KD]]),) * count,
         ),
     )
     start = Start("force", "N*m", (matrix([[0], [0], [0], [Fraction(1, 43)]]),), wanted)

@@ -22,7 +22,7 @@ def planar(wanted=None, limit=Fraction(7)):
     """x+ = A x + B sat(F x), unstable without the signal."""
     closed = [[Fraction(a) + Fraction(b[0]) * Fraction(f) for a, f in zip(row, F[0], strict=True)]
               for row, b in zip(A, B, strict=True)]  # fmt: skip
-    signal = CutOff("u", "N", limit, (matrix(B),), (matrix(F),))
+    signal = CutOff(name="u", unit="N", limit=limit, columns=(matrix(B),), rows=(matrix(F),))
     start = Start("place", "m", (matrix([[1], [0]]), matrix([[0], [1]])), wanted)
     system = family(closed, time=Time.DISCRETE)
     return replace(system, saturation=Saturation((signal,), start), sample_time=Fraction(1, 100))

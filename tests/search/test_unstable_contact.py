@@ -43,7 +43,12 @@ def drawn(seed: int) -> SwitchedSystem:
     contact = Contact((Mode("free", rounded(free)),), required=True)
     mode = Mode("touch", rounded(free - push))
     return SwitchedSystem(
-        f"drawn-{seed}", Time.DISCRETE, ("v", "w", "delta"), (mode,), (), contact=contact
+        name=f"drawn-{seed}",
+        time=Time.DISCRETE,
+        states=("v", "w", "delta"),
+        modes=(mode,),
+        assumptions=(),
+        contact=contact,
     )
 
 
@@ -113,7 +118,14 @@ def turning(kept: str) -> SwitchedSystem:
     mode = Mode("touch", matrix([[kept, "-6/5"], [1, 1]]))
     contact = Contact((free,), required=True)
     states = ("v", "delta")
-    return SwitchedSystem("turning", Time.DISCRETE, states, (mode,), (), contact=contact)
+    return SwitchedSystem(
+        name="turning",
+        time=Time.DISCRETE,
+        states=states,
+        modes=(mode,),
+        assumptions=(),
+        contact=contact,
+    )
 
 
 def test_growth_in_kept_contact_leaves_the_verdict_open():

@@ -11,7 +11,9 @@ from nrs_design.proof.system import SwitchedSystem
 def system(*matrices, time=Time.CONTINUOUS, switching=ARBITRARY):
     modes = tuple(Mode(f"m{i}", RationalMatrix.from_rows(A)) for i, A in enumerate(matrices))
     states = tuple(f"x{i + 1}" for i in range(max(map(len, matrices))))
-    return SwitchedSystem("test", time, states, modes, (), switching)
+    return SwitchedSystem(
+        name="test", time=time, states=states, modes=modes, assumptions=(), switching=switching
+    )
 
 
 def reset(source, target, rows):

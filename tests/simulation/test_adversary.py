@@ -25,11 +25,11 @@ def matrix(rows):
 
 
 SYSTEM = SwitchedSystem(
-    "three",
-    Time.DISCRETE,
-    ("x", "y"),
-    tuple(Mode(name, matrix(M.tolist())) for name, M in zip("abc", A, strict=True)),
-    (),
+    name="three",
+    time=Time.DISCRETE,
+    states=("x", "y"),
+    modes=tuple(Mode(name, matrix(M.tolist())) for name, M in zip("abc", A, strict=True)),
+    assumptions=(),
 )
 RULES = {
     "free": Switching(),
@@ -105,7 +105,11 @@ def test_contact_is_lost_where_nothing_pushes():
     touch = np.array([[[0.9, -0.5, 1.0], [0.1, 1.0, 0.0]]])
     fly = np.array([[[1.0, 0.0, 0.0], [0.1, 1.0, 0.0]]])
     system = SwitchedSystem(
-        "one", Time.DISCRETE, ("v", "delta"), (Mode("a", matrix([[1, 0], [0, 1]])),), ()
+        name="one",
+        time=Time.DISCRETE,
+        states=("v", "delta"),
+        modes=(Mode("a", matrix([[1, 0], [0, 1]])),),
+        assumptions=(),
     )
     game = Game(touch, fly, np.zeros((0, 2)), Rules.of(system, 1.0))
     assert game.flies(np.array([[1.0, 0.0], [1.0, 0.1], [1.0, -0.1]])).tolist() == [

@@ -23,7 +23,9 @@ def drawn(count, tissue=WIDE, law=LAW, motor=None):
     """Runs of a spec, one for each seed."""
     text = text_of({"insertion": law}, {"soft": tissue}, scenario=PRESSED)
     text = text.replace("gain: 4.8417e-4 rad/s/rpm", f"gain: {motor or '4.8417e-4 rad/s/rpm'}")
-    designed = run_design(LoadedSpec(Path("small"), "", text, parse_spec(text)))
+    designed = run_design(
+        LoadedSpec(path=Path("small"), sha256="", text=text, spec=parse_spec(text))
+    )
     return [next(run_scenarios(designed, Runs(draw=seed))) for seed in range(count)]
 
 

@@ -23,7 +23,14 @@ def spring(name, k, c):
 
 def system(*modes, **rules):
     states = ("v", "delta [rad]")
-    return SwitchedSystem("test", Time.CONTINUOUS, states, modes, (), Switching(**rules))
+    return SwitchedSystem(
+        name="test",
+        time=Time.CONTINUOUS,
+        states=states,
+        modes=modes,
+        assumptions=(),
+        switching=Switching(**rules),
+    )
 
 
 def test_a_run_begins_at_rest_at_the_largest_force():
@@ -70,7 +77,13 @@ def test_a_sampled_run_begins_with_what_was_measured_and_counts_seconds():
     mode = Mode("a", RationalMatrix.from_rows([[Fraction(x) for x in row] for row in rows]))
     states = ("omega [rad/s]", "F 1 before [N*m]", "delta [rad]")
     sampled = SwitchedSystem(
-        "test", Time.DISCRETE, states, (mode,), (), Switching(), sample_time=Fraction(1, 500)
+        name="test",
+        time=Time.DISCRETE,
+        states=states,
+        modes=(mode,),
+        assumptions=(),
+        switching=Switching(),
+        sample_time=Fraction(1, 500),
     )
     velocity, last = np.array([[1.0, 0.0, 0.0]]), np.array([0.0, 0.0, 1.0])
     outputs = Outputs(np.array([[0.0, 0.0, 4.0]]), velocity, last, last, 2.0, 1.0, (1,))
@@ -84,7 +97,14 @@ def test_a_sampled_run_begins_with_what_was_measured_and_counts_seconds():
 def test_a_run_that_grows_is_cut_and_overflows_nothing():
     rows = [[Fraction(0), Fraction(0)], [Fraction(0), Fraction(10)]]
     mode = Mode("a", RationalMatrix.from_rows(rows))
-    grows = SwitchedSystem("test", Time.DISCRETE, ("v", "delta [rad]"), (mode,), (), Switching())
+    grows = SwitchedSystem(
+        name="test",
+        time=Time.DISCRETE,
+        states=("v", "delta [rad]"),
+        modes=(mode,),
+        assumptions=(),
+        switching=Switching(),
+    )
     run = simulate_release(grows, ROWS, None)
     assert np.abs(run.state[:, 1]).max() == pytest.approx(10 * 0.5 * 10)
     assert len(run.time) == len(run.mode) + 1

@@ -17,7 +17,9 @@ MODES = tuple(
     Mode(name, RationalMatrix.from_rows([[Fraction(-k)]]))
     for k, name in enumerate(("a", "b", "c"), start=1)
 )
-FREE = SwitchedSystem("three", Time.CONTINUOUS, ("x",), MODES, ())
+FREE = SwitchedSystem(
+    name="three", time=Time.CONTINUOUS, states=("x",), modes=MODES, assumptions=()
+)
 RING = (("a", "b"), ("b", "c"), ("c", "a"))
 RULED = replace(
     FREE,

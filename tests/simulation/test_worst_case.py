@@ -34,12 +34,12 @@ def oscillator(*stiffness, damping="1", switching=ARBITRARY):
     modes = tuple(Mode(f"k-{k}", matrix([[0, 1], [f"-{k}", f"-{damping}"]])) for k in stiffness)
     column = matrix([[0], [1]])
     return SwitchedSystem(
-        "oscillator",
-        Time.CONTINUOUS,
-        ("x", "v"),
-        modes,
-        (),
-        switching,
+        name="oscillator",
+        time=Time.CONTINUOUS,
+        states=("x", "v"),
+        modes=modes,
+        assumptions=(),
+        switching=switching,
         channels=(Channel("push", "N", Fraction(1), (column,) * len(modes)),),
         outputs=(Output("x", "m", (matrix([[1, 0]]),)),),
     )
@@ -150,11 +150,11 @@ def test_modes_that_take_turns():
     """Of a round of two steps, the push acts in the second one alone: 1 + 1/4 + 1/16 + ..."""
     half = matrix([["1/2"]])
     system = SwitchedSystem(
-        "turns",
-        Time.DISCRETE,
-        ("x",),
-        (Mode("first", half), Mode("low", matrix([["1/4"]])), Mode("high", half)),
-        (),
+        name="turns",
+        time=Time.DISCRETE,
+        states=("x",),
+        modes=(Mode("first", half), Mode("low", matrix([["1/4"]])), Mode("high", half)),
+        assumptions=(),
         channels=(Channel("push", "", Fraction(1), tuple(matrix([[b]]) for b in (0, 1, 1))),),
         outputs=(Output("x", "", (matrix([[1]]),)),),
         clock=Clock(2, ("first",)),
@@ -181,7 +181,7 @@ BOUNDED = "contact: losable\ndisturbances: {command: 8 deg/s}\n"
 
 def loaded(more, **options):
     text = text_of(ONE, SOFT, more=more, **options)
-    return LoadedSpec(Path("small"), "", text, parse_spec(text))
+    return LoadedSpec(path=Path("small"), sha256="", text=text, spec=parse_spec(text))
 
 
 def test_the_exact_engine_comes_to_the_same():
@@ -218,7 +218,9 @@ def test_tissue_that_creeps():
     model = "{model: kelvin-boltzmann, parallel_stiffness: 43 N*m/rad, "
     model += "series_stiffness: 43 N*m/rad, damping: 20 N*m*s/rad}"
     text = text_of(ONE, {"soft": model})
-    designed = run_design(LoadedSpec(Path("small"), "", text, parse_spec(text)))
+    designed = run_design(
+        LoadedSpec(path=Path("small"), sha256="", text=text, spec=parse_spec(text))
+    )
     case = run_worst_case(designed, rounds=0)
     force, velocity, deflection = case.runs
     assert force.value > 2.15 * math.radians(8) * 0.999

@@ -51,7 +51,9 @@ PARTS_OF = {
 
 def loaded(text: str) -> LoadedSpec:
     root = parse_document(text)
-    return LoadedSpec(Path("a.nrs.yaml"), "", text, parse_spec(text), root)
+    return LoadedSpec(
+        path=Path("a.nrs.yaml"), sha256="", text=text, spec=parse_spec(text), parsed=root
+    )
 
 
 def lines_of(spec: LoadedSpec, slowest: float | None = None) -> dict[str, Concession]:

@@ -34,7 +34,9 @@ def test_what_the_range_of_a_motor_holds_is_assumed():
         (text, ", unless it has been changed by hand since."),
         (text.replace("range_covers: prediction", known), "."),
     ):
-        designed = run_design(LoadedSpec(ROBOT, "", written, parse_spec(written)))
+        designed = run_design(
+            LoadedSpec(path=ROBOT, sha256="", text=written, spec=parse_spec(written))
+        )
         system = assemble(designed.spec, designed.plant, designed.design, "deflection")
         assert said + end in system.assumptions
 

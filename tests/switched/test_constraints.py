@@ -53,7 +53,7 @@ def given(body, rules, time="continuous"):
 def pair(rules, stiffness="43 N*m/rad", contacts="[soft]"):
     text = PAIR.replace("RULES", rules).replace("STIFFNESS", stiffness)
     spec = parse_spec(text.replace("CONTACTS", contacts))
-    gains = gains_of(run_design(LoadedSpec("pair", "", text, spec)).design)
+    gains = gains_of(run_design(LoadedSpec(path="pair", sha256="", text=text, spec=spec)).design)
     return assemble_from_text(spec, gains, "deflection")
 
 

@@ -43,7 +43,7 @@ def loaded(**fields):
     text = TEXT
     for key, value in (FIXED | fields).items():
         text = text.replace(f" {key}", f" {value}", 1)
-    return LoadedSpec("hand", "", text, parse_spec(text))
+    return LoadedSpec(path="hand", sha256="", text=text, spec=parse_spec(text))
 
 
 def assembled(spec, coordinates="deflection", scale=DECLARED):

@@ -30,7 +30,7 @@ def system_of(*changes: tuple[str, str], sections: str = ""):
         assert old in text
         text = text.replace(old, new)
     text += sections
-    designed = run_design(LoadedSpec("hand", "", text, parse_spec(text)))
+    designed = run_design(LoadedSpec(path="hand", sha256="", text=text, spec=parse_spec(text)))
     return assemble(designed.spec, designed.plant, designed.design, "deflection")
 
 

@@ -42,7 +42,7 @@ SCALES = st.fractions(0, 4, max_denominator=9)
 
 @pytest.fixture(scope="module")
 def gains():
-    return gains_of(run_design(LoadedSpec("hand", "", TEXT, HAND)).design)
+    return gains_of(run_design(LoadedSpec(path="hand", sha256="", text=TEXT, spec=HAND)).design)
 
 
 def names(system):
@@ -110,7 +110,7 @@ def test_every_entry_is_affine_in_stiffness_and_damping(coordinates, Mt):
     # `assemble` itself compares the middle of the box with its corners, and raises if it differs.
     text = TEXT.replace("Mt: 0.01 kg", f"Mt: {Mt} kg")
     spec = parse_spec(text)
-    gains = gains_of(run_design(LoadedSpec("hand", "", text, spec)).design)
+    gains = gains_of(run_design(LoadedSpec(path="hand", sha256="", text=text, spec=spec)).design)
     assert len(assemble_from_text(spec, gains, coordinates).modes) == 4
 
 

@@ -32,7 +32,7 @@ Forms = Iterator[tuple[str, IntegerMatrix]]
 NOTHING_SATURATES = "the system does not say what saturates"
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class SaturatedEllipsoid(AbstractEvidence):
     """``V = w' Q w`` decreases wherever ``V <= 1``, although signals are cut off at their limits.
 

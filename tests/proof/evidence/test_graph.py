@@ -147,7 +147,9 @@ class TestCommon:
         for denominator in (0, -1):
             turned = Mode("turned", RationalMatrix(((-1, 0), (0, -1)), denominator))
             assert "mode turned" in self.fault(replace(COMMUTING, modes=(turned,)), I2, HALF)
-        empty = SwitchedSystem("empty", Time.CONTINUOUS, ("x1", "x2"), (), ())
+        empty = SwitchedSystem(
+            name="empty", time=Time.CONTINUOUS, states=("x1", "x2"), modes=(), assumptions=()
+        )
         assert self.fault(empty, I2, HALF) == "the system has no modes"
         twice = replace(COMMUTING, modes=COMMUTING.modes[:1] * 2)
         assert "same name" in self.fault(twice, I2, HALF)

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from unicorn import arm_const as arm
 
 HERE = Path(__file__).parent
-M4F = HERE.parent / "nrs_design/exporters/board"
+M4F = HERE.parent / "tests/exporters/board"
 GCC, PREFIX = "arm-none-eabi-gcc", "arm-none-eabi-"
 CORTEX = ("-mcpu=cortex-m4", "-mthumb", "-mfpu=fpv4-sp-d16", "-mfloat-abi=hard")
 FLAGS = (*CORTEX, "-O2", "-std=c99", "-ffp-contract=off", "-fno-math-errno")

@@ -25,7 +25,6 @@ C_MONITOR, C_MONITOR_HEADER = (
     b"/* nrs-design C header of a monitor\n",
 )
 CMAKE = b"# nrs-design CMake file\n"
-BINARY = b'{\n  "schema": "nrs-design/binary/'
 VECTORS = b'{\n  "schema": "nrs-design/vectors/'
 VECTOR_TABLE = b"# nrs-design vectors\n"
 # The first entry of the archive, which is stored as it is, and always the same.
@@ -33,18 +32,7 @@ FMU = (
     b"PK\x03\x04\x14\x00\x00\x00\x00\x00\x00\x00!\x00\x8f*\x87r\x0f\x00\x00\x00\x0f\x00\x00\x00"
     b"\x1c\x00\x00\x00documentation/nrs-design.txtnrs-design fmu\n"
 )
-FMU3 = (
-    b"PK\x03\x04\x14\x00\x00\x00\x00\x00\x00\x00!\x00\xa6\xc8\x1aT\x10\x00\x00\x00\x10\x00\x00\x00"
-    b"\x1c\x00\x00\x00documentation/nrs-design.txtnrs-design fmi3\n"
-)
 VECTOR_TEST = b'"""nrs-design test of conformance vectors'
-ROS2_NODE = b"/* nrs-design node of ROS 2\n"
-ROS2_PACKAGE = b'<?xml version="1.0"?>\n<!-- nrs-design package of ROS 2\n'
-ROS2_CMAKE, ROS2_PARAMETERS = (
-    b"# nrs-design CMake of ROS 2\n",
-    b"# nrs-design parameters of ROS 2\n",
-)
-ROS2_LAUNCH, ROS2_PAGE = b'"""nrs-design launch of ROS 2\n', b"<!-- nrs-design page of ROS 2 -->\n"
 BOUNDS = b'{\n  "schema": "nrs-design/robot-bounds/'
 LOCK = b'{\n  "schema": "nrs-design/lock/'
 PAGE = b'<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta name="generator" content="nrs-design">\n'

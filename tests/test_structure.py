@@ -323,7 +323,7 @@ def test_only_the_pipeline_calls_the_stages():
 # Functions that do one thing in several modules; a command is named like what it calls.
 SHARED = {
     # Modules of a table offer them all.
-    *("render", "header_text", "source_text", "remarks"),
+    *("render", "header_text", "source_text"),
     *("results", "choose", "analyze"),
     # The library at the door, and the stage behind it.
     *("certify", "verify"),

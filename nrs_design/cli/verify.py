@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from nrs_design.certificates.certificate import Certificate
     from nrs_design.certificates.verify import Verification
-    from nrs_design.cli.deployed import DeployedAnswer
+    from nrs_design.exporters.deployed import DeployedFiles
     from nrs_design.spec import LoadedSpec, Spec
 
 # Work for each of the bounds of a robot.
@@ -47,34 +47,7 @@ def verify(
         typer.Option(
             metavar="PLACE",
             help="Folder of exported files, or one of them (C, tests, vectors, monitor, CMake, "
-            "FMU, record): they must be what is exported with the certificate.",
-        ),
-    ] = None,
-    compile_line: Annotated[
-        str | None,
-        typer.Option(
-            "--compile",
-            metavar="'CC FLAGS'",
-            help="Your compiler and flags: compiles the deployed law, runs its self-test, and "
-            "writes NAME.binary.json.",
-        ),
-    ] = None,
-    link_line: Annotated[
-        str | None,
-        typer.Option(
-            "--link",
-            metavar="'WORDS'",
-            help="What links the self-test, with start and memory of your board; by default those "
-            "of an emulated Cortex-M4F for arm-none-eabi, and nothing otherwise.",
-        ),
-    ] = None,
-    run_line: Annotated[
-        str | None,
-        typer.Option(
-            "--run",
-            metavar="'COMMAND'",
-            help="What runs the self-test, at its end or at {program}; by default QEMU for "
-            "arm-none-eabi, and the program itself otherwise.",
+            "FMU): they must be what is exported with the certificate.",
         ),
     ] = None,
     bounds: Annotated[
@@ -92,28 +65,22 @@ def verify(
     and the answer says so: whose modes they are is then not known, and gains, coordinates and
     assumptions, which nothing holds against anything, are not printed.
 
-    With --deployed, every exported file of a folder is compared with what is exported with the
-    certificate: code token by token, in its order; a record field by field; an FMU by what it
-    holds, its library with what the compiler here makes of it. Comments do not count. The answer
-    says first what was compared and what was not.
-
-    With --compile, the law is then compiled by your own line, its self-test of 1,000 cases runs on
-    an emulator or here, and a record names compiler, flags and the hash of the object that passed.
-    The lines run without a shell, two minutes each at most, in a copy of the folder: files
-    elsewhere need their whole path.
+    With --deployed, every file of a folder that a processor runs must be, byte for byte, what is
+    exported with the certificate by this release; files of another release are named as such. The
+    answer says first what was compared and what was not. How the files are compiled is not looked
+    at: the exported self-test tells whether your compiler and processor compute the law.
 
     Where the spec names a robot, the bounds on its links are taken on trust from the file beside
     it, and the answer says so; a file that a pose contradicts is rejected. --bounds computes them
     again, from the spec of the robot.
 
     Exit code 0: the proof holds. 1: the certificate is rejected, or it holds and refutes, or the
-    deployed files, the binary or the bounds of the robot are others. 3: it holds, but decides
+    deployed files or the bounds of the robot are others. 3: it holds, but decides
     nothing.
 
     Example: nrs-design verify reports/soft-tissue.cert.json specs/neuroboscope/soft-tissue.nrs.yaml
     """
     _check_arguments(certificate, spec, coordinates, deployed)
-    lines = _lines(deployed, compile_line, link_line, run_line)
     outcome, loaded = _verify(certificate, spec, None if coordinates is None else str(coordinates))
     robot = None if loaded is None else loaded.robot
     if bounds and robot is None:
@@ -121,9 +88,9 @@ def verify(
     faults = None if robot is None else _bounds_faults(robot, again=bounds)
     on_trust = None if robot is None or bounds else _file_of(robot)
     checked = outcome.certificate if outcome.fault is None else None
-    place = _deployed(deployed, lines, loaded, checked)
-    differences = None if place is None else place.differences
-    rejected = checked is None or bool(differences) or bool(faults)
+    found = _deployed(deployed, loaded, checked)
+    differs = found is not None and bool(found.differences)
+    rejected = checked is None or differs or bool(faults)
     verdict = "rejected" if checked is None or rejected else checked.verdict
     brief = is_quiet()
 
@@ -132,8 +99,8 @@ def verify(
             say(f"REJECTED: {outcome.fault}", verdict="rejected")
             return
         # What was deployed comes first: a proof of other numbers is no good news.
-        if place is not None:
-            place.show()
+        if deployed is not None and found is not None:
+            _print_deployed(deployed, found)
         _print_faults(faults or [])
         if not (faults or brief):
             _print(checked, None if loaded is None else loaded.spec, on_trust)
@@ -142,7 +109,7 @@ def verify(
 
     given = {"certificate": certificate, "spec": spec, "deployed": deployed, "robot": robot}
     return Answer(
-        lambda: _facts(outcome, given, place, faults, on_trust),
+        lambda: _facts(outcome, given, found, faults, on_trust),
         show,
         exit_codes.OF_VERDICT.get(verdict, exit_codes.REFUTED),
         loud=rejected,
@@ -186,23 +153,22 @@ def _check_arguments(
 def _facts(
     outcome: Verification,
     given: Mapping[str, Path | None],
-    place: DeployedAnswer | None,
+    found: DeployedFiles | None,
     faults: list[str] | None,
     on_trust: Path | None,
 ) -> dict[str, Any]:
     from nrs_design.facts.verification import verification_facts
 
     files = {name: None if path is None else str(path) for name, path in given.items()}
-    differences = None if place is None else place.differences
+    differences = None if found is None else found.differences
     facts = verification_facts(outcome, given["certificate"], given["spec"])
     return {
         **facts,
         "verdict": "rejected" if differences or faults else facts["verdict"],
         "deployed": files["deployed"],
         "differences": None if differences is None else list(differences),
-        "compared": None if place is None else [file.name for file in place.comparison.compared],
-        "not_compared": None if place is None else place.comparison.left_out,
-        "binary": None if place is None else place.record,
+        "compared": None if found is None else [file.name for file in found.compared],
+        "not_compared": None if found is None else found.left_out,
         "robot": files["robot"],
         "bounds_faults": faults,
         "on_trust": None if on_trust is None else str(on_trust),
@@ -238,30 +204,13 @@ _NEXT = {
 }
 
 
-def _lines(
-    deployed: Path | None, compile_line: str | None, link_line: str | None, run_line: str | None
-) -> Mapping[str, str]:
-    """Return the command lines of the user, by their options."""
-    given = {"--compile": compile_line, "--link": link_line, "--run": run_line}
-    lines = {option: line for option, line in given.items() if line is not None}
-    for option in lines:
-        if "--compile" not in lines:
-            raise typer.BadParameter("needs --compile, whose program it is for", param_hint=option)
-        if deployed is None or (deployed.exists() and not deployed.is_dir()):
-            raise typer.BadParameter("needs --deployed with a folder", param_hint=option)
-    return lines
-
-
 def _deployed(
-    deployed: Path | None,
-    lines: Mapping[str, str],
-    loaded: LoadedSpec | None,
-    checked: Certificate | None,
-) -> DeployedAnswer | None:
+    deployed: Path | None, loaded: LoadedSpec | None, checked: Certificate | None
+) -> DeployedFiles | None:
     """Compare what was deployed with a certificate that holds; None if there is nothing to do."""
     if deployed is None or loaded is None or checked is None:
         return None
-    from nrs_design.cli.deployed import deployed_answer
+    from nrs_design.exporters.deployed import compare_deployed
     from nrs_design.pipeline import wrong_kind
     from nrs_design.spec import InteractionDesignSpec
 
@@ -274,7 +223,20 @@ def _deployed(
             path=deployed,
             remedy="--deployed names what `nrs-design export` has written",
         )
-    return deployed_answer(deployed, lines, loaded.spec, checked)
+    return compare_deployed(deployed, loaded.spec, checked)
+
+
+def _print_deployed(place: Path, found: DeployedFiles) -> None:
+    if found.differences:
+        say(f"REJECTED: {place} is not what the certificate is about", verdict="rejected")
+        for line in found.differences:
+            say(f"  {line}")
+        return
+    what = f"{len(found.compared)} files of {place}" if place.is_dir() else str(place)
+    say(
+        f"deployed: {what}: as exported with the certificate, byte for byte; not compared: "
+        f"{found.left_out}"
+    )
 
 
 def _print(certificate: Certificate, spec: Spec | None, on_trust: Path | None) -> None:

@@ -24,8 +24,8 @@ class Format:
 
     purpose: str  # What the files are for, in a few words
     needs: str  # What there must be before they are written
-    # What follows the name of the spec in the name of each file, where NAME is that name again, and
-    # how that file begins: one that begins otherwise is another's, and is not overwritten.
+    # What follows the name of the spec in the name of each file, and how that file begins: one that
+    # begins otherwise is another's, and is not overwritten.
     files: Mapping[str, bytes]
     # Whether a processor runs it, so that the proof must be about the sampled loop.
     executable: bool = False

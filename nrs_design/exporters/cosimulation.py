@@ -1,7 +1,6 @@
-"""A law as a model for co-simulation: variables, archive, and what it says of itself.
+"""A law as a model for co-simulation by FMI 2.0: variables, archive, what it says of itself.
 
-Versions of FMI differ in their C around the law and in their description: `Interface`. Entries are
-stored as they are, with one date: no library of compression changes a byte.
+Entries are stored as they are, with one date: no library of compression changes a byte.
 """
 
 from __future__ import annotations
@@ -24,40 +23,14 @@ from nrs_design.exporters.start import start_lines
 from nrs_design.exporters.template import fill_template
 from nrs_design.output import C_SOURCE
 
-# The first entry is always the same for a version, and so are the first bytes of the file.
-FIRST = "documentation/nrs-design.txt"
+# The first entry is always the same, and so are the first bytes of the file.
+_FIRST = "documentation/nrs-design.txt"
 
 
-@dataclass(frozen=True, slots=True)
-class Interface:
-    """A version of FMI."""
-
-    version: str  # As it calls itself
-    mark: bytes  # What the first entry says
-    source: str  # The C around the law, and its template
-    description: str  # Template of the description
-    libraries: str  # Folder of the library for 64-bit Linux on x86
-    inputs: str  # How inputs arrive
-    build: str = ""  # Template of how sources are compiled, where the description does not say it
-
-
-FMI2 = Interface(
-    "2.0",
-    b"nrs-design fmu\n",
-    "fmu.c",
-    "modelDescription.xml",
-    "binaries/linux64",
-    "Inputs arrive as doubles and are rounded to single precision once.",
-)
-FMI3 = Interface(
-    "3.0",
-    b"nrs-design fmi3\n",
-    "fmi3.c",
-    "modelDescription3.xml",
-    "binaries/x86_64-linux",
-    "Inputs are numbers of single precision, as the law takes them: who has doubles rounds them.",
-    "buildDescription.xml",
-)
+_MARK = b"nrs-design fmu\n"
+# Where the library for 64-bit Linux on x86 is, if there is one.
+_LIBRARIES = "binaries/linux64"
+_WRAPPER = "fmu.c"
 _DATE = (1980, 1, 1, 0, 0, 0)
 # By base units of SI; those of motors that are none have a name only.
 _BASE = {
@@ -73,6 +46,7 @@ _BASE = {
     "A": 'A="1"',
 }
 OUTSIDE = (
+    "Inputs arrive as doubles and are rounded to single precision once.",
     "A step from t on takes the inputs that are set at t. What it commands is for the time from t "
     "on: step this model first, hand its command over, then step the motor across the same time. "
     "A master that hands it over after the step makes the loop one sample slower than the proof "
@@ -114,22 +88,20 @@ def _rows(law: StepLaw) -> Iterator[tuple[str, str, str, str, str]]:
         yield f"state.{value.name}", f"state.{value.name}", "local", value.unit, value.meaning
 
 
-def fmu_of(export: Export, interface: Interface) -> bytes:
+def fmu_of(export: Export) -> bytes:
     """Return the file of an export.
 
     Parameters
     ----------
     export : Export
         With a record, proved or not.
-    interface : Interface
-        The version of FMI.
 
     Raises
     ------
     DesignError
         If there is no program of a controller yet, or the compiler of this system fails.
     """
-    return packed(contents(program_of(export), interface, compiler()))
+    return packed(contents(program_of(export), compiler()))
 
 
 def what_it_lacks(file: bytes) -> tuple[str, ...]:
@@ -143,15 +115,13 @@ def what_it_lacks(file: bytes) -> tuple[str, ...]:
     )
 
 
-def contents(program: Program, interface: Interface, compile_with: str | None) -> dict[str, bytes]:
+def contents(program: Program, compile_with: str | None) -> dict[str, bytes]:
     """Return every entry by its path.
 
     Parameters
     ----------
     program : Program
         The law.
-    interface : Interface
-        The version of FMI.
     compile_with : str or None
         A compiler; None for sources alone.
     """
@@ -159,30 +129,20 @@ def contents(program: Program, interface: Interface, compile_with: str | None) -
     code = {
         f"{names.spec}.h": header_text(record, law, names),
         f"{names.spec}.c": source_text(record, law, names),
-        interface.source: wrapper_text(program, interface),
+        _WRAPPER: wrapper_text(program),
     }
-    sources = code | (
-        {interface.build: fill_template(f"{interface.build}.j2", names=names)}
-        if interface.build
-        else {}
-    )
-    entries = {FIRST: interface.mark, "documentation/index.html": b""}
-    entries["modelDescription.xml"] = description(program, interface).encode()
-    entries |= {f"sources/{name}": text.encode() for name, text in sources.items()}
+    entries = {_FIRST: _MARK, "documentation/index.html": b""}
+    entries["modelDescription.xml"] = description(program).encode()
+    entries |= {f"sources/{name}": text.encode() for name, text in code.items()}
     binary = "compiled: nothing, only sources"
     if compile_with is not None:
-        library = library_of(program, interface)
+        library = f"{_LIBRARIES}/{names.lower}.so"
         entries[library] = shared_library(compile_with, code)
         binary = (
             f"compiled for 64-bit Linux on x86: {library}, by the C compiler of who exported it"
         )
-    entries["documentation/index.html"] = _page(program, interface, binary).encode()
+    entries["documentation/index.html"] = _page(program, binary).encode()
     return entries
-
-
-def library_of(program: Program, interface: Interface) -> str:
-    """Return where the compiled library of a program is, if there is one."""
-    return f"{interface.libraries}/{program.names.lower}.so"
 
 
 def _period(record: ExportRecord) -> str:
@@ -218,11 +178,11 @@ def packed(entries: Mapping[str, bytes]) -> bytes:
     return file.getvalue()
 
 
-def wrapper_text(program: Program, interface: Interface) -> str:
+def wrapper_text(program: Program) -> str:
     """Return the C around a law; numbers are rounded where the law takes them."""
-    about = (*program.about, f"It makes a model by FMI {interface.version} of the law.")
+    about = (*program.about, "It makes a model by FMI 2.0 of the law.")
     return fill_template(
-        f"{interface.source}.j2",
+        f"{_WRAPPER}.j2",
         comment=block_comment(about, C_SOURCE),
         names=program.names,
         law=program.law,
@@ -232,7 +192,7 @@ def wrapper_text(program: Program, interface: Interface) -> str:
     )
 
 
-def description(program: Program, interface: Interface) -> str:
+def description(program: Program) -> str:
     """Return what the model says of itself, as XML."""
     record, law, variables = program.record, program.law, variables_of(program.law)
     modes = ", ".join(f"{k} {mode}" for k, mode in enumerate(law.modes))
@@ -240,7 +200,7 @@ def description(program: Program, interface: Interface) -> str:
     places = [v.reference + 2 for v in variables if v.causality == "output"]
     period = _period(record)
     return fill_template(
-        f"{interface.description}.j2",
+        "modelDescription.xml.j2",
         names=program.names,
         law=law,
         guid=guid_of(record),
@@ -254,12 +214,12 @@ def description(program: Program, interface: Interface) -> str:
     )
 
 
-def _page(program: Program, interface: Interface, binary: str) -> str:
+def _page(program: Program, binary: str) -> str:
     """Return the documentation as HTML, with what is compiled, in words."""
     proof, modes = program.record.proof, program.law.modes
     sections = (
         ("What this is", (*program.about, binary)),
-        ("Outside the proof, in this format", (interface.inputs, *OUTSIDE)),
+        ("Outside the proof, in this format", OUTSIDE),
         ("How to start it", tuple(start_lines(program.law))),
         ("Taken for granted by the proof", () if proof is None else proof.assumptions),
         ("Modes", tuple(f"{k}: {mode}" for k, mode in enumerate(modes))),

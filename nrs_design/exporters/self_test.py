@@ -49,7 +49,7 @@ def self_test(
         "column": {name: i for i, name in enumerate(columns)},
         "rows": [[f"0x{number:x}U" for number in row] for row in rows.tolist()],
         "program": program_macro(names),
-        "passed": passed_text(names, count),
+        "passed": f"{names.spec}: all {count} cases are the same",
         "logic_rows": [[_constant(number) for number in row] for row in logic],
     }
     size = rows.nbytes + 4 * sum(map(len, logic))
@@ -72,11 +72,6 @@ def _constant(number: int | str) -> str:
 def program_macro(names: CNames) -> str:
     """Return the macro that asks for the program around a self-test."""
     return f"{names.upper}_TEST_PROGRAM"
-
-
-def passed_text(names: CNames, count: int | str) -> str:
-    """Return what a self-test prints if every one of so many cases is the same."""
-    return f"{names.spec}: all {count} cases are the same"
 
 
 def _words(count: int, size: int, names: CNames, of: str) -> tuple[str, ...]:

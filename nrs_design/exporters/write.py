@@ -38,7 +38,7 @@ def places(format_: Format, name: str, out: Path) -> dict[str, Path]:
         If a file seems to be meant that is none of this format.
     """
     stem = re.sub(r"\W|^(?=\d)", "_", name) if format_.identifier else name
-    files = {ending: out / f"{stem}{ending.replace('NAME', name)}" for ending in format_.files}
+    files = {ending: out / f"{stem}{ending}" for ending in format_.files}
     if out.is_dir():
         return files
     if len(files) == 1:

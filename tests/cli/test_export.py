@@ -316,33 +316,6 @@ def test_a_co_simulation_model(export, capsys, sampled, monkeypatch):
     assert "sources only" in remark
 
 
-def test_a_package_of_ros_2_is_a_folder_whole_or_not_at_all(export, capsys, sampled, monkeypatch):
-    """Written twice; a file of another there is refused, before anything is written."""
-    spec, certificate = sampled
-    options = ("--certificate", certificate, "--format", "ros2_node", "--out", "ws")
-    assert export(spec, *options, "--json") == 0
-    summary = json.loads(capsys.readouterr().out)
-    assert "never built against ROS 2" in summary["remarks"][0]
-    name = summary["spec"]
-    assert sorted(summary["files"]) == [file for file in files() if file.startswith("ws")]
-    assert f"ws/{name}_ros2/src/{name}_monitor.c" in summary["files"]
-    header = f"ws/{name}_ros2/src/{name}.h"
-    arguments = ["nrs-design", "verify", certificate, spec, "--deployed", header]
-    monkeypatch.setattr(sys, "argv", [*map(str, arguments)])
-    with pytest.raises(SystemExit) as caught:
-        main()
-    assert not caught.value.code
-    before = contents()
-    assert export(spec, *options) == 0
-    assert contents() == before
-    foreign = Path(f"ws/{name}_ros2/package.xml")
-    foreign.write_text('<?xml version="1.0"?>\n<package format="3"></package>\n')
-    before = contents()
-    assert export(spec, *options) == 2
-    assert "is not overwritten" in capsys.readouterr().err
-    assert contents() == before
-
-
 def test_a_refuted_program_says_so_in_every_file(export, capsys):
     assert export(SLOW, "--format", "c") == 1
     assert files() == []

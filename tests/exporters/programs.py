@@ -20,11 +20,11 @@ from nrs_design.controllers.sensor import LowPass
 from nrs_design.controllers.step_law import StepFrame, StepLimits, build_law
 from nrs_design.exporters import rendered
 from nrs_design.exporters.export import Export
-from tests.support import ROOT, program_named
+from tests.support import program_named
 
 PERIOD = Fraction(1, 500)
 MOTION = ProportionalDerivative(to_float32(Fraction("117359.43")), Fraction(2060))
-M4F = ROOT / "nrs_design/exporters/board"
+M4F = Path(__file__).parent / "board"
 STRICT = (
     "-std=c99",
     *("-Wall", "-Wextra", "-Werror", "-pedantic", "-Wconversion", "-Wdouble-promotion"),

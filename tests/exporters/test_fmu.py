@@ -18,7 +18,6 @@ from nrs_design.controllers.replica import step
 from nrs_design.exporters import format_of
 from nrs_design.exporters.c_names import CNames
 from nrs_design.exporters.cosimulation import (
-    FMI2,
     contents,
     description,
     guid_of,
@@ -57,7 +56,7 @@ def model(sampled_export, tmp_path_factory):
     def of(law):
         folder = tmp_path_factory.mktemp("fmu")
         file = folder / "model.fmu"
-        file.write_bytes(packed(contents(program(LAWS[law], sampled_export), FMI2, compiler("cc"))))
+        file.write_bytes(packed(contents(program(LAWS[law], sampled_export), compiler("cc"))))
         described = fmpy.read_model_description(file)
         return described, fmpy.extract(file, unzipdir=folder / "model")
 
@@ -92,7 +91,7 @@ def run(slave, at, angle=0.0):
 @pytest.mark.parametrize("shape", LAWS)
 def test_fmpy_finds_no_problem(tmp_path, sampled_export, shape):
     file = tmp_path / "x.fmu"
-    file.write_bytes(packed(contents(program(LAWS[shape], sampled_export), FMI2, None)))
+    file.write_bytes(packed(contents(program(LAWS[shape], sampled_export), None)))
     assert validate_fmu(str(file)) == []
 
 
@@ -193,7 +192,7 @@ def test_what_is_no_input_is_not_set(opened):
 
 def test_another_model_is_not_started(tmp_path, sampled_export):
     """The guid of the description must be that of the program."""
-    entries = contents(program(LAWS["inertia"], sampled_export), FMI2, compiler("cc"))
+    entries = contents(program(LAWS["inertia"], sampled_export), compiler("cc"))
     guid = guid_of(sampled_export.record).encode()
     entries["modelDescription.xml"] = entries["modelDescription.xml"].replace(guid, b"{other}")
     file = tmp_path / "x.fmu"
@@ -203,7 +202,7 @@ def test_another_model_is_not_started(tmp_path, sampled_export):
 
 
 def test_sources_compile_without_a_warning_and_with_names_of_their_own(tmp_path, sampled_export):
-    entries = contents(program(LAWS["limits"], sampled_export), FMI2, None)
+    entries = contents(program(LAWS["limits"], sampled_export), None)
     assert not [name for name in entries if name.startswith("binaries")]
     for name, content in entries.items():
         if name.startswith("sources/"):
@@ -240,7 +239,7 @@ def test_it_says_where_it_is_not_compiled(sampled_export, monkeypatch):
 def test_its_page_says_what_is_proved_and_what_is_not(sampled_export):
     bare = sampled_export.record.model_copy(update={"proof": None})
     text, unproved = (
-        contents(program(LAWS["limits"], export), FMI2, None)["documentation/index.html"].decode()
+        contents(program(LAWS["limits"], export), None)["documentation/index.html"].decode()
         for export in (sampled_export, replace(sampled_export, record=bare))
     )
     for words in ("one sample slower than the proof", "proves nothing", "0: insertion"):
@@ -250,7 +249,7 @@ def test_its_page_says_what_is_proved_and_what_is_not(sampled_export):
 
 
 def text_of(shape, export):
-    return wrapper_text(program(LAWS[shape], export), FMI2)
+    return wrapper_text(program(LAWS[shape], export))
 
 
 def test_every_function_of_the_standard_is_there_once(sampled_export):
@@ -281,7 +280,7 @@ def law(request):
 @pytest.fixture
 def described(law, sampled_export):
     program = Program(sampled_export.record, law, CNames("a.b"))
-    return ElementTree.fromstring(description(program, FMI2))
+    return ElementTree.fromstring(description(program))
 
 
 def test_every_variable_of_a_step(law, described):

@@ -11,7 +11,6 @@ from nrs_design.exporters.compiled import shared_library
 from nrs_design.exporters.export import Execution, export_design
 from nrs_design.exporters.formats.c import render as render_c
 from nrs_design.exporters.formats.monitor import render, told_kinds
-from nrs_design.exporters.formats.ros2_node import render as render_node
 from nrs_design.exporters.monitor_limits import monitor_limits
 from nrs_design.exporters.program import program_of
 from nrs_design.exporters.region import ROOM, MonitoredRegion, region_of
@@ -198,9 +197,3 @@ def test_what_is_not_monitored_is_said(tmp_path, export):
 def changed(spec, **sampling):
     given = {"period": "2 ms", "delay": 1, **sampling}
     return spec.model_copy(update={"sampling": SamplingSpec.model_validate(given)})
-
-
-def test_a_node_says_what_the_law_held_before_its_step(export):
-    node = next(text for name, text in render_node(export).items() if name.endswith("node.cpp"))
-    before, step = node.index(b"seen.law = state_;"), node.index(b"_step(&in, &state_, &out);")
-    assert before < step

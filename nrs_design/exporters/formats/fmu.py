@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from nrs_design.exporters import SAMPLED, Format
-from nrs_design.exporters.cosimulation import FMI2, fmu_of, what_it_lacks
+from nrs_design.exporters.cosimulation import fmu_of, what_it_lacks
 from nrs_design.exporters.export import Export
 from nrs_design.output import FMU
 
@@ -30,7 +30,7 @@ def render(export: Export) -> dict[str, bytes]:
     DesignError
         If there is no program of a controller yet, or the compiler of this system fails.
     """
-    return {".fmu": fmu_of(export, FMI2)}
+    return {".fmu": fmu_of(export)}
 
 
 def remarks(files: Mapping[str, bytes]) -> tuple[str, ...]:

@@ -7,14 +7,12 @@ from functools import cache
 from typing import get_args
 
 import pytest
-from pydantic import BaseModel
 
 from nrs_design.axis import COMMAND_UNITS
 from nrs_design.controllers.laws import LAWS as CONTROL
 from nrs_design.models.contact import LAWS as CONTACT
 from nrs_design.models.contact import LINEAR_LAWS
 from nrs_design.proof.evidence import KINDS as EVIDENCE
-from nrs_design.spec.environment_estimator import EstimatorSpec
 from nrs_design.spec.load import SPEC_KINDS
 from nrs_design.spec.threshold_logic import ThresholdLogicSpec
 from tests.package import FILES, PACKAGE, names_in, nodes_of
@@ -132,14 +130,10 @@ KINDS_OF_SPECS = {
 @cache
 def law_names() -> frozenset[str]:
     """Names of laws of control and contact, of motors' commands, of logic, specs and evidence."""
-    logic = {name for model in (ThresholdLogicSpec, EstimatorSpec) for name in literals(model)}
+    logic = get_args(ThresholdLogicSpec.model_fields["type"].annotation)
     return frozenset({*CONTROL, *CONTACT, *LINEAR_LAWS, *COMMAND_UNITS, *logic, *EVIDENCE}) | {
         *SPEC_KINDS
     }
-
-
-def literals(model: type[BaseModel]) -> tuple[str, ...]:
-    return get_args(model.model_fields["type"].annotation)
 
 
 def held(node: ast.AST) -> bool:
@@ -197,7 +191,7 @@ def is_text(node: ast.AST) -> bool:
 def law_classes() -> frozenset[str]:
     specs = {name for name in names_in(FILES["nrs_design.spec.controllers"]) if "Spec" in name}
     specs |= {name for name in names_in(FILES["nrs_design.spec.environment"]) if "Spec" in name}
-    specs |= {"ThresholdLogicSpec", "EstimatorSpec"}
+    specs |= {"ThresholdLogicSpec"}
     laws = {law.__name__ for law in (*CONTROL.values(), *CONTACT.values(), *LINEAR_LAWS.values())}
     others = {"SpecModel", "ProvenanceSpec", "GainSpec", "GoalsSpec", "AbstractEnvironmentSpec"}
     return frozenset(specs - others | laws)
@@ -222,7 +216,7 @@ def law_classes() -> frozenset[str]:
         ("spec.model.startswith('kelvin')", 1),
         ("TEXTS.get(spec.model, 'a spring')", 1),
         ("logic.type == 'thresholds'", 1),
-        ("isinstance(logic, EstimatorSpec)", 1),
+        ("isinstance(logic, ThresholdLogicSpec)", 1),
         ("actuator.command != 'rpm'", 1),
         ("evidence.kind == 'graph'", 1),
         ("spec.commands == 'velocity'", 0),

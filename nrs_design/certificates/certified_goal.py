@@ -16,9 +16,8 @@ class CertifiedGoal:
     wanted: str  # As the spec writes it; ``largest`` and ``settles`` want no number
     # Whether what is proved is enough. Where it is not, nothing is known: more may be true.
     met: bool
-    at: Location = ()  # Keys that lead to it; by default those of a goal
 
     @property
     def place(self) -> Location:
         """Keys that lead to it in the spec."""
-        return self.at or ("goals", self.key)
+        return "goals", self.key

@@ -10,7 +10,6 @@ from nrs_design.axis import axis_with
 from nrs_design.certificates.bounds import bound_on
 from nrs_design.certificates.certificate import Certificate, Verdict
 from nrs_design.certificates.certified_goal import CertifiedGoal
-from nrs_design.certificates.people import contact_goals
 from nrs_design.proof.bounds import rounded_down, rounded_up
 from nrs_design.proof.evidence import Shows
 from nrs_design.proof.mode import Time
@@ -20,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def certified_goals(spec: Spec, certificate: Certificate | None) -> Iterator[CertifiedGoal]:
-    """Yield the goals and limits that what is proved decides, in exact arithmetic.
+    """Yield the goals that what is proved decides, in exact arithmetic.
 
     Parameters
     ----------
@@ -30,16 +29,7 @@ def certified_goals(spec: Spec, certificate: Certificate | None) -> Iterator[Cer
         Checked; None if nothing was shown.
     """
     # To name the class would load it, and all its parts, for specs that have no goals.
-    if spec.kind != "interaction-design":
-        return
-    yield from _of_goals(spec, certificate)
-    yield from contact_goals(spec, certificate)
-
-
-def _of_goals(
-    spec: InteractionDesignSpec, certificate: Certificate | None
-) -> Iterator[CertifiedGoal]:
-    if (goals := spec.goals) is None:
+    if spec.kind != "interaction-design" or (goals := spec.goals) is None:
         return
     if goals.peak_torque is not None:
         yield _peak_torque(goals.peak_torque.exact, goals.peak_torque.text, certificate)

@@ -115,5 +115,5 @@ def _say_unjudged(spec: InteractionDesignSpec) -> None:
 
     given = () if spec.goals is None else (key for key, _ in spec.goals.given())
     keys = [key for key in given if key in OF_THE_CERTIFICATE]
-    if keys := keys + ["limits.contact"] * bool(spec.limits.contact):
+    if keys:
         say(f"Not judged here: {', '.join(keys)}. A proof decides: nrs-design certify-switching.")

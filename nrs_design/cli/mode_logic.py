@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 @command("mode-logic")
 def mode_logic(spec: SpecFile) -> Answer:
-    """Show the mode logic of a spec: switches, dwell times derived from noise and delay, estimator.
+    """Show the mode logic of a spec: switches, dwell times derived from noise and delay.
 
     Nothing is certified here; `certify-switching` does, with these dwell times where the spec says
     `switching: mode-logic`.

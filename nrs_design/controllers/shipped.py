@@ -65,11 +65,9 @@ def _discrete(controller: Controller, period: Fraction, method: str) -> Discrete
 
 
 def _logic_of(spec: InteractionDesignSpec, law: StepLaw, period: Fraction) -> StepLogic | None:
-    """Return the mode logic that ships; an estimator of the environment does not."""
-    logic = None if spec.mode_logic is None else spec.mode_logic.thresholds
-    if logic is None:
-        return None
-    return StepLogic.of(logic, law.modes, period)
+    """Return the mode logic that ships."""
+    logic = spec.mode_logic
+    return None if logic is None else StepLogic.of(logic, law.modes, period)
 
 
 def _step_law(

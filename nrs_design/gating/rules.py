@@ -175,10 +175,7 @@ CERTIFIED_GOAL = Rule(
     "against what is proved: the bound on the force in contact under all disturbances of the spec "
     "at once, the decay rate, the age of the oldest force sample that the proof covers, that the "
     "force settles under a constant one that pushes in, and the contact force from which motions "
-    "decay although signals saturate. So are the limits of `limits.contact`, of force, pressure, "
-    "energy, head injury criterion and speed where a person is touched, by the bounds on force and "
-    "speed; without such a bound one is not judged. Decided in exact arithmetic. A bound that is "
-    "above the goal "
+    "decay although signals saturate. Decided in exact arithmetic. A bound that is above the goal "
     "does not say that the goal is missed: the largest value that occurs may be smaller, above all "
     "where contact may be lost.",
     "Lower the disturbance (the claim says down to which one the limit is kept), choose gains with "

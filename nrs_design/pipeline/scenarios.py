@@ -106,7 +106,7 @@ def _simulate(
     """Simulate what one axis does, or three of a robot at once, and measure the runs."""
     from nrs_design.simulation.bodies import simulate_on_body
     from nrs_design.simulation.exact import simulate_exactly
-    from nrs_design.simulation.run import LOGIC_LEFT_OUT, MAX_STEPS
+    from nrs_design.simulation.run import MAX_STEPS
     from nrs_design.simulation.summary import summarize
 
     spec, engine = designed.spec, wanted.engine or _usual(designed.spec, group)
@@ -120,10 +120,8 @@ def _simulate(
         timed = spec.model_copy(update={"sampling": _sampling(spec, wanted)})
         arm = _arm(designed, name) if len(group) > 1 else None
         runs = simulate_on_body(timed, *given, group, engine, arm, max_steps=most, tell=tell)
-    more = () if spec.mode_logic is None else LOGIC_LEFT_OUT[spec.mode_logic.type]
     for scenario, run in zip(group, runs, strict=True):
-        told = replace(run, left_out=(*run.left_out, *more))
-        yield Simulated(scenario, told, summarize(spec, scenario, told))
+        yield Simulated(scenario, run, summarize(spec, scenario, run))
 
 
 def folder_of(designed: Designed) -> Path:

@@ -39,9 +39,8 @@ def build_control(
         What is touched in that scenario.
     """
     first = next(iter(spec.controllers))
-    thresholds = spec.mode_logic is not None and spec.mode_logic.thresholds is not None
     if written is None:
-        return by_logic(spec) if thresholds else _usual(spec, first)
+        return _usual(spec, first) if spec.mode_logic is None else by_logic(spec)
     if written.fixed is not None:
         return Control(written.fixed)
     if written.schedule is not None:
@@ -132,8 +131,7 @@ def by_logic(spec: InteractionDesignSpec) -> Control:
     Thresholds are rounded away from each other, and timers up: what is shown for those of the spec
     holds for these.
     """
-    assert spec.mode_logic is not None
-    logic = spec.mode_logic.thresholds
+    logic = spec.mode_logic
     assert logic is not None
     switches = tuple(
         Switch(one.source, one.target, tuple(starmap(_threshold, one.conditions.items())))

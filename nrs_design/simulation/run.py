@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import pairwise
-from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from nrs_design.simulation.time_response import TimeResponse
@@ -33,13 +32,6 @@ LEFT_OUT_ON_LINKS = (
     "play and elasticity of gearheads, cables, links and joints, and friction of passive joints",
     "springs and counter-masses of a balance, and tissue that couples the axes",
     "gain and time constant of the motors other than the nominal ones",
-)
-# Of a mode logic, by its type.
-LOGIC_LEFT_OUT: Mapping[str, tuple[str, ...]] = MappingProxyType(
-    {
-        "thresholds": (),
-        "estimator": ("the estimator of the mode logic, which would choose the controller",),
-    }
 )
 ERRORS_LEFT_OUT = "friction, resolutions, noise and jitter of the scenario"
 

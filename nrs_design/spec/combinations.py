@@ -44,7 +44,6 @@ from nrs_design.spec.features import (
     PARALLEL,
     PLACED,
     PRELOADED,
-    REGIONS,
     RULES,
     SAFE,
     SAMPLED,
@@ -140,7 +139,7 @@ COMBINATIONS: tuple[Row[Spec], ...] = (
     # When a command takes effect within a period is known to the loop of one axis alone.
     *_beside(TIMED, CONTINUOUS, TWO_PERIODS, COUPLED, SAFE),
     # What is about a pivot, or has units of a rotation in its words.
-    *_beside(SLIDING, COUPLED, SAFE, MODE_LOGIC, REGIONS, TOOL),
+    *_beside(SLIDING, COUPLED, SAFE, MODE_LOGIC, TOOL),
     not_together(COMMAND, OTHERS, SAMPLED),
     # It would move the position that the spring draws to.
     not_together(COMMAND, SPRUNG, SAMPLED),

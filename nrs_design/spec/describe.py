@@ -52,7 +52,6 @@ _SHOWN = (
     kinds.TORQUE,
     kinds.TORQUE_RATE,
     kinds.FORCE,
-    kinds.PRESSURE,
     kinds.LINEAR_STIFFNESS,
 )
 

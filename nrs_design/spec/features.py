@@ -431,10 +431,4 @@ SLIDING = _F(
     lambda s: s.axis is AxisType.PRISMATIC,
 )
 MODE_LOGIC = _F("mode_logic", "mode_logic", "leave mode_logic out", _given("mode_logic"))
-REGIONS = _F(
-    "limits of contact with people",
-    "limits.contact",
-    "leave contact out of limits",
-    _given("limits.contact"),
-)
 TOOL = _F("a tool on the sensor", "sensor.tool", "leave tool out", _given("sensor.tool"))

@@ -104,16 +104,6 @@ def _not_freeable(freed: tuple[Spec, str, str]) -> tuple[str, str, str] | None:
     return None if gain in known else (name, gain, ", ".join(known) or "none")
 
 
-def _named_at_regions(spec: Spec) -> Iterator[tuple[Location, Reference]]:
-    """Yield the environments that regions of a body name: those that are proved."""
-    touched = {name for c in spec.controllers.values() for name in touched_in(c.contacts)}
-    choices = {name: one for name, one in spec.environments.items() if name in touched}
-    for index, region in enumerate(spec.limits.contact or ()):
-        if region.environment is not None:
-            at = ("limits", "contact", index, "environment")
-            yield at, Reference("environment", name=region.environment, choices=choices)
-
-
 def _contact_mix(spec: Spec) -> tuple[str, ...]:
     """Two kinds of controllers, and whose states others must say what to do with."""
     first_name, first = next(iter(spec.controllers.items()))
@@ -399,7 +389,6 @@ INTERACTION_CHECKS: tuple[Row[Spec], ...] = (
     ),
     # Names.
     *each(_named_environments, NO_SUCH),
-    *each(_named_at_regions, NO_SUCH),
     *each(_accurate_in, NO_SUCH),
     *each(
         _freed,

@@ -39,7 +39,7 @@ def _environments(spec: Spec) -> Iterator[tuple[Location, tuple[str, bool]]]:
 
 def _late_threshold(spec: Spec) -> tuple[object, ...]:
     """Return a threshold that the torque reaches only where it is too large already."""
-    logic = None if spec.mode_logic is None else spec.mode_logic.thresholds
+    logic = spec.mode_logic
     limit = spec.limits.torque
     for index, switch in enumerate(() if logic is None else logic.switches, 1):
         above = None if switch.torque is None else switch.torque.above

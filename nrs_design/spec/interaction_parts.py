@@ -7,8 +7,7 @@ from fractions import Fraction
 from types import MappingProxyType
 from typing import Annotated, Literal
 
-from pydantic import Discriminator, Field, ValidationInfo, field_validator
-from pydantic_core import PydanticCustomError
+from pydantic import Field, ValidationInfo, field_validator
 
 from nrs_design.axis import AxisType
 from nrs_design.models.drive import COMMANDS, Takes
@@ -23,12 +22,11 @@ from nrs_design.spec.controllers import (
 )
 from nrs_design.spec.coupling import CouplingSpec
 from nrs_design.spec.environment import EnvironmentSpec
-from nrs_design.spec.environment_estimator import EstimatorSpec
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import Digits, Label, Name, Title
 from nrs_design.spec.free import FreeGainsSpec
 from nrs_design.spec.goals import GoalsSpec
-from nrs_design.spec.model import SpecModel, optional
+from nrs_design.spec.model import ReadBefore, SpecModel, optional
 from nrs_design.spec.monitoring import MonitoringSpec
 from nrs_design.spec.motion import (
     ActuatorSpec,
@@ -47,7 +45,7 @@ from nrs_design.spec.sampling import DisturbancesSpec, SamplingSpec
 from nrs_design.spec.scenarios import ScenarioSpec
 from nrs_design.spec.sensor import SensorSpec
 from nrs_design.spec.switching import MODE_LOGIC, LogicalRule
-from nrs_design.spec.threshold_logic import ThresholdLogicSpec
+from nrs_design.spec.threshold_logic import ThresholdLogicSpec, check_type
 from nrs_design.spec.units import THESIS_COMMAND
 
 MAX_ENTRIES = 64
@@ -58,7 +56,6 @@ INTERFACES: Mapping[str, Takes] = MappingProxyType({f"{takes}_interface": takes 
 DriveSpec = ActuatorSpec | FollowingSpec | TorqueInterfaceSpec
 # What the motion controller is called where gains are listed.
 MOTION = "motion"
-ModeLogicSpec = Annotated[ThresholdLogicSpec | EstimatorSpec, Discriminator("type")]
 
 
 class DesignSpec(SpecModel):
@@ -152,7 +149,7 @@ class AbstractInteractionSpec(SpecModel):
         description="state of the contact: deflection stays continuous when the stiffness "
         "switches; force is what the thesis uses",
     )
-    mode_logic: ModeLogicSpec | None = optional(
+    mode_logic: Annotated[ThresholdLogicSpec, ReadBefore(check_type)] | None = optional(
         "what decides which controller is active; `switching: mode-logic` lets the "
         "proof be about the switching signals that it can give"
     )
@@ -185,13 +182,7 @@ class AbstractInteractionSpec(SpecModel):
                 "there is no mode_logic to take the rules of switching from",
                 "add mode_logic, or write `switching: arbitrary`",
             )
-        try:
-            return info.data["mode_logic"].rules_among(
-                info.data["controllers"], info.data["environments"]
-            )
-        except PydanticCustomError:
-            # It does not fit: `LOGIC_CHECKS` say so at its place.
-            return "arbitrary"
+        return info.data["mode_logic"].rules()
 
     @property
     def identified(self) -> dict[tuple[str, ...], IdentifiedSpec]:

@@ -199,19 +199,6 @@ MASS = QuantityKind(
     "a mass", ("kg",), "73.3 g", {"N": "that is a weight: divide it by the gravity and write g"}
 )
 FORCE = QuantityKind("a force", ("N",), "1.3 N")
-EFFECTIVE_MASS = replace(MASS, example="0.6 kg")
-AREA = QuantityKind(
-    "an area",
-    ("m^2",),
-    "1 cm^2",
-    dict.fromkeys(("m",), "that is a length: write the area, such as '1 cm^2'"),
-)
-PRESSURE = QuantityKind(
-    "a pressure",
-    ("N/m^2",),
-    "190 N/cm^2",
-    {"N": "that is a force: divide it by the area and write N/cm^2"},
-)
 LENGTH = QuantityKind("a length", ("m",), "135 mm")
 ANGLE = QuantityKind(
     "an angle",

@@ -29,19 +29,17 @@ class _Stay:
             return None
         return "no time" if least is None else least.text, shortest.text
 
-    def too_long(self) -> tuple[str, str] | None:
-        """When the logic leaves it, and what the rules say, if that is earlier."""
-        longest, most = self.rules[1], self.logic[1]
-        if longest is None or (most is not None and most.value <= longest.value):
-            return None
-        return "at no time" if most is None else f"by {most.text}", longest.text
+    def too_long(self) -> str | None:
+        """When the rules say that it is left: thresholds leave it at no certain time."""
+        longest = self.rules[1]
+        return None if longest is None else longest.text
 
 
 def _kept(spec: Spec) -> SwitchingSpec:
     """Return the rules that the mode logic keeps; none without one, or where it does not fit."""
     if spec.mode_logic is None or spec.mode_logic.lost_names(spec.controllers):
         return SwitchingSpec()
-    return spec.mode_logic.rules_among(spec.controllers, spec.environments)
+    return spec.mode_logic.rules()
 
 
 def _about_others(spec: Spec) -> bool:
@@ -90,7 +88,7 @@ LOGIC_CHECKS: tuple[Row[Spec], ...] = (
         Row[_Stay](
             "longest_dwell_time",
             _Stay.too_long,
-            "the mode logic leaves {s.name} {0}, the rules say {1}",
+            "the mode logic leaves {s.name} at no certain time, the rules say {0}",
             _REMEDY,
         ),
     ),

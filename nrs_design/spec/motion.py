@@ -11,7 +11,6 @@ from pydantic import Field
 
 from nrs_design.proof.text import quoted
 from nrs_design.spec.check import Row, each, exactly_one
-from nrs_design.spec.contact_limits import ContactLimitSpec
 from nrs_design.spec.faults import Location
 from nrs_design.spec.fields import Exact, UnitFraction
 from nrs_design.spec.model import SpecModel, optional
@@ -290,22 +289,4 @@ class LimitsSpec(SpecModel):
         "that derivative_gain is for: where the driver closes its loop on an encoder that turns "
         "five times as far as the joint, and the gains are for the joint, a fifth of the "
         "driver's own; exported code saturates there, and bounds on the command are held to it"
-    )
-    contact: Annotated[tuple[ContactLimitSpec, ...], Field(min_length=1)] | None = optional(
-        "what contact with a person may do, a list with one entry for each region of the body; "
-        "`gate` holds it against what is proved of force and speed"
-    )
-
-    def _twice(self) -> tuple[int, str] | None:
-        """Return the place and name of a region that is listed a second time."""
-        names = [region.name for region in self.contact or ()]
-        return next(((i, n) for i, n in enumerate(names) if n in names[:i]), None)
-
-    checks = (
-        Row(
-            "contact.{0}.name",
-            lambda s: s._twice(),
-            "the region {1!r} is there twice",
-            "keep one of them, or name where it is touched, such as hand-at-tool",
-        ),
     )

@@ -17,7 +17,7 @@ from nrs_design.spec.faults import FAULT, Location, did_you_mean
 from nrs_design.spec.model import SpecModel
 
 # Below a choice between models, validation inserts the tag of the chosen one.
-_CHOICES = {"environments": "model", "controllers": "type", "mode_logic": "type"}
+_CHOICES = {"environments": "model", "controllers": "type"}
 # What others call these.
 _OTHER_NAMES = {
     "admittance": "impedance",
@@ -56,8 +56,8 @@ _NO_GOALS = {
 }
 # What `identify` writes into a section: it is listed after what people write.
 _IDENTIFIED = ("provenance", "doubts", "accept_doubt", "range_covers", "range_id", "intervals")
-# How deep that tag is: below a name, or at once.
-_DEPTH = {"environments": 2, "controllers": 2, "mode_logic": 1}
+# How deep that tag is: below a name.
+_DEPTH = {"environments": 2, "controllers": 2}
 _MAPPINGS = ("model_type", "model_attributes_type", "dict_type")
 
 

@@ -119,8 +119,8 @@ def _velocities(spec: Spec) -> Iterator[tuple[Location, _Velocity]]:
 
 
 def _logic_of_runs(spec: Spec) -> Iterator[tuple[Location, bool]]:
-    """Yield runs that the mode logic controls, with whether there is one of thresholds."""
-    there = spec.mode_logic is not None and spec.mode_logic.thresholds is not None
+    """Yield runs that the mode logic controls, with whether there is one."""
+    there = spec.mode_logic is not None
     for at, axis in _axes(spec):
         if axis.control is not None and axis.control.logic is not None:
             yield (*at, "control", "logic"), there
@@ -181,7 +181,7 @@ SCENARIO_CHECKS: tuple[Row[Spec], ...] = (
         Row[bool](
             "",
             lambda there: not there,
-            "the spec has no mode_logic of type thresholds",
+            "the spec has no mode_logic",
             "add one, or control in another way",
         ),
     ),

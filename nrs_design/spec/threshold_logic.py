@@ -16,9 +16,9 @@ from typing import Annotated, Any, Literal
 from pydantic import Field
 
 from nrs_design.proof.bounds import lower, lower_float, upper_float
-from nrs_design.proof.text import exact_text
+from nrs_design.proof.text import exact_text, quoted
 from nrs_design.spec.check import Row, each
-from nrs_design.spec.faults import Location
+from nrs_design.spec.faults import Location, as_text, did_you_mean, fault
 from nrs_design.spec.fields import Label
 from nrs_design.spec.model import ReadBy, SpecModel, optional
 from nrs_design.spec.quantity import Quantity
@@ -153,6 +153,15 @@ class Apart:
     seconds: Fraction  # At least so long, not rounded; zero if nothing keeps them apart
 
 
+def check_type(given: object) -> object:
+    """Return what is said of a mode logic if its type is known, and report that alone if not."""
+    if isinstance(given, dict) and "type" in given:
+        kind, known = as_text(given["type"], "type"), ("thresholds",)
+        if kind not in known:
+            raise fault(f"{quoted(kind)} is not known", did_you_mean(kind, known, "write"), "type")
+    return given
+
+
 class ThresholdLogicSpec(SpecModel):
     """Controllers that follow each other by thresholds on command and torque."""
 
@@ -234,11 +243,6 @@ class ThresholdLogicSpec(SpecModel):
         ),
     )
 
-    @property
-    def thresholds(self) -> ThresholdLogicSpec:
-        """What a program of the logic follows: itself."""
-        return self
-
     def lost_names(self, controllers: Mapping[str, object]) -> tuple[str, ...]:
         """Return the names of controllers in it that there are not.
 
@@ -248,12 +252,6 @@ class ThresholdLogicSpec(SpecModel):
             Those of the spec.
         """
         return tuple(name for name in self.controllers if name not in controllers)
-
-    def rules_among(
-        self, controllers: Mapping[str, object], environments: Mapping[str, object]
-    ) -> SwitchingSpec:
-        """Return the rules that it keeps, whatever is touched."""
-        return self.rules()
 
     @property
     def controllers(self) -> tuple[str, ...]:

@@ -14,7 +14,6 @@ from fractions import Fraction
 
 from nrs_design.errors import SpecError
 from nrs_design.proof.text import quoted
-from nrs_design.spec.contact_limits import CONTACT_LIMITS
 from nrs_design.spec.document import Data
 from nrs_design.spec.exact import is_number, parse_exact
 from nrs_design.spec.quantity import Quantity, is_less
@@ -28,18 +27,12 @@ _BESIDE = frozenset({"title", "description", "provenance", "certification", "des
 # Parts whose keys are names that somebody has given, and no words of ours.
 _NAMED = frozenset({"environments", "controllers", "parameters", "modes", "scenarios"})
 # Limits below which something must stay, and above which: of a goal, a scenario, an assumption.
-_AT_MOST = frozenset(
-    {"peak_torque", "dwell_time", "hold", "slowest_speed", "shortest_contact", "of"}
-)
+_AT_MOST = frozenset({"peak_torque", "dwell_time", "hold", "of"})
 # How many deadlines may be missed is what must be borne.
 _AT_LEAST = frozenset(
     {"decay_rate", "delay", "initial_force", "longest_dwell_time", "at_most", "consecutive"}
 )
 _LIMITS = "limits"
-_PEOPLE = (_LIMITS, "contact")
-# Of a region of a body: what allows more the larger it is, what the smaller; of its mass, both.
-_ALLOWS_MORE = frozenset({*CONTACT_LIMITS, "contact_area", "min"})
-_ASSUMES_MORE = frozenset({"robot_mass", "stiffness", "body_speed", "max"})
 # Parts whose numbers must be borne: disturbances, errors of signals, the age of a sample, what the
 # axes do to each other. Of the sensor, those below it are parts of the loop.
 _BORNE = frozenset({"disturbances", "coupling", "sampling"})
@@ -232,10 +225,6 @@ def _is_weaker(before: Data, after: Data, at: Place) -> bool:
     most = (goal and key.startswith("max_")) or not _AT_MOST.isdisjoint(path) or _is_limit(path)
     borne = _is_borne(path) and key not in _AT_MOST
     least = (goal and key.startswith("min_")) or not _AT_LEAST.isdisjoint(path) or borne
-    if at[:2] == _PEOPLE:
-        most, least = key in _ALLOWS_MORE, key in _ASSUMES_MORE
-        if key == "body_mass" and _number(before) != _number(after):
-            return True
     was, now = _number(before), _number(after)
     if was is None or now is None or was.dimension != now.dimension:
         # A limit that cannot be compared with that of before.
@@ -245,7 +234,7 @@ def _is_weaker(before: Data, after: Data, at: Place) -> bool:
 
 def _keys(at: Place) -> list[str]:
     """Return the words of ours on the way to a place, without names that somebody has given."""
-    place = 2 if at[:2] == _PEOPLE else 1 if at[:1] and at[0] in _NAMED else None
+    place = 1 if at[:1] and at[0] in _NAMED else None
     return [part for i, part in enumerate(at) if isinstance(part, str) and i != place]
 
 

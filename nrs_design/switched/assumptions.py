@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
-from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from nrs_design.axis import AxisType
 from nrs_design.controllers.float32 import exact_decimal
@@ -26,7 +25,6 @@ if TYPE_CHECKING:
     from nrs_design.models.actuator import ActuatorRanges
     from nrs_design.models.contact.environment import Environment
     from nrs_design.spec import InteractionDesignSpec
-    from nrs_design.spec.environment_estimator import EstimatorSpec
     from nrs_design.spec.operating import Preload
     from nrs_design.spec.provenance import IdentifiedRangesSpec
 
@@ -282,36 +280,9 @@ def sensor_texts(
 
 def logic_texts(spec: InteractionDesignSpec) -> Iterator[Assumption]:
     """Say what keeps the rules of switching, where they are those of a mode logic."""
-    logic = spec.mode_logic
-    if logic is not None and not spec.switching.is_arbitrary:
-        yield from _KEPT_BY[logic.type](spec, logic)
+    if spec.mode_logic is not None and not spec.switching.is_arbitrary:
+        yield say("logic.timer")
         yield say("logic.any-signal")
-
-
-def _estimator_texts(spec: InteractionDesignSpec, logic: EstimatorSpec) -> Iterator[Assumption]:
-    torque, shortest = logic.signals.torque, logic.shortest_contact.text
-    # A spec of given matrices does not pay for the models of a design.
-    from nrs_design.spec.environment_estimator import decide
-
-    delay = rounded_up(decide(logic, spec.controllers, spec.environments).delay, "s")
-    bound = f"changes of contact at least {shortest} apart"
-    yield say("rules.environment", bound, shortest=shortest, delay=delay)
-    yield say(
-        "logic.estimator",
-        speed=logic.slowest_speed.text,
-        noise=torque.noise.text,
-        age=torque.age.text,
-        rate=torque.largest_rate.text,
-        step=logic.signals.position_step.text,
-    )
-
-
-# What keeps the rules, by the type of the logic.
-_KEPT_BY: Mapping[str, Callable[[InteractionDesignSpec, Any], Iterable[Assumption]]] = (
-    MappingProxyType(
-        {"thresholds": lambda spec, logic: [say("logic.timer")], "estimator": _estimator_texts}
-    )
-)
 
 
 def constant_texts(switching: Switching) -> Iterator[Assumption]:

@@ -141,13 +141,6 @@ def test_thresholds_ship_as_a_mode_logic():
     assert law_of(run_design(read_spec(SOFT_TISSUE))).logic is None
 
 
-def test_an_estimator_does_not_ship():
-    """The mode is an input then, as without any logic."""
-    found = run_design(read_spec(ROOT / "docs/examples/unknown-environment.nrs.yaml"))
-    assert found.spec.mode_logic.type == "estimator"
-    assert law_of(found).logic is None
-
-
 def test_a_spring_beside_other_controllers_draws_to_the_commanded_position():
     """By what its admittance has moved the reference, as the sampled loop of the proof has it."""
     found = run_design(read_spec(MIXED))

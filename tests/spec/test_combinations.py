@@ -184,19 +184,6 @@ CHANGES = {
             ],
         }
     },
-    f.REGIONS: {
-        "limits": {
-            "contact": [
-                {
-                    "name": "hand",
-                    "source": "an example",
-                    "lever_arm": "0.2 m",
-                    "quasi_static_force": "140 N",
-                    "environment": "soft",
-                }
-            ]
-        }
-    },
     f.TOOL: {
         "sensor": {
             "tool": {"mass": "70 g", "center_of_mass": {"x": "0 m", "y": "0 m", "z": "20 mm"}},

@@ -116,11 +116,20 @@ def test_the_switch_of_the_thesis_may_chatter():
         ("  start: insertion", "  hold: {away: 1 s}\n  start: insertion", "from 'away'"),
         ("  start: insertion", "  hold: 3 steps\n  start: insertion", "not a time"),
         ("switching: mode-logic", "switching: {dwell_time: 6 ms}", "keeps insertion for 0.00518 s"),
-        ("switching: mode-logic", "switching: {longest_dwell_time: {insertion: 9 s}}", "no time"),
+        (
+            "switching: mode-logic",
+            "switching: {longest_dwell_time: {insertion: 9 s}}",
+            "at no certain",
+        ),
         (
             "switching: mode-logic",
             "switching: {transitions: [[insertion, withdrawal]]}",
             "from withdrawal to insertion, the rules do not",
+        ),
+        (
+            "switching: mode-logic",
+            "switching: {transitions: [[insertion/soft, withdrawal/soft]]}",
+            "not about what",
         ),
         ("mode_logic:\n", "goals: {max_sensitivity_peak: 2}\nnot_logic:\n", "not_logic"),
     ],
@@ -135,6 +144,7 @@ def test_what_is_refused(old, new, message):
     [
         ("type: thresholds", "type: treshold", "mode_logic.type: 'treshold' is not", "thresholds?"),
         ("  type: thresholds\n", "", "`mode_logic.type` is missing", "add type"),
+        ("type: thresholds", "type: [thresholds]", "mode_logic.type: expected a single", "one"),
         (
             "torque: {above: 0.1",
             "torque: {abvoe: 0.1",

@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from fractions import Fraction
-from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from nrs_design.proof.bounds import lower, upper
 from nrs_design.reporting.document import Paragraph, Section, Table
-from nrs_design.spec.environment_estimator import EstimatorSpec, decide
 from nrs_design.spec.threshold_logic import (
     LogicSwitchSpec,
     ThresholdLogicSpec,
@@ -28,14 +24,6 @@ _CHATTER_FREE = (
     "A switch is made when all of its conditions hold. The true signal has then gone no further "
     "than listed, if its own condition is the last one to come true.",
 )
-_ESTIMATED = (
-    "Torque over travel of a segment is compared with a stiffness between both ranges; two "
-    "segments in a row that agree decide. A segment is long enough for noise, age and steps not to "
-    "matter, and no more than two can lie across a change.",
-    "Until the decision the wrong controller is in contact: those modes are part of the proof, for "
-    "no longer than the decision takes. That rests on the declared slowest speed: at rest nothing "
-    "is decided.",
-)
 _UNITS = {"command": "rad/s", "torque": "N·m"}
 
 
@@ -50,20 +38,21 @@ def logic_section(spec: InteractionDesignSpec) -> Section | None:
 def logic_meaning(spec: InteractionDesignSpec) -> tuple[str, ...]:
     """Say in sentences what the numbers of a mode logic mean, and what the proof makes of them."""
     assert spec.mode_logic is not None
-    texts = _PAGES[spec.mode_logic.type].meaning
     if spec.switching.is_arbitrary:
-        return (*texts, "The statement about stability needs none of this: switching is arbitrary.")
-    return (*texts, "The statement about stability is for the switching that this logic can give.")
+        return (
+            *_CHATTER_FREE,
+            "The statement about stability needs none of this: switching is arbitrary.",
+        )
+    return (
+        *_CHATTER_FREE,
+        "The statement about stability is for the switching that this logic can give.",
+    )
 
 
 def logic_tables(spec: InteractionDesignSpec) -> tuple[Table, ...]:
     """Return what a mode logic does, in tables of text."""
     assert spec.mode_logic is not None
-    return _PAGES[spec.mode_logic.type].tables(spec, spec.mode_logic)
-
-
-def _threshold_tables(_: InteractionDesignSpec, logic: ThresholdLogicSpec) -> tuple[Table, ...]:
-    return _switches(logic), _stays(logic)
+    return _switches(spec.mode_logic), _stays(spec.mode_logic)
 
 
 def _switches(logic: ThresholdLogicSpec) -> Table:
@@ -124,45 +113,13 @@ def _stays(logic: ThresholdLogicSpec) -> Table:
     return Table("How long every controller stays active", columns, tuple(rows))
 
 
-def _decision(spec: InteractionDesignSpec, estimator: EstimatorSpec) -> tuple[Table, ...]:
-    found = decide(estimator, spec.controllers, spec.environments)
-    soft, stiff = found.environments
-    right = f"{found.softer}/{soft}, {found.stiffer}/{stiff}"
-    wrong = f"{found.softer}/{stiff}, {found.stiffer}/{soft}"
-    rows = (
-        (f"{stiff}, not {soft}, from a stiffness of", f"{float(found.limit):.6g} N·m/rad"),
-        ("Travel of a segment, at least", f"{upper(found.travel)} rad"),
-        ("From a change to the decision, at most", f"{upper(found.delay)} s"),
-        ("From the decision to the next change, at least", f"{lower(found.stay)} s"),
-        ("Right modes", right),
-        ("Wrong modes, until the decision", wrong),
-    )
-    return (Table("How the environment is told", ("What", "Value"), rows),)
-
-
 def logic_summary(spec: InteractionDesignSpec) -> dict[str, object]:
     """Return the numbers of a mode logic in SI units, each rounded to its safe side."""
     assert spec.mode_logic is not None
     logic = spec.mode_logic
-    own = _PAGES[logic.type].summary(spec, logic)
-    return {"type": logic.type, "used_in_proof": not spec.switching.is_arbitrary, **own}
-
-
-def _estimator_summary(spec: InteractionDesignSpec, logic: EstimatorSpec) -> dict[str, object]:
-    found = decide(logic, spec.controllers, spec.environments)
     return {
-        "stiffness_limit": float(found.limit),
-        "travel": float(upper(found.travel)),
-        "decision_at_most": float(found.delay),
-        "right_at_least": float(found.stay),
-        "environments": list(found.environments),
-        "controllers": [found.softer, found.stiffer],
-        "units": {"stiffness_limit": "N*m/rad", "travel": "rad", "decision_at_most": "s"},
-    }
-
-
-def _threshold_summary(_: InteractionDesignSpec, logic: ThresholdLogicSpec) -> dict[str, object]:
-    return {
+        "type": logic.type,
+        "used_in_proof": not spec.switching.is_arbitrary,
         "controllers": [_controller_summary(logic, name) for name in logic.controllers],
         "switches": [
             {
@@ -193,20 +150,3 @@ def _controller_summary(logic: ThresholdLogicSpec, name: str) -> dict[str, objec
             for apart in logic.pairs(name)
         ],
     }
-
-
-@dataclass(frozen=True, slots=True)
-class _Page:
-    """What is said of one type of mode logic."""
-
-    meaning: tuple[str, ...]
-    tables: Callable[[InteractionDesignSpec, Any], tuple[Table, ...]]
-    summary: Callable[[InteractionDesignSpec, Any], dict[str, object]]
-
-
-_PAGES: Mapping[str, _Page] = MappingProxyType(
-    {
-        "thresholds": _Page(_CHATTER_FREE, _threshold_tables, _threshold_summary),
-        "estimator": _Page(_ESTIMATED, _decision, _estimator_summary),
-    }
-)

@@ -29,18 +29,9 @@ class Held:
 
     @classmethod
     def of(cls, time: Array, command: Array, delay: float) -> Self:
-        """Hold every command from its sample to the next, and let it act later.
+        """Hold every command from its sample to the next, and let it act a delay in s later.
 
         The first one was there before; the last one acts at no sample.
-
-        Parameters
-        ----------
-        time : ndarray, shape (n,)
-            Of the samples, in s.
-        command : ndarray, shape (n,)
-            In any unit.
-        delay : float
-            In s.
         """
         acts = time + delay
         inside = acts[(acts > time[0]) & (acts < time[-1])]
@@ -78,15 +69,7 @@ class Lags:
         )
 
     def velocity(self, held: Held, inputs: Array) -> Array:
-        """Return the output of the model from rest, shape (m,).
-
-        Parameters
-        ----------
-        held : Held
-            The grid.
-        inputs : ndarray, shape (m - 1,)
-            Held between the times of the grid.
-        """
+        """Return the output of the model from rest, shape (m,), to m - 1 held inputs."""
         parts = (s * _lag(t, held.steps, inputs) for t, s in self._pairs())
         return np.asarray(sum(parts).real, float)
 
@@ -98,12 +81,7 @@ class Lags:
     def free(self, time: Array, *, angle: bool) -> Array:
         """Return the outputs that follow from initial states alone, shape (n, p).
 
-        Parameters
-        ----------
-        time : ndarray, shape (n,)
-            In s.
-        angle : bool
-            Whether the output is the integral, which may begin anywhere.
+        An angle is the integral of the model's output, and may begin anywhere.
         """
         ends = [np.exp(-(time - time[0]) / t) for t in self.times]
         columns = [part for end in ends for part in (end.real, end.imag)]

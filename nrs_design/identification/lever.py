@@ -17,13 +17,7 @@ _LONGEST_ARM = 10.0
 
 
 def parse_arm(text: str | None, *, rotational: bool) -> float | None:
-    """Read a lever arm such as ``0.24 m``; return it in m.
-
-    Raises
-    ------
-    DataError
-        If it is no length, is not positive, or the records are rotational and need none.
-    """
+    """Read a lever arm such as ``0.24 m``; return it in m. Records of a rotation need none."""
     if text is None:
         return None
     arm = _parse("--lever-arm", text, LEVER_ARM)
@@ -41,22 +35,7 @@ def parse_arm(text: str | None, *, rotational: bool) -> float | None:
 
 
 def parse_offset(setting: str, text: str | None, *, rotational: bool) -> float | None:
-    """Read ``zero``, a position, or ``tare``, a force.
-
-    Parameters
-    ----------
-    setting : {"zero", "tare"}
-        Which.
-    text : str or None
-        As in ``0.1 m``; ``fit`` or nothing is None.
-    rotational : bool
-        Whether it is an angle, or a torque.
-
-    Raises
-    ------
-    DataError
-        If it is not such a quantity.
-    """
+    """Read ``zero``, a position, or ``tare``, a force, in SI; ``fit`` or nothing is None."""
     if text is None or text == "fit":
         return None
     kinds = {"zero": (LENGTH, ANGLE), "tare": (FORCE, TORQUE)}
@@ -64,13 +43,7 @@ def parse_offset(setting: str, text: str | None, *, rotational: bool) -> float |
 
 
 def parse_preload(text: str | None, *, rotational: bool) -> tuple[float, float] | None:
-    """Read ``--preload``, such as ``1 mm..3 mm``: deflections from the contact.
-
-    Raises
-    ------
-    DataError
-        If these are not two such quantities.
-    """
+    """Read ``--preload``, such as ``1 mm..3 mm``: deflections from the contact, in SI."""
     if text is None:
         return None
     low, dots, high = (part.strip() for part in text.partition(".."))
@@ -90,17 +63,7 @@ def _parse(option: str, text: str, kind: QuantityKind) -> float:
 def named(
     law: AbstractContactLaw, values: Iterable[T], rotational: bool
 ) -> list[tuple[str, T, str]]:
-    """Return name, value and unit of each parameter of a law.
-
-    Parameters
-    ----------
-    law : AbstractContactLaw
-        Its kind decides.
-    values : iterable
-        One for each parameter: numbers, or estimates.
-    rotational : bool
-        Whether they are those of a rotation.
-    """
+    """Return name, value and unit of each parameter of a law."""
     units = parameter_units(law, rotational)
     return list(zip(law.parameters(), values, units, strict=True))
 

@@ -33,15 +33,7 @@ def beyond(basis: Array, values: Array) -> Array:
 
 
 def bic(errors: Array, count: int) -> float:
-    """Return the Bayesian information criterion of a fit, up to a constant of its data.
-
-    Parameters
-    ----------
-    errors : ndarray, shape (n,)
-        Measured less fitted.
-    count : int
-        Parameters.
-    """
+    """Return the Bayesian information criterion of a fit, up to a constant of its data."""
     n = len(errors)
     power = max(float(errors @ errors), TINY)
     return n * float(np.log(power / n)) + count * float(np.log(n))
@@ -63,10 +55,5 @@ def limited_step(step: Array, limit: Array) -> Array:
 
     It keeps its direction, along which errors fall: parts that are cut one by one would leave a
     narrow valley.
-
-    Parameters
-    ----------
-    step, limit : ndarray, shape (p,)
-        In the units of the parameters; limits are positive.
     """
     return step / max(1.0, float(np.max(np.abs(step) / limit)))

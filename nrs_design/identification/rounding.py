@@ -70,27 +70,12 @@ def rounding_of_velocity(time: Array, readings: Array) -> float:
 def rounding_scatter(
     readings: Array, sensitivities: Array, slope: float, *, returns: bool = False
 ) -> Array:
-    """Return the covariance of ``J'e`` when e is the error that rounding causes.
+    """Return the covariance of ``J'e``, shape (p, p), when e is the error that rounding causes.
 
     As long as the reading does not change, neither does its error: every stretch of equal
-    readings has one error with the variance ``q^2/12``, whatever the number of its samples.
-
-    Parameters
-    ----------
-    readings : ndarray, shape (n,)
-        Rounded position.
-    sensitivities : ndarray, shape (n, p)
-        J, derivatives of the output by the logarithms of the parameters.
-    slope : float
-        Output over position: a stiffness, or 1 where the position is the output.
-    returns : bool
-        Whether a probe that comes back to a reading comes back to the same error, as it does at its
-        rest: what hangs on the place of the rest is not told better by more of them.
-
-    Returns
-    -------
-    ndarray, shape (p, p)
-        In squared units of the output.
+    readings has one error with the variance ``q^2/12``, whatever the number of its samples. The
+    slope is output over position. With `returns`, a probe that comes back to a reading comes back
+    to the same error, as it does at its rest: more of them do not tell that place better.
     """
     starts = np.concatenate([[0], np.flatnonzero(np.diff(readings)) + 1])
     sums = np.add.reduceat(sensitivities, starts, axis=0)

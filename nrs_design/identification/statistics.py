@@ -41,14 +41,9 @@ class Estimate:
         return cls(math.exp(logarithm), *ends)
 
     def from_zero(self, half_width: float) -> Estimate:
-        """Return the interval that is symmetric in the value and ends at 0.
+        """Return the interval that is symmetric in the value and ends at 0; half width over value.
 
         A parameter that is not told from 0 has no meaningful logarithm.
-
-        Parameters
-        ----------
-        half_width : float
-            Over the value; 1 or more.
         """
         return Estimate(self.value, 0.0, self.value * (1 + half_width))
 
@@ -99,23 +94,13 @@ def uncertainty(
     starts: Sequence[int] | None = None,
     scatter: Array | None = None,
 ) -> Uncertainty:
-    """Estimate the covariance of a least-squares fit.
+    """Estimate the covariance of a least-squares fit, of logarithms of parameters.
 
     White residuals give the classical ``s^2 (J'J)^-1``. Colored ones, which every real tissue
     leaves, would make that far too small: then the fit is repeated without each of some long
-    batches, which are nearly independent, and the scatter of the results gives the covariance
-    (a jackknife).
-
-    Parameters
-    ----------
-    sensitivities : ndarray, shape (n, p)
-        Derivatives of the model by the logarithms of the parameters.
-    residuals : ndarray, shape (n,)
-        Measurement less model.
-    starts : sequence of int, optional
-        Where each record begins, if there are several: records are the batches then.
-    scatter : ndarray, shape (p, p), optional
-        Covariance of ``J'e`` for errors e that the residuals do not show.
+    batches, or of the records if there are several, which are nearly independent, and the scatter
+    of the results gives the covariance (a jackknife). A given scatter is the covariance of ``J'e``
+    for errors e that the residuals do not show.
     """
     n, p = sensitivities.shape
     whiteness = ljung_box(residuals)
@@ -131,13 +116,7 @@ def uncertainty(
 
 
 def ljung_box(residuals: Array) -> float:
-    """Return the p-value of the Ljung-Box test that residuals are white.
-
-    Parameters
-    ----------
-    residuals : ndarray, shape (n,)
-        Equally spaced; NaN of the test (all residuals zero) counts as white.
-    """
+    """Return the p-value of the Ljung-Box test that residuals are white; all zero is white."""
     from scipy.special import chdtrc
 
     n = len(residuals)
@@ -155,11 +134,6 @@ def independent(residuals: Array) -> float:
     """Return how many independent errors tell as much about a mean as these.
 
     Neighbours that are alike, as in an autoregression of first order, count less.
-
-    Parameters
-    ----------
-    residuals : ndarray, shape (n,)
-        In their order in time.
     """
     power = float(residuals @ residuals)
     alike = float(residuals[1:] @ residuals[:-1]) / power if power else 0.0
@@ -168,15 +142,7 @@ def independent(residuals: Array) -> float:
 
 
 def fisher_tail(above: int, below: int, ratio: float) -> float:
-    """Return the p-value of an F-test.
-
-    Parameters
-    ----------
-    above, below : int
-        Degrees of freedom.
-    ratio : float
-        Of the two variances.
-    """
+    """Return the p-value of an F-test."""
     from scipy.special import fdtrc
 
     return float(fdtrc(above, below, ratio))
@@ -197,19 +163,10 @@ def student_quantile(degrees: int, confidence: float = CONFIDENCE) -> float:
 def quotients(
     found: tuple[float, float], covariance: Array, quantile: float
 ) -> tuple[float, float]:
-    """Return the ends of the interval of a quotient of two estimates (Fieller 1954).
+    """Return the ends of the interval of dividend over divisor, found in this order: divisor first.
 
-    All quotients that the estimates do not reject, which is exact where both are normal. Where the
-    divisor may be 0, all quotients are taken, which errs to the wide side.
-
-    Parameters
-    ----------
-    found : tuple of float
-        Divisor and dividend.
-    covariance : ndarray, shape (2, 2)
-        Of these.
-    quantile : float
-        Standard errors in half an interval.
+    All quotients that the estimates do not reject, which is exact where both are normal (Fieller
+    1954). Where the divisor may be 0, all quotients are taken, which errs to the wide side.
     """
     # (y - r x)^2 <= t^2 (Vyy - 2 r Vxy + r^2 Vxx) is quadratic in the quotient r.
     (xx, xy), (_, yy) = np.outer(found, found) - quantile**2 * covariance
@@ -225,15 +182,6 @@ def tolerance_factor(count: int, share: float, confidence: float) -> float:
     Each end is a one-sided tolerance limit, exact by the noncentral t distribution (Owen 1968):
     beyond it lies at most half of what may be missed. That both hold has at least the confidence
     asked for, as each fails with at most half the probability that one may.
-
-    Parameters
-    ----------
-    count : int
-        Sample size n >= 2.
-    share : float
-        Of the population, between the ends.
-    confidence : float
-        That the share is held.
     """
     from scipy.special import nctdtrit, ndtri
 
@@ -242,33 +190,13 @@ def tolerance_factor(count: int, share: float, confidence: float) -> float:
 
 
 def span(low: float, high: float, unit: str = "", digits: int = 4) -> str:
-    """Write a range, or one number where both ends are written alike.
-
-    Parameters
-    ----------
-    low, high : float
-        The ends, rounded to the nearest number.
-    unit : str
-        Behind them.
-    digits : int
-        Significant ones.
-    """
+    """Write a range, or one number where both ends, rounded to nearest, are written alike."""
     ends = dict.fromkeys(f"{end:.{digits}g}" for end in (low, high))
     return f"{' to '.join(ends)} {unit}".rstrip()
 
 
 def few_digits(value: float, digits: int, rounding: str) -> Decimal:
-    """Round a number to so many significant digits.
-
-    Parameters
-    ----------
-    value : float
-        The number.
-    digits : int
-        How many are left.
-    rounding : str
-        To which side, as `decimal` calls it.
-    """
+    """Round a number to so many significant digits."""
     return Context(prec=digits, rounding=rounding).create_decimal(Decimal(value))
 
 

@@ -42,23 +42,8 @@ def merge_tissue(
 ) -> str:
     """Return the text of a spec with the chosen law in one of its environments.
 
-    Parameters
-    ----------
-    loaded : LoadedSpec
-        An interaction design.
-    found : TissueIdentification
-        Its range is written, which covers the pooled interval and that of every record.
-    environment : str or None
-        Name of the environment; may be left out if there is one only.
-    arm : str or None
-        Lever arm such as ``0.24 m``, for linear records; by default the one of the spec.
-
-    Raises
-    ------
-    SpecError
-        If the spec has no such environment, or no lever arm.
-    DataError
-        If the chosen law has no place in a spec, or its range is unlimited.
+    Its range is written, which covers the pooled interval and that of every record. Linear records
+    need a lever arm such as ``0.24 m``, by default the one of the spec.
     """
     model = found.chosen
     law, ranges = found.written
@@ -107,24 +92,6 @@ def law_to_write(
     """Return the law whose parameters go into an environment: its own, unless another is asked for.
 
     All that can be refused before a fit is refused here.
-
-    Parameters
-    ----------
-    loaded, environment, arm
-        As for `merge_tissue`.
-    asked : str or None
-        Name of a law that the user has asked for.
-    preloaded : bool
-        Whether a preload is given.
-    rotational : bool
-        Whether the records are.
-
-    Raises
-    ------
-    SpecError
-        As by `merge_tissue`; or if no record of a press tells the law of the environment.
-    DataError
-        If the law has no place in a spec.
     """
     name = _place(loaded, environment, arm, rotational=rotational)
     declared = check_interaction(loaded).environments[name]
@@ -242,13 +209,6 @@ def merge_actuator(loaded: LoadedSpec, found: ActuatorIdentification) -> str:
 
     Where the proof can cover ranges of the actuator, these are written; else the intervals stand
     beside the nominal values, for the record.
-
-    Raises
-    ------
-    SpecError
-        If the spec is no interaction design, or holds gains about commands in another unit.
-    DataError
-        If an interval is unlimited, or a spec has no place for such a motor.
     """
     spec = check_actuator(loaded, found.unit)
     if found.chosen.order != 1:
@@ -300,13 +260,7 @@ def _rewritten(document: SpecDocument, node: Any) -> InteractionDesignSpec:
 
 
 def check_actuator(loaded: LoadedSpec, unit: str) -> InteractionDesignSpec:
-    """Refuse, before a fit, a spec that a motor with commands in this unit cannot go into.
-
-    Raises
-    ------
-    SpecError
-        If it is no interaction design, or its gains would be in the wrong unit.
-    """
+    """Refuse, before a fit, a spec that a motor with commands in this unit cannot go into."""
     spec = check_interaction(loaded)
     if spec.actuator is None or spec.motion_loop is None:
         raise SpecError(
@@ -332,14 +286,9 @@ def check_actuator(loaded: LoadedSpec, unit: str) -> InteractionDesignSpec:
 
 
 def merge_delay(loaded: LoadedSpec, found: DelayIdentification) -> str:
-    """Return the text of a spec with the age of its force sample.
+    """Return the text of a spec of a sampled loop with the age of its force sample.
 
-    Raises
-    ------
-    SpecError
-        If the spec is no interaction design, or not about a sampled loop.
-    DataError
-        If the record shows dynamics and no mere delay, or a delay that no spec takes.
+    A record that shows dynamics and no mere delay is a `DataError`.
     """
     sampling = check_delay_place(loaded)
     if found.is_lag:
@@ -366,12 +315,7 @@ def merge_delay(loaded: LoadedSpec, found: DelayIdentification) -> str:
 def merge_latency(loaded: LoadedSpec, found: DelayIdentification) -> str:
     """Return the text of a spec with the time from a sample to its command.
 
-    Raises
-    ------
-    SpecError
-        If the spec is no interaction design, or takes no latency.
-    DataError
-        If the record shows dynamics and no mere delay, or a latency that no spec takes.
+    A record that shows dynamics and no mere delay is a `DataError`.
     """
     sampling = check_latency_place(loaded)
     sent, seen = found.record.names
@@ -400,13 +344,7 @@ def merge_latency(loaded: LoadedSpec, found: DelayIdentification) -> str:
 
 
 def check_latency_place(loaded: LoadedSpec) -> SamplingSpec:
-    """Refuse, before a fit, a spec that no latency can go into.
-
-    Raises
-    ------
-    SpecError
-        If it is no interaction design, or not about a loop whose commands may be late.
-    """
+    """Refuse, before a fit, a spec that no latency can go into."""
     sampling, spec = check_delay_place(loaded), check_interaction(loaded)
     if not spec.takes_dead_time:
         raise SpecError(
@@ -419,13 +357,7 @@ def check_latency_place(loaded: LoadedSpec) -> SamplingSpec:
 
 
 def check_delay_place(loaded: LoadedSpec) -> SamplingSpec:
-    """Refuse, before a fit, a spec that no delay can go into.
-
-    Raises
-    ------
-    SpecError
-        If it is no interaction design, or not about a sampled loop.
-    """
+    """Refuse, before a fit, a spec that no delay can go into."""
     sampling = check_interaction(loaded).sampling
     if sampling is None:
         raise SpecError(
@@ -481,13 +413,7 @@ def _outwards(estimate: Estimate, unit: str, write: Callable[[Decimal], str]) ->
 
 
 def check_interaction(loaded: LoadedSpec) -> InteractionDesignSpec:
-    """Refuse, before a fit, a spec that is no interaction design.
-
-    Raises
-    ------
-    SpecError
-        With its kind.
-    """
+    """Refuse, before a fit, a spec that is no interaction design."""
     if not isinstance(loaded.spec, InteractionDesignSpec):
         raise SpecError(
             f"a spec of kind {loaded.spec.kind} has no place for identified values",
@@ -499,13 +425,7 @@ def check_interaction(loaded: LoadedSpec) -> InteractionDesignSpec:
 
 
 def check_turning(spec: object, path: Path) -> None:
-    """Refuse a spec of an axis that slides: records are read as those of one that turns.
-
-    Raises
-    ------
-    SpecError
-        If it is one.
-    """
+    """Refuse a spec of an axis that slides: records are read as those of one that turns."""
     if isinstance(spec, InteractionDesignSpec) and spec.axis is AxisType.PRISMATIC:
         raise SpecError(
             "the axis is prismatic, and records are read as those of an axis that turns",

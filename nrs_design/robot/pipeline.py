@@ -20,15 +20,7 @@ if TYPE_CHECKING:
 
 
 def run_robot(path: Path) -> tuple[LoadedSpec, RobotSpec, Robot]:
-    """Read a robot spec and build the robot.
-
-    Raises
-    ------
-    SpecError
-        If the file is wrong.
-    DesignError
-        If it describes something else than a robot.
-    """
+    """Read a robot spec and build the robot."""
     from nrs_design.robot.models import build_robot
 
     loaded = read_spec(path)

@@ -30,17 +30,7 @@ _UNSURE = 0.5
 def find_doubts(
     records: Sequence[ActuatorRecord], found: TimeFit, *, failed: bool
 ) -> Iterator[str]:
-    """Yield what speaks against a fit, each with its evidence.
-
-    Parameters
-    ----------
-    records : sequence of ActuatorRecord
-        What was fitted.
-    found : TimeFit
-        The fit.
-    failed : bool
-        Whether it misses more than noise.
-    """
+    """Yield what speaks against a fit, with its evidence; `failed` if it misses more than noise."""
     step = min(record.step for record in records)
     half = 2 * float(found.uncertainty.errors[-1])
     if found.motor.delay < -half:

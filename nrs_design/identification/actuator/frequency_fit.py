@@ -23,17 +23,12 @@ _CONVERGED = 1e-12
 
 
 def fit_phasors(phasors: Sequence[Phasors]) -> ActuatorFit:
-    """Fit gain, time constant and friction to sinusoid records.
+    """Fit gain, time constant and friction to sinusoid records of three frequencies or more.
 
     ``U = V (1 + j w tau)/gain + friction S``, linear in ``1/gain``, ``tau/gain`` and the friction:
     a complex least-squares problem. S is the first harmonic of the friction over its largest
     value: ``4/pi V/|V|`` for a square wave, and then that of the fitted motor, which also sticks.
     Equations are weighted for angles with white noise.
-
-    Raises
-    ------
-    DataError
-        If there are fewer than three different frequencies, or the fit is not a motor.
     """
     check_frequencies(np.array([p.frequency for p in phasors]))
     V = np.array([p.velocity for p in phasors])
@@ -76,15 +71,10 @@ def _friction_phasor(phasors: Phasors, gain: float, tau: float, friction: float)
 
 
 def fit_response(data: FrequencyResponse) -> ActuatorFit:
-    """Fit gain and time constant to a ready frequency response.
+    """Fit gain and time constant to a ready frequency response of three frequencies or more.
 
     Minimizes the logarithm of data over model, whose real part is the magnitude ratio and whose
     imaginary part is the phase difference. Friction cannot be told from a ratio.
-
-    Raises
-    ------
-    DataError
-        If there are fewer than three different frequencies, or the fit is not a motor.
     """
     check_frequencies(data.frequency)
     logs = np.array([np.log(np.abs(data.response).max()), -np.log(np.median(data.frequency))])
@@ -108,13 +98,7 @@ def fit_response(data: FrequencyResponse) -> ActuatorFit:
 
 
 def check_frequencies(frequency: Array) -> None:
-    """Check that there are enough different frequencies.
-
-    Raises
-    ------
-    DataError
-        If there are fewer than three.
-    """
+    """Refuse fewer than three different frequencies."""
     count = len(np.unique(np.round(np.log(frequency), 3)))
     if count < FEWEST:
         raise DataError(

@@ -13,20 +13,9 @@ from nrs_design.identification.numeric import Array
 def friction_shape(held: Held, gain: float, tau: float, friction: float) -> Array:
     """Return friction over its largest value, the mean over each interval, shape (m - 1,).
 
-    It is 1 or -1 against the motion. Where the velocity reaches zero while the command is below
-    the friction, the motor sticks, and the friction is just the command. A reversal within an
-    interval is found exactly. Starts from rest.
-
-    Parameters
-    ----------
-    held : Held
-        The command as it acts.
-    gain : float
-        In rad/s for each unit of the command.
-    tau : float
-        Time constant in s.
-    friction : float
-        In units of the command.
+    It is 1 or -1 against the motion, from rest on. Where the velocity reaches zero while the
+    command is below the friction (in units of the command), the motor sticks, and the friction is
+    just the command. A reversal within an interval is found exactly.
     """
     decays = np.exp(-held.steps / tau)
     factor = (1 - decays) * gain

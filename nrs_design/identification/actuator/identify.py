@@ -87,24 +87,10 @@ def identify_actuator(
     coverage: Coverage = "confidence",
     progress: Progress = silent,
 ) -> ActuatorIdentification:
-    """Fit gain, time constant, friction and dead time.
+    """Fit gain, time constant, friction and dead time to records, or to one frequency response.
 
-    Parameters
-    ----------
-    data : sequence
-        Records of any commands that move the motor, or one ready frequency response.
-    motor : MotorConstants
-        Data sheet, for resistance and speed-torque gradient.
-    coverage : {"confidence", "tolerance", "prediction"}
-        What the ranges for a spec hold: the recorded motor, or other records too.
-    progress : callable
-        Told the name of each step.
-
-    Raises
-    ------
-    DataError
-        If there are no data, both kinds are mixed, or they do not determine the model; or if a
-        range for other records is wanted, and there is one record only.
+    The ranges for a spec hold the recorded motor, or (coverage by tolerance or prediction) others
+    too, which takes more than one record; else `DataError`.
     """
     if coverage != "confidence":
         check_spread(coverage, len({_origin(item) for item in data}))

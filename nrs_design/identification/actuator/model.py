@@ -101,17 +101,7 @@ class ActuatorFit:
 
 
 def actuator_fit(method: str, logarithms: Array, known: Uncertainty) -> ActuatorFit:
-    """Return a fit from the logarithms of gain, time constant and, if there, friction.
-
-    Parameters
-    ----------
-    method : str
-        How it was found.
-    logarithms : ndarray
-        Of gain, time constant and, if there, friction.
-    known : Uncertainty
-        Of the logarithms.
-    """
+    """Return a fit from logarithms of gain, time constant and, if any, friction."""
     estimates = known.estimates(logarithms)
     friction = estimates[2] if len(estimates) > 2 else None
     return ActuatorFit(method, estimates[0], estimates[1], friction, known)

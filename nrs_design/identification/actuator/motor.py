@@ -59,15 +59,7 @@ class MotorModel:
         return held, friction_shape(held, self.gain, self.time_constant, self.friction)
 
     def forced(self, record: ActuatorRecord, held: Held, shape: Array | None) -> Array:
-        """Return the output from rest at the samples of a record, shape (n,).
-
-        Parameters
-        ----------
-        record : ActuatorRecord
-            It says which output.
-        held, shape
-            As `hold` gives them.
-        """
+        """Return the output from rest at the samples of a record, shape (n,)."""
         friction = 0.0 if shape is None or self.friction is None else self.friction * shape
         inputs = self.gain * (held.command - friction)
         output = self.lags.angle if record.is_angle else self.lags.velocity

@@ -30,15 +30,10 @@ class Phasors:
 
 
 def phasors_of(record: ActuatorRecord) -> Phasors:
-    """Find frequency and amplitudes of a record by least squares.
+    """Find frequency and amplitudes of a sinusoid of two periods or more by least squares.
 
     The angle may drift, has harmonics from friction, and begins with a transient that is left
     out. Its amplitude times ``j omega`` is that of the velocity: nothing is differentiated.
-
-    Raises
-    ------
-    DataError
-        If the command is no sinusoid of at least two periods.
     """
     frequency = _frequency(record)
     late = record.time >= _TRANSIENT * record.time[-1]
@@ -62,17 +57,7 @@ def phasors_of(record: ActuatorRecord) -> Phasors:
 
 
 def held_amplitude(record: ActuatorRecord, values: Array, frequency: float) -> complex:
-    """Return the amplitude of what is held between the samples of a record, as it acts.
-
-    Parameters
-    ----------
-    record : ActuatorRecord
-        With the times of the samples.
-    values : ndarray, shape (n,)
-        Held from each sample to the next.
-    frequency : float
-        In rad/s.
-    """
+    """Return the amplitude of what is held between samples, as it acts, at a frequency in rad/s."""
     late = record.time >= _TRANSIENT * record.time[-1]
     (amplitude, *_), _ = _amplitudes(record.time[late], values[late], frequency, _HARMONICS)
     return amplitude * _hold(record, frequency)

@@ -26,13 +26,7 @@ _NEARLY = 4.0
 
 
 def scan_motor(records: Sequence[ActuatorRecord]) -> MotorModel:
-    """Return the best of many motors; whatever the command is, gain and friction are linear.
-
-    Raises
-    ------
-    DataError
-        If the output moves against the command, or not with it.
-    """
+    """Return the best of many motors; whatever the command is, gain and friction are linear."""
     tried = [(*_solve(records, *pair), *pair) for pair in _grid(records)]
     best = min(tried, key=lambda item: item[0])
     along = [item for item in tried if item[1][0] > _CLEAR * item[2][0]]
@@ -57,12 +51,7 @@ def scan_motor(records: Sequence[ActuatorRecord]) -> MotorModel:
 def tells_friction(records: Sequence[ActuatorRecord], tau: float, delay: float) -> bool:
     """Whether friction acts otherwise than a smaller gain would; under one step it does not.
 
-    Parameters
-    ----------
-    records : sequence of ActuatorRecord
-        All that are fitted at once.
-    tau, delay : float
-        Time constant and dead time in s.
+    Time constant and dead time are in s.
     """
     return _differ(np.concatenate([_regressors(record, tau, delay)[0] for record in records]))
 

@@ -54,18 +54,6 @@ def fit_in_time(records: Sequence[ActuatorRecord], start: MotorModel) -> TimeFit
     The command is held between samples and the velocity is solved exactly. Initial angle and
     velocity of every record are eliminated by linear least squares. If the errors are not white,
     the spread between records, or between parts of few records, goes into the intervals.
-
-    Parameters
-    ----------
-    records : sequence of ActuatorRecord
-        At least one.
-    start : MotorModel
-        Says which parameters there are.
-
-    Raises
-    ------
-    DataError
-        If the iteration does not settle.
     """
     motor, usual = start, min(record.step for record in records)
     errors = [motor.errors(record) for record in records]

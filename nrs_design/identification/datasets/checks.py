@@ -31,17 +31,7 @@ def doubt_step(step: float) -> Iterator[str]:
 
 
 def gaps_in(time: Array) -> Flags:
-    """Tell between which rows others are missing.
-
-    Parameters
-    ----------
-    time : ndarray, shape (n,)
-        In s.
-
-    Returns
-    -------
-    ndarray of bool, shape (n - 1,)
-    """
+    """Tell between which of n rows others are missing, shape (n - 1,)."""
     steps = np.diff(time)
     return np.asarray(steps > GAP * np.median(steps))
 
@@ -70,13 +60,7 @@ def pauses_text(time: Array) -> str | None:
 
 
 def check_time(table: MeasurementTable, time: Array) -> None:
-    """Check that time advances, and that a stretch without gaps is long enough.
-
-    Raises
-    ------
-    DataError
-        With the row.
-    """
+    """Check that time advances, and that a stretch without gaps is long enough."""
     if len(time) < FEWEST_ROWS:
         table.fail(
             f"the record has {len(time)} rows, at least {FEWEST_ROWS} are needed",
@@ -95,13 +79,7 @@ def check_time(table: MeasurementTable, time: Array) -> None:
 
 
 def check_advance(table: MeasurementTable, time: Array) -> None:
-    """Check that time advances.
-
-    Raises
-    ------
-    DataError
-        With the row.
-    """
+    """Check that time advances."""
     steps = np.diff(time)
     stuck = np.flatnonzero(steps <= 0)
     if len(stuck):
@@ -117,13 +95,7 @@ def check_advance(table: MeasurementTable, time: Array) -> None:
 
 
 def check_turns(table: MeasurementTable, angle: Array) -> None:
-    """Check that an angle does not jump by a whole turn, as one that begins anew at 360 deg does.
-
-    Raises
-    ------
-    DataError
-        With the row of the first jump.
-    """
+    """Check that an angle does not jump by a whole turn, as one that restarts at 360 deg does."""
     steps = np.abs(np.diff(angle))
     jumps = np.flatnonzero(np.abs(steps - 2 * np.pi) < np.pi / 4)
     if len(jumps) and float(np.median(steps)) < np.pi / 4:
@@ -135,24 +107,7 @@ def check_turns(table: MeasurementTable, angle: Array) -> None:
 
 
 def check_saturation(table: MeasurementTable, name: str, values: Array, moving: Array) -> None:
-    """Check that a sensor does not rest at its extreme reading while its input moves on.
-
-    Parameters
-    ----------
-    table : MeasurementTable
-        For the row in the message.
-    name : str
-        Of the quantity.
-    values : ndarray, shape (n,)
-        Readings.
-    moving : ndarray, shape (n,)
-        What drives them: the deflection, say.
-
-    Raises
-    ------
-    DataError
-        With the first row of the saturated stretch.
-    """
+    """Check that a sensor does not rest at its extreme reading while what drives it moves on."""
     span = float(np.ptp(moving))
     for extreme in {float(values.max()), float(values.min())} - {0.0}:
         for first, last in runs(values == extreme):
@@ -166,22 +121,7 @@ def check_saturation(table: MeasurementTable, name: str, values: Array, moving: 
 
 
 def check_varies(table: MeasurementTable, name: str, values: Array) -> None:
-    """Check that a column is not constant, but for the rounding of its numbers.
-
-    Parameters
-    ----------
-    table : MeasurementTable
-        For the place in errors.
-    name : str
-        Of the column.
-    values : ndarray, shape (n,)
-        The column.
-
-    Raises
-    ------
-    DataError
-        At the first row.
-    """
+    """Check that a column is not constant, but for the rounding of its numbers."""
     change = float(np.ptp(values))
     if change <= max(SMALLEST, _ROUNDED * np.finfo(float).eps * float(np.abs(values).max())):
         by = f" by more than {change:.1g}, which is rounding" if change else ""

@@ -109,20 +109,8 @@ def read_tissue(
 ) -> TissueRecord:
     """Read a record of ``time_s, deflection_m, force_N`` or ``time_s, angle_rad, torque_Nm``.
 
-    Parameters
-    ----------
-    path : Path
-        CSV file.
-    mapping : mapping of str to str, optional
-        From a name in the file to ours, see `parse_mapping`.
-    progress : callable
-        Told the fraction that has been read.
-
-    Raises
-    ------
-    DataError
-        With the row, if a column is missing, time has gaps or goes back, a value is not finite,
-        or the force sensor is saturated.
+    A mapping leads from a name in the file to ours. A column that is missing, a gap or step back
+    of time, a value that is not finite and a saturated sensor are a `DataError` with the row.
     """
     table = read_table(path, (LINEAR, ROTATIONAL), mapping or {}, progress)
     (columns,) = _one_group(table)
@@ -141,17 +129,8 @@ def read_actuator(
 ) -> tuple[ActuatorRecord, ...] | FrequencyResponse:
     """Read records of the actuator, one or several groups of columns, or a frequency response.
 
-    Parameters
-    ----------
-    path, mapping, progress
-        As in `read_tissue`; the columns are ``time_s, command_rpm`` and ``angle_rad`` or
-        ``velocity_rad_s`` (with suffixes ``_1``, ``_2`` for groups), or ``frequency_hz,
-        magnitude_db, phase_deg``.
-
-    Raises
-    ------
-    DataError
-        As in `read_tissue`.
+    Columns are ``time_s, command_rpm`` and ``angle_rad`` or ``velocity_rad_s`` (with suffixes
+    ``_1``, ``_2`` for groups), or ``frequency_hz, magnitude_db, phase_deg``.
     """
     table = read_table(path, (ANGLE, VELOCITY, RESPONSE), mapping or {}, progress)
     if table.layout == RESPONSE:
@@ -193,16 +172,8 @@ def read_signals(
 ) -> SignalRecord:
     """Read two columns: a command, and what follows it.
 
-    Parameters
-    ----------
-    path, mapping, progress
-        As in `read_tissue`; the columns are ``time_s, command_rpm`` and ``angle_rad`` or another
-        measured one; any two others are mapped to ``input_any`` and ``output_any``.
-
-    Raises
-    ------
-    DataError
-        As in `read_tissue`.
+    They are ``time_s, command_rpm`` and ``angle_rad`` or another measured one; any two others are
+    mapped to ``input_any`` and ``output_any``.
     """
     mapping = mapping or {}
     chosen = {"input_any", "output_any"} & set(mapping.values())

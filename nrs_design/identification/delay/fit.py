@@ -62,20 +62,9 @@ class DelayFit:
 def fit_delay(
     record: SignalRecord, follower: AbstractFollower, delay: float, rows: Rows
 ) -> DelayFit:
-    """Refine delay and shape of a model by Gauss-Newton steps.
+    """Refine delay in s and shape of a model by Gauss-Newton steps over the rows that count.
 
     Gain, offset and initial state are eliminated in every step.
-
-    Parameters
-    ----------
-    record : SignalRecord
-        What was sent and seen.
-    follower : AbstractFollower
-        The model, with a first guess of its shape.
-    delay : float
-        First guess in s.
-    rows : ndarray of int
-        Samples that count.
     """
     x = np.array([delay / record.step, *follower.shape])
     limit = np.array([2.0, *[0.5] * len(follower.shape)])
@@ -105,15 +94,7 @@ def fit_delay(
 
 
 def fit_held(record: SignalRecord, delay: float, rows: Rows) -> DelayFit:
-    """Find the whole number of samples by which a copy is late.
-
-    Parameters
-    ----------
-    record, rows
-        As for `fit_delay`.
-    delay : float
-        Where both columns are most alike, in s.
-    """
+    """Find the whole number of samples by which a copy is late, near a delay in s."""
     follower, near = HeldCopy(()), round(delay / record.step)
 
     def columns(late: int) -> Array:

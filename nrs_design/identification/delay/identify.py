@@ -169,13 +169,7 @@ class DelayIdentification:
 
 
 def identify_delay(record: SignalRecord) -> DelayIdentification:
-    """Find the delay by cross-correlation, then by a fit beside the dynamics.
-
-    Raises
-    ------
-    DataError
-        If the columns have nothing to do with each other, or no model explains them.
-    """
+    """Find the delay by cross-correlation, then by a fit beside the dynamics."""
     peak = correlation_peak(record)
     if abs(peak[1]) < _RELATED:
         raise DataError(

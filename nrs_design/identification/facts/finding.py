@@ -17,15 +17,7 @@ Facts = dict[str, Any]
 
 
 def finding_facts(found: Finding, facts: Facts) -> Facts:
-    """Return the facts of an identification with those that all have about it.
-
-    Parameters
-    ----------
-    found : Finding
-        The identification.
-    facts : dict
-        What it alone has.
-    """
+    """Return the facts that an identification alone has, with those that all have."""
     return {
         "synthetic": is_synthetic(found.sources),
         "records": source_facts(found.sources),

@@ -15,19 +15,7 @@ if TYPE_CHECKING:
 def run_judgement_facts(
     found: RunJudgement, loaded: LoadedSpec, certificate: Path | None, reason: str
 ) -> Facts:
-    """Return the verdict and every check.
-
-    Parameters
-    ----------
-    found : RunJudgement
-        The checks.
-    loaded : LoadedSpec
-        That they are of.
-    certificate : Path or None
-        Its file.
-    reason : str
-        Why the spec is not proved; empty if it is.
-    """
+    """Return the verdict and every check; the reason says why it is not proved, empty if it is."""
     first = found.first
     return {
         "verdict": found.verdict,

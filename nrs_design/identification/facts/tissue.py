@@ -18,17 +18,7 @@ if TYPE_CHECKING:
 def tissue_facts(
     found: TissueIdentification, arm: float | None = None, series: list[Series] | None = None
 ) -> Facts:
-    """Return all laws and the chosen one.
-
-    Parameters
-    ----------
-    found : TissueIdentification
-        The fits.
-    arm : float, optional
-        Lever arm in m: the chosen law is told at the pivot, too.
-    series : list of Series, optional
-        Prony series of the records.
-    """
+    """Return all laws and the chosen one; with a lever arm in m, that one at the pivot, too."""
     law, about = found.chosen.law, found.tangent
     listed = {} if series is None else {"prony": [_series_facts(item) for item in series]}
     return {

@@ -43,19 +43,7 @@ def identification_page(
     sections: Iterable[Section],
     meaning: Sequence[str] = (),
 ) -> Report:
-    """Return the page about what was found from data; the claim begins with what they are.
-
-    Parameters
-    ----------
-    found : Finding
-        With the files, which the last section names, and the doubts, which a light counts.
-    name, title, claim : str
-        Of the page.
-    sections : iterable of Section
-        What stands between.
-    meaning : sequence of str
-        How to read it.
-    """
+    """Return the page about what was found from data; the claim begins with what they are."""
     read = Section("How to read this", (Bullets("", tuple(meaning)),), boxed=True)
     return Report(
         name=name,

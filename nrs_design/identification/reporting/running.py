@@ -29,17 +29,7 @@ _MEANING = (
 
 
 def run_report(found: RunJudgement, name: str, reason: str) -> Report:
-    """Say and draw everything about a run.
-
-    Parameters
-    ----------
-    found : RunJudgement
-        As `judge_run` gives it.
-    name : str
-        Of the spec.
-    reason : str
-        Why the spec is not proved; empty if it is.
-    """
+    """Say and draw everything about a run."""
     log, limit = found.log, _PROVED if found.bounds.proved else _DECLARED
     loud = (f"UNPROVED SPEC: {reason}; its ranges are only declared.",) if reason else ()
     return Report(

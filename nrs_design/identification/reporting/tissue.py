@@ -44,17 +44,7 @@ _MEANING = (
 def tissue_report(
     found: TissueIdentification, arm: float | None = None, series: Sequence[str] = ()
 ) -> Report:
-    """Say and draw everything about the identification of a tissue.
-
-    Parameters
-    ----------
-    found : TissueIdentification
-        As `identify_tissue` gives it.
-    arm : float, optional
-        Lever arm in m: the chosen law is shown at the pivot, too.
-    series : sequence of str
-        Prony series of the records in words, without intervals.
-    """
+    """Say and draw everything about a tissue; with a lever arm in m, the law at the pivot, too."""
     chosen = found.chosen
     several = (Section("Several relaxations", (Bullets("", tuple(series)),)),) if series else ()
     values = in_words(named(chosen.law, map(in_interval, chosen.ranges), found.rotational))

@@ -78,13 +78,7 @@ class RunBounds:
 
 
 def read_run_bounds(loaded: LoadedSpec) -> RunBounds:
-    """Read the bounds out of a spec.
-
-    Raises
-    ------
-    DesignError
-        If it is no interaction design.
-    """
+    """Read the bounds out of the spec of an interaction design."""
     spec = loaded.spec
     if not isinstance(spec, InteractionDesignSpec):
         raise DesignError(
@@ -96,20 +90,7 @@ def read_run_bounds(loaded: LoadedSpec) -> RunBounds:
 
 
 def parse_command_limit(text: str, command: str) -> float:
-    """Read where the driver saturates; a bare number is in the unit of the motor's command.
-
-    Parameters
-    ----------
-    text : str
-        Such as ``24 V`` or ``24``.
-    command : str
-        Unit of the motor's command.
-
-    Raises
-    ------
-    SpecError, DesignError
-        If it is no quantity, in another unit, or not positive.
-    """
+    """Read where the driver saturates; a bare number is in the unit of the motor's command."""
     text = text.strip()
     if text[-1:].isalpha():
         quantity = parse_quantity(text, kinds.COMMAND)

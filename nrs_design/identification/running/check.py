@@ -42,13 +42,5 @@ class Check:
 
     @classmethod
     def open(cls, name: str, why: str, allowed: str = "", basis: str = "") -> Self:
-        """Return a check that is not judged.
-
-        Parameters
-        ----------
-        name, allowed, basis : str
-            Of the bound.
-        why : str
-            What is missing.
-        """
+        """Return a check that is not judged."""
         return cls(name, BoundStatus.NOT_JUDGED, why, allowed, basis)

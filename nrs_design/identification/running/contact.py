@@ -47,18 +47,9 @@ class ContactEstimate:
 def estimate_contact(
     log: RunLog, bounds: RunBounds, length: float, *, losable: bool | None
 ) -> ContactEstimate:
-    """Estimate stiffness and contact.
+    """Estimate stiffness and contact in windows of a length in s.
 
-    Parameters
-    ----------
-    log : RunLog
-        The data.
-    bounds : RunBounds
-        What the spec promises.
-    length : float
-        Of a window, in s.
-    losable : bool or None
-        Whether contact may be lost; None if nothing says it.
+    Whether contact may be lost is None if nothing says it.
     """
     reason = _missing(log, bounds)
     if reason:

@@ -91,27 +91,10 @@ def judge_run(
     window: float = WINDOW,
     command_limit: float | None = None,
 ) -> RunJudgement:
-    """Compare a log with the bounds of a spec.
+    """Compare a log with the bounds of a spec, which a valid certificate proves or not.
 
-    Parameters
-    ----------
-    log : RunLog
-        The data.
-    bounds : RunBounds
-        What the spec promises.
-    proved : bool
-        Whether a valid certificate proves it.
-    losable : bool
-        Whether what it proves holds while contact is lost and made again.
-    window : float
-        Length of the windows of stiffness in s.
-    command_limit : float, optional
-        Where the driver saturates, in units of the command; that of the spec, if it has one.
-
-    Raises
-    ------
-    DataError
-        If the command of the log is of another kind than that of the spec.
+    Windows of stiffness are in s. A command limit is in units of the command; by default that of
+    the spec. A log whose command is of another kind than the spec's is a `DataError`.
     """
     _check_unit(log, bounds)
     bounds = replace(bounds, proved=proved)

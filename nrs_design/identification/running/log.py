@@ -49,16 +49,8 @@ def read_run(
 ) -> RunLog:
     """Read ``time_s`` and those of the other columns that are there.
 
-    Parameters
-    ----------
-    path, mapping, progress
-        As in `read_tissue`; the columns are ``angle_rad, torque_Nm`` or ``deflection_m, force_N``,
-        ``velocity_rad_s``, ``command_UNIT`` and ``mode``, the name of the controller in force.
-
-    Raises
-    ------
-    DataError
-        If there is no time, it does not advance, or there is nothing beside it.
+    They are ``angle_rad, torque_Nm`` or ``deflection_m, force_N``, ``velocity_rad_s``,
+    ``command_UNIT`` and ``mode``, the name of the controller in force.
     """
     table = read_table(path, (("time",),), mapping or {}, progress, _OPTIONAL)
     columns = dict(table.groups.get("", {}))

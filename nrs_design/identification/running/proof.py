@@ -16,19 +16,7 @@ if TYPE_CHECKING:
 def proof_of(certificate: Path | None, loaded: LoadedSpec) -> tuple[str, bool]:
     """Say why the spec is not proved, and whether a proof holds while contact is lost.
 
-    The reason is empty if a certificate proves it.
-
-    Parameters
-    ----------
-    certificate : Path or None
-        Checked against the spec.
-    loaded : LoadedSpec
-        The spec.
-
-    Raises
-    ------
-    CertificateError
-        If the certificate is rejected.
+    The reason is empty if the certificate proves it; one that is rejected is a `CertificateError`.
     """
     if certificate is None:
         return "no certificate is named", False

@@ -51,15 +51,7 @@ class _Rows:
 
 
 def judge_sector(log: RunLog, bounds: RunBounds) -> SectorJudgement | None:
-    """Hold a log against the range of stiffness; None if the spec, or the log, does not tell.
-
-    Parameters
-    ----------
-    log : RunLog
-        The data.
-    bounds : RunBounds
-        What the spec promises.
-    """
+    """Hold a log against the range of stiffness; None if the spec, or the log, does not tell."""
     sector, columns = bounds.sector, _columns(log, bounds)
     if isinstance(sector, str) or columns is None:
         return None
@@ -85,15 +77,7 @@ def judge_sector(log: RunLog, bounds: RunBounds) -> SectorJudgement | None:
 
 
 def hint(log: RunLog, bounds: RunBounds) -> str:
-    """Say why the stiffness is not tested, and what the log would let a spec say; else nothing.
-
-    Parameters
-    ----------
-    log : RunLog
-        The data.
-    bounds : RunBounds
-        What the spec promises.
-    """
+    """Say why the stiffness is not tested, and what the log would let a spec say; else nothing."""
     columns = _columns(log, bounds)
     if not isinstance(bounds.sector, str) or columns is None:
         return ""

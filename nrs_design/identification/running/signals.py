@@ -25,15 +25,7 @@ def _assumed(bounds: RunBounds) -> str:
 
 
 def judge_delay(log: RunLog, bounds: RunBounds) -> Check:
-    """Judge how late the motion follows the command.
-
-    Parameters
-    ----------
-    log : RunLog
-        The data.
-    bounds : RunBounds
-        What the spec promises.
-    """
+    """Judge how late the motion follows the command."""
     seen = next((name for name in ("angle", "velocity") if name in log.columns), None)
     if "command" not in log.columns or seen is None:
         gone = "command" if "command" not in log.columns else "angle or velocity"
@@ -61,15 +53,7 @@ def judge_delay(log: RunLog, bounds: RunBounds) -> Check:
 
 
 def judge_jitter(log: RunLog, bounds: RunBounds) -> Check:
-    """Judge how even the steps of time are.
-
-    Parameters
-    ----------
-    log : RunLog
-        The data.
-    bounds : RunBounds
-        What the spec promises.
-    """
+    """Judge how even the steps of time are."""
     steps = np.diff(log.time)
     words = f"steps of {span(steps.min(), steps.max(), 's')}, usually {log.step:.4g} s"
     if bounds.period is not None and not _holds_whole(log.step, bounds.period):
@@ -98,17 +82,7 @@ def _time_of(bounds: RunBounds) -> str:
 
 
 def judge_saturation(log: RunLog, bounds: RunBounds, limit: float | None) -> Check:
-    """Judge whether the command met its limit.
-
-    Parameters
-    ----------
-    log : RunLog
-        The data.
-    bounds : RunBounds
-        What the spec promises.
-    limit : float or None
-        Of the driver, in units of the command.
-    """
+    """Judge whether the command met the limit of the driver, in units of the command."""
     if "command" not in log.columns:
         return Check.open("saturation", "no column for command")
     size = np.abs(log.columns["command"])
@@ -127,15 +101,7 @@ def judge_saturation(log: RunLog, bounds: RunBounds, limit: float | None) -> Che
 
 
 def judge_force(log: RunLog, bounds: RunBounds) -> Check:
-    """Judge the torque against the limit of the design.
-
-    Parameters
-    ----------
-    log : RunLog
-        The data.
-    bounds : RunBounds
-        What the spec promises.
-    """
+    """Judge the torque against the limit of the design."""
     allowed, basis = f"up to {bounds.torque:g} N m", "limit of the spec"
     if bounds.proved:
         basis += ", not of the proof"

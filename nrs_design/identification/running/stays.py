@@ -35,15 +35,7 @@ class _Stay:
 
 
 def judge_stays(log: RunLog, bounds: RunBounds) -> Check:
-    """Judge times in each mode, and the order of modes.
-
-    Parameters
-    ----------
-    log : RunLog
-        The data.
-    bounds : RunBounds
-        What the spec promises.
-    """
+    """Judge times in each mode, and the order of modes."""
     allowed, basis = _allowed(bounds), f"switching rules of {bounds.source}"
     if bounds.names_contacts:
         reason = "the rules name contacts, and a log does not say what is touched"

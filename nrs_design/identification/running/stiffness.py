@@ -34,16 +34,9 @@ class Window:
 
 
 def cut_windows(time: Array, states: Rows | None, length: float) -> Iterator[tuple[int, int]]:
-    """Yield first row and end of windows that span neither a gap nor a change.
+    """Yield first row and end of windows, of a length in s, that span neither a gap nor a change.
 
-    Parameters
-    ----------
-    time : ndarray, shape (n,)
-        In s.
-    states : ndarray of int or None, shape (n,)
-        At every row, what stays the same in a window: the mode, and whether a torque acts.
-    length : float
-        In s.
+    What stays the same in a window is the state of its rows: the mode, and whether a torque acts.
     """
     breaks = gaps_in(time)
     if states is not None:
@@ -65,13 +58,6 @@ def stiffness_of(
     draws towards zero. The upper end is the smaller of two: that of the reverse regression, which
     noise of the force draws away (Frisch 1934); and the lower one without the part of the
     deflection that may be noise. Correlation of the errors widens both.
-
-    Parameters
-    ----------
-    time, deflection, force : ndarray, shape (n,)
-        Columns of the log.
-    spans : list of (int, int)
-        First row and end of every window.
     """
     confidence = joint_level(max(len(spans), 1))
     # Backward: a later angle has been moved by the force that is regressed.

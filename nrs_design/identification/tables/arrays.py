@@ -39,13 +39,7 @@ _MATLAB_HDF = b"MATLAB 7.3"
 
 
 def check_kind(file: BinaryIO, path: Path) -> None:
-    """Refuse a file that is not what its name says; stay at its beginning.
-
-    Raises
-    ------
-    DataError
-        That says what it is.
-    """
+    """Refuse a file that is not what its name says; stay at its beginning."""
     start = file.read(32)
     file.seek(0)
     kind = path.suffix.lower()

@@ -34,18 +34,7 @@ class Column:
 
 
 def parse_mapping(entries: Sequence[str]) -> dict[str, str]:
-    """Read ``OURS=THEIRS`` entries of the option ``--map``.
-
-    Returns
-    -------
-    dict
-        From the name in the file to ours.
-
-    Raises
-    ------
-    DataError
-        If an entry is malformed, names no column of ours, or is there twice.
-    """
+    """Read ``OURS=THEIRS`` entries of the option ``--map``: from the name in the file to ours."""
     mapping: dict[str, str] = {}
     for entry in entries:
         ours, equals, theirs = (part.strip() for part in entry.partition("="))
@@ -66,33 +55,10 @@ def find_columns(
     line: int | None,
     optional: tuple[str, ...] = (),
 ) -> tuple[tuple[str, ...], dict[str, dict[str, Column]]]:
-    """Find the columns of the first layout that a header has in full.
+    """Return the first layout that a header has in full, and its columns by group and quantity.
 
-    Parameters
-    ----------
-    header : sequence of str
-        Names in the file.
-    layouts : sequence of tuple of str
-        Quantities that belong together; the first one may be shared by all groups. What the user
-        has mapped decides between layouts, then their order.
-    mapping : mapping of str to str
-        From a name in the file to ours.
-    path, line
-        Of the header, for errors.
-    optional : tuple of str
-        Quantities that are taken where they are there.
-
-    Returns
-    -------
-    layout : tuple of str
-        The one that was found.
-    groups : dict of str to dict of str to Column
-        The columns of every group by quantity; the group without suffix is called ``""``.
-
-    Raises
-    ------
-    DataError
-        If a column is missing, is there twice, or has a wrong unit.
+    What the user has mapped decides between layouts, then their order. The group without a suffix
+    is called ``""``; the first quantity of a layout may be shared by all groups.
     """
     fail = partial(DataError, path=path, line=line)
     _check_mapped(mapping, header, fail)
@@ -121,19 +87,7 @@ def _check_mapped(mapping: Mapping[str, str], header: Sequence[str], fail: Fail)
 
 
 def check_stated(theirs: str, unit: str | None, ours: str, fail: Fail) -> None:
-    """Refuse a mapping whose unit contradicts the name of the column.
-
-    Parameters
-    ----------
-    theirs : str
-        The name in the file.
-    unit : str or None
-        What it says, as we write it.
-    ours : str
-        The name that it is mapped to.
-    fail : callable
-        Returns an error about the file.
-    """
+    """Refuse a mapping whose unit contradicts the name of the column."""
     name = _split(ours, fail)
     if unit in (None, name.unit) or name.unit in ("", "1", "any"):
         return

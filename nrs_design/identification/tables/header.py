@@ -53,26 +53,7 @@ def read_header(
     seen: Callable[[bytes], None],
     example: str,
 ) -> Header:
-    """Find the line of names: below a preamble, above the first row.
-
-    Parameters
-    ----------
-    file : binary file
-        At its beginning.
-    path : Path
-        For errors.
-    mapped : mapping of str to str
-        From foreign names that the user has mapped to ours.
-    seen : callable
-        Told all bytes that are read.
-    example : str
-        Such a line, for errors.
-
-    Raises
-    ------
-    DataError
-        If there is none, or it can be read in two ways.
-    """
+    """Find the line of names: below a preamble, above the first row."""
     raw: list[bytes] = []
     while len(raw) <= MAX_PREAMBLE and sum(map(len, raw)) <= BLOCK:
         if not (line := file.readline(BLOCK)):

@@ -163,10 +163,7 @@ def standard_name(quantity: str) -> str:
 def read_name(text: str) -> Name | None:
     """Take a name apart: ``angle_rad_2``, ``Force [N]``, ``Load (kN)``, ``Time/s``, ``t, s``.
 
-    Returns
-    -------
-    Name or None
-        None if it names no quantity of ours; its unit may be unknown or empty.
+    None if it names no quantity of ours; its unit may be unknown or empty.
     """
     text = text.strip()
     bracketed = _BRACKETED.match(text) or _SLASHED.match(text)
@@ -202,15 +199,7 @@ def read_stamp(text: str) -> Name | None:
 
 
 def read_unit(text: str, quantity: str) -> str:
-    """Return our name of a unit, or the text itself if it is not known.
-
-    Parameters
-    ----------
-    text : str
-        As written, such as ``N·m`` or ``sec``.
-    quantity : str
-        What is measured.
-    """
+    """Return our name of a unit, or the text itself if it is not known."""
     plain = text.strip().replace("μ", "µ").replace("·", "*").replace("⋅", "*")
     if plain in UNITS[quantity]:
         return plain
@@ -219,20 +208,7 @@ def read_unit(text: str, quantity: str) -> str:
 
 
 def stated_unit(text: str, quantity: str) -> str | None:
-    """Return the unit in a foreign name such as ``Weg [mm]`` or ``load_kN``.
-
-    Parameters
-    ----------
-    text : str
-        The name.
-    quantity : str
-        What it is taken for, in whose units a unit is read first.
-
-    Returns
-    -------
-    str or None
-        None if it says no known one.
-    """
+    """Return the known unit in a foreign name such as ``Weg [mm]`` or ``load_kN``, or None."""
     known = {unit for units in UNITS.values() for unit in units}
     bracketed = _BRACKETED.match(text.strip()) or _SLASHED.match(text.strip())
     if bracketed:

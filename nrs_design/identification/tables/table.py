@@ -49,17 +49,7 @@ class MeasurementTable:
     first_line: int | None  # Line of the first row, for messages; None where the file has no lines
 
     def fail(self, message: str, row: int, remedy: str) -> NoReturn:
-        """Raise an error about a row, counted from 0.
-
-        Parameters
-        ----------
-        message : str
-            What is wrong.
-        row : int
-            Counted from 0.
-        remedy : str
-            What to do about it.
-        """
+        """Raise an error about a row, counted from 0."""
         line = None if self.first_line is None else self.first_line + row
         where = f" (row {row + 1})" if line is None else ""
         raise DataError(message + where, path=self.source.path, line=line, remedy=remedy)
@@ -82,23 +72,7 @@ def read_table(
     progress: Progress = lambda fraction: None,
     optional: tuple[str, ...] = (),
 ) -> MeasurementTable:
-    """Read the columns of one of several layouts.
-
-    Parameters
-    ----------
-    path : Path
-        Text with a line of names and rows of numbers; or ``.mat``, ``.npz``, ``.parquet``,
-        ``.xlsx``.
-    layouts, mapping, optional
-        See `Wanted`.
-    progress : callable
-        Told the fraction that has been read.
-
-    Raises
-    ------
-    DataError
-        With the line, if the file cannot be read, a column is missing, or a value is no number.
-    """
+    """Read the columns of one of several layouts."""
     wanted = Wanted(layouts, mapping, optional)
     try:
         size = max(path.stat().st_size, 1)

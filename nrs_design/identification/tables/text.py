@@ -25,24 +25,7 @@ _UNDECIDED = "save it with a decimal point and without marks between thousands"
 def read_blocks(
     file: BinaryIO, path: Path, first: bytes, seen: Callable[[bytes], None]
 ) -> Iterator[bytes]:
-    """Yield blocks of whole lines.
-
-    Parameters
-    ----------
-    file : binary file
-        Behind what has been read.
-    path : Path
-        For errors.
-    first : bytes
-        What has been read, and belongs to the rows.
-    seen : callable
-        Told all other bytes.
-
-    Raises
-    ------
-    DataError
-        If a line is endless.
-    """
+    """Yield blocks of whole lines."""
     rest = first
     while chunk := file.read(BLOCK):
         seen(chunk)

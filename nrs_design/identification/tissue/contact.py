@@ -91,13 +91,7 @@ class _Corner:
 
 
 def find_contact(record: TissueRecord) -> DetectedContact | None:
-    """Find where contact begins; None if no air shows in the record.
-
-    Parameters
-    ----------
-    record : TissueRecord
-        Position and force in any zero; n samples.
-    """
+    """Find where contact begins; None if no air shows in the record."""
     x, force = record.motion.deflection, record.force
     velocity = _smoothed(record.motion.velocity)
     corners: dict[int, list[_Corner]] = {1: [], -1: []}
@@ -183,19 +177,10 @@ def _corner_of(curve: int, v: Array, velocity: Array, force: Array) -> tuple[int
 
 
 def _errors(curve: int, w: Array, velocity: Array, force: Array) -> Array:
-    """Squared errors of a curve that leaves a constant where w leaves zero, shape (m,).
+    """Squared errors of a curve that leaves a constant where w leaves zero, shape (m,) for corners.
 
     The curve is quadratic, with a force in proportion to the velocity that begins with a jump, and
-    perhaps one that grows with the deflection, too.
-
-    Parameters
-    ----------
-    curve : int
-        How many terms it has.
-    w : ndarray, shape (m, n)
-        Deflections between 0 and 1, for m corners.
-    velocity, force : ndarray, shape (n,)
-        In any unit.
+    perhaps one that grows with the deflection, too. Deflections w, shape (m, n), are from 0 to 1.
     """
     rest = _left(curve, w, velocity, force)
     return np.asarray(np.einsum("...n,...n->...", rest, rest))

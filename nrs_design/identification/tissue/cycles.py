@@ -13,17 +13,9 @@ _TURN = 0.3
 
 
 def find_cycles(deflection: Array) -> tuple[slice, ...]:
-    """Return the cycles, each from the rest before a load to the end of its unload.
+    """Return the rows of each cycle, from the rest before a load to the end of its unload.
 
-    Parameters
-    ----------
-    deflection : ndarray, shape (n,)
-        In any unit and zero.
-
-    Returns
-    -------
-    tuple of slice
-        Rows of each cycle; together they are all rows. One at least.
+    Together they are all rows; there is one at least.
     """
     least = _TURN * float(np.ptp(deflection))
     if least == 0.0:

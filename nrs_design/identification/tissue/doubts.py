@@ -36,20 +36,7 @@ def doubts(
 ) -> tuple[str, ...]:
     """List what makes a fit doubtful, in words; nothing for a sound one.
 
-    Parameters
-    ----------
-    law : AbstractContactLaw
-        That was fitted.
-    trial : Trial
-        To which data; n used samples.
-    found : Uncertainty
-        Of its parameters.
-    bounds : tuple of ndarray
-        Logarithms between which they were sought: lower, upper.
-    residuals : ndarray, shape (n,)
-        Measured less fitted force.
-    sensitivities : ndarray, shape (n, p + m)
-        Derivatives of the force by p parameters and m offsets.
+    Bounds are the logarithms, lower and upper, between which the parameters were sought.
     """
     wrong = (*_units(trial), *doubt_signs(trial, residuals, sensitivities[:, len(law.values) :]))
     # What comes of a record that was read wrongly has no size of its own.

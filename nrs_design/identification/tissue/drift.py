@@ -22,13 +22,6 @@ def shows_drift(time: Array, air: Flags) -> bool:
     """Tell whether there is air before and after a contact, far enough apart.
 
     Within one stretch of air, a tissue that is soft at first would pass for a drift.
-
-    Parameters
-    ----------
-    time : ndarray, shape (n,)
-        In s.
-    air : ndarray of bool, shape (n,)
-        Which samples are in air.
     """
     rows = np.flatnonzero(air)
     if len(rows) < _FEWEST or np.ptp(time[rows]) < _SPREAD * np.ptp(time):

@@ -94,31 +94,10 @@ def identify_tissue(
     *,
     declared: bool = False,
 ) -> TissueIdentification:
-    """Fit all laws to all records and choose.
+    """Fit all laws to all records, linear or rotational, and choose; a named law is chosen anyway.
 
-    Parameters
-    ----------
-    records : sequence of TissueRecord
-        Linear ones or rotational ones.
-    law : str, optional
-        Name of the law to choose whatever the comparison says.
-    preparation : Preparation, optional
-        What is done to each record first: air and rupture cut off, offsets fitted or given.
-    coverage : {"confidence", "tolerance", "prediction"}
-        What the ranges shall hold: the mean of the specimens, 95 % of them, or the next one.
-    preload : tuple of float, optional
-        Least and largest deflection in m (rad) about which a power law is linearized.
-    progress : callable
-        Told the name of each law.
-    declared : bool
-        Whether the law is that of a spec, and not one that the user has asked for.
-
-    Raises
-    ------
-    DataError
-        If there is no record, linear and rotational ones are mixed, or one is there twice; if too
-        little of one is left to fit, the records are too few for what ranges shall hold, or the
-        preload is not within their deflections; all before anything is fitted.
+    About a preload, in m (rad), a power law is linearized. What cannot be fitted is refused as a
+    `DataError` before anything is fitted. `declared`: the law is that of a spec, not the user's.
     """
     _check(records)
     if coverage != "confidence":

@@ -83,20 +83,7 @@ def estimate_offsets(
 ) -> tuple[Offset, ...]:
     """Turn fitted constants into the position of contact, the tare and its drift.
 
-    Parameters
-    ----------
-    law : AbstractContactLaw
-        As fitted, with p parameters.
-    trial : Trial
-        To which data.
-    names : sequence of str
-        As `offset_names` gives them.
-    values : ndarray, shape (m,)
-        Of these constants.
-    shift : float or None
-        Fitted move of the position of contact, for a law where it enters nonlinearly.
-    known : Uncertainty
-        Of p logarithms, the move if there is one, and the m constants, in this order.
+    `known` is of p logarithms, the move of the contact if there is one, and the m constants.
     """
     first = len(law.values) + (shift is not None)
     at = {name: first + i for i, name in enumerate(names)}
@@ -134,15 +121,6 @@ class _Reader:
 
         The interval is Fieller's (1954): all quotients that the data do not reject. Where the
         stiffness may be 0, it has no end.
-
-        Parameters
-        ----------
-        law : AbstractContactLaw
-            As fitted.
-        at : int
-            Place of the constant.
-        value : float
-            Of the constant.
         """
         stiffness, slopes = _static(law)
         gradients = np.zeros((2, len(self.known.covariance)))

@@ -118,13 +118,6 @@ def fit_record(kind: type[AbstractContactLaw], record: TissueRecord | Trial) -> 
     Minimizes the squared difference of measured and simulated force over the logarithms of the
     parameters, with offsets of force and deflection. Simulation and derivatives are exact for a
     piecewise linear deflection; the force is never differentiated.
-
-    Parameters
-    ----------
-    kind : type
-        One of `nrs_design.models.contact.LAWS`.
-    record : TissueRecord or Trial
-        n samples; a record is prepared in the default way.
     """
     trial = record if isinstance(record, Trial) else prepare(record)
     bounds = box(kind, trial)

@@ -44,13 +44,7 @@ class ModelFit:
 
     @property
     def ranges(self) -> tuple[Estimate, ...]:
-        """What a proof should cover: see `nrs_design.identification.tissue.ranges`.
-
-        Raises
-        ------
-        DataError
-            If the records are too few for what they shall hold.
-        """
+        """What a proof should cover: see `nrs_design.identification.tissue.ranges`."""
         level = joint_level(len(self.estimates))
         single = [fit.estimates_at(level) for fit in self.fits]
         if self.coverage != "confidence":
@@ -86,17 +80,7 @@ def fit_model(
     records: Sequence[TissueRecord | Trial],
     coverage: Coverage = "confidence",
 ) -> ModelFit:
-    """Fit a law to every record, and pool the parameters.
-
-    Parameters
-    ----------
-    kind : type
-        One of `nrs_design.models.contact.LAWS`.
-    records : sequence of TissueRecord or Trial
-        At least one, all linear or all rotational.
-    coverage : {"confidence", "tolerance", "prediction"}
-        What the ranges shall hold.
-    """
+    """Fit a law to every record, and pool the parameters."""
     trials = [item if isinstance(item, Trial) else prepare(item) for item in records]
     fits = tuple(fit_record(kind, trial) for trial in trials)
     law = kind(*(estimate.value for estimate in pool(fits)))

@@ -11,22 +11,10 @@ from nrs_design.named_values import read_named_values
 
 
 def read_preparation(entries: Iterable[str], *, rotational: bool) -> Preparation:
-    """Read how records are prepared.
+    """Read how records are prepared; the settings are the fields of `Preparation`.
 
-    Parameters
-    ----------
-    entries : iterable of str
-        ``start=S``, ``end=S``, ``contact=auto|given``, ``zero=POSITION``, ``tare=FORCE``,
-        ``drift=auto|fit|none``, ``skip_cycles=N``, ``negate=true``; the fields of `Preparation`.
-    rotational : bool
-        Whether positions are angles, and forces torques.
-
-    Raises
-    ------
-    DataError
-        If a position or a force is none.
-    DesignError
-        If there is no such setting, or its value is none.
+    ``start=S``, ``end=S``, ``contact=auto|given``, ``zero=POSITION``, ``tare=FORCE``,
+    ``drift=auto|fit|none``, ``skip_cycles=N``, ``negate=true``.
     """
     readers: dict[str, Callable[[str], object]] = {
         "start": _seconds,

@@ -55,13 +55,7 @@ class Series:
 
 
 def fit_series(trial: Trial) -> Series:
-    """Fit series of one to three terms, and choose by BIC.
-
-    Parameters
-    ----------
-    trial : Trial
-        As `nrs_design.identification.tissue.prepare` makes it.
-    """
+    """Fit series of one to three terms, and choose by BIC."""
     thin = trial.thinned(-(-len(trial.force) // _COARSE))
     fits = [_fit(thin, terms) for terms in range(1, MOST_TERMS + 1)]
     best = fits[0]

@@ -33,24 +33,10 @@ _CORRELATED = 0.3
 def spread_ranges(
     coverage: Coverage, logarithms: Array, single: Sequence[Sequence[Estimate]]
 ) -> tuple[Estimate, ...]:
-    """Return ranges that hold other specimens than those measured.
+    """Return ranges that hold other specimens than those measured; one record does not tell them.
 
     The scatter between the records is that of the specimens and of the fits together, which errs
-    to the wide side. Logarithms are taken as normal.
-
-    Parameters
-    ----------
-    coverage : {"tolerance", "prediction"}
-        What the ranges hold.
-    logarithms : ndarray, shape (n, p)
-        Of the p parameters in n records.
-    single : sequence of sequence of Estimate
-        The p intervals of each record.
-
-    Raises
-    ------
-    DataError
-        If there is one record only.
+    to the wide side. Logarithms, shape (n, p), are taken as normal.
     """
     n, p = logarithms.shape
     check_spread(coverage, n)
@@ -67,13 +53,7 @@ def spread_ranges(
 
 
 def check_spread(coverage: Coverage, count: int) -> None:
-    """Check that so many records tell how specimens differ.
-
-    Raises
-    ------
-    DataError
-        If there is one only.
-    """
+    """Refuse one record, which does not tell how specimens differ."""
     if count < _FEWEST:
         raise DataError(
             f"a range for {coverage} needs several records, and there is one: it says nothing of "
@@ -90,15 +70,7 @@ def hull(pooled: Estimate, single: Sequence[Estimate]) -> Estimate:
 
 
 def box_remark(names: Sequence[str], covariances: Sequence[Array]) -> str:
-    """Say what a box of ranges holds where parameters are correlated; empty for one parameter.
-
-    Parameters
-    ----------
-    names : sequence of str
-        Of the p parameters.
-    covariances : sequence of ndarray, shape (p, p)
-        Of their logarithms in each record.
-    """
+    """Say what a box of ranges holds where parameters are correlated; empty for one parameter."""
     if len(names) < 2:
         return ""
     together = (

@@ -31,19 +31,7 @@ _BIC = 10.0
 def doubt_residuals(
     trial: Trial, residuals: Array, sensitivities: Array, count: int
 ) -> Iterator[str]:
-    """Yield in words what the residuals say against a fit.
-
-    Parameters
-    ----------
-    trial : Trial
-        With n used samples.
-    residuals : ndarray, shape (n,)
-        Measured less fitted force.
-    sensitivities : ndarray, shape (n, p + m)
-        Derivatives of the force by parameters and offsets.
-    count : int
-        p, number of parameters.
-    """
+    """Yield in words what the residuals say against a fit."""
     yield from doubt_signs(trial, residuals, sensitivities[:, count:])
     yield from _size(trial, residuals)
     yield from _structure(trial, residuals)
@@ -61,18 +49,8 @@ def explained(trial: Trial, residuals: Array) -> float:
 def structure(values: Array, residuals: Array) -> tuple[float, float]:
     """Tell how residuals follow a quantity, by their means in groups of equal size.
 
-    Parameters
-    ----------
-    values : ndarray, shape (n,)
-        The quantity.
-    residuals : ndarray, shape (n,)
-        In N (N m).
-
-    Returns
-    -------
-    tuple of float
-        Root mean square of what they follow, in N (N m), and the p-value of the F-test of one-way
-        analysis of variance.
+    Return the root mean square of what they follow, in N (N m), and the p-value of the F-test of
+    one-way analysis of variance.
     """
     order = np.argsort(values, kind="stable")
     groups = np.array_split(residuals[order], _BINS)
@@ -92,13 +70,6 @@ def doubt_signs(trial: Trial, residuals: Array, offsets: Array) -> Iterator[str]
 
     A tissue that relaxes while it is held has its least force at its largest deflection, too; but
     work was done on it.
-
-    Parameters
-    ----------
-    trial, residuals
-        As for `doubt_residuals`.
-    offsets : ndarray, shape (n, m)
-        Derivatives of the force by m offsets.
     """
     if explained(trial, residuals) >= LEAST_R2 or _takes_work(trial):
         return

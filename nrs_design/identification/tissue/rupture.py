@@ -44,15 +44,7 @@ class Rupture:
 
 
 def find_rupture(motion: Motion, force: Array) -> Rupture | None:
-    """Find the first rupture, None if there is none.
-
-    Parameters
-    ----------
-    motion : Motion
-        Position; n samples.
-    force : ndarray, shape (n,)
-        Of either sign.
-    """
+    """Find the first rupture, None if there is none."""
     n = len(force)
     window = max(round(_WINDOW * n), _FEWEST)
     if n < 4 * window:

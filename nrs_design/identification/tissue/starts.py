@@ -36,17 +36,7 @@ _SHORTEST, _LONGEST = 1e-4, 1e3
 def scan(
     kind: type[AbstractContactLaw], trial: Trial, offsets: Array
 ) -> Iterator[AbstractContactLaw]:
-    """Yield candidates for the start of a search.
-
-    Parameters
-    ----------
-    kind : type
-        One of `nrs_design.models.contact.LAWS`.
-    trial : Trial
-        n used samples.
-    offsets : ndarray, shape (n, m)
-        What each offset adds to the force.
-    """
+    """Yield candidates for the start of a search."""
     basis, used = np.linalg.qr(offsets)[0], trial.used
 
     def linear(*regressors: Array) -> tuple[float, ...]:

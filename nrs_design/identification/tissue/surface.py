@@ -20,14 +20,7 @@ def surface(
 ) -> tuple[Array, Flags]:
     """Return the deflection of the tissue, touched or not, and the samples in contact.
 
-    Parameters
-    ----------
-    time, position : ndarray, shape (n,)
-        In s, and in m (rad) from the position of contact.
-    touches : sequence of Touch
-        In their order.
-    least : float
-        Deflection in m (rad) below which a tissue counts as come back.
+    Positions are in m (rad) from the contact; below the least deflection it counts as come back.
     """
     deflection, touching = np.zeros(len(time)), np.zeros(len(time), bool)
     # The first touch meets a tissue at rest: so deep it is before noise lets see its force.

@@ -35,22 +35,7 @@ class Tangent:
 def check_preload(
     kind: type[AbstractContactLaw], trials: Sequence[Trial], preload: tuple[float, float]
 ) -> None:
-    """Refuse, before a fit, a preload that the tangent of a law cannot be taken at.
-
-    Parameters
-    ----------
-    kind : type
-        Of the law.
-    trials : sequence of Trial
-        The records.
-    preload : tuple of float
-        Least and largest deflection in m (rad).
-
-    Raises
-    ------
-    DataError
-        If the law is linear, or the preloads are beyond what the records reach.
-    """
+    """Refuse, before a fit, a preload in m (rad) that the tangent of a law cannot be taken at."""
     if not issubclass(kind, AbstractNonlinearLaw):
         raise DataError(
             f"{kind.name} is linear: its stiffness is the same at every preload",
@@ -67,22 +52,10 @@ def check_preload(
 
 
 def tangent_of(model: ModelFit, preload: tuple[float, float]) -> Tangent:
-    """Return the tangent of a power law over a range of deflections.
+    """Return the tangent of a power law over a range of deflections in m (rad).
 
     Stiffness and damping of a power law grow with the deflection, so that the ends of the preloads
     give the ends of the range.
-
-    Parameters
-    ----------
-    model : ModelFit
-        Of the power law.
-    preload : tuple of float
-        Least and largest deflection in m (rad).
-
-    Raises
-    ------
-    DataError
-        If the law is linear, or the preloads are beyond what the records reach.
     """
     law, (low, high) = model.law, preload
     check_preload(type(law), [fit.trial for fit in model.fits], preload)

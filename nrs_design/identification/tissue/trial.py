@@ -161,19 +161,9 @@ class Trial:
 
 
 def prepare(record: TissueRecord, preparation: Preparation | None = None) -> Trial:
-    """Cut a record to what can be fitted.
+    """Cut a record to what can be fitted; too little left is a `DataError`.
 
-    Parameters
-    ----------
-    record : TissueRecord
-        As it was read.
-    preparation : Preparation, optional
-        By default, air, rupture and drift are looked for, and both zeros are fitted.
-
-    Raises
-    ------
-    DataError
-        If too little of the record is left.
+    By default, air, rupture and drift are looked for, and both zeros are fitted.
     """
     wanted = preparation or Preparation()
     kept, cuts = _window(record, wanted)

@@ -44,13 +44,7 @@ DOUBTFUL = 10
 
 
 def three_numbers(text: str, option: str) -> tuple[float, float, float]:
-    """Read ``1,2,3``.
-
-    Raises
-    ------
-    typer.BadParameter
-        If the text is not three finite numbers.
-    """
+    """Read ``1,2,3``."""
     try:
         numbers = [float(part) for part in text.split(",")]
     except ValueError:
@@ -64,13 +58,7 @@ def three_numbers(text: str, option: str) -> tuple[float, float, float]:
 
 
 def read_pose(text: str, robot: Robot) -> tuple[float, float, float]:
-    """Read a pose, and doubt one that is in other units than rad and m.
-
-    Raises
-    ------
-    PoseError
-        If an angle is beyond a right angle, or the depth ten times that of the workspace.
-    """
+    """Read a pose, and doubt one that is in other units than rad and m."""
     phi, psi, d = three_numbers(text, "--pose")
     for name, angle in (("phi", phi), ("psi", psi)):
         if abs(angle) > math.pi / 2:
@@ -88,15 +76,7 @@ def read_pose(text: str, robot: Robot) -> tuple[float, float, float]:
 
 
 def write_figures(folder: Path, figures: Mapping[str, Figure]) -> list[str]:
-    """Write every figure as SVG and PNG; return the files.
-
-    Parameters
-    ----------
-    folder : Path
-        Where they go.
-    figures : mapping
-        By the name of the file.
-    """
+    """Write every figure as SVG and PNG; return the files."""
     from nrs_design.output import PNG, SVG, Output, write_outputs
     from nrs_design.reporting.images import to_png, to_svg_file
 

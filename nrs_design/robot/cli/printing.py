@@ -20,15 +20,7 @@ Tables = Mapping[Sequence[str], Mapping[str, RowLabel]]
 
 
 def print_quantities(content: Mapping[str, Any], tables: Tables) -> None:
-    """Print numbers, rows of three and matrices, all in SI units.
-
-    Parameters
-    ----------
-    content : mapping
-        Values by name.
-    tables : mapping
-        Those of the command; names that are not in the content are left out.
-    """
+    """Print numbers, rows of three and matrices of the content, all in SI units."""
     for columns, labels in tables.items():
         rows = [
             [title, *(f"{number:.8g}" for number in numbers)]

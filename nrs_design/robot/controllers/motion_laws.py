@@ -36,13 +36,7 @@ class LoadModel:
     correction: tuple[float, float, float] | None
 
     def terms(self, angle: Array) -> LoadTerms:
-        """Compute inertia and weight at encoder angles of shape (n, 3), in rad.
-
-        Raises
-        ------
-        PoseError
-            If no pose has these joint angles.
-        """
+        """Compute inertia and weight at encoder angles of shape (n, 3), in rad."""
         pose = direct_kinematics(self.robot, angle / self.encoder_ratio)
         if self.correction is None:
             return LoadTerms(angle, *mass_and_bias(self.robot, pose, np.zeros_like(pose)))
@@ -120,21 +114,9 @@ class ComputedTorque:
     def step(
         self, state: LawState, reference: JointReference, angle: Array
     ) -> tuple[Array, LawState]:
-        """Compute the commands of one tick, for a batch of robots.
+        """Compute the commands of one tick in rpm, shape (n, 3), and what the next tick needs.
 
-        Parameters
-        ----------
-        state : LawState
-            As the last tick returned it; `LawState()` at first.
-        reference : JointReference
-            Of this tick, shapes (n, 3).
-        angle : ndarray
-            Encoders, shape (n, 3), in rad.
-
-        Returns
-        -------
-        tuple of ndarray and LawState
-            Commands in rpm, shape (n, 3), and what the next tick needs.
+        Encoder angles are in rad, shape (n, 3); the first state is `LawState()`.
         """
         error = self.encoder_ratio * reference.position - angle
         feedback = self.Kp * error + self.Kd * state.error_rate(error, self.period)
@@ -165,21 +147,9 @@ class IndependentJoint:
     def step(
         self, state: LawState, reference: JointReference, angle: Array
     ) -> tuple[Array, LawState]:
-        """Compute the commands of one tick, for a batch of robots.
+        """Compute the commands of one tick in rpm, shape (n, 3), and what the next tick needs.
 
-        Parameters
-        ----------
-        state : LawState
-            As the last tick returned it; `LawState()` at first.
-        reference : JointReference
-            Of this tick, shapes (n, 3).
-        angle : ndarray
-            Encoders, shape (n, 3), in rad.
-
-        Returns
-        -------
-        tuple of ndarray and LawState
-            Commands in rpm, shape (n, 3), and what the next tick needs.
+        Encoder angles are in rad, shape (n, 3); the first state is `LawState()`.
         """
         error = self.encoder_ratio * reference.position - angle
         rate = state.error_rate(error, self.period)

@@ -16,13 +16,7 @@ from nrs_design.spec import RobotControlSpec, RobotSpec
 
 
 def control_of(spec: RobotSpec) -> RobotControlSpec:
-    """Return what a robot spec says about its motion control.
-
-    Raises
-    ------
-    DesignError
-        If it says nothing, or gives a closed loop from which no controller follows.
-    """
+    """Return what a robot spec says about its motion control; nothing said is a `DesignError`."""
     if spec.control is None:
         raise DesignError("this robot spec has no `control`", remedy="add it, as `init robot` does")
     if spec.control.motion_loop.transfer_function is not None:
@@ -36,18 +30,7 @@ def control_of(spec: RobotSpec) -> RobotControlSpec:
 def design_load_model(spec: RobotSpec, robot: Robot) -> LoadModel:
     """Return the simplified dynamics with the correction coefficients for the robot's tilt.
 
-    Parameters
-    ----------
-    spec : RobotSpec
-        For its drive.
-    robot : Robot
-        On its base.
-
-    Returns
-    -------
-    LoadModel
-        With the mean ratios over slow motions of the depth, as thesis 4.19 takes them from
-        figure 3.12.
+    These are mean ratios over slow motions of the depth, as thesis 4.19 takes them from fig. 3.12.
     """
     first, second, third = correction_coefficients(robot, DEPTH_SINES).mean_ratio.tolist()
     return LoadModel(robot, build_drive(spec.drive).encoder_ratio, (first, second, third))

@@ -52,25 +52,7 @@ class Balance:
 
 
 def design_balance(spec: RobotSpec, robot: Robot) -> Balance:
-    """Compute counter-masses and springs.
-
-    Parameters
-    ----------
-    spec : RobotSpec
-        With a `balance`.
-    robot : Robot
-        As built from it.
-
-    Returns
-    -------
-    Balance
-        For both side legs.
-
-    Raises
-    ------
-    DesignError
-        If the spec has no `balance`.
-    """
+    """Compute the counter-masses and springs of both side legs from the `balance` of the spec."""
     wanted = spec.balance
     if wanted is None:
         raise DesignError("this robot spec has no `balance`", remedy="add it, as `init robot` does")
@@ -118,28 +100,10 @@ def _weighted(leg: Leg, balance: LegBalance) -> Leg:
 
 
 def spring_torque(robot: Robot, balance: Balance, pose: ArrayLike) -> Array:
-    """Return the joint torques that it takes to hold the springs, without any weight.
+    """Return the joint torques that it takes to hold the springs, without any weight, in N m.
 
-    A spring acts as a weight does that has its first moment on the crank, and falls upwards.
-
-    Parameters
-    ----------
-    robot : Robot
-        The robot.
-    balance : Balance
-        Its springs, upright where the base has the tilt that they are made for.
-    pose : array_like
-        (phi, psi, d), shape (..., 3), in rad and m.
-
-    Returns
-    -------
-    ndarray
-        Shape (..., 3), in N m.
-
-    Raises
-    ------
-    PoseError
-        If a leg cannot reach one of the poses.
+    A spring acts as a weight does that has its first moment on the crank, and falls upwards. It is
+    upright where the base has the tilt that it is made for.
     """
     bare = replace(robot.without_links(), platform=MASSLESS, gravity=-1.0, base_tilt=balance.tilt)
     left, right, middle = bare.legs
@@ -153,29 +117,10 @@ def _sprung(leg: Leg, spring: LegBalance) -> Leg:
 
 
 def residual_torque(robot: Robot, balance: Balance, pose: ArrayLike) -> Array:
-    """Return what the motors still have to hold in a balanced robot.
+    """Return what the motors still have to hold in a balanced robot, shape (..., 3), in N m.
 
-    Weights that the balance does not know of remain: the middle leg, the lateral and axial offset
-    of the platform, and the difference between its mass and the two payloads.
-
-    Parameters
-    ----------
-    robot : Robot
-        The robot without counter-masses, on its base.
-    balance : Balance
-        Counter-masses and springs.
-    pose : array_like
-        (phi, psi, d), shape (..., 3), in rad and m.
-
-    Returns
-    -------
-    ndarray
-        Shape (..., 3), in N m.
-
-    Raises
-    ------
-    PoseError
-        If a leg cannot reach one of the poses.
+    The robot is the one without counter-masses. Weights that the balance does not know of remain:
+    the middle leg, the offset of the platform, and its mass less the two payloads.
     """
     weights = gravity_torque(balanced_robot(robot, balance), pose)
     return weights + spring_torque(robot, balance, pose)

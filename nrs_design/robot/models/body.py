@@ -55,36 +55,14 @@ MASSLESS = Body(0.0, (0.0, 0.0, 0.0), ((0.0, 0.0, 0.0),) * 3)
 
 
 def rigid_body(mass: float, center_of_mass: ArrayLike, inertia: ArrayLike) -> Body:
-    """Return a body from its usual parameters.
-
-    Parameters
-    ----------
-    mass : float
-        In kg.
-    center_of_mass : array_like
-        In m, in the body's frame.
-    inertia : array_like
-        Tensor about the center of mass in kg m^2, 3 x 3.
-    """
+    """Return a body from mass in kg, center of mass in m, and inertia about it in kg m^2."""
     c, tensor = np.asarray(center_of_mass, dtype=float), np.asarray(inertia, dtype=float)
     central = np.trace(tensor) / 2 * np.eye(3) - tensor
     return _body(mass, mass * c, central + mass * np.outer(c, c))
 
 
 def slender_rod(mass: float, center_of_mass: ArrayLike, length: float, axis: int) -> Body:
-    """Return a thin rod along one axis (0, 1, 2) of its frame: ``m l^2/12`` across it.
-
-    Parameters
-    ----------
-    mass : float
-        In kg.
-    center_of_mass : array_like, shape (3,)
-        In m.
-    length : float
-        In m.
-    axis : int
-        Along which it lies: 0, 1 or 2.
-    """
+    """Return a thin rod along one axis (0, 1, 2) of its frame: ``m l^2/12`` across it; kg and m."""
     moments = np.full(3, mass * length**2 / 12)
     moments[axis] = 0.0
     return rigid_body(mass, center_of_mass, np.diag(moments))

@@ -55,15 +55,8 @@ class Correction:
 def correct(*torques: tuple[Array, Array]) -> Correction:
     """Return the coefficients that take simplified torques to full ones.
 
-    Parameters
-    ----------
-    *torques : tuple of ndarray
-        Full and simplified torques along each of several motions, shapes (n, 3), in N m.
-
-    Returns
-    -------
-    Correction
-        Means of the coefficients of each motion, and the errors over all of them.
+    Each pair has the full and the simplified torques of a motion, shapes (n, 3), in N m.
+    Coefficients are means of those of each motion; errors are over all of them.
     """
     mean_ratio = np.mean([(T / t).mean(axis=0) for T, t in torques], axis=0)
     least_squares = np.mean([(T * t).sum(axis=0) / (t * t).sum(axis=0) for T, t in torques], axis=0)
@@ -73,20 +66,7 @@ def correct(*torques: tuple[Array, Array]) -> Correction:
 
 
 def correction_coefficients(robot: Robot, sines: Sine | Sequence[Sine]) -> Correction:
-    """Return the coefficients over one or several trajectories.
-
-    Parameters
-    ----------
-    robot : Robot
-        On its base.
-    sines : Sine or sequence of Sine
-        Motions; of several, the means of their coefficients.
-
-    Raises
-    ------
-    PoseError
-        If a leg cannot reach a trajectory.
-    """
+    """Return the coefficients over one or several trajectories; of several, their means."""
     chosen = (sines,) if isinstance(sines, Sine) else sines
     return correct(*(_torques(robot, sine) for sine in chosen))
 
@@ -104,34 +84,14 @@ class TiltTable:
 def tilt_table(
     robot: Robot, tilts: Iterable[float], sines: Sequence[Sine] = DEPTH_SINES
 ) -> TiltTable:
-    """Return the coefficients for every tilt of the base, in rad.
-
-    Parameters
-    ----------
-    robot : Robot
-        The mechanism.
-    tilts : iterable of float
-        In rad.
-    sines : sequence of Sine
-        Motions for which the coefficients are fitted; by default three in depth alone.
-    """
+    """Return the coefficients for every tilt of the base, in rad; by default for depth alone."""
     return tilt_tables(robot, tilts, sines)[0]
 
 
 def tilt_tables(
     robot: Robot, tilts: Iterable[float], *groups: Sequence[Sine]
 ) -> tuple[TiltTable, ...]:
-    """Return a table for each of several groups of motions; those that they share count once.
-
-    Parameters
-    ----------
-    robot : Robot
-        The mechanism.
-    tilts : iterable of float
-        In rad.
-    *groups : sequence of Sine
-        Motions for which the coefficients of a table are fitted.
-    """
+    """Return a table for each group of motions, tilts in rad; shared motions are computed once."""
     chosen = np.array(list(tilts), dtype=np.float64)
     tilted = [robot.tilted(float(tilt)) for tilt in chosen]
     fits = {
@@ -202,20 +162,7 @@ class SeparateCorrection:
 
 
 def correct_separately(robot: Robot, poses: ArrayLike) -> SeparateCorrection:
-    """Fit the simplified mass matrix and the simplified weight to the full ones, each on its own.
-
-    Parameters
-    ----------
-    robot : Robot
-        The robot, on its base.
-    poses : array_like
-        phi, psi in rad and d in m, shape (..., 3).
-
-    Returns
-    -------
-    SeparateCorrection
-        Over all poses alike.
-    """
+    """Fit the simplified mass matrix and weight to the full ones, each on its own."""
     simplified = simplified_dynamics(robot, poses)
     M, Ms = (A.reshape(-1, 3, 3) for A in (mass_matrix(robot, poses), simplified.Ms))
     G, Gs = (v.reshape(-1, 3) for v in (gravity_torque(robot, poses), simplified.Gs))

@@ -40,23 +40,9 @@ class JointDrive:
 
 
 def build_drive(spec: DriveSpec) -> JointDrive:
-    """Convert a drive to the joint's side.
+    """Convert a drive to the joint's side, in SI units, and rpm for commands.
 
-    Parameters
-    ----------
-    spec : DriveSpec
-        Motor, gears and encoder.
-
-    Returns
-    -------
-    JointDrive
-        In SI units, and rpm for commands.
-
-    Raises
-    ------
-    DesignError
-        If time constant, rotor inertia, gain and gradient contradict each other: the time
-        constant must be ``I_r K gradient``.
+    A time constant other than ``I_r K gradient`` contradicts the rest, and is a `DesignError`.
     """
     gearhead, capstan = float(spec.gearhead_ratio), float(spec.capstan_ratio)
     ratio, speed = gearhead * capstan, spec.gain.si * gearhead

@@ -34,27 +34,9 @@ BATCH = 4096
 def inverse_dynamics(
     robot: Robot, pose: ArrayLike, velocity: ArrayLike, acceleration: ArrayLike
 ) -> Array:
-    """Return the joint torques of a motion, ``M q'' + C q' + G``.
+    """Return the joint torques of a motion, ``M q'' + C q' + G``, shape (..., 3), in N m.
 
-    Parameters
-    ----------
-    robot : Robot
-        The robot.
-    pose : array_like
-        (phi, psi, d), shape (..., 3), in rad and m.
-    velocity, acceleration : array_like
-        Of the joints theta1, theta2, theta3, shapes that broadcast with the pose's, in rad/s and
-        rad/s^2.
-
-    Returns
-    -------
-    ndarray
-        Shape (..., 3), in N m.
-
-    Raises
-    ------
-    PoseError
-        If a leg cannot reach one of the poses.
+    Velocity and acceleration are those of the joints theta1, theta2, theta3, not of the pose.
     """
     arrays = np.broadcast_arrays(pose, velocity, acceleration)
     shape = arrays[0].shape
@@ -74,13 +56,7 @@ def gravity_torque(robot: Robot, pose: ArrayLike) -> Array:
 
 
 def mass_matrix(robot: Robot, pose: ArrayLike) -> Array:
-    """Return M, symmetric and positive definite; shape (..., 3, 3), in kg m^2.
-
-    Raises
-    ------
-    PoseError
-        If a leg cannot reach one of the poses.
-    """
+    """Return M, symmetric and positive definite; shape (..., 3, 3), in kg m^2."""
     closed, weightless = posture(robot, pose), replace(robot, gravity=0.0)
     return _per_unit(
         lambda unit: _torque(closed, joint_driven(closed, np.zeros(3), unit), weightless), closed
@@ -88,29 +64,10 @@ def mass_matrix(robot: Robot, pose: ArrayLike) -> Array:
 
 
 def coriolis_matrix(robot: Robot, pose: ArrayLike, velocity: ArrayLike) -> Array:
-    """Return C with the Coriolis and centripetal torques ``C q'``.
+    """Return C with the Coriolis and centripetal torques ``C q'``, in N m s/rad; q' of the joints.
 
     These torques are a quadratic form of the velocities. C is made of its symmetric bilinear form,
     which has the Christoffel symbols for coefficients, so that ``dM/dt - 2 C`` is skew-symmetric.
-
-    Parameters
-    ----------
-    robot : Robot
-        The robot.
-    pose : array_like
-        (phi, psi, d), shape (..., 3), in rad and m.
-    velocity : array_like
-        Of the joints, shape (..., 3), in rad/s.
-
-    Returns
-    -------
-    ndarray
-        Shape (..., 3, 3), in N m s/rad.
-
-    Raises
-    ------
-    PoseError
-        If a leg cannot reach one of the poses.
     """
     closed, weightless = posture(robot, pose), replace(robot, gravity=0.0)
     v = np.asarray(velocity, dtype=np.float64)
@@ -122,27 +79,7 @@ def coriolis_matrix(robot: Robot, pose: ArrayLike, velocity: ArrayLike) -> Array
 
 
 def mass_and_bias(robot: Robot, pose: ArrayLike, velocity: ArrayLike) -> tuple[Array, Array]:
-    """Return M and ``C q' + G`` in one pass, for simulations.
-
-    Parameters
-    ----------
-    robot : Robot
-        The robot.
-    pose : array_like
-        (phi, psi, d), shape (..., 3), in rad and m.
-    velocity : array_like
-        Of the joints, of the same shape, in rad/s.
-
-    Returns
-    -------
-    tuple of ndarray
-        M of shape (..., 3, 3) in kg m^2, and the torques of shape (..., 3) in N m.
-
-    Raises
-    ------
-    PoseError
-        If a leg cannot reach one of the poses.
-    """
+    """Return M in kg m^2 and ``C q' + G`` in N m in one pass; q' is that of the joints."""
     closed = posture(robot, pose)
     # One pass: the motion as it is, then unit accelerations without velocity and weight.
     lead = (4, *(1 for _ in np.shape(closed.d)))
@@ -154,25 +91,7 @@ def mass_and_bias(robot: Robot, pose: ArrayLike, velocity: ArrayLike) -> tuple[A
 
 
 def potential_energy(robot: Robot, pose: ArrayLike) -> Array:
-    """Return the energy in the field of gravity, zero for all mass in the pivot.
-
-    Parameters
-    ----------
-    robot : Robot
-        The robot.
-    pose : array_like
-        (phi, psi, d), shape (..., 3), in rad and m.
-
-    Returns
-    -------
-    ndarray
-        Shape (...), in J. Its gradient with respect to the joints is G.
-
-    Raises
-    ------
-    PoseError
-        If a leg cannot reach one of the poses.
-    """
+    """Return the energy in the field of gravity, zero for all mass in the pivot."""
     closed = posture(robot, pose)
     energy: Scalar = 0.0
     for leg, loads in zip(closed.legs, robot.loads, strict=True):
@@ -208,20 +127,9 @@ def _torque(closed: Posture, motion: RobotMotion, robot: Robot, weight: Scalar =
 def joint_torques(
     closed: Posture, motion: RobotMotion, robot: Robot, gravity: Vector, weight: Scalar = 1.0
 ) -> Vector:
-    """Collect what every leg takes, and hand it on to the joints.
+    """Collect what every leg takes, and hand it on to the joints, in N m.
 
-    Parameters
-    ----------
-    closed : Posture
-        The robot at its pose.
-    motion : RobotMotion
-        How it moves.
-    robot : Robot
-        For the masses of its links.
-    gravity : tuple of array
-        In the base frame, in m/s^2.
-    weight : array
-        Times gravity.
+    Gravity is in the base frame, in m/s^2; it is multiplied by the weight.
     """
     on_W: Vector = (0.0, 0.0, 0.0)
     on_d: Scalar = 0.0

@@ -4,6 +4,9 @@ Each leg is a slider-crank in a plane that is spanned by its base axis ``a`` and
 ``W`` (thesis fig. 3.3 and 3.4). In that plane angles count from ``a`` towards ``W``: beta of the
 crank, kappa of the coupler, gamma of the endoscope. The plane turns about ``a`` by alpha. Its frame
 is ``a, b, k`` with ``W = cos(gamma) a + sin(gamma) b`` and ``k = a x b``.
+
+A pose is (phi, psi, d) in rad and m, shape (..., 3); of every pose that a leg cannot reach, all
+that follows from it is a `PoseError`.
 """
 
 from __future__ import annotations
@@ -60,16 +63,7 @@ class Posture:
 def direction(pose: ArrayLike) -> Vector:
     """Return W, the direction of the endoscope (thesis 3.3).
 
-    Parameters
-    ----------
-    pose : array_like
-        (phi, psi, d), shape (..., 3), in rad and m.
-
-    Raises
-    ------
-    PoseError
-        If ``sin(phi)^2 + sin(psi)^2`` is not below 1, so that there is no such direction, or a
-        number is not finite.
+    There is none unless ``sin(phi)^2 + sin(psi)^2`` is below 1, and a `PoseError` instead.
     """
     phi, psi, _ = components(pose)
     if not np.all(np.isfinite(pose)):
@@ -82,25 +76,7 @@ def direction(pose: ArrayLike) -> Vector:
 
 
 def posture(robot: Robot, pose: ArrayLike) -> Posture:
-    """Close the loops of all legs.
-
-    Parameters
-    ----------
-    robot : Robot
-        The robot.
-    pose : array_like
-        (phi, psi, d), shape (..., 3), in rad and m.
-
-    Returns
-    -------
-    Posture
-        Arrays of the batch's shape.
-
-    Raises
-    ------
-    PoseError
-        If a leg cannot reach one of the poses; it names the leg and what is lacking.
-    """
+    """Close the loops of all legs; a `PoseError` names the leg that does not reach."""
     closed = close_loops(robot, direction(pose), components(pose)[2])
     if not all(np.all(np.abs(item.sin_elbow) > 0) for item in closed.legs):
         raise unreachable(robot, pose)
@@ -117,18 +93,9 @@ class Driven:
 
 
 def close_loops(robot: Robot, W: Vector, d: Scalar, driven: Driven | None = None) -> Posture:
-    """Close the loops of all legs, whether they reach that far or not.
+    """Close the loops of all legs, whether they reach that far or not, at direction W and depth d.
 
-    Parameters
-    ----------
-    robot : Robot
-        The robot.
-    W : tuple of array
-        Direction of the endoscope.
-    d : array
-        Depth in m.
-    driven : Driven, optional
-        Where the pose comes from joint angles.
+    `driven` is given where the pose comes from joint angles.
     """
     planes: tuple[_Plane | None, ...] = (None, None)
     if driven is not None:
@@ -200,19 +167,9 @@ def _crank(leg: Leg, x: Scalar, y: Scalar) -> tuple[Scalar, Scalar]:
 
 
 def reach(robot: Robot, pose: ArrayLike) -> Array:
-    """Return the distance of base joint and coupler's end of every leg.
+    """Return the distance in m of base joint and coupler's end, of left, right and middle leg.
 
-    Parameters
-    ----------
-    robot : Robot
-        The robot.
-    pose : array_like
-        Shape (..., 3), whether reachable or not.
-
-    Returns
-    -------
-    ndarray
-        Shape (..., 3), one distance in m for each of left, right and middle.
+    The pose need not be reachable.
     """
     W = direction(pose)
     d = components(pose)[2]
@@ -220,13 +177,10 @@ def reach(robot: Robot, pose: ArrayLike) -> Array:
 
 
 def reach_margin(robot: Robot, pose: ArrayLike) -> Array:
-    """Return by how much every leg is inside its reach.
+    """Return by how much in m every leg is inside its reach, shape (..., 3); zero is singular.
 
-    Returns
-    -------
-    ndarray
-        Shape (..., 3) in m; the smaller of the distances from stretched and from folded, negative
-        where the leg would have to be overstretched or folded beyond its limit. Zero is singular.
+    The smaller of the distances from stretched and from folded, negative where the leg would have
+    to be overstretched or folded beyond its limit.
     """
     distance = reach(robot, pose)
     longest = np.array([leg.longest for leg in robot.legs])

@@ -25,25 +25,7 @@ class JointMotion:
 
 
 def inverse_kinematics(robot: Robot, pose: ArrayLike) -> Array:
-    """Return the joint angles of a pose (thesis 3.8 to 3.10, the last one corrected).
-
-    Parameters
-    ----------
-    robot : Robot
-        The robot.
-    pose : array_like
-        (phi, psi, d), shape (..., 3), in rad and m.
-
-    Returns
-    -------
-    ndarray
-        (theta1, theta2, theta3), shape (..., 3), in rad.
-
-    Raises
-    ------
-    PoseError
-        If a leg cannot reach one of the poses.
-    """
+    """Return the joint angles of a pose in rad (thesis 3.8 to 3.10, the last one corrected)."""
     return joint_angles(posture(robot, pose))
 
 
@@ -62,27 +44,10 @@ def _plane_angle(leg: Leg, W: Vector) -> Scalar:
 
 
 def direct_kinematics(robot: Robot, joints: ArrayLike) -> Any:
-    """Return the pose of given joint angles (thesis 3.4 to 3.7).
+    """Return the pose of given joint angles in rad (thesis 3.4 to 3.7).
 
-    The coupler of the middle leg points the way it does in the middle of the workspace.
-
-    Parameters
-    ----------
-    robot : Robot
-        The robot.
-    joints : array_like
-        (theta1, theta2, theta3), shape (..., 3), in rad. Complex angles are continued
-        analytically, so that derivatives may be taken by complex steps.
-
-    Returns
-    -------
-    ndarray
-        (phi, psi, d), shape (..., 3), in rad and m.
-
-    Raises
-    ------
-    PoseError
-        If the crank of the middle leg is too far from the endoscope axis for its coupler.
+    The coupler of the middle leg points the way it does in the middle of the workspace. Complex
+    angles are continued analytically, so that derivatives may be taken by complex steps.
     """
     theta = components(joints)
     normals = [_plane_normal(leg, angle) for leg, angle in zip(robot.legs, theta[:2], strict=False)]
@@ -131,25 +96,7 @@ def _coupler_along(leg: LegPosture) -> Scalar:
 
 
 def jacobian(robot: Robot, pose: ArrayLike) -> Array:
-    """Return J_n with ``(phi', psi', d') = J_n q'`` (thesis 3.14).
-
-    Parameters
-    ----------
-    robot : Robot
-        The robot.
-    pose : array_like
-        (phi, psi, d), shape (..., 3), in rad and m.
-
-    Returns
-    -------
-    ndarray
-        Shape (..., 3, 3).
-
-    Raises
-    ------
-    PoseError
-        If a leg cannot reach one of the poses.
-    """
+    """Return J_n with ``(phi', psi', d') = J_n q'`` (thesis 3.14)."""
     closed = posture(robot, pose)
     phi, psi, _ = components(pose)
     columns = []
@@ -176,18 +123,7 @@ def orientation(pose: ArrayLike) -> Array:
 
 
 def orientation_jacobian(pose: ArrayLike) -> Array:
-    """Return J_xy with ``(theta_x', theta_y', d') = J_xy (phi', psi', d')`` (3.17, corrected).
-
-    Parameters
-    ----------
-    pose : array_like
-        (phi, psi, d), shape (..., 3), in rad and m.
-
-    Returns
-    -------
-    ndarray
-        Shape (..., 3, 3).
-    """
+    """Return J_xy with ``(theta_x', theta_y', d') = J_xy (phi', psi', d')`` (3.17, corrected)."""
     phi, psi, _ = components(pose)
     r = np.sqrt(1.0 - (np.sin(phi) / np.cos(psi)) ** 2)
     J = np.zeros((*np.shape(phi), 3, 3))
@@ -200,25 +136,7 @@ def orientation_jacobian(pose: ArrayLike) -> Array:
 def joint_motion(
     robot: Robot, pose: ArrayLike, velocity: ArrayLike, acceleration: ArrayLike
 ) -> JointMotion:
-    """Return the motion of the joints that moves the endoscope as wanted.
-
-    Parameters
-    ----------
-    robot : Robot
-        The robot.
-    pose, velocity, acceleration : array_like
-        (phi, psi, d) and its derivatives; shapes (..., 3), in rad, m and s.
-
-    Returns
-    -------
-    JointMotion
-        Exact, without any numerical differentiation.
-
-    Raises
-    ------
-    PoseError
-        If a leg cannot reach one of the poses.
-    """
+    """Return the exact motion of the joints that moves the pose (phi, psi, d) as wanted."""
     closed = posture(robot, pose)
     left, right, middle = pose_driven(closed, pose, velocity, acceleration).legs
     return JointMotion(
@@ -239,13 +157,7 @@ class SingularityMargins:
 
 
 def singularity_margins(robot: Robot, pose: ArrayLike) -> SingularityMargins:
-    """Return how far every leg is from its singularities.
-
-    Raises
-    ------
-    PoseError
-        If a leg cannot reach one of the poses.
-    """
+    """Return how far every leg is from its singularities."""
     closed = posture(robot, pose)
     left, right, middle = (np.abs(_coupler_along(leg)) for leg in closed.legs)
     coupler = stacked((left, right, middle))

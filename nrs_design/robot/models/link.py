@@ -57,24 +57,7 @@ class LinkForces:
 
 
 def link_forces(body: Body, link: Direction, origin: PlanePoint, plane: Plane) -> LinkForces:
-    """Return the forces that a link takes.
-
-    Parameters
-    ----------
-    body : Body
-        Moments about the link's origin, in its frame.
-    link : Direction
-        Where its x axis points.
-    origin : PlanePoint
-        Where its origin is and moves.
-    plane : Plane
-        How the plane turns, and gravity.
-
-    Returns
-    -------
-    LinkForces
-        In N m and N.
-    """
+    """Return the forces that a link takes, in N m and N; its moments are about its origin."""
     m = body.mass
     hx, hy, hz = body.first
     (xx, xy, xz), (_, yy, yz), (_, _, zz) = body.second
@@ -108,14 +91,7 @@ def first_moment(
 ) -> Vector:
     """Return ``integral (u, v, z) dm`` of a link in the frame of its plane, in kg m.
 
-    Parameters
-    ----------
-    body : Body
-        Mass and its distribution.
-    origin : tuple
-        Where the link's frame lies in its plane, in m.
-    direction : tuple
-        Cosine and sine of the link's angle.
+    The origin of its frame is in m, its direction the cosine and sine of its angle.
     """
     hx, hy, hz = body.first
     cos, sin = direction

@@ -36,28 +36,12 @@ class RobotMotion:
 
 
 def joint_driven(closed: Posture, velocity: ArrayLike, acceleration: ArrayLike) -> RobotMotion:
-    """Return the motion that joint velocities and accelerations make.
-
-    Parameters
-    ----------
-    closed : Posture
-        The robot at its pose.
-    velocity, acceleration : array_like
-        Of theta1, theta2, theta3; shape (..., 3), in rad/s and rad/s^2.
-    """
+    """Return the motion that rates of the joints make, in rad/s and rad/s^2."""
     return driven_by(closed, components(velocity), components(acceleration))
 
 
 def driven_by(closed: Posture, v: Vector, a: Vector) -> RobotMotion:
-    """Return the same of three components each.
-
-    Parameters
-    ----------
-    closed : Posture
-        The robot at its pose.
-    v, a : tuple of array
-        Velocities and accelerations of the joints, in rad/s and rad/s^2.
-    """
+    """Return the same of three components each."""
     left, right, middle = closed.legs
     W_1 = add(scale(left.sin_gamma * v[0], closed.u1), scale(right.sin_gamma * v[1], closed.u2))
     pushes = [
@@ -77,17 +61,7 @@ def driven_by(closed: Posture, v: Vector, a: Vector) -> RobotMotion:
 def pose_driven(
     closed: Posture, pose: ArrayLike, velocity: ArrayLike, acceleration: ArrayLike
 ) -> RobotMotion:
-    """Return the motion that the rates of (phi, psi, d) make; shapes (..., 3), rad, m and s.
-
-    Parameters
-    ----------
-    closed : Posture
-        At the pose.
-    pose : array_like, shape (..., 3)
-        phi and psi in rad, d in m.
-    velocity, acceleration : array_like, shape (..., 3)
-        Its rates.
-    """
+    """Return the motion that the rates of (phi, psi, d) make; shapes (..., 3), rad, m and s."""
     phi, psi, _ = components(pose)
     v, a = components(velocity), components(acceleration)
     x_1 = np.cos(psi) * v[1]

@@ -124,18 +124,7 @@ def _bare(leg: Leg) -> Leg:
 
 
 def build_robot(spec: RobotSpec) -> Robot:
-    """Convert a spec to SI numbers.
-
-    Parameters
-    ----------
-    spec : RobotSpec
-        A validated spec.
-
-    Returns
-    -------
-    Robot
-        All numbers in SI units, angles in rad.
-    """
+    """Convert a spec to SI numbers, angles in rad."""
     legs = spec.legs
     space, limits = spec.workspace, spec.task_limits
     return Robot(

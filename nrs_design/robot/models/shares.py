@@ -41,24 +41,7 @@ def torque_shares(
 ) -> TorqueShares:
     """Return the shares of the magnitudes of the three kinds of torque (thesis fig. 3.8).
 
-    Parameters
-    ----------
-    robot : Robot
-        The robot.
-    pose : array_like
-        (phi, psi, d), shape (..., 3), in rad and m.
-    velocity, acceleration : array_like
-        Of the joints, in rad/s and rad/s^2; by default those of the thesis for all joints.
-
-    Returns
-    -------
-    TorqueShares
-        For each pose and joint.
-
-    Raises
-    ------
-    PoseError
-        If a leg cannot reach one of the poses.
+    Velocity and acceleration are of the joints; by default those of the thesis for all joints.
     """
     gravity = gravity_torque(robot, pose)
     bias = inverse_dynamics(robot, pose, velocity, np.zeros(3))

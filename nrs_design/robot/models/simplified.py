@@ -32,25 +32,8 @@ def simplified_dynamics(
 ) -> SimplifiedDynamics:
     """Return Ms and Gs (thesis 3.35 and 3.37), which the robot can compute at every tick.
 
-    Parameters
-    ----------
-    robot : Robot
-        The robot; only its platform and the axis inertia of its middle leg count.
-    pose : array_like
-        (phi, psi, d), shape (..., 3), in rad and m.
-    printed : bool
-        Take the angular velocity as printed in 3.33, ``(theta_x', theta_y', 0)``, to reproduce
-        the thesis.
-
-    Returns
-    -------
-    SimplifiedDynamics
-        For the joints theta1, theta2, theta3.
-
-    Raises
-    ------
-    PoseError
-        If a leg cannot reach one of the poses.
+    Of the robot only platform and axis inertia of the middle leg count. `printed` takes the angular
+    velocity as printed in 3.33, ``(theta_x', theta_y', 0)``, to reproduce the thesis.
     """
     closed = posture(robot, pose)
     frame, body = _platform_frame(closed), robot.platform
@@ -72,17 +55,7 @@ def simplified_dynamics(
 
 
 def simplified_torque(robot: Robot, pose: ArrayLike, acceleration: ArrayLike) -> Array:
-    """Return ``Ms q'' + Gs`` (thesis 3.29); shapes (..., 3), in rad/s^2 and N m.
-
-    Parameters
-    ----------
-    robot : Robot
-        The mechanism.
-    pose : array_like, shape (..., 3)
-        phi and psi in rad, d in m.
-    acceleration : array_like, shape (..., 3)
-        Of the joints, in rad/s^2.
-    """
+    """Return ``Ms q'' + Gs`` (thesis 3.29); shapes (..., 3), in rad/s^2 and N m."""
     model = simplified_dynamics(robot, pose)
     column = np.asarray(acceleration, dtype=np.float64)[..., None]
     return np.asarray((model.Ms @ column)[..., 0] + model.Gs)

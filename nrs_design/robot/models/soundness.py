@@ -14,24 +14,9 @@ SINGULAR = 1e-9
 
 
 def examine_inertia(robot: Robot) -> Array:
-    """Return the eigenvalues of the mass matrix in the middle of the workspace.
+    """Return the eigenvalues of the mass matrix in the middle of the workspace, rising, in kg m^2.
 
-    Parameters
-    ----------
-    robot : Robot
-        The robot.
-
-    Returns
-    -------
-    ndarray
-        Ascending, shape (3,), in kg m^2.
-
-    Raises
-    ------
-    PoseError
-        If the middle of the workspace is out of reach.
-    DesignError
-        If there is a motion without inertia, so that no torque belongs to its acceleration.
+    A motion without inertia, to whose acceleration no torque belongs, is a `DesignError`.
     """
     eigenvalues = np.linalg.eigvalsh(mass_matrix(robot, robot.home))
     if not eigenvalues[0] > SINGULAR * eigenvalues[-1]:

@@ -25,33 +25,12 @@ _ANGLES, _DEPTHS = 31, 21
 
 
 def pose_grid(phi: ArrayLike, psi: ArrayLike, d: ArrayLike) -> Array:
-    """Return every combination of three lists as poses; shape (len, len, len, 3).
-
-    Parameters
-    ----------
-    phi, psi : array_like
-        In rad.
-    d : array_like
-        In m.
-    """
+    """Return every combination of three lists, in rad and m, as poses; shape (len, len, len, 3)."""
     return np.stack(np.meshgrid(phi, psi, d, indexing="ij"), axis=-1)
 
 
 def workspace_grid(robot: Robot, angles: int = 31, depths: int = 11) -> Array:
-    """Return a regular grid over the robot's workspace, of which not every pose is reachable.
-
-    Parameters
-    ----------
-    robot : Robot
-        The robot.
-    angles, depths : int
-        Number of values of phi and of psi, and of d.
-
-    Returns
-    -------
-    ndarray
-        Shape (angles, angles, depths, 3), in rad and m.
-    """
+    """Return a regular grid over the robot's workspace, of which not every pose is reachable."""
     space = robot.workspace
     return pose_grid(
         np.linspace(-space.phi, space.phi, angles),
@@ -61,13 +40,7 @@ def workspace_grid(robot: Robot, angles: int = 31, depths: int = 11) -> Array:
 
 
 def reachable_poses(robot: Robot, pose: ArrayLike) -> Array:
-    """Return the poses of a grid that all legs reach, as a list; shape (n, 3).
-
-    Raises
-    ------
-    PoseError
-        If there is none.
-    """
+    """Return the poses of a grid that all legs reach, shape (n, 3); none is a `PoseError`."""
     poses = np.asarray(pose, dtype=np.float64).reshape(-1, 3)
     inside = poses[is_reachable(robot, poses)]
     if not len(inside):
@@ -100,23 +73,7 @@ class WorkspaceSurvey:
 
 
 def survey_workspace(robot: Robot) -> WorkspaceSurvey:
-    """Examine the workspace of the spec on a regular grid.
-
-    Parameters
-    ----------
-    robot : Robot
-        The robot.
-
-    Returns
-    -------
-    WorkspaceSurvey
-        Over the reachable poses of the grid.
-
-    Raises
-    ------
-    PoseError
-        If not even the middle of the workspace is reachable.
-    """
+    """Examine the workspace of the spec, over the reachable poses of a regular grid."""
     posture(robot, robot.home)
     poses = workspace_grid(robot, _ANGLES, _DEPTHS).reshape(-1, 3)
     inside = is_reachable(robot, poses)
@@ -152,22 +109,10 @@ class JointPeaks:
 
 
 def joint_peaks(robot: Robot, pose: ArrayLike) -> JointPeaks:
-    """Return what the task limits ask of the joints over many poses.
+    """Return what the task limits ask of the joints over many poses, as far as these are reachable.
 
     phi, psi and d move with their limits, each with the sign that asks most of the joint. The
     accelerations include those that come from velocities alone, at the corners of the limits.
-
-    Parameters
-    ----------
-    robot : Robot
-        The robot; poses that it cannot reach are left out.
-    pose : array_like
-        Shape (..., 3), in rad and m.
-
-    Returns
-    -------
-    JointPeaks
-        Of the reachable poses.
     """
     poses = reachable_poses(robot, pose)
     limits = robot.task_limits

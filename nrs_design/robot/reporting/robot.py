@@ -73,24 +73,7 @@ _LIMITS = (
 def robot_report(
     loaded: LoadedSpec, spec: RobotSpec, robot: Robot, date: datetime.date | None = None
 ) -> Report:
-    """Say and draw everything about a robot.
-
-    Parameters
-    ----------
-    loaded : LoadedSpec
-        The spec and its text.
-    spec : RobotSpec
-        What it says.
-    robot : Robot
-        Built of it.
-    date : datetime.date, optional
-        To write on it.
-
-    Raises
-    ------
-    DesignError
-        If the robot cannot exist.
-    """
+    """Say and draw everything about a robot."""
     survey, inertia = survey_workspace(robot), examine_inertia(robot)
     reached, at = survey.obstacle is None, partial(linked, loaded)
     return Report(

@@ -55,17 +55,7 @@ def read_all(
     read: Callable[[Path, dict[str, str], Callable[[float], None]], T],
     entries: Sequence[str],
 ) -> list[T]:
-    """Read every file; large ones show how far they are.
-
-    Parameters
-    ----------
-    paths : sequence of Path
-        The files.
-    read : callable
-        Reads one of them; it takes the columns by name, and a function to tell progress to.
-    entries : sequence of str
-        ``name=column`` each, as the user gave them.
-    """
+    """Read every file, with columns named as the user said; large ones show how far they are."""
     from nrs_design.identification.tables.columns import parse_mapping
 
     mapping = parse_mapping(entries)
@@ -105,21 +95,7 @@ def deliver(
     page: Callable[[F], Report],
     merge: Callable[[LoadedSpec, F], str],
 ) -> Answer:
-    """Print and write what was found; where it is in doubt, the answer is inconclusive.
-
-    Parameters
-    ----------
-    outputs : Destinations
-        Where it goes.
-    found : Finding
-        The result.
-    facts, show : callable
-        Return what its JSON document has beside what all have, and print the same.
-    page : callable
-        Returns its page.
-    merge : callable
-        Returns the text of a spec with the result in it.
-    """
+    """Print and write what was found; where it is in doubt, the answer is inconclusive."""
 
     def show_all() -> None:
         if is_synthetic(found.sources):

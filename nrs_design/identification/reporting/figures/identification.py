@@ -41,18 +41,9 @@ def draw_fit(
     label: str,
     used: Flags | None = None,
 ) -> Figure:
-    """Draw a measured and a fitted output over time, and their difference below.
+    """Draw a measured and a fitted output over time in s, and their difference below.
 
-    Parameters
-    ----------
-    time : ndarray, shape (n,)
-        In s.
-    measured, fitted : ndarray, shape (n,)
-        Outputs.
-    label : str
-        What they are, with the unit.
-    used : ndarray of bool, shape (n,), optional
-        Samples that were fitted; the others are pale. By default all.
+    Samples that were not used for the fit are pale.
     """
     pick = _thin(len(time))
     kept = np.ones(len(time), bool)[pick] if used is None else used[pick]
@@ -75,15 +66,7 @@ def draw_fit(
 
 @styled
 def draw_loop(deflection: Array, measured: Array, fitted: Array, labels: tuple[str, str]) -> Figure:
-    """Draw force over deflection, whose area is the energy that the tissue takes.
-
-    Parameters
-    ----------
-    deflection, measured, fitted : ndarray, shape (n,)
-        Samples in the order of time.
-    labels : tuple of str
-        Of the axes, with units.
-    """
+    """Draw force over deflection, whose area is the energy that the tissue takes."""
     pick = _thin(len(deflection))
     figure, axes = new_axes(3.9)
     axes.plot(deflection[pick], measured[pick], ".", color=_MEASURED, markersize=4.0, label="data")
@@ -102,19 +85,7 @@ def draw_intervals(
     wide: Estimate,
     label: str,
 ) -> Figure:
-    """Draw one parameter: its interval in each record, pooled, and the range over all records.
-
-    Parameters
-    ----------
-    names : sequence of str
-        Of the records.
-    single : sequence of Estimate
-        One for each record.
-    pooled, wide : Estimate
-        Over all records, and widened to every record.
-    label : str
-        Name of the parameter, with the unit.
-    """
+    """Draw one parameter: its interval in each record, pooled, and the range over all records."""
     labels, height = row_labels([*names, "pooled"])
     figure, axes = new_axes(1.1 + height * len(labels))
     label_of_all = "range over all records"

@@ -109,12 +109,7 @@ def draw_torque_shares(robot: Robot, depths: Sequence[float] = (0.15, 0.2, 0.24)
 def draw_correction(depth: TiltTable, every: TiltTable) -> Figure:
     """Draw the correction coefficients against the tilt of the base (thesis fig. 3.12).
 
-    Parameters
-    ----------
-    depth : TiltTable
-        Over motions of the depth alone; its mean ratios are drawn.
-    every : TiltTable
-        Over motions of the angles too; its least squares are drawn.
+    Mean ratios over motions of the depth, and least squares over motions of the angles too.
     """
     figure, axes = new_axes(4.0)
     tilt = np.degrees(depth.tilt)
@@ -172,13 +167,7 @@ def draw_balance(gravity: Array, residual: Array) -> Figure:
 
 @styled
 def draw_inertia_errors(apart: SeparateCorrection) -> Figure:
-    """Draw the error of the corrected mass matrix with one, three and nine coefficients of its own.
-
-    Parameters
-    ----------
-    apart : SeparateCorrection
-        As `nrs_design.robot.models.correct_separately` gives it.
-    """
+    """Draw the error of the corrected mass matrix with one, three and nine coefficients."""
     figure, axes = new_axes(2.4)
     names = ("those of gravity", "by rows", "by entries")
     errors = [100 * e for e in (apart.single_error, apart.rows_error, apart.entries_error)]

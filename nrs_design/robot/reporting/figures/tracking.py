@@ -28,12 +28,7 @@ Measured = tuple[float, float, float] | None
 def draw_tracking(records: Sequence[TrackingRecord], measured: Sequence[Measured]) -> Figure:
     """Draw wanted and measured motions, and below them the root mean square errors.
 
-    Parameters
-    ----------
-    records : sequence of TrackingRecord
-        Simulated, of one or several controllers and experiments.
-    measured : sequence of tuple or None
-        Errors of phi and psi in deg and d in mm that were measured on the robot, for each record.
+    Errors measured on the robot are those of phi and psi in deg and d in mm.
     """
     moved = [name for name in MOTIONS if any(r.experiment.moved == name for r in records)]
     controllers = list(dict.fromkeys(record.controller for record in records))

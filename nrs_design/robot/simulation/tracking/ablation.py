@@ -20,26 +20,9 @@ PERIOD = 10.0
 def ablation_tracks(
     spec: RobotSpec, robot: Robot, period: float | None = None
 ) -> list[tuple[str, Track]]:
-    """Return what is changed, and the track with that change.
+    """Return what is changed, and the track with that change; ``as designed`` first by controller.
 
-    Parameters
-    ----------
-    spec : RobotSpec
-        With `control`.
-    robot : Robot
-        Built from it, on the base of the experiments.
-    period : float, optional
-        Of all sines in s; 10 s, as in thesis 4.20 to 4.22, by default.
-
-    Returns
-    -------
-    list of tuple
-        Names of changes, ``as designed`` first for each controller, and tracks.
-
-    Raises
-    ------
-    DesignError
-        If the spec lacks something, or its numbers contradict each other.
+    All sines have the period in s; by default 10 s, as in thesis 4.20 to 4.22.
     """
     period = PERIOD if period is None else period
     torque = build_track(spec, robot, "computed-torque", period)

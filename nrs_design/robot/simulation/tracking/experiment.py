@@ -49,13 +49,7 @@ class Experiment:
         )
 
     def reference(self, robot: Robot, time: Array) -> JointReference:
-        """Return the motion of the joints at times of shape (n,); shapes (n, 3).
-
-        Raises
-        ------
-        PoseError
-            If the robot cannot reach all of it.
-        """
+        """Return the motion of the joints at times of shape (n,); shapes (n, 3)."""
         return JointReference(*_joints(robot, *self.motion(time)))
 
 
@@ -64,24 +58,10 @@ def thesis_experiments(
 ) -> tuple[Experiment, Experiment, Experiment]:
     """Return the experiments on one controller, scaled to the robot's workspace.
 
-    With the workspace of the NeuRoboScope they are those of the thesis: d moves over its whole
-    range at phi = psi = 0; phi and psi move by their largest values at the smallest d, or at the
-    middle one for the balanced robot, which also moves slowly. The independent joints were tested
-    with the slow motion of d too (4.33c).
-
-    Parameters
-    ----------
-    robot : Robot
-        For its workspace.
-    controller : str
-        One of `nrs_design.robot.simulation.tracking.CONTROLLERS`.
-    period : float, optional
-        Of all sines in s, instead of the thesis's.
-
-    Returns
-    -------
-    tuple of Experiment
-        Where d, phi and psi move.
+    With the workspace of the NeuRoboScope they are those of the thesis, if no period in s is given:
+    d moves over its whole range at phi = psi = 0; phi and psi move by their largest values at the
+    smallest d, or at the middle one for the balanced robot, which also moves slowly. The
+    independent joints were tested with the slow motion of d too (4.33c).
     """
     space, balanced = robot.workspace, controller == "balanced"
     low, high = space.d

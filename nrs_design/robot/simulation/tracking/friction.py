@@ -39,27 +39,10 @@ class DryFriction:
         return DryFriction(inertia, metric, np.eye(3) * metric[:, :, None] - inertia)
 
     def slide_or_stick(self, impulse: Array, limit: Array, start: Array) -> Array:
-        """Return the velocities.
+        """Return the velocities in rad/s, shape (n, 3).
 
-        Parameters
-        ----------
-        impulse : ndarray
-            Inertia times the velocity that there would be without friction, shape (n, 3), in
-            N m s.
-        limit : ndarray
-            Largest impulse of the friction, shape (n, 3) or (n, 1), in N m s.
-        start : ndarray
-            Guess of the velocities, shape (n, 3), in rad/s.
-
-        Returns
-        -------
-        ndarray
-            Shape (n, 3), in rad/s.
-
-        Raises
-        ------
-        ArithmeticError
-            If the iteration does not converge: the matrix is not positive definite or not finite.
+        The impulse in N m s is inertia times the velocity that there would be without friction, the
+        limit the largest impulse of the friction, and the start a guess of the velocities.
         """
         v = start
         for _ in range(LIMIT):

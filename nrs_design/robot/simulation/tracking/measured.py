@@ -31,24 +31,9 @@ MEASURED = (
 def measured_rmse(
     spec: RobotSpec, base: Robot, controller: str, experiment: Experiment
 ) -> tuple[float, float, float] | None:
-    """Return what was measured on the robot in an experiment of the thesis.
+    """Return what was measured on the robot: errors (RMS) of phi and psi in deg and of d in mm.
 
-    Parameters
-    ----------
-    spec : RobotSpec
-        Which robot; all but its name must be that of the thesis.
-    base : Robot
-        Built from it, on the base of the experiment.
-    controller : str
-        One of `nrs_design.robot.simulation.tracking.CONTROLLERS`.
-    experiment : Experiment
-        What was asked for.
-
-    Returns
-    -------
-    tuple of float or None
-        Root mean square errors of phi and psi in deg and of d in mm; None for another robot,
-        another tilt of the base or another motion.
+    None for another robot, another tilt of the base or another motion than those of the thesis.
     """
     ours = robot_spec()
     same = {"name": ours.name, "title": ours.title, "base_tilt": ours.base_tilt}

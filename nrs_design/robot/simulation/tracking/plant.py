@@ -58,22 +58,9 @@ class Mechanism:
         return self.robot, self.balance
 
     def mass_and_bias(self, position: Array, velocity: Array) -> tuple[Array, Array]:
-        """Return the mass matrices and all torques that no acceleration makes.
+        """Return the mass matrices in kg m^2, and all torques in N m that no acceleration makes.
 
-        Parameters
-        ----------
-        position, velocity : ndarray
-            Of the joints, shape (n, 3), in rad and rad/s.
-
-        Returns
-        -------
-        tuple of ndarray
-            Shapes (n, 3, 3) in kg m^2 and (n, 3) in N m.
-
-        Raises
-        ------
-        PoseError
-            If no pose has these joint angles.
+        Position and velocity are those of the joints, shape (n, 3), in rad and rad/s.
         """
         pose = direct_kinematics(self.robot, position)
         mass, bias = mass_and_bias(self.robot, pose, velocity)
@@ -116,19 +103,7 @@ class Stepper:
 
     @staticmethod
     def at(drives: DriveArrays, h: float, mass: Array, bias: Array) -> Stepper:
-        """Return the stepper for mass matrices and bias of the mechanism.
-
-        Parameters
-        ----------
-        drives : DriveArrays
-            The motors of the joints.
-        h : float
-            Step in s.
-        mass : ndarray, shape (..., 3, 3)
-            Mass matrices.
-        bias : ndarray, shape (..., 3)
-            Torques that do not depend on the acceleration, N m.
-        """
+        """Return the stepper of h seconds for mass matrices and bias (N m) of the mechanism."""
         total = mass + np.eye(3) * drives.inertia[..., None]
         inertia = total + np.eye(3) * (h / 2 * drives.damping)[..., None]
         return Stepper(

@@ -42,32 +42,11 @@ def simulate(
     held_phase: float = HELD_PHASE,
     tell: Progress = silent,
 ) -> list[TrackingRecord]:
-    """Simulate every experiment of every track.
+    """Simulate every experiment of every track; records are in their order.
 
-    Experiments of the same rate run in lockstep, which does not change what they give.
-
-    Parameters
-    ----------
-    tracks : iterable of Track
-        With controllers of one sample period.
-    steps : int
-        Steps of the mechanism between two ticks.
-    held_phase : float
-        Phase of the sine in rad for which mass matrix and bias are held.
-    tell : callable, optional
-        Told what begins, for people who wait.
-
-    Returns
-    -------
-    list of TrackingRecord
-        In the order of the tracks and their experiments.
-
-    Raises
-    ------
-    PoseError
-        If an experiment asks for what the robot cannot reach.
-    DesignError
-        If a simulated motion leaves what the robot can reach, or there are too many ticks.
+    Experiments of the same rate run in lockstep, which does not change what they give. The mass
+    matrix is held for a phase of the sine in rad. A motion that leaves what the robot can reach is
+    a `DesignError`.
     """
     single = [one for track in tracks for one in track.split()]
     order = sorted(range(len(single)), key=lambda index: _clock(single[index]))

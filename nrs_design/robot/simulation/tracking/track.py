@@ -74,26 +74,7 @@ def build_track(
 ) -> Track:
     """Design one of the thesis's controllers and set up its three experiments.
 
-    Parameters
-    ----------
-    spec : RobotSpec
-        With `control`, and for the balanced robot `balance`.
-    robot : Robot
-        Built from it, on the base of the experiments.
-    controller : str
-        One of `CONTROLLERS`.
-    period : float, optional
-        Of all sines in s, instead of the thesis's.
-
-    Returns
-    -------
-    Track
-        Ready to be simulated.
-
-    Raises
-    ------
-    DesignError
-        If the spec lacks something, or its numbers contradict each other.
+    A period in s takes the place of those of all sines of the thesis.
     """
     mechanism, law = _mechanism_and_law(spec, robot, controller)
     drive = build_drive(spec.drive)

@@ -74,18 +74,7 @@ class AxisType(StrEnum):
     PRISMATIC = "prismatic"
 
     def unit(self, turning: str) -> str:
-        """Return the unit of a quantity of the axis.
-
-        Parameters
-        ----------
-        turning : str
-            That of an axis that turns, in any of the ways that units are written here.
-
-        Raises
-        ------
-        InternalError
-            If that is none of the known ones.
-        """
+        """Return the unit of a quantity of the axis, for that of one that turns."""
         if turning not in _every():
             raise InternalError(f"{turning!r} is no unit of an axis")
         return turning if self is AxisType.ROTARY else _every()[turning]
@@ -97,13 +86,7 @@ class AxisType(StrEnum):
         return f"{name}{opened}{self.unit(said)}{closed}{more}" if opened else text
 
     def turning(self, text: str) -> str:
-        """Return what a name of a state of this axis is on one that turns.
-
-        Parameters
-        ----------
-        text : str
-            With its unit in brackets, such as ``delta [m]``.
-        """
+        """Return what a name with its unit, such as ``delta [m]``, is on an axis that turns."""
         name, opened, rest = text.partition(" [")
         if self is AxisType.ROTARY or not opened:
             return text
@@ -127,13 +110,7 @@ def _every() -> Mapping[str, str]:
 
 
 def axis_with(states: Iterable[str]) -> AxisType:
-    """Return the axis whose states have these names: one that slides, if one of them is in m.
-
-    Parameters
-    ----------
-    states : iterable of str
-        Names with units.
-    """
+    """Return the axis whose states have these names: one that slides, if one of them is in m."""
     units = {text.partition(" [")[2] for text in states}
     return AxisType.PRISMATIC if units & {"m]", "m/s]"} else AxisType.ROTARY
 
@@ -160,23 +137,14 @@ def labelled(text: str) -> str:
 def take(axis: object) -> Token[AxisType]:
     """Take an axis for the `current` one until `about`, within which this is called, ends.
 
-    Parameters
-    ----------
-    axis : object
-        What a spec says, or an `AxisType`; what is none is taken for one that turns.
+    What is no axis is taken for one that turns.
     """
     return _CURRENT.set(AxisType(str(axis)) if axis in [*AxisType] else AxisType.ROTARY)
 
 
 @contextmanager
 def about(axis: object) -> Iterator[None]:
-    """Take an axis for the `current` one; what is none is taken for one that turns.
-
-    Parameters
-    ----------
-    axis : object
-        What a spec says, or an `AxisType`.
-    """
+    """Take an axis for the `current` one; what is none is taken for one that turns."""
     token = take(axis)
     try:
         yield

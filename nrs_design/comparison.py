@@ -109,23 +109,9 @@ class Comparison:
 
 
 def compare(before: Path, after: Path, progress: Progress = silent) -> Comparison:
-    """Compare two specs, two certificates, or one of each.
+    """Compare two specs, two certificates (files that end in .json), or one of each.
 
     Specs are designed and certified afresh; certificates are re-checked without their specs.
-
-    Parameters
-    ----------
-    before, after : Path
-        A file that ends in .json is a certificate, any other a spec.
-    progress : callable
-        Told the name of each step.
-
-    Raises
-    ------
-    SpecError, DesignError
-        If a spec cannot be read or designed.
-    CertificateError
-        If a file is not a certificate at all.
     """
     # Both are read before the first one is designed.
     given = [

@@ -20,21 +20,10 @@ class Fault:
 
 
 class NrsDesignError(Exception):
-    """Base of every error that a user can cause and mend.
+    """Base of every error that a user can cause and mend; line and column count from 1.
 
-    Parameters
-    ----------
-    message : str
-        What is wrong, and what was expected.
-    path : Path, optional
-        File that holds the fault.
-    line, column : int, optional
-        Position in that file, counted from 1.
-    remedy : str, optional
-        What to do about it.
-    at : tuple of str or int
-        What is to blame in a spec, such as ``("controllers", "insertion")``; where the file is
-        known, line and column are found by it.
+    `at` is what is to blame in a spec, such as ``("controllers", "insertion")``; where the file is
+    known, line and column are found by it.
     """
 
     rule = "NRS000"
@@ -141,20 +130,9 @@ class DataError(NrsDesignError):
 
 
 class PoseError(NrsDesignError):
-    """A pose that the robot cannot take.
+    """A pose (phi, psi, d), in rad and m, that the robot cannot take.
 
-    Parameters
-    ----------
-    message : str
-        What is wrong.
-    leg : str, optional
-        The leg that cannot reach the pose.
-    excess : float, optional
-        By how much it is overstretched or folded too far, in m.
-    pose : tuple of float, optional
-        (phi, psi, d) in rad and m.
-    remedy : str, optional
-        What to do about it.
+    The leg that cannot reach it is overstretched, or folded too far, by the excess in m.
     """
 
     rule = "NRS007"

@@ -33,10 +33,7 @@ def is_device_name(name: str) -> bool:
 def open_regular(path: Path) -> BinaryIO:
     """Open a regular file to read it; never wait for a pipe, nor read from a device.
 
-    Raises
-    ------
-    OSError
-        If the file cannot be opened, or is not a regular one.
+    Any other is an `OSError`.
     """
     handle = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
     if not stat.S_ISREG(os.fstat(handle).st_mode):
@@ -48,10 +45,7 @@ def open_regular(path: Path) -> BinaryIO:
 def read_json_text(content: bytes) -> str:
     """Decode the text of a JSON file, and refuse what would take far more memory than its length.
 
-    Raises
-    ------
-    ValueError
-        If it is not UTF-8, or may hold more than a million values.
+    More than a million values, or no UTF-8, are a `ValueError`.
     """
     if sum(map(content.count, (b",", b"[", b"{"))) > MAX_JSON_VALUES:
         raise ValueError(f"it holds more than {MAX_JSON_VALUES} values")
@@ -59,13 +53,7 @@ def read_json_text(content: bytes) -> str:
 
 
 def unique_keys(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    """Make an object of JSON of its pairs; refuse one that another of its name would hide.
-
-    Raises
-    ------
-    ValueError
-        If a key occurs twice.
-    """
+    """Make an object of JSON of its pairs; refuse one that another of its name would hide."""
     found = dict(pairs)
     if len(found) < len(pairs):
         raise ValueError("a key occurs twice")

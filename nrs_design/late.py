@@ -12,20 +12,7 @@ from typing import Any
 
 
 def late_names(package: str, homes: Mapping[str, str]) -> Callable[[str], Any]:
-    """Return the ``__getattr__`` of a package whose names stand in its modules.
-
-    Parameters
-    ----------
-    package : str
-        Its name.
-    homes : mapping
-        The module of every name.
-
-    Returns
-    -------
-    callable
-        Imports a name when it is asked for; an AttributeError says that there is none.
-    """
+    """Return the ``__getattr__`` of a package whose names stand in its modules, the `homes`."""
 
     def find(name: str) -> Any:
         if name not in homes:
@@ -36,15 +23,7 @@ def late_names(package: str, homes: Mapping[str, str]) -> Callable[[str], Any]:
 
 
 def late_function(module: str, name: str) -> Callable[..., Any]:
-    """Return a function that is imported from its module when it is first called.
-
-    Parameters
-    ----------
-    module : str
-        Its full name.
-    name : str
-        Of the function.
-    """
+    """Return a function that is imported from its module when it is first called."""
 
     def call(*args: Any, **options: Any) -> Any:
         return getattr(import_module(module), name)(*args, **options)

@@ -11,22 +11,7 @@ from nrs_design.errors import DesignError
 def read_named_values(
     entries: Iterable[str], readers: Mapping[str, Callable[[str], Any]], of: str
 ) -> dict[str, Any]:
-    """Read settings by name.
-
-    Parameters
-    ----------
-    entries : iterable of str
-        Such as ``radius=1e5``.
-    readers : mapping of str to callable
-        For each name, what makes its value of a text, or raises ValueError.
-    of : str
-        What is set, in words.
-
-    Raises
-    ------
-    DesignError
-        If there is no such setting, it is given twice, or its value is none.
-    """
+    """Read settings by name, such as ``radius=1e5``; readers raise a ValueError for no value."""
     read: dict[str, Any] = {}
     for entry in entries:
         name, sign, text = entry.partition("=")

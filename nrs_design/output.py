@@ -92,13 +92,7 @@ Output = tuple[Path, str | bytes, Beginning]
 
 
 def page_kind(path: Path) -> bytes | re.Pattern[bytes]:
-    """Return `PAGE` or `PDF`, as the name of a page ends.
-
-    Raises
-    ------
-    OutputError
-        If no page ends so.
-    """
+    """Return `PAGE` or `PDF`, as the name of a page ends."""
     kind = PAGES.get(path.suffix.lower())
     if kind is None:
         raise OutputError(
@@ -110,13 +104,7 @@ def page_kind(path: Path) -> bytes | re.Pattern[bytes]:
 
 
 def check_html(path: Path) -> None:
-    """Refuse a name that is not one of a page in HTML.
-
-    Raises
-    ------
-    OutputError
-        If it is not.
-    """
+    """Refuse a name that is not one of a page in HTML."""
     if page_kind(path) is not PAGE:
         raise OutputError("is not the name of a page in HTML", path=path, remedy="end it in .html")
 
@@ -124,38 +112,14 @@ def check_html(path: Path) -> None:
 def write_output(path: Path, content: str | bytes, *, replaces: Beginning = b"") -> None:
     """Write a file through a temporary one beside it, so that no half-written file is left.
 
-    Parameters
-    ----------
-    path : Path
-        Its folder is made if it does not exist.
-    content : str or bytes
-        Text is written as UTF-8.
-    replaces : bytes, tuple of bytes or pattern
-        How a file that is there already must begin for it to be replaced, or in which ways; any
-        file by default. An empty one may always be.
-
-    Raises
-    ------
-    OutputError
-        If the place cannot be written to, is a link, a folder or a device (here or on Windows),
-        lies behind a link to a folder, or holds a file of another kind.
+    Its folder is made. A file that is there is replaced if it begins as `replaces` says, or is
+    empty. A link, a folder or a device (here or on Windows) is an `OutputError`.
     """
     write_outputs([(path, content, replaces)])
 
 
 def write_outputs(outputs: Collection[Output]) -> None:
-    """Write the files of one result: none where one of them is refused, or cannot be staged.
-
-    Parameters
-    ----------
-    outputs : collection of (Path, str or bytes, bytes or tuple of bytes or pattern)
-        Place, content and what is replaced, as `write_output` takes them.
-
-    Raises
-    ------
-    OutputError
-        As `write_output` raises it, for the first that is refused.
-    """
+    """Write the files of one result: none where one of them is refused, or cannot be staged."""
     places = set[Path]()
     for path, _, replaces in outputs:
         check_place(path, replaces)
@@ -190,13 +154,7 @@ def _write_beside(path: Path, content: str | bytes, written: list[tuple[str, Pat
 
 
 def check_place(path: Path, replaces: Beginning = b"") -> None:
-    """Refuse, before the work, a place to which its result could not be written.
-
-    Raises
-    ------
-    OutputError
-        As `write_output` raises it.
-    """
+    """Refuse, before the work, a place to which its result could not be written."""
     if is_device_name(path.name):
         raise OutputError("names a device on Windows", path=path, remedy="name another file")
     with _told(path):
@@ -216,12 +174,7 @@ def alone_in(folder: Path) -> Iterator[None]:
 
     What is read, changed and written again would lose what another one writes in between. The
     system lets go when a process ends, however it ends. Where it has no such lock (Windows, some
-    network drives), nobody waits.
-
-    Parameters
-    ----------
-    folder : Path
-        Made if it is not there.
+    network drives), nobody waits. The folder is made if it is not there.
     """
     try:
         from fcntl import LOCK_EX, flock
@@ -270,13 +223,7 @@ def _refuse_links(path: Path) -> None:
 
 
 def check_replaceable(path: Path, beginning: Beginning) -> None:
-    """Refuse a place that holds something else than a file that begins so, or in one of the ways.
-
-    Raises
-    ------
-    OutputError
-        If it does. Nothing there is fine.
-    """
+    """Refuse a place that holds something else than a file that begins in one of these ways."""
     if not path.exists():
         return
     if not path.is_file():

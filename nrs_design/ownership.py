@@ -38,20 +38,7 @@ def origin_of(spec: Path, file: Path) -> str:
 def check_owner(spec: Path, name: str, folder: Path) -> None:
     """Refuse to go on where the files of that name in a folder are those of another spec.
 
-    Parameters
-    ----------
-    spec : Path
-        Whose files would be written.
-    name : str
-        That they are named after.
-    folder : Path
-        Where they would be written.
-
-    Raises
-    ------
-    OutputError
-        If a certificate or a page of that name was made for another spec that still exists, or
-        what is there is no certificate at all.
+    That is, of one that still exists; or what is there is no certificate at all.
     """
     check_certificate(spec, folder / f"{name}.cert.json")
     check_page(spec, folder / f"{name}.html")
@@ -84,20 +71,7 @@ def check_export(spec: Path, file: Path) -> None:
 
 
 def check_name(name: str, file: Path) -> None:
-    """Refuse to overwrite what was exported for a spec of another name.
-
-    Parameters
-    ----------
-    name : str
-        Of the spec whose file would be written.
-    file : Path
-        One that is there, or not.
-
-    Raises
-    ------
-    OutputError
-        If it says, as every export does, that it is of another spec, or of a robot.
-    """
+    """Refuse to overwrite what says, as every export does, that it is of a spec of another name."""
     if file.is_file():
         with file.open("rb") as opened:
             beginning = opened.read(8192)

@@ -23,11 +23,6 @@ def printable(text: object) -> str:
     Line breaks, control characters, terminal escapes, marks that change the direction of writing,
     invisible characters and lone surrogates are written as Python does in a string (``\x1b``);
     what a build server takes for a command is broken up. All else stays as it is.
-
-    Parameters
-    ----------
-    text : object
-        A text, or what ``str`` makes one of: a path, an error.
     """
     return _COMMAND.sub(lambda found: found[0][:-1] + _hex(found[0][-1]), _shown(str(text)))
 
@@ -59,15 +54,7 @@ def _shown(text: str) -> str:
 
 
 def json_text(document: object, **options: Any) -> str:
-    """Write a JSON document so that its text is safe to show, too: ASCII, no control character.
-
-    Parameters
-    ----------
-    document : object
-        What the ``json`` module can write.
-    **options
-        Passed on to it.
-    """
+    """Write a JSON document so that its text is safe to show, too: ASCII, no control character."""
     text = json.dumps(document, indent=2, ensure_ascii=True, **options)
     return text.replace("\x7f", "\\u007f").replace("##[", "#\\u0023[")
 

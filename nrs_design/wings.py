@@ -29,20 +29,7 @@ def wing_of(command: str) -> str | None:
 
 
 def load_wing(wing: str, module: str) -> ModuleType:
-    """Return a module of a wing.
-
-    Parameters
-    ----------
-    wing : str
-        Out of `WINGS`.
-    module : str
-        Its name in there, such as ``pipeline``.
-
-    Raises
-    ------
-    NrsDesignError
-        If the wing is not installed.
-    """
+    """Return a module of a wing, such as ``pipeline``; a wing may not be installed."""
     name = f"nrs_design.{wing}.{module}"
     try:
         return import_module(name)

@@ -35,15 +35,7 @@ class Cost:
 
 
 class Fuse:
-    """A clock that ends in an error what takes many times as long as it should.
-
-    Parameters
-    ----------
-    seconds : float
-        It blows after these, counted from now.
-    clock : callable, optional
-        Tells the time in s.
-    """
+    """A clock in s that ends in an error what takes many times as long as it should."""
 
     def __init__(self, seconds: float = inf, clock: Callable[[], float] | None = None) -> None:
         self._seconds, self._clock = seconds, clock or monotonic
@@ -60,13 +52,7 @@ class Fuse:
         return max(0.0, self._seconds - (self._clock() - self._begun))
 
     def check(self) -> None:
-        """End what takes too long.
-
-        Raises
-        ------
-        ClockError
-            If the time is over.
-        """
+        """End what takes too long by a `ClockError`."""
         if not self.left:
             raise ClockError(
                 f"the clock stopped this after {self._seconds:g} s, before its budget of work was "
@@ -78,18 +64,9 @@ class Fuse:
 
 
 class Allowance:
-    """What may still be done.
+    """What may still be done: work in units, and memory of a single step in bytes.
 
-    Parameters
-    ----------
-    work : float
-        The budget.
-    memory : float
-        Largest predicted size of a single step, in bytes.
-    fuse : Fuse, optional
-        Looked at whenever something is charged; by default it never blows.
-    parent : Allowance, optional
-        What this is a part of.
+    The fuse is looked at whenever something is charged; by default it never blows.
     """
 
     def __init__(
@@ -138,13 +115,7 @@ class Allowance:
         return self.left > 0
 
     def check(self) -> None:
-        """Stop a search whose work is used up.
-
-        Raises
-        ------
-        NotAffordableError
-            If none is left.
-        """
+        """Stop a search whose work is used up by a `NotAffordableError`."""
         if not self.goes_on():
             whole = self._parent is None or not self._parent.goes_on()
             share = "" if whole else "its share of "
@@ -162,13 +133,7 @@ class Allowance:
         self.charge(cost.work)
 
     def require(self, cost: Cost, what: str) -> None:
-        """Check that a step fits before anything is built for it.
-
-        Raises
-        ------
-        NotAffordableError
-            If it needs more memory than allowed, or more work than is left.
-        """
+        """Check that a step fits before anything is built for it; else a `NotAffordableError`."""
         if cost.memory > self.memory:
             raise NotAffordableError(
                 f"not tried: {what} would take about {cost.memory / GIGABYTE:.2g} GB of memory, "

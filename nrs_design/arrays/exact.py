@@ -23,21 +23,7 @@ _TIMES = ("m", "M")
 
 
 def read_rows(matrix: object, name: str = "the matrix") -> list[list[Fraction]]:
-    """Read a matrix as exact rows.
-
-    Parameters
-    ----------
-    matrix : array-like or object with an attribute ``A``
-        A NumPy array of two dimensions, nested lists of integers, floats, fractions or texts such
-        as ``"0.1"`` and ``"1/3"``, or a state space of python-control, whose A is taken.
-    name : str
-        For messages.
-
-    Raises
-    ------
-    SpecError
-        If it is no matrix of finite numbers.
-    """
+    """Read a matrix as exact rows: NumPy, lists of numbers or texts, or a state space's A."""
     held = getattr(matrix, "A", matrix) if is_state_space(matrix) else matrix
     refuse_times(held, name)
     rows = held.tolist() if hasattr(held, "tolist") else held
@@ -58,13 +44,7 @@ def read_matrix(matrix: object, name: str = "the matrix") -> RationalMatrix:
 
 
 def exact_matrix(rows: Sequence[Sequence[Fraction]], name: str = "the matrix") -> RationalMatrix:
-    """Bring rows over their least common denominator.
-
-    Raises
-    ------
-    SpecError
-        If that has more than 2048 binary digits.
-    """
+    """Bring rows over their least common denominator, of at most 2048 binary digits."""
     common = common_denominator(entry.denominator for row in rows for entry in row)
     if common is None or common.bit_length() > MAX_DENOMINATOR_BITS:
         raise SpecError(
@@ -75,13 +55,7 @@ def exact_matrix(rows: Sequence[Sequence[Fraction]], name: str = "the matrix") -
 
 
 def read_number(value: object, name: str = "the value") -> Fraction:
-    """Read a number exactly: text as it is written, a float as the binary number that it is.
-
-    Raises
-    ------
-    SpecError
-        If it is not a finite real number.
-    """
+    """Read a number exactly: text as it is written, a float as the binary number that it is."""
     refuse_times(value, name)
     if isinstance(value, str | Decimal):
         return parse_exact(str(value))
@@ -102,13 +76,7 @@ def read_number(value: object, name: str = "the value") -> Fraction:
 
 
 def refuse_times(value: object, name: str) -> None:
-    """Refuse times and dates of NumPy, which pass for the integers that they are counted in.
-
-    Raises
-    ------
-    SpecError
-        If the value is one, or an array of them.
-    """
+    """Refuse times and dates of NumPy, which pass for the integers that they are counted in."""
     if getattr(getattr(value, "dtype", None), "kind", "") in _TIMES:
         raise SpecError(
             f"{name} holds times or dates, which are no numbers",
@@ -124,18 +92,8 @@ def is_state_space(value: object) -> bool:
 def time_of(modes: Sequence[object], time: str | None) -> Time:
     """Return the time of some modes: as said, or as the state spaces among them say.
 
-    Parameters
-    ----------
-    modes : sequence of object
-        State spaces say it by their dt: zero is continuous, None undetermined, a period or True
-        discrete.
-    time : {"continuous", "discrete"} or None
-        As said.
-
-    Raises
-    ------
-    SpecError
-        If the word is not known, or two sources disagree.
+    Their dt says it: zero is continuous, None undetermined, a period or True discrete. Two sources
+    that disagree are a `SpecError`.
     """
     if time not in (None, "continuous", "discrete"):
         raise SpecError(

@@ -44,21 +44,11 @@ class Proposal:
 
 
 def read_proposal(path: Path) -> Proposal:
-    """Read modes and P from a ``.npz``, ``.mat`` or ``.json`` file.
+    """Read `P`, the modes `A`, and perhaps `rate` and `time` from ``.npz``, ``.mat`` or ``.json``.
 
-    Parameters
-    ----------
-    path : Path
-        The variables are `P`, the modes as `A`, and optionally `rate` and `time` ("continuous" or
-        "discrete"). `A` is one matrix; a stack of them (NumPy: shape (m, n, n), MATLAB:
-        n x n x m); in JSON a list of matrices or an object that names them; in MATLAB a cell array
-        too. Or every matrix is a variable of its own: `A1`, `A2`, ... JSON numbers are read as the
-        decimals that are written; those of the other formats are binary numbers.
-
-    Raises
-    ------
-    DataError
-        If the file cannot be read, or does not hold these.
+    `A` is one matrix or a stack (NumPy: shape (m, n, n), MATLAB: n x n x m); in JSON a list or an
+    object that names them; in MATLAB a cell array too. Or every matrix is a variable of its own:
+    `A1`, `A2`, ... JSON numbers are the decimals that are written, all others binary numbers.
     """
     kind = path.suffix.lower()
     if kind not in (*_FOREIGN, ".json"):

@@ -35,18 +35,7 @@ def spec_of_matrices(
     resets: Mapping[tuple[str, str], object] | None = None,
     parameters: Mapping[str, object] | None = None,
 ) -> LoadedSpec:
-    """Return the spec of a switched system whose matrices are given; see `nrs_design.certify`.
-
-    Parameters
-    ----------
-    modes, name, time, dwell_time, longest_dwell_time, transitions, resets, parameters
-        As for `nrs_design.certify`.
-
-    Raises
-    ------
-    SpecError
-        If anything about it is wrong, in the words of a spec.
-    """
+    """Return the spec of a switched system whose matrices are given; see `nrs_design.certify`."""
     named = name_modes(modes)
     axis = time_of(list(named.values()), time)
     unit = "s" if axis == "continuous" else "steps"
@@ -70,13 +59,7 @@ def spec_of_matrices(
 
 
 def name_modes(modes: Sequence[object] | Mapping[str, object]) -> dict[str, object]:
-    """Return modes by name: m1, m2, ... where they have no names.
-
-    Raises
-    ------
-    SpecError
-        If there are none, or something else stands for a list of them.
-    """
+    """Return modes by name: m1, m2, ... where they have no names."""
     if isinstance(modes, str | Path):
         remedy = "nrs_design.load(path).certify() is for the file of a spec"
         raise SpecError("the modes are a text, not a list of matrices", remedy=remedy)

@@ -53,15 +53,7 @@ def certification_facts(result: Result, path: Path | None) -> dict[str, Any]:
 
 
 def shown_facts(certificate: Certificate, spec: Spec) -> dict[str, Any]:
-    """Return those facts of a decision that its certificate shows by itself.
-
-    Parameters
-    ----------
-    certificate : Certificate
-        One that was checked just now.
-    spec : Spec
-        The spec that it was checked against.
-    """
+    """Return those facts of a decision that its certificate shows by itself."""
     system = certificate.system
     return {
         **_stated(certificate, certificate, spec),
@@ -161,15 +153,7 @@ def margins_facts(margins: ProofMargins) -> dict[str, Any]:
 
 
 def blocked_facts(blocked: Blocked, spec: Path) -> dict[str, Any]:
-    """Return the facts of what keeps a spec from being proved.
-
-    Parameters
-    ----------
-    blocked : Blocked
-        What was found.
-    spec : Path
-        The spec, as it was named.
-    """
+    """Return the facts of what keeps a spec from being proved."""
     from nrs_design.pipeline.blocked import line_text
 
     return {

@@ -24,12 +24,7 @@ def optimum_facts(
 ) -> dict[str, Any]:
     """Return the motion loop, and every impedance controller with what it achieves, in SI.
 
-    Parameters
-    ----------
-    designed, analysis
-        The spec with its gains, and what they achieve.
-    bounds : mapping of str to CostBound or str
-        On the least cost, or why there is none, by controller; empty if not asked for.
+    By controller, a bound on the least cost, or why there is none; empty if not asked for.
     """
     return {
         "motion_loop": motion_summary(analysis),

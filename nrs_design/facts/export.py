@@ -13,19 +13,7 @@ if TYPE_CHECKING:
 def export_facts(
     name: str, result: Export, written: Sequence[Path] = (), proof: Path | None = None
 ) -> dict[str, Any]:
-    """Return the verdict and the record of an export.
-
-    Parameters
-    ----------
-    name : str
-        Of the spec.
-    result : Export
-        What may be exported.
-    written : sequence of Path
-        The files.
-    proof : Path, optional
-        Where its certificate is.
-    """
+    """Return the verdict and the record of an export."""
     record = result.record
     certified = result.may_be_written and result.certificate is not None
     return {

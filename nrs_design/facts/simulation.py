@@ -13,15 +13,7 @@ if TYPE_CHECKING:
 def run_facts(
     one: Simulated, bounds: tuple[CertifiedBound, ...], rate: CertifiedRate | None
 ) -> dict[str, Any]:
-    """Return the facts of a run, in SI.
-
-    Parameters
-    ----------
-    one : Simulated
-        The run.
-    bounds, rate
-        What is certified beside it.
-    """
+    """Return the facts of a run, in SI."""
     run = one.run
     return {
         "scenario": run.scenario,

@@ -12,17 +12,7 @@ if TYPE_CHECKING:
 def verification_facts(
     outcome: Verification, certificate: Path | None, spec: Path | None
 ) -> dict[str, Any]:
-    """Return why a certificate is rejected, or what it shows.
-
-    Parameters
-    ----------
-    outcome : Verification
-        Of the re-check.
-    certificate : Path or None
-        Its file.
-    spec : Path or None
-        That it was held against; without one, gains and assumptions are held against nothing.
-    """
+    """Return why a certificate is rejected, or what it shows."""
     from nrs_design.certificates.units import gain_units
 
     checked = outcome.certificate if outcome.fault is None else None

@@ -9,15 +9,7 @@ if TYPE_CHECKING:
 
 
 def worst_case_facts(case: WorstCase, seed: int) -> dict[str, Any]:
-    """Return what the adversary found, in SI.
-
-    Parameters
-    ----------
-    case : WorstCase
-        His runs.
-    seed : int
-        Of the search.
-    """
+    """Return what the adversary found, in SI."""
     from nrs_design.reporting.worst_case import found_in, left_out
 
     found = [

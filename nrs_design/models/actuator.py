@@ -50,13 +50,7 @@ class ActuatorRanges:
         return may_change((self.gain, self.time_constant), when)
 
     def scaled(self, scale: Fraction) -> ActuatorRanges:
-        """Return the ranges stretched about the nominal values.
-
-        Raises
-        ------
-        AssemblyError
-            If one would not stay positive.
-        """
+        """Return the ranges stretched about the nominal values; all must stay positive."""
         gain, time_constant = self.gain.scaled(scale), self.time_constant.scaled(scale)
         ranges = ActuatorRanges(gain, time_constant, self.command)
         if min(ranges.gain.low, ranges.time_constant.low) <= 0:

@@ -94,13 +94,7 @@ class Drive:
         return replace(self, ranges=known)
 
     def scaled(self, scale: Fraction) -> Drive:
-        """Return the drive with its ranges stretched about the nominal values.
-
-        Raises
-        ------
-        AssemblyError
-            If one would not stay positive.
-        """
+        """Return the drive, its ranges stretched about nominal values; all must stay positive."""
         ranges = {symbol: interval.scaled(scale) for symbol, interval in self.ranges.items()}
         if any(interval.low <= 0 for interval in ranges.values()):
             raise AssemblyError(
@@ -113,12 +107,7 @@ class Drive:
 def torque_drive(inertia: Interval, friction: Interval) -> Drive:
     """Return a joint that takes torques: ``J omega' = u - B omega - k delta - b omega``.
 
-    Parameters
-    ----------
-    inertia : Interval
-        The J in kg m^2.
-    friction : Interval
-        The B in N m s/rad.
+    The inertia J is in kg m^2, the friction B in N m s/rad.
     """
     rows = {
         ("J", "B"): ((-ONE, ZERO, ZERO), (ZERO, ZERO, ZERO)),
@@ -132,14 +121,9 @@ def torque_drive(inertia: Interval, friction: Interval) -> Drive:
 
 
 def lagging_drive(time_constant: Interval) -> Drive:
-    """Return a joint that follows a position by ``tau theta' = u - theta``.
+    """Return a joint that follows a position by ``tau theta' = u - theta``, tau in s.
 
     Its velocity jumps with the command.
-
-    Parameters
-    ----------
-    time_constant : Interval
-        The tau in s.
     """
     row: Mapping[tuple[str, ...], Rows] = {("tau",): ((-ONE, ONE),)}
     return Drive(
@@ -153,14 +137,9 @@ def lagging_drive(time_constant: Interval) -> Drive:
 
 
 def velocity_drive(loop: MotionLoop) -> Drive:
-    """Return a joint whose velocity follows the command by a transfer function.
+    """Return a joint whose velocity follows the command by a strictly proper transfer function.
 
     In the observable canonical form, whose first state is the velocity.
-
-    Parameters
-    ----------
-    loop : MotionLoop
-        Strictly proper.
     """
     A, B = _observable(loop)
     n = len(A)
@@ -170,20 +149,11 @@ def velocity_drive(loop: MotionLoop) -> Drive:
 
 
 def position_drive(loop: MotionLoop) -> Drive:
-    """Return a joint whose position follows the command by a transfer function.
+    """Return a joint whose position follows the command by a strictly proper transfer function.
 
     In the observable canonical form, whose first state is the position; the others are counted from
-    what they are at rest there, so that the second one is the velocity if that does not jump.
-
-    Parameters
-    ----------
-    loop : MotionLoop
-        Strictly proper.
-
-    Raises
-    ------
-    AssemblyError
-        If it does not come to rest where it is commanded.
+    what they are at rest there, so that the second one is the velocity if that does not jump. A
+    joint that does not come to rest where it is commanded is refused.
     """
     if loop.numerator[-1] != loop.denominator[-1] or not loop.denominator[-1]:
         raise AssemblyError(

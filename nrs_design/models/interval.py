@@ -53,15 +53,7 @@ def turn(value: Number, radius: Number) -> Number:
 
 
 def may_change(numbers: Iterable[Interval], when: str) -> str:
-    """Say when numbers may change, after what says where they are; nothing if never.
-
-    Parameters
-    ----------
-    numbers : iterable of Interval
-        Of one part.
-    when : str
-        Such as "arbitrarily fast".
-    """
+    """Say when numbers may change, after what says where they are; nothing if never."""
     ranged = [number for number in numbers if number.low != number.high]
     if not any(number.varies for number in ranged):
         return ""

@@ -48,34 +48,17 @@ class Realization:
         return [*self.C, *zero(size - self.order)]
 
     def rates(self, command: LinearForm, load: LinearForm | None = None) -> list[LinearForm]:
-        """Return xp' under the command u, as linear forms of the state that u is one of.
-
-        Parameters
-        ----------
-        command : linear form
-            The u.
-        load : linear form, optional
-            The torque of the environment; it does not act on this loop.
-        """
+        """Return xp' under the command u; the load, a torque, does not act on this loop."""
         rows = [[*row, *zero(len(command) - self.order)] for row in self.A]
         return [*rows[:-1], combine((Fraction(1), rows[-1]), (Fraction(1), command))]
 
     def integral(self, output: LinearForm) -> LinearForm:
-        """Return the integral of the command u, which follows from that of the output.
+        """Return the integral of the command u, which follows from that of the output y.
 
         Both are zero at rest in the state zero. From the last row of A, with
         ``u = xn' + a[n-1] xn + ... + a0 x1`` and ``y = c0 x1 + c1 x2 + ...``, where ``xi+1 = xi'``,
-        the integral of u is ``xn + a[n-1] xn-1 + ... + a1 x1`` plus a0 times that of x1.
-
-        Parameters
-        ----------
-        output : LinearForm
-            The integral of y, as a form of a state in which xp stands first.
-
-        Raises
-        ------
-        AssemblyError
-            If a lasting command does not move the output.
+        the integral of u is ``xn + a[n-1] xn-1 + ... + a1 x1`` plus a0 times that of x1. A loop
+        whose output does not move with a lasting command has none: an `AssemblyError`.
         """
         first, *rest = self.C
         if first == 0:
@@ -122,15 +105,7 @@ class JointMotionLoop:
         return coordinates(size)[1]
 
     def rates(self, command: LinearForm, load: LinearForm | None = None) -> list[LinearForm]:
-        """Return e' and omega' under the commanded velocity u, as linear forms of the state.
-
-        Parameters
-        ----------
-        command : linear form
-            The u.
-        load : linear form, optional
-            The torque of the environment.
-        """
+        """Return e' and omega' under the commanded velocity u and the torque of the environment."""
         error, omega = coordinates(len(command))[:2]
         slip = combine((Fraction(1), command), (Fraction(-1), omega))
         drive = self.Km / self.tau
@@ -140,24 +115,12 @@ class JointMotionLoop:
         return [slip, turn]
 
     def integral(self, output: LinearForm) -> LinearForm:
-        """Return the integral of the command u: the error plus that of omega.
-
-        Parameters
-        ----------
-        output : linear form
-            The integral of omega.
-        """
+        """Return the integral of the command u: the error plus that of omega, which is given."""
         return combine((Fraction(1), coordinates(len(output))[0]), (Fraction(1), output))
 
 
 def realize(loop: MotionLoop) -> Realization:
-    """Return the minimal realization of a strictly proper motion loop (thesis 6.13-6.14).
-
-    Raises
-    ------
-    AssemblyError
-        If the transfer function is not strictly proper.
-    """
+    """Return the minimal realization of a strictly proper motion loop (thesis 6.13-6.14)."""
     n = len(loop.denominator) - 1
     leading = loop.denominator[0]
     if n < 1 or len(loop.numerator) > n or leading == 0:
@@ -174,14 +137,6 @@ def realize(loop: MotionLoop) -> Realization:
 
 
 def close_motion_loop(actuator: Actuator, Kp: Fraction, Kd: Fraction) -> MotionLoop:
-    """Close the PD loop around the actuator (thesis 4.28, 6.1).
-
-    Parameters
-    ----------
-    actuator : Actuator
-        Gain in (rad/s)/rpm and time constant in s.
-    Kp, Kd : Fraction
-        PD gains in rpm/rad and rpm s/rad.
-    """
+    """Close the PD loop around the actuator (thesis 4.28, 6.1); Kp in rpm/rad, Kd in rpm s/rad."""
     damping, stiffness = Kd * actuator.gain, Kp * actuator.gain
     return MotionLoop((damping, stiffness), (actuator.time_constant, 1 + damping, stiffness))

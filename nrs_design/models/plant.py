@@ -30,10 +30,7 @@ class Plant:
     def motion_loop(self, Kp: Fraction, Kd: Fraction) -> MotionLoop:
         """Return G: the one that the spec states, else the one that the PD gains make.
 
-        Parameters
-        ----------
-        Kp, Kd : Fraction
-            In rpm/rad and rpm s/rad, or whatever the actuator takes instead of rpm.
+        These are in rpm/rad and rpm s/rad, or whatever the actuator takes instead of rpm.
         """
         return self.given_loop or close_motion_loop(self.actuator, Kp, Kd)
 
@@ -48,12 +45,8 @@ class Plant:
     def scaled(self, scale: Fraction, touched: Collection[str]) -> Plant:
         """Return the plant with the ranges of actuator and touched environments stretched.
 
-        Every parameter is stretched about its nominal value; a scale of 1 leaves all as it is.
-
-        Raises
-        ------
-        AssemblyError
-            If a parameter would reach a value that its law does not admit.
+        Every parameter is stretched about its nominal value; one that its law does not admit any
+        more is an `AssemblyError`.
         """
         if scale == 1:
             return self

@@ -11,17 +11,9 @@ Scalar = TypeVar("Scalar", np.float64, np.complex128)
 
 
 def run_first_order(factors: NDArray[Scalar], inputs: NDArray[Scalar]) -> NDArray[Scalar]:
-    """Run ``y[i + 1] = factors[i] y[i] + inputs[i]`` from zero, real or complex.
+    """Run ``y[i + 1] = factors[i] y[i] + inputs[i]`` from y[0] = 0, real or complex; n + 1 values.
 
-    Parameters
-    ----------
-    factors, inputs : ndarray, shape (n,)
-        Solved as a bidiagonal system, which takes as long as a filter with a constant factor.
-
-    Returns
-    -------
-    ndarray, shape (n + 1,)
-        Beginning with y[0] = 0.
+    Solved as a bidiagonal system, which takes as long as a filter with a constant factor.
     """
     from scipy.linalg.lapack import dtbtrs, ztbtrs
 

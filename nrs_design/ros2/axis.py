@@ -71,13 +71,7 @@ class Surroundings:
 
 
 def square_root_between(value: Fraction) -> Interval:
-    """Enclose a square root; a rational one is a point.
-
-    Parameters
-    ----------
-    value : Fraction
-        Not negative.
-    """
+    """Enclose a square root of what is not negative; a rational one is a point."""
     p, q = value.numerator, value.denominator
     root = Fraction(isqrt(p * q), q)
     if root * root == value:
@@ -134,15 +128,7 @@ class _Frame:
         return (speed, *behind, *steps, *smoothed, f"delta [{place}]")
 
     def rows(self, age: int, values: Mapping[str, Fraction]) -> list[LinearForm]:
-        """Return the map of one period.
-
-        Parameters
-        ----------
-        age : int
-            Of what is measured, in periods.
-        values : mapping
-            The stiffness k, the damping D and the share E.
-        """
+        """Return the map of one period, for an age in periods, and values of k, D and E."""
         T, E, oldest = self.around.period, values["E"], self.around.delays[1]
         unit = coordinates(len(self.states))
         v, delta = unit[0], unit[-1]
@@ -165,17 +151,7 @@ class _Frame:
 
 
 def close_axis(law: AdmittanceLaw, axis: Axis, around: Surroundings) -> SwitchedSystem:
-    """Assemble the modes of one axis: every age of the measurement, every end of the ranges.
-
-    Parameters
-    ----------
-    law : AdmittanceLaw
-        Of the controller.
-    axis : Axis
-        One of its axes.
-    around : Surroundings
-        With the range that this axis meets.
-    """
+    """Assemble the modes of one axis: every age of the measurement, every end of the ranges."""
     low, high = around.of(axis) or (Fraction(0), Fraction(0))
     frame = _Frame(axis, law.joint_damping, law.filter_coefficient, around)
     others = Box({"D": axis_damping(axis), "E": around.kept})

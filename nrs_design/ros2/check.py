@@ -153,24 +153,7 @@ class _Asker:
 
 
 def check_file(path: Path, question: Question, limits: Limits, progress: Progress) -> GateOutcome:
-    """Read every admittance controller of a file, and decide each of its axes.
-
-    Parameters
-    ----------
-    path : Path
-        Parameter file.
-    question : Question
-        What the robot touches, and how old its measurements are.
-    limits : Limits
-        Of the search, for each axis.
-    progress : callable
-        Told what is being decided.
-
-    Raises
-    ------
-    SpecError
-        If the file cannot be read, holds no admittance controller, or does not say its rate.
-    """
+    """Read every admittance controller of a file, and decide each of its axes."""
     nodes = read_nodes(path)
     others = (node for node in nodes if node.base_name != MANAGER)
     admittances = [node for node in others if is_admittance(node, kind_of(node, nodes))]

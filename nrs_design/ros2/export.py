@@ -68,20 +68,8 @@ def export_controllers(
 ) -> Iterator[RosExport]:
     """Yield every controller of a design, or of the axes of an arm, with its proof.
 
-    Parameters
-    ----------
-    designs : mapping of str to Designed
-        By the axis of the control frame, ``x`` to ``rz``; of specs with impedance controllers in a
-        sampled loop.
-    lag : tuple of Fraction
-        Smallest and largest time constant in s with which the robot follows its command.
-    limits : Limits
-        Of each search.
-
-    Raises
-    ------
-    DesignError
-        If `admittance_controller` cannot run one of them.
+    Designs are by axis of the control frame, ``x`` to ``rz``. The lag is the smallest and largest
+    time constant in s with which the robot follows its command.
     """
     samplings = {axis: _sampling(designed) for axis, designed in designs.items()}
     (axis, sampling), *others = samplings.items()
@@ -127,13 +115,7 @@ def export_controllers(
 
 
 def _controllers(designs: Mapping[str, Designed]) -> Iterator[tuple[str, dict[str, Controller]]]:
-    """Yield what is written together: a controller of every axis, the only one where there is one.
-
-    Raises
-    ------
-    DesignError
-        If axes with several do not have the same ones.
-    """
+    """Yield what is written together: a controller of every axis, the only one if it has one."""
     each = {
         axis: {c.name: c for c in designed.design.controllers} for axis, designed in designs.items()
     }

@@ -105,35 +105,14 @@ class AdmittanceLaw:
 
 
 def is_admittance(node: RosNode, kind: str | None) -> bool:
-    """Tell whether a node is an admittance controller, by its type or by what it is given.
-
-    Parameters
-    ----------
-    node : RosNode
-        The node.
-    kind : str or None
-        Its type, if the file says it.
-    """
+    """Tell whether a node is an admittance controller, by its type or by what it is given."""
     if kind is not None:
         return kind == TYPE
     return any(name.startswith("admittance.") for name in node.values)
 
 
 def read_law(node: RosNode, others: Collection[str] = ()) -> AdmittanceLaw:
-    """Read the law of an admittance controller.
-
-    Parameters
-    ----------
-    node : RosNode
-        Its parameters.
-    others : collection of str
-        Names of all controllers of the file.
-
-    Raises
-    ------
-    SpecError
-        With everything for which the node would refuse to start.
-    """
+    """Read the law of an admittance controller; a `SpecError` says why the node would not start."""
     values: dict[str, tuple[Fraction, ...]] = {}
     faults: list[Fault] = []
     for name, parameter in LAW.items():

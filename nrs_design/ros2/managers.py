@@ -37,29 +37,13 @@ class PassedOver:
 
 
 def managers_of(node: RosNode, nodes: Collection[RosNode]) -> list[RosNode]:
-    """Return the controller managers in the namespace of a node, or all.
-
-    Parameters
-    ----------
-    node : RosNode
-        The node.
-    nodes : collection of RosNode
-        All nodes of the file.
-    """
+    """Return the controller managers in the namespace of a node, or all."""
     managers = [n for n in nodes if n.base_name == MANAGER]
     return [n for n in managers if n.namespace == node.namespace] or managers
 
 
 def kind_of(node: RosNode, nodes: Collection[RosNode]) -> str | None:
-    """Return the type of a controller, as its manager or the node itself says.
-
-    Parameters
-    ----------
-    node : RosNode
-        The node.
-    nodes : collection of RosNode
-        All nodes of the file.
-    """
+    """Return the type of a controller, as its manager or the node itself says."""
     own = texts(node.values["type"]) if "type" in node.values else None
     listed = _types(managers_of(node, nodes)).get(node.base_name)
     return listed or (own[0].text if own else None)
@@ -68,15 +52,7 @@ def kind_of(node: RosNode, nodes: Collection[RosNode]) -> str | None:
 def find_undecided(
     nodes: Collection[RosNode], decided: Collection[RosNode]
 ) -> Iterator[PassedOver]:
-    """Yield whatever may be a controller, and is none of those that are decided.
-
-    Parameters
-    ----------
-    nodes : collection of RosNode
-        All nodes of the file.
-    decided : collection of RosNode
-        Those that are decided.
-    """
+    """Yield whatever may be a controller, and is none of those that are decided."""
     for node in nodes:
         if node not in decided and node.base_name != MANAGER and "*" not in node.base_name:
             kind = kind_of(node, nodes)

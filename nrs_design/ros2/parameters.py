@@ -56,17 +56,7 @@ class RosNode:
         return "*" in self.name and "*" not in other.name and _means(self.name, other.name)
 
     def fault(self, name: str, message: str, remedy: str, index: int | None = None) -> Fault:
-        """Return a fault at a parameter, or at one item of its list.
-
-        Parameters
-        ----------
-        name : str
-            Dotted name.
-        message, remedy : str
-            What is wrong, and what to do.
-        index : int, optional
-            Of the item.
-        """
+        """Return a fault at a parameter, or at one item of its list."""
         place = self.place(name, index)
         return Fault(f"{self.name}: {name}: {message}", place.line, place.column, remedy)
 
@@ -89,37 +79,13 @@ def _means(pattern: str, name: str) -> bool:
 
 
 def read_nodes(path: Path) -> tuple[RosNode, ...]:
-    """Read a parameter file.
-
-    Parameters
-    ----------
-    path : Path
-        YAML with nodes that hold ``ros__parameters``.
-
-    Raises
-    ------
-    SpecError
-        If it is no YAML, or holds no parameters of ROS 2.
-    """
+    """Read a parameter file: YAML with nodes that hold ``ros__parameters``."""
     _, text = read_source(path)
     return parse_nodes(text, path)
 
 
 def parse_nodes(text: str, path: Path) -> tuple[RosNode, ...]:
-    """Read the text of a parameter file.
-
-    Parameters
-    ----------
-    text : str
-        YAML with nodes that hold ``ros__parameters``.
-    path : Path
-        What messages call it.
-
-    Raises
-    ------
-    SpecError
-        If it is no YAML, or holds no parameters of ROS 2.
-    """
+    """Read the text of a parameter file; the path is what messages call it."""
     root = parse_document(text, path)
     found = tuple(_nodes(root, ()))
     if not found:
@@ -154,13 +120,7 @@ def _flat(tree: Tree, before: str) -> Iterator[tuple[str, Node, Position]]:
 
 
 def read_double(text: str) -> Fraction:
-    """Read what ROS 2 takes for a double, exactly as written.
-
-    Raises
-    ------
-    SpecError
-        If it is an integer for ROS 2, so that the node does not start, or no number.
-    """
+    """Read what ROS 2 takes for a double, exactly as written; like the node, refuse an integer."""
     value = parse_exact(text)
     if _INTEGER.fullmatch(text):
         raise SpecError(
@@ -174,26 +134,14 @@ def read_double(text: str) -> Fraction:
 
 
 def read_integer(text: str) -> Fraction:
-    """Read what ROS 2 takes for an integer.
-
-    Raises
-    ------
-    SpecError
-        If it is not one.
-    """
+    """Read what ROS 2 takes for an integer."""
     if not _INTEGER.fullmatch(text):
         raise SpecError(f"{quoted(text)} is no integer", remedy="write digits without a point")
     return parse_exact(text)
 
 
 def read_bool(text: str) -> Fraction:
-    """Read what ROS 2 takes for a truth value, as 1 or 0.
-
-    Raises
-    ------
-    SpecError
-        If it is not one.
-    """
+    """Read what ROS 2 takes for a truth value, as 1 or 0."""
     if text in _TRUE or text in _FALSE:
         return Fraction(text in _TRUE)
     raise SpecError(f"{quoted(text)} is no truth value", remedy="write true or false")

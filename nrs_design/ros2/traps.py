@@ -17,15 +17,7 @@ Trap = tuple[str, int | None, str]
 
 
 def find_traps(law: AdmittanceLaw, path: Path) -> Iterator[Caution]:
-    """Yield what is doubtful about the parameters, each at its place.
-
-    Parameters
-    ----------
-    law : AdmittanceLaw
-        As read.
-    path : Path
-        The file, as it was named.
-    """
+    """Yield what is doubtful about the parameters, each at its place."""
     for name, index, message in _traps(law):
         place = law.node.place(name, index)
         yield Caution(path, f"{law.node.name}: {name}: {message}", place.line, place.column)

@@ -140,13 +140,7 @@ def _fixed(value: Any) -> Any:
 
 
 def compare_topic(topic: str, found: Iterable[Found]) -> tuple[ReproducedValue, ...]:
-    """Return the rows of a topic with what is computed for them, in the order of `rows.yaml`.
-
-    Raises
-    ------
-    ValueError
-        If there are more results than rows that are computed, or fewer.
-    """
+    """Return the rows of a topic with what is computed for them, in the order of `rows.yaml`."""
     rows, results = printed_rows_of(topic), list(found)
     if len(results) != sum(row.is_computed for row in rows):
         raise ValueError(f"{topic}: {len(results)} results for the rows that are computed")

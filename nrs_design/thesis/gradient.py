@@ -44,15 +44,7 @@ def run(
     updates: int = UPDATES,
     start: str | None = None,
 ) -> GradientResult:
-    """Run the iteration once.
-
-    Parameters
-    ----------
-    system : SwitchedSystem
-        The pair.
-    coordinates, radius, order, updates, start
-        See `Gradient`.
-    """
+    """Run the iteration once; for what is given see `Gradient`."""
     way = Gradient(
         radius=radius, start=start, order=order, coordinates=coordinates, max_updates=updates
     )

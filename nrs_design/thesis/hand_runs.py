@@ -54,13 +54,8 @@ class HandRun:
 def move(Mt: float, Bt: float, stiffness: float | None = None) -> HandRun:
     """Simulate ``Mt vm' + Bt vm = F`` above the motion loop until the way is made.
 
-    Parameters
-    ----------
-    Mt, Bt : float
-        The admittance, kg m^2 and N m s/rad.
-    stiffness : float, optional
-        Of a hand that moves on at `thesis.VELOCITY`, N m/rad; by default the hand pushes with
-        `thesis.TORQUE`.
+    The hand pushes with `thesis.TORQUE`; with a stiffness in N m/rad, it moves on at
+    `thesis.VELOCITY`.
     """
     from scipy.linalg import expm
 
@@ -93,13 +88,7 @@ def move(Mt: float, Bt: float, stiffness: float | None = None) -> HandRun:
 
 
 def changes(values: list[float]) -> tuple[float, ...]:
-    """Return by how much each pair of `PAIRS` differs, in % of the first.
-
-    Parameters
-    ----------
-    values : list of float
-        One for each experiment.
-    """
+    """Return by how much each pair of `PAIRS` differs, in % of the first."""
     return tuple(100 * (values[after] / values[before] - 1) for before, after in PAIRS)
 
 

@@ -28,17 +28,7 @@ PROFILE = ((0, 0), (1, 8), (2, 2), (3, 8), (4, 0), (5, -8), (6, -8), (7, 0))
 
 
 def interaction(controllers: dict[str, str], scenario: str, more: str = "") -> str:
-    """Return a spec of the thesis's robot with one scenario, ``run``.
-
-    Parameters
-    ----------
-    controllers : dict
-        By name, as YAML.
-    scenario : str
-        Its entries, as YAML.
-    more : str
-        Further lines.
-    """
+    """Return a spec of the thesis's robot with one scenario, ``run``; all parts are YAML."""
     numbers = {
         "gain": thesis.ACTUATOR.gain,
         "tau": thesis.ACTUATOR.time_constant,
@@ -68,13 +58,7 @@ scenarios: {{run: {{{scenario}}}}}
 
 
 def run_scenario(controllers: dict[str, str], scenario: str, more: str = "") -> Run:
-    """Simulate it with the exact engine.
-
-    Parameters
-    ----------
-    controllers, scenario, more
-        As `interaction` takes them.
-    """
+    """Simulate it with the exact engine."""
     text = interaction(controllers, scenario, more)
     designed = run_design(
         LoadedSpec(path=Path("runs.nrs.yaml"), sha256="", text=text, spec=parse_spec(text))
@@ -85,15 +69,7 @@ def run_scenario(controllers: dict[str, str], scenario: str, more: str = "") -> 
 
 
 def admittance(Mt: str, Bt: str, environment: str = "soft") -> str:
-    """Return an impedance controller as YAML.
-
-    Parameters
-    ----------
-    Mt, Bt : str
-        In kg m^2 and N m s/rad.
-    environment : str
-        That it is designed for.
-    """
+    """Return an impedance controller as YAML; Mt in kg m^2 and Bt in N m s/rad."""
     return f"{{type: impedance, environment: {environment}, Mt: {Mt} kg*m^2, Bt: {Bt} N*m*s/rad}}"
 
 
@@ -103,33 +79,18 @@ def points(*pairs: tuple[float, float]) -> str:
 
 
 def into(tissue: float, *pairs: tuple[float, float], control: str = "") -> str:
-    """Return a scenario: a command, and soft tissue from an angle on, as YAML.
+    """Return a scenario as YAML: a command in s and deg/s, and soft tissue from an angle in deg on.
 
-    Parameters
-    ----------
-    tissue : float
-        Angle at which it begins, deg.
-    *pairs : tuple of (float, float)
-        Of the command, s and deg/s.
-    control : str
-        Who is in control when; the first controller by default.
+    `control` says who is in control when; the first controller by default.
     """
     begin = f"command: {{{points(*pairs)}}}, surfaces: [{{environment: soft, at: {tissue} deg}}]"
     return f"{begin}, control: {control}" if control else begin
 
 
 def withdrawals(speed: float) -> tuple[Run, Run]:
-    """Simulate 6.3.2.3: in at 8 deg/s until the torque is at rest, and out.
+    """Simulate 6.3.2.3: in at 8 deg/s until the torque is at rest, and out, at a speed in deg/s.
 
-    Parameters
-    ----------
-    speed : float
-        On the way out, deg/s.
-
-    Returns
-    -------
-    Run, Run
-        Without and with switching.
+    The first run is without switching.
     """
     both = {"insertion": admittance("0.01", "2.15"), "withdrawal": admittance("0.01", "1.04")}
     command = ((0, 8), (1, 8), (1, -speed), (2, -speed))
@@ -143,12 +104,7 @@ def withdrawals(speed: float) -> tuple[Run, Run]:
 def two_contacts(soft: float, stiff: float, *pairs: tuple[float, float]) -> Run:
     """Simulate 6.4.2: soft tissue on one side, the tool on the other, a controller for each.
 
-    Parameters
-    ----------
-    soft, stiff : float
-        Angles at which they begin, deg.
-    *pairs : tuple of (float, float)
-        Of the command, s and deg/s.
+    They begin at angles in deg; the command is in s and deg/s.
     """
     return run_scenario(
         {"tissue": admittance("0.01", "2.15"), "tool": admittance("0.01", "2.11", "stiff")},

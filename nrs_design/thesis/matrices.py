@@ -22,18 +22,9 @@ MOTION = realize(thesis.REALIZED_LOOP)
 
 
 def impedance_rows(stiffness: Fraction, Mt: str, Bt: str, coordinates: str) -> Rows:
-    """Return A of an impedance mode (thesis 6.28), in deflection or force coordinates.
+    """Return A of an impedance mode (thesis 6.28), with deflection or force as the last state.
 
-    Parameters
-    ----------
-    stiffness : Fraction
-        In N m/rad.
-    Mt : str
-        Decimal, kg m^2.
-    Bt : str
-        Decimal, N m s/rad.
-    coordinates : {"deflection", "force"}
-        Last state.
+    The stiffness is in N m/rad, Mt in kg m^2, Bt in N m s/rad.
     """
     environment = Elastic(stiffness)
     rows = velocity_mode(MOTION, Admittance(Fraction(Mt), Fraction(Bt)), environment)

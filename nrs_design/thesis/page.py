@@ -13,15 +13,7 @@ from nrs_design.thesis.table import (
 
 
 def render_page(table: tuple[ReproducedValue, ...], gallery: str | None = None) -> str:
-    """Return the page; the same rows give the same bytes.
-
-    Parameters
-    ----------
-    table : tuple of ReproducedValue
-        Its rows.
-    gallery : str, optional
-        Where the page of figures is, seen from this one.
-    """
+    """Return the page; the same rows give the same bytes."""
     from jinja2 import Environment, PackageLoader, StrictUndefined
 
     environment = Environment(
@@ -44,14 +36,9 @@ def render_page(table: tuple[ReproducedValue, ...], gallery: str | None = None) 
 
 
 def format_within(deviation: float | None, limit: str) -> str:
-    """Write a deviation with two digits and what it may be; none at all as nothing.
+    """Write a deviation with two digits and the limit that it is held to; none at all as nothing.
 
-    Parameters
-    ----------
-    deviation : float or None
-        Relative, or absolute where what it is from is zero.
-    limit : str
-        What it is held to.
+    It is relative, or absolute where what it is from is zero.
     """
     if deviation is None:
         return ""

@@ -60,13 +60,7 @@ CONVERTED = (
 
 
 def reproduce(progress: Progress = silent) -> tuple[ReproducedValue, ...]:
-    """Recompute every number of every topic.
-
-    Parameters
-    ----------
-    progress : callable
-        Told the name of each topic as it begins.
-    """
+    """Recompute every number of every topic."""
     table: list[ReproducedValue] = []
     for topic in TOPICS:
         progress(topic.__name__.rpartition(".")[2].replace("_", " "))

@@ -53,12 +53,6 @@ FORCE_GAIN = Fraction("0.02")
 
 
 def stiffness_limit(Mt: float, Bt: float) -> float:
-    """Return the largest stable stiffness of an elastic contact in N m/rad.
-
-    Parameters
-    ----------
-    Mt, Bt : float
-        kg m^2 and N m s/rad.
-    """
+    """Return the largest stable stiffness of an elastic contact in N m/rad."""
     # Any stiffness will do: the limit does not hang on it.
     return LoopFamily(AXIS, Elastic(SOFT), Fraction(0), AXIS.places[0]).stiffness_limit(Mt, Bt)

@@ -67,10 +67,7 @@ class Environment:
     def scaled(self, scale: Fraction) -> Environment:
         """Return the environment with its ranges stretched about the nominal values.
 
-        Raises
-        ------
-        AssemblyError
-            If a parameter would reach a value that the law does not admit.
+        A parameter that the law does not admit any more is an `AssemblyError`.
         """
         if self.parts:
             parts = tuple(part.scaled(scale) for part in self.parts)
@@ -94,13 +91,6 @@ def touch_at_once(parts: tuple[Environment, ...], *, losable: bool) -> Environme
     surface is. With a_j the depth at which part j is met, 0 for the first, the force at the depth
     delta > 0 is ``sum k_j max(0, delta - a_j) = k delta``, and k is at least the stiffness of the
     first part and at most the sum, whatever the a_j are and however the k_j move.
-
-    Parameters
-    ----------
-    parts : tuple of Environment
-        Elastic or Kelvin-Voigt; elastic where each may be lost.
-    losable : bool
-        Whether each may be lost on its own.
     """
     if heavy := [part.name for part in parts if part.law.has_mass]:
         raise InternalError(f"the mass of {heavy[0]} would be left out")

@@ -74,13 +74,7 @@ class Hand(AbstractLinearLaw):
 
     @property
     def element(self) -> Element:
-        """Refused: a run with a mass that moves along is not modelled.
-
-        Raises
-        ------
-        DesignError
-            Always.
-        """
+        """Refused: a run with a mass that moves along is not modelled."""
         raise DesignError(
             "a run in contact with a hand, which has a mass, is not modelled",
             remedy="simulate a kelvin-voigt environment with the same stiffness and damping",
@@ -95,13 +89,7 @@ class Hand(AbstractLinearLaw):
         )
 
     def react(self, velocity: LinearForm, states: Sequence[LinearForm]) -> Reaction:
-        """Refuse to leave out the acceleration.
-
-        Raises
-        ------
-        AssemblyError
-            Always.
-        """
+        """Refuse to leave out the acceleration."""
         raise AssemblyError(
             "the force of a hand, which has a mass, is modelled for impedance controllers with a "
             "virtual inertia in deflection coordinates",
@@ -111,12 +99,6 @@ class Hand(AbstractLinearLaw):
     def react_accelerated(
         self, velocity: LinearForm, acceleration: LinearForm, states: Sequence[LinearForm]
     ) -> Reaction:
-        """Return ``F = k delta + b v + m v'`` and ``delta' = v``.
-
-        Parameters
-        ----------
-        velocity, acceleration, states
-            As in `AbstractLinearLaw.react_accelerated`.
-        """
+        """Return ``F = k delta + b v + m v'`` and ``delta' = v``."""
         (k, b, m), (delta,) = self.exact, states
         return combine((k, delta), (b, velocity), (m, acceleration)), [velocity]

@@ -80,15 +80,7 @@ class HuntCrossley(AbstractNonlinearLaw):
 
     @classmethod
     def preload_text(cls, environment: str, low: str, high: str) -> str:
-        """Say that chords from any rest stay in the box of the modes.
-
-        Parameters
-        ----------
-        environment : str
-            Its name.
-        low, high : str
-            Least and largest deflection of the preload, with their units.
-        """
+        """Say that chords from any rest stay in the box of the modes."""
         return (
             f"{environment} is {cls.title} whose deflection stays between {low} and {high}. About "
             f"a rest anywhere from its surface to {high}, at which the commands hold every mode "
@@ -102,17 +94,7 @@ class HuntCrossley(AbstractNonlinearLaw):
 
     @classmethod
     def through(cls, k: float, b: float, phi: float, deflection: float) -> HuntCrossley:
-        """Return the law whose tangent at a deflection has this stiffness and damping.
-
-        Parameters
-        ----------
-        k, b : float
-            In N/m and N s/m (N m/rad, N m s/rad).
-        phi : float
-            Exponent.
-        deflection : float
-            In m (rad), above zero.
-        """
+        """Return the law whose tangent at a deflection has this stiffness and damping, in SI."""
         rho = k / (phi * deflection ** (phi - 1))
         return cls(rho, b / deflection**phi, phi)
 

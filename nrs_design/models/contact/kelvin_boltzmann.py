@@ -46,23 +46,10 @@ class KelvinBoltzmann(AbstractLinearLaw):
 
     @classmethod
     def from_eta(cls, eta1: float, eta2: float, eta3: float) -> KelvinBoltzmann:
-        """Return the elements that have these coefficients.
+        """Return the elements that have these coefficients, in N/m, N s/m and s.
 
-        ``k2 = eta2/eta3``, ``k1 = eta1 k2/(k2 - eta1)``, ``b = eta3 (k1 + k2)``.
-
-        Parameters
-        ----------
-        eta1 : float
-            In N/m.
-        eta2 : float
-            In N s/m.
-        eta3 : float
-            In s.
-
-        Raises
-        ------
-        ValueError
-            If ``eta2/eta3 <= eta1``: no positive elements have such coefficients.
+        ``k2 = eta2/eta3``, ``k1 = eta1 k2/(k2 - eta1)``, ``b = eta3 (k1 + k2)``. They are positive
+        if ``eta2/eta3 > eta1``; else a `ValueError`.
         """
         k2 = eta2 / eta3
         if not k2 > eta1 > 0:

@@ -110,15 +110,7 @@ class AbstractNonlinearLaw(AbstractContactLaw):
     @classmethod
     @abstractmethod
     def preload_text(cls, environment: str, low: str, high: str) -> str:
-        """Say what the ranges of its linear law cover of it within a preload.
-
-        Parameters
-        ----------
-        environment : str
-            Its name.
-        low, high : str
-            Least and largest deflection of the preload, with their units.
-        """
+        """Say what the ranges of its linear law cover of it within a preload."""
 
     @abstractmethod
     def slope(self, motion: Motion) -> Array:
@@ -168,15 +160,10 @@ class AbstractLinearLaw(AbstractContactLaw):
         """``Ze = F/v``: numerator and denominator in s, highest power first, of equal length."""
 
     def at_stiffness(self, value: Fraction) -> Self:
-        """Return the law with another stiffness that a sudden motion meets.
+        """Return the law with another stiffness, in N/m (N m/rad), that a sudden motion meets.
 
         Which parameters grow with it is for the law to say; by default all do, in proportion. In
         either way the characteristic polynomial of a loop is affine in the stiffness.
-
-        Parameters
-        ----------
-        value : Fraction
-            In N/m (N m/rad).
         """
         share = value / Fraction(getattr(self, self.front))
         return type(self)(*(share * parameter for parameter in self.exact))
@@ -185,28 +172,14 @@ class AbstractLinearLaw(AbstractContactLaw):
     def react(self, velocity: LinearForm, states: Sequence[LinearForm]) -> Reaction:
         """Return the force, and the rates of the states, as linear forms of the whole loop.
 
-        The exact state space of `impedance`: affine in each parameter, or in its inverse.
-
-        Parameters
-        ----------
-        velocity : LinearForm
-            At which the contact is pushed, rad/s.
-        states : sequence of LinearForm
-            Those named in `states`.
+        The exact state space of `impedance`, pushed at a velocity in rad/s: affine in each
+        parameter, or in its inverse.
         """
 
     def react_accelerated(
         self, velocity: LinearForm, acceleration: LinearForm, states: Sequence[LinearForm]
     ) -> Reaction:
-        """Return what `react` does, where the acceleration in rad/s^2 is known as well.
-
-        Parameters
-        ----------
-        velocity, states
-            As for `react`.
-        acceleration : LinearForm
-            Of the contact; only a law with a mass takes it.
-        """
+        """Return what `react` does, with the acceleration in rad/s^2, which only a mass takes."""
         return self.react(velocity, states)
 
     @property
@@ -228,12 +201,7 @@ class AbstractLinearLaw(AbstractContactLaw):
     def memory_texts(cls, environment: str, *, alone: bool) -> Iterator[str]:
         """Say what is taken for granted about an environment that remembers, or has a mass.
 
-        Parameters
-        ----------
-        environment : str
-            Its name.
-        alone : bool
-            Whether no other environment is touched.
+        `alone`: no other environment is touched.
         """
         if cls.remembers:
             kept = " and ".join(cls.states)
@@ -279,12 +247,6 @@ class AbstractLinearLaw(AbstractContactLaw):
         return {"model": self.name, **dict(zip(self.keys, self.values, strict=True))}
 
     def texts(self, unit: Callable[[str], str] = str) -> tuple[str, ...]:
-        """Return the parameters at the pivot, such as ``k = 43 N*m/rad``, without what is zero.
-
-        Parameters
-        ----------
-        unit : callable
-            Gives what is written for a unit of a rotation.
-        """
+        """Return the parameters at the pivot, such as ``k = 43 N*m/rad``, without what is zero."""
         parts = zip(self.parameters(), self.values, self.units(rotational=True), strict=True)
         return tuple(f"{name} = {float(v):.6g} {unit(said)}" for name, v, said in parts if v)

@@ -25,22 +25,7 @@ def read_lag(text: str) -> Range:
 
 
 def range_of(option: str, text: str | None, kind: QuantityKind) -> Range | None:
-    """Read one quantity, or two with ``..`` between them; None where there is no text.
-
-    Parameters
-    ----------
-    option : str
-        As messages call it.
-    text : str or None
-        Such as ``200..2000 N/m``.
-    kind : QuantityKind
-        What it measures.
-
-    Raises
-    ------
-    NrsDesignError
-        If it is no such range, or does not rise.
-    """
+    """Read one quantity, or two with ``..`` between them; None where there is no text."""
     if text is None:
         return None
     remedy = f"write {option} '{kind.example}'"

@@ -41,12 +41,7 @@ def is_stable_over(
 ) -> bool:
     """Tell whether the poles of a response are shown to be on the left in a whole box.
 
-    Parameters
-    ----------
-    at, ranges
-        As for `nrs_design.design.displayed_response.largest_over`.
-    most : int
-        Bernstein coefficients that are looked at.
+    At most so many Bernstein coefficients are looked at.
     """
     poles = [lowest_first(corner.poles) for corner in corners_in(at, ranges)]
     return _is_stable(poles, most)
@@ -118,20 +113,10 @@ def squared_over(
     corners: Sequence[Sequence[Fraction]],
     square: Callable[[Sequence[Any]], list[Any]] | None = None,
 ) -> list[list[Any]]:
-    """Return ``|P(j omega)|^2`` in omega^2, in Bernstein form in every parameter.
+    """Return ``|P(j omega)|^2`` in omega^2, in Bernstein form in every parameter, for Flint.
 
-    Parameters
-    ----------
-    corners : sequence of sequence of Fraction
-        P at the corners of the box, the last parameter turning fastest; lowest power first. It is
-        affine in each parameter.
-    square : callable, optional
-        Gives what is of second degree in what stands at a corner, if it is not ``|P(j omega)|^2``.
-
-    Returns
-    -------
-    list of list of fmpq
-        Flint's rational numbers, which take a tenth of the time of Python's.
+    P is affine in each parameter; its corners come with the last parameter turning fastest, lowest
+    power first. `square` takes the place of ``|P(j omega)|^2`` as what is of second degree in P.
     """
     count = len(corners).bit_length() - 1
     exact = ([_fmpq(c) for c in p] for p in corners)
@@ -164,15 +149,7 @@ def squared_magnitude(P: Sequence[Any]) -> list[Any]:
 def coefficients_between(
     powers: Sequence[Sequence[Any]], low: Fraction, high: Fraction
 ) -> list[Any]:
-    """Return Bernstein coefficients in omega^2 too, between two values of it.
-
-    Parameters
-    ----------
-    powers : sequence of sequence
-        Coefficients of powers of omega^2, one polynomial for each corner.
-    low, high : Fraction
-        Ends of omega^2, (rad/s)^2.
-    """
+    """Return Bernstein coefficients in omega^2 too, between two values of it, in (rad/s)^2."""
     ends = _fmpq(low), _fmpq(high)
     return [c for p in powers for c in bernstein(p, *ends)]
 

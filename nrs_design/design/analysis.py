@@ -81,22 +81,7 @@ class DesignAnalysis:
 def analyze_design(
     spec: InteractionDesignSpec, plant: Plant, design: ControllerDesign
 ) -> DesignAnalysis:
-    """Compute poles, costs and margins of a design.
-
-    Parameters
-    ----------
-    spec : InteractionDesignSpec
-        What was asked for.
-    plant : Plant
-        That it describes.
-    design : ControllerDesign
-        As `nrs_design.design.design.design_controllers` gives it.
-
-    Raises
-    ------
-    DesignError
-        If a nominal loop is unstable, so that it has no margins.
-    """
+    """Compute poles, costs and margins of a design; an unstable nominal loop is a `DesignError`."""
     task = Task(spec, plant, design.motion)
     return DesignAnalysis(
         wanted=root_locus_design(spec),
@@ -118,11 +103,6 @@ def too_stiff(
     """Yield the contacts that are too stiff for their controllers, and what would hold.
 
     It needs no margins, so a nominal loop may be unstable.
-
-    Parameters
-    ----------
-    spec, plant, design
-        As for `analyze_design`.
     """
     task = Task(spec, plant, design.motion)
     for controller in design.controllers:

@@ -32,21 +32,8 @@ _MISSED = 1e6
 def optimize_with_goals(problem: ImpedanceProblem, requirement: Requirement) -> ImpedanceOptimum:
     """Find the global minimum of the cost over the admittances that meet all goals.
 
-    Where the minimum without goals meets them, it is the answer. Goals are held against the loop
-    that is proved; the cost is that of the thesis.
-
-    Parameters
-    ----------
-    problem : ImpedanceProblem
-        Cost and bounds.
-    requirement : Requirement
-        Goals of this controller.
-
-    Raises
-    ------
-    DesignError
-        If no admittance within the bounds is stable, or none meets the goals; the message names
-        the goal and the best value within the bounds.
+    Goals are held against the loop that is proved; the cost is that of the thesis. Where none is
+    met within the bounds, the `DesignError` names the goal and the best value.
     """
     _check_computed(requirement)
     optimum = optimize_impedance(problem)
@@ -60,17 +47,7 @@ def optimize_with_goals(problem: ImpedanceProblem, requirement: Requirement) -> 
 
 
 def meets(requirement: Requirement, Mt: float, Bt: float) -> bool:
-    """Tell whether an admittance meets all goals.
-
-    Parameters
-    ----------
-    requirement : Requirement
-        The goals.
-    Mt : float
-        Virtual mass, kg m^2.
-    Bt : float
-        Virtual damping, N m s/rad.
-    """
+    """Tell whether an admittance meets all goals."""
     return bool(requirement.violation(np.array([Mt]), np.array([Bt]))[0] <= 0)
 
 
@@ -79,17 +56,7 @@ def best_rounding(
     requirement: Requirement,
     candidates: tuple[Iterable[float], Iterable[float]],
 ) -> tuple[float, float] | None:
-    """Return the cheapest pair of rounded gains that meets all goals; None if there is none.
-
-    Parameters
-    ----------
-    problem : ImpedanceProblem
-        Cost.
-    requirement : Requirement
-        Goals.
-    candidates : tuple of iterables
-        Values of Mt and of Bt.
-    """
+    """Return the cheapest pair of rounded gains that meets all goals; None if there is none."""
     pairs = [pair for pair in product(*candidates) if meets(requirement, *pair)]
     return min(pairs, key=lambda pair: float(impedance_cost(problem, *pair)), default=None)
 

@@ -47,18 +47,10 @@ class CostBound:
 def bound_cost(
     problem: ImpedanceProblem, Mt: float, Bt: float, *, goals: bool = False, most: int = MOST
 ) -> CostBound:
-    """Bound the least cost over all gains within their bounds.
+    """Bound the least cost over all gains within their bounds; the gains given are those that ship.
 
-    Parameters
-    ----------
-    problem : ImpedanceProblem
-        Cost and bounds, with no part for transparency or accuracy.
-    Mt, Bt : float
-        The gains that ship, kg m^2 and N m s/rad.
-    goals : bool
-        Whether they had goals to meet.
-    most : int
-        Boxes that are looked at.
+    The problem has no part for transparency or accuracy. `goals`: the gains had goals to meet; at
+    most so many boxes are looked at.
     """
     frequencies = [*_frequencies(problem)]
     weights = Fraction(problem.weight_displayed), Fraction(problem.weight_sensitivity)

@@ -15,20 +15,7 @@ from nrs_design.spec.controllers import contact_names
 
 
 def design_controllers(spec: InteractionDesignSpec, plant: Plant) -> ControllerDesign:
-    """Choose the motion gains by root locus, then every compliant controller on top of them.
-
-    Parameters
-    ----------
-    spec : InteractionDesignSpec
-        Requirements and bounds.
-    plant : Plant
-        As `nrs_design.spec.build_plant.build_plant` gives it.
-
-    Raises
-    ------
-    DesignError
-        If a requirement cannot be met within its bounds.
-    """
+    """Choose the motion gains by root locus, then every compliant controller on top of them."""
     motion = _motion(spec)
     task = Task(spec, plant, motion)
     controllers = []

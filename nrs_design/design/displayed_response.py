@@ -66,25 +66,10 @@ def largest_impedance(
     band: Band,
     limit: Fraction | None = None,
 ) -> LargestResponse | None:
-    """Bound the largest displayed impedance, in N m s/rad.
+    """Bound the largest displayed impedance, in N m s/rad, over a band in rad/s.
 
-    Parameters
-    ----------
-    axis : ContinuousAxis
-        From which the modes follow.
-    law : CompliantLaw
-        An admittance with its gains.
-    ranges : mapping of str to Interval
-        Where ``Km``, ``tau`` of the motor and ``Mt``, ``Bt``, ``Kt`` are, if they have ranges.
-    band : tuple of Fraction
-        Lowest and highest frequency, rad/s.
-    limit : Fraction, optional
-        What it should stay below.
-
-    Returns
-    -------
-    LargestResponse or None
-        None where the robot that nobody holds is not shown to be stable.
+    Ranges are those of ``Km``, ``tau``, ``Mt``, ``Bt``, ``Kt``, as far as they have any. None where
+    the robot that nobody holds is not shown to be stable.
     """
 
     def at(values: Mapping[str, Fraction]) -> Quotient:
@@ -108,21 +93,10 @@ def largest_tracking_error(
     *,
     in_contact: bool = False,
 ) -> LargestResponse | None:
-    """Bound the largest ``|1 - V/Vcmd|``, a share of the commanded velocity.
+    """Bound the largest ``|1 - V/Vcmd|``, a share of the commanded velocity, over a band in rad/s.
 
-    Parameters
-    ----------
-    axis, law, band, limit
-        As for `largest_impedance`.
-    ranges : mapping of str to Interval
-        As for `largest_impedance`, and ``k`` and ``b`` of what is touched.
-    in_contact : bool
-        Whether something is touched; in free motion the law has no part in it.
-
-    Returns
-    -------
-    LargestResponse or None
-        None where the loop is not shown to be stable.
+    Ranges as for `largest_impedance`, and ``k`` and ``b`` of what is touched; in free motion the
+    law has no part in it. None where the loop is not shown to be stable.
     """
     if not in_contact:
         # Any law will do: the simplest.
@@ -149,14 +123,7 @@ def parameters_at(
 ) -> tuple[CompliantLaw, Place, Fraction]:
     """Return law and motor at parameters, and what makes polynomials affine in all of them.
 
-    Parameters
-    ----------
-    axis : ContinuousAxis
-        With its nominal motor.
-    law : CompliantLaw
-        Of the controller.
-    values : mapping
-        Those that are not as given, by name: ``Km``, ``tau`` or a gain.
+    Values are by name, ``Km``, ``tau`` or a gain; the others are as given.
     """
     nominal = axis.places[0].motor
     gain, tau = values.get("Km", nominal.gain), values.get("tau", nominal.time_constant)
@@ -197,17 +164,7 @@ def largest_over(
     band: Band,
     limit: Fraction | None,
 ) -> LargestResponse:
-    """Bound a response over a band and a box of parameters.
-
-    Parameters
-    ----------
-    at : callable
-        Gives the response at parameters; its polynomials are affine in each of them.
-    ranges : mapping of str to Interval
-        The box.
-    band, limit
-        As for `largest_impedance`.
-    """
+    """Bound a response over a band in rad/s and a box of parameters; it is affine in each."""
     corners = corners_in(at, ranges)
     above = [lowest_first(corner.above) for corner in corners]
     below = [lowest_first(corner.below) for corner in corners]

@@ -41,17 +41,7 @@ def is_unusual(measure: Measure, achieved: tuple[Achieved, ...]) -> bool:
 def doubt_bounds(
     name: str, controller: ImpedanceControllerSpec, optimum: ImpedanceOptimum
 ) -> Iterator[Doubt]:
-    """Yield which gains the bounds have chosen, not the cost.
-
-    Parameters
-    ----------
-    name : str
-        Of the controller.
-    controller : ImpedanceControllerSpec
-        With the bounds.
-    optimum : ImpedanceOptimum
-        What was found within them.
-    """
+    """Yield which gains the bounds have chosen, not the cost."""
     for gain, bounds, value in (
         ("Mt", controller.Mt, optimum.Mt),
         ("Bt", controller.Bt, optimum.Bt),

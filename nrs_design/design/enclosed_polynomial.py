@@ -59,16 +59,9 @@ def multiply(P: Polynomial, Q: Polynomial) -> Polynomial:
 
 
 def in_tangent(P: Polynomial, degree: int) -> Polynomial:
-    """Return ``(1 - w)^degree P((1 + w)/(1 - w))``, a polynomial in w.
+    """Return ``(1 - w)^degree P((1 + w)/(1 - w))``, a polynomial in w, the constant first.
 
     On ``w = j tan(omega T/2)`` the quotient is ``exp(j omega T)``.
-
-    Parameters
-    ----------
-    P : list of pairs of Fraction
-        Coefficients in z, the constant first.
-    degree : int
-        Not below that of P.
     """
     total: Polynomial = []
     for k, c in enumerate(P):

@@ -42,22 +42,7 @@ def steady_force_error(
 
     ``1/(1 + Kp k G(0))`` without offset. With the reference it is ``k e / ((1 + Kp k) Fd)``, where
     ``e = v / Kv`` is the lead of the command at the switch; with the measured position it is zero.
-
-    Parameters
-    ----------
-    motion : TransferFunction
-        Closed motion loop G, from commanded to actual position.
-    stiffness : float
-        Stiffness k of the environment, N m/rad.
-    gain : float
-        ``Kp``, rad/(N m).
-    approach : Approach
-        Offset, velocity and force.
-
-    Raises
-    ------
-    DesignError
-        If there is an offset, and G(0) is not 1.
+    G leads from commanded to actual position; with an offset, G(0) must be 1.
     """
     at_rest = 1 + gain * stiffness * static_gain(motion)
     if approach.offset == "none":
@@ -72,16 +57,6 @@ def peak_force(
     """Return the largest force after the switch in N m; None without offset.
 
     Without offset the command jumps away from the contact, so the force is largest at the switch.
-
-    Parameters
-    ----------
-    motion, stiffness, gain, approach
-        As for `steady_force_error`.
-
-    Raises
-    ------
-    DesignError
-        If there is an offset, and G(0) is not 1.
     """
     if approach.offset == "none":
         return None

@@ -34,26 +34,10 @@ class ForceLoop:
 
 
 def force_loop_response(motion: TransferFunction, stiffness: float, gain: float) -> ForceLoop:
-    """Close the force loop ``Kp k G(s)`` (thesis 6.33) and report its poles.
+    """Close the force loop ``Kp k G(s)`` (thesis 6.33) and report its poles and steady-state error.
 
-    Parameters
-    ----------
-    motion : TransferFunction
-        Closed motion loop G, here from commanded to actual position.
-    stiffness : float
-        Stiffness k of the environment, N m/rad, positive.
-    gain : float
-        ``Kp``, rad/(N m), not negative.
-
-    Returns
-    -------
-    ForceLoop
-        Poles and steady-state error.
-
-    Raises
-    ------
-    DesignError
-        If a parameter is outside its domain, or the loop is unstable or of order below 2.
+    G leads from commanded to actual position, k is in N m/rad, Kp in rad/(N m). An unstable loop is
+    a `DesignError`.
     """
     _check(stiffness, gain)
     closed = _closed(motion, gain * stiffness)
@@ -76,30 +60,11 @@ def force_loop_response(motion: TransferFunction, stiffness: float, gain: float)
 
 
 def design_force_gain(motion: TransferFunction, stiffness: float, damping_ratio: float) -> float:
-    """Find the smallest gain whose dominant pole pair has the wanted damping ratio.
+    """Find the smallest Kp in rad/(N m) whose dominant pole pair has the wanted damping ratio.
 
     Poles of damping ratio zeta lie on a ray from the origin. Where the root locus meets that
-    ray, ``-D(s)/N(s)`` is real and positive, which is a polynomial equation in ``|s|``.
-
-    Parameters
-    ----------
-    motion : TransferFunction
-        Closed motion loop G.
-    stiffness : float
-        Stiffness k of the environment, N m/rad, positive.
-    damping_ratio : float
-        Wanted damping ratio, between 0 and 1.
-
-    Returns
-    -------
-    float
-        ``Kp``, rad/(N m), not negative.
-
-    Raises
-    ------
-    DesignError
-        If a parameter is outside its domain, or no gain reaches the damping ratio; the message
-        then names the interval that gains do reach.
+    ray, ``-D(s)/N(s)`` is real and positive, which is a polynomial equation in ``|s|``. If no gain
+    reaches it, the `DesignError` names the interval that gains do reach.
     """
     _check(stiffness, 0.0)
     if not 0 < damping_ratio < 1:

@@ -104,12 +104,7 @@ class AbstractRequirement(ABC):
     def values(self, measure: Measure, *gains: FloatArray) -> tuple[FloatArray, list[str]]:
         """Return the worst value of a measure for every set of gains, and at which corner.
 
-        Parameters
-        ----------
-        measure : Measure
-            What is measured.
-        *gains : ndarray, shape (m,)
-            Those that are chosen by the goals: Mt and Bt of an admittance, in SI units.
+        Gains are those chosen by the goals, in SI: Mt and Bt of an admittance, each of shape (m,).
         """
         count = len(gains[0]) if gains else 1
         if self.axis is None and measure not in CREEP_MEASURES:
@@ -122,15 +117,7 @@ class AbstractRequirement(ABC):
         return values, ["free motion" if in_the_air else corners[i].label for i in worst]
 
     def achieved(self, measures: tuple[Measure, ...], *gains: float) -> tuple[Achieved, ...]:
-        """Return the worst value of every measure, beside its goal.
-
-        Parameters
-        ----------
-        measures : tuple of Measure
-            What is measured.
-        *gains : float
-            As for `values`.
-        """
+        """Return the worst value of every measure, beside its goal."""
         goals, found = dict(self.goals), []
         for measure in measures:
             (value,), (where,) = self.values(measure, *(np.array([gain]) for gain in gains))
@@ -163,13 +150,7 @@ class Requirement(AbstractRequirement):
         )
 
     def stable(self, Mt: FloatArray, Bt: FloatArray) -> BoolArray:
-        """Tell for which admittances nominal contact is stable, at every age of the force sample.
-
-        Parameters
-        ----------
-        Mt, Bt : ndarray, shape (m,)
-            kg m^2 and N m s/rad.
-        """
+        """Tell for which admittances nominal contact is stable, at every age of the force."""
         loops = [self.loops(corner, Mt, Bt) for corner in self.nominal]
         return np.asarray(np.all([each.stable for each in loops], axis=0))
 
@@ -187,36 +168,16 @@ class Requirement(AbstractRequirement):
         return worst
 
     def loops(self, corner: ContactCorner, Mt: FloatArray, Bt: FloatArray) -> Loops:
-        """Return the open loops at a corner.
-
-        Parameters
-        ----------
-        corner : ContactCorner
-            One of the `corners`.
-        Mt, Bt : ndarray, shape (m,)
-            The designed gains, kg m^2 and N m s/rad.
-        """
+        """Return the open loops at a corner."""
         gains = _gains(corner, Mt, Bt)
         return self.family(corner).loops(*gains, corner.contact.stiffness)
 
     def displayed(
         self, corner: ContactCorner, Mt: float, Bt: float, omega: FloatArray
     ) -> ComplexArray | None:
-        """Return the displayed impedance at frequencies in rad/s, but for its phase if sampled.
+        """Return the displayed impedance in N m s/rad at frequencies in rad/s.
 
-        Parameters
-        ----------
-        corner : ContactCorner
-            One of the `corners`.
-        Mt, Bt : float
-            The designed gains, kg m^2 and N m s/rad.
-        omega : ndarray
-            Frequencies, rad/s.
-
-        Returns
-        -------
-        ndarray or None
-            In N m s/rad; None where it is not computed: for a sampled law with a spring.
+        Sampled, but for its phase. None where it is not computed: for a sampled law with a spring.
         """
         if self.axis is None or (corner.Kt and self.axis.period is not None):
             return None
@@ -235,12 +196,7 @@ class Requirement(AbstractRequirement):
     ) -> dict[str, tuple[float, str]]:
         """Return the smallest stiffness limit in N m/rad in every environment, and where it is.
 
-        Parameters
-        ----------
-        Mt, Bt : float
-            The designed gains, kg m^2 and N m s/rad.
-        retuned : bool
-            Whether the corners of the ranges of gains count as well.
+        `retuned`: the corners of the ranges of gains count as well.
         """
         if self.axis is None:
             return {c.environment: (np.nan, NOT_COMPUTED) for c in self.corners}
@@ -366,20 +322,9 @@ def corners_of(
     places: tuple[Place, ...],
     spring: Fraction = Fraction(0),
 ) -> tuple[ContactCorner, ...]:
-    """List where a controller is measured.
+    """List where a controller is measured: contacts, ends of ranges of gains, places of the motor.
 
-    Parameters
-    ----------
-    environments : tuple of Environment
-        All contacts of the controller.
-    home : str
-        The one that it is designed for.
-    gains : mapping
-        Ends of the declared ranges of ``Mt``, ``Bt`` and ``Kt``, empty for a gain without a range.
-    places : tuple of Place
-        Of the motor, and ages of the force sample.
-    spring : Fraction
-        The designed Kt, N m/rad.
+    Gains without a range are empty; `home` is the contact designed for; the spring is in N m/rad.
     """
     return tuple(
         corner

@@ -16,35 +16,15 @@ from nrs_design.models.contact import AbstractLinearLaw
 
 
 def transparency(loops: Loops, bandwidth: float) -> FloatArray:
-    """Return the smallest ``|L/(1 + L)|`` from 0 to a frequency; 0 where the loop is unstable.
-
-    Parameters
-    ----------
-    loops : Loops
-        The open loops L.
-    bandwidth : float
-        In rad/s.
-    """
+    """Return the smallest ``|L/(1 + L)|`` from 0 to a frequency in rad/s; 0 if unstable."""
     low, _ = gain_extremes(*_cancelled(loops.numerator, loops.closed), bandwidth)
     return np.where(loops.stable, low, 0.0)
 
 
 def hand_effort(loops: Loops, hand: AbstractLinearLaw, bandwidth: float) -> FloatArray:
-    """Return the largest ``|Ze/(1 + L)|`` from 0 to a frequency, N m s/rad.
+    """Return the largest ``|Ze/(1 + L)|`` from 0 to a frequency in rad/s, in N m s/rad.
 
-    Parameters
-    ----------
-    loops : Loops
-        The open loops L.
-    hand : AbstractLinearLaw
-        Its Ze.
-    bandwidth : float
-        In rad/s.
-
-    Returns
-    -------
-    ndarray
-        Infinite where the loop is unstable, or where the hand has to hold against a spring.
+    Infinite where the loop is unstable, or where the hand has to hold against a spring.
     """
     above, below = (np.tile(part, (len(loops.numerator), 1)) for part in hand.impedance)
     numerator, denominator = _cancelled(

@@ -27,13 +27,7 @@ from nrs_design.models.contact import AbstractLinearLaw
 
 @dataclass(frozen=True)
 class ImpedanceLoop:
-    """Motion loop in contact with a linear environment.
-
-    Raises
-    ------
-    DesignError
-        If a parameter is outside its domain, or there is a spring and no rest position.
-    """
+    """Motion loop in contact with a linear environment."""
 
     motion: TransferFunction  # Closed motion loop G, from commanded to actual velocity
     # The environment as a rotation about the pivot, N m/rad and N m s/rad.
@@ -75,17 +69,7 @@ class ImpedanceLoop:
 
 
 def stabilizes(loop: ImpedanceLoop, Mt: ArrayLike, Bt: ArrayLike) -> BoolArray:
-    """Tell for which admittances the closed loop is Hurwitz (Mt and Bt broadcast).
-
-    Parameters
-    ----------
-    loop : ImpedanceLoop
-        Motion loop and environment.
-    Mt : array_like
-        Virtual masses, kg m^2.
-    Bt : array_like
-        Virtual damping, N m s/rad.
-    """
+    """Tell for which admittances the closed loop is Hurwitz (Mt and Bt broadcast)."""
     Mt, Bt = np.broadcast_arrays(np.asarray(Mt, np.float64), np.asarray(Bt, np.float64))
     return hurwitz(characteristic_polynomials(characteristic_basis(loop), Mt, Bt))
 
@@ -102,25 +86,11 @@ def characteristic_basis(loop: ImpedanceLoop) -> FloatArray:
 
 
 def characteristic_polynomials(basis: FloatArray, Mt: FloatArray, Bt: FloatArray) -> FloatArray:
-    """Stack the characteristic polynomials; the leading entry is zero where Mt is.
-
-    Parameters
-    ----------
-    basis : ndarray
-        As `characteristic_basis` returns it.
-    Mt, Bt : ndarray
-        Admittances of one shape, kg m^2 and N m s/rad.
-    """
+    """Stack the characteristic polynomials; the leading entry is zero where Mt is."""
     return np.asarray(Mt[..., None] * basis[0] + Bt[..., None] * basis[1] + basis[2])
 
 
 def check_admittance(Mt: ArrayLike, Bt: ArrayLike) -> None:
-    """Refuse gains outside their domain.
-
-    Raises
-    ------
-    DesignError
-        If an Mt is negative or a Bt is not positive.
-    """
+    """Refuse an Mt that is negative, and a Bt that is not positive."""
     if not (np.all(np.asarray(Mt) >= 0) and np.all(np.asarray(Bt) > 0)):
         raise DesignError("an admittance needs Mt >= 0 and Bt > 0")

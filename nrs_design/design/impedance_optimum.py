@@ -38,13 +38,7 @@ _STEP_TOLERANCE = 1e-5
 
 @dataclass(frozen=True)
 class ImpedanceProblem:
-    """What the admittance is chosen for.
-
-    Raises
-    ------
-    DesignError
-        If a parameter is outside its domain.
-    """
+    """What the admittance is chosen for."""
 
     loop: ImpedanceLoop  # Motion loop and nominal environment
     desired: float  # Desired impedance Zdes, N m s/rad, positive
@@ -81,24 +75,7 @@ def impedance_cost(problem: ImpedanceProblem, Mt: ArrayLike, Bt: ArrayLike) -> F
     ``C = wD mean|log10 Zdes - log10|Zdisp|| + wR mean|L|`` over ``(0, bandwidth]``: the integral
     divided by the bandwidth, by the midpoint rule with `NODES` equidistant frequencies. The
     thesis prints a sum, whose value would depend on the number of frequencies. Parts for
-    transparency and accuracy over a band are added.
-
-    Parameters
-    ----------
-    problem : ImpedanceProblem
-        Loop, desired impedance, bandwidth and weights; the bounds are not used.
-    Mt, Bt : array_like
-        Admittances, which broadcast; kg m^2 and N m s/rad. Stability is not checked.
-
-    Returns
-    -------
-    ndarray
-        Costs in the broadcast shape.
-
-    Raises
-    ------
-    DesignError
-        If an Mt is negative or a Bt is not positive.
+    transparency and accuracy over a band are added. Mt and Bt broadcast; stability is not checked.
     """
     Mt, Bt = np.broadcast_arrays(np.asarray(Mt, np.float64), np.asarray(Bt, np.float64))
     check_admittance(Mt, Bt)
@@ -112,22 +89,7 @@ def optimize_impedance(problem: ImpedanceProblem) -> ImpedanceOptimum:
     finds the best Bt of every Mt, and the best local minima along that valley; a pattern search
     with the full cost refines each of them, and moves before it shrinks, so that a minimum
     away from its start is still reached. The search is deterministic. An optimum on a bound is
-    returned exactly as the bound.
-
-    Parameters
-    ----------
-    problem : ImpedanceProblem
-        Loop, goal and bounds.
-
-    Returns
-    -------
-    ImpedanceOptimum
-        Best admittance whose closed loop is Hurwitz at the nominal stiffness.
-
-    Raises
-    ------
-    DesignError
-        If no scanned admittance within the bounds gives a stable loop.
+    returned exactly as the bound; stable is Hurwitz at the nominal stiffness.
     """
     objective = objective_of(problem, NODES)
     found = refine(objective, _scan(problem), _STEP_TOLERANCE)
@@ -195,13 +157,6 @@ def admittance_at(
     """Map the unit square onto the bounds of Mt and Bt, corners exactly onto corners.
 
     A u below the search's tolerance counts as the bound itself.
-
-    Parameters
-    ----------
-    problem : ImpedanceProblem
-        With the bounds.
-    u, v : ndarray, shape (m,)
-        From 0 to 1: coordinates of Mt and of Bt.
     """
     (low, high), (least, most) = problem.mass_bounds, problem.damping_bounds
     u = np.where(u < _STEP_TOLERANCE, 0.0, u)

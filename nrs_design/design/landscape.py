@@ -56,17 +56,7 @@ class Alternative:
 
 
 def map_cost(problem: ImpedanceProblem, requirement: Requirement, Mt: float, Bt: float) -> CostMap:
-    """Evaluate the cost within the bounds, around them, and around a point.
-
-    Parameters
-    ----------
-    problem : ImpedanceProblem
-        What is minimized.
-    requirement : Requirement
-        The loops, for the border of stability.
-    Mt, Bt : float
-        The point, in kg m^2 and N m s/rad.
-    """
+    """Evaluate the cost within the bounds, around them, and around a point."""
     masses, dampings = (
         np.geomspace(*_ends(bounds, value), _POINTS)
         for bounds, value in ((problem.mass_bounds, Mt), (problem.damping_bounds, Bt))
@@ -93,15 +83,7 @@ def _ends(bounds: tuple[float, float], value: float) -> tuple[float, float]:
 
 
 def cheapest_damping(problem: ImpedanceProblem, Mt: float, Bt: float) -> float | None:
-    """Return the Bt of the least cost near a given one, N m s/rad; None where nothing is stable.
-
-    Parameters
-    ----------
-    problem : ImpedanceProblem
-        What would be minimized.
-    Mt, Bt : float
-        As given, in kg m^2 and N m s/rad.
-    """
+    """Return the Bt of the least cost near a given one, N m s/rad; None where nothing is stable."""
     near = replace(problem, mass_bounds=(Mt, Mt), damping_bounds=(Bt / _FURTHER, Bt * _FURTHER))
     try:
         return optimize_impedance(near).Bt
@@ -113,13 +95,6 @@ def alternatives(problem: ImpedanceProblem, Mt: float, Bt: float) -> Iterator[Al
     """Yield the shipped gains, those best for either part of the cost, and those beyond a bound.
 
     Goals are not looked at: they may be why a cheaper admittance was not chosen.
-
-    Parameters
-    ----------
-    problem : ImpedanceProblem
-        What was minimized.
-    Mt, Bt : float
-        As shipped, in kg m^2 and N m s/rad.
     """
     yield _priced(problem, "as shipped", Mt, Bt)
     tries = (
@@ -172,20 +147,11 @@ def _priced(problem: ImpedanceProblem, name: str, Mt: float, Bt: float) -> Alter
 def delay_borne(
     requirement: Requirement, Mt: float, Bt: float, stiffness: FloatArray
 ) -> FloatArray:
-    """Return the delay margin in s over the stiffness of the contact.
+    """Return the delay margin in s over the stiffness of the contact in N m/rad.
 
     At the worst corner of all other ranges, with the designed gains in the environment that they
     are designed for. Zero where the loop is unstable without any; infinite where no dead time
     destabilizes.
-
-    Parameters
-    ----------
-    requirement : Requirement
-        The loops.
-    Mt, Bt : float
-        Admittance, kg m^2 and N m s/rad.
-    stiffness : ndarray, shape (k,)
-        N m/rad, positive.
     """
     gains = np.full_like(stiffness, Mt), np.full_like(stiffness, Bt)
     families = {

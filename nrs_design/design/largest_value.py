@@ -17,15 +17,6 @@ def largest(A: FloatArray, c: FloatArray, x: FloatArray, rates: ComplexArray) ->
     By hand, because the grid of python-control misses peaks: of 97 % overshoot it finds 96 %. The
     motion is exact, also with repeated poles: a grid resolved for every pole only tells which
     extremum is the highest, and a root search of the slope then finds it.
-
-    Parameters
-    ----------
-    A : ndarray, shape (n, n)
-        Of the system.
-    c, x : ndarray, shape (n,)
-        The signal, and the state at the start.
-    rates : ndarray of complex
-        Poles that the signal decays with, in the left half plane.
     """
     from scipy.linalg import expm
     from scipy.optimize import brentq

@@ -62,12 +62,7 @@ class LinearParts:
 def linear_parts(plant: Plant, design: ControllerDesign) -> LinearParts:
     """Return plant, controllers, contacts and closed loops at nominal values.
 
-    Parameters
-    ----------
-    plant : Plant
-        One whose motor what is touched acts on (`load_inertia`) has no loops made of these parts.
-    design : ControllerDesign
-        The gains that ship.
+    No loops where what is touched acts on the motor (`load_inertia`): they are not made of these.
     """
     actuator, motion = _plant_parts(plant, design)
     low_pass, loops = design.sensor.filter, tuple(_loops(plant, design))
@@ -83,15 +78,7 @@ def linear_parts(plant: Plant, design: ControllerDesign) -> LinearParts:
 
 
 def _plant_parts(plant: Plant, design: ControllerDesign) -> tuple[LinearPart, LinearPart]:
-    """Return the actuator, and the closed motion loop from commands to motions.
-
-    Parameters
-    ----------
-    plant : Plant
-        At its nominal values, and not loaded by what is touched.
-    design : ControllerDesign
-        The gains that ship.
-    """
+    """Return the actuator, and the closed motion loop from commands to motions."""
     Km, tau, motion = plant.actuator.gain, plant.actuator.time_constant, design.motion
     loop = plant.motion_loop(motion.Kp, motion.Kd)
     command = design.command
@@ -142,17 +129,7 @@ def _filter_part(low_pass: LowPass) -> LinearPart:
 
 
 def _contact_part(name: str, contact: AbstractLinearLaw, motion: str) -> LinearPart | None:
-    """Return what is touched, from motion to force; None if that is not proper.
-
-    Parameters
-    ----------
-    name : str
-        Of the environment.
-    contact : AbstractLinearLaw
-        At fixed parameters.
-    motion : {"velocity", "position"}
-        What the controller commands.
-    """
+    """Return what is touched, from velocity or position to force; None if that is not proper."""
     if contact.has_mass:
         return None
     own, output = len(contact.states), ("contact_force", FORCE)
@@ -173,14 +150,7 @@ def _loops(plant: Plant, design: ControllerDesign) -> Iterator[LinearPart]:
 
     The input is a torque that acts on the sensor beside that of the contact; outputs are the motion
     and the torque of the contact. States are those of the motion loop, the contact, the filter of
-    the force and the controller.
-
-    Parameters
-    ----------
-    plant : Plant
-        One whose motor what is touched acts on (`load_inertia`) has no such loops.
-    design : ControllerDesign
-        The gains that ship.
+    the force and the controller. With `load_inertia` there are none.
     """
     if plant.load_inertia is not None:
         return

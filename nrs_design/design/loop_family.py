@@ -37,44 +37,20 @@ class LoopFamily:
     place: Place  # Of the motor, and the age of the force
 
     def loops(self, Mt: FloatArray, Bt: FloatArray, stiffness: FloatArray | float) -> Loops:
-        """Return the open loops, cut where the law takes the force.
-
-        Parameters
-        ----------
-        Mt, Bt : ndarray, shape (n,)
-            Virtual masses in kg m^2 and dampings in N m s/rad.
-        stiffness : ndarray, shape (n,), or float
-            Of the contact, N m/rad.
-        """
+        """Return the open loops, cut where the law takes the force; all numbers are in SI."""
         return self._loops(_OPENED, Mt, Bt, stiffness)
 
     def felt(self, Mt: FloatArray, Bt: FloatArray, stiffness: FloatArray | float) -> Loops:
-        """Return the open loops of who holds the robot, cut where the force acts on it.
-
-        Parameters
-        ----------
-        Mt, Bt, stiffness
-            As for `loops`.
-        """
+        """Return the open loops of who holds the robot, cut where the force acts on it."""
         return self._loops(_FREE, Mt, Bt, stiffness)
 
     def stiffness_limit(self, Mt: float, Bt: float) -> float:
-        """Return the largest stiffness up to which the closed loop is stable throughout.
+        """Return the largest stiffness in N m/rad up to which the closed loop is stable throughout.
 
         The characteristic polynomial is ``A + k B``: a root can reach the right half plane only
         across the imaginary axis, so the limit is the smallest positive ``k = -A/B`` that is real
-        there. None crosses at zero, where a positive k only adds to what is positive.
-
-        Parameters
-        ----------
-        Mt, Bt : float
-            kg m^2 and N m s/rad; Mt may be zero.
-
-        Returns
-        -------
-        float
-            In N m/rad: infinite if no stiffness destabilizes the loop, 0 if the loop is unstable
-            however soft the contact is.
+        there. None crosses at zero, where a positive k only adds to what is positive. Infinite if
+        no stiffness destabilizes the loop, 0 if it is unstable however soft the contact is.
         """
         one = np.array([Mt]), np.array([Bt])
         free, contact = (self._polynomials(_CLOSED, *one)[i][0] for i in (0, 1))
@@ -90,11 +66,6 @@ class LoopFamily:
 
         That is ``1/(H Y)``, in s or what stands for it. Sampled, a delay is left out, whose
         magnitude is 1, and there is no spring.
-
-        Parameters
-        ----------
-        Mt, Bt
-            As for `loops`.
         """
         n = len(Mt)
         if not isinstance(self.axis, ProcessorAxis):

@@ -25,8 +25,6 @@ from nrs_design.design.transfer import BoolArray, ComplexArray, FloatArray, hurw
 class Loops:
     """Many open loops ``N/D``.
 
-    Notes
-    -----
     Every margin of a loop that is not stable when it is closed is the worst possible: infinite
     where it should be small, 0 where it should be large. A margin that nothing limits is infinite.
     """
@@ -126,14 +124,9 @@ def _at_infinity(numerator: FloatArray, denominator: FloatArray) -> FloatArray:
 def gain_extremes(
     numerator: FloatArray, denominator: FloatArray, bandwidth: float
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the smallest and largest ``|numerator/denominator|`` on 0 to `bandwidth`.
+    """Return the smallest and largest ``|numerator/denominator|`` on 0 to `bandwidth` in rad/s.
 
-    Parameters
-    ----------
-    numerator, denominator : ndarray, shape (n, m + 1)
-        Polynomials in s, highest power first; no denominator vanishes on the axis.
-    bandwidth : float
-        Highest frequency, rad/s.
+    Polynomials in s, highest power first, one per row; no denominator vanishes on the axis.
     """
     omega = stationary(numerator, denominator)
     omega = np.where(omega < bandwidth, omega, np.nan)

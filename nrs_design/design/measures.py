@@ -54,13 +54,7 @@ ONE_AXIS = "Of axes that act on each other, this is one by itself."
 
 
 def computed(proved: Mapping[str, Sequence[str]]) -> Iterator[str]:
-    """Yield how the values of controllers were found.
-
-    Parameters
-    ----------
-    proved : mapping of str to sequence of str
-        By controller, the titles of what is proved over all values of the ranges.
-    """
+    """Yield how the values of controllers were found, and what is proved over all ranges."""
     names: dict[str, list[str]] = {}
     for name, titles in proved.items():
         if titles:

@@ -21,12 +21,8 @@ _STARTS = 3
 def search_square(objective: Objective, free: tuple[bool, bool]) -> tuple[float, float, float]:
     """Return the best point of the unit square, and the objective there.
 
-    Parameters
-    ----------
-    objective : callable
-        Maps arrays u, v of one shape (n,) to n values; infinite where a point is not allowed.
-    free : tuple of bool
-        Which coordinates may move; one that may not is 0.
+    The objective maps arrays u, v to values, infinite where a point is not allowed. A coordinate
+    that is not free is 0.
     """
     u = np.linspace(0, 1, _COARSE[0]) if free[0] else np.zeros(1)
     v, values = _best_across(objective, u, moves=free[1])

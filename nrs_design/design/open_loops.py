@@ -45,19 +45,7 @@ def open_loops(
 ) -> tuple[OpenLoop, ...]:
     """Return the open loops of the designed gains, at every corner of contacts and motor.
 
-    Parameters
-    ----------
-    spec : InteractionDesignSpec
-        What was asked for.
-    plant : Plant
-        That it describes.
-    design : ControllerDesign
-        The gains that ship.
-
-    Returns
-    -------
-    tuple of OpenLoop
-        Empty where no loop is cut at one place: the force is sampled more often than the motion.
+    None where no loop is cut at one place: the force is sampled more often than the motion.
     """
     task = Task(spec, plant, design.motion)
     if task.axis is None:

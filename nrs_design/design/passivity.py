@@ -60,14 +60,7 @@ def passive_band(
 ) -> PassiveBand:
     """Find the frequency up to which the displayed admittance is passive, and one where it is not.
 
-    Parameters
-    ----------
-    axis : ContinuousAxis
-        From which the modes follow.
-    law : CompliantLaw
-        An admittance with its gains Mt, Bt and, with a spring, Kt; Bt is positive.
-    ranges : mapping of str to Interval
-        Where ``Mt``, ``Bt``, ``Kt``, and ``Km``, ``tau`` of the motor are, if they have ranges.
+    The law has a positive Bt. Ranges are those of ``Mt``, ``Bt``, ``Kt``, ``Km``, ``tau``, if any.
     """
     if not is_stable(RationalMatrix.from_rows(axis.realization.A), Time.CONTINUOUS):
         return PassiveBand(Fraction(0), None)
@@ -94,15 +87,7 @@ def passive_band(
 def real_part(
     axis: ContinuousAxis, law: CompliantLaw, values: Mapping[str, Fraction]
 ) -> Polynomial:
-    """Return ``Re N conj(D)`` in ``x = omega^2``, times what is positive, highest power first.
-
-    Parameters
-    ----------
-    axis, law
-        As for `passive_band`.
-    values : mapping of str to Fraction
-        Of the parameters that have ranges.
-    """
+    """Return ``Re N conj(D)`` in ``x = omega^2``, times what is positive, highest power first."""
     nominal = axis.places[0].motor
     gain, tau = values.get("Km", nominal.gain), values.get("tau", nominal.time_constant)
     place = Place(replace(nominal, gain=gain, time_constant=tau))
@@ -140,12 +125,8 @@ def _without_zeros(P: Polynomial) -> Polynomial:
 def first_root(P: Sequence[Fraction]) -> tuple[Fraction, Fraction] | None:
     """Return numbers between which the smallest positive root is, or None if there is none.
 
-    Ball arithmetic isolates all roots rigorously, multiple ones as well.
-
-    Parameters
-    ----------
-    P : sequence of Fraction
-        Coefficients, highest power first; neither the first nor the last is zero.
+    Ball arithmetic isolates all roots rigorously, multiple ones as well. Coefficients are given
+    with the highest power first; neither the first nor the last is zero.
     """
     from flint import fmpz_poly
 

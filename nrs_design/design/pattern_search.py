@@ -35,21 +35,8 @@ def refine(objective: Objective, start: Points, tolerance: float) -> Points:
     """Search from every point on a 5 x 5 pattern that moves while it improves, else shrinks.
 
     The pattern is sheared along the valley, whose walls are kinks: a pattern across it would
-    find every neighbor higher and stop halfway down.
-
-    Parameters
-    ----------
-    objective : callable
-        Maps arrays u, v of one shape (n,) to n costs; infinite where a point is not allowed.
-    start : Points
-        Points to start from.
-    tolerance : float
-        Size of the pattern at which a search ends.
-
-    Returns
-    -------
-    Points
-        Where the searches ended, in the order of `start`.
+    find every neighbor higher and stop halfway down. A search ends at the tolerance, the size of
+    its pattern. The objective is infinite where a point is not allowed.
     """
     offsets = start.step * _pattern(start.step > 0)
     u, v, scale, count = start.u.copy(), start.v.copy(), np.ones(len(start.u)), start.evaluations
@@ -84,21 +71,9 @@ def _pattern(free: BoolArray) -> FloatArray:
 def snap(
     objective: Objective, u: FloatArray, v: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Move points within 0.01 of an edge onto it where that costs nothing.
+    """Move points within 0.01 of an edge onto it where that costs nothing; return their costs too.
 
     An objective that is flat near an edge lets rounding hide the last step there.
-
-    Parameters
-    ----------
-    objective : callable
-        Of u and v, which is minimized.
-    u, v : ndarray, shape (m,)
-        Points of the unit square.
-
-    Returns
-    -------
-    u, v, costs : ndarray, shape (m,)
-        The points and the objective there.
     """
     edge_u, edge_v = (np.where(np.abs(w - np.round(w)) < 0.01, np.round(w), w) for w in (u, v))
     edges = ((edge_u, v), (u, edge_v), (edge_u, edge_v))

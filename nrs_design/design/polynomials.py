@@ -26,15 +26,7 @@ def multiply(a: FloatArray, b: FloatArray) -> FloatArray:
 
 
 def ratio(numerator: FloatArray, denominator: FloatArray, omega: FloatArray) -> ComplexArray:
-    """Return ``N/D`` at ``j omega``: row i at all frequencies of row i; NaN for NaN.
-
-    Parameters
-    ----------
-    numerator, denominator : ndarray, shape (n, m + 1)
-        The polynomials.
-    omega : ndarray, shape (n, k)
-        Frequencies, rad/s; NaN stands for none.
-    """
+    """Return ``N/D`` at ``j omega``: row i at all frequencies (rad/s) of row i; NaN for NaN."""
     with np.errstate(invalid="ignore"):
         return _evaluate(numerator, omega) / _evaluate(denominator, omega)
 

@@ -97,14 +97,9 @@ class RangedLoop:
         return self._stays_stable(ONE)
 
     def holds(self, measure: Measure, value: Fraction) -> bool:
-        """Tell whether a stable loop is shown to have nowhere in the box a worse value.
+        """Tell whether a stable loop is shown to have nowhere in the box a worse value, in SI.
 
-        Parameters
-        ----------
-        measure : Measure
-            One of `PROVABLE`.
-        value : Fraction
-            In SI units, positive.
+        The measure is one of `PROVABLE`, its value positive.
         """
         return _PROOFS[measure](self, value)
 
@@ -258,13 +253,6 @@ def ranged_loops(
     """Return the loops of a controller in all its contacts; none where not all are covered.
 
     Contact is elastic or Kelvin-Voigt, and at most two numbers have ranges at once.
-
-    Parameters
-    ----------
-    axis, law, ranges
-        As for `RangedLoop`.
-    environments : sequence of Environment
-        All that it touches.
     """
     loops = tuple(RangedLoop(axis, law, environment, ranges) for environment in environments)
     covered = all(
@@ -283,18 +271,8 @@ def with_proofs(
 ) -> tuple[Achieved, ...]:
     """Return measured values with what is proved of them over all ranges: a second's work.
 
-    Parameters
-    ----------
-    achieved : sequence of Achieved
-        The worst at the corners.
-    loops : sequence of RangedLoop
-        As `ranged_loops` returns them.
-    home : str
-        The environment that the gains are designed for.
-    desired : float
-        Desired impedance, N m s/rad.
-    bandwidth : float
-        Highest frequency of the command, rad/s.
+    The desired impedance is in N m s/rad, the highest frequency of the command in rad/s; `home` is
+    the environment that the gains are designed for.
     """
     if not loops or not all(loop.stable for loop in loops):
         return tuple(achieved)

@@ -19,19 +19,7 @@ _DIGITS = 3
 def doubt_stiffness(
     name: str, requirement: Requirement, contacts: tuple[Environment, ...], Mt: float, Bt: float
 ) -> Iterator[Doubt]:
-    """Yield the contacts whose stiffness reaches the limit of an admittance.
-
-    Parameters
-    ----------
-    name : str
-        Of the controller.
-    requirement : Requirement
-        Its loops, and the corners of all ranges.
-    contacts : tuple of Environment
-        All that it touches.
-    Mt, Bt : float
-        Its gains, kg m^2 and N m s/rad.
-    """
+    """Yield the contacts whose stiffness reaches the limit of an admittance."""
     limits = requirement.stiffness_limits(Mt, Bt, retuned=False)
     for contact in contacts:
         highest, (limit, _) = float(contact.stiffness.high), limits[contact.name]
@@ -51,23 +39,9 @@ def doubt_stiffness(
 def enough_damping(
     requirement: Requirement, environment: str, Mt: float, Bt: float, stiffness: float
 ) -> float | None:
-    """Return a virtual damping above Bt that is stable up to a stiffness, with few digits.
+    """Return a damping above Bt, of few digits, that is stable up to a stiffness in N m/rad.
 
-    Parameters
-    ----------
-    requirement : Requirement
-        The loops.
-    environment : str
-        Which contact.
-    Mt, Bt : float
-        The gains that are not enough, kg m^2 and N m s/rad.
-    stiffness : float
-        N m/rad.
-
-    Returns
-    -------
-    float or None
-        The least one, rounded up; None if none up to 10,000 times Bt is enough.
+    The least one, rounded up; None if none up to 10,000 times Bt is enough.
     """
 
     def holds(damping: float) -> bool:

@@ -31,17 +31,7 @@ class ResponseCost:
     forward: ComplexArray | None = None  # G Ze H in contact, for a tracking error
 
     def of(self, Mt: FloatArray, Bt: FloatArray) -> FloatArray:
-        """Return the part of the cost of admittances.
-
-        Parameters
-        ----------
-        Mt, Bt : ndarray, shape (n, 1)
-            In kg m^2 and N m s/rad.
-
-        Returns
-        -------
-        ndarray, shape (n,)
-        """
+        """Return the part of the cost of admittances, shape (n,); Mt and Bt, in SI, are (n, 1)."""
         admittance = Bt + 1j * (Mt * self.omega - self.drawn / self.omega)
         if self.forward is None:
             response = admittance / self.filtered
@@ -58,20 +48,9 @@ def response_cost(
     *,
     touches: bool,
 ) -> ResponseCost:
-    """Return a part of the cost.
+    """Return the part of the cost for a limit over a band in rad/s.
 
-    Parameters
-    ----------
-    loop : ImpedanceLoop
-        Motion loop, filter, spring, and what is touched.
-    weight : float
-        Not negative.
-    limit : float
-        Of the goal.
-    band : tuple of float
-        Lowest and highest frequency, rad/s.
-    touches : bool
-        Whether it is the tracking error in contact; else the displayed impedance.
+    What `touches` is limited by its tracking error in contact, all else by its displayed impedance.
     """
     low, high = band
     middles = low + (high - low) * (np.arange(_NODES) + 0.5) / _NODES

@@ -102,20 +102,7 @@ def judged_responses(
 ) -> Iterator[JudgedResponse]:
     """Yield the goals for frequency responses of a controller, and what is proved of them.
 
-    Parameters
-    ----------
-    spec : InteractionDesignSpec
-        What else is in the loop.
-    goals : mapping of str to ResponseGoal
-        By key.
-    axis : AbstractAxis or None
-        From which the modes follow.
-    law : CompliantLaw
-        An admittance with the gains that ship.
-    ranges : mapping of str to Interval
-        Where ``Km``, ``tau``, ``Mt``, ``Bt`` and ``Kt`` are, if they have ranges.
-    environments : mapping of str to Environment
-        Those that the goals name.
+    Ranges are those of ``Km``, ``tau``, ``Mt``, ``Bt`` and ``Kt``, as far as they have any.
     """
     for key, goal in goals.items():
         yield _judged(spec, key, goal, axis, law, ranges, environments)

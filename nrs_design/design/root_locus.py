@@ -55,28 +55,10 @@ class MotionLoopResponse:
 def design_pd(
     gain: float, time_constant: float, damping_ratio: float, settling_time: float
 ) -> PdDesign:
-    """Design the PD controller of thesis 4.27-4.30 by angle and magnitude condition.
+    """Design the PD controller of thesis 4.27-4.30, not rounded, by angle and magnitude condition.
 
-    Parameters
-    ----------
-    gain : float
-        ``Km`` of the actuator ``Km / (s (tau s + 1))``, rad/s per unit of command, positive.
-    time_constant : float
-        ``tau`` of the actuator, s, positive.
-    damping_ratio : float
-        ``zeta`` of the wanted poles, between 0 and 1.
-    settling_time : float
-        ``4/(zeta wn)`` of the wanted poles, s, positive.
-
-    Returns
-    -------
-    PdDesign
-        The exact, unrounded controller.
-
-    Raises
-    ------
-    DesignError
-        If a parameter is outside its domain, or no positive zero and gain exist.
+    The actuator is ``Km / (s (tau s + 1))``, the settling time ``4/(zeta wn)`` in s. If no positive
+    zero and gain exist, a `DesignError`.
     """
     _check_positive(gain=gain, time_constant=time_constant, settling_time=settling_time)
     if not 0 < damping_ratio < 1:
@@ -96,14 +78,9 @@ def design_pd(
 
 
 def motion_loop_response(tf: TransferFunction) -> MotionLoopResponse:
-    """Report poles, damping, overshoot and bandwidth of a stable closed loop.
+    """Report poles, damping, overshoot and bandwidth of a stable closed loop with a static gain.
 
     A pole that is alone counts as a pair of two that are alike.
-
-    Raises
-    ------
-    DesignError
-        If the loop is unstable, or has no static gain.
     """
     found = poles(tf)
     zeta, wn = dominant_pair(np.repeat(found, 2) if len(found) == 1 else found)
@@ -121,11 +98,6 @@ def dominant_pair(roots: ComplexArray) -> tuple[float, float]:
 
     The dominant pair is the rightmost complex pair; without one, the two rightmost real poles,
     whose damping ratio is at least 1.
-
-    Raises
-    ------
-    DesignError
-        If there are fewer than two poles.
     """
     if len(roots) < 2:
         raise DesignError("a damping ratio needs a loop with at least two poles")
@@ -139,21 +111,7 @@ def dominant_pair(roots: ComplexArray) -> tuple[float, float]:
 def step_overshoot(tf: TransferFunction) -> float:
     """Return the overshoot of the unit step response as a fraction of its final value.
 
-    Parameters
-    ----------
-    tf : TransferFunction
-        Stable, with ``G(0)`` not zero. Its zeros count: the thesis's loop overshoots by 6.8 %,
-        where the second-order formula says 4.3 %.
-
-    Returns
-    -------
-    float
-        0 for a response that never exceeds its final value.
-
-    Raises
-    ------
-    DesignError
-        If the loop is unstable or ``G(0)`` is zero.
+    Zeros count: the thesis's loop overshoots by 6.8 %, where the second-order formula says 4.3 %.
     """
     if not bool(hurwitz(tf.denominator)):
         raise DesignError("an unstable loop has no overshoot", remedy="stabilize the loop first")
@@ -184,24 +142,9 @@ def _bandwidth(tf: TransferFunction) -> float:
 
 
 def root_locus(open_loop: TransferFunction, gains: ArrayLike) -> ComplexArray:
-    """Return the closed-loop poles over the gains, one continuous branch per column.
+    """Return the closed-loop poles in rad/s over the gains, one continuous branch per column.
 
-    Parameters
-    ----------
-    open_loop : TransferFunction
-        Open loop at unit gain.
-    gains : array_like, shape (m,)
-        Loop gains in the order in which the branches are followed.
-
-    Returns
-    -------
-    ndarray of complex, shape (m, order)
-        Roots of ``denominator + gain * numerator``, rad/s.
-
-    Raises
-    ------
-    DesignError
-        If a gain lowers the order of the loop (a pole passes through infinity).
+    A gain that lowers the order of the loop (a pole passes through infinity) is a `DesignError`.
     """
     chosen = np.asarray(gains, dtype=np.float64)
     for gain in chosen:
@@ -218,24 +161,7 @@ def locus_gains(open_loop: TransferFunction, gain: float) -> FloatArray:
     By hand, because the gains that python-control chooses leave corners, steps of up to 9 % of the
     extent. The grid holds 0, `gain` itself and every breakaway gain up to its end: at least 100
     times `gain`, and as far as it takes for a pole to come near every zero. It is halved where a
-    pole near the poles and zeros moves by more than 2 % of their extent.
-
-    Parameters
-    ----------
-    open_loop : TransferFunction
-        Open loop at unit gain.
-    gain : float
-        The chosen gain, positive.
-
-    Returns
-    -------
-    ndarray
-        Ascending gains, a few hundred as a rule and never more than 4000.
-
-    Raises
-    ------
-    DesignError
-        If the gain is not positive.
+    pole near the poles and zeros moves by more than 2 % of their extent; 4000 gains at most.
     """
     _check_positive(gain=gain)
     zeros = np.roots(open_loop.numerator).astype(np.complex128)

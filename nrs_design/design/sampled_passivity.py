@@ -76,31 +76,10 @@ def sampled_bands(
     period: Fraction,
     ages: Sequence[int],
 ) -> tuple[SampledBand, ...]:
-    """Find where the displayed admittance is passive, for every age of the force sample.
+    """Find where the displayed admittance is passive, for every age of the force in samples.
 
-    Parameters
-    ----------
-    motor : Actuator
-        Gain and time constant.
-    motion : ProportionalDerivative
-        The motion controller.
-    law : mapping of str to Fraction
-        Numbers of a discrete admittance without a spring.
-    period : Fraction
-        In s.
-    ages : sequence of int
-        In samples.
-
-    Returns
-    -------
-    tuple of SampledBand
-        Empty where the law that nobody holds is not shown to be stable: a displayed admittance
-        then says nothing.
-
-    Raises
-    ------
-    ValueError
-        If the law has a spring.
+    The law has no spring, else a `ValueError`; the period is in s. Empty where the law that nobody
+    holds is not shown to be stable: a displayed admittance then says nothing.
     """
     if "Kt" in law:
         raise ValueError("a spring makes another admittance")
@@ -193,20 +172,10 @@ def _admittance(
 def sign_polynomials(
     numerator: Polynomial, denominator: Polynomial, lag: Fraction
 ) -> tuple[Polynomial, Polynomial]:
-    """Return what has the sign of Re V, for a number below h and one above it.
+    """Return what has the sign of Re V, for a number below h and one above it, as polynomials in x.
 
-    Parameters
-    ----------
-    numerator, denominator : list of pairs of Fraction
-        The U in w, the constant first.
-    lag : Fraction
-        ``2 tau/T`` of the motor.
-
-    Returns
-    -------
-    tuple of list of pairs of Fraction
-        Polynomials in x, the constant first. Where both are positive, so is Re V; where both are
-        negative, it is negative.
+    Where both are positive, so is Re V; where both are negative, it is negative. Numerator and
+    denominator are the U in w, the constant first; the lag is ``2 tau/T`` of the motor.
     """
     mirrored = [negative(c) if k % 2 else c for k, c in enumerate(denominator)]
     W = multiply(multiply(numbers(1, -1), numerator), mirrored)

@@ -67,15 +67,7 @@ class SampledAdmittance:
         return moving | {"E": Interval(E[0], *E), "s": Interval(min(s), min(s), max(s))}
 
     def quotient(self, values: Mapping[str, Fraction], c: Fraction) -> Quotient:
-        """Return F/V at values of what is in the box, as polynomials in w.
-
-        Parameters
-        ----------
-        values : mapping of str to Fraction
-            By name.
-        c : Fraction
-            The ``atan(t)/t``.
-        """
+        """Return F/V as polynomials in w, at values of what is in the box; c is ``atan(t)/t``."""
         T, numbers = self.period, self._numbers
         Km = values.get("Km", self.motor.gain.nominal)
         tau = self.motor.time_constant.high
@@ -133,13 +125,7 @@ class SampledAdmittance:
             yield at, replace(self, motor=ActuatorRanges.point(point), law=law, gains={})
 
     def squared(self, t: Fraction) -> Any:
-        """Enclose ``|F/V|^2`` in a ball, where nothing has a range.
-
-        Parameters
-        ----------
-        t : Fraction
-            The ``tan(omega T/2)``.
-        """
+        """Enclose ``|F/V|^2`` in a ball, where nothing has a range; t is ``tan(omega T/2)``."""
         from flint import acb
 
         w, c, T = acb(0, 1) * ball_around(t), _over_tangent(t), ball_around(self.period)
@@ -164,19 +150,8 @@ def largest_sampled_impedance(
 ) -> LargestResponse | None:
     """Bound the largest displayed impedance of a sampled law, in N m s/rad.
 
-    Parameters
-    ----------
-    shown : SampledAdmittance
-        The law, and what is below it.
-    band : tuple of Fraction
-        Lowest and highest frequency, rad/s, below half the sampling rate.
-    limit : Fraction, optional
-        What it should stay below.
-
-    Returns
-    -------
-    LargestResponse or None
-        None where the robot that nobody holds is not shown to be stable.
+    The band is in rad/s, below half the sampling rate. None where the robot that nobody holds is
+    not shown to be stable.
     """
     if not is_stable_over(lambda values: shown.quotient(values, ONE), shown.box):
         return None

@@ -26,14 +26,7 @@ Number = TypeVar("Number", float, Fraction)
 
 @dataclass(frozen=True)
 class TransferFunction:
-    """A proper continuous-time transfer function.
-
-    Raises
-    ------
-    DesignError
-        If a coefficient is not finite, the leading denominator coefficient or the whole
-        numerator is zero, or the numerator has the higher degree.
-    """
+    """A proper continuous-time transfer function."""
 
     # numerator, denominator: coefficients, highest power of s first.
     numerator: tuple[float, ...]
@@ -66,20 +59,7 @@ def trim(polynomial: Sequence[float]) -> tuple[float, ...]:
 
 
 def frequency_response(tf: TransferFunction, omega: ArrayLike) -> ComplexArray:
-    """Evaluate a transfer function at ``s = j omega``.
-
-    Parameters
-    ----------
-    tf : TransferFunction
-        Function without a pole at any of the frequencies.
-    omega : array_like
-        Frequencies, rad/s.
-
-    Returns
-    -------
-    ndarray of complex
-        One value per frequency, in the shape of `omega`.
-    """
+    """Evaluate a transfer function at ``s = j omega``, in the shape of omega in rad/s."""
     s = 1j * np.asarray(omega, dtype=np.float64)
     value = np.polyval(tf.numerator, s) / np.polyval(tf.denominator, s)
     return np.asarray(value, dtype=np.complex128)
@@ -141,21 +121,11 @@ def controllable_form(
 
 
 def hurwitz(coefficients: ArrayLike) -> BoolArray:
-    """Tell which of many polynomials have all their roots in the open left half plane.
+    """Tell which of many polynomials, one per row, have all roots in the open left half plane.
 
     Routh's array, run on all polynomials at once, where `numpy.roots` takes one. A leading
     coefficient that is exactly zero lowers the degree, so an admittance without mass needs no case
-    of its own.
-
-    Parameters
-    ----------
-    coefficients : array_like, shape (..., n + 1)
-        One polynomial per row, highest power first.
-
-    Returns
-    -------
-    ndarray of bool, shape (...)
-        The zero polynomial counts as not Hurwitz.
+    of its own. The highest power is first; the zero polynomial counts as not Hurwitz.
     """
     table = np.asarray(coefficients, dtype=np.float64)
     rows = table.reshape(-1, table.shape[-1])

@@ -76,13 +76,6 @@ def minimize_in_trust_region(problem: ConstrainedProblem, start: Evaluation) -> 
     A constraint that is a minimum of several has ridges, where its gradient says little. So it is
     taken as the least of its linear models at the last evaluations (Kelley 1960), of those that do
     not contradict what is known where the search stands.
-
-    Parameters
-    ----------
-    problem : ConstrainedProblem
-        Cost and constraints.
-    start : Evaluation
-        Within the bounds.
     """
     here = _Cut.of(start)
     cuts, count, region = [here], 1, REGION

@@ -30,12 +30,9 @@ class Wall:
     late: float = 0.0  # From a sample to its command, the t in s
 
     def growth(self, stiffness: float, damping: float) -> float:
-        """Return the spectral radius of the map of a period in the air.
+        """Return the spectral radius of the map of a period in the air; K and B in SI.
 
-        Parameters
-        ----------
-        stiffness, damping : float
-            The K in N m/rad, and the B in N m s/rad, by backward difference.
+        The damping is by backward difference.
         """
         from scipy.linalg import expm
 
@@ -61,13 +58,7 @@ class Wall:
         return float(np.abs(np.linalg.eigvals(M)).max())
 
     def border(self, damping: float) -> float:
-        """Return the stiffness in N m/rad up to which it is stable in the air; zero if it is not.
-
-        Parameters
-        ----------
-        damping : float
-            The B in N m s/rad.
-        """
+        """Return the stiffness in N m/rad up to which it is stable in the air, zero if none."""
         low, high = 0.0, self.estimate(damping) or 1.0
         if self.growth(1e-9 * high, damping) >= 1:
             return 0.0
@@ -90,13 +81,6 @@ def passivity_margin(
 ) -> Fraction:
     """Return ``b - K T/2 - |B|`` in N m s/rad: exactly above zero, the wall is passive.
 
-    Parameters
-    ----------
-    friction : Fraction
-        The b; the least of a range.
-    stiffness, damping : Fraction
-        K and B as the processor holds them.
-    period : Fraction
-        The T in s.
+    b is the least of a range; K and B are as the processor holds them; the period T is in s.
     """
     return friction - stiffness * period / 2 - abs(damping)

@@ -27,31 +27,16 @@ from nrs_design.spec.controllers import IntegralControllerSpec
 
 @dataclass(frozen=True)
 class ForceAnalysis(AbstractControllerAnalysis):
-    """One force controller.
+    """One force controller."""
 
-    Parameters
-    ----------
-    name, achieved
-        As for `AbstractControllerAnalysis`.
-    stiffness : float
-        Of nominal contact, in N m/rad.
-    loop : ForceLoop
-        Closed in nominal contact.
-    approach : Approach
-        How the limit of the spec on the force is reached: at the largest velocity.
-    steady_error : float
-        What is left of the force error then, over the force; of the law as declared.
-    peak : float or None
-        Largest force then, in N m; None without offset.
-    forward : TransferFunction
-        What Kp times the stiffness multiplies in the open loop: G, or that with an integral.
-    """
-
-    stiffness: float
-    loop: ForceLoop
+    stiffness: float  # Of nominal contact, in N m/rad
+    loop: ForceLoop  # Closed in nominal contact
+    # How the limit of the spec on the force is reached: at the largest velocity.
     approach: Approach
+    # What is left of the force error then, over the force; of the law as declared.
     steady_error: float
-    peak: float | None
+    peak: float | None  # Largest force then, in N m; None without offset
+    # What Kp times the stiffness multiplies in the open loop: G, or that with an integral.
     forward: TransferFunction
 
 
@@ -70,18 +55,7 @@ def choose(task: Task, given: ForceControllerSpec) -> Choice:
 
 
 def analyze(task: Task, given: ForceControllerSpec, controller: Controller) -> ForceAnalysis:
-    """Close the loop in nominal contact, and measure it in all contacts.
-
-    Parameters
-    ----------
-    task, given, controller
-        As for `LawDesign`.
-
-    Raises
-    ------
-    DesignError
-        If the nominal loop is unstable.
-    """
+    """Close the loop in nominal contact, which must be stable, and measure it in all contacts."""
     goals = goals_of(task.spec, given, FORCE_MEASURES)
     stiffness = task.stiffness(given)
     gain = float(controller.law.gains["Kp"])

@@ -55,67 +55,37 @@ from nrs_design.switched.cut_loop import ContinuousAxis
 
 @dataclass(frozen=True)
 class ImpedanceAnalysis(AbstractControllerAnalysis):
-    """One impedance controller.
-
-    Parameters
-    ----------
-    name, achieved
-        As for `AbstractControllerAnalysis`.
-    given : ImpedanceControllerSpec
-        What the spec says of it.
-    problem : ImpedanceProblem
-        What was minimized.
-    optimum : ImpedanceOptimum
-        Before rounding.
-    Mt, Bt : float
-        As shipped, in kg m^2 and N m s/rad; a spring is that of the loop in the problem.
-    cost : float
-        Of the shipped gains.
-    requirement : Requirement
-        Its loops, and where they are looked at.
-    highest_stiffness : float
-        Upper end of the stiffness of the environment that it was designed for, in N m/rad.
-    lowest_limit : float
-        Smallest stiffness limit in N m/rad in the environment that it is designed for, over the
-        corners of all other ranges; NaN where it is not computed.
-    limit_at : str
-        The corner at which it is; its stiffness does not count.
-    stiff : tuple of Doubt
-        Contacts that are too stiff for the shipped gains.
-    creep : Creep or None
-        By the errors of the force signal, where the spec says how large they are.
-    band : PassiveBand or None
-        Where the displayed admittance is passive, exactly, over the ranges of gains and motor; None
-        for a sampled law.
-    sampled : tuple of SampledBand
-        The same for the law that is sampled, for every age of the force sample; empty where it is
-        not computed: without sampling, with two periods, a spring, a filter, late commands, or
-        ranges of gains or motor, and beside other axes.
-    lever_arm : float or None
-        Of everything that it touches, in m; None if there is none, or not the same for all.
-    responses : tuple of JudgedResponse
-        Goals for its frequency responses, and what is proved of them.
-    loops : tuple of RangedLoop
-        Over whose ranges margins can be proved; empty for a sampled law, a motor with a load, a
-        contact that is neither elastic nor Kelvin-Voigt, or more than two ranges at once.
-    """
+    """One impedance controller."""
 
     given: ImpedanceControllerSpec
-    problem: ImpedanceProblem
-    optimum: ImpedanceOptimum
+    problem: ImpedanceProblem  # What was minimized
+    optimum: ImpedanceOptimum  # Before rounding
+    # Mt, Bt: as shipped, in kg m^2 and N m s/rad; a spring is that of the loop in the problem.
     Mt: float
     Bt: float
-    cost: float
+    cost: float  # Of the shipped gains
     requirement: Requirement
+    # Upper end of the stiffness of the environment that it was designed for, in N m/rad.
     highest_stiffness: float
+    # Smallest stiffness limit in N m/rad in that environment, over the corners of all other ranges;
+    # NaN where it is not computed. The stiffness of its corner does not count.
     lowest_limit: float
     limit_at: str
-    stiff: tuple[Doubt, ...]
+    stiff: tuple[Doubt, ...]  # Contacts that are too stiff for the shipped gains
+    # By the errors of the force signal, where the spec says how large they are.
     creep: Creep | None = None
+    # Where the displayed admittance is passive, exactly, over the ranges of gains and motor; None
+    # for a sampled law.
     band: PassiveBand | None = None
+    # The same for the law that is sampled, for every age of the force sample; empty where it is not
+    # computed: without sampling, with two periods, a spring, a filter, late commands, or ranges of
+    # gains or motor, and beside other axes.
     sampled: tuple[SampledBand, ...] = ()
+    # Of everything that it touches, in m; None if there is none, or not the same for all.
     lever_arm: float | None = None
-    responses: tuple[JudgedResponse, ...] = ()
+    responses: tuple[JudgedResponse, ...] = ()  # Goals for its frequency responses, with proofs
+    # Over whose ranges margins can be proved; empty for a sampled law, a motor with a load, a
+    # contact that is neither elastic nor Kelvin-Voigt, or more than two ranges at once.
     loops: tuple[RangedLoop, ...] = ()
 
     @cached_property
@@ -170,18 +140,7 @@ def choose(task: Task, given: ImpedanceControllerSpec) -> Choice:
 def analyze(
     task: Task, given: ImpedanceControllerSpec, controller: Controller
 ) -> ImpedanceAnalysis:
-    """Compute cost, margins and stiffness limits, and measure the loop in all contacts.
-
-    Parameters
-    ----------
-    task, given, controller
-        As for `LawDesign`.
-
-    Raises
-    ------
-    DesignError
-        If the nominal loop is unstable.
-    """
+    """Compute cost, margins and stiffness limits, and measure the loop in all contacts."""
     shipped = controller.law.gains
     Mt, Bt = float(shipped["Mt"]), float(shipped["Bt"])
     requirement = requirement_of(task, given)
@@ -246,13 +205,7 @@ def _lever_arm(task: Task, given: ImpedanceControllerSpec) -> float | None:
 
 
 def _check_stable(requirement: Requirement, Mt: float, Bt: float) -> None:
-    """Refuse gains whose nominal loop is unstable: its margins would say nothing.
-
-    Raises
-    ------
-    DesignError
-        If it is, with what it is stable up to.
-    """
+    """Refuse gains whose nominal loop is unstable: its margins would say nothing."""
     for corner in requirement.nominal if requirement.axis is not None else ():
         if requirement.loops(corner, np.array([Mt]), np.array([Bt])).stable[0]:
             continue
@@ -340,17 +293,7 @@ def _sampled_bands(
 def too_stiff(
     task: Task, given: ImpedanceControllerSpec, controller: Controller
 ) -> Iterator[Doubt]:
-    """Yield the contacts that are too stiff for the gains, and what would hold.
-
-    Parameters
-    ----------
-    task : Task
-        What the gains were chosen for.
-    given : ImpedanceControllerSpec
-        What the spec says of the controller.
-    controller : Controller
-        With the gains that ship.
-    """
+    """Yield the contacts that are too stiff for the gains, and what would hold."""
     Mt, Bt = (float(controller.law.gains[gain]) for gain in ("Mt", "Bt"))
     requirement = requirement_of(task, given)
     yield from doubt_stiffness(controller.name, requirement, task.contacts(given), Mt, Bt)
@@ -362,17 +305,7 @@ DESIGN = LawDesign(choose, analyze, too_stiff)
 def impedance_problem(
     task: Task, given: ImpedanceControllerSpec, requirement: Requirement
 ) -> ImpedanceProblem:
-    """State the choice of one controller's virtual mass and damping as an optimization.
-
-    Parameters
-    ----------
-    task : Task
-        With the environment and the limits of torque, velocity and frequency.
-    given : ImpedanceControllerSpec
-        With bounds and weights.
-    requirement : Requirement
-        Which tells what is stable.
-    """
+    """State the choice of one controller's virtual mass and damping as an optimization."""
     return ImpedanceProblem(
         loop=ImpedanceLoop(
             task.motion,
@@ -392,15 +325,7 @@ def impedance_problem(
 
 
 def with_spring(given: ImpedanceControllerSpec, Kt: Fraction | None) -> ImpedanceControllerSpec:
-    """Return what a spec says of a controller, with a spring that was chosen.
-
-    Parameters
-    ----------
-    given : ImpedanceControllerSpec
-        What it says.
-    Kt : Fraction or None
-        The spring in SI units; None leaves it out.
-    """
+    """Return what a spec says of a controller, with a spring in SI that was chosen, or none."""
     if given.Kt is None or Kt is None:
         return given
     spring = Quantity(f"{exact_decimal(Kt)} {unit('N*m/rad')}", Kt, unit("N*m/rad"))
@@ -435,13 +360,7 @@ def desired_impedance(spec: InteractionDesignSpec, controller: ImpedanceControll
 
 
 def requirement_of(task: Task, given: ImpedanceControllerSpec) -> Requirement:
-    """Return the goals of one controller, and all that is needed to measure it.
-
-    Parameters
-    ----------
-    task, given
-        As for `impedance_problem`.
-    """
+    """Return the goals of one controller, and all that is needed to measure it."""
     gains = {name: _ends(gain) for name, gain in given.gains().items()}
     return Requirement(
         axis=task.axis,

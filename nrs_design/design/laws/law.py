@@ -58,15 +58,7 @@ class Task:
         gains: Mapping[str, tuple[Fraction, ...]] = MappingProxyType({}),
         spring: Fraction = Fraction(0),
     ) -> tuple[ContactCorner, ...]:
-        """Return where a controller is measured.
-
-        Parameters
-        ----------
-        given : ControllerSpec
-            What the spec says of it.
-        gains, spring
-            As for `nrs_design.design.goals.corners_of`.
-        """
+        """Return where a controller is measured."""
         assert given.environment is not None  # Of a controller with contact.
         places = (Place(self.plant.actuator),) if self.axis is None else self.axis.places
         return corners_of(self.contacts(given), given.environment, gains, places, spring)
@@ -141,13 +133,7 @@ class LawDesign:
 
 
 def choose_given(task: Task, given: ControllerSpec) -> Choice:
-    """Return the law with the gains that the spec fixes.
-
-    Raises
-    ------
-    DesignError
-        If the spec leaves one open: nothing chooses it.
-    """
+    """Return the law with the gains that the spec fixes; one left open is a `DesignError`."""
     law, gains = LAWS[given.type], dict[str, Fraction]()
     for name in law.gains_in(given):
         value = getattr(given, law.fixed.get(name, name))
@@ -186,17 +172,7 @@ def to_transfer_function(loop: MotionLoop) -> TransferFunction:
 def goals_of(
     spec: InteractionDesignSpec, controller: ControllerSpec, measures: tuple[Measure, ...]
 ) -> tuple[tuple[Measure, float], ...]:
-    """Return the goals of one controller: the spec's own, replaced by those of the controller.
-
-    Parameters
-    ----------
-    spec : InteractionDesignSpec
-        With the goals for all controllers.
-    controller : ControllerSpec
-        One of the spec's.
-    measures : tuple of Measure
-        What this law is measured by.
-    """
+    """Return the goals of one controller: the spec's own, replaced by those of the controller."""
     given: dict[str, Quantity | Fraction] = {}
     for goals in (spec.goals, controller.goals):
         found = goals.given() if goals is not None else ()

@@ -28,15 +28,7 @@ _NEAR = 1e-6
 
 
 def with_integral(motion: TransferFunction, zero: float) -> TransferFunction:
-    """Return ``(s + zero)/s G(s)``.
-
-    Parameters
-    ----------
-    motion : TransferFunction
-        Closed motion loop G.
-    zero : float
-        ``Ki/Kp``, 1/s.
-    """
+    """Return ``(s + zero)/s G(s)``; the zero is ``Ki/Kp`` in 1/s."""
     numerator = np.polymul(motion.numerator, (1.0, zero))
     return TransferFunction(tuple(map(float, numerator)), (*motion.denominator, 0.0))
 
@@ -46,23 +38,8 @@ def integral_gain(
 ) -> float:
     """Return the Ki in rad/(N m s) that puts the slowest pole at ``p = -4/settling_time``.
 
-    ``1 + k (Kp + Ki/p) G(p) = 0``, so ``Ki = -p (Kp + 1/(k G(p)))``.
-
-    Parameters
-    ----------
-    motion : TransferFunction
-        Closed motion loop G.
-    stiffness : float
-        Stiffness k of the environment, N m/rad.
-    gain : float
-        ``Kp``, rad/(N m).
-    settling_time : float
-        In s.
-
-    Raises
-    ------
-    DesignError
-        If that pole would not be the slowest one.
+    ``1 + k (Kp + Ki/p) G(p) = 0``, so ``Ki = -p (Kp + 1/(k G(p)))``, with k in N m/rad and the time
+    in s. Where that pole would not be the slowest one, it is a `DesignError`.
     """
     pole = -_SETTLED / settling_time
     G = np.polyval(motion.numerator, pole) / np.polyval(motion.denominator, pole)
@@ -96,18 +73,7 @@ def choose(task: Task, given: IntegralControllerSpec) -> Choice:
 
 
 def analyze(task: Task, given: IntegralControllerSpec, controller: Controller) -> ForceAnalysis:
-    """Close the loop in nominal contact, and measure it in all contacts.
-
-    Parameters
-    ----------
-    task, given, controller
-        As for `LawDesign`.
-
-    Raises
-    ------
-    DesignError
-        If the nominal loop is unstable.
-    """
+    """Close the loop in nominal contact, which must be stable, and measure it in all contacts."""
     Kp, Ki = (float(controller.law.gains[name]) for name in ("Kp", "Ki"))
     motion = with_integral(task.motion, Ki / Kp)
     goals = goals_of(task.spec, given, MARGINS)

@@ -15,27 +15,16 @@ from nrs_design.spec.controllers import TorqueImpedanceSpec
 
 @dataclass(frozen=True)
 class TorqueAnalysis(AbstractControllerAnalysis):
-    """One controller that makes torques.
+    """One controller that makes torques; no goals are measured."""
 
-    Parameters
-    ----------
-    name, achieved
-        As for `AbstractControllerAnalysis`; no goals are measured.
-    wall : Wall
-        The nominal joint and the processor.
-    Kp, B : float
-        Stiffness in N m/rad and damping in N m s/rad as the processor holds them.
-    border : float
-        The stiffness up to which this damping is stable in the air, nominal, in N m/rad.
-    margin : Fraction or None
-        By how much the least friction is above what passivity takes, exactly, in N m s/rad; None
-        where the condition is not known.
-    """
-
-    wall: Wall
+    wall: Wall  # The nominal joint and the processor
+    # Kp, B: stiffness in N m/rad and damping in N m s/rad as the processor holds them.
     Kp: float
     B: float
+    # The stiffness up to which this damping is stable in the air, nominal, in N m/rad.
     border: float
+    # By how much the least friction is above what passivity takes, exactly, in N m s/rad; None
+    # where the condition is not known.
     margin: Fraction | None
 
     @property
@@ -47,17 +36,7 @@ class TorqueAnalysis(AbstractControllerAnalysis):
 
 
 def analyze(task: Task, given: TorqueImpedanceSpec, controller: Controller) -> TorqueAnalysis:
-    """Return what a controller makes of its joint.
-
-    Parameters
-    ----------
-    task : Task
-        With the drive and the processor.
-    given : TorqueImpedanceSpec
-        What the spec says of the controller.
-    controller : Controller
-        With the gains that ship.
-    """
+    """Return what a controller makes of its joint."""
     drive, sampling = task.plant.drive, task.spec.sampling
     assert drive is not None, "such a controller has a robot that takes torques"
     assert sampling is not None, "such a robot is modelled in the sampled loop"

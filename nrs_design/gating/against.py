@@ -39,13 +39,7 @@ _VERDICTS = ("proved", "inconclusive", "refuted")
 
 
 def base_paths(paths: Sequence[Path], base: Path) -> tuple[Path, ...]:
-    """Return the places of these paths in the base, as far as they exist there.
-
-    Raises
-    ------
-    NrsDesignError
-        If the base is no folder, or a path is not below this one.
-    """
+    """Return the places of these paths in the base, as far as they exist there."""
     if not base.is_dir():
         remedy = "name a checkout of the base branch"
         raise NrsDesignError("is not a folder", path=base, remedy=remedy)
@@ -73,24 +67,7 @@ def base_paths(paths: Sequence[Path], base: Path) -> tuple[Path, ...]:
 def compare_with_base(
     outcome: GateOutcome, paths: Sequence[Path], base: Path, lock: Path
 ) -> GateOutcome:
-    """Add what is weaker as obligations that are not fulfilled, and list what else has changed.
-
-    Parameters
-    ----------
-    outcome : GateOutcome
-        Of the specs here.
-    paths : sequence of Path
-        That were named.
-    base : Path
-        The other folder.
-    lock : Path
-        Lock file here; that of the base is at the same place there.
-
-    Raises
-    ------
-    NrsDesignError
-        If the base cannot be read.
-    """
+    """Add what is weaker as obligations that are not fulfilled, and list what else has changed."""
     there = find_specs_if_any(base_paths(paths, base))
     entries = _locked(base, lock)
     here = {Path(os.path.relpath(spec.path)): spec for spec in outcome.specs}

@@ -79,20 +79,9 @@ class Examiner:
         message: str,
         place: Position | tuple[str | int, ...],
     ) -> Obligation:
-        """Return an obligation about something in this spec.
+        """Return an obligation about something in this spec; its message is one line.
 
-        Parameters
-        ----------
-        rule : Rule
-            What must hold.
-        subject : str
-            For what.
-        status : Status
-            How it ended.
-        message : str
-            What was found; one line.
-        place : Position or tuple of str or int
-            Where in the spec: line and column, or the keys that lead there.
+        A place is a line and column, or the keys that lead there.
         """
         at = self.places.at(*place) if isinstance(place, tuple) else place
         return Obligation(rule, self.loaded.path, subject, status, message, at.line, at.column)
@@ -112,14 +101,7 @@ class Examiner:
     ) -> SpecOutcome:
         """Return what was found about a spec whose switched system was decided.
 
-        Parameters
-        ----------
-        decided : Certification or Certificate
-            The verdict, with the system and all statements.
-        file, certificate
-            What was written or re-checked; None if nothing was shown.
-        obligations, cautions : iterable
-            All that was found.
+        File and certificate are what was written or re-checked; None if nothing was shown.
         """
         rate, rate_name = certified_rate(certificate)
         return SpecOutcome(
@@ -143,16 +125,9 @@ class Examiner:
     def stability(
         self, system: SwitchedSystem, statements: Sequence[AbstractEvidence], searched: str
     ) -> tuple[Obligation, ...]:
-        """Return NRS101 for every mode, and NRS102 for the system.
+        """Return NRS101 for every mode, and NRS102 for the system, from checked statements.
 
-        Parameters
-        ----------
-        system : SwitchedSystem
-            Assembled from the spec.
-        statements : sequence of AbstractEvidence
-            Checked.
-        searched : str
-            What was tried, for the message of an inconclusive verdict.
+        What was searched is for the message of an inconclusive verdict.
         """
         evidence = deciding(system, statements)
         proved = evidence is not None and evidence.shows is Shows.STABILITY

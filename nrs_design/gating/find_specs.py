@@ -21,19 +21,12 @@ _KIND = re.compile(
 
 
 def find_specs(paths: Iterable[Path]) -> tuple[Path, ...]:
-    """List the spec files of files and folders, sorted, each once.
+    """List the spec files of files and folders, sorted, each once; a folder must have one.
 
     A folder stands for all ``*.nrs.yaml`` and ``*.nrs.yml`` below it, in capitals too. Hidden
     folders and links to folders are passed over; `find_passed_over` lists them, and
     `find_misnamed` what seems to be a spec by another name. A file is taken
     as it is named, whether it exists or not: reading it is where that shows.
-
-    Raises
-    ------
-    NrsDesignError
-        If a folder has no spec, because a gate over nothing would pass.
-    SpecError
-        If a link in a folder leads to a spec outside of it.
     """
     found: dict[str, Path] = {}
     for path in paths:

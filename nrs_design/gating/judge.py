@@ -18,23 +18,9 @@ if TYPE_CHECKING:
 def judge_margins(
     result: Result, examiner: Examiner, progress: Progress
 ) -> tuple[DesignAnalysis | None, tuple[Obligation, ...]]:
-    """Analyze a design, and return how its goals and stiffness ranges end.
+    """Analyze a design, and return how its goals and stiffness ranges end: NRS103, NRS106, NRS112.
 
-    Parameters
-    ----------
-    result : Result
-        Of the certification.
-    examiner : Examiner
-        Of the same spec.
-    progress : callable
-        Told the name of each step.
-
-    Returns
-    -------
-    DesignAnalysis or None
-        None for given matrices, and where a nominal loop is unstable.
-    tuple of Obligation
-        NRS103, NRS106 and NRS112.
+    No analysis for given matrices, and where a nominal loop is unstable.
     """
     if result.designed is None:
         return None, ()
@@ -48,17 +34,7 @@ def judge_margins(
 
 
 def judge_scenarios(result: Result, examiner: Examiner, progress: Progress) -> Iterator[Obligation]:
-    """Simulate the scenarios that have limits, and yield how they end.
-
-    Parameters
-    ----------
-    result : Result
-        Of the certification.
-    examiner : Examiner
-        Of the same spec.
-    progress : callable
-        Told the name of each step.
-    """
+    """Simulate the scenarios that have limits, and yield how they end."""
     if result.designed is None:
         return
     limited = [n for n, one in result.designed.spec.scenarios.items() if one.limits is not None]

@@ -163,13 +163,7 @@ def read_lock_if_any(file: Path) -> Lock:
 
 
 def read_lock(file: Path) -> Lock:
-    """Read a lock file.
-
-    Raises
-    ------
-    CertificateError
-        If it is missing, is not a lock file, or is larger than any.
-    """
+    """Read a lock file; a missing, foreign or oversized one is a `CertificateError`."""
     remedy = "make it with nrs-design gate, without --locked"
     try:
         document = json.loads(read_json_text(_read_bytes(file)), object_pairs_hook=unique_keys)

@@ -44,24 +44,8 @@ def run_locked(
 ) -> GateOutcome:
     """Re-check every spec against the lock file, exactly and without any solver.
 
-    Parameters
-    ----------
-    specs : sequence of Path
-        As `nrs_design.gating.find_specs.find_specs` lists them.
-    lock : Lock
-        What was locked.
-    file : Path
-        Where the lock file is; paths in it are relative to it.
-    progress : callable
-        Told the name of each step.
-    named : sequence of Path
-        The files and folders that were to be examined.
-
-    Returns
-    -------
-    GateOutcome
-        Locked specs that no longer exist are part of it, and so are those below a named folder
-        that were not examined. Those that exist elsewhere are only noted.
+    Paths in the lock are relative to it. Locked specs that no longer exist are part of the outcome,
+    and so are those below a named folder that were not examined; those elsewhere are only noted.
     """
     entries = {entry.path: entry for entry in lock.specs}
     outcomes = []

@@ -146,17 +146,7 @@ class GateOutcome:
 
 
 def failed(path: Path, error: Exception, sha256: str | None = None) -> SpecOutcome:
-    """Return the outcome of a spec that an error stopped; an unforeseen one is a defect.
-
-    Parameters
-    ----------
-    path : Path
-        The spec, as it was named.
-    error : Exception
-        What stopped it.
-    sha256 : str, optional
-        Hash of the spec, if it could be read.
-    """
+    """Return the outcome of a spec that an error stopped; an unforeseen one is a defect."""
     if isinstance(error, NrsDesignError):
         obligation = of_error(path, error)
     else:

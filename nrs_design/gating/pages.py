@@ -34,14 +34,7 @@ _PACKAGE = Path(__file__).parents[1]
 def made_of(result: Result, limits: Limits, origin: str) -> str:
     """Return the hash of everything that a page follows from, in hexadecimal.
 
-    Parameters
-    ----------
-    result : Result
-        What was found about the spec just now.
-    limits : Limits
-        How far the searches went, on which the other findings of a page depend.
-    origin : str
-        Where the spec is, seen from the page.
+    The limits of the searches are part of it; the origin is the spec as seen from the page.
     """
     loaded, found = result.loaded, result.certification
     said = [
@@ -70,15 +63,7 @@ def is_current(page: Path, made: str) -> bool:
 
 
 def note_page(page: Path, made: str) -> None:
-    """Note beside a page what it was made of.
-
-    Parameters
-    ----------
-    page : Path
-        Just written.
-    made : str
-        As `made_of` gives it.
-    """
+    """Note beside a page what it was made of."""
     write_output(_note_of(page), _noted(made, page.read_bytes()), replaces=PAGE_NOTE)
 
 

@@ -7,13 +7,7 @@ from nrs_design.spec.document import Mapping, Node, Position, Sequence
 
 
 class Places:
-    """Lines and columns of a spec.
-
-    Parameters
-    ----------
-    loaded : LoadedSpec
-        The spec.
-    """
+    """Lines and columns of a spec."""
 
     def __init__(self, loaded: LoadedSpec) -> None:
         self._root = loaded.root

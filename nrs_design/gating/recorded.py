@@ -13,10 +13,7 @@ from nrs_design.spec.scenarios import ScenarioSpec
 def hash_recorded(loaded: LoadedSpec) -> Mapping[str, str]:
     """Return the SHA-256 of every file that scenarios with limits follow, by its name in the spec.
 
-    Parameters
-    ----------
-    loaded : LoadedSpec
-        The spec; files are below its folder. One that cannot be read is left out.
+    Files are below its folder; one that cannot be read is left out.
     """
     return _hashes(loaded, recorded_files(loaded))
 

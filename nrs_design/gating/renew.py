@@ -40,23 +40,8 @@ def write_lock(outcome: GateOutcome, file: Path, *, prune: bool = False) -> Gate
     """Renew the entries of the specs that were examined, keep the others, and note it.
 
     A spec that has no verdict now keeps its entry if it has not changed: what was locked is
-    re-checked exactly.
-
-    Parameters
-    ----------
-    outcome : GateOutcome
-        What was found now.
-    file : Path
-        Lock file; made if it does not exist.
-    prune : bool
-        Drop the entries of specs that no longer exist.
-
-    Raises
-    ------
-    OutputError
-        If it cannot be written, or another run has replaced a certificate meanwhile.
-    CertificateError
-        If the file that is there is not a lock file.
+    re-checked exactly. `prune` drops the entries of specs that no longer exist. A certificate that
+    another run has replaced meanwhile is an `OutputError`.
     """
     for spec in outcome.specs:
         if spec.certificate is not None:
@@ -143,13 +128,7 @@ def bounds_of(lock: Lock) -> Mapping[str, LockedGoal]:
 
 
 def check_folder(folder: Path, file: Path) -> None:
-    """Refuse a folder for certificates that a lock file could not name.
-
-    Raises
-    ------
-    OutputError
-        If it is not below the folder of the lock file.
-    """
+    """Refuse a folder for certificates that a lock file could not name."""
     if relative_to_lock(folder, file).partition("/")[0] == "..":
         raise OutputError(
             f"certificates must be below the folder of the lock file {file}",

@@ -74,13 +74,7 @@ class Files:
         return self.folder / f"{name}.html"
 
     def check_owner(self, spec: Path, name: str) -> None:
-        """Refuse to write files of that name where they are those of another spec.
-
-        Raises
-        ------
-        OutputError
-            If they are.
-        """
+        """Refuse to write files of that name where they are those of another spec."""
         check_owner(spec, name, self.folder)
         file = self.certificate(name)
         owner = self.locked.get(Path(os.path.realpath(file)))
@@ -133,23 +127,7 @@ def run_gate(
 ) -> GateOutcome:
     """Design and certify every spec, and write its certificate and report.
 
-    Parameters
-    ----------
-    specs : sequence of Path
-        As `nrs_design.gating.find_specs.find_specs` lists them.
-    files : Files
-        Where to write.
-    progress : callable
-        Told the name of each step.
-    overrides : Overrides, optional
-        How far the searches go, over what each spec says.
-    jobs : int
-        How many processes; the outcome is the same for any number.
-
-    Returns
-    -------
-    GateOutcome
-        A spec that fails is part of it, and does not keep the others from being examined.
+    A spec that fails is part of the outcome, which is the same for any number of jobs (processes).
     """
     read = [_read(path) for path in specs]
     valid = [item for item in read if isinstance(item, LoadedSpec)]

@@ -95,20 +95,8 @@ def find_blocked(
 ) -> Blocked | None:
     """Find which lines of a spec keep it from being proved; None unless it is inconclusive.
 
-    Parameters
-    ----------
-    result : Result
-        Of the spec as it stands.
-    limits : Limits, optional
-        How far the search went; less than half of its budget is spent here. The decay rate is not
-        optimized, and no bound under disturbances is looked for.
-    progress : callable
-        Told each change before it is tried.
-
-    Raises
-    ------
-    ClockError
-        If the clock stopped a search.
+    Less than half of the budget of the limits is spent. The decay rate is not optimized, and no
+    bound under disturbances is looked for.
     """
     if result.certification.verdict is not Verdict.INCONCLUSIVE:
         return None
@@ -144,12 +132,7 @@ class _Search:
     ) -> tuple[Proved, ...]:
         """Return what is proved when one line asks for less, the least given up first.
 
-        Parameters
-        ----------
-        lines : sequence of Concession
-            Each is changed alone.
-        find, stretch : float
-            Work in all up to which they are found, and up to which it is found how far they go.
+        Lines are found up to the work `find`, and how far they go up to the work `stretch`, in all.
         """
         blocking = []
         for left, line in zip(range(len(lines), 0, -1), lines, strict=True):
@@ -308,15 +291,7 @@ def _same_search(one: SwitchedSystem, other: SwitchedSystem) -> bool:
 
 
 def blocked_lines(blocked: Blocked, path: Path) -> tuple[str, ...]:
-    """Say what keeps a spec from being proved, in at most five lines.
-
-    Parameters
-    ----------
-    blocked : Blocked
-        As `find_blocked` finds it.
-    path : Path
-        The spec, as it was named.
-    """
+    """Say what keeps a spec from being proved, in at most five lines."""
     some = counted(blocked.tried, "line")
     some += f" out of {blocked.lines}" if blocked.tried < blocked.lines else ""
     if not blocked.proved:

@@ -63,17 +63,7 @@ class Overrides:
 def search_limits(
     spec: Spec, overrides: Overrides | None = None, optimize_rate: bool = True
 ) -> Limits:
-    """Return how far the search goes: by default, as the spec says, or as a command sets it.
-
-    Parameters
-    ----------
-    spec : Spec
-        Whose `certification` section counts.
-    overrides : Overrides, optional
-        What a command sets instead.
-    optimize_rate : bool
-        Look for the largest provable decay rate, not only for some.
-    """
+    """Return how far the search goes: by default, as the spec says, or as a command sets it."""
     limits, asked = Limits(optimize_rate=optimize_rate), overrides or Overrides()
     declared = None if spec.kind == "robot" else spec.certification
     for said in (declared, asked):
@@ -94,27 +84,10 @@ def run_certification(
     limits: Limits | None = None,
     progress: Progress = silent,
 ) -> Result:
-    """Take a spec all the way to a verdict.
+    """Take a spec all the way to a verdict; method and limits are by default as the spec says.
 
-    Parameters
-    ----------
-    loaded : LoadedSpec
-        As `nrs_design.spec.read_spec` gives it.
-    method : Method
-        One rung of the search, or all of them in turn.
-    coordinates : {"deflection", "force"}, optional
-        Overrides what the spec says.
-    limits : Limits, optional
-        How far the searches go; by default as the spec says.
-    progress : callable
-        Told the name of each step.
-
-    Raises
-    ------
-    DesignError, AssemblyError
-        If the spec has no design, or its modes make no switched system.
-    ClockError
-        If the clock stopped the search.
+    A spec without a design is a `DesignError`, modes that make no switched system are an
+    `AssemblyError`, and a search that the clock stopped is a `ClockError`.
     """
     from nrs_design.search.certify import certify
 
@@ -131,19 +104,7 @@ def certificate_of(
     coordinates: str | None,
     certification: Certification,
 ) -> Certificate | None:
-    """Return what may be written to a file; None if nothing was shown.
-
-    Parameters
-    ----------
-    loaded : LoadedSpec
-        The spec.
-    designed : Designed or None
-        Its gains; None for given matrices.
-    coordinates : str or None
-        Of the contact.
-    certification : Certification
-        What was shown of its system.
-    """
+    """Return what may be written to a file; None if nothing was shown."""
     if not certification.statements:
         return None
     return Certificate(
@@ -160,22 +121,7 @@ def certificate_of(
 def run_recorded(loaded: LoadedSpec, file: Path, progress: Progress = silent) -> Result:
     """Take the verdict of a certificate file, checked exactly, instead of searching.
 
-    Parameters
-    ----------
-    loaded : LoadedSpec
-        As `nrs_design.spec.read_spec` gives it.
-    file : Path
-        Certificate of that spec.
-    progress : callable
-        Told the name of each step.
-
-    Raises
-    ------
-    DesignError, AssemblyError
-        If the spec has no design, or its modes make no switched system.
-    CertificateError
-        If the file is no certificate, does not hold for this spec, or has other gains than are
-        designed here.
+    One that does not hold for this spec, or has other gains, is a `CertificateError`.
     """
     progress("design")
     designed = run_design(loaded)
@@ -191,17 +137,7 @@ def run_recorded(loaded: LoadedSpec, file: Path, progress: Progress = silent) ->
 
 
 def recorded_certification(kept: Certificate, file: Path, seconds: float = 0.0) -> Certification:
-    """Return what a certificate that was checked shows, as if it had been found just now.
-
-    Parameters
-    ----------
-    kept : Certificate
-        Checked exactly.
-    file : Path
-        That holds it.
-    seconds : float
-        That the check took.
-    """
+    """Return what a certificate that was checked shows, as if it had been found just now."""
     from nrs_design.certificates.certificate import verdict_of
     from nrs_design.search.family import floats_in_silence
     from nrs_design.search.rate_limit import rate_limit
@@ -223,22 +159,7 @@ def recorded_certification(kept: Certificate, file: Path, seconds: float = 0.0) 
 def read_valid_certificate(
     file: Path, loaded: LoadedSpec, designed: Designed | None
 ) -> Certificate:
-    """Return what a certificate file holds, checked exactly against its spec.
-
-    Parameters
-    ----------
-    file : Path
-        The certificate.
-    loaded : LoadedSpec
-        The spec.
-    designed : Designed or None
-        Whose plant is in hand.
-
-    Raises
-    ------
-    CertificateError
-        If it is no certificate, or does not hold for this spec.
-    """
+    """Return what a certificate file holds, checked exactly against its spec."""
     from nrs_design.certificates.verify import verify
 
     found = verify(file, loaded, plant=None if designed is None else designed.plant)
@@ -253,31 +174,7 @@ def run_comparison(
     coordinates: str | None = None,
     progress: Progress = silent,
 ) -> tuple[SwitchedSystem, tuple[MethodRun, ...]]:
-    """Compare the gradient iteration with the LMI on the modes of a spec.
-
-    Parameters
-    ----------
-    loaded : LoadedSpec
-        As `nrs_design.spec.read_spec` gives it.
-    limits : Limits
-        How far each search goes.
-    coordinates : {"deflection", "force"}, optional
-        Overrides what the spec says.
-    progress : callable
-        Told the name of each step.
-
-    Returns
-    -------
-    SwitchedSystem
-        The exact modes.
-    tuple of MethodRun
-        The LMI first.
-
-    Raises
-    ------
-    DesignError, AssemblyError
-        If the spec has no design, or its modes make no switched system that both methods are for.
-    """
+    """Compare the LMI, which comes first, with the gradient iteration on the exact modes."""
     from nrs_design.search.certify import certify
     from nrs_design.search.comparison import compare_methods
 
@@ -307,15 +204,7 @@ def gains_text(designed: Designed | None) -> Gains:
 
 
 def is_of_gains(gains: Gains, designed: Designed | None) -> bool:
-    """Tell whether gains, such as those of a certificate, are those that a design ships.
-
-    Parameters
-    ----------
-    gains : mapping
-        As `gains_text` gives them.
-    designed : Designed or None
-        The design; None for given matrices.
-    """
+    """Tell whether gains, such as those of a certificate, are those that a design ships."""
     return {name: dict(own) for name, own in gains.items()} == gains_text(designed)
 
 
@@ -325,24 +214,7 @@ def assemble_spec(
     coordinates: str | None,
     scale: Fraction = Fraction(1),
 ) -> SwitchedSystem:
-    """Assemble either kind of spec, with its ranges stretched by a scale.
-
-    Parameters
-    ----------
-    loaded : LoadedSpec
-        The spec and where it came from.
-    designed : Designed or None
-        Its plant and gains; None for given matrices.
-    coordinates : {"deflection", "force"} or None
-        Of the contact; None for given matrices.
-    scale : Fraction
-        Of each range about its nominal value.
-
-    Raises
-    ------
-    AssemblyError
-        If the modes make no switched system.
-    """
+    """Assemble either kind of spec, with its ranges stretched by a scale."""
     from nrs_design.switched.assemble import assemble, assemble_matrices
 
     if designed is not None:
@@ -357,10 +229,7 @@ def assemble_spec(
 def run_verification(file: Path, result: Result) -> Verification:
     """Re-check a certificate file against the spec of a result, whose plant is in hand.
 
-    Raises
-    ------
-    CertificateError
-        If the file cannot be read as a certificate at all.
+    What cannot be read as a certificate at all is a `CertificateError`.
     """
     from nrs_design.certificates.verify import verify
 

@@ -83,13 +83,7 @@ class CertifiedOptimum:
 
 
 def steering_goals(designed: Designed, analysis: DesignAnalysis) -> tuple[str, ...]:
-    """Return the goals that gains can be steered by; none where no gain is free.
-
-    Parameters
-    ----------
-    designed, analysis
-        The spec, and what its design achieves.
-    """
+    """Return the goals that gains can be steered by; none where no gain is free."""
     goals = designed.spec.goals
     given = [] if goals is None else [key for key, _ in goals.given()]
     return tuple(key for key in STEERING if key in given and has_free_gains(designed, analysis))
@@ -101,27 +95,11 @@ def run_certified_optimum(
     progress: Progress = silent,
     name: str | None = None,
 ) -> CertifiedOptimum:
-    """Choose the free gains of all controllers at once, with their proof.
+    """Choose the free gains of all controllers at once, with their proof; at least one goal steers.
 
     Where a mass may be zero, the best without masses and the best with them are compared: without,
     a force acts at once, else a sample later. A goal `delay` beyond what the spec declares is
-    declared in the spec that is proved.
-
-    Parameters
-    ----------
-    designed, analysis
-        The spec, and what its free optimum achieves. At least one goal steers.
-    progress : callable
-        Told what is done.
-    name : str, optional
-        What the spec with these gains is called; by default as it is.
-
-    Raises
-    ------
-    DesignError
-        If no gains within the bounds are proved to meet the goals; it names the nearest.
-    AssemblyError
-        If the modes make no switched system.
+    declared in the spec that is proved. Where none are proved, the `DesignError` names the nearest.
     """
     with placed(designed.loaded):
         if (age := wanted_age(designed)) is None:
@@ -135,44 +113,19 @@ def run_certified_optimum(
 def cheapest_gains(
     gains: FreeGains, progress: Progress, name: str | None = None
 ) -> CertifiedOptimum:
-    """Choose the gains of one branch, with their proof.
-
-    Parameters
-    ----------
-    gains : FreeGains
-        Those that are free, with the spec, whose goals are met.
-    progress, name
-        As for `run_certified_optimum`.
-
-    Raises
-    ------
-    DesignError
-        If none within the bounds are proved to meet the goals.
-    """
+    """Choose the gains of one branch, with their proof."""
     return _Search(gains, progress, name).run()
 
 
 def meets_goals(result: Result) -> bool:
-    """Tell whether a spec is proved, with the goals that steer; its ages of the force are its own.
-
-    Parameters
-    ----------
-    result : Result
-        Of the spec with chosen gains.
-    """
+    """Tell whether a spec is proved, with the goals that steer, for its own ages of the force."""
     goals = certified_goals(result.loaded.spec, result.certificate)
     proved = result.certification.verdict is Verdict.PROVED
     return proved and all(goal.met for goal in goals if goal.key in STEERING[:-1])
 
 
 def check_steerable(designed: Designed) -> None:
-    """Refuse what no form for all modes could prove, whatever the gains.
-
-    Raises
-    ------
-    DesignError
-        If one form is no proof.
-    """
+    """Refuse what no form for all modes could prove, whatever the gains."""
     from nrs_design.search.rate_slope import may_have_slope
 
     if not may_have_slope(assemble_spec(designed.loaded, designed, designed.spec.coordinates)):

@@ -38,17 +38,7 @@ class CertifiedRate:
 def hold_bounds(
     designed: Designed, certificate: Certificate, simulated: Simulated
 ) -> tuple[CertifiedBound, ...]:
-    """Return the certified bounds with the reasons why they do not apply to a run.
-
-    Parameters
-    ----------
-    designed : Designed
-        The spec and its plant.
-    certificate : Certificate
-        Checked, of that spec.
-    simulated : Simulated
-        A run of that spec.
-    """
+    """Return the certified bounds with the reasons why they do not apply to a run."""
     from nrs_design.proof.bounds import upper_float
     from nrs_design.simulation.coverage import uncovered
 
@@ -67,13 +57,7 @@ def hold_bounds(
 def hold_rate(
     designed: Designed, certificate: Certificate, simulated: Simulated
 ) -> CertifiedRate | None:
-    """Return the certified rate, if any, with the reasons why it does not apply to a run.
-
-    Parameters
-    ----------
-    designed, certificate, simulated
-        As `hold_bounds` takes them.
-    """
+    """Return the certified rate, if any, with the reasons why it does not apply to a run."""
     from nrs_design.proof.bounds import lower_float, upper_float
     from nrs_design.proof.evidence.abstract import Shows
     from nrs_design.proof.mode import Time

@@ -11,13 +11,7 @@ from nrs_design.design.cost_bound import CostBound, bound_cost, why_no_bound
 def run_cost_bounds(chosen: DesignAnalysis, shipped: DesignAnalysis) -> dict[str, CostBound | str]:
     """Bound the least cost of each impedance controller, or say why it is not bounded.
 
-    Parameters
-    ----------
-    chosen : DesignAnalysis
-        Of the spec, with the bounds of its gains.
-    shipped : DesignAnalysis
-        The same, or of the gains that were chosen by goals of a certificate. The bound is about its
-        loop, which `design.free` may have changed.
+    The bound is about the loop of what ships, which `design.free` may have changed.
     """
     found: dict[str, CostBound | str] = {}
     for item, own in zip(chosen.impedance, shipped.impedance, strict=True):

@@ -68,17 +68,7 @@ def _ask_first(error: DesignError, loaded: LoadedSpec) -> None:
 
 
 def wrong_kind(loaded: LoadedSpec, message: str, remedy: str) -> DesignError:
-    """Return the error for a spec of a kind that a command does not take.
-
-    Parameters
-    ----------
-    loaded : LoadedSpec
-        The spec.
-    message : str
-        What is wrong.
-    remedy : str
-        What to do about it.
-    """
+    """Return the error for a spec of a kind that a command does not take."""
     place = loaded.place("kind")
     return DesignError(
         message, path=loaded.path, line=place.line, column=place.column, remedy=remedy
@@ -88,17 +78,7 @@ def wrong_kind(loaded: LoadedSpec, message: str, remedy: str) -> DesignError:
 def interaction_of(loaded: LoadedSpec, lacks: str) -> InteractionDesignSpec:
     """Return an interaction design, for what needs one.
 
-    Parameters
-    ----------
-    loaded : LoadedSpec
-        The spec.
-    lacks : str
-        Why a spec of another kind does not do, such as ``has nothing to tune``.
-
-    Raises
-    ------
-    DesignError
-        If the spec is of another kind.
+    `lacks` is why another kind does not do, such as ``has nothing to tune``.
     """
     spec = loaded.spec
     if spec.kind == "interaction-design":
@@ -119,13 +99,7 @@ def run_interaction(loaded: LoadedSpec, lacks: str) -> Designed:
 
 
 def run_design(loaded: LoadedSpec) -> Designed | None:
-    """Build the plant of a spec and design its controllers; None for given matrices.
-
-    Raises
-    ------
-    DesignError
-        If a requirement cannot be met within its bounds, or the spec describes a robot only.
-    """
+    """Build the plant of a spec and design its controllers; None for given matrices."""
     if loaded.spec.kind == "robot":
         raise wrong_kind(
             loaded,
@@ -161,13 +135,7 @@ def run_with_gains(loaded: LoadedSpec, design: ControllerDesign) -> Designed:
 
 
 def run_analysis(designed: Designed) -> DesignAnalysis:
-    """Compute what a design achieves.
-
-    Raises
-    ------
-    DesignError
-        If a nominal loop is unstable, so that it has no margins.
-    """
+    """Compute what a design achieves; an unstable nominal loop is a `DesignError`."""
     from nrs_design.design.analysis import analyze_design
 
     with placed(designed.loaded):

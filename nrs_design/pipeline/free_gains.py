@@ -93,11 +93,6 @@ class FreeGains:
         """Return the point of the least cost, whatever a proof shows of it.
 
         Gains that ``design.free`` names are looked at near what the spec gives.
-
-        Raises
-        ------
-        DesignError
-            If no gains within the bounds meet the goals of a controller.
         """
         from nrs_design.design.constrained import optimize_with_goals
 
@@ -164,31 +159,12 @@ class FreeGains:
         return replace(own, motion=motion, controllers=tuple(controllers))
 
     def system(self, x: Array, plant: Plant | None = None) -> SwitchedSystem:
-        """Assemble the modes with the single-precision gains next to a point.
-
-        Parameters
-        ----------
-        x : ndarray
-            The point.
-        plant : Plant, optional
-            By default that of the spec.
-
-        Raises
-        ------
-        AssemblyError
-            If they make no switched system.
-        """
+        """Assemble the modes with the single-precision gains next to a point."""
         designed = replace(self.designed, design=self.design(x), plant=plant or self.designed.plant)
         return assemble_spec(designed.loaded, designed, designed.spec.coordinates)
 
     def roundings(self, x: Array) -> Iterator[tuple[Array, Written]]:
-        """Yield points near one as a spec may give them, and what it says then.
-
-        Parameters
-        ----------
-        x : ndarray
-            The point.
-        """
+        """Yield points near one as a spec may give them, and what it says then."""
         digits = self.designed.spec.design.significant_digits
         pairs = zip(self.coordinates, x, strict=True)
         for near in product(*(one.near(float(value), digits) for one, value in pairs)):
@@ -338,13 +314,7 @@ def free_names(item: ImpedanceAnalysis) -> tuple[str, ...]:
 
 
 def gain_branches(designed: Designed, analysis: DesignAnalysis) -> Iterator[FreeGains]:
-    """Yield the sets of gains to choose from: without virtual masses, and with them.
-
-    Parameters
-    ----------
-    designed, analysis
-        The spec, and what its design achieves.
-    """
+    """Yield the sets of gains to choose from: without virtual masses, and with them."""
     bounds = tuple(item.problem.mass_bounds for item in analysis.impedance)
     if not any(low == 0 < high for low, high in bounds):
         yield FreeGains(designed, analysis, massless=not any(high for _, high in bounds))
@@ -380,25 +350,13 @@ def check_own_gains(loaded: LoadedSpec, gains: Gains) -> None:
 
 
 def has_free_gains(designed: Designed, analysis: DesignAnalysis) -> bool:
-    """Tell whether there is a gain to choose.
-
-    Parameters
-    ----------
-    designed, analysis
-        The spec, and what its design achieves.
-    """
+    """Tell whether there is a gain to choose."""
     return bool(designed.spec.design.free) or any(map(free_names, analysis.impedance))
 
 
 def in_order(
     choices: Sequence[tuple[tuple[float, ...], Array, Written]],
 ) -> list[tuple[Array, Written]]:
-    """Return points and what is written of them, the best first.
-
-    Parameters
-    ----------
-    choices : sequence of (tuple, ndarray, mapping)
-        What counts against each, the point, and what is written.
-    """
+    """Return points and what is written of them, the best first."""
     ranked = sorted(choices, key=lambda item: (*item[0], *map(float, item[1])))
     return [(x, written) for _, x, written in ranked]

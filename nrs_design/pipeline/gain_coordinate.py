@@ -56,13 +56,6 @@ class GainCoordinate:
         """Return values near a coordinate as a spec may give them, and their texts.
 
         Of a gain that a spec gives, and that is free by factors, that is the nearest one only.
-
-        Parameters
-        ----------
-        x : float
-            The coordinate.
-        digits : int
-            How many significant ones are written.
         """
         for end in self.written or ():
             if end.exact > 0 and abs(x - log(end.si)) < CLOSE:
@@ -90,16 +83,7 @@ def bounded_gain(
 ) -> GainCoordinate | None:
     """Return the coordinate of a gain with bounds; None where they leave nothing to choose.
 
-    Parameters
-    ----------
-    controller, gain
-        What is chosen.
-    given : GainSpec
-        What the spec says of it.
-    low : Fraction
-        Lower bound in SI units; above that of the spec where the spec allows zero.
-    unit : str
-        Of the gain.
+    The lower bound is in SI, above that of the spec where the spec allows zero.
     """
     if not 0 < low < given.max.exact:
         return None
@@ -107,13 +91,7 @@ def bounded_gain(
 
 
 def freed_gains(designed: Designed) -> Iterator[GainCoordinate]:
-    """Yield the gains that ``design.free`` names, with bounds about what the spec gives.
-
-    Parameters
-    ----------
-    designed : Designed
-        With those gains.
-    """
+    """Yield the gains that ``design.free`` names, with bounds about what the spec gives."""
     laws, units = designed.design.laws, designed.design.units
     for name, free in designed.spec.design.free.items():
         for gain, factors in free.given():

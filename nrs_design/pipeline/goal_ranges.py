@@ -20,11 +20,6 @@ def wanted_age(designed: Designed) -> int | None:
     """Return the age of the force, in samples, that the goal `delay` asks for beyond the declared.
 
     None where the declared ages reach the goal.
-
-    Raises
-    ------
-    DesignError
-        If a force that old is not modelled.
     """
     goals, sampling = designed.spec.goals, designed.spec.sampling
     delay = None if goals is None else goals.delay
@@ -44,21 +39,9 @@ def wanted_age(designed: Designed) -> int | None:
 def with_delay(
     designed: Designed, analysis: DesignAnalysis, age: int
 ) -> tuple[Designed, DesignAnalysis]:
-    """Return a spec that declares ages of the force up to another one, and its problems.
+    """Return a spec that declares ages of the force in samples up to this one, and its problems.
 
     What its own gains achieve is not asked: others are to be chosen, and these may be unstable.
-
-    Parameters
-    ----------
-    designed, analysis
-        Of the spec as it stands.
-    age : int
-        The oldest force sample that the law uses, in samples.
-
-    Raises
-    ------
-    DesignError
-        If no gains within their bounds are stable then.
     """
     from nrs_design.design.laws.impedance import impedance_problem, requirement_of
     from nrs_design.design.laws.law import Task

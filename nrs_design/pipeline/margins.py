@@ -52,27 +52,11 @@ def run_proof_margins(
     margin: bool,
     shortest_dwell: bool,
 ) -> ProofMargins:
-    """Find the margins that a command asks for.
+    """Find the margins that a command asks for; the decay rate is not optimized.
 
-    Parameters
-    ----------
-    result : Result
-        Of the spec as it stands.
-    limits : Limits
-        How far the searches go each time; the decay rate is not optimized.
-    progress : callable
-        Told the name of each step.
-    margin : bool
-        Those of ranges, delay, period and disturbances; of ranges alone, a spec must have some.
-    shortest_dwell : bool
-        That of the time between switches.
-
-    Raises
-    ------
-    DesignError
-        If the spec has nothing that such a margin is about: for the box no range, for the dwell
-        time discrete time, something that may change between two switches, or longest dwell times,
-        which would bound the shortest one.
+    `margin`: those of ranges, delay, period and disturbances; of ranges alone, a spec must have
+    some. `shortest_dwell`: that of the time between switches, in discrete time, where nothing else
+    changes between two of them and no longest dwell time bounds it. Else a `DesignError`.
     """
     # Before minutes of work.
     rule, timed = _rule_for_misses(result), result.loaded.spec.kind == "sampled-system"

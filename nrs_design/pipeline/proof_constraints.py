@@ -57,14 +57,9 @@ class ProofConstraint:
 
 
 def rate_constraint(wanted: float, scale: float) -> ProofConstraint:
-    """Return the constraint on the best decay rate of one form for all modes.
+    """Return the constraint on the best decay rate of one form for all modes, in 1/s.
 
-    Parameters
-    ----------
-    wanted : float
-        In 1/s, with room for roundings.
-    scale : float
-        What a value of one is, in 1/s.
+    `wanted` has room for roundings; the scale is what a value of one is.
     """
 
     def number(value: float) -> float:
@@ -90,13 +85,7 @@ def rate_constraint(wanted: float, scale: float) -> ProofConstraint:
 
 
 def force_constraint(wanted: float) -> ProofConstraint:
-    """Return the constraint on the least bound on the force under all disturbances.
-
-    Parameters
-    ----------
-    wanted : float
-        In N m, with room for roundings.
-    """
+    """Return the constraint on the least bound on the force, in N m, under all disturbances."""
     share: float | None = None  # Of the disturbances, that was the best last time
 
     def find(
@@ -127,12 +116,7 @@ def constraints_of(
 ) -> tuple[ProofConstraint, ...]:
     """Return what the goals ask of a proof: a decay first, without which there is none.
 
-    Parameters
-    ----------
-    goals : GoalsSpec or None
-        Those of the spec.
-    room, room_of_bounds : float
-        So much more is asked for of a rate, as a share, and so much less of a bound.
+    So much more is asked for of a rate, as a share, and so much less of a bound.
     """
 
     def listed() -> Iterator[ProofConstraint]:
@@ -158,13 +142,7 @@ class DesignEvaluator:
     def of(
         cls, gains: FreeGains, constraints: tuple[ProofConstraint, ...], progress: Progress
     ) -> DesignEvaluator:
-        """Take work and memory from the spec.
-
-        Parameters
-        ----------
-        gains, constraints, progress
-            As for the class.
-        """
+        """Take work and memory from the spec."""
         limits = search_limits(gains.designed.spec)
         allowance = Allowance(limits.budget, limits.memory, Fuse.of(limits.budget))
         return cls(gains, constraints, progress, allowance)
@@ -175,21 +153,9 @@ class DesignEvaluator:
         expected: Array | None,
         plant: Callable[[Array], Plant | None] = lambda x: None,
     ) -> Evaluation:
-        """Evaluate a design; its Jacobian only where it is asked for.
+        """Evaluate a design about what is expected; its Jacobian only where it is asked for.
 
-        Parameters
-        ----------
-        x : ndarray
-            The point; what is behind the gains is for the plant.
-        expected : ndarray or None
-            About what comes of it.
-        plant : callable
-            Gives the plant at a point, if it is not that of the spec.
-
-        Raises
-        ------
-        DesignError
-            If work or memory do not suffice.
+        What is behind the gains in x is for the plant, by default that of the spec.
         """
         from nrs_design.design.trust_region import Evaluation
 

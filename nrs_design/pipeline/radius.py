@@ -78,13 +78,6 @@ def bound_radius(found: Certification, limits: Limits) -> RadiusBounds | None:
 
     None in continuous time, for modes of several sizes, and where more acts on the state than
     switching: contact that may be lost, rounding, other axes, turns.
-
-    Parameters
-    ----------
-    found : Certification
-        What is known of it.
-    limits : Limits
-        How far the searches go.
     """
     system = found.system
     acting = system.contact, system.flights, system.clock, system.saturation

@@ -25,17 +25,9 @@ _REFERENCE = "reference [rad]"
 
 
 def physical_outputs(result: Result) -> Outputs | str | None:
-    """Return the physical outputs of that run, with the limits of the spec.
+    """Return the physical outputs of that run as rows over the state, with the limits of the spec.
 
-    Parameters
-    ----------
-    result : Result
-        Of the certification.
-
-    Returns
-    -------
-    Outputs, str or None
-        Rows over the state; or why there are none; None for given matrices, which have no units.
+    A text says why there are none; None for given matrices, which have no units.
     """
     designed, system = result.designed, result.certification.system
     if designed is None:

@@ -51,27 +51,7 @@ class Runs:
 def run_scenarios(
     designed: Designed, wanted: Runs | None = None, progress: Progress = silent
 ) -> Iterator[Simulated]:
-    """Simulate scenarios of a spec; a spec without any has one of its own.
-
-    Parameters
-    ----------
-    designed : Designed
-        The spec, its plant and its gains.
-    wanted : Runs, optional
-        Which, and how.
-    progress : callable
-        Told the name of each run, and how far it is.
-
-    Yields
-    ------
-    Simulated
-        One run after the other.
-
-    Raises
-    ------
-    DesignError, DataError
-        If there is no such scenario, or it cannot be simulated.
-    """
+    """Simulate scenarios of a spec one after the other; a spec without any has one of its own."""
     wanted = wanted or Runs()
     with placed(designed.loaded):
         for name, group in scenarios_of(designed, wanted):
@@ -171,21 +151,7 @@ def _tell(progress: Progress, name: str, step: str) -> None:
 
 
 def scenarios_of(designed: Designed, wanted: Runs) -> list[tuple[str, tuple[Scenario, ...]]]:
-    """Return the scenarios that are wanted, in SI: of each its name, and one for each axis.
-
-    Parameters
-    ----------
-    designed : Designed
-        The spec and its plant.
-    wanted : Runs
-        Which; a spec without any has one of its own.
-
-    Raises
-    ------
-    DesignError, DataError
-        If there is no such scenario, its file of commands cannot be read, or three axes are wanted
-        from the exact engine.
-    """
+    """Return the scenarios that are wanted, in SI: of each its name, and one for each axis."""
     from nrs_design.simulation.build_scenario import build_runs
 
     spec, folder = designed.spec, folder_of(designed)

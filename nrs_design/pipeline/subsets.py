@@ -26,13 +26,7 @@ class Subset:
 
 
 def has_unbounded_turns(result: Result) -> bool:
-    """Tell whether a spec has disturbances beside two periods or misses: no bound is proved.
-
-    Parameters
-    ----------
-    result : Result
-        Of the spec as it stands.
-    """
+    """Tell whether a spec has disturbances beside two periods or misses: no bound is proved."""
     system = result.certification.system
     return system.clock is not None and bool(system.channels)
 
@@ -40,17 +34,7 @@ def has_unbounded_turns(result: Result) -> bool:
 def find_subsets(
     result: Result, limits: Limits | None = None, progress: Progress = silent
 ) -> tuple[Subset, ...] | None:
-    """Return decay and bounds apart, of a proved spec with both; None elsewhere.
-
-    Parameters
-    ----------
-    result : Result
-        Of the spec as it stands; its design is kept.
-    limits : Limits, optional
-        How far the search goes; the decay rate is not optimized.
-    progress : callable
-        Told what is left out.
-    """
+    """Return decay and bounds apart, of a proved spec with both; None elsewhere."""
     designed, evidence = result.designed, result.certification.evidence
     proved = result.certification.verdict is Verdict.PROVED
     if designed is None or evidence is None or not proved or not has_unbounded_turns(result):
@@ -86,13 +70,7 @@ PARTS_TITLE = (
 
 
 def subset_lines(subsets: tuple[Subset, ...]) -> tuple[str, ...]:
-    """Say what is proved in part, and what each statement takes for granted besides.
-
-    Parameters
-    ----------
-    subsets : tuple of Subset
-        As `find_subsets` finds them.
-    """
+    """Say what is proved in part, and what each statement takes for granted besides."""
     return tuple(map(_line, subsets))
 
 

@@ -42,23 +42,8 @@ def run_worst_case(
 ) -> WorstCase:
     """Let an adversary choose everything that the spec leaves open, and keep the worst runs.
 
-    Parameters
-    ----------
-    designed : Designed
-        The spec, its plant and its gains.
-    certificate : Certificate, optional
-        Checked, of that spec; its bounds are held against the runs.
-    seed : int
-        Of his starts.
-    rounds : int, optional
-        How often the best runs are changed and improved again.
-    progress : callable
-        Told the name of each step.
-
-    Raises
-    ------
-    DesignError
-        If what acts on the loop is not modelled for its controllers, or its rules not searched.
+    The bounds of a checked certificate are held against them. What acts on the loop and is not
+    modelled is a `DesignError`.
     """
     from nrs_design.simulation.worst_case import worst_runs
     from nrs_design.simulation.worst_outputs import certified_bounds, deflection_of, forces_by_mode

@@ -30,19 +30,7 @@ def with_gains(
 ) -> LoadedSpec:
     """Return the spec with gains given, and its text; ranges of gains stay.
 
-    Parameters
-    ----------
-    designed : Designed
-        The spec, and the gains that it has.
-    written : mapping
-        The gains that it is to have.
-    change : callable
-        Changes the document further.
-
-    Raises
-    ------
-    SpecError
-        If that is no valid spec, or a comment would be lost.
+    A `SpecError` if that is no valid spec, or a comment would be lost.
     """
     motion = {gain: text for (name, gain), text in written.items() if name == MOTION}
     free = designed.spec.design.free
@@ -66,17 +54,7 @@ def with_gains(
 def edited(loaded: LoadedSpec, change: Callable[[SpecDocument], None]) -> LoadedSpec:
     """Return a spec that was changed in few places, and its text.
 
-    Parameters
-    ----------
-    loaded : LoadedSpec
-        The spec.
-    change : callable
-        Changes the document.
-
-    Raises
-    ------
-    SpecError
-        If the result is no valid spec, or a comment would be lost.
+    A `SpecError` if that is no valid spec, or a comment would be lost.
     """
     document = SpecDocument(loaded)
     change(document)

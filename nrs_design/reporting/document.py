@@ -17,15 +17,7 @@ if TYPE_CHECKING:
 
 
 class Linked(str):
-    """Text with a link to a line of the spec.
-
-    Parameters
-    ----------
-    text : str
-        Of the cell.
-    line : int
-        Of the spec, from 1.
-    """
+    """Text with a link to a line of the spec, counted from 1."""
 
     __slots__ = ("line",)
     line: int
@@ -38,15 +30,7 @@ class Linked(str):
 
 
 class Derived(str):
-    """Text with a link to the section of the report that derives it.
-
-    Parameters
-    ----------
-    text : str
-        Such as a number at the head.
-    section : str
-        Title of that section.
-    """
+    """Text, such as a number at the head, with a link to the section, by title, that derives it."""
 
     __slots__ = ("section",)
     section: str
@@ -59,13 +43,7 @@ class Derived(str):
 
 
 class Sentence(str):
-    """Text with hyperlinks.
-
-    Parameters
-    ----------
-    *parts : str
-        Plain, `Linked` or `Derived`; those of a sentence among them become its own.
-    """
+    """Text with hyperlinks; sentences among its parts become its own."""
 
     __slots__ = ("parts",)
     parts: tuple[str, ...]

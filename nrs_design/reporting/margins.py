@@ -28,13 +28,6 @@ def margin_lines(margins: ProofMargins, loaded: LoadedSpec) -> Iterator[Sentence
     """Yield a sentence, in small letters and without its full stop, for each margin.
 
     Numbers lead to the lines of the spec that declare what they are about.
-
-    Parameters
-    ----------
-    margins : ProofMargins
-        As far as they were looked for.
-    loaded : LoadedSpec
-        The spec that they are about.
     """
     at, spec = partial(linked, loaded), loaded.spec
     design = isinstance(spec, InteractionDesignSpec)

@@ -24,14 +24,8 @@ def next_steps(
 ) -> tuple[str, ...]:
     """Return next steps, the most promising first; none where stability is proved.
 
-    Parameters
-    ----------
-    result : Result
-        Of the certification.
-    margin, shortest_dwell : bool
-        What was looked for just now, and need not be told to be.
-    spec : Path, optional
-        The spec as it was named; else its file name alone, which is the same wherever it lies.
+    What was looked for just now need not be told to be. Without its path, a spec is named by file
+    name alone, which is the same wherever it lies.
     """
     verdict = result.certification.verdict
     if verdict is Verdict.PROVED:

@@ -33,18 +33,10 @@ class Entry:
 def register_of(
     statements: Iterable[str], spec: InteractionDesignSpec | None = None
 ) -> tuple[Entry, ...]:
-    """Return the register of assumptions, in their order.
+    """Return the register of assumptions, in order; plain statements (a certificate's) are open.
 
     Motor and environments count as tested where the spec names measured records that they were
     identified from, and no doubt.
-
-    Parameters
-    ----------
-    statements : iterable of str
-        `nrs_design.switched.assumption.Assumption` where they were made here; plain ones, from a
-        certificate alone, are open, and nothing more is known of them.
-    spec : InteractionDesignSpec, optional
-        That it is about.
     """
     tested = frozenset() if spec is None else frozenset(_tested(spec))
     return tuple(_entry(statement, tested) for statement in statements)

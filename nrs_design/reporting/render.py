@@ -33,12 +33,7 @@ _SIGNS = {State.GOOD: "✓", State.DOUBTFUL: "▲", State.BAD: "✗", State.UNKN
 def render_html(report: Report, origin: str | None = None) -> str:
     """Return the page; the same report gives the same bytes.
 
-    Parameters
-    ----------
-    report : Report
-        What is written.
-    origin : str, optional
-        Where its spec is, seen from the file; see `nrs_design.ownership`.
+    The origin is where its spec is, seen from the file; see `nrs_design.ownership`.
     """
     from jinja2 import Environment, PackageLoader, StrictUndefined
     from markupsafe import Markup

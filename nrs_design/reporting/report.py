@@ -57,35 +57,10 @@ def build_report(
     times: bool = False,
     date: datetime.date | None = None,
 ) -> Report:
-    """Build the report about one spec.
+    """Build the report about one spec, with its figures drawn.
 
-    Parameters
-    ----------
-    result : Result
-        As `nrs_design.pipeline.run_certification` gives it.
-    analysis : DesignAnalysis, optional
-        As `nrs_design.pipeline.run_analysis` gives it. Without it the report has no margins and
-        no design figures.
-    comparison : sequence of MethodRun, optional
-        As `nrs_design.pipeline.run_comparison` gives them.
-    margins : ProofMargins, optional
-        As `nrs_design.pipeline.margins.run_proof_margins` gives them.
-    subsets : tuple of Subset, optional
-        As `nrs_design.pipeline.subsets.find_subsets` gives them.
-    blocked : Blocked, optional
-        As `nrs_design.pipeline.blocked.find_blocked` gives it.
-    stability_map : StabilityMap, optional
-        As `nrs_design.pipeline.stability_map.run_stability_map` gives it.
-    times : bool
-        Add how long every rung of the search took. The same spec then gives another page each
-        time.
-    date : datetime.date, optional
-        To write on it.
-
-    Returns
-    -------
-    Report
-        With its figures drawn; `render_html`, `render_pdf` and `render_png` write it out.
+    Without an analysis it has no margins and no design figures. `times` adds how long every rung of
+    the search took: the same spec then gives another page each time.
     """
     with about(getattr(result.loaded.spec, "axis", None)):
         spec, certification, designed = result.loaded.spec, result.certification, result.designed

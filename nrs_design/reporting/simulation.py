@@ -13,14 +13,9 @@ _NOTHING = 1e-9
 
 
 def metric_rows(metrics: Mapping[str, Any], limits: Mapping[str, float]) -> list[list[str]]:
-    """Return rows of name, value, unit and limit.
+    """Return rows of name, value, unit and limit; all are given in SI.
 
-    Parameters
-    ----------
-    metrics : mapping
-        As `nrs_design.simulation.summary.summarize` gives them, in SI.
-    limits : mapping of str to float
-        Of the scenario, by the names of `PEAKS`, in SI; the spec's of the torque is in the metrics.
+    Limits are those of the scenario; the spec's of the torque is in the metrics.
     """
     return list(_rows(metrics, limits))
 

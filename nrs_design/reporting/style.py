@@ -117,13 +117,7 @@ _SHEET: ContextVar[_Sheet] = ContextVar("sheet", default=_PAGE)
 
 @contextmanager
 def for_paper(width: float | None) -> Iterator[None]:
-    """Draw figures as wide as a paper wants them, with its letters; None leaves what is.
-
-    Parameters
-    ----------
-    width : float or None
-        In inches.
-    """
+    """Draw figures as wide as a paper wants, in inches, with its letters; None leaves what is."""
     token = _SHEET.set(_SHEET.get() if width is None else _Sheet(width, _PAPER_LETTERS, paper=True))
     try:
         yield
@@ -216,13 +210,6 @@ def curve(index: int, count: int, points: int) -> dict[str, Any]:
 
     Each has a marker of its own at places of its own, so that curves on top of each other show
     the markers of all in turn.
-
-    Parameters
-    ----------
-    index, count : int
-        Which of how many curves.
-    points : int
-        Of each curve.
     """
     step = max(points // 8, 1)
     return {
@@ -246,15 +233,6 @@ def legend(figure: Figure, axes: Axes, columns: int = 2) -> None:
     """Put a legend below the axes, where it hides no data, and make the figure higher for it.
 
     A single series has none. Names are written in full, on several lines where they are long.
-
-    Parameters
-    ----------
-    figure : Figure
-        Made higher.
-    axes : Axes
-        With the labelled series.
-    columns : int
-        At most so many.
     """
     handles, labels = axes.get_legend_handles_labels()
     if len(handles) < 2:

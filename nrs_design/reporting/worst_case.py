@@ -70,13 +70,7 @@ class WorstValue:
 
 
 def found_in(case: WorstCase) -> tuple[WorstValue, ...]:
-    """Return the worst value found of each quantity.
-
-    Parameters
-    ----------
-    case : WorstCase
-        Of the pipeline.
-    """
+    """Return the worst value found of each quantity."""
     return tuple(
         WorstValue(
             run.output.name,
@@ -92,12 +86,7 @@ def found_in(case: WorstCase) -> tuple[WorstValue, ...]:
 def worst_rows(case: WorstCase, lever_arm: float | None) -> list[list[str]]:
     """Return rows for `COLUMNS`: what was found rounded down, bounds rounded up.
 
-    Parameters
-    ----------
-    case : WorstCase
-        Of the pipeline.
-    lever_arm : float or None
-        From the pivot to the contact in m; with it, the deflection is in mm, else in deg.
+    With a lever arm in m, the deflection is in mm, else in deg.
     """
     rows = []
     for item in found_in(case):
@@ -113,25 +102,14 @@ def worst_rows(case: WorstCase, lever_arm: float | None) -> list[list[str]]:
 
 
 def left_out(system: SwitchedSystem) -> str:
-    """Say which effects the adversary does not use.
-
-    Parameters
-    ----------
-    system : SwitchedSystem
-        In which he plays: one axis, also where others act on it.
-    """
+    """Say which effects the adversary does not use."""
     return _LEFT_OUT + (_LINKS if system.couplings else "")
 
 
 def scale_of(name: str, unit: str, lever_arm: float | None) -> tuple[float, str]:
     """Return the factor from SI to the display unit, and that unit.
 
-    Parameters
-    ----------
-    name, unit : str
-        Of the quantity, in SI.
-    lever_arm : float or None
-        In m; with it, a deflection is in mm.
+    With a lever arm in m, a deflection is in mm.
     """
     if name == DEFLECTION and lever_arm is not None:
         return 1e3 * lever_arm, "mm"
@@ -142,17 +120,7 @@ def scale_of(name: str, unit: str, lever_arm: float | None) -> tuple[float, str]
 
 
 def draw_worst(case: WorstCase, run: WorstRun, lever_arm: float | None) -> Figure:
-    """Draw a run: all quantities with limits and bounds, the command and the active controller.
-
-    Parameters
-    ----------
-    case : WorstCase
-        That it is of.
-    run : WorstRun
-        One of its runs.
-    lever_arm : float or None
-        As for `worst_rows`.
-    """
+    """Draw a run: all quantities with limits and bounds, the command and the active controller."""
     panels = [_panel(case, run, other.output, lever_arm) for other in case.runs]
     names = [channel.name for channel in case.system.channels]
     if _COMMAND in names:
@@ -169,11 +137,6 @@ def response_of(case: WorstCase, run: WorstRun) -> TimeResponse:
     """Return a run as a table: quantities, states, disturbances, and the mode at every instant.
 
     Of a force with a range, the largest.
-
-    Parameters
-    ----------
-    case, run
-        As for `draw_worst`.
     """
     named = {other.output.name: other.output for other in case.runs}
     rows = [_largest(output_values(case.system, output, run.states)) for output in named.values()]

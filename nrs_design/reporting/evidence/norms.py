@@ -37,15 +37,7 @@ _WRITTEN, _WRITTEN_SMALL, _TABLES, _DRAWN = 8, 3, 2, 6
 
 
 def norms_of(forms: Sequence[Form], order: int) -> list[Norm]:
-    """Return the root of each form; quadratic ones are all divided by the same number.
-
-    Parameters
-    ----------
-    forms : sequence of Form
-        At least one.
-    order : int
-        Number of states.
-    """
+    """Return the root of each form; quadratic ones are all divided by the same number."""
     if forms[0].degree == 1:
         return [quadratic_norm(Q) for Q in scaled_matrices(*(form.Q for form in forms))]
     return [polynomial_norm(form.Q, form.degree, order) for form in forms]
@@ -85,17 +77,7 @@ def step_norms(forms: Sequence[Form], system: SwitchedSystem) -> list[Norm]:
 def matrix_blocks(
     forms: Sequence[Form], states: tuple[str, ...], name: str = "quadratic"
 ) -> list[Block]:
-    """Return the matrices of quadratic forms as tables and heat maps, as far as a page holds them.
-
-    Parameters
-    ----------
-    forms : sequence of Form
-        All in contact.
-    states : tuple of str
-        Names of rows and columns.
-    name : str
-        Of the figure.
-    """
+    """Return the matrices of quadratic forms as tables and heat maps, if a page holds them."""
     matrices = scaled_matrices(*(form.Q for form in forms))
     names = [form.name for form in forms]
     blocks: list[Block] = []

@@ -45,11 +45,7 @@ class AbstractPage(ABC):
     def sections(self, *, first: bool = True) -> tuple[Section, ...]:
         """Show the numbers in tables and figures; by default none beside the run.
 
-        Parameters
-        ----------
-        first : bool
-            No earlier statement of the report is of this kind; other pages leave out what would be
-            drawn again.
+        `first`: no earlier statement is of this kind; others leave out what would be drawn again.
         """
         return ()
 

@@ -47,16 +47,7 @@ def rate_blocks(
 ) -> tuple[Block, ...]:
     """Return the modes with the least slack as a table and as a figure.
 
-    Parameters
-    ----------
-    system : SwitchedSystem
-        Modes.
-    form : Form
-        The function for all of them.
-    claimed : Fraction
-        Rate of the certificate.
-    lost : bool
-        The certificate covers the loss of contact, on which these rates say nothing.
+    `lost`: the certificate covers the loss of contact, on which these rates say nothing.
     """
     quadratic, time = form.degree == 1, system.time
     norm = "the norm of Q" if quadratic else f"V^(1/{2 * form.degree})"
@@ -85,10 +76,7 @@ def rate_blocks(
 def sampled_rates(system: SwitchedSystem, form: Form) -> Array:
     """Return the slowest decay of a polynomial's root in every mode, over sampled directions.
 
-    Returns
-    -------
-    ndarray, shape (m,)
-        In 1/s, or contraction per step; no slower than what holds for all directions.
+    In 1/s, or contraction per step; no slower than what holds for all directions.
     """
     norm, n = polynomial_norm(form.Q, form.degree, system.order), system.order
     directions = np.random.default_rng(0).standard_normal((_DIRECTIONS, n)) / norm(np.eye(n))

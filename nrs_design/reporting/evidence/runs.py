@@ -121,16 +121,7 @@ class Greedy:
     ) -> tuple[SwitchedRun, Illustration]:
         """Return the run, and its norm over time.
 
-        Parameters
-        ----------
-        title, said : str
-            Of the figure, and its caption.
-        label : str
-            Of the norm.
-        line : str
-            Which line has the rate, such as ``proved bound,``; empty for none.
-        name : str
-            Of the figure.
+        `line` says which line has the rate, such as ``proved bound,``; empty for none.
         """
         drawn, rate = all_modes(self.played), self.rate
         step, steps = horizon(drawn, rate) if rate else (fine_step(drawn), _UNKNOWN_STEPS)
@@ -150,16 +141,7 @@ def bounded_run(
 ) -> Section:
     """Draw a greedy run below its bound, and its path in the plane where contact is kept.
 
-    Parameters
-    ----------
-    greedy : Greedy
-        With the proved rate.
-    label : str
-        Which norm it is, such as ``in the norm of Q``.
-    note : str
-        A sentence of the caption about the run.
-    levels : tuple of float
-        Level curves to draw in the plane, relative to the start.
+    Level curves are relative to the start.
     """
     played = greedy.played
     how, letter = GREEDY, "x"
@@ -193,17 +175,8 @@ def ruled_run(
 ) -> Section:
     """Draw a run that keeps the declared rules, below its bound or beside its slope.
 
-    Parameters
-    ----------
-    system : SwitchedSystem
-        Modes and rules.
-    forms : sequence of Form
-        The run is drawn in their norms if there is a quadratic one for each mode, else in the
-        Euclidean.
-    rate : float
-        The proved one.
-    leaving : bool
-        Some modes must be left, in which a form may grow.
+    In the norms of the forms if each mode has a quadratic one, else in the Euclidean. `leaving`:
+    some modes must be left, in which a form may grow.
     """
     names = {form.name for form in forms}
     alone = forms[0].degree == 1 and len(forms) == len(names)  # No form remembers steps
@@ -315,19 +288,7 @@ def euclidean_norms(response: SwitchedRun) -> Array:
 
 
 def bound_line(response: SwitchedRun, rate: float, time: Time, label: str) -> Bound:
-    """Return how a rate decays along the times of a run, with its label.
-
-    Parameters
-    ----------
-    response : SwitchedRun
-        With the times.
-    rate : float
-        The alpha in 1/s, or rho per step.
-    time : Time
-        Which of the two.
-    label : str
-        What stands before the formula.
-    """
+    """Return how a rate, alpha in 1/s or rho per step, decays along a run, with its label."""
     if time is Time.CONTINUOUS:
         return f"{label}exp(-alpha t)", np.exp(-rate * response.time)
     return f"{label}rho^t", rate**response.time
@@ -368,19 +329,7 @@ def phase_plane(
     norm: Norm | None,
     levels: tuple[float, ...] = (),
 ) -> tuple[Illustration, ...]:
-    """Draw a run of two states, with the level curves that it cannot leave, if there are any.
-
-    Parameters
-    ----------
-    system : SwitchedSystem
-        The modes; of another number of states, nothing is drawn.
-    response : SwitchedRun
-        The run.
-    norm : Norm or None
-        Whose level curve bounds it.
-    levels : tuple of float
-        Of the curves that are drawn.
-    """
+    """Draw a run of two states, with the level curves that it cannot leave, if there are any."""
     if system.order != 2 or not system.is_uniform:
         return ()
     inside = " It cannot leave the dashed level curve of V." if norm is not None else ""

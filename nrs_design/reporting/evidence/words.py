@@ -77,15 +77,7 @@ def ruled_bound(system: SwitchedSystem) -> str:
 
 
 def needed_rules(system: SwitchedSystem, leaving: tuple[str, ...]) -> Iterator[str]:
-    """Say which rules of switching are part of a claim that rests on them.
-
-    Parameters
-    ----------
-    system : SwitchedSystem
-        With its rules.
-    leaving : tuple of str
-        Modes that must be left for the proof to hold.
-    """
+    """Say which rules of switching, and which modes to leave, a claim rests on."""
     switching = system.switching
     if switching.dwell_time > 0:
         yield (
@@ -144,12 +136,7 @@ def outside_the_rules(system: SwitchedSystem, leaving: tuple[str, ...]) -> Itera
 def decision(system: SwitchedSystem, *, ruled: bool = False) -> str:
     """Say how a proof was decided, and on what.
 
-    Parameters
-    ----------
-    system : SwitchedSystem
-        What it is about.
-    ruled : bool
-        It rests on the rules of switching, so that exponentials over dwell times may be part of it.
+    `ruled`: it rests on the rules of switching; exponentials over dwell times may be part of it.
     """
     switching, text = system.switching, _DECIDED
     if ruled and system.time is Time.CONTINUOUS and (switching.dwell_time > 0 or switching.stays):
@@ -160,17 +147,7 @@ def decision(system: SwitchedSystem, *, ruled: bool = False) -> str:
 def all_corners(
     system: SwitchedSystem, evidence: AbstractEvidence, how: str = "however fast they change"
 ) -> str:
-    """Say that values between the corners of declared ranges are covered.
-
-    Parameters
-    ----------
-    system : SwitchedSystem
-        What is proved about.
-    evidence : AbstractEvidence
-        What proves it.
-    how : str
-        How values may move.
-    """
+    """Say that values between the corners of declared ranges are covered."""
     text = (
         "Every corner of the declared parameter ranges is a mode. The matrices are affine in each "
         "parameter alone, or in its inverse, so all values between the corners are covered as "
@@ -196,14 +173,7 @@ def allowed_signals(system: SwitchedSystem) -> str:
 def function(system: SwitchedSystem, *, lost: bool, each: bool) -> Iterator[str]:
     """Say what the functions measure, where they are not simply a norm of all states.
 
-    Parameters
-    ----------
-    system : SwitchedSystem
-        What is proved about.
-    lost : bool
-        The functions cover the loss of contact.
-    each : bool
-        There is one for each mode, or for each step of a round.
+    `lost`: they cover the loss of contact. `each`: one for each mode, or for each step of a round.
     """
     if system.clock is not None:
         yield _ROUNDS if system.clock.is_round else _MISSES
@@ -216,15 +186,7 @@ def function(system: SwitchedSystem, *, lost: bool, each: bool) -> Iterator[str]
 
 
 def function_limits(system: SwitchedSystem, *, lost: bool) -> Iterator[str]:
-    """Say what a proof with functions leaves open.
-
-    Parameters
-    ----------
-    system : SwitchedSystem
-        What is proved about.
-    lost : bool
-        The functions cover the loss of contact.
-    """
+    """Say what a proof with functions leaves open; `lost`: they cover the loss of contact."""
     if lost or system.clock is not None or system.couplings:
         yield _MOVED_REST
     if system.clock is not None and not system.clock.is_round:

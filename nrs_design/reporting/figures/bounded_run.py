@@ -47,19 +47,7 @@ class BoundedSignal:
 def draw_bounded_run(
     response: SwitchedRun, panels: Sequence[BoundedSignal], names: Sequence[str], unit: str = "s"
 ) -> Figure:
-    """Draw all panels over one time axis, and below them the mode that is active.
-
-    Parameters
-    ----------
-    response : SwitchedRun
-        The run.
-    panels : sequence of BoundedSignal
-        At least one.
-    names : sequence of str
-        Of all modes.
-    unit : str
-        Of the time.
-    """
+    """Draw all panels over one time axis, and below them the mode that is active."""
     groups = groups_of(response, names, _ROWS)
     labels, height = row_labels([group.name for group in groups])
     rows = height * len(groups)

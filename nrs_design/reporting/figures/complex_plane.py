@@ -40,17 +40,7 @@ Complexes = Sequence[complex]
 def draw_root_locus(
     open_loop: TransferFunction, gain: float, wanted: Complexes, reached: Complexes
 ) -> Figure:
-    """Draw the closed-loop poles over the gain.
-
-    Parameters
-    ----------
-    open_loop : TransferFunction
-        At unit gain.
-    gain : float
-        The gain in use; it scales the range of gains.
-    wanted, reached : sequence of complex
-        Poles to mark, in rad/s; `wanted` may be empty.
-    """
+    """Draw the closed-loop poles in rad/s over the gain, whose range the gain in use scales."""
     figure, axes = new_axes(4.0)
     start = poles(open_loop)
     zeros = np.roots(open_loop.numerator)
@@ -78,16 +68,8 @@ def draw_eigenvalues(
 ) -> Figure:
     """Draw the eigenvalues of all modes with the border of stability.
 
-    Parameters
-    ----------
-    names : sequence of str
-        Of the modes; more than 24 are drawn alike.
-    values : sequence of ndarray of complex
-        Eigenvalues of each mode, in 1/s in continuous time.
-    time : Time
-        Decides the border: imaginary axis or unit circle.
-    rate : Fraction or None
-        The proved rate, drawn as a second border.
+    They are in 1/s in continuous time; the proved rate is a second border. More than 24 modes are
+    drawn alike.
     """
     figure, axes = new_axes(4.2)
     together = np.concatenate(list(values))

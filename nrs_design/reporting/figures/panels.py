@@ -95,13 +95,7 @@ class PanelColumn:
 
 @styled
 def draw_panels(columns: Sequence[PanelColumn]) -> Figure:
-    """Draw runs beside each other.
-
-    Parameters
-    ----------
-    columns : sequence of PanelColumn
-        One, or a few with panels alike.
-    """
+    """Draw runs beside each other."""
     rows = len(columns[0].panels)
     figure = new_figure(1.1 + 1.45 * rows)
     grid = figure.subplots(rows, len(columns), sharex="col", sharey="row", squeeze=False)

@@ -51,20 +51,8 @@ def draw_run(
 ) -> Figure:
     """Draw a norm over time, its proved bound, the deflection, and the mode that is active.
 
-    Parameters
-    ----------
-    response : SwitchedRun
-        The run.
-    norm : ndarray, shape (N + 1,)
-        Norm of its states over the first one.
-    bound : tuple of str and ndarray, shape (N + 1,), or None
-        A curve to hold it against, with its label.
-    system : SwitchedSystem
-        Names of the modes, and the time axis.
-    label : str
-        Which norm it is.
-    deflection : str
-        Name of the last state, where that is a deflection that shows when contact is lost.
+    The norm is over its first value. `deflection` names the last state, if it is one that shows
+    when contact is lost.
     """
     groups = groups_of(response, _names(system))
     labels, height = row_labels([group.name for group in groups])
@@ -109,15 +97,7 @@ def draw_mode_levels(
 ) -> Figure:
     """Draw a run in the plane with a level curve of every mode's own function.
 
-    Parameters
-    ----------
-    response : SwitchedRun
-        The run; two states.
-    system : SwitchedSystem
-        Names of modes and states, and the time axis.
-    norms : mapping
-        Root of the function of each mode by its name; all at the value of the first active one at
-        the start.
+    All are at the value of the first active one at the start.
     """
     figure, axes = new_axes(4.6)
     groups = groups_of(response, _names(system))
@@ -143,16 +123,8 @@ def draw_phase_plane(
 ) -> Figure:
     """Draw a run of a system with two states, and the level curves that it cannot leave.
 
-    Parameters
-    ----------
-    response : SwitchedRun
-        The run; two states.
-    system : SwitchedSystem
-        Names of modes and states, and the time axis.
-    norm : callable, optional
-        Root of the Lyapunov function, where there is one.
-    levels : sequence of float
-        Level curves to draw, relative to the start; the first is named.
+    Levels are relative to the start; the first is named. The norm is the root of the Lyapunov
+    function, where there is one.
     """
     figure, axes = new_axes(4.4)
     if norm is not None:
@@ -176,15 +148,6 @@ def groups_of(response: SwitchedRun, names: Sequence[str], most: int = _ROWS) ->
 
     Of many, those with one controller and contact are one: a reader asks for these, not for
     corners of ranges.
-
-    Parameters
-    ----------
-    response : SwitchedRun
-        The run.
-    names : sequence of str
-        Of all modes.
-    most : int
-        How many rows there may be.
     """
     used = list(dict.fromkeys(response.mode.tolist()))
     if len(used) > _ALONE:
@@ -242,19 +205,7 @@ def _axis_label(states: tuple[str, ...], index: int) -> str:
 def draw_modes(
     axes: Axes, response: SwitchedRun, groups: Sequence[Group], labels: Sequence[str]
 ) -> None:
-    """Draw one bar for each time that a mode is active, one row for each group of modes.
-
-    Parameters
-    ----------
-    axes : Axes
-        To draw in.
-    response : SwitchedRun
-        The run.
-    groups : sequence of Group
-        Of its modes.
-    labels : sequence of str
-        Of the rows.
-    """
+    """Draw one bar for each time that a mode is active, one row for each group of modes."""
     edges = np.flatnonzero(np.diff(response.mode)) + 1
     starts = np.concatenate([[0], edges])
     ends = np.concatenate([edges, [len(response.mode)]])

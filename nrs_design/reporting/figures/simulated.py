@@ -28,18 +28,10 @@ def draw_simulated(
     lever_arm: float | None,
     bound: tuple[float, bool] | None = None,
 ) -> Figure:
-    """Draw a run.
+    """Draw a run; limits in N m and rad/s.
 
-    Parameters
-    ----------
-    response : TimeResponse
-        With angle, velocity, torque and depth, and the commanded velocity ``hand``.
-    torque_limit, velocity_limit : float
-        In N m and rad/s.
-    lever_arm : float or None
-        From the pivot to the contact in m; with it, the deflection is in mm, else in deg.
-    bound : tuple of (float, bool), optional
-        Certified bound on the torque in N m, and whether it is about this run.
+    With a lever arm in m the deflection is in mm, else in deg. A bound on the torque in N m comes
+    with whether it is about this run.
     """
     t, torque = response.t, response["torque"]
     signs = (1, -1) if bool((torque < -0.01 * torque_limit).any()) else (1,)

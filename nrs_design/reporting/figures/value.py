@@ -30,18 +30,8 @@ def draw_value(
 ) -> Figure:
     """Draw ``x' P x`` over its first value, along a run in each mode.
 
-    Parameters
-    ----------
-    modes : mapping of str to RationalMatrix, shape (n, n)
-        By name.
-    P : RationalMatrix, shape (n, n)
-        Of the function.
-    time : Time
-        Continuous or discrete.
-    start : sequence of Fraction, shape (n,), or None
-        Where the runs begin; by default where all states are alike.
-    line : tuple of (str, Fraction) or None
-        Of what falls at a rate, alpha in 1/s or rho per step: its label and that rate.
+    Runs begin where all states are alike, if no start is given. The line is a label and a rate,
+    alpha in 1/s or rho per step.
     """
     form = np.array(P.fractions(), dtype=float)
     matrices = {name: np.array(A.fractions(), dtype=float) for name, A in modes.items()}

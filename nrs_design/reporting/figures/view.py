@@ -76,17 +76,7 @@ class View:
 
 
 def half_plane(points: NDArray[np.complex128], room: float = 0.12, *, shade: bool = False) -> View:
-    """Show points with some room around them, as a fraction of their extent, and the origin.
-
-    Parameters
-    ----------
-    points : ndarray of complex
-        What must be seen.
-    room : float
-        Around them, as a fraction of their extent.
-    shade : bool
-        Whether the unstable half is shaded.
-    """
+    """Show points with some room around them, as a fraction of their extent, and the origin."""
     x, y = np.append(points.real, 0.0), points.imag
     tiny = 1e-9 * float(np.abs(points).max())
     bend_x, bend_y = _bend(x, tiny), _bend(y, tiny)

@@ -46,30 +46,14 @@ _COLUMNS = ("Controller", "Measure", "Goal", "Worst", "At", "Result")
 def goals_section(result: Result, analysis: DesignAnalysis | None) -> Section | None:
     """Compare goals with the worst values reached and with the proofs, and list warnings.
 
-    Parameters
-    ----------
-    result : Result
-        Of the certification.
-    analysis : DesignAnalysis or None
-        What the design achieves; None where a nominal loop is unstable.
-
-    Returns
-    -------
-    Section or None
-        None where nothing is measured and no goal asks for a proof.
+    None where nothing is measured and no goal asks for a proof.
     """
     blocks = [*_measured(result, analysis), *_responses(result, analysis), *_certified(result)]
     return Section(GOALS, tuple(blocks)) if blocks else None
 
 
 def judged_goals(result: Result, analysis: DesignAnalysis | None) -> tuple[State, str]:
-    """Return how all goals of a spec stand together, and the same in words.
-
-    Parameters
-    ----------
-    result, analysis
-        As for `goals_section`.
-    """
+    """Return how all goals of a spec stand together, and the same in words."""
     proofs = tuple(certified_goals(result.loaded.spec, result.certificate))
     measured = () if analysis is None else analysis.measured
     goals = [f for item in measured for f in item.achieved if f.goal is not None]

@@ -135,15 +135,7 @@ def _place(label: str, item: ImpedanceAnalysis) -> tuple[str, ...]:
 
 
 def impedance_section(designed: Designed, items: tuple[ImpedanceAnalysis, ...]) -> Section:
-    """Show cost, margins and curves of the impedance controllers.
-
-    Parameters
-    ----------
-    designed : Designed
-        With the places of all that the spec says.
-    items : tuple of ImpedanceAnalysis
-        At least one.
-    """
+    """Show cost, margins and curves of the impedance controllers."""
     drawn = tuple(item for item in items if item.requirement.axis is not None)[:CURVES]
     rest = "" if len(drawn) == len(items) else f" The first {CURVES} controllers are drawn."
     rows = [
@@ -232,19 +224,7 @@ def _given(item: ImpedanceAnalysis, key: str, default: str = "") -> str:
 def by_controller(
     title: str, labels: Sequence[str], names: Sequence[str], columns: Sequence[Sequence[str]]
 ) -> list[Block]:
-    """Make tables with a row for each quantity and a column for each controller.
-
-    Parameters
-    ----------
-    title : str
-        Of every table.
-    labels : sequence of str
-        Of the rows.
-    names : sequence of str
-        Of the controllers.
-    columns : sequence of sequences of str
-        Cells of each controller.
-    """
+    """Make tables with a row for each quantity and a column for each controller."""
     tables: list[Block] = []
     for start in range(0, len(names), _COLUMNS):
         part = slice(start, start + _COLUMNS)

@@ -29,15 +29,7 @@ _DIGITS = 4
 
 
 def key_facts(result: Result, analysis: DesignAnalysis | None) -> tuple[tuple[str, str], ...]:
-    """Return labels and values for the head of the page, each on the safe side.
-
-    Parameters
-    ----------
-    result : Result
-        Of the certification.
-    analysis : DesignAnalysis or None
-        What the design achieves; None where there is none, or a nominal loop is unstable.
-    """
+    """Return labels and values for the head of the page, each on the safe side."""
     return (
         *_modes(result),
         *_decay(result),

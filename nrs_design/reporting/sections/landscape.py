@@ -70,15 +70,7 @@ _DELAY = (
 
 
 def landscape_section(designed: Designed, items: tuple[ImpedanceAnalysis, ...]) -> Section:
-    """Show cost, alternatives and delay of the impedance controllers.
-
-    Parameters
-    ----------
-    designed : Designed
-        With the sampling, if any, and the places of all that the spec says.
-    items : tuple of ImpedanceAnalysis
-        At least one.
-    """
+    """Show cost, alternatives and delay of the impedance controllers."""
     blocks: list[Block] = [Paragraph(_TEXT)]
     for item in items[:_DRAWN]:
         blocks.append(_map(item))
@@ -168,15 +160,7 @@ _TALLEST = 20.0
 
 @styled
 def draw_cost(item: ImpedanceAnalysis, found: CostMap) -> Figure:
-    """Draw lines of equal cost, the border of stability, the bounds and the gains.
-
-    Parameters
-    ----------
-    item : ImpedanceAnalysis
-        The controller.
-    found : CostMap
-        Around its gains.
-    """
+    """Draw lines of equal cost, the border of stability, the bounds and the gains."""
     figure, axes = new_axes(4.2)
     axes.set(xscale="log", yscale="log")
     labels = _draw_levels(axes, found)

@@ -33,15 +33,7 @@ _CAPTION = (
 
 
 def methods_section(runs: Sequence[MethodRun], *, times: bool = False) -> Section:
-    """Put the runs of a comparison side by side.
-
-    Parameters
-    ----------
-    runs : sequence of MethodRun
-        As `nrs_design.pipeline.run_comparison` gives them.
-    times : bool
-        Add how long each took; that differs from run to run.
-    """
+    """Put the runs of a comparison side by side; with times, which differ from run to run."""
     rows = [("Method", "Outcome", "Proved rate", "Condition of Q", "Time [ms]")]
     for run in runs:
         seconds = number(1e3 * run.seconds, 3)
@@ -85,10 +77,7 @@ TITLES = {Order.ROUND_ROBIN: "Modes in turn", Order.RANDOM: "Modes at random"}
 def draw_histories(runs: Sequence[MethodRun]) -> Figure:
     """Draw one curve for every run of the iteration: a panel for each order of the modes.
 
-    Parameters
-    ----------
-    runs : sequence of MethodRun
-        Of a comparison; the LMI is left out. Of a family in blocks, the longest way is drawn.
+    The LMI is left out. Of a family in blocks, the longest way is drawn.
     """
     drawn = [run for run in runs if run.histories]
     orders = list(dict.fromkeys(run.order for run in drawn if run.order))

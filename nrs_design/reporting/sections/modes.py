@@ -34,17 +34,7 @@ _MANY_STATES = 6
 
 
 def modes_section(loaded: LoadedSpec, system: SwitchedSystem, rate: Fraction | None) -> Section:
-    """List the modes with their eigenvalues.
-
-    Parameters
-    ----------
-    loaded : LoadedSpec
-        The spec that they come from.
-    system : SwitchedSystem
-        Modes.
-    rate : Fraction or None
-        The proved rate; None where nothing is proved.
-    """
+    """List the modes with their eigenvalues."""
     values = mode_eigenvalues(system)
     slowest = _slowest_first(values, system.time)
     drawn = np.sort(slowest[:_DRAWN])
@@ -71,14 +61,7 @@ def modes_section(loaded: LoadedSpec, system: SwitchedSystem, rate: Fraction | N
 def hardest_modes(system: SwitchedSystem, Q: Array | None, limit: int) -> SwitchedSystem:
     """Keep the modes that decay the slowest, at most so many, in the order of the system.
 
-    Parameters
-    ----------
-    system : SwitchedSystem
-        All modes.
-    Q : ndarray or None
-        Of the norm in which they decay; without one, eigenvalues say which are slow.
-    limit : int
-        How many are kept.
+    They decay in the norm of Q; without one, eigenvalues say which are slow.
     """
     if len(system.modes) <= limit:
         return system

@@ -18,31 +18,14 @@ At = tuple[str | int, ...]
 def linked(loaded: LoadedSpec, text: str, *at: str | int) -> str:
     """Return a text that leads to a line of the spec; without a place, or a text, as it is.
 
-    Parameters
-    ----------
-    loaded : LoadedSpec
-        The spec.
-    text : str
-        Of a cell.
-    *at : str or int
-        Keys and numbers of items; what is not written out is led to where it would be.
+    What is not written out is led to where it would be.
     """
     written = bool(at) and text not in ("", "–") and loaded.place(at[0]) != loaded.place()
     return Linked(text, loaded.place(*at).line) if written else text
 
 
 def with_line(loaded: LoadedSpec, text: str, *at: str | int) -> str:
-    """Return a sentence, and after it the line of the spec that it is about, if that is written.
-
-    Parameters
-    ----------
-    loaded : LoadedSpec
-        The spec.
-    text : str
-        Of the sentence.
-    *at : str or int
-        As for `linked`.
-    """
+    """Return a sentence, and after it the line of the spec that it is about, if that is written."""
     line = linked(loaded, f"line {loaded.place(*at).line}", *at)
     return Sentence(text, " (", line, ")") if isinstance(line, Linked) else text
 

@@ -33,19 +33,7 @@ def remedies_section(
     subsets: tuple[Subset, ...] | None = None,
     blocked: Blocked | None = None,
 ) -> Section | None:
-    """Report the margins of the proof and the next steps; None without either.
-
-    Parameters
-    ----------
-    result : Result
-        Of the certification.
-    margins : ProofMargins or None
-        Where they were searched.
-    subsets : tuple of Subset, optional
-        What is proved of parts, where that was looked for.
-    blocked : Blocked, optional
-        What keeps the spec from being proved, where that was looked for.
-    """
+    """Report the margins of the proof and the next steps; None without either."""
     blocks: list[Block] = []
     if relief := find_relief(result):
         blocks.append(Bullets("Gains that would hold", relief))

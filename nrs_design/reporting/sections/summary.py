@@ -157,15 +157,7 @@ def _rate(system: SwitchedSystem, evidence: AbstractEvidence) -> str:
 
 
 def lights_of(result: Result, analysis: DesignAnalysis | None) -> tuple[Light, ...]:
-    """Return the lights for proof, goals, margins, doubts of the data and open assumptions.
-
-    Parameters
-    ----------
-    result : Result
-        Of the certification.
-    analysis : DesignAnalysis or None
-        What the design achieves; None where there is none, or a nominal loop is unstable.
-    """
+    """Return the lights for proof, goals, margins, doubts of the data and open assumptions."""
     state, text = _PROOF[Verdict(result.certification.verdict)]
     if (where := result.certification.refuted_in) is not None:
         text = f"{text}; refuted {where}"

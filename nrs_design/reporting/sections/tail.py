@@ -55,15 +55,7 @@ def spec_section(loaded: LoadedSpec) -> Section:
 
 
 def rungs_section(certification: Certification, *, times: bool) -> Section:
-    """List every rung of the search with its outcome.
-
-    Parameters
-    ----------
-    certification : Certification
-        With its attempts.
-    times : bool
-        Add how long each took; that differs from run to run.
-    """
+    """List every rung of the search with its outcome."""
     columns = ("Rung", "Outcome", "Time [ms]") if times else ("Rung", "Outcome")
     rows = tuple(
         (attempt.step, attempt.outcome, number(1e3 * attempt.seconds, 3))[: len(columns)]

@@ -75,13 +75,7 @@ def torque_section(loaded: LoadedSpec, analysis: DesignAnalysis) -> Section:
 
 @styled
 def draw_borders(items: Sequence[TorqueAnalysis]) -> Figure:
-    """Draw stiffness against damping: the border in the air, its estimate, and what is passive.
-
-    Parameters
-    ----------
-    items : sequence of TorqueAnalysis
-        Controllers of one joint.
-    """
+    """Draw stiffness against damping: the border in the air, its estimate, and what is passive."""
     figure, axes = new_axes(4.2)
     wall = items[0].wall
     widest = max(2.5 * wall.friction, 1.5 * max(item.B for item in items))

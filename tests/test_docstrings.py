@@ -1,9 +1,11 @@
-"""Every public name is documented in numpydoc style."""
+"""Every name is documented: that of the public API in numpydoc, an inner one in a few lines."""
 
+import ast
 import importlib
 import inspect
 import pkgutil
 import re
+from pathlib import Path
 
 import nrs_design
 
@@ -12,6 +14,27 @@ MODULES = sorted(
     for info in pkgutil.walk_packages(nrs_design.__path__, "nrs_design.")
     if not info.name.endswith("__main__")
 )
+# Folders whose docstrings are numpydoc, as a page shows them.
+API = ("api/", "identification/api/")
+# Folders whose docstrings are still to be shortened, and what is about to go.
+LATER = (
+    *("certificates/", "cli/", "controllers/", "exporters/", "proof/", "search/", "simulation/"),
+    *("spec/", "sweeps/", "switched/", "arrays/archive", "confined", "design/admittance_noise"),
+    *("design/creep", "design/laws/parallel", "design/parallel", "design/transfer"),
+    *("gating/examine", "gating/run", "identification/datasets/records"),
+    *("identification/foreign", "identification/tables/arrays", "identification/tool"),
+    *("identification/write_spec", "pipeline/design", "pipeline/free_gains"),
+    *("pipeline/quick_verdict", "pipeline/retuned_gains", "pipeline/stability_map"),
+    *("pipeline/trade_", "pipeline/written_gains", "reporting/evidence/parameter"),
+    *("reporting/evidence/runs", "reporting/figures/trade_off"),
+    *("reporting/sections/stability_map", "robot/controllers/step_laws"),
+    *("robot/controllers/traced_", "robot/design/mobility", "robot/design/robot_laws"),
+    *("robot/exporters/", "robot/models/arm", "robot/models/enclosure/", "robot/models/lumped"),
+    *("robot/models/mjcf", "robot/models/tree", "robot/models/urdf", "robot/pipeline"),
+    *("robot/reporting/figures/robot_bounds", "robot/simulation/bodies"),
+    *("robot/simulation/mujoco_body", "robot/simulation/robot_body", "ros2/export"),
+)
+UNDERLINED = re.compile(r"^\w[\w ]*\n-{3,}$", re.MULTILINE)
 SECTION = re.compile(
     r"^(?P<title>Parameters|Returns|Raises|Yields|Notes)\n(?P<line>-+)$", re.MULTILINE
 )
@@ -97,22 +120,38 @@ def test_parameters_that_are_described_exist():
     assert not {name: names for name, names in unknown.items() if names}
 
 
-def is_command(name):
-    """A command of the same name as its module: its options carry their help."""
-    module, _, what = name.rpartition(".")
-    return ".cli." in module and module.rpartition(".")[2] == what
+def offered():
+    """What `nrs_design` offers and its public methods, with their names."""
+    for name in nrs_design.__all__:
+        thing = getattr(nrs_design, name)
+        yield name, thing
+        for key, member in vars(thing).items() if inspect.isclass(thing) else ():
+            if not key.startswith("_") and inspect.isfunction(member):
+                yield f"{name}.{key}", member
 
 
-def test_three_parameters_or_more_are_described():
+def test_three_parameters_or_more_of_what_is_offered_are_described():
     silent = [
         name
-        for name, thing in everything()
+        for name, thing in offered()
         if inspect.isfunction(thing)
-        and not is_command(name)
         and len(inspect.signature(thing).parameters.keys() - {"self", "cls"}) >= 3
         and not re.search(r"^Parameters\n-+\n", inspect.getdoc(thing) or "", re.MULTILINE)
     ]
     assert not silent
+
+
+def test_inner_docstrings_have_no_sections():
+    root = Path(nrs_design.__file__).parent
+    sectioned = [
+        f"{path.relative_to(root)}:{node.lineno}"
+        for path in sorted(root.rglob("*.py"))
+        if not path.relative_to(root).as_posix().startswith((*API, *LATER))
+        for node in ast.walk(ast.parse(path.read_text("utf-8")))
+        if isinstance(node, ast.ClassDef | ast.FunctionDef)
+        and UNDERLINED.search(ast.get_docstring(node) or "")
+    ]
+    assert not sectioned
 
 
 def test_walk_reaches_the_core():
@@ -132,4 +171,4 @@ def test_whoever_describes_parameters_describes_them_all():
                 known = inspect.signature(function).parameters.keys() - {"self", "cls"}
                 silent[f"{module.__name__}.{what}"] = known - set(re.findall(r"\w+", named))
     assert {name: names for name, names in silent.items() if names} == {}
-    assert len(silent) > 100
+    assert len(silent) > 10

@@ -129,7 +129,6 @@ class Study:
         self,
         *,
         method: str = "auto",
-        coordinates: str | None = None,
         budget: float | None = None,
         max_degree: int | None = None,
         gradient: Gradient | None = None,
@@ -138,8 +137,8 @@ class Study:
 
         Parameters
         ----------
-        method, coordinates, budget, max_degree, gradient
-            As for `certify`; coordinates (for designs) are those of the spec by default.
+        method, budget, max_degree, gradient
+            As for `certify`.
 
         Raises
         ------
@@ -150,9 +149,7 @@ class Study:
             If the clock stopped the search, long after its budget of work should have.
         """
         limits = _limits(self.loaded.spec, budget, max_degree, gradient)
-        result = pipeline.run_certification(
-            self.loaded, method=_method(method), coordinates=coordinates, limits=limits
-        )
+        result = pipeline.run_certification(self.loaded, method=_method(method), limits=limits)
         return Decision(result)
 
     def simulate(

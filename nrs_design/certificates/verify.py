@@ -39,7 +39,6 @@ FindFault = Callable[[], str | None]
 def verify(
     path: Path,
     spec: LoadedSpec | None = None,
-    coordinates: str | None = None,
     plant: Plant | None = None,
 ) -> Verification:
     """Re-check a certificate file, and whether it belongs to a spec.
@@ -51,8 +50,6 @@ def verify(
     spec : LoadedSpec, optional
         The spec, as read from its own file. Without it the proof is checked, for the modes in the
         certificate, whosever they are.
-    coordinates : {"deflection", "force"}, optional
-        That the certificate must be about; those of the spec by default.
     plant : Plant, optional
         Built from this very spec, where it is in hand; by default it is built here.
 
@@ -63,13 +60,12 @@ def verify(
     InternalError
         If flint disagrees with what has been accepted.
     """
-    return verify_document(read_document(path), spec, coordinates, plant)
+    return verify_document(read_document(path), spec, plant)
 
 
 def verify_document(
     document: Mapping[str, Any],
     spec: LoadedSpec | None = None,
-    coordinates: str | None = None,
     plant: Plant | None = None,
     proof: FindFault | None = None,
 ) -> Verification:
@@ -79,7 +75,7 @@ def verify_document(
     ----------
     document : mapping
         As `read_document` gives it.
-    spec, coordinates, plant
+    spec, plant
         As for `verify`.
     proof : callable, optional
         Says why `nrs_design.certificates.prove.prove` rejects this very document, or None; by
@@ -88,12 +84,12 @@ def verify_document(
     if spec is None:
         return prove(document)
     if proof is None:
-        return confirmed(lambda: _verify(document, spec, coordinates, plant, check_document))
+        return confirmed(lambda: _verify(document, spec, plant, check_document))
 
     def stated(document: Mapping[str, Any], system: SwitchedSystem) -> Verification:
         return Verification(read_certificate(document, system), None)
 
-    belongs = judged(lambda: _verify(document, spec, coordinates, plant, stated))
+    belongs = judged(lambda: _verify(document, spec, plant, stated))
     if belongs.fault is not None:
         return belongs
     # The proof is confirmed where it is made; what fails there is no judgement.
@@ -103,18 +99,17 @@ def verify_document(
 def _verify(
     document: Mapping[str, Any],
     spec: LoadedSpec,
-    coordinates: str | None,
     plant: Plant | None,
     check: Callable[[Mapping[str, Any], SwitchedSystem], Verification],
 ) -> Verification:
     if (altered := find_altered(document)) is not None:
         return altered
-    if (foreign := _find_foreign(document, spec, coordinates)) is not None:
+    if (foreign := _find_foreign(document, spec)) is not None:
         return Verification(None, foreign)
     from nrs_design.switched.assemble import assemble_from_text
 
     gains = read_gains(document)
-    system = assemble_from_text(spec.spec, gains, document["coordinates"], plant=plant)
+    system = assemble_from_text(spec.spec, gains, plant=plant)
     held = held_system(document)
     for field in fields(SwitchedSystem):
         if getattr(held, field.name) != getattr(system, field.name):
@@ -122,13 +117,11 @@ def _verify(
     return check(document, system)
 
 
-def _find_foreign(
-    document: Mapping[str, Any], spec: LoadedSpec, coordinates: str | None
-) -> str | None:
+def _find_foreign(document: Mapping[str, Any], spec: LoadedSpec) -> str | None:
     """Say why a certificate is not one for this spec."""
     if document.get("spec") != {"name": spec.spec.name, "sha256": spec.sha256}:
         return "it belongs to another spec, or the spec has changed since"
-    wanted = coordinates or getattr(spec.spec, "coordinates", None)
+    wanted = getattr(spec.spec, "coordinates", None)
     if document.get("coordinates") != wanted:
         if document.get("coordinates") is None:
             return "it names no coordinates: it is about another law; verify it without the spec"

@@ -12,7 +12,7 @@ import typer
 from nrs_design.cli import exit_codes
 from nrs_design.cli.command import Answer, Together, command
 from nrs_design.cli.granted import print_granted
-from nrs_design.cli.options import Budget, LoopCoordinates, MaxDegree, Memory, SpecFile
+from nrs_design.cli.options import Budget, MaxDegree, Memory, SpecFile
 from nrs_design.cli.printing import (
     note,
     progress,
@@ -81,7 +81,6 @@ def certify_switching(
         Path | None, typer.Option(help="Certificate file; default reports/NAME.cert.json.")
     ] = None,
     method: Annotated[Method, typer.Option(help="One rung of the ladder, or all.")] = Method.AUTO,
-    coordinates: LoopCoordinates = None,
     optimize_rate: Annotated[
         bool, typer.Option(help="Look for the largest provable decay rate.")
     ] = True,
@@ -124,7 +123,6 @@ def certify_switching(
         result = run_certification(
             loaded,
             method=method,
-            coordinates=None if coordinates is None else str(coordinates),
             limits=limits,
             progress=step,
         )

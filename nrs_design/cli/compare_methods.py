@@ -11,7 +11,7 @@ import typer
 from nrs_design.cli import exit_codes
 from nrs_design.cli.command import Answer, command
 from nrs_design.cli.gradient_options import MaxUpdates, Radius, Relaxation, Seed, StartMode
-from nrs_design.cli.options import Budget, LoopCoordinates, Memory, SpecFile
+from nrs_design.cli.options import Budget, Memory, SpecFile
 from nrs_design.cli.printing import note, progress, say
 from nrs_design.cli.reading import take_spec
 from nrs_design.cli.tables import print_table
@@ -27,7 +27,6 @@ if TYPE_CHECKING:
 @command("compare-methods")
 def compare_methods(
     spec: SpecFile,
-    coordinates: LoopCoordinates = None,
     optimize_rate: Annotated[
         bool, typer.Option(help="Let every method look for the largest decay rate, too.")
     ] = False,
@@ -59,9 +58,8 @@ def compare_methods(
     gradient = Gradient(relaxation, radius, start_mode, seed=seed, max_updates=max_updates)
     limits = search_limits(loaded.spec, Overrides(budget=budget, memory=memory), optimize_rate)
     limits = replace(limits, gradient=gradient)
-    states = None if coordinates is None else str(coordinates)
     with progress(f"comparing on {loaded.spec.name}") as step:
-        system, runs = run_comparison(loaded, limits, states, step)
+        system, runs = run_comparison(loaded, limits, step)
     if figure is not None:
         _draw(runs, figure)
         note(f"figure written to {figure}")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from datetime import datetime
-from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
 
@@ -63,17 +62,4 @@ Date = Annotated[
 ReportTo = Annotated[
     Path | None,
     typer.Option("--report", metavar="FILE", help="Write a page with figures (.html or .pdf)."),
-]
-
-
-class CoordinatesOption(StrEnum):
-    """State coordinates of an interaction design."""
-
-    DEFLECTION = "deflection"
-    FORCE = "force"
-
-
-LoopCoordinates = Annotated[
-    CoordinatesOption | None,
-    typer.Option(help="Override the spec: deflection (physical) or force (the thesis's)."),
 ]

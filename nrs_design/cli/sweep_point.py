@@ -130,7 +130,7 @@ def _shown(certificate: Path, axes: Sequence[LoadedSpec]) -> dict[str, Any]:
     (loaded,) = axes
     with about(getattr(loaded.spec, "axis", None)):
         try:
-            found = verify(certificate, loaded, _coordinates(certificate))
+            found = verify(certificate, loaded)
         except CertificateError:
             return {}
         if found.certificate is None or found.fault is not None:
@@ -138,14 +138,6 @@ def _shown(certificate: Path, axes: Sequence[LoadedSpec]) -> dict[str, Any]:
         # As JSON holds it, which has no tuples.
         facts: dict[str, Any] = json.loads(json.dumps(shown_facts(found.certificate, loaded.spec)))
     return facts
-
-
-def _coordinates(certificate: Path) -> str | None:
-    """Return the coordinates that a certificate names; the kept answer must name them, too."""
-    from nrs_design.certificates.verify import read_document
-
-    named = read_document(certificate).get("coordinates")
-    return named if isinstance(named, str) else None
 
 
 def _computed(job: Job, key: str) -> Kept:

@@ -10,7 +10,6 @@ import typer
 
 from nrs_design.cli import exit_codes
 from nrs_design.cli.command import Answer, command
-from nrs_design.cli.options import CoordinatesOption
 from nrs_design.cli.printing import is_quiet, progress, say, wants_details
 from nrs_design.cli.reading import take_spec
 from nrs_design.errors import CertificateError, NrsDesignError
@@ -37,10 +36,6 @@ def verify(
             show_default=False,
             help="The spec whose modes they must be; without it, only the proof is checked.",
         ),
-    ] = None,
-    coordinates: Annotated[
-        CoordinatesOption | None,
-        typer.Option(help="Coordinates that the certificate is about, if not those of the spec."),
     ] = None,
     deployed: Annotated[
         Path | None,
@@ -80,8 +75,8 @@ def verify(
 
     Example: nrs-design verify reports/soft-tissue.cert.json specs/neuroboscope/soft-tissue.nrs.yaml
     """
-    _check_arguments(certificate, spec, coordinates, deployed)
-    outcome, loaded = _verify(certificate, spec, None if coordinates is None else str(coordinates))
+    _check_arguments(certificate, spec, deployed)
+    outcome, loaded = _verify(certificate, spec)
     robot = None if loaded is None else loaded.robot
     if bounds and robot is None:
         raise typer.BadParameter("needs a SPEC that names a robot", param_hint="--bounds")
@@ -116,9 +111,7 @@ def verify(
     )
 
 
-def _verify(
-    certificate: Path, spec: Path | None, coordinates: str | None
-) -> tuple[Verification, LoadedSpec | None]:
+def _verify(certificate: Path, spec: Path | None) -> tuple[Verification, LoadedSpec | None]:
     from nrs_design.certificates.prove import prove, read_document
 
     document = read_document(certificate)
@@ -129,18 +122,15 @@ def _verify(
 
     with proof_beside(document) as proof:
         loaded = take_spec(spec)
-        return verify_document(document, loaded, coordinates, proof=proof), loaded
+        return verify_document(document, loaded, proof=proof), loaded
 
 
 def _check_arguments(
     certificate: Path,
     spec: Path | None,
-    coordinates: CoordinatesOption | None,
     deployed: Path | None,
 ) -> None:
     """Refuse options that nothing would heed, and files in each other's place."""
-    if spec is None and coordinates is not None:
-        raise typer.BadParameter("needs a SPEC to compare with", param_hint="--coordinates")
     if spec is None and deployed is not None:
         raise typer.BadParameter("needs a SPEC, whose law it is", param_hint="--deployed")
     if spec is not None and spec.suffix == ".json" and certificate.suffix in (".yaml", ".yml"):
@@ -251,8 +241,6 @@ def _print(certificate: Certificate, spec: Spec | None, on_trust: Path | None) -
     if verdict in _NEXT:
         say(_NEXT[verdict])
     if spec is not None and wants_details():
-        if certificate.coordinates:
-            say(f"  coordinates: {certificate.coordinates}")
         _print_gains(certificate, spec)
 
 

@@ -82,8 +82,6 @@ def sector_of(spec: InteractionDesignSpec) -> Sector | str:
         return "the spec has no `monitoring`, so nothing says how far readings are off"
     if spec.contact is None:
         return "the spec does not say by `contact` whether contact may be lost"
-    if spec.coordinates == "force":
-        return "in force coordinates the range is that of the slope, not of the ratio"
     if spec.monitoring.surface != "fixed" and _ages(spec) > 1:
         return "ages of the force sample differ by more than one, so the order of contacts is lost"
     touched = list(_touched(spec))

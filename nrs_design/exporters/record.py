@@ -105,7 +105,7 @@ class Proof(_Frozen):
     safety: str | None = None
     certificate_id: Sha256
     decay_rate: DecayRate
-    coordinates: Literal["deflection", "force"]
+    coordinates: Literal["deflection"]
     assumptions: tuple[str, ...]
 
 

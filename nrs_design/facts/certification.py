@@ -33,7 +33,7 @@ def certification_facts(result: Result, path: Path | None) -> dict[str, Any]:
         "method": found.method,
         **rate_facts(found),
         "time": str(system.time),
-        "coordinates": result.coordinates,
+        "coordinates": None if result.designed is None else result.designed.spec.coordinates,
         "states": list(system.states),
         "modes": [mode.name for mode in system.modes],
         "gains": dict(certificate.gains) if certificate else None,

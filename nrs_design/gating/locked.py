@@ -27,7 +27,7 @@ from nrs_design.gating.rules import (
     SCENARIO_LIMIT,
 )
 from nrs_design.progress import Progress, silent
-from nrs_design.spec import InteractionDesignSpec, LoadedSpec, RobotSpec, read_spec
+from nrs_design.spec import LoadedSpec, RobotSpec, read_spec
 from nrs_design.spec.load import is_there
 
 RENEW = "run nrs-design gate without --locked"
@@ -180,9 +180,6 @@ def _find_difference(certificate: Certificate, entry: LockedSpec, loaded: Loaded
         return "has another verdict or rate than the lock file says"
     if certificate.gains != entry.gains:
         return "is about other gains than the lock file says"
-    spec = loaded.spec
-    if isinstance(spec, InteractionDesignSpec) and certificate.coordinates != spec.coordinates:
-        return f"is about {certificate.coordinates} coordinates, not those of the spec"
     return None
 
 

@@ -215,7 +215,7 @@ class _Search:
         from nrs_design.search.certify import certify, refuted_at_once
 
         designed = run_design(loaded)
-        system = assemble_spec(loaded, designed, self._result.coordinates)
+        system = assemble_spec(loaded, designed)
         if _same_search(system, self._result.certification.system):
             return None
         look = min(LOOK, budget / 4)

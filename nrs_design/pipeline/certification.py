@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from nrs_design import __version__
 from nrs_design.certificates.certificate import Certificate, Gains, Verdict
-from nrs_design.errors import AssemblyError, CertificateError
+from nrs_design.errors import CertificateError
 from nrs_design.pipeline.design import Designed, placed, run_design
 from nrs_design.progress import Progress, silent
 from nrs_design.proof.system import SwitchedSystem
@@ -36,7 +36,6 @@ class Result:
 
     loaded: LoadedSpec  # The spec and where it came from
     designed: Designed | None  # The plant and the gains that ship; None for given matrices
-    coordinates: str | None  # Of the assembled modes; None for given matrices
     certification: Certification  # The verdict with every attempt
     certificate: Certificate | None  # What may be written to a file; None if nothing was shown
 
@@ -80,7 +79,6 @@ def run_certification(
     loaded: LoadedSpec,
     *,
     method: Method = Method.AUTO,
-    coordinates: str | None = None,
     limits: Limits | None = None,
     progress: Progress = silent,
 ) -> Result:
@@ -92,16 +90,15 @@ def run_certification(
     from nrs_design.search.certify import certify
 
     progress("design")
-    designed, coordinates, system = _assembled(loaded, coordinates)
+    designed, system = _assembled(loaded)
     certification = certify(system, method, limits or search_limits(loaded.spec), progress)
-    certificate = certificate_of(loaded, designed, coordinates, certification)
-    return Result(loaded, designed, coordinates, certification, certificate)
+    certificate = certificate_of(loaded, designed, certification)
+    return Result(loaded, designed, certification, certificate)
 
 
 def certificate_of(
     loaded: LoadedSpec,
     designed: Designed | None,
-    coordinates: str | None,
     certification: Certification,
 ) -> Certificate | None:
     """Return what may be written to a file; None if nothing was shown."""
@@ -110,7 +107,7 @@ def certificate_of(
     return Certificate(
         spec_name=loaded.spec.name,
         spec_sha256=loaded.sha256,
-        coordinates=coordinates,
+        coordinates=None if designed is None else designed.spec.coordinates,
         gains=gains_text(designed),
         system=certification.system,
         statements=certification.statements,
@@ -133,7 +130,7 @@ def run_recorded(loaded: LoadedSpec, file: Path, progress: Progress = silent) ->
         message = "it is about other gains than are designed here"
         raise CertificateError(message, path=file, remedy=_ANEW)
     certification = recorded_certification(kept, file, taken)
-    return Result(loaded, designed, kept.coordinates, certification, kept)
+    return Result(loaded, designed, certification, kept)
 
 
 def recorded_certification(kept: Certificate, file: Path, seconds: float = 0.0) -> Certification:
@@ -171,27 +168,22 @@ def read_valid_certificate(
 def run_comparison(
     loaded: LoadedSpec,
     limits: Limits,
-    coordinates: str | None = None,
     progress: Progress = silent,
 ) -> tuple[SwitchedSystem, tuple[MethodRun, ...]]:
     """Compare the LMI, which comes first, with the gradient iteration on the exact modes."""
     from nrs_design.search.certify import certify
     from nrs_design.search.comparison import compare_methods
 
-    _, _, system = _assembled(loaded, coordinates)
+    _, system = _assembled(loaded)
     with placed(loaded):
         return system, compare_methods(partial(certify, system), limits, progress)
 
 
-def _assembled(
-    loaded: LoadedSpec, coordinates: str | None
-) -> tuple[Designed | None, str | None, SwitchedSystem]:
-    """Design a spec and assemble its modes; coordinates are by default those of the spec."""
+def _assembled(loaded: LoadedSpec) -> tuple[Designed | None, SwitchedSystem]:
+    """Design a spec and assemble its modes."""
     designed = run_design(loaded)
-    if designed is not None:
-        coordinates = coordinates or designed.spec.coordinates
     with placed(loaded):
-        return designed, coordinates, assemble_spec(loaded, designed, coordinates)
+        return designed, assemble_spec(loaded, designed)
 
 
 def gains_text(designed: Designed | None) -> Gains:
@@ -211,18 +203,15 @@ def is_of_gains(gains: Gains, designed: Designed | None) -> bool:
 def assemble_spec(
     loaded: LoadedSpec,
     designed: Designed | None,
-    coordinates: str | None,
     scale: Fraction = Fraction(1),
 ) -> SwitchedSystem:
     """Assemble either kind of spec, with its ranges stretched by a scale."""
     from nrs_design.switched.assemble import assemble, assemble_matrices
 
     if designed is not None:
-        return assemble(designed.spec, designed.plant, designed.design, coordinates, scale)
+        return assemble(designed.spec, designed.plant, designed.design, scale)
     # A robot has no design either, but no way here.
     assert loaded.spec.kind in ("switched-system", "sampled-system")
-    if coordinates is not None:
-        raise AssemblyError("given matrices have neither gains nor coordinates")
     return assemble_matrices(loaded.spec, scale)
 
 

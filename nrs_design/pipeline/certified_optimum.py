@@ -128,7 +128,7 @@ def check_steerable(designed: Designed) -> None:
     """Refuse what no form for all modes could prove, whatever the gains."""
     from nrs_design.search.rate_slope import may_have_slope
 
-    if not may_have_slope(assemble_spec(designed.loaded, designed, designed.spec.coordinates)):
+    if not may_have_slope(assemble_spec(designed.loaded, designed)):
         raise DesignError(
             "gains are chosen with their proof only where one quadratic function may be one: not "
             "with two periods, rules that lead through unstable modes, or one state",

@@ -161,7 +161,7 @@ class FreeGains:
     def system(self, x: Array, plant: Plant | None = None) -> SwitchedSystem:
         """Assemble the modes with the single-precision gains next to a point."""
         designed = replace(self.designed, design=self.design(x), plant=plant or self.designed.plant)
-        return assemble_spec(designed.loaded, designed, designed.spec.coordinates)
+        return assemble_spec(designed.loaded, designed)
 
     def roundings(self, x: Array) -> Iterator[tuple[Array, Written]]:
         """Yield points near one as a spec may give them, and what it says then."""

@@ -145,7 +145,7 @@ def _with_rule(result: Result, rule: MissRuleSpec) -> SwitchedSystem:
     assert designed.spec.sampling is not None
     sampling = designed.spec.sampling.model_copy(update={"misses": rule})
     changed = designed.spec.model_copy(update={"sampling": sampling, "disturbances": None})
-    return assemble_spec(result.loaded, replace(designed, spec=changed), result.coordinates)
+    return assemble_spec(result.loaded, replace(designed, spec=changed))
 
 
 def _run_box(result: Result, limits: Limits, progress: Progress) -> BoxMargin:
@@ -154,7 +154,7 @@ def _run_box(result: Result, limits: Limits, progress: Progress) -> BoxMargin:
     from nrs_design.search.margin import find_margin
 
     def assemble_at(scale: Fraction) -> SwitchedSystem:
-        return assemble_spec(result.loaded, result.designed, result.coordinates, scale)
+        return assemble_spec(result.loaded, result.designed, scale)
 
     return find_margin(
         assemble_at, lambda system: certify(system, limits=limits), result.certification, progress
@@ -206,7 +206,7 @@ def _sampling_margins(
     def assemble_at(changes: Mapping[str, object]) -> SwitchedSystem:
         changed = sampling.model_copy(update=changes)
         spec = designed.spec.model_copy(update={"sampling": changed, "disturbances": None})
-        return assemble_spec(result.loaded, replace(designed, spec=spec), result.coordinates)
+        return assemble_spec(result.loaded, replace(designed, spec=spec))
 
     def decide(changes: Mapping[str, object]) -> Certification | str:
         try:

@@ -31,7 +31,6 @@ class Posed:
 
     loaded: LoadedSpec
     designed: Designed | None  # None for given matrices
-    coordinates: str | None
     system: SwitchedSystem
 
     @classmethod
@@ -51,8 +50,7 @@ class Posed:
             If the spec makes no switched system.
         """
         designed = run_design(loaded) if kept is None else run_with_gains(loaded, kept.design)
-        coordinates = None if designed is None else designed.spec.coordinates
-        return cls(loaded, designed, coordinates, assemble_spec(loaded, designed, coordinates))
+        return cls(loaded, designed, assemble_spec(loaded, designed))
 
     def limits(self, work: float) -> Limits:
         """Return how far a search goes."""
@@ -147,7 +145,7 @@ def run_quick_witness(posed: Posed) -> QuickVerdict:
 def _decided(posed: Posed, found: Certification) -> QuickVerdict:
     if found.verdict is Verdict.INCONCLUSIVE and found.refuted_in is None:
         return OPEN
-    certificate = certificate_of(posed.loaded, posed.designed, posed.coordinates, found)
+    certificate = certificate_of(posed.loaded, posed.designed, found)
     return QuickVerdict(found.verdict, certificate, found.refuted_in)
 
 

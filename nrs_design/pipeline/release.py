@@ -54,11 +54,6 @@ def _find_obstacle(designed: Designed, system: SwitchedSystem) -> str | None:
         return "rules of switching beside a loss of contact or two periods are not kept by this run"
     if any(environment.law.has_mass for environment in touched):
         return "the force of a hand with a mass depends on its acceleration, which is no state"
-    if system.states[-1] == "F [N*m]":
-        return (
-            "in force coordinates the state holds the force, and no deflection; coordinates: "
-            "deflection shows it"
-        )
     if not system.is_uniform:
         return "its modes are of different sizes"
     return None

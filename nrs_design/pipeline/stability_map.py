@@ -117,7 +117,7 @@ def run_stability_map(
         changed = {"sampling": sampling.model_copy(update={"delay": (shortest, delay)})}
         plain = spec.model_copy(update=changed | {"disturbances": None})
         other = replace(designed, spec=plain, plant=as_stiff(designed.plant, contacts, factor))
-        system = assemble_spec(result.loaded, other, result.coordinates)
+        system = assemble_spec(result.loaded, other)
         return settled(certify(system, limits=quick))
 
     verdicts = decide_staircase(len(delays), len(factors), decide)

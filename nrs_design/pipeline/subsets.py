@@ -52,7 +52,7 @@ def find_subsets(
     sampling = spec.sampling.model_copy(update={key: None})
     spec = spec.model_copy(update={"sampling": sampling})
     other = replace(designed, spec=spec)
-    system = assemble_spec(result.loaded, other, result.coordinates)
+    system = assemble_spec(result.loaded, other)
     decided = certify(system, limits=quick_limits(result, limits))
     bounds = [item for item in decided.statements if item.bound(system) is not None]
     if decided.verdict is not Verdict.PROVED or not bounds:

@@ -84,7 +84,7 @@ def _commanded(designed: Designed) -> SwitchedSystem:
     """Return the loop under what the spec says disturbs it, else under any allowed command."""
     from nrs_design.spec.sampling import DisturbancesSpec
 
-    spec, at = designed.spec, designed.spec.coordinates
+    spec = designed.spec
     placing = next((name for name, c in spec.controllers.items() if c.commands == "position"), None)
     if placing is not None:
         raise AssemblyError(
@@ -92,18 +92,18 @@ def _commanded(designed: Designed) -> SwitchedSystem:
             "end, so the force from rest grows as long as the run"
         )
     if spec.disturbances is not None:
-        return assemble_spec(designed.loaded, designed, at)
+        return assemble_spec(designed.loaded, designed)
     text = {"command": spec.limits.velocity.text}
     disturbances = DisturbancesSpec.model_validate(text)
     spec = spec.model_copy(update={"disturbances": disturbances})
     if spec.sampling is not None:
-        return assemble_spec(designed.loaded, replace(designed, spec=spec), at)
+        return assemble_spec(designed.loaded, replace(designed, spec=spec))
     # In continuous time a run may be on tissue for which no bound is stated.
     from nrs_design.spec.build_plant import build_conditions
     from nrs_design.switched.assemble import state_of
     from nrs_design.switched.commanded import with_command
 
     conditions = build_conditions(spec)
-    state = state_of(conditions, designed.plant, designed.design, at)
-    system = assemble_spec(designed.loaded, designed, at)
+    state = state_of(conditions, designed.plant, designed.design)
+    system = assemble_spec(designed.loaded, designed)
     return with_command(system, state, disturbances.bounds(), conditions.torque)

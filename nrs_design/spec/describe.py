@@ -168,7 +168,6 @@ def _interaction(spec: InteractionDesignSpec) -> Iterator[Line]:
     ):
         yield from describe_model(getattr(spec, key), key)
     yield Line("contact", spec.contact or "not said: the claim tells", "", "")
-    yield Line("coordinates", spec.coordinates, "", "")
     yield from _switching(spec.switching)
 
 

@@ -170,12 +170,6 @@ LOSABLE = _F("loss of contact", "contact", "use `contact: kept`", lambda s: s.co
 NOT_KEPT = _F(
     "contact that may be lost", "contact", "write `contact: kept`", lambda s: s.contact != "kept"
 )
-FORCE_COORDINATES = _F(
-    "force coordinates",
-    "coordinates",
-    "use `coordinates: deflection`",
-    lambda s: s.coordinates == "force",
-)
 GIVEN_LOOP = _F(
     "a closed motion loop that the spec states",
     "motion_loop.transfer_function",

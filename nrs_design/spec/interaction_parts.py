@@ -144,10 +144,10 @@ class AbstractInteractionSpec(SpecModel):
         "whether a proof must hold while contact is lost and made again (losable), or "
         "takes for granted that it is kept; default: losable where that can be proved"
     )
-    coordinates: Literal["deflection", "force"] = Field(
+    coordinates: Literal["deflection"] = Field(
         default="deflection",
-        description="state of the contact: deflection stays continuous when the stiffness "
-        "switches; force is what the thesis uses",
+        description="state of the contact: the deflection, which stays continuous when the "
+        "stiffness switches",
     )
     mode_logic: Annotated[ThresholdLogicSpec, ReadBefore(check_type)] | None = optional(
         "what decides which controller is active; `switching: mode-logic` lets the "

@@ -56,7 +56,6 @@ DECLARED = Fraction(1)
 def assemble_from_text(
     spec: Spec,
     gains: Mapping[str, Mapping[str, str]],
-    coordinates: str | None,
     scale: Fraction = DECLARED,
     plant: Plant | None = None,
 ) -> SwitchedSystem:
@@ -71,8 +70,6 @@ def assemble_from_text(
         Either kind.
     gains : mapping
         As `nrs_design.controllers.gains.gains_of` gives them; empty for given matrices.
-    coordinates : {"deflection", "force"} or None
-        None for given matrices.
     scale : Fraction
         Not negative: every declared range is stretched by it about its nominal value. 0 leaves the
         nominal values only.
@@ -82,12 +79,12 @@ def assemble_from_text(
     Raises
     ------
     AssemblyError, CertificateError
-        If gains or coordinates do not fit the spec, if a stiffness or a gain does not stay
-        positive, or if the rules of switching make too many switches.
+        If gains do not fit the spec, if a stiffness or a gain does not stay positive, or if the
+        rules of switching make too many switches.
     """
     if spec.kind == "switched-system" or spec.kind == "sampled-system":
-        if gains or coordinates is not None:
-            raise AssemblyError("given matrices have neither gains nor coordinates")
+        if gains:
+            raise AssemblyError("given matrices have no gains")
         return assemble_matrices(spec, scale)
     if spec.kind == "robot":
         raise AssemblyError("a robot spec has no modes")
@@ -95,7 +92,7 @@ def assemble_from_text(
     from nrs_design.spec.build_plant import build_plant
 
     design = design_from_gains(spec, gains)
-    return assemble(spec, plant or build_plant(spec), design, coordinates, scale)
+    return assemble(spec, plant or build_plant(spec), design, scale)
 
 
 def assemble_matrices(
@@ -139,7 +136,6 @@ def assemble(
     spec: InteractionDesignSpec,
     plant: Plant,
     design: ControllerDesign,
-    coordinates: str | None,
     scale: Fraction = DECLARED,
 ) -> SwitchedSystem:
     """Return the closed loop of an interaction design, one mode for each corner of its boxes.
@@ -152,16 +148,14 @@ def assemble(
         As `nrs_design.spec.build_plant.build_plant` makes it of this spec.
     design : ControllerDesign
         The gains that ship.
-    coordinates : {"deflection", "force"} or None
-        Last state of an impedance mode; None is refused.
     scale : Fraction
         Not negative: every declared range is stretched by it about its nominal value.
 
     Raises
     ------
     AssemblyError
-        If the coordinates are unknown, if a stiffness or a gain does not stay positive, or if the
-        rules of switching make too many switches.
+        If a stiffness or a gain does not stay positive, or if the rules of switching make too many
+        switches.
     """
     from nrs_design.spec.build_plant import build_conditions
     from nrs_design.switched.gain_box import gain_boxes
@@ -172,24 +166,15 @@ def assemble(
     boxes = gain_boxes(conditions.gains, design, scale)
     coupling = _coupling_of(conditions.coupling, plant, scale)
     if conditions.sampling is not None:
-        if coordinates != "deflection":
-            raise AssemblyError(
-                f"coordinates {coordinates!r} do not apply to the sampled loop",
-                remedy="use coordinates: deflection",
-            )
         from nrs_design.switched.safety import with_safety
         from nrs_design.switched.sampled_loop import close_sampled_loop
 
         sampling = conditions.sampling
         system = close_sampled_loop(conditions, sampling, plant, design, boxes, coupling)
         system = with_safety(system, conditions, plant, design)
-    elif coordinates in ("deflection", "force"):
-        state = state_of(conditions, plant, design, coordinates, boxes)
-        system = _assemble_continuous(conditions, plant, state, coupling)
     else:
-        raise AssemblyError(
-            f"unknown coordinates {coordinates!r}", remedy="choose deflection or force"
-        )
+        state = state_of(conditions, plant, design, boxes)
+        system = _assemble_continuous(conditions, plant, state, coupling)
     (drive,) = spec.drives
     constants = tuple(
         constants_of(plant, conditions.touched, drive, sampled=conditions.sampling is not None)
@@ -240,11 +225,6 @@ def _assemble_continuous(
 
     system = close_loop(conditions.name, state, conditions.switching, conditions.contact)
     if conditions.disturbances is not None:
-        if state.coordinates != "deflection":
-            raise AssemblyError(
-                "bounds on what disturbs do not apply to force coordinates",
-                remedy="use coordinates: deflection",
-            )
         from nrs_design.switched.commanded import check_memory, with_command
 
         check_memory(state.environments)
@@ -260,13 +240,6 @@ def _assemble_continuous(
 
         system = with_constant_force(system)
     if conditions.initial_force is not None:
-        if state.coordinates != "deflection":
-            raise AssemblyError(
-                "decay although signals saturate is shown in deflection coordinates: a motion "
-                "begins at a deflection",
-                remedy="use coordinates: deflection, or remove the goal",
-                at=("goals", "initial_force"),
-            )
         from nrs_design.switched.saturation import with_saturation
 
         system = with_saturation(system, conditions, plant.actuator, state)
@@ -277,7 +250,6 @@ def state_of(
     conditions: OperatingConditions,
     plant: Plant,
     design: ControllerDesign,
-    coordinates: str,
     boxes: Mapping[str, GainBox] = MappingProxyType({}),
 ) -> SharedState:
     """Return the state that the modes of an interaction design share in continuous time.
@@ -286,7 +258,7 @@ def state_of(
     ----------
     conditions : OperatingConditions
         With what idle states do, and the offset of force controllers.
-    plant, design, coordinates
+    plant, design
         As for `assemble`.
     boxes : mapping of str to GainBox
         Where the gains may be, by controller; by default, at what ships.
@@ -300,7 +272,7 @@ def state_of(
 
     loop = plant.motion_loop(design.motion.Kp, design.motion.Kd)
     idle, offset = conditions.idle, conditions.offset
-    return shared_state(plant, loop, design, coordinates, idle=idle, offset=offset, boxes=boxes)
+    return shared_state(plant, loop, design, idle=idle, offset=offset, boxes=boxes)
 
 
 def _coupling_of(

@@ -33,7 +33,7 @@ def with_command(
     Parameters
     ----------
     system : SwitchedSystem
-        The loop without inputs, in deflection coordinates.
+        The loop without inputs.
     state : SharedState
         Of its modes.
     disturbances : mapping
@@ -44,14 +44,13 @@ def with_command(
     Raises
     ------
     AssemblyError
-        If it is not modelled for these controllers, environments or coordinates.
+        If it is not modelled for these controllers or environments.
     """
     laws = {controller.name: controller.law for controller in state.design.controllers}
     plain = all(law.commands == "velocity" for law in laws.values())
-    if not plain or state.coordinates != "deflection" or not state.environments:
+    if not plain or not state.environments:
         raise AssemblyError(
-            "a velocity command is modelled for impedance controllers that touch something, in "
-            "deflection coordinates",
+            "a velocity command is modelled for impedance controllers that touch something",
             remedy="leave disturbances out",
             at=("disturbances",),
         )

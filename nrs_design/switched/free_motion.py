@@ -98,7 +98,6 @@ def _can_be_free(state: SharedState) -> bool:
     return (
         state.idle is None
         and state.law.commands == "velocity"
-        and state.coordinates == "deflection"
         and not any(e.law.remembers or e.law.has_mass or e.preloaded for e in state.environments)
         and not any(e.parts and not e.each_losable for e in state.environments)
         and bool(state.environments)
@@ -107,8 +106,8 @@ def _can_be_free(state: SharedState) -> bool:
 
 def _not_losable(which: str) -> AssemblyError:
     return AssemblyError(
-        "loss of contact is modelled for impedance controllers on elastic and damped environments "
-        f"in deflection coordinates{which}",
+        "loss of contact is modelled for impedance controllers on elastic and damped environments"
+        f"{which}",
         remedy="use `contact: kept`; for position and force controllers on elastic environments, "
         "or prove the sampled loop: add `sampling: {period: 2 ms, delay: 0}`",
         at=("contact",),

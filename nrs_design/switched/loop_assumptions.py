@@ -97,7 +97,7 @@ def _contact_texts(loop: SharedState) -> Iterator[Assumption]:
     yield say(which, ranges_text(loop.environments, loop.design.axis))
     integrated = any(c.law.commands == "velocity" for c in loop.design.controllers)
     if integrated and all(e.law.has_rest for e in loop.environments):
-        yield say(f"at-a-switch.{loop.coordinates}")
+        yield say("at-a-switch.deflection")
 
 
 def _memories(environment: Environment, *, alone: bool) -> Iterator[Assumption]:

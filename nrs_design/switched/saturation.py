@@ -61,7 +61,7 @@ def with_saturation(
     Parameters
     ----------
     system : SwitchedSystem
-        The loop in which nothing does, in deflection coordinates.
+        The loop in which nothing does.
     conditions : OperatingConditions
         With its limits and the goal, as `nrs_design.spec.combinations` checks.
     actuator : Actuator

@@ -38,7 +38,6 @@ from nrs_design.switched.modes import (
     Rows,
     lead,
     position_mode,
-    to_force_coordinates,
     velocity_mode,
     with_idle,
     with_last,
@@ -55,9 +54,6 @@ class SharedState:
 
     design: ControllerDesign  # Gains that ship
     boxes: Mapping[str, GainBox]  # Where the gains of the controllers may be, by name
-    # Last state of an impedance mode: deflection (continuous when the stiffness changes in contact,
-    # so the physical choice), or force (the thesis's choice).
-    coordinates: str
     environments: tuple[Environment, ...]
     realization: Realization  # Of the motion loop
     given: bool  # Whether the spec states the motion loop
@@ -115,7 +111,8 @@ class SharedState:
         loop = (*self.motion.states, *self.law.states)
         if self.law.commands == "position":
             return loop
-        contact = "F [N*m]" if self.coordinates == "force" else self.environments[0].law.states[0]
+        # Continuous when the stiffness changes in contact.
+        contact = self.environments[0].law.states[0]
         memories = (f"{e.name}: {name}" for e in self.environments for name in e.law.states[1:])
         sensed = () if self.low_pass is None else self.low_pass.states
         return (*loop, *sensed, contact, *memories)
@@ -155,8 +152,6 @@ class SharedState:
         if self.idle is not None or law.commands == "position":
             return self.placed(held, contact, environment.name)
         rows = velocity_mode(self.motion_at(values), held, contact, self.low_pass)
-        if self.coordinates == "force":
-            return to_force_coordinates(rows, self.motion, contact)
         first = len(self.names) - len(self.memories)
         memories = enumerate(self.memories, first)
         return with_idle(rows, {i: values[_rate(e)] for i, e in memories if e != environment})
@@ -195,7 +190,6 @@ def shared_state(
     plant: Plant,
     loop: MotionLoop,
     design: ControllerDesign,
-    coordinates: str,
     *,
     idle: IdleStatesSpec | None = None,
     offset: Offset = "none",
@@ -209,20 +203,19 @@ def shared_state(
         Environments.
     loop : MotionLoop
         Closed motion loop G.
-    design, coordinates, idle, offset, boxes
+    design, idle, offset, boxes
         See `SharedState`; without a box, the gains of a controller are what ships.
 
     Raises
     ------
     AssemblyError
-        If the modes do not share one state, or the coordinates do not apply.
+        If the modes do not share one state.
     """
     laws = [controller.law for controller in design.controllers]
     leading = design.leading_laws(mixed=idle is not None)
     state = SharedState(
         design,
         {**{c.name: GainBox.point(c.law) for c in design.controllers}, **boxes},
-        coordinates,
         plant.among(design.contacts),
         realize(loop),
         loop.given,
@@ -240,16 +233,9 @@ def shared_state(
 
 def _faults(state: SharedState) -> Iterator[AssemblyError]:
     """Yield what is not modelled in one state."""
-    force, mixed = state.coordinates == "force", state.idle is not None
+    mixed = state.idle is not None
     for environment in state.environments:
         law, at = environment.law, ("environments", environment.name)
-        if force and law.remembers:
-            yield AssemblyError(
-                f"force coordinates do not apply to environment {environment.name}, which is "
-                f"{law.name}",
-                remedy="use coordinates: deflection",
-                at=("coordinates",),
-            )
         if not law.has_rest and len(state.environments) > 1:
             yield AssemblyError(
                 f"environment {environment.name} has no rest position ({law.name}), so it shares "
@@ -264,12 +250,6 @@ def _faults(state: SharedState) -> Iterator[AssemblyError]:
                 remedy="use elastic or Kelvin-Voigt environments, or one kind of controller",
                 at=at,
             )
-    if mixed and force:
-        yield AssemblyError(
-            "force coordinates do not apply to impedance controllers beside others",
-            remedy="use coordinates: deflection",
-            at=("coordinates",),
-        )
     yield from _faults_of_springs(state)
     if (odd := state.design.find_odd_states(mixed=mixed)) is not None:
         yield AssemblyError(
@@ -288,13 +268,6 @@ def _faults_of_springs(state: SharedState) -> Iterator[AssemblyError]:
     name = next((c.name for c in state.design.controllers if c.law.spring), None)
     restless = next((e for e in state.environments if not e.law.has_rest), None)
     at = ("controllers", str(name), "Kt")
-    if name is not None and state.coordinates == "force":
-        yield AssemblyError(
-            "force coordinates do not apply to an admittance with a spring Kt: where the "
-            "deflection jumps, so would its displacement",
-            remedy="use coordinates: deflection, or leave Kt out",
-            at=at,
-        )
     if name is not None and restless is not None:
         yield AssemblyError(
             f"an admittance with a spring Kt is not modelled in contact with {restless.name}, "

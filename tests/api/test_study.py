@@ -39,7 +39,7 @@ def test_options_of_runs_are_checked():
 def test_a_study_of_a_spec(tmp_path):
     study = nrs.load(SOFT_TISSUE)
     assert [c.name for c in study.design().controllers] == ["insertion", "withdrawal"]
-    decision = study.certify(coordinates="deflection")
+    decision = study.certify()
     assert decision.verdict == "proved"
     decision.save(tmp_path)
     # The spec is a file already, so no second copy is made.

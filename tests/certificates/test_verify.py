@@ -14,7 +14,7 @@ same spec, and `verify` says in its answer what it has checked (`TestLegitimate`
 - ``statements``: some left out, said twice or in another order, if they carry the same verdict;
 - an unstable mode: any other mode that is unstable, with its own eigenvalue.
 
-Everything else must be rejected, and nothing may crash. Other coordinates must be asked for.
+Everything else must be rejected, and nothing may crash.
 """
 
 import copy
@@ -179,7 +179,7 @@ def changed(document, path, value):
 
 def with_modes(document, spec):
     """Copy of a document with the modes that its gains make of a spec."""
-    system = assemble_from_text(spec.spec, document["gains"], document["coordinates"])
+    system = assemble_from_text(spec.spec, document["gains"])
     return {**document, **system_fields(system)}
 
 
@@ -341,15 +341,6 @@ class TestLegitimate:
         certificate = self.accept({**remark, "verdict": "inconclusive"}, spec)
         assert (certificate.evidence, certificate.common_quadratic) == (None, "impossible")
         assert verify_document(resign(remark), spec).fault is not None
-
-    def test_other_coordinates_if_they_are_asked_for(self):
-        spec = read_spec(SOFT_TISSUE)
-        certificate = run_certification(spec, coordinates="force", method=Method.LMI).certificate
-        document = json.loads(dump(certificate))
-        assert verify_document(document, spec, "force").fault is None
-        assert "other coordinates than deflection" in verify_document(document, spec).fault
-        swapped, _ = signed("impedance")
-        assert "other coordinates than force" in verify_document(swapped, spec, "force").fault
 
 
 class TestForgery:
@@ -559,17 +550,12 @@ class TestForgery:
         tampered = changed(document, ("gains", "motion", "Kd"), str(2**127))
         self.reject(tampered, spec, "single precision")
 
-    @pytest.mark.parametrize("coordinates", ["Deflection", "", None, 1, ["deflection"], {}])
+    @pytest.mark.parametrize(
+        "coordinates", ["Deflection", "force", "", None, 1, ["deflection"], {}]
+    )
     def test_unknown_coordinates(self, impedance, coordinates):
         document, spec = impedance
         self.reject({**document, "coordinates": coordinates}, spec, "coordinates")
-
-    def test_other_coordinates_need_their_own_texts(self, impedance):
-        document, spec = impedance
-        assert document["coordinates"] == "deflection"
-        self.reject({**document, "coordinates": "force"}, spec, "other coordinates")
-        fault = verify_document(resign({**document, "coordinates": "force"}), spec, "force").fault
-        assert fault == "its field 'states' is not that of the spec"
 
     @pytest.mark.parametrize("coordinates", ["deflection", "force", ""])
     def test_coordinates_of_given_matrices(self, given, coordinates):

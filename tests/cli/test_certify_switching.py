@@ -347,7 +347,6 @@ def test_shortest_dwell_time_needs_continuous_time_and_fixed_parameters(tmp_path
         (["missing.nrs.yaml"], "no such file"),
         ([], "Missing argument"),
         ([str(COMMUTING), "--method", "guess"], "guess"),
-        ([str(COMMUTING), "--coordinates", "force"], "neither gains nor coordinates"),
         ([str(COMMUTING), "--unknown"], "--unknown"),
         ([str(COMMUTING), "--max-degree", "1"], "--max-degree"),
         ([str(COMMUTING), "--max-degree", "65"], "--max-degree"),
@@ -492,13 +491,6 @@ def test_unwritable_output_is_refused_before_the_search(tmp_path, monkeypatch):
     assert sorted(path.name for path in tmp_path.iterdir()) == ["file", "link"]
 
 
-def test_coordinates(tmp_path):
-    document = document_of("certify-switching", SOFT_TISSUE, "--coordinates", "force", cwd=tmp_path)
-    assert document["coordinates"] == "force"
-    assert document["states"][-1] == "F [N*m]"
-    assert any("not physical" in assumption for assumption in document["assumptions"])
-
-
 def broken_pipe():
     """A place to write to whose reader has gone."""
     read, write = os.pipe()
@@ -590,7 +582,7 @@ class TestGradientOptions:
         assert history[-1][1] <= 0 < history[0][1]
 
     def test_the_states_as_given_lead_nowhere(self, tmp_path):
-        options = ("--set", "coordinates=given", "--coordinates", "force")
+        options = ("--set", "coordinates=given")
         few = ("--set", "max_updates=500", "-v")
         arguments = ("certify-switching", SOFT_TISSUE, "--method", "gradient", *options, *few)
         done = run(*arguments, cwd=tmp_path, code=3)

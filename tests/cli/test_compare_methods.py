@@ -8,7 +8,7 @@ FEW = ("--max-updates", "300")
 
 
 def test_the_table_of_the_pair_of_the_thesis(tmp_path):
-    done = run("compare-methods", SOFT_TISSUE, "--coordinates", "force", *FEW, cwd=tmp_path, code=0)
+    done = run("compare-methods", SOFT_TISSUE, *FEW, cwd=tmp_path, code=0)
     rows = [line.split() for line in done.stdout.splitlines() if line.startswith(" gradient")]
     assert [row[1] for row in rows] == ["mean-norm"] * 2 + ["balanced"] * 2 + ["given"] * 2
     assert [row[2] for row in rows] == ["round-robin", "random"] * 3

@@ -120,7 +120,7 @@ def test_valid_certificate_of_other_gains(export, tmp_path, capsys):
     loaded = read_spec(SPEC)
     design = run_certification(loaded)
     gains = {**design.certificate.gains, "insertion": {"Mt": "0.015625", "Bt": "2.125"}}
-    system = assemble_from_text(loaded.spec, gains, "deflection")
+    system = assemble_from_text(loaded.spec, gains)
     statements = certify(system).statements
     other = replace(design.certificate, gains=gains, system=system, statements=statements)
     Path("mine.json").write_text(dump(other))
@@ -128,13 +128,6 @@ def test_valid_certificate_of_other_gains(export, tmp_path, capsys):
     assert export(SPEC, "--certificate", "mine.json") == 1
     assert "other gains of insertion" in capsys.readouterr().err
     assert files() == ["mine.json"]
-
-
-def test_certificate_in_other_coordinates(export, capsys):
-    other = run_certification(read_spec(SPEC), coordinates="force").certificate
-    Path("mine.json").write_text(dump(other))
-    assert export(SPEC, "--certificate", "mine.json") == 1
-    assert "other coordinates" in capsys.readouterr().err
 
 
 def test_certificate_that_is_none(export):

@@ -79,7 +79,6 @@ def test_without_a_spec_what_is_altered_is_rejected(certified, tmp_path):
         (("thesis-print-error.json", PRINT_ERROR), 1, "REFUTED for this spec"),
         (("soft-tissue.json", COMMUTING), 1, "REJECTED: it belongs to another spec"),
         (("soft-tissue.json", PRINT_ERROR), 1, "REJECTED: it belongs to another spec"),
-        (("soft-tissue.json", "--coordinates", "force"), 2, "needs a SPEC"),
         (("commuting.json", "none.nrs.yaml"), 2, "error[NRS001]"),
         (("commuting.json", COMMUTING, "--deployed", "x.h"), 2, "no gains that could be deployed"),
     ],
@@ -123,17 +122,6 @@ def test_ranges_of_gains_are_said(tmp_path):
     lines = result.stdout.splitlines()
     assert "  insertion: Mt anywhere in [0.008 kg*m^2, 0.012 kg*m^2]" in lines
     assert "  withdrawal: Bt anywhere in [0.832 N*m*s/rad, 1.248 N*m*s/rad]" in lines
-
-
-def test_other_coordinates_must_be_asked_for(tmp_path):
-    arguments = ["--coordinates", "force", "--out", "c.json"]
-    run("certify-switching", SOFT_TISSUE, *arguments, cwd=tmp_path, code=0)
-    rejected = run("verify", "c.json", SOFT_TISSUE, cwd=tmp_path, code=1)
-    assert "REJECTED: it is about other coordinates than deflection" in rejected.stdout
-    asked = run(
-        "verify", "c.json", SOFT_TISSUE, "--coordinates", "force", "-v", cwd=tmp_path, code=0
-    )
-    assert "coordinates: force" in asked.stdout
 
 
 def test_altered(certified, tmp_path):

@@ -78,8 +78,8 @@ def test_gains_of_a_certificate_outside_their_range_are_refused():
     spec = loaded("0.5 kg*m^2", damping).spec
     # Kd and Kp may be anything positive here: the spec fixes neither.
     gains = {"motion": {"Kp": "8", "Kd": "1"}, "insertion": {"Mt": "0.5", "Bt": "2.5"}}
-    assert len(assemble_from_text(spec, gains, "deflection").modes) == 2
+    assert len(assemble_from_text(spec, gains).modes) == 2
     for value in ("1.5", "3.5"):
         outside = gains | {"insertion": {"Mt": "0.5", "Bt": value}}
         with pytest.raises(CertificateError, match=f"the designed Bt, {value}, is outside"):
-            assemble_from_text(spec, outside, "deflection")
+            assemble_from_text(spec, outside)

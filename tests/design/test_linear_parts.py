@@ -29,7 +29,7 @@ def test_poles_are_those_of_the_modes_of_the_proof(name, tmp_path):
     spec = designed.spec
     loops = linear_parts(designed.plant, designed.design).loops
     assert loops
-    system = assemble(spec, designed.plant, designed.design, spec.coordinates, Fraction(0))
+    system = assemble(spec, designed.plant, designed.design, Fraction(0))
     for loop in loops:
         near = [mode for mode in system.modes if mode.name.startswith(loop.name)]
         assert near, [mode.name for mode in system.modes]

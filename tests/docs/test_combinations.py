@@ -11,5 +11,5 @@ def test_the_page_has_every_row_with_its_names_filled():
     assert all(row.count(" | ") == 3 for row in rows)
     assert "{0" not in "".join(rows)
     page = "\n".join(rows)
-    assert "| force coordinates | `coordinates` | X, a hand with a mass |" in page
+    assert "| the offset of X | `controllers.X.offset` | a mixture of controllers |" in page
     assert "add `sampling: {period: 2 ms, delay: 0}`" in page

@@ -310,7 +310,6 @@ def test_audit_tells_the_same_of_a_log(monitor, tmp_path, surface, factor):
     [
         ({"monitoring": None}, "no `monitoring`"),
         ({"contact": None}, "does not say by `contact`"),
-        ({"coordinates": "force"}, "in force coordinates"),
     ],
 )
 def test_what_is_not_monitored_says_why(sampled_export, changes, reason):

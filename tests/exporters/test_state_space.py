@@ -79,7 +79,7 @@ def test_modes_are_those_of_the_proof(continuous_export, sampled_export):
 def test_disturbances_are_inputs(sampled):
     text = f"{sampled.text}disturbances: {{command: 8 deg/s, force_step: 0.01 N*m}}\n"
     designed = run_design(replace(sampled, spec=parse_spec(text)))
-    system = assemble(designed.spec, designed.plant, designed.design, "deflection")
+    system = assemble(designed.spec, designed.plant, designed.design)
     assert len(system.channels) == 2
     for index, space in enumerate(mode_state_spaces(system).values()):
         for column, channel in enumerate(system.channels):

@@ -267,23 +267,6 @@ def test_gains_without_a_certificate_are_not_shown(check, project):
     assert outcome.specs[0].gains == {}
 
 
-def test_certificate_in_other_coordinates_than_the_spec(check, project):
-    from nrs_design.certificates.certificate import dump
-    from nrs_design.pipeline import run_certification
-    from nrs_design.spec import read_spec
-
-    loaded = read_spec(project / "specs/soft-tissue.nrs.yaml")
-    certificate = run_certification(loaded, coordinates="force").certificate
-    (project / "reports/soft-tissue.cert.json").write_text(dump(certificate))
-    edit_lock(project, lambda specs: specs[0]["certificate"].update(id=certificate.id))
-    from nrs_design.gating.examine import certified_rate
-
-    edit_lock(project, lambda specs: specs[0].update(rate=certified_rate(certificate)[0]))
-    outcome = check()
-    assert broken(outcome) == [("NRS104", "missed")]
-    assert "other coordinates than deflection" in outcome.broken[0].message
-
-
 @pytest.mark.parametrize(
     ("text", "expected", "words"),
     [

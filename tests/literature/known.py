@@ -71,9 +71,7 @@ def given(name, matrices, time="continuous") -> SwitchedSystem:
     modes = [{"name": f"m{i}", "A": A} for i, A in enumerate(matrices)]
     # JSON is YAML; entries stay texts.
     document = {"kind": "switched-system", "name": name, "time": time, "modes": modes}
-    return assemble_from_text(
-        parse_spec(json.dumps({**document, "switching": "arbitrary"})), {}, None
-    )
+    return assemble_from_text(parse_spec(json.dumps({**document, "switching": "arbitrary"})), {})
 
 
 def robot(name, Mt, contacts, coordinates="deflection") -> SwitchedSystem:

@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 
 from nrs_design import __version__
-from nrs_design.errors import AssemblyError, CertificateError
+from nrs_design.errors import CertificateError
 from nrs_design.gating.run import Files, run_gate
 from nrs_design.pipeline import run_analysis, run_certification, run_design, run_recorded
 from nrs_design.search.certify import Limits, Verdict
@@ -43,14 +43,18 @@ def test_all_the_way(path, verdict, modes):
     certificate = result.certificate
     assert certificate.version == __version__
     assert certificate.spec_sha256 == result.loaded.sha256
-    assert certificate.coordinates == result.coordinates
+
+
+def test_a_design_names_its_coordinates():
+    assert run_certification(read_spec(SOFT_TISSUE)).certificate.coordinates == "deflection"
 
 
 def test_given_matrices_have_no_design():
     loaded = read_spec(COMMUTING)
     assert run_design(loaded) is None
     result = run_certification(loaded)
-    assert (result.design, result.coordinates, result.certificate.gains) == (None, None, {})
+    found = result.certificate
+    assert (result.design, found.coordinates, found.gains) == (None, None, {})
 
 
 def calls_of(monkeypatch, **functions):
@@ -158,16 +162,6 @@ def test_certificate_of_a_remark_without_a_verdict(tmp_path):
     assert result.certification.verdict is Verdict.INCONCLUSIVE
     assert [item.kind for item in result.certificate.statements] == ["no-common-quadratic"]
     assert (result.certificate.verdict, result.certificate.evidence) == ("inconclusive", None)
-
-
-def test_coordinates_can_be_overridden():
-    loaded = read_spec(SOFT_TISSUE)
-    assert run_certification(loaded, limits=Limits(optimize_rate=False)).coordinates == "deflection"
-    result = run_certification(loaded, coordinates="force", limits=Limits(optimize_rate=False))
-    assert result.coordinates == "force"
-    assert result.certification.system.states[-1] == "F [N*m]"
-    with pytest.raises(AssemblyError, match="coordinates"):
-        run_certification(read_spec(COMMUTING), coordinates="force")
 
 
 @pytest.mark.slow

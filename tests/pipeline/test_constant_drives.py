@@ -89,7 +89,7 @@ def test_an_inertia_that_jumps_is_refuted(tmp_path):
 
 def test_values_of_a_drive_are_enclosed_and_refute_nothing(tmp_path):
     loaded = read(tmp_path, TORQUES)
-    system = assemble_spec(loaded, run_design(loaded), "deflection")
+    system = assemble_spec(loaded, run_design(loaded))
     (said,) = system.switching.fixed_parameters
     assert (said.name, said.unit, said.inverse) == ("torque_interface.inertia", "kg*m^2", True)
     assert said.enclosed
@@ -100,7 +100,7 @@ def test_values_of_a_drive_are_enclosed_and_refute_nothing(tmp_path):
 def test_a_constant_latency_is_what_is_left_of_the_period(tmp_path):
     """The shortest one leaves most; what the way is above its chord goes on to vary."""
     loaded = read(tmp_path, LATE)
-    system = assemble_spec(loaded, run_design(loaded), "deflection")
+    system = assemble_spec(loaded, run_design(loaded))
     (said,) = system.switching.fixed_parameters
     assert (said.name, float(said.low), float(said.high)) == ("sampling.latency", 0.0024, 0.0036)
     assert said.enclosed
@@ -109,7 +109,7 @@ def test_a_constant_latency_is_what_is_left_of_the_period(tmp_path):
     varying = read(
         tmp_path, LATE.replace("{range: [2.4 ms, 3.6 ms], varies: false}", "[2.4 ms, 3.6 ms]")
     )
-    other = assemble_spec(varying, run_design(varying), "deflection")
+    other = assemble_spec(varying, run_design(varying))
     assert other.modes == system.modes
     assert not other.switching.fixed_ends
     texts = " ".join(system.assumptions)

@@ -42,7 +42,7 @@ def late(loaded, designed, delay):
     """Return the loop where every force sample is so old."""
     sampling = designed.spec.sampling.model_copy(update={"delay": (delay, delay)})
     spec = designed.spec.model_copy(update={"sampling": sampling, "disturbances": None})
-    return assemble_spec(loaded, replace(designed, spec=spec), designed.spec.coordinates)
+    return assemble_spec(loaded, replace(designed, spec=spec))
 
 
 def test_axes_that_act_on_each_other_are_refuted_beyond_what_a_spec_can_declare():

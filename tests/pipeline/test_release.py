@@ -82,10 +82,5 @@ def test_what_is_not_shown_has_its_reason(name, reason):
     assert isinstance(found, Outputs) if reason is None else reason in found
 
 
-def test_in_force_coordinates_there_is_no_deflection(tmp_path):
-    path = changed(tmp_path, ("switching: arbitrary", "switching: arbitrary\ncoordinates: force"))
-    assert "coordinates" in physical_outputs(result_of(path))
-
-
 def test_given_matrices_have_no_units():
     assert physical_outputs(result_of(COMMUTING)) is None

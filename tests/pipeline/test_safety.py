@@ -77,7 +77,7 @@ def test_the_certificate_holds_stability_and_what_the_layer_keeps(loaded, result
 def test_without_the_layer_the_modes_are_the_same(loaded, result):
     bare = parse_spec(TEXT.replace(LAYER, "disturbances: {largest_angle: 3 rad}\n"))
     other = replace(loaded, spec=bare)
-    without = assemble_spec(other, run_design(other), "deflection")
+    without = assemble_spec(other, run_design(other))
     system = result.certification.system
     assert system.safety is not None
     assert without.safety is None

@@ -68,7 +68,7 @@ def test_a_stiffness_is_held_five_times_from_text_to_matrix():
 
     def all_the_way():
         again = parse_spec(TEXT)
-        assemble(again, build_plant(again), design, "deflection")
+        assemble(again, build_plant(again), design)
 
     wrappers = classes_that_hold_it(all_the_way)
     assert wrappers == {"Quantity", "RangedQuantity", "Interval", "Elastic"}

@@ -27,7 +27,7 @@ switching: RULES
 
 
 def assembled(rules="arbitrary"):
-    return assemble_from_text(parse_spec(TEXT.replace("RULES", rules)), {}, None)
+    return assemble_from_text(parse_spec(TEXT.replace("RULES", rules)), {})
 
 
 @pytest.mark.parametrize("share", [Fraction(0), Fraction(1), Fraction(1, 3)])
@@ -46,9 +46,7 @@ def test_matrices_are_those_of_the_spec_at_that_value(share):
 def test_the_parameter_is_known_by_name():
     parameter = FixedParameter("m", Fraction(1, 2), Fraction(2))
     assert assembled().switching.fixed_parameters == (parameter,)
-    nominal = assemble_from_text(
-        parse_spec(TEXT.replace("RULES", "arbitrary")), {}, None, Fraction(0)
-    )
+    nominal = assemble_from_text(parse_spec(TEXT.replace("RULES", "arbitrary")), {}, Fraction(0))
     assert nominal.switching == ARBITRARY
 
 

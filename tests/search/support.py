@@ -76,4 +76,4 @@ def thesis_robot(
     text += "".join(f"{name}: {section}\n" for name, section in sections.items())
     designed = run_design(LoadedSpec(path="soft", sha256="", text=text, spec=parse_spec(text)))
     assert designed is not None
-    return assemble(designed.spec, designed.plant, designed.design, "deflection")
+    return assemble(designed.spec, designed.plant, designed.design)

@@ -89,7 +89,6 @@ CHANGES = {
     f.TIMED: {"actuator": {"dead_time": "1 ms"}},
     f.LOSABLE: {"contact": "losable"},
     f.NOT_KEPT: {"contact": "losable"},
-    f.FORCE_COORDINATES: {"coordinates": "force"},
     f.GIVEN_LOOP: {
         "motion_loop": {
             "transfer_function": {"numerator": [28.4, 1619], "denominator": [1, 57, 1619]}
@@ -291,10 +290,10 @@ def test_every_pair_that_is_read_makes_a_system_or_is_warned_of(tmp_path):
         designed = run_design(loaded)
         if "certify-switching refuses" in doubts:
             with pytest.raises(AssemblyError):
-                assemble_spec(loaded, designed, designed.spec.coordinates)
+                assemble_spec(loaded, designed)
             continue
         made += 1
-        assert assemble_spec(loaded, designed, designed.spec.coordinates).modes
+        assert assemble_spec(loaded, designed).modes
     assert made > 100
 
 

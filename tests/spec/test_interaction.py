@@ -188,7 +188,7 @@ IMPEDANCE_FAULTS = [
     ("Mt: 0.01", "weights: {displayed: -1}\n    Mt: 0.01", "-1}", "zero or positive"),
     ("switching: arbitrary\n", "", "kind", "`switching` is missing"),
     ("switching: arbitrary", "switching: slow", "slow", "'arbitrary'"),
-    ("switching", "coordinates: velocity\nswitching", "velocity\nsw", "'deflection' or 'force'"),
+    ("switching", "coordinates: force\nswitching", "force\nsw", "write 'deflection'"),
     ("switching", "design: {significant_digits: 8}\nswitching", "8}\n", "from 1 to 7"),
     ("switching", "design: {significant_digits: 2.5}\nswitching", "2.5", "from 1 to 7"),
     (

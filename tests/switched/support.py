@@ -24,7 +24,7 @@ def assembled(text):
     """Design and assemble a spec, in deflection coordinates."""
     spec = parse_spec(text)
     plant = build_plant(spec)
-    return assemble(spec, plant, design_controllers(spec, plant), "deflection")
+    return assemble(spec, plant, design_controllers(spec, plant))
 
 
 def polynomial(rows):

@@ -25,7 +25,7 @@ def design_of(path):
 
 
 def test_given_matrices():
-    system = assemble_from_text(load_spec(COMMUTING), {}, None)
+    system = assemble_from_text(load_spec(COMMUTING), {})
     assert [mode.name for mode in system.modes] == ["a", "b"]
     assert system.modes[1].A.numerators == ((-2, 3), (-3, -2))
     assert system.time is Time.CONTINUOUS
@@ -38,7 +38,7 @@ def test_decimals_are_read_exactly():
         "kind: switched-system\nname: s\ntime: discrete\nswitching: arbitrary\n"
         "modes: [{name: a, A: [[-0.36, 1e-100], ['1/6', 0.1]]}]\n"
     )
-    system = assemble_from_text(spec, {}, None)
+    system = assemble_from_text(spec, {})
     assert system.modes[0].A.fractions() == [
         [Fraction(-9, 25), Fraction(1, 10**100)],
         [Fraction(1, 6), Fraction(1, 10)],
@@ -46,17 +46,14 @@ def test_decimals_are_read_exactly():
     assert system.time is Time.DISCRETE
 
 
-@pytest.mark.parametrize(
-    ("gains", "coordinates"), [({"motion": {}}, None), ({}, "deflection"), ({}, "")]
-)
-def test_given_matrices_have_no_design(gains, coordinates):
-    with pytest.raises(AssemblyError, match="neither gains nor coordinates"):
-        assemble_from_text(load_spec(COMMUTING), gains, coordinates)
+def test_given_matrices_have_no_design():
+    with pytest.raises(AssemblyError, match="have no gains"):
+        assemble_from_text(load_spec(COMMUTING), {"motion": {}})
 
 
 def test_designs_come_back_from_their_gains():
     spec, _, gains = design_of(SOFT_TISSUE)
-    system = assemble_from_text(spec, gains, "deflection")
+    system = assemble_from_text(spec, gains)
     assert system.name == "soft-tissue"
     assert system.order == 4
     Bt = Fraction(gains["insertion"]["Bt"])
@@ -64,15 +61,7 @@ def test_designs_come_back_from_their_gains():
     assert system.modes[0].A.fractions()[2][2] == -Bt / Mt
 
 
-@pytest.mark.parametrize("coordinates", [None, "", "Force", "position"])
-def test_unknown_coordinates(coordinates):
-    spec, _, gains = design_of(SOFT_TISSUE)
-    with pytest.raises(AssemblyError, match="coordinates"):
-        assemble_from_text(spec, gains, coordinates)
-
-
-def test_decay_under_saturation_is_assembled_in_deflection_coordinates_only():
-    """A motion begins at a deflection: in force coordinates, a unit of force were another state."""
+def test_limits_under_saturation_are_covered_beyond_their_named_values():
     text = (ROOT / "docs/examples/saturating.nrs.yaml").read_text("utf-8")
     spec = parse_spec(text.replace("contact: losable", "contact: kept"))
     gains = {
@@ -80,12 +69,10 @@ def test_decay_under_saturation_is_assembled_in_deflection_coordinates_only():
         "insertion": {"Mt": "0.00999999977648258209228515625", "Bt": "2.150000095367431640625"},
         "withdrawal": {"Mt": "0.00999999977648258209228515625", "Bt": "1.03999996185302734375"},
     }
-    system = assemble_from_text(spec, gains, "deflection")
+    system = assemble_from_text(spec, gains)
     assert system.saturation is not None
     # Limits that are larger than the named ones are covered, so these are rounded up.
     assert any("cut off at 0.139627 rad/s (rounded up)" in text for text in system.assumptions)
-    with pytest.raises(AssemblyError, match="in deflection coordinates"):
-        assemble_from_text(spec, gains, "force")
 
 
 def test_a_motion_that_begins_with_a_force_may_have_a_filter_that_shows_it(tmp_path):
@@ -94,7 +81,7 @@ def test_a_motion_that_begins_with_a_force_may_have_a_filter_that_shows_it(tmp_p
     path = tmp_path / "filtered.nrs.yaml"
     path.write_text(filtered, "utf-8")
     spec, _, gains = design_of(path)
-    system = assemble_from_text(spec, gains, "deflection")
+    system = assemble_from_text(spec, gains)
     states = [[entry for (entry,) in x.fractions()] for x in system.saturation.start.states]
     shown = [(*(state[i] for i in (3, 4)),) for state in states]
     assert [system.states[i] for i in (3, 4)] == ["filtered 1 [N*m]", "filtered 2 [N*m]"]
@@ -106,7 +93,7 @@ def test_a_motion_that_begins_with_a_force_may_have_a_filter_that_shows_it(tmp_p
 def test_missing_gains():
     spec, _, gains = design_of(FORCE_LIMIT)
     with pytest.raises(CertificateError, match="gains"):
-        assemble_from_text(spec, {"motion": gains["motion"]}, "deflection")
+        assemble_from_text(spec, {"motion": gains["motion"]})
 
 
 def test_motion_loop_that_the_spec_states():

@@ -37,7 +37,7 @@ def assumed(path):
     if loaded.spec.kind in ("switched-system", "sampled-system"):
         return assemble_matrices(loaded.spec).assumptions
     made = run_design(loaded)
-    return assemble(made.spec, made.plant, made.design, made.spec.coordinates).assumptions
+    return assemble(made.spec, made.plant, made.design).assumptions
 
 
 def named(path):

@@ -37,7 +37,7 @@ def test_what_the_range_of_a_motor_holds_is_assumed():
         designed = run_design(
             LoadedSpec(path=ROBOT, sha256="", text=written, spec=parse_spec(written))
         )
-        system = assemble(designed.spec, designed.plant, designed.design, "deflection")
+        system = assemble(designed.spec, designed.plant, designed.design)
         assert said + end in system.assumptions
 
 
@@ -108,7 +108,7 @@ def test_words_of_a_preload(proved):
 def test_ranges_scaled_below_one_do_not_cover_the_law(scale, covered):
     loaded = read_spec(CONCHA)
     designed = run_design(loaded)
-    system = assemble(loaded.spec, designed.plant, designed.design, "deflection", Fraction(scale))
+    system = assemble(loaded.spec, designed.plant, designed.design, Fraction(scale))
     texts = " ".join(system.assumptions)
     assert ("motions need not be small" in texts) is covered
     assert ("that law is not covered" in texts) is not covered
@@ -118,4 +118,4 @@ def test_contact_is_kept_by_default_where_there_is_a_preload():
     text = CONCHA.read_text().replace("contact: kept\n", "")
     spec = parse_spec(text)
     design = run_design(read_spec(CONCHA)).design
-    assert assemble(spec, build_plant(spec), design, "deflection").contact is None
+    assert assemble(spec, build_plant(spec), design).contact is None

@@ -81,7 +81,7 @@ def test_no_force_error_is_left(stiffness):
     spec = parse_spec(text_of(BOTH, {"soft": soft}, more=IDLE))
     plant = build_plant(spec)
     design = design_controllers(spec, plant)
-    system = assemble(spec, plant, design, "deflection")
+    system = assemble(spec, plant, design)
     A = next(mode.A for mode in system.modes if mode.name == "force/soft").fractions()
     law, (wanted, X) = design.laws["force"], (Fraction("0.3"), Fraction("0.11"))
     # u has X + Kp Fd besides, and the integral gathers Ki Fd; xi' = Ap xi + Bp u with Bp = (0, 1).
@@ -126,7 +126,7 @@ def test_alone_nothing_is_idle():
 def test_the_statement_says_what_becomes_of_the_integral():
     spec = read_spec(ROOT / "specs/neuroboscope/force-limit-pi.nrs.yaml").spec
     plant = build_plant(spec)
-    system = assemble(spec, plant, design_controllers(spec, plant), "deflection")
+    system = assemble(spec, plant, design_controllers(spec, plant))
     (text,) = [text for text in system.assumptions if "the integral of the force error" in text]
     assert "decays at 20 1/s, and stays in the command" in text
     assert not any("integrate their velocity" in text for text in system.assumptions)

@@ -39,14 +39,14 @@ def impedance(name, Mt, contacts=("soft",)):
     return Controller(name, Admittance(F(Mt), F(2)), contacts[0], contacts)
 
 
-def assembled(*controllers, coordinates="deflection", contact=None):
+def assembled(*controllers, contact=None):
     soft = Environment("soft", Elastic, (Interval(F(43), F(41), F(45)),))
     hand = Environment(
         "hand", KelvinVoigt, (Interval(F(50), F(25), F(90)), Interval(F(1), F(0), F(2)))
     )
     plant = Plant(MOTOR, (soft, hand), ActuatorRanges.point(MOTOR))
     design = ControllerDesign(ProportionalDerivative(F(1), F(1)), controllers)
-    return close_loop("robot", shared_state(plant, LOOP, design, coordinates), contact=contact)
+    return close_loop("robot", shared_state(plant, LOOP, design), contact=contact)
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,12 +92,6 @@ class TestAssembly:
             ),
             (
                 impedance("in", 0),
-                {"coordinates": "force"},
-                ("not physical in lasting contact", "free motion is not one of the modes"),
-                (),
-            ),
-            (
-                impedance("in", 0),
                 {"contact": "kept"},
                 (
                     "free motion is not one of the modes",
@@ -135,8 +129,6 @@ class TestAssembly:
 
     def test_names_of_states(self):
         assert assembled(impedance("a", 0)).states == ("xp1", "xp2", "delta [rad]")
-        force = assembled(impedance("a", 0), coordinates="force")
-        assert force.states == ("xp1", "xp2", "F [N*m]")
         position = assembled(Controller("p", PositionControl(), None, ()))
         assert position.states == ("xp1", "xp2")
         assert position.modes[0].A.fractions() == [list(row) for row in MOTION.A]
@@ -166,12 +158,10 @@ class TestAssembly:
             assembled(sprung, plain, contact="losable")
 
     def test_a_spring_needs_a_deflection_that_stays(self):
-        sprung = Controller("in", Admittance(F("0.01"), F(2), F("0.5")), "soft", ("soft",))
-        with pytest.raises(AssemblyError, match="force coordinates do not apply") as caught:
-            assembled(sprung, coordinates="force")
+        sprung = Admittance(F("0.01"), F(2), F("0.5"))
+        with pytest.raises(AssemblyError, match="gel, which has no rest position") as caught:
+            viscoelastic("gel", law=sprung)
         assert caught.value.at == ("controllers", "in", "Kt")
-        with pytest.raises(AssemblyError, match="gel, which has no rest position"):
-            viscoelastic("gel", law=sprung.law)
 
     def test_mixed_inertia(self):
         with pytest.raises(AssemblyError, match="different states of their own") as caught:
@@ -204,12 +194,12 @@ ENVIRONMENTS = {
 
 
 @cache
-def viscoelastic(*contacts, Mt="0.01", coordinates="deflection", law=None):
+def viscoelastic(*contacts, Mt="0.01", law=None):
     plant = Plant(MOTOR, tuple(ENVIRONMENTS.values()), ActuatorRanges.point(MOTOR))
     law = law or Admittance(F(Mt), F(2))
     controller = Controller("in", law, contacts[0], contacts)
     design = ControllerDesign(ProportionalDerivative(F(1), F(1)), (controller,))
-    return close_loop("robot", shared_state(plant, LOOP, design, coordinates))
+    return close_loop("robot", shared_state(plant, LOOP, design))
 
 
 def product_of(*polynomials):
@@ -282,8 +272,6 @@ class TestViscoelastic:
 
     @pytest.mark.parametrize("name", ["nose", "gel"])
     def test_what_is_not_modelled_is_refused(self, name):
-        with pytest.raises(AssemblyError, match="force coordinates do not apply"):
-            viscoelastic(name, coordinates="force")
         with pytest.raises(AssemblyError, match="is not modelled"):
             viscoelastic(name, law=ProportionalForce(F("0.02")))
 
@@ -313,4 +301,4 @@ def touched_at_once(other, *, losable):
     plant = Plant(MOTOR, (soft, other, both), ActuatorRanges.point(MOTOR))
     controller = Controller("a", Admittance(F(1), F(2)), "soft", (both.name,))
     design = ControllerDesign(ProportionalDerivative(F(1), F(1)), (controller,))
-    return close_loop("robot", shared_state(plant, LOOP, design, "deflection"))
+    return close_loop("robot", shared_state(plant, LOOP, design))

@@ -7,7 +7,7 @@ import pytest
 from flint import fmpq, fmpq_mat
 
 from nrs_design.controllers.float32 import to_float32
-from nrs_design.errors import AssemblyError, SpecError
+from nrs_design.errors import AssemblyError
 from tests.search.support import thesis_robot
 
 SOFT = ("41.5", "44.2")
@@ -53,12 +53,6 @@ def test_a_free_axis_follows_the_command():
     for mode, B in zip(system.contact.free, system.channels[0].columns[-4:], strict=True):
         A = [row[:-1] for row in mode.A.fractions()[:-1]]
         assert at_rest(A, B.fractions()[:-1])[1] == 1
-
-
-def test_force_coordinates_are_refused():
-    """The force would jump with the stiffness, and its bound with it."""
-    with pytest.raises(SpecError, match="force coordinates beside bounds under disturbances"):
-        thesis_robot(SOFT, ("2.15",), "0.01", coordinates="force", **COMMAND)
 
 
 def test_a_spring_is_refused():

@@ -39,7 +39,7 @@ def closed(tmp_path, *changes, path=SAMPLED):
     file = tmp_path / "a.nrs.yaml"
     file.write_text(text, encoding="utf-8")
     loaded = read_spec(file)
-    return assemble_spec(loaded, run_design(loaded), "deflection")
+    return assemble_spec(loaded, run_design(loaded))
 
 
 def constant(*ranges):

@@ -47,14 +47,14 @@ RANGE = "{nominal: 43 N*m/rad, range: [40 N*m/rad, 45 N*m/rad]}"
 
 def given(body, rules, time="continuous"):
     text = HEAD.replace("continuous", time) + body + f"switching: {rules}\n"
-    return assemble_from_text(parse_spec(text), {}, None)
+    return assemble_from_text(parse_spec(text), {})
 
 
 def pair(rules, stiffness="43 N*m/rad", contacts="[soft]"):
     text = PAIR.replace("RULES", rules).replace("STIFFNESS", stiffness)
     spec = parse_spec(text.replace("CONTACTS", contacts))
     gains = gains_of(run_design(LoadedSpec(path="pair", sha256="", text=text, spec=spec)).design)
-    return assemble_from_text(spec, gains, "deflection")
+    return assemble_from_text(spec, gains)
 
 
 def test_dwell_time_in_seconds():

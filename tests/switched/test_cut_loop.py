@@ -101,7 +101,7 @@ def test_the_closed_loop_is_a_mode_of_the_proof(tmp_path, features, seed):
         for contact in (soft.nominal, *soft.corners)
         for place in axis.places
     ]
-    system = assemble_spec(loaded, designed, "deflection", Fraction(1))
+    system = assemble_spec(loaded, designed, Fraction(1))
     modes = {mode.name: np.array(mode.A.floats()) for mode in system.modes}
     if "slow" in features:
         between = next(A for name, A in modes.items() if name.startswith("motion"))

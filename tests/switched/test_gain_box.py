@@ -46,8 +46,8 @@ def loaded(**fields):
     return LoadedSpec(path="hand", sha256="", text=text, spec=parse_spec(text))
 
 
-def assembled(spec, coordinates="deflection", scale=DECLARED):
-    return assemble_from_text(spec.spec, gains_of(run_design(spec).design), coordinates, scale)
+def assembled(spec, scale=DECLARED):
+    return assemble_from_text(spec.spec, gains_of(run_design(spec).design), scale)
 
 
 class TestPublished:

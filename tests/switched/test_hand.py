@@ -31,7 +31,7 @@ def system_of(*changes: tuple[str, str], sections: str = ""):
         text = text.replace(old, new)
     text += sections
     designed = run_design(LoadedSpec(path="hand", sha256="", text=text, spec=parse_spec(text)))
-    return assemble(designed.spec, designed.plant, designed.design, "deflection")
+    return assemble(designed.spec, designed.plant, designed.design)
 
 
 def implicit(k, b, m, Mt, Bt):

@@ -37,7 +37,7 @@ def spec_of(path, disturbances, limit="2000 rpm", sampling=SAMPLING):
 
 
 def system_of(loaded):
-    return assemble_spec(loaded, run_design(loaded), "deflection")
+    return assemble_spec(loaded, run_design(loaded))
 
 
 def command_of(system):

@@ -37,7 +37,7 @@ def system(old="offset: measured", new="offset: measured"):
     spec = parse_spec(text.replace(old, new))
     plant = build_plant(spec)
     design = run_design(read_spec(OFFSET)).design
-    return assemble(spec, plant, design, "deflection")
+    return assemble(spec, plant, design)
 
 
 def test_lead_of_the_thesis_loop():
@@ -73,7 +73,7 @@ def test_a_loop_that_does_not_rest_at_its_command_is_refused():
 
 def test_without_offset_nothing_changes():
     plain = run_design(read_spec(FORCE_LIMIT))
-    expected = assemble(plain.spec, plain.plant, plain.design, "deflection")
+    expected = assemble(plain.spec, plain.plant, plain.design)
     found = system(new="offset: none")
     assert found.states == expected.states == ("xp1", "xp2")
     assert (found.modes, found.switching) == (expected.modes, expected.switching)
@@ -152,7 +152,7 @@ def test_two_force_controllers_reset_between_them_too():
         designed.motion,
         (*designed.controllers, type(gentle)("gentle", law, "soft", ("soft",))),
     )
-    found = assemble(spec, build_plant(spec), both, "deflection")
+    found = assemble(spec, build_plant(spec), both)
     pairs = {(r.source.split("/")[0], r.target.split("/")[0]) for r in found.switching.resets}
     names = ("position", "force", "gentle")
     assert pairs == {(a, b) for a in names for b in names if a != b}

@@ -35,7 +35,7 @@ def matrices(system):
 def test_oscillator_of_zelentsovsky():
     # x'' + x' + (2 + k) x with k in [0, 6]: the corners are the two modes of the publication.
     spec = box_system({"k": "{nominal: 3, range: [0, 6]}"}, {"x": "[[0, 1], [-2 - k, -1]]"})
-    system = assemble_from_text(spec, {}, None)
+    system = assemble_from_text(spec, {})
     assert matrices(system) == {"x/k-min": [[0, 1], [-2, -1]], "x/k-max": [[0, 1], [-8, -1]]}
     assert system.switching.is_arbitrary
     assert system.states == ("x1", "x2")
@@ -50,7 +50,7 @@ def test_each_mode_has_the_corners_of_what_it_depends_on():
         },
         {"a": '[["k + r"]]', "b": "[[-1]]", "c": "[[k - q]]"},
     )
-    assert matrices(assemble_from_text(spec, {}, None)) == {
+    assert matrices(assemble_from_text(spec, {})) == {
         "a/k-min": [[Fraction(1, 3)]],
         "a/k-max": [[Fraction(7, 3)]],
         "b": [[-1]],
@@ -66,7 +66,7 @@ def test_a_constant_parameter_is_at_both_ends_of_every_mode():
         {"m": "{nominal: 1, range: [0, 2], varies: false}", "k": "{nominal: 1, range: [0, 2]}"},
         {"a": "[[m + k]]", "b": "[[-1]]"},
     )
-    system = assemble_from_text(spec, {}, None)
+    system = assemble_from_text(spec, {})
     assert system.switching.fixed_ends == (
         ("a/m-min/k-min", "a/m-max/k-min"),
         ("a/m-min/k-max", "a/m-max/k-max"),
@@ -78,7 +78,7 @@ def test_a_constant_parameter_is_at_both_ends_of_every_mode():
 
 def test_a_constant_parameter_of_one_value_makes_none():
     spec = box_system({"m": "{nominal: 1, varies: false}"}, {"a": "[[m]]"})
-    system = assemble_from_text(spec, {}, None)
+    system = assemble_from_text(spec, {})
     assert matrices(system) == {"a": [[1]]}
     assert system.switching.is_arbitrary
 

@@ -55,7 +55,7 @@ def both(tmp_path, L, **numbers):
 
 
 def assembled(loaded):
-    return assemble_spec(loaded, run_design(loaded), "deflection")
+    return assemble_spec(loaded, run_design(loaded))
 
 
 def of_state(text, L):

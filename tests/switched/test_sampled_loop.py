@@ -13,7 +13,6 @@ from nrs_design.certificates.bounds import bound_on
 from nrs_design.certificates.certificate import Verdict
 from nrs_design.controllers.laws import Admittance
 from nrs_design.controllers.step_law import StepFrame, build_law
-from nrs_design.errors import AssemblyError
 from nrs_design.pipeline import run_design
 from nrs_design.pipeline.certification import assemble_spec
 from nrs_design.proof.contradiction import find_contradiction
@@ -50,7 +49,7 @@ def system_of(
     path.write_text(f"{text}{added}", encoding="utf-8")
     designed = run_design(read_spec(path))
     assert designed is not None
-    return assemble(designed.spec, designed.plant, designed.design, "deflection")
+    return assemble(designed.spec, designed.plant, designed.design)
 
 
 def test_modes_and_states_of_the_thesis_robot(tmp_path):
@@ -120,14 +119,6 @@ def test_with_a_spring_free_motion_is_a_mode_like_others(tmp_path):
 
 
 BT = "Bt: {min: 0.1 N*m*s/rad, max: 20 N*m*s/rad"
-
-
-def test_force_coordinates_are_refused(tmp_path):
-    path = tmp_path / "sampled.nrs.yaml"
-    path.write_text(f"{TEXT}\nsampling: {{period: 2 ms, delay: 0}}\n", encoding="utf-8")
-    designed = run_design(read_spec(path))
-    with pytest.raises(AssemblyError, match="do not apply to the sampled loop"):
-        assemble(designed.spec, designed.plant, designed.design, "force")
 
 
 DAMPED = (
@@ -657,7 +648,7 @@ def test_a_robot_that_closes_the_loop_of_the_thesis_has_its_modes(tmp_path):
         path = tmp_path / "one.nrs.yaml"
         path.write_text(f"{head}{drive}{rest}", encoding="utf-8")
         loaded = read_spec(path)
-        systems.append(assemble_spec(loaded, run_design(loaded), "deflection"))
+        systems.append(assemble_spec(loaded, run_design(loaded)))
     assert systems[0].modes == systems[1].modes == systems[2].modes
 
 

@@ -54,7 +54,7 @@ def loop(kind):
         file.write_text(TEXTS[kind], encoding="utf-8")
         loaded = read_spec(file)
     designed = run_design(loaded)
-    system = assemble_spec(loaded, designed, "deflection")
+    system = assemble_spec(loaded, designed)
     law = shipped_law(loaded.spec, designed.design, PERIOD)
     evidence, _ = first_accepted(search_saturated_steps(system, Allowance()), system)
     return system, law, evidence

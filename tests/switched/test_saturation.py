@@ -26,7 +26,7 @@ def system_of(path, text):
     file = path / "saturating.nrs.yaml"
     file.write_text(text, encoding="utf-8")
     loaded = read_spec(file)
-    return assemble_spec(loaded, run_design(loaded), "deflection")
+    return assemble_spec(loaded, run_design(loaded))
 
 
 def by_hand(x, k, Mt, Bt, gain=KM, J=np.inf):

@@ -59,7 +59,7 @@ def test_intervals_keep_their_nominal_value(scale, values):
 
 
 def test_parameters_are_scaled():
-    half = assemble_from_text(BOX, {}, None, Fraction(1, 2))
+    half = assemble_from_text(BOX, {}, Fraction(1, 2))
     assert names(half) == ["a/k-min/m-min", "a/k-min/m-max", "a/k-max/m-min", "a/k-max/m-max"]
     assert [mode.A.fractions()[0][0] for mode in half.modes] == [
         Fraction(-5, 2),
@@ -74,12 +74,12 @@ def test_parameters_are_scaled():
 
 
 def test_scale_one_is_what_the_spec_says():
-    assert assemble_from_text(BOX, {}, None, Fraction(1)) == assemble_from_text(BOX, {}, None)
-    assert not any("scaled" in text for text in assemble_from_text(BOX, {}, None).assumptions)
+    assert assemble_from_text(BOX, {}, Fraction(1)) == assemble_from_text(BOX, {})
+    assert not any("scaled" in text for text in assemble_from_text(BOX, {}).assumptions)
 
 
 def test_scale_zero_leaves_the_nominal_values():
-    nominal = assemble_from_text(BOX, {}, None, Fraction(0))
+    nominal = assemble_from_text(BOX, {}, Fraction(0))
     assert names(nominal) == ["a"]
     assert nominal.modes[0].A.fractions() == [[-4]]
     assert nominal.switching.is_arbitrary
@@ -87,9 +87,9 @@ def test_scale_zero_leaves_the_nominal_values():
 
 
 def test_environments_are_scaled(gains):
-    whole = assemble_from_text(HAND, gains, "deflection")
-    double = assemble_from_text(HAND, gains, "deflection", Fraction(4, 3))
-    nominal = assemble_from_text(HAND, gains, "deflection", Fraction(0))
+    whole = assemble_from_text(HAND, gains)
+    double = assemble_from_text(HAND, gains, Fraction(4, 3))
+    nominal = assemble_from_text(HAND, gains, Fraction(0))
     ends = ["k-min/b-min", "k-min/b-max", "k-max/b-min", "k-max/b-max"]
     assert names(whole) == names(double) == [f"insertion/hand/{end}" for end in ends]
     assert names(nominal) == ["insertion/hand"]
@@ -104,20 +104,19 @@ def test_environments_are_scaled(gains):
     )
 
 
-@pytest.mark.parametrize("coordinates", ["deflection", "force"])
 @pytest.mark.parametrize("Mt", ["0.01", "0"])
-def test_every_entry_is_affine_in_stiffness_and_damping(coordinates, Mt):
+def test_every_entry_is_affine_in_stiffness_and_damping(Mt):
     # `assemble` itself compares the middle of the box with its corners, and raises if it differs.
     text = TEXT.replace("Mt: 0.01 kg", f"Mt: {Mt} kg")
     spec = parse_spec(text)
     gains = gains_of(run_design(LoadedSpec(path="hand", sha256="", text=text, spec=spec)).design)
-    assert len(assemble_from_text(spec, gains, coordinates).modes) == 4
+    assert len(assemble_from_text(spec, gains).modes) == 4
 
 
 def test_stiffness_stays_positive(gains):
-    assemble_from_text(HAND, gains, "deflection", Fraction("1.99"))
+    assemble_from_text(HAND, gains, Fraction("1.99"))
     with pytest.raises(AssemblyError, match="environment hand reaches a stiffness"):
-        assemble_from_text(HAND, gains, "deflection", Fraction(2))
+        assemble_from_text(HAND, gains, Fraction(2))
 
 
 def test_damping_does_not_become_negative():
@@ -132,7 +131,7 @@ def test_damping_does_not_become_negative():
 
 def test_negative_scales_are_refused():
     with pytest.raises(AssemblyError, match="cannot be scaled by -1"):
-        assemble_from_text(BOX, {}, None, Fraction(-1))
+        assemble_from_text(BOX, {}, Fraction(-1))
 
 
 def test_has_ranges():

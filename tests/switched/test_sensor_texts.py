@@ -45,7 +45,7 @@ def test_the_filter_runs_with_the_outer_loop(tmp_path):
     )
     path.write_text(SOFT_TISSUE.read_text(encoding="utf-8") + more, encoding="utf-8")
     designed = run_design(read_spec(path))
-    system = assemble(designed.spec, designed.plant, designed.design, "deflection")
+    system = assemble(designed.spec, designed.plant, designed.design)
     step = designed.design.sensor.filter.discretize(Fraction(1, 2000))
     (text,) = (text for text in system.assumptions if "through one lag" in text)
     assert f"p = {exact_decimal(step.p)} and" in text
@@ -61,7 +61,7 @@ def test_the_sampled_loop_takes_the_errors_for_its_force_error(tmp_path):
     )
     path.write_text(SOFT_TISSUE.read_text(encoding="utf-8") + more, encoding="utf-8")
     designed = run_design(read_spec(path))
-    system = assemble(designed.spec, designed.plant, designed.design, "deflection")
+    system = assemble(designed.spec, designed.plant, designed.design)
     assert system.states[4] == "filtered 1 before [N*m]"
     bounds = {channel.name: channel.bound for channel in system.channels}
     assert bounds["force error"] == Fraction("0.005")

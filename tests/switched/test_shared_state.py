@@ -4,12 +4,10 @@ from dataclasses import replace
 from fractions import Fraction
 from itertools import product
 
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from nrs_design.controllers.laws import Admittance
-from nrs_design.errors import AssemblyError
 from nrs_design.models.actuator import Actuator
 from nrs_design.models.contact import KelvinVoigt
 from nrs_design.models.motion_loop import close_motion_loop, realize
@@ -37,7 +35,7 @@ def mixed(**changes):
     spec = parse_spec(text)
     loaded = read_spec(MIXED)
     design = run_design(loaded).design
-    return assemble(spec, build_plant(spec), design, "deflection")
+    return assemble(spec, build_plant(spec), design)
 
 
 @given(k=positive, b=positive, Mt=positive, Bt=positive, massless=st.booleans())
@@ -92,7 +90,7 @@ def test_without_inertia_no_velocity_is_said_to_start_at_zero(tmp_path):
     path = tmp_path / "mixed-controllers.nrs.yaml"
     path.write_text(text.replace("nominal: 0.01 kg*m^2", "nominal: 0 kg*m^2"))
     designed = run_design(read_spec(path))
-    system = assemble(designed.spec, designed.plant, designed.design, "deflection")
+    system = assemble(designed.spec, designed.plant, designed.design)
     texts = " ".join(system.assumptions)
     assert "impedance controllers start from the rest position." in texts
     assert "vm" not in texts
@@ -102,7 +100,7 @@ def test_only_controllers_of_the_spec_are_named():
     spec = parse_spec(MIXED.read_text())
     design = run_design(read_spec(MIXED)).design
     without = replace(design, controllers=design.controllers[:2])
-    texts = " ".join(assemble(spec, build_plant(spec), without, "deflection").assumptions)
+    texts = " ".join(assemble(spec, build_plant(spec), without).assumptions)
     assert "Impedance controllers integrate" in texts
     assert "While a position controller is active" in texts
     assert "force controller" not in texts
@@ -125,19 +123,13 @@ def test_what_is_taken_for_granted_about_switches_between_kinds():
     assert "A controller that leaves this kick out is not covered" in texts
 
 
-def test_force_coordinates_are_refused():
-    spec = read_spec(MIXED)
-    with pytest.raises(AssemblyError, match="force coordinates do not apply"):
-        assemble(spec.spec, build_plant(spec.spec), run_design(spec).design, "force")
-
-
 def test_a_spring_acts_on_the_reference_that_others_leave_idle(tmp_path):
     text = MIXED.read_text(encoding="utf-8")
     sprung = text.replace("    Bt:", "    Kt: 0.5 N*m/rad\n    Bt:", 1)
     path = tmp_path / "mixed.nrs.yaml"
     path.write_text(sprung, encoding="utf-8")
     designed = run_design(read_spec(path))
-    system = assemble(designed.spec, designed.plant, designed.design, "deflection")
+    system = assemble(designed.spec, designed.plant, designed.design)
     texts = " ".join(system.assumptions)
     assert "draws it to zero" in texts
     assert "which no switch resets" not in texts

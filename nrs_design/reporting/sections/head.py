@@ -82,8 +82,6 @@ def facts(result: Result) -> tuple[tuple[str, str], ...]:
         *_saturated(certification),
         *_limit(certification),
     ]
-    if result.coordinates is not None:
-        rows.append(("Coordinates", linked(result.loaded, result.coordinates, "coordinates")))
     rows += [
         *_provenance(result),
         ("Package", f"nrs-design {__version__}"),

@@ -31,7 +31,6 @@ BENCHMARKS = (
     "instruction_counts",
     "scenario_runs",
     "sweep_points",
-    "map_tiles",
     "gains_with_proof",
 )
 Result = Comparison | Finding | Failure

@@ -55,11 +55,7 @@ ARCHIVE = (
     b"PK\x03\x04\x14\x00\x00\x00\x00\x00\x00\x00!\x00_\x00\x9b?\xcc\x00\x00\x00\xcc\x00\x00\x00"
     b"\x09\x00\x00\x00about.npy"
 )
-# The same of a map.
-MAP_ARCHIVE = ARCHIVE.replace(b"\x00_\x00\x9b?\xcc", b"\x00j@`B\xcc")
 SWEEP = b"point,exit_code,message,"
-MAP = b"verdict,certificate,refuted_in,"
-PARETO = b"curve,cost,stiffness,"
 TABLE = b"theta4_deg,K1,K2,K3,K1_least_squares,K2_least_squares,K3_least_squares\n"
 # Other programs write SARIF and JUnit files, too: ours say that they are.
 GATE = re.compile(

@@ -95,8 +95,6 @@ ALLOWED = {
     # Margins are polynomials that are affine in the parameters of these two contacts alone.
     ("nrs_design.design.proved_margins", "Elastic"),
     ("nrs_design.design.proved_margins", "KelvinVoigt"),
-    # Only an admittance has a damping that could be retuned.
-    ("nrs_design.pipeline.retuned_gains", "impedance"),
 }
 # Kinds of specs have nothing in common that could be asked for instead. A command refuses those
 # that it is not about, or does nothing for them.

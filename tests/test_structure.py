@@ -52,7 +52,6 @@ DOORS = {
     "nrs_design.search.gradient_settings",
     "nrs_design.search.method",
     "nrs_design.design.measures",
-    "nrs_design.design.objective",
 }
 # What is found in a stage, and printed or written as it is: for annotations only.
 PRINTED = {

@@ -23,8 +23,8 @@ from nrs_design.wings import load_wing, wing_of
 # Each command is in the module of its name, here or in its wing; the help keeps groups and order.
 GROUPS = {
     "Start": ("init", "check", "explain", "schema"),
-    "Design": ("optimize", "pareto", "tune", "mode-logic", "simulate"),
-    "Prove": ("certify-switching", "verify", "map", "sweep", "compare-methods", "check-lyapunov"),
+    "Design": ("optimize", "tune", "mode-logic", "simulate"),
+    "Prove": ("certify-switching", "verify", "sweep", "compare-methods", "check-lyapunov"),
     "Ship": ("report", "gate", "export", "diff"),
     "Measure": ("identify", "audit"),
     "Robot": ("robot", "ros2", "reproduce"),

@@ -63,8 +63,8 @@ class CertifiedGains:
                 raise OutputError(
                     "only gains that were chosen by a goal of the proof are written",
                     path=out,
-                    remedy="add `goals: {decay_rate: 2 1/s}` and leave a gain free, ask for "
-                    "--retune, or leave --out out",
+                    remedy="add `goals: {decay_rate: 2 1/s}` and leave a gain free, or leave "
+                    "--out out",
                 )
             return None
         name = None if out is None else name_for(designed.loaded, out)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -10,7 +9,6 @@ import typer
 
 from nrs_design.axis import unit
 from nrs_design.cli.command import Answer, command
-from nrs_design.cli.exit_codes import INCONCLUSIVE, worst
 from nrs_design.cli.goals import (
     design_answer,
     print_responses,
@@ -35,8 +33,7 @@ def optimize(
         typer.Option(
             metavar="NEW.nrs.yaml",
             help="Write the spec with these gains given, named after the file, and its "
-            "certificate to reports/NAME.cert.json; for goals decay_rate, peak_torque and delay, "
-            "and for --retune.",
+            "certificate to reports/NAME.cert.json; for goals decay_rate, peak_torque and delay.",
         ),
     ] = None,
     global_optimum: Annotated[
@@ -47,26 +44,16 @@ def optimize(
             "takes a second or two for a controller.",
         ),
     ] = False,
-    retune: Annotated[
-        bool,
-        typer.Option(
-            "--retune",
-            help="Prove within how many per cent of these gains all Bt may be retuned while the "
-            "robot runs; --out writes the spec with these ranges.",
-        ),
-    ] = False,
 ) -> Answer:
     """Optimize virtual mass Mt and damping Bt for displayed impedance and sensitivity.
 
     Goals of the spec are respected. With decay_rate, peak_torque or delay among them, the gains of
     all controllers are chosen together, and those that design.free names, and come with their
-    proof. The exit code is 1 if gains that are given miss a goal, or if one is not proved; 3 if
-    --retune proves nothing.
+    proof. The exit code is 1 if gains that are given miss a goal, or if one is not proved.
 
     Example: nrs-design optimize specs/neuroboscope/soft-tissue.nrs.yaml
     """
     from nrs_design.cli.certified_gains import CertifiedGains
-    from nrs_design.cli.retuned_gains import RetunedBox
     from nrs_design.pipeline import run_analysis, run_interaction
     from nrs_design.pipeline.cost_bounds import run_cost_bounds
 
@@ -76,18 +63,16 @@ def optimize(
         designed = run_interaction(loaded, "has nothing to design")
         step("margins")
         chosen = analysis = run_analysis(designed)
-    certified = CertifiedGains.of(designed, analysis, None if retune else out)
+    certified = CertifiedGains.of(designed, analysis, out)
     if certified is not None:
         designed, analysis = certified.designed, certified.analysis
 
     bounds = run_cost_bounds(chosen, analysis) if global_optimum else {}
-    box = RetunedBox.of(designed, out) if retune else None
 
     def facts() -> dict[str, Any]:
         return {
             **optimum_facts(designed, analysis, bounds),
             "certified": None if certified is None else certified.facts(),
-            "retuned": None if box is None else box.facts(),
         }
 
     def show() -> None:
@@ -98,12 +83,10 @@ def optimize(
         print_responses(analysis)
         if certified is not None:
             certified.show()
-        if box is not None:
-            box.show()
 
     proved = all(found.proved for item in analysis.impedance for found in item.responses)
     proved = proved and (certified is None or certified.proved)
-    answer = design_answer(
+    return design_answer(
         designed,
         analysis,
         analysis.impedance,
@@ -113,9 +96,6 @@ def optimize(
         judged=certified is not None,
         marked=True,
     )
-    # What --retune asks for was not proved, which refutes nothing.
-    open_ = box is not None and box.found.result is None
-    return replace(answer, code=worst({answer.code, INCONCLUSIVE})) if open_ else answer
 
 
 def _print_bounds(bounds: dict[str, CostBound | str]) -> None:

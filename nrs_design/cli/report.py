@@ -71,14 +71,6 @@ def report(
         bool,
         typer.Option("--shortest-dwell", help="Add the shortest dwell time; takes minutes."),
     ] = False,
-    stability_map: Annotated[
-        bool,
-        typer.Option(
-            "--map",
-            help="Add what is proved and refuted over stiffness and delay of a sampled loop; takes "
-            "minutes.",
-        ),
-    ] = False,
     certificate: Annotated[
         Path | None,
         typer.Option(
@@ -107,7 +99,7 @@ def report(
             raise DesignError("a robot has no certificate", remedy="leave --certificate out")
         return _report_robot(loaded, file_format, out, day)
     _check_out(loaded, file_format, out)
-    asked = _Asked(certificate, compare_methods, margin, shortest_dwell, stability_map, times, day)
+    asked = _Asked(certificate, compare_methods, margin, shortest_dwell, times, day)
     with progress(f"reporting {loaded.spec.name}") as step:
         result, page = _build(loaded, asked, Overrides(max_degree, budget, memory), step)
         files = _write(page, file_format, out, spec)
@@ -176,7 +168,6 @@ class _Asked:
     compare_methods: bool
     margin: bool
     shortest_dwell: bool
-    stability_map: bool
     times: bool
     date: Day | None
 
@@ -202,7 +193,6 @@ def _build(
     from nrs_design.pipeline import run_certification, run_comparison, run_recorded, search_limits
     from nrs_design.pipeline.blocked import find_blocked
     from nrs_design.pipeline.margins import run_proof_margins
-    from nrs_design.pipeline.stability_map import run_stability_map
     from nrs_design.pipeline.subsets import find_subsets
     from nrs_design.reporting import build_report
 
@@ -216,7 +206,6 @@ def _build(
     )
     subsets = find_subsets(result, limits, step)
     blocked = find_blocked(result, limits, step)
-    found = run_stability_map(result, limits, step) if asked.stability_map else None
     step("figures")
     runs = run_comparison(loaded, limits, progress=step)[1] if asked.compare_methods else ()
     return result, build_report(
@@ -226,7 +215,6 @@ def _build(
         margins=margins,
         subsets=subsets,
         blocked=blocked,
-        stability_map=found,
         times=asked.times,
         date=asked.date,
     )

@@ -90,19 +90,6 @@ def exact_decimal(value: Fraction) -> str:
     return ("-" if value < 0 else "") + whole + ("." + part if part else "")
 
 
-def shortest_decimal(value: Fraction) -> str:
-    """Return the shortest decimal that single precision holds as this very number.
-
-    Parameters
-    ----------
-    value : Fraction
-        A single-precision number.
-    """
-    from numpy import float32
-
-    return str(float32(float(value)))
-
-
 def round_significant(value: float, digits: int) -> Fraction:
     """Round to so many significant decimal digits, returned as the exact decimal."""
     return Fraction(f"{value:.{digits - 1}e}")

@@ -99,11 +99,6 @@ class DiscreteLowPass:
         """Names and units of the states."""
         return tuple(f"filtered {i} before [N*m]" for i in range(1, self.order + 1))
 
-    @property
-    def lasting_gain(self) -> Fraction:
-        """Output over input in the long run: one, but for what the coefficients round."""
-        return (self.q / (1 - self.p)) ** self.order
-
 
 @dataclass(frozen=True, slots=True)
 class Sensor:

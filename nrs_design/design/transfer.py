@@ -85,30 +85,6 @@ def to_control(tf: TransferFunction) -> Any:
     return control.TransferFunction(list(trim(tf.numerator)), list(tf.denominator))
 
 
-def white_noise_power(numerator: Sequence[float], denominator: Sequence[float]) -> float | None:
-    """Return ``int_0^inf |N/D|^2 df``: the power of the output over the one-sided density.
-
-    Parameters
-    ----------
-    numerator, denominator : sequence of float
-        Of a stable transfer function, highest power of s first.
-
-    Returns
-    -------
-    float or None
-        In the unit of the squared gain times Hz; None where it has no bound.
-    """
-    from scipy.linalg import solve_continuous_lyapunov
-
-    n = len(denominator) - 1
-    if len(numerator) > n:
-        return None
-    A, C = controllable_form(numerator, denominator)
-    entry = np.zeros((n, n))
-    entry[-1, -1] = 1.0
-    return float(C @ solve_continuous_lyapunov(A, -entry) @ C) / 2
-
-
 def controllable_form(
     numerator: Sequence[Number], denominator: Sequence[Number]
 ) -> tuple[FloatArray, FloatArray]:

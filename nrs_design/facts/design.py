@@ -120,7 +120,6 @@ def _summary(spec: InteractionDesignSpec, item: ImpedanceAnalysis) -> dict[str, 
         if item.sampled or spec.sampling is None
         else measures.PASSIVITY_NOT_COMPUTED,
         "sampled_passivity": [_band(band) for band in item.sampled],
-        "creep": _creep(item),
         "goals": goals_summary(item),
         "responses": responses_summary(item),
         "units": {
@@ -151,20 +150,6 @@ def _sensor(designed: Designed) -> dict[str, Any]:
         "lasting_error": upper_float(sensor.lasting),
         "parts": {name: upper_float(error) for name, error in sensor.errors.items()},
         "unit": unit("N*m"),
-    }
-
-
-def _creep(item: ImpedanceAnalysis) -> dict[str, Any] | None:
-    """Return the bounds on the creep, rounded up; None without a sensor whose errors are known."""
-    if item.creep is None:
-        return None
-    angle, way = item.creep.angle, unit("rad")
-    return {
-        f"velocity_{way}_s": upper_float(item.creep.velocity),
-        f"{'angle_rad' if way == 'rad' else 'way_m'}": None
-        if angle is None
-        else upper_float(angle),
-        f"noise_rms_{way}_s": item.creep.noise,
     }
 
 

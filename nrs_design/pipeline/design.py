@@ -117,23 +117,6 @@ def run_design(loaded: LoadedSpec) -> Designed | None:
         return Designed(loaded, spec, plant, design_controllers(spec, plant))
 
 
-def run_with_gains(loaded: LoadedSpec, design: ControllerDesign) -> Designed:
-    """Take the gains that were designed for another spec, and the plant of this one.
-
-    Parameters
-    ----------
-    loaded : LoadedSpec
-        An interaction design.
-    design : ControllerDesign
-        The gains.
-    """
-    from nrs_design.spec.build_plant import build_plant
-
-    spec = interaction_of(loaded, "has no gains")
-    with placed(loaded):
-        return Designed(loaded, spec, build_plant(spec), design)
-
-
 def run_analysis(designed: Designed) -> DesignAnalysis:
     """Compute what a design achieves; an unstable nominal loop is a `DesignError`."""
     from nrs_design.design.analysis import analyze_design

@@ -20,8 +20,8 @@ from numpy.typing import NDArray
 from nrs_design.axis import unit
 from nrs_design.controllers.float32 import to_float32
 from nrs_design.errors import DesignError
-from nrs_design.pipeline.certification import assemble_spec, is_of_gains
-from nrs_design.pipeline.design import Designed, run_design
+from nrs_design.pipeline.certification import assemble_spec
+from nrs_design.pipeline.design import Designed
 from nrs_design.pipeline.gain_coordinate import (
     BOUNDED,
     GainCoordinate,
@@ -34,7 +34,6 @@ from nrs_design.spec.interaction_parts import MOTION
 from nrs_design.spec.spec_document import SpecDocument
 
 if TYPE_CHECKING:
-    from nrs_design.certificates.certificate import Gains
     from nrs_design.controllers.controller_design import ControllerDesign
     from nrs_design.design.analysis import DesignAnalysis, ImpedanceAnalysis
     from nrs_design.design.goals import Requirement
@@ -323,30 +322,6 @@ def gain_branches(designed: Designed, analysis: DesignAnalysis) -> Iterator[Free
         yield FreeGains(designed, analysis, massless=True)
     if all(high > 0 for _, high in bounds):
         yield FreeGains(designed, analysis, massless=False)
-
-
-def check_own_gains(loaded: LoadedSpec, gains: Gains) -> None:
-    """Refuse a spec that by itself would be designed with other gains.
-
-    Parameters
-    ----------
-    loaded : LoadedSpec
-        The spec of some tile, which a certificate is to be written with.
-    gains : mapping
-        Those of the certificate, as `gains_text` gives them.
-
-    Raises
-    ------
-    DesignError
-        If its own gains are others, or it has none.
-    """
-    if not is_of_gains(gains, run_design(loaded)):
-        raise DesignError(
-            "gains of this spec follow from what the map changes, so no spec has the gains of "
-            "its certificates",
-            path=loaded.path,
-            remedy="give these gains in the spec, or leave --certificates out",
-        )
 
 
 def has_free_gains(designed: Designed, analysis: DesignAnalysis) -> bool:

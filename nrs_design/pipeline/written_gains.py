@@ -7,7 +7,6 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-from nrs_design.controllers.float32 import shortest_decimal
 from nrs_design.controllers.laws import LAWS
 from nrs_design.proof.text import exact_text
 from nrs_design.spec import LoadedSpec
@@ -60,24 +59,6 @@ def edited(loaded: LoadedSpec, change: Callable[[SpecDocument], None]) -> Loaded
     change(document)
     text = document.text()
     return replace(respecified(loaded, parse_document(text, loaded.path)), text=text)
-
-
-def with_own_gains(designed: Designed) -> LoadedSpec:
-    """Return the spec with all gains that it leaves free given as they ship, and its text.
-
-    Raises
-    ------
-    SpecError
-        If a comment would be lost.
-    """
-    laws, units = designed.design.laws, designed.design.units
-    written = {
-        (name, gain): f"{shortest_decimal(laws[name].gains[gain])} {units[name][gain]}"
-        for name, given in designed.spec.controllers.items()
-        for gain, own in given.gains().items()
-        if not own.fixed
-    }
-    return with_gains(designed, written)
 
 
 def _put(document: SpecDocument, designed: Designed, name: str, gain: str, text: str) -> None:

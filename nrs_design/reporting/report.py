@@ -19,7 +19,6 @@ from nrs_design.reporting.sections.modes import modes_section
 from nrs_design.reporting.sections.proof import proof_section
 from nrs_design.reporting.sections.release import release_section
 from nrs_design.reporting.sections.remedies import remedies_section
-from nrs_design.reporting.sections.stability_map import stability_map_section
 from nrs_design.reporting.sections.summary import lights_of, summary_of
 from nrs_design.reporting.sections.tail import (
     assumptions_section,
@@ -37,7 +36,6 @@ if TYPE_CHECKING:
     from nrs_design.pipeline import Result
     from nrs_design.pipeline.blocked import Blocked
     from nrs_design.pipeline.margins import ProofMargins
-    from nrs_design.pipeline.stability_map import StabilityMap
     from nrs_design.pipeline.subsets import Subset
     from nrs_design.search.method_run import MethodRun
 
@@ -53,7 +51,6 @@ def build_report(
     margins: ProofMargins | None = None,
     subsets: tuple[Subset, ...] | None = None,
     blocked: Blocked | None = None,
-    stability_map: StabilityMap | None = None,
     times: bool = False,
     date: datetime.date | None = None,
 ) -> Report:
@@ -68,7 +65,6 @@ def build_report(
         first = (tests_section(result), remedies_section(result, margins, subsets, blocked))
         others = (
             proof_section(result),
-            stability_map_section(result.loaded, stability_map) if stability_map else None,
             *(design_sections(designed, analysis) if designed else ()),
             goals_section(result, analysis),
             logic_section(designed.spec) if designed else None,

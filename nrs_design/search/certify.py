@@ -175,23 +175,6 @@ def certify_growth(system: SwitchedSystem, limits: Limits | None = None) -> Cert
     return _concluded(system, "suspicious modes", evidence)
 
 
-def certify_with(system: SwitchedSystem, statement: AbstractEvidence) -> Certification:
-    """Decide a system by evidence that was found for another one, and by nothing else.
-
-    Parameters
-    ----------
-    system : SwitchedSystem
-        The modes and their switching.
-    statement : AbstractEvidence
-        Such as a form for a system with the same states.
-    """
-    try:
-        fault = find_fault(statement, system)
-    except TooLargeError as error:
-        fault = str(error)
-    return _concluded(system, "known evidence", None if fault else statement)
-
-
 def _concluded(
     system: SwitchedSystem, method: str, evidence: AbstractEvidence | None
 ) -> Certification:

@@ -77,30 +77,6 @@ def may_have_slope(system: SwitchedSystem) -> bool:
     return facts.may_share_an_ellipsoid and not facts.takes_turns and timed
 
 
-def has_margin(system: SwitchedSystem, allowance: Allowance | None = None) -> bool:
-    """Tell whether floating point finds one form for all modes that decreases at all.
-
-    Parameters
-    ----------
-    system : SwitchedSystem
-        For which `may_have_slope` holds.
-    allowance : Allowance, optional
-        Work and memory.
-
-    Raises
-    ------
-    NotAffordableError
-        If work or memory do not suffice.
-    """
-    allowance = allowance or Allowance()
-    with floats_in_silence():
-        program = _program(system, allowance)
-        if program is None:
-            return False
-        solution = program.solve(_counted(0.0, program), allowance)
-        return solution is not None and _shown(program, solution) > 0
-
-
 def rate_slope(
     system: SwitchedSystem,
     guess: float | None = None,

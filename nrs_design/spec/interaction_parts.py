@@ -67,8 +67,8 @@ class DesignSpec(SpecModel):
     )
     free: Annotated[dict[Label, FreeGainsSpec], Field(max_length=MAX_ENTRIES)] = Field(
         default_factory=dict,
-        description="gains beside Mt and Bt that `optimize` and `pareto` may change where the "
-        "proof steers: motion or the name of a controller -> gain -> {min: ..., max: ...}, as "
+        description="gains beside Mt and Bt that `optimize` may change where the proof "
+        "steers: motion or the name of a controller -> gain -> {min: ..., max: ...}, as "
         "factors on the gain that the spec gives; all other commands take that gain",
     )
 

@@ -47,7 +47,7 @@ _OTHER_KEYS = {
 # What somebody may want of a proof, by words in a key of goals, and where a spec says it.
 _NO_GOALS = {
     "stiff": "declare it, `environments: {NAME: {stiffness: {nominal: ..., range: [..., ...]}}}`: "
-    "goals are proved over the whole range, and `pareto` finds the largest",
+    "goals are proved over the whole range; `certify-switching --margin` finds how far it holds",
     "toleran": "declare it, ranges of gain and time_constant of the actuator: goals are proved "
     "over the whole ranges",
     "latency": "declare it, `sampling: {latency: [..., ...]}`: goals are proved over all of it",

@@ -105,7 +105,7 @@ class SensorSpec(SpecModel):
     )
     noise_density: NoiseDensity | None = optional(
         "one-sided power density of white noise of the torque, in N^2*m^2*s, which is "
-        "(N*m)^2/Hz; shown, and in no bound"
+        "(N*m)^2/Hz; in no bound"
     )
     filter: FilterSpec | None = optional("low-pass of the force signal: a part of the loop")
     tool: ToolSpec | None = optional("what hangs on the sensor; its weight is taken off the signal")

@@ -20,7 +20,7 @@ from nrs_design.printable import json_text
 from nrs_design.spec.document import Data
 from nrs_design.spec.meaning import hash_meaning
 
-SCHEMA = "nrs-design/tile/1"
+SCHEMA = "nrs-design/point/1"
 # Larger than any answer, in bytes.
 MAX_BYTES = 64 * 2**20
 

@@ -72,7 +72,7 @@ def test_a_run_goes_on_from_what_is_kept(tmp_path, spec):
     assert second.stdout == first.stdout
 
 
-@pytest.mark.parametrize("spoil", ["", "{", "[]", '{"schema": "nrs-design/tile/1"}', "\0"])
+@pytest.mark.parametrize("spoil", ["", "{", "[]", '{"schema": "nrs-design/point/1"}', "\0"])
 def test_a_spoilt_answer_is_computed_again(tmp_path, spec, spoil):
     command = ("sweep", spec, "--set", f"{STIFFNESS}=700 N/m", "check", "--json")
     first = run(*command, cwd=tmp_path, code=0)

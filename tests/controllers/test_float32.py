@@ -13,7 +13,6 @@ from nrs_design.controllers.float32 import (
     is_float32,
     neighbors,
     round_significant,
-    shortest_decimal,
     to_float32,
 )
 from nrs_design.errors import DesignError
@@ -131,10 +130,3 @@ def test_the_numbers_on_both_sides(share, exponent):
         assert low == value
     else:
         assert np.nextafter(np.float32(float(low)), np.float32(np.inf)) == np.float32(float(high))
-
-
-@pytest.mark.parametrize("text", ["2.15", "1.04", "1e-05", "1.6777216e+07", "0.0", "1e-45"])
-def test_the_shortest_decimal_is_read_as_the_same_number(text):
-    value = to_float32(Fraction(text))
-    assert shortest_decimal(value) == text
-    assert to_float32(Fraction(shortest_decimal(value))) == value

@@ -213,28 +213,6 @@ class Admittance(AbstractCompliantLaw[ImpedanceControllerSpec]):
 LAW = Admittance
 
 
-def lasting_gain(numbers: Mapping[str, Fraction]) -> Fraction:
-    """Return velocity over a lasting force without a spring, rad/(s N m): 1/Bt, but for rounding.
-
-    Parameters
-    ----------
-    numbers : mapping of str to Fraction
-        Of a discrete admittance.
-
-    Raises
-    ------
-    DesignError
-        If the step forgets nothing, so that the velocity grows as long as the force lasts.
-    """
-    a = numbers.get("a", Fraction(0))
-    if a == 1:
-        raise DesignError(
-            "the damping is lost in single precision: a step keeps all of the velocity",
-            remedy="raise Bt, lower Mt, or sample with a longer period",
-        )
-    return numbers["b"] / (1 - a)
-
-
 def _share(low: Fraction, high: Fraction, least: Fraction) -> Fraction:
     """Return how far c is from 1/Bt at most, over its size, where a and b are at least or most."""
     if high < 1 and least >= _NORMAL:

@@ -15,7 +15,6 @@ from nrs_design.controllers.float32 import exact_decimal, neighbors, round_signi
 from nrs_design.controllers.gain_range import faults_of_ranges, gain_interval
 from nrs_design.controllers.laws import Admittance
 from nrs_design.design.constrained import best_rounding, meets, optimize_with_goals
-from nrs_design.design.creep import Creep, creep_of, with_creep
 from nrs_design.design.doubts import doubt_bounds
 from nrs_design.design.goals import NOT_COMPUTED, Achieved, Requirement
 from nrs_design.design.impedance import ImpedanceLoop
@@ -72,8 +71,6 @@ class ImpedanceAnalysis(AbstractControllerAnalysis):
     lowest_limit: float
     limit_at: str
     stiff: tuple[Doubt, ...]  # Contacts that are too stiff for the shipped gains
-    # By the errors of the force signal, where the spec says how large they are.
-    creep: Creep | None = None
     # Where the displayed admittance is passive, exactly, over the ranges of gains and motor; None
     # for a sampled law.
     band: PassiveBand | None = None
@@ -154,11 +151,9 @@ def analyze(
     )
     asked = dict(requirement.goals)
     measures = (*_measures(task), *(item for item in HAND_MEASURES if item in asked))
-    achieved = requirement.achieved(measures, Mt, Bt)
-    creep = creep_of(task.spec, task.loop, given, controller) if task.sensor.errors else None
     return ImpedanceAnalysis(
         name=controller.name,
-        achieved=achieved if creep is None else with_creep(achieved, creep),
+        achieved=requirement.achieved(measures, Mt, Bt),
         given=given,
         problem=problem,
         # Gains that the spec gives are their own optimum.
@@ -171,7 +166,6 @@ def analyze(
         lowest_limit=limit,
         limit_at=limit_at,
         stiff=tuple(doubt_stiffness(controller.name, requirement, task.contacts(given), Mt, Bt)),
-        creep=creep,
         band=_band(task, given, controller),
         sampled=_sampled_bands(task, given, controller),
         lever_arm=_lever_arm(task, given),

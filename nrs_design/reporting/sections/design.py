@@ -11,7 +11,6 @@ from nrs_design.design.transfer import TransferFunction, poles
 from nrs_design.reporting.document import Block, Illustration, Linked, Paragraph, Section, Table
 from nrs_design.reporting.figures.complex_plane import draw_root_locus
 from nrs_design.reporting.formatting import number, polynomial_text, root, roots
-from nrs_design.reporting.sections.creep import creep_section
 from nrs_design.reporting.sections.impedance import (
     CURVES,
     by_controller,
@@ -77,8 +76,6 @@ def design_sections(designed: Designed, analysis: DesignAnalysis | None) -> tupl
         parts.append(impedance_section(designed, analysis.impedance))
         if all(item.requirement.axis is not None for item in analysis.impedance):
             parts.append(landscape_section(designed, analysis.impedance))
-    if sensor := creep_section(designed, analysis):
-        parts.append(sensor)
     if analysis.force:
         parts.append(_force_section(designed, analysis))
     if analysis.parallel:

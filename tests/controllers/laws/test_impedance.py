@@ -11,7 +11,6 @@ from scipy.signal import cont2discrete
 
 from nrs_design.controllers.float32 import is_float32, to_float32
 from nrs_design.controllers.laws import Admittance
-from nrs_design.controllers.laws.impedance import lasting_gain
 from nrs_design.errors import DesignError
 from nrs_design.models.interval import Interval
 
@@ -42,7 +41,6 @@ def test_one_step_of_euler():
 def test_without_inertia_the_law_has_no_memory():
     held = Admittance(Fraction(0), Fraction(2)).discretize(PERIOD, "exact").numbers
     assert held == {"b": Fraction(1, 2), "T": to_float32(PERIOD)}
-    assert lasting_gain(held) == Fraction(1, 2)
 
 
 def test_a_spring_is_a_coefficient_of_its_own():
@@ -51,11 +49,6 @@ def test_a_spring_is_a_coefficient_of_its_own():
     for method in ("exact", "euler"):
         plain = LAW.discretize(PERIOD, method).numbers
         assert sprung.discretize(PERIOD, method).numbers == {**plain, "Kt": Fraction(1, 2)}
-
-
-def test_a_step_that_forgets_nothing_has_no_lasting_velocity():
-    with pytest.raises(DesignError, match="the damping is lost"):
-        lasting_gain(Admittance(Fraction(10**9), Fraction(1)).discretize(PERIOD, "exact").numbers)
 
 
 def between(low, high):

@@ -27,7 +27,7 @@ def test_tool_into_a_spec_that_the_gate_proves(tmp_path):
     assert "Center of mass [m]" in again.stdout
     optimized = document_of("optimize", spec, cwd=tmp_path)
     assert set(optimized["sensor"]["parts"]) == {"bias", "mass and center of mass of the tool"}
-    assert optimized["controllers"][0]["creep"]["velocity_rad_s"] > 0
+    assert optimized["sensor"]["lasting_error"] > 0
 
 
 def test_wrong_poses(tmp_path):

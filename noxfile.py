@@ -163,5 +163,5 @@ def package(session: nox.Session) -> None:
 @nox.session
 def benchmarks(session: nox.Session) -> None:
     """Measure our speed beside the peers', as ratios in one run."""
-    install(session, ".[crosscheck,mujoco]")
+    install(session, ".[test]")
     session.run("python", "-m", "benchmarks", *session.posargs)

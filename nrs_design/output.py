@@ -50,11 +50,6 @@ RESPONSE = re.compile(
 WORST_RUN = re.compile(
     rb"time_s,(?:torque_Nm,)?(?:velocity_rad_s,)?(?:deflection_rad,)?(?:[\w-]+,)*?state-[^\n]*,mode\n"
 )
-# An archive of arrays that begins with a stored text, `about.npy`, which says that it is a run.
-ARCHIVE = (
-    b"PK\x03\x04\x14\x00\x00\x00\x00\x00\x00\x00!\x00_\x00\x9b?\xcc\x00\x00\x00\xcc\x00\x00\x00"
-    b"\x09\x00\x00\x00about.npy"
-)
 SWEEP = b"point,exit_code,message,"
 TABLE = b"theta4_deg,K1,K2,K3,K1_least_squares,K2_least_squares,K3_least_squares\n"
 # Other programs write SARIF and JUnit files, too: ours say that they are.
@@ -71,14 +66,13 @@ GATE = re.compile(
 # What follows the first line of a figure that stands for itself.
 SVG_MARK = "<!-- nrs-design figure -->\n"
 SVG = f'<?xml version="1.0" encoding="utf-8" standalone="no"?>\n{SVG_MARK}'.encode()
-# A keyword of each page and an entry of each image, which tell them from those of other programs.
+# An entry of each image, which tells it from those of other programs.
 MAKER = "nrs-design"
-PDF = re.compile(rb"%PDF-.*<pdf:Keywords>" + MAKER.encode() + rb"\b", re.DOTALL)
 PNG = re.compile(
     rb"\x89PNG\r\n\x1a\n.{25}\x00\x00\x00\x13tEXtSoftware\x00" + MAKER.encode(), re.DOTALL
 )
-# What the ending of its file makes of a page.
-PAGES: dict[str, bytes | re.Pattern[bytes]] = {".html": PAGE, ".htm": PAGE, ".pdf": PDF}
+# How the names of pages end.
+PAGES = (".html", ".htm")
 
 # More than the longest of them that is no pattern, and than any file that a pattern is to tell.
 _LONGEST, _WHOLE = 256, 2**26
@@ -87,21 +81,9 @@ Beginning = bytes | tuple[bytes, ...] | re.Pattern[bytes]
 Output = tuple[Path, str | bytes, Beginning]
 
 
-def page_kind(path: Path) -> bytes | re.Pattern[bytes]:
-    """Return `PAGE` or `PDF`, as the name of a page ends."""
-    kind = PAGES.get(path.suffix.lower())
-    if kind is None:
-        raise OutputError(
-            f"{path.suffix or 'no ending'} is not a type of report",
-            path=path,
-            remedy="end it in .html or .pdf",
-        )
-    return kind
-
-
 def check_html(path: Path) -> None:
     """Refuse a name that is not one of a page in HTML."""
-    if page_kind(path) is not PAGE:
+    if path.suffix.lower() not in PAGES:
         raise OutputError("is not the name of a page in HTML", path=path, remedy="end it in .html")
 
 

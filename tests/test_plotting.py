@@ -57,7 +57,6 @@ DRAWING = {
     "export": (SOFT_TISSUE, "--out", "e"),
     "simulate": (ROOT / "docs/examples/scenarios.nrs.yaml", "--out", "s"),
     "identify tissue": (ROOT / "specs/data/nose-1.csv", "--report", "x.html"),
-    "identify tool": (ROOT / "specs/data/tool-poses.csv", "--report", "x.html"),
     "robot kinematics": (ROOT / "specs/robots/neuroboscope.nrs.yaml", "--figures", "f"),
 }
 

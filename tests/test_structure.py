@@ -208,8 +208,6 @@ def test_clocks_are_read_by_the_fuse_and_for_the_eye_only():
     """What a search begins, and where it ends, is counted: a clock would differ under load."""
     assert {item.source for item in imports() if item.target == "time"} == {
         "nrs_design.work",
-        # How much of the limit of a processor the import of libraries has taken.
-        "nrs_design.confined_child",
         # How long something took, told beside what was found.
         "nrs_design.search.certify",
         "nrs_design.pipeline.certification",

@@ -1,4 +1,4 @@
-"""What records say about a tissue, an actuator, a delay or a tool, as the library gives it."""
+"""What records say about a tissue, an actuator or a delay, as the library gives it."""
 
 from __future__ import annotations
 

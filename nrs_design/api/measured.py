@@ -16,13 +16,13 @@ def identify(
     law: str | None = None,
     columns: Mapping[str, str] | None = None,
 ) -> Identification:
-    """Find a tissue, an actuator, a tool or a delay in records, with 95 % intervals.
+    """Find a tissue, an actuator or a delay in records, with 95 % intervals.
 
     Parameters
     ----------
     records : path-like or iterable of path-like
         CSV files; see `nrs-design identify` for their columns. Of a delay, one.
-    kind : {"tissue", "actuator", "tool", "delay"}
+    kind : {"tissue", "actuator", "delay"}
         What they are records of. Resistance and torque of an actuator are said for the motor of
         thesis table 4.1; gain, time constant, friction and dead time depend on no data sheet.
     law : str, optional

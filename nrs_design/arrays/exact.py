@@ -25,7 +25,7 @@ _TIMES = ("m", "M")
 def read_rows(matrix: object, name: str = "the matrix") -> list[list[Fraction]]:
     """Read a matrix as exact rows: NumPy, lists of numbers or texts, or a state space's A."""
     held = getattr(matrix, "A", matrix) if is_state_space(matrix) else matrix
-    refuse_times(held, name)
+    _refuse_times(held, name)
     rows = held.tolist() if hasattr(held, "tolist") else held
     if not isinstance(rows, Sequence) or isinstance(rows, str) or not rows:
         raise _no_matrix(name, held)
@@ -56,7 +56,7 @@ def exact_matrix(rows: Sequence[Sequence[Fraction]], name: str = "the matrix") -
 
 def read_number(value: object, name: str = "the value") -> Fraction:
     """Read a number exactly: text as it is written, a float as the binary number that it is."""
-    refuse_times(value, name)
+    _refuse_times(value, name)
     if isinstance(value, str | Decimal):
         return parse_exact(str(value))
     if isinstance(value, bool) or not isinstance(value, Real):
@@ -75,7 +75,7 @@ def read_number(value: object, name: str = "the value") -> Fraction:
     return Fraction(number)
 
 
-def refuse_times(value: object, name: str) -> None:
+def _refuse_times(value: object, name: str) -> None:
     """Refuse times and dates of NumPy, which pass for the integers that they are counted in."""
     if getattr(getattr(value, "dtype", None), "kind", "") in _TIMES:
         raise SpecError(

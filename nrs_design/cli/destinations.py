@@ -25,7 +25,7 @@ class Destinations:
     """Where a result is written: into a spec, onto a page."""
 
     spec: LoadedSpec | None  # What it is merged into
-    report: Path | None  # The page: ends in .html or .pdf
+    report: Path | None  # The page: ends in .html
     date: datetime | None  # What the user wants to read as the date of the page
 
     @classmethod
@@ -42,17 +42,18 @@ class Destinations:
         Raises
         ------
         OutputError
-            If the page is of no type that can be written, or something else stands in its place.
+            If the name is not one of a page, or something else stands in its place.
         SpecError
             If there is something wrong with the spec.
         """
         from nrs_design.errors import SpecError
-        from nrs_design.output import check_place, page_kind
+        from nrs_design.output import PAGE, check_html, check_place
         from nrs_design.spec import read_spec
         from nrs_design.spec.task_space import file_of
 
         if report is not None:
-            check_place(report, page_kind(report))
+            check_html(report)
+            check_place(report, PAGE)
         spec = None
         if write is not None:
             spec = read_spec(write)
@@ -117,12 +118,11 @@ class Destinations:
 
 
 def _write_page(path: Path, report: Report, date: datetime | None) -> None:
-    from nrs_design.output import PDF, page_kind, write_output
-    from nrs_design.reporting import render_html, render_pdf
+    from nrs_design.output import PAGE, write_output
+    from nrs_design.reporting import render_html
 
-    report, kind = replace(report, date=date.date() if date else None), page_kind(path)
-    content = render_pdf(report) if kind is PDF else render_html(report)
-    write_output(path, content, replaces=kind)
+    report = replace(report, date=date.date() if date else None)
+    write_output(path, render_html(report), replaces=PAGE)
 
 
 def _write_spec(spec: LoadedSpec, text: str) -> None:

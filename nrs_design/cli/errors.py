@@ -88,7 +88,7 @@ def _width() -> int:
 
 
 def _source(path: Path, line: int) -> str | None:
-    """Return a line of a file, if it still can be read; a sheet of Excel has rows, no lines."""
+    """Return a line of a file, if it still can be read."""
     from nrs_design.spec.task_space import file_of
 
     try:

@@ -55,11 +55,11 @@ Date = Annotated[
         "--date",
         formats=["%Y-%m-%d"],
         metavar="YYYY-MM-DD",
-        help="Write this date on the page or document; without it there is no date.",
+        help="Write this date on the page; without it there is no date.",
     ),
 ]
 
 ReportTo = Annotated[
     Path | None,
-    typer.Option("--report", metavar="FILE", help="Write a page with figures (.html or .pdf)."),
+    typer.Option("--report", metavar="FILE", help="Write a page with figures (.html)."),
 ]

@@ -34,7 +34,6 @@ class ReportFormat(StrEnum):
     """File formats of a report."""
 
     HTML = "html"
-    PDF = "pdf"
     PNG = "png"
 
 
@@ -45,14 +44,12 @@ def report(
         ReportFormat | None,
         typer.Option(
             "--format",
-            help="A page, a document, or one image per figure; default: as --out ends, or a page.",
+            help="A page, or one image per figure; default: a page.",
         ),
     ] = None,
     out: Annotated[
         Path | None,
-        typer.Option(
-            help="File (a folder for png); default reports/NAME.html, .pdf or reports/NAME."
-        ),
+        typer.Option(help="File (a folder for png); default reports/NAME.html or reports/NAME."),
     ] = None,
     times: Annotated[
         bool,
@@ -88,7 +85,7 @@ def report(
     A robot spec gives a page about workspace, dynamics, correction and balance; the exit code is
     then that of `robot check`.
 
-    Example: nrs-design report specs/neuroboscope/soft-tissue.nrs.yaml --format pdf
+    Example: nrs-design report specs/neuroboscope/soft-tissue.nrs.yaml
     """
     from nrs_design.pipeline import Overrides
 
@@ -141,23 +138,21 @@ def _answer(
 
 
 def _format_of(file_format: ReportFormat | None, out: Path | None) -> ReportFormat:
-    """Return the format that was asked for, or that of the file's ending; both must agree."""
-    from nrs_design.output import PAGE, PAGES, PDF, page_kind
+    """Return the format that was asked for, or a page; the ending of the file must agree."""
+    from nrs_design.output import PAGES, check_html
 
     ending = "" if out is None else out.suffix.lower()
     if ending == ".png" and file_format in (None, ReportFormat.PNG):
         raise OutputError("is no folder", path=out, remedy="--format png takes a folder")
-    pages = {PAGE: ReportFormat.HTML, PDF: ReportFormat.PDF}
-    if file_format is None:
-        return pages[PAGE if out is None else page_kind(out)]
-    if ending in PAGES and pages[PAGES[ending]] is not file_format:
-        what = "takes a folder" if file_format is ReportFormat.PNG else "is about other files"
+    if ending in PAGES and file_format is ReportFormat.PNG:
         raise OutputError(
-            f"ends in {ending}, and --format {file_format} {what}",
+            f"ends in {ending}, and --format png takes a folder",
             path=out,
             remedy="leave --format out, or name another place",
         )
-    return file_format
+    if file_format is None and out is not None:
+        check_html(out)
+    return file_format or ReportFormat.HTML
 
 
 @dataclass(frozen=True, slots=True)
@@ -174,7 +169,7 @@ class _Asked:
 
 def _check_out(loaded: LoadedSpec, file_format: ReportFormat, out: Path | None) -> None:
     """Refuse, before minutes of work, a place in which something else stands."""
-    from nrs_design.output import PAGE, PDF, check_place
+    from nrs_design.output import PAGE, check_place
     from nrs_design.ownership import check_owner, check_page
 
     if out is None:
@@ -182,8 +177,7 @@ def _check_out(loaded: LoadedSpec, file_format: ReportFormat, out: Path | None) 
     else:
         check_page(loaded.path, out)
     if file_format is not ReportFormat.PNG:
-        file = out or REPORTS / f"{loaded.spec.name}.{file_format}"
-        check_place(file, PDF if file_format is ReportFormat.PDF else PAGE)
+        check_place(out or REPORTS / f"{loaded.spec.name}.html", PAGE)
 
 
 def _build(
@@ -264,18 +258,15 @@ def _analysis(result: Result) -> DesignAnalysis | None:
 
 
 def _write(report: Report, file_format: ReportFormat, out: Path | None, spec: Path) -> list[Path]:
-    from nrs_design.output import PAGE, PDF, PNG, write_output, write_outputs
+    from nrs_design.output import PAGE, PNG, write_output, write_outputs
     from nrs_design.ownership import origin_of
-    from nrs_design.reporting import render_html, render_pdf, render_png
+    from nrs_design.reporting import render_html, render_png
 
     if file_format is ReportFormat.PNG:
         folder = out or REPORTS / report.name
         images = {folder / f"{name}.png": data for name, data in render_png(report).items()}
         write_outputs([(path, data, PNG) for path, data in images.items()])
         return list(images)
-    path = out or REPORTS / f"{report.name}.{file_format}"
-    if file_format is ReportFormat.PDF:
-        write_output(path, render_pdf(report), replaces=PDF)
-    else:
-        write_output(path, render_html(report, origin_of(spec, path)), replaces=PAGE)
+    path = out or REPORTS / f"{report.name}.html"
+    write_output(path, render_html(report, origin_of(spec, path)), replaces=PAGE)
     return [path]

@@ -1,4 +1,4 @@
-"""The files of a run: its table, its arrays, and its figure twice."""
+"""The files of a run: its table, and its figure twice."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from nrs_design.output import ARCHIVE, PNG, SVG, Beginning, Output, check_place, write_outputs
+from nrs_design.output import PNG, SVG, Beginning, Output, check_place, write_outputs
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class RunFiles:
-    """Where the files of one run go: ``NAME.csv``, ``.npz``, ``.svg`` and ``.png``."""
+    """Where the files of one run go: ``NAME.csv``, ``.svg`` and ``.png``."""
 
     folder: Path
     name: str
@@ -23,7 +23,7 @@ class RunFiles:
 
     def places(self) -> list[tuple[Path, Beginning]]:
         """Return the files, and how one that may be replaced begins."""
-        kinds: dict[str, Beginning] = {"csv": self.table, "npz": ARCHIVE, "svg": SVG, "png": PNG}
+        kinds: dict[str, Beginning] = {"csv": self.table, "svg": SVG, "png": PNG}
         return [(self.folder / f"{self.name}.{ending}", kind) for ending, kind in kinds.items()]
 
     def check(self) -> None:
@@ -31,21 +31,19 @@ class RunFiles:
         for place, kind in self.places():
             check_place(place, kind)
 
-    def outputs(self, table: str, arrays: bytes, figure: Figure) -> list[Output]:
+    def outputs(self, table: str, figure: Figure) -> list[Output]:
         """Return what is written.
 
         Parameters
         ----------
         table : str
             The run as CSV.
-        arrays : bytes
-            The run as a NumPy archive.
         figure : Figure
             Drawn as SVG and as PNG.
         """
         from nrs_design.reporting.images import to_png, to_svg_file
 
-        contents: list[str | bytes] = [table, arrays, to_svg_file(figure), to_png(figure)]
+        contents: list[str | bytes] = [table, to_svg_file(figure), to_png(figure)]
         places = zip(self.places(), contents, strict=True)
         return [(place, content, kind) for (place, kind), content in places]
 

@@ -39,7 +39,7 @@ Out = Annotated[
     Path | None,
     typer.Option(
         metavar="FOLDER",
-        help="Write SPEC.SCENARIO.svg, .png, .csv and .npz of every run there.",
+        help="Write SPEC.SCENARIO.svg, .png and .csv of every run there.",
     ),
 ]
 BoundsOf = Annotated[

@@ -119,7 +119,7 @@ def _write(designed: Designed, out: Path, runs: Sequence[Bounded]) -> list[str]:
         level = next(((b.level, not b.uncovered) for b in bounds if b.output == "force"), None)
         figure = draw_simulated(response, limits.torque.si, limits.velocity.si, arm, level)
         files = _files(designed, out, one.scenario.name)
-        outputs += files.outputs(response.to_csv(), response.to_npz(), figure)
+        outputs += files.outputs(response.to_csv(), figure)
     written = write_runs(outputs)
     note(f"written to {out}")
     return written

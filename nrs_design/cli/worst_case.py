@@ -86,7 +86,7 @@ def _write(designed: Designed, case: WorstCase, arm: float | None, out: Path) ->
     for run in case.runs:
         files, response = _files(designed, out, run.output.name), response_of(case, run)
         figure = draw_worst(case, run, arm)
-        outputs += files.outputs(response.to_csv(), response.to_npz(), figure)
+        outputs += files.outputs(response.to_csv(), figure)
     written = write_runs(outputs)
     note(f"written to {out}")
     return written

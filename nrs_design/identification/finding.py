@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 
 
 class Finding(Protocol):
-    """What records say about a tissue, an actuator, a delay or a tool."""
+    """What records say about a tissue, an actuator or a delay."""
 
     @property
     def sources(self) -> Sequence[Source]:

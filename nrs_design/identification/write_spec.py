@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from decimal import ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_EVEN, Decimal
-from math import hypot, isfinite
+from math import isfinite
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +16,6 @@ from nrs_design.identification.delay import DelayIdentification
 from nrs_design.identification.statistics import Estimate, few_digits, span
 from nrs_design.identification.tissue import TissueIdentification
 from nrs_design.identification.tissue.tangent import Tangent
-from nrs_design.identification.tool import ToolIdentification
 from nrs_design.models.contact import (
     LAWS,
     LINEAR_LAWS,
@@ -241,7 +240,7 @@ def merge_actuator(loaded: LoadedSpec, found: ActuatorIdentification) -> str:
     document.drop(node, "dead_time")
     caveats = found.caveats
     if found.late is not None and spec.takes_dead_time:
-        document.put(node, "dead_time", _outwards(found.late, "s", _plain)["range"])
+        document.put(node, "dead_time", _outwards(found.late, "s")["range"])
         caveats = found.doubts
     _put_origin(document, node, found.sources, caveats)
     rewritten = _rewritten(document, node)
@@ -368,47 +367,12 @@ def check_delay_place(loaded: LoadedSpec) -> SamplingSpec:
     return sampling
 
 
-def merge_tool(loaded: LoadedSpec, found: ToolIdentification) -> str:
-    """Return the text of a spec with the identified tool, and the bias that is left, in its sensor.
-
-    The identified bias is for the robot to take off; what may be left of it is half the width of
-    its interval along each axis.
-
-    Raises
-    ------
-    SpecError
-        If the spec is no interaction design.
-    DataError
-        If the interval of the mass reaches zero.
-    """
-    spec = check_interaction(loaded)
-    document = SpecDocument(loaded)
-    sensor = document.child(document.root, "sensor", ("bias", "tool"))
-    document.put(sensor, "bias", _left(found.torque_bias, "N*m"))
-    if spec.sensor is not None and spec.sensor.pivot is not None:
-        document.put(sensor, "force_bias", _left(found.force_bias, "N"))
-    tool = document.child(sensor, "tool", ("mass", "center_of_mass", "gravity", "provenance"))
-    _put_range(document, tool, "mass", _ranged(found.mass, "kg", "mass"))
-    center = document.child(tool, "center_of_mass", "xyz")
-    for axis, estimate in zip("xyz", found.center, strict=True):
-        _put_range(document, center, axis, _outwards(estimate, "m", _exponential))
-    document.put(tool, "gravity", f"{found.gravity!r} m/s^2")
-    _put_origin(document, tool, found.sources, found.caveats)
-    return document.text()
-
-
-def _left(bias: Sequence[Estimate], unit: str) -> str:
-    """Write how far a bias may be from its estimate, rounded up."""
-    half = hypot(*((estimate.high - estimate.low) / 2 for estimate in bias))
-    return f"{_plain(few_digits(half, _DIGITS, ROUND_CEILING))} {unit}"
-
-
-def _outwards(estimate: Estimate, unit: str, write: Callable[[Decimal], str]) -> dict[str, Any]:
+def _outwards(estimate: Estimate, unit: str) -> dict[str, Any]:
     """Write an estimate of either sign with ends rounded outwards, so that nothing is lost."""
     low = few_digits(estimate.low, _DIGITS, ROUND_FLOOR)
     high = few_digits(estimate.high, _DIGITS, ROUND_CEILING)
     nominal = min(max(few_digits(estimate.value, _DIGITS, ROUND_HALF_EVEN), low), high)
-    texts = [f"{write(number)} {unit}" for number in (nominal, low, high)]
+    texts = [f"{_plain(number)} {unit}" for number in (nominal, low, high)]
     return {"nominal": texts[0], "range": texts[1:]}
 
 
@@ -469,7 +433,7 @@ def _ranged(estimate: Estimate, unit: str, name: str) -> dict[str, Any]:
             f"the interval of the {name} is unlimited or reaches 0: the records do not tell it",
             remedy="choose a simpler law with --model, or record more",
         )
-    return _outwards(estimate, unit, _plain)
+    return _outwards(estimate, unit)
 
 
 def _is_limited(estimate: Estimate) -> bool:

@@ -1,6 +1,6 @@
 """The report as a document: sections of text, tables and figures, in no file format yet.
 
-Every number is already text. The HTML and the PDF are two renderings of the same document.
+Every number is already text.
 """
 
 from __future__ import annotations

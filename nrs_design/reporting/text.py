@@ -9,7 +9,7 @@ from nrs_design.printable import escaped, visible
 
 
 def drawable(text: str) -> str:
-    """Return `visible` text with escapes for what the font of figures and PDF has no letter."""
+    """Return `visible` text with escapes for what the font of figures has no letter."""
     shown = visible(text)
     if shown.isascii():
         return shown

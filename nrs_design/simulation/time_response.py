@@ -9,7 +9,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.arrays.archive import to_archive
 from nrs_design.axis import AxisType
 
 Array = NDArray[np.float64]
@@ -116,20 +115,3 @@ class TimeResponse:
         for line, mode in zip(numbers, self.mode[kept].tolist(), strict=True):
             text.write(",".join(line) + f",{self.modes[mode]}\n")
         return text.getvalue()
-
-    def to_npz(self) -> bytes:
-        """Return the arrays as a NumPy archive; names and units are text arrays beside them.
-
-        The first one says what it is; see `nrs_design.arrays.archive`.
-        """
-        named = {
-            kind: np.array([[s.name, s.unit] for s in signals], dtype=np.str_).reshape(-1, 2)
-            for kind, signals in (
-                ("outputs", self.outputs),
-                ("states", self.states),
-                ("inputs", self.inputs),
-            )
-        }
-        arrays = {"t": self.t, "y": self.y, "x": self.x, "u": self.u, "mode": self.mode}
-        modes = {"modes": np.array(self.modes, dtype=np.str_)}
-        return to_archive("a run of nrs-design", arrays | named | modes)

@@ -42,7 +42,7 @@ MAX_SCALAR = 1000
 
 # Escapes such as "\ud800" can produce them; they cannot be printed or encoded.
 _SURROGATE = re.compile("[\ud800-\udfff]")
-_TABLES = {".csv", ".tsv", ".npz", ".mat", ".xlsx", ".parquet"}
+_TABLES = {".csv", ".tsv"}
 _WORD = re.compile(r"[^\s,\[\]{}]+")
 _NULL = re.compile(r"|~|null|Null|NULL")
 # What YAML 1.2 reads as a truth value or a number, when it is not quoted.

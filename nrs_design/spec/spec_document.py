@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 from nrs_design.errors import SpecError
@@ -52,25 +52,6 @@ class SpecDocument:
             node[key] = flow
         else:
             node.insert(max(len(node) - 1, 1), key, flow)
-
-    def child(self, node: Any, key: str, names: Iterable[str]) -> Any:
-        """Return the mapping at a key; where there is none, a new one in block style.
-
-        Parameters
-        ----------
-        node : mapping
-            The one above.
-        key : str
-            In it.
-        names : iterable of str
-            What is going to be put into a new one, in this order.
-        """
-        from ruamel.yaml.comments import CommentedMap
-
-        if node.get(key) is None:
-            self.put(node, key, "")
-            node[key] = CommentedMap.fromkeys(names)
-        return node[key]
 
     def drop(self, node: Any, key: str) -> None:
         """Remove a key, but not the comments that follow it."""

@@ -33,13 +33,11 @@ def test_facts_are_those_of_the_command():
     assert json.loads(json.dumps(found)) == said
 
 
-def test_an_actuator_and_a_tool():
+def test_an_actuator():
     motor = nrs.identify(sorted(DATA.glob("actuator-*hz.csv")), "actuator")
     assert motor.ranges["time_constant"].value == pytest.approx(0.0351, rel=1e-3)
     assert motor.ranges["gain"].unit == "(rad/s)/rpm"
-    tool = nrs.identify(DATA / "tool-poses.csv", "tool")
-    assert tool.ranges["mass"].low < 0.796 < tool.ranges["mass"].high
-    assert tool.plot().axes
+    assert motor.plot().axes
 
 
 def test_a_delay_between_columns_of_ones_own(tmp_path):

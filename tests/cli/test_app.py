@@ -98,7 +98,7 @@ def test_verify_beside_a_spec_loads_no_heavy_library(tmp_path):
     given = (ROOT / "reports/soft-tissue.cert.json", SOFT_TISSUE)
     result, facts = loaded_by(tmp_path, "verify", *given)
     assert result.returncode == 0
-    heavy = {"control", "cvxpy", "scipy", "matplotlib", "clarabel", "numpy", "typst", "jinja2"}
+    heavy = {"control", "cvxpy", "scipy", "matplotlib", "clarabel", "numpy", "jinja2"}
     assert not heavy & set(facts["modules"])
 
 

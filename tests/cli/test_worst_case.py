@@ -31,7 +31,7 @@ def test_the_worst_case_beside_limits_and_bounds(spec, tmp_path):
         assert item["bound_over_found"] > 1
         assert item["worst_found"] >= max(item["starts"]) * 0.99
     assert found["force"]["exceeds_limit"] == (found["force"]["worst_found"] > 0.3)
-    names = {f"small.worst-{name}.{s}" for name in found for s in ("csv", "npz", "svg", "png")}
+    names = {f"small.worst-{name}.{s}" for name in found for s in ("csv", "svg", "png")}
     assert {path.name for path in (tmp_path / "runs").iterdir()} == names
     told = run("simulate", spec, "--worst-case", "--no-bound", cwd=tmp_path).stdout
     assert "worst found" in told

@@ -327,7 +327,7 @@ def test_nothing_is_written_and_no_solver_is_loaded(project):
         "from nrs_design.cli import main\n"
         "sys.argv = ['nrs-design', 'gate', '--locked', 'specs']\n"
         "try:\n    main()\nexcept SystemExit as end:\n    assert not end.code, end.code\n"
-        "heavy = {'clarabel', 'scipy', 'control', 'matplotlib', 'cvxpy', 'typst', 'jinja2'}\n"
+        "heavy = {'clarabel', 'scipy', 'control', 'matplotlib', 'cvxpy', 'jinja2'}\n"
         "print(sorted(heavy & set(sys.modules)))\n"
     )
     done = subprocess.run(

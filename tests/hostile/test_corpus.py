@@ -139,19 +139,9 @@ def test_a_proposal(place, case):
     check(place, "check-lyapunov", "p.json", codes=(0, 1, 2))
 
 
-IDENTIFY, CHECK = ("identify", "tissue"), ("check-lyapunov",)
-READ = [(IDENTIFY, name) for name in FOREIGN]
-READ += [(CHECK, name) for name in FOREIGN if name.endswith((".mat", ".npz"))]
-# A crash, and a claim of 8 TB.
-SHOWN = [(IDENTIFY, "deep.mat"), (CHECK, "huge.npz")]
-
-
-@pytest.mark.parametrize(
-    ("command", "name"),
-    [pytest.param(*case, marks=() if case in SHOWN else pytest.mark.slow) for case in READ],
-)
-def test_a_file_of_another_program(place, command, name):
-    """Such as a sheet of thousands of millions of cells: one message each."""
+@pytest.mark.parametrize("name", FOREIGN)
+@pytest.mark.parametrize("command", [("identify", "tissue"), ("check-lyapunov",)], ids=" ".join)
+def test_a_file_of_another_program_is_named_and_not_read(place, command, name):
     write(place / "work" / name, FOREIGN[name]())
     ended = check(place, *command, name, codes=(2,))
     assert ended.text.count("error[NRS006]") == 1

@@ -7,7 +7,6 @@ tables suggest, and the resolution of its sensors:
   count encoder at the end of a 100 mm handle (0.153 mm per count), force from a 10 V amplifier;
 - nose and concha (2.5): rotations of up to 0.35 rad, long enough to see the relaxation; like the
   law, the tissue pulls where a real contact would be lost;
-- tool (6.2): 0.797 kg at 0.2 m in a dozen poses, roll and pitch with 0.1 degrees of noise;
 - actuator (4.1): sinusoidal commands to a motor with Coulomb friction that sticks at reversals,
   angle from a 14 bit encoder.
 
@@ -43,11 +42,6 @@ FREQUENCIES = (0.5, 0.8, 1.2, 2.0, 3.0, 4.5, 6.0, 8.0, 11.0, 15.0)
 
 COUNT = 0.1 * 2 * math.pi / 4096
 ENCODER = 2 * math.pi / 2**14
-# Mass in kg, center of mass in m, bias in N and N m; noise of both and of the angles.
-TOOL_MASS, TOOL_CENTER = 0.797, (0.002, -0.004, 0.2)
-FORCE_BIAS, TORQUE_BIAS = (0.31, -0.22, 1.14), (0.012, 0.021, -0.006)
-TOOL_NOISE = (0.02, 0.002, math.radians(0.1))
-TOOL_HEADER = "roll_deg,pitch_deg,fx_N,fy_N,fz_N,tx_Nm,ty_Nm,tz_Nm"
 _LABEL = "# synthetic record, made by tests.identification.synthetic: not a measurement"
 
 
@@ -164,28 +158,6 @@ def _stick_slip(command: Array, step: float, fine: int = 20) -> Array:
     return np.array(angles)
 
 
-def tool_poses(count: int, seed: int) -> tuple[Array, Array, Array]:
-    """Return roll and pitch as an IMU has them, in rad, and the wrench, shape (n, 6).
-
-    Parameters
-    ----------
-    count : int
-        Poses.
-    seed : int
-        Of the poses and of the noise.
-    """
-    generator = np.random.default_rng([seed, 4])
-    roll, pitch = generator.uniform(-1.2, 1.2, (2, count))
-    down = [np.sin(pitch), -np.cos(pitch) * np.sin(roll), -np.cos(pitch) * np.cos(roll)]
-    weight = TOOL_MASS * 9.81 * np.column_stack(down)
-    force_noise, torque_noise, angle_noise = TOOL_NOISE
-    force = weight + FORCE_BIAS + force_noise * generator.standard_normal((count, 3))
-    torque = np.cross(TOOL_CENTER, weight) + TORQUE_BIAS
-    torque += torque_noise * generator.standard_normal((count, 3))
-    seen = [angle + angle_noise * generator.standard_normal(count) for angle in (roll, pitch)]
-    return seen[0], seen[1], np.column_stack([force, torque])
-
-
 def samples() -> Iterator[tuple[str, str]]:
     """Yield name and text of every committed sample."""
     for name, fits in (("soft", SOFT), ("stiff", STIFF)):
@@ -204,10 +176,6 @@ def samples() -> Iterator[tuple[str, str]]:
         label = f"{frequency:g}".replace(".", "p")
         yield f"actuator-{label}hz.csv", _text("time_s,command_rpm,angle_rad", record, (3, 1, 6))
     yield "actuator-response.csv", _response_text(seed=7)
-    roll, pitch, wrench = tool_poses(12, seed=5)
-    digits = (2, 2, 3, 3, 3, 5, 5, 5)
-    columns = (np.degrees(roll), np.degrees(pitch), *wrench.T)
-    yield "tool-poses.csv", _text(TOOL_HEADER, columns, digits)
 
 
 def _tissue_text(data: tuple[Motion, Array], names: str, digits: tuple[int, int]) -> str:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from nrs_design.identification.datasets import read_actuator, read_poses, read_tissue
+from nrs_design.identification.datasets import read_actuator, read_tissue
 from tests.identification import synthetic
 from tests.support import ROOT
 
@@ -29,6 +29,6 @@ def test_committed_sample_is_what_the_generator_makes(name):
 
 @pytest.mark.parametrize("name", SAMPLES)
 def test_samples_are_read_as_synthetic(name):
-    readers = {"tool": read_poses, "actuator": read_actuator}
-    found = readers.get(name.partition("-")[0], read_tissue)(DATA / name)
+    reader = read_actuator if name.startswith("actuator") else read_tissue
+    found = reader(DATA / name)
     assert (found[0] if isinstance(found, tuple) else found).source.synthetic

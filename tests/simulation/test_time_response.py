@@ -1,12 +1,9 @@
 """A response as a table, and what reads it."""
 
-import io
-
 import numpy as np
 import pytest
 
 from nrs_design.identification.running.log import read_run
-from nrs_design.output import ARCHIVE
 from nrs_design.simulation.time_response import Signal, TimeResponse
 
 
@@ -51,17 +48,6 @@ def test_csv_is_read_back_to_the_bit(tmp_path):
     assert log.time.tolist() == one.t.tolist()
     assert log.columns["torque"].tolist() == one["torque"].tolist()
     assert log.labels == ("insertion", "withdrawal")
-
-
-def test_npz_holds_it_all():
-    content = response().to_npz()
-    # Told from other archives by every version of Python.
-    assert content.startswith(ARCHIVE)
-    archive = np.load(io.BytesIO(content))
-    assert archive["about"] == "a run of nrs-design"
-    assert archive["y"].tolist() == response().y.tolist()
-    assert archive["outputs"].tolist() == [["angle", "rad"], ["torque", "N*m"]]
-    assert archive["modes"].tolist() == ["insertion", "withdrawal"]
 
 
 def test_shapes_must_fit():

@@ -19,7 +19,6 @@ from nrs_design.identification.actuator import (
 from nrs_design.identification.datasets import (
     FrequencyResponse,
     read_actuator,
-    read_poses,
     read_signals,
     read_tissue,
 )
@@ -29,19 +28,16 @@ from nrs_design.identification.facts.delay import delay_facts
 from nrs_design.identification.facts.finding import Facts, finding_facts
 from nrs_design.identification.facts.running import run_judgement_facts
 from nrs_design.identification.facts.tissue import tissue_facts
-from nrs_design.identification.facts.tool import tool_facts
 from nrs_design.identification.finding import Finding, is_synthetic
 from nrs_design.identification.lever import named
 from nrs_design.identification.reporting.actuator import actuator_report
 from nrs_design.identification.reporting.delay import delay_report
 from nrs_design.identification.reporting.running import run_report
 from nrs_design.identification.reporting.tissue import tissue_report
-from nrs_design.identification.reporting.tool import tool_report
 from nrs_design.identification.running import Check, judge_run, read_run, read_run_bounds
 from nrs_design.identification.running.proof import proof_of
 from nrs_design.identification.tables.columns import parse_mapping
 from nrs_design.identification.tissue import TissueIdentification, identify_tissue
-from nrs_design.identification.tool import GRAVITY, ToolIdentification, identify_tool
 from nrs_design.identification.write_spec import check_turning
 from nrs_design.models.contact import LAWS
 
@@ -76,7 +72,7 @@ def identify_records(
     ----------
     files : sequence of path-like
         CSV files.
-    kind : {"tissue", "actuator", "tool", "delay"}
+    kind : {"tissue", "actuator", "delay"}
         What they are records of.
     law : str or None
         Of the tissue.
@@ -164,22 +160,6 @@ def _delay(
     return found, _Answer(chosen, about, ranges, delay_facts(found), partial(delay_report, found))
 
 
-def _tool(
-    files: Sequence[Path], mapping: Columns, law: str | None
-) -> tuple[ToolIdentification, _Answer]:
-    found = identify_tool([read_poses(file, mapping) for file in files], GRAVITY)
-    ranges = {"mass": _range(found.mass, "kg")}
-    for name, values, unit in (
-        ("center_of_mass", found.center, "m"),
-        ("force_bias", found.force_bias, "N"),
-        ("torque_bias", found.torque_bias, "N m"),
-    ):
-        ranges |= {f"{name}_{a}": _range(v, unit) for a, v in zip("xyz", values, strict=True)}
-    about = f"from {len(found.force_errors)} poses, with {found.gravity} m/s^2"
-    page = partial(tool_report, found)
-    return found, _Answer("least squares", about, ranges, tool_facts(found), page)
-
-
 def _range(estimate: Estimate, unit: str) -> FittedRange:
     return FittedRange(estimate.value, estimate.low, estimate.high, unit)
 
@@ -187,7 +167,6 @@ def _range(estimate: Estimate, unit: str) -> FittedRange:
 _KINDS: Mapping[str, Callable[[Sequence[Path], Columns, str | None], tuple[Finding, _Answer]]] = {
     "tissue": _tissue,
     "actuator": _actuator,
-    "tool": _tool,
     "delay": _delay,
 }
 

@@ -3,11 +3,9 @@
 from nrs_design.identification.datasets.records import (
     ActuatorRecord,
     FrequencyResponse,
-    PoseRecord,
     SignalRecord,
     TissueRecord,
     read_actuator,
-    read_poses,
     read_signals,
     read_tissue,
 )
@@ -16,12 +14,10 @@ from nrs_design.identification.tables.table import Source
 __all__ = [
     "ActuatorRecord",
     "FrequencyResponse",
-    "PoseRecord",
     "SignalRecord",
     "Source",
     "TissueRecord",
     "read_actuator",
-    "read_poses",
     "read_signals",
     "read_tissue",
 ]

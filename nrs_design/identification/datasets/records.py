@@ -36,11 +36,6 @@ FREE = (("input", "output"),)
 FOLLOWED = tuple(
     ("command", seen) for seen in ("angle", "velocity", "torque", "force", "deflection")
 )
-WRENCH = ("fx", "fy", "fz", "tx", "ty", "tz")
-QUATERNION = ("qw", "qx", "qy", "qz", *WRENCH)
-ROLL_PITCH = ("roll", "pitch", *WRENCH)
-# How far from 1 the length of a quaternion may be: it is rounded.
-_ROTATION = 0.01
 RESPONSE = ("frequency", "magnitude", "phase")
 # In dB.
 _LOUDEST = 600.0
@@ -189,57 +184,6 @@ def read_signals(
     for name, values in zip(names, (sent, seen), strict=True):
         check_varies(table, name, values)
     return SignalRecord(table.source, time - time[0], sent, seen, names)
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class PoseRecord:
-    """Wrenches of a sensor at rest in some poses."""
-
-    source: Source  # The file
-    down: Array  # Shape (n, 3). Directions of gravity along the axes of the sensor, of length 1.
-    # force, torque: shape (n, 3). Measured along the axes of the sensor, in N and N m.
-    force: Array
-    torque: Array
-    # Shape (n, 3, 3). Rotations from the axes of the sensor to those of the world, where they are
-    # known.
-    turns: Array | None = None
-
-
-def read_poses(
-    path: Path, mapping: Mapping[str, str] | None = None, progress: Progress = lambda done: None
-) -> PoseRecord:
-    """Read poses, a row each: an orientation and a wrench.
-
-    Parameters
-    ----------
-    path, mapping, progress
-        As in `read_tissue`; the columns are ``qw, qx, qy, qz`` (the rotation from the axes of the
-        sensor to those of the world, whose z is up) or ``roll_rad, pitch_rad`` (about x, then y),
-        and ``fx_N, fy_N, fz_N, tx_Nm, ty_Nm, tz_Nm``.
-
-    Raises
-    ------
-    DataError
-        With the row, if a column is missing, a value is not finite, or a quaternion is none of a
-        rotation.
-    """
-    table = read_table(path, (QUATERNION, ROLL_PITCH), mapping or {}, progress)
-    (columns,) = _one_group(table)
-    force, torque = (np.column_stack([columns[f"{w}{axis}"] for axis in "xyz"]) for w in "ft")
-    if table.layout == ROLL_PITCH:
-        roll, pitch = columns["roll"], columns["pitch"]
-        down = [np.sin(pitch), -np.cos(pitch) * np.sin(roll), -np.cos(pitch) * np.cos(roll)]
-        return PoseRecord(table.source, np.column_stack(down), force, torque)
-    from scipy.spatial.transform import Rotation
-
-    quaternions = np.column_stack([columns[f"q{axis}"] for axis in "xyzw"])
-    size = np.linalg.norm(quaternions, axis=1)
-    bad = np.flatnonzero(np.abs(size - 1) > _ROTATION)
-    if len(bad):
-        remedy = "write qw, qx, qy, qz of length 1"
-        table.fail(f"the quaternion has the length {size[bad[0]]:.4g}", int(bad[0]), remedy)
-    turns = np.asarray(Rotation.from_quat(quaternions).as_matrix(), float)
-    return PoseRecord(table.source, -turns[:, 2, :], force, torque, turns)
 
 
 def _one_group(table: MeasurementTable) -> Sequence[dict[str, Array]]:

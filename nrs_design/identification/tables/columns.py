@@ -89,7 +89,7 @@ def _check_mapped(mapping: Mapping[str, str], header: Sequence[str], fail: Fail)
 def check_stated(theirs: str, unit: str | None, ours: str, fail: Fail) -> None:
     """Refuse a mapping whose unit contradicts the name of the column."""
     name = _split(ours, fail)
-    if unit in (None, name.unit) or name.unit in ("", "1", "any"):
+    if unit in (None, name.unit) or name.unit in ("", "any"):
         return
     if unit in UNITS[name.quantity]:
         right = "_".join(filter(None, (name.quantity, unit, name.group)))

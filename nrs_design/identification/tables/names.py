@@ -52,12 +52,6 @@ UNITS: Mapping[str, Mapping[str, float]] = MappingProxyType(
         "frequency": {"hz": 1.0, "khz": 1e3},
         "magnitude": {"db": 1.0},
         "phase": {"deg": pi / 180, "rad": 1.0},
-        # Of a wrench along the axes of its sensor, and of the orientation of that.
-        **{f"f{axis}": _FORCES for axis in "xyz"},
-        **{f"t{axis}": _TORQUES for axis in "xyz"},
-        **{f"q{axis}": {"1": 1.0, "": 1.0} for axis in "wxyz"},
-        "roll": _ANGLES,
-        "pitch": _ANGLES,
     }
 )
 # The unit that values of a command have once they are read.
@@ -119,7 +113,7 @@ _SPELLINGS = {
 _BRACKETED = re.compile(r"^(?P<what>[^\[\](){}]+?)\s*[\[({](?P<unit>[^\[\](){}]*)[\])}]$")
 _SLASHED = re.compile(r"^(?P<what>[A-Za-z ]+?)\s*[/,]\s*(?P<unit>\S+)$")
 # Endings of foreign names that may be a unit, and are as often a minimum, a motor or a sensor A.
-_NO_ENDINGS = frozenset({"", "1", "any", "s", "m", "min", "in", "A"})
+_NO_ENDINGS = frozenset({"", "any", "s", "m", "min", "in", "A"})
 # Units in brackets that none of our quantities has: what says one is not to be taken for ours.
 _FOREIGN = frozenset({"g", "kg", "lb", "oz", "nN", "nm", "ft", "Pa", "kPa", "MPa", "%", "h"})
 # Of messages in bags that were turned into text; nanoseconds since 1970.
@@ -157,7 +151,7 @@ class Name:
 def standard_name(quantity: str) -> str:
     """Return the name of a column in SI, such as ``force_N``."""
     unit = next(iter(UNITS[quantity]))
-    return quantity if unit in ("", "1") else f"{quantity}_{unit}"
+    return quantity if unit == "" else f"{quantity}_{unit}"
 
 
 def read_name(text: str) -> Name | None:
@@ -172,8 +166,7 @@ def read_name(text: str) -> Name | None:
         quantity = what if what in UNITS else _SYNONYMS.get(what)
         return Name(quantity, read_unit(unit, quantity)) if quantity else _symbol(what, unit)
     word, underscore, rest = text.partition("_")
-    # A name such as Fz stands for one axis of several, not for the force.
-    if word in UNITS or (word.lower() in UNITS and len(word) > 2):
+    if word.lower() in UNITS:
         return Name(word.lower(), *(_unit_and_group(rest, word.lower()) if underscore else ("",)))
     quantity = _SYNONYMS.get(word.lower())
     # A synonym counts only with its unit.
@@ -213,7 +206,7 @@ def stated_unit(text: str, quantity: str) -> str | None:
     bracketed = _BRACKETED.match(text.strip()) or _SLASHED.match(text.strip())
     if bracketed:
         unit = read_unit(bracketed["unit"], quantity)
-        return unit if unit in (known - {"", "1"}) | _FOREIGN else None
+        return unit if unit in (known - {""}) | _FOREIGN else None
     words = text.strip().split("_")
     endings = (read_unit("_".join(words[-n:]), quantity) for n in (2, 1) if len(words) > n)
     return next((unit for unit in endings if unit in known - _NO_ENDINGS), None)

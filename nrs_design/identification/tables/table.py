@@ -1,30 +1,26 @@
-"""Reading the columns of a file, whatever its format."""
+"""Reading the columns of a text file."""
 
 from __future__ import annotations
 
 import hashlib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from io import BytesIO
 from pathlib import Path
 from typing import BinaryIO, NoReturn
 
 import numpy as np
-from numpy.typing import NDArray
 
 from nrs_design.errors import DataError
 from nrs_design.files import open_regular
 from nrs_design.identification.numeric import Array
-from nrs_design.identification.tables.arrays import ARRAYS, check_kind, read_arrays, read_sheet
 from nrs_design.identification.tables.columns import Column, find_columns
-from nrs_design.identification.tables.header import BLOCK, SYNTHETIC, read_header
+from nrs_design.identification.tables.header import read_header
+from nrs_design.identification.tables.kind import check_kind
 from nrs_design.identification.tables.names import UNITS, standard_name
 from nrs_design.identification.tables.text import MAX_ROWS, Parser, read_blocks
 from nrs_design.spec.quantity import LARGEST
 
 Progress = Callable[[float], None]
-
-SHEET = ".xlsx"
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,13 +42,12 @@ class MeasurementTable:
     groups: dict[str, dict[str, Array]]  # Values by group and quantity, shape (n,) each
     columns: dict[str, dict[str, Column]]  # Where they come from, and their units
     labels: tuple[str, ...]  # Words of the column of modes; its values are their indices
-    first_line: int | None  # Line of the first row, for messages; None where the file has no lines
+    first_line: int  # Line of the first row, for messages
 
     def fail(self, message: str, row: int, remedy: str) -> NoReturn:
         """Raise an error about a row, counted from 0."""
-        line = None if self.first_line is None else self.first_line + row
-        where = f" (row {row + 1})" if line is None else ""
-        raise DataError(message + where, path=self.source.path, line=line, remedy=remedy)
+        line = self.first_line + row
+        raise DataError(message, path=self.source.path, line=line, remedy=remedy)
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,7 +67,7 @@ def read_table(
     progress: Progress = lambda fraction: None,
     optional: tuple[str, ...] = (),
 ) -> MeasurementTable:
-    """Read the columns of one of several layouts."""
+    """Read the columns of one of several layouts from a text with a line of names."""
     wanted = Wanted(layouts, mapping, optional)
     try:
         size = max(path.stat().st_size, 1)
@@ -102,111 +97,6 @@ def _check_sizes(table: MeasurementTable) -> None:
 
 
 def _read(file: BinaryIO, path: Path, wanted: Wanted, progress: Progress) -> MeasurementTable:
-    kind = path.suffix.lower()
-    if kind in ARRAYS:
-        table = _read_arrays(file, path, wanted)
-    elif kind == SHEET:
-        table = _read_sheet(file, path, wanted)
-    else:
-        table = _read_text(file, path, wanted, None, progress)
-    progress(float(path.stat().st_size))
-    return table
-
-
-def _read_sheet(file: BinaryIO, path: Path, wanted: Wanted) -> MeasurementTable:
-    digest = _digest(file)
-    text, sheets = read_sheet(file, path)
-    try:
-        return _read_text(BytesIO(text), path, wanted, digest, lambda done: None)
-    except DataError as error:
-        if len(sheets) == 1:
-            raise
-        others = f"; {sheets[0]!r} is read, the first of {len(sheets)} sheets: put the data there"
-        (fault,) = error.faults
-        remedy = (fault.remedy or "") + others
-        raise DataError(fault.message, path=path, line=fault.line, remedy=remedy) from error
-
-
-def _read_arrays(file: BinaryIO, path: Path, wanted: Wanted) -> MeasurementTable:
-    digest = _digest(file)
-    arrays, words = read_arrays(file, path)
-    names = list(arrays)
-    layout, groups = find_columns(
-        names, wanted.layouts, wanted.mapping, path, None, wanted.optional
-    )
-    labels: list[str] = []
-    data = {
-        group: {
-            key: _in_si(_values(arrays[column.name], column, path, labels), column)
-            for key, column in found.items()
-        }
-        for group, found in groups.items()
-    }
-    lengths = {len(values) for columns in data.values() for values in columns.values()}
-    if len(lengths) > 1:
-        raise DataError(
-            f"its columns have different lengths: {', '.join(map(str, sorted(lengths)))}",
-            path=path,
-            remedy="save columns of one record, as long as its time",
-        )
-    synthetic = any(SYNTHETIC in text.lower() for text in (*names, *words))
-    return MeasurementTable(
-        Source(path, digest, synthetic), layout, data, groups, tuple(labels), None
-    )
-
-
-def _in_si(values: Array, column: Column) -> Array:
-    """Convert a column; what leaves the floats by that is refused with the other sizes."""
-    with np.errstate(over="ignore"):
-        return np.asarray(values * column.factor)
-
-
-def _digest(file: BinaryIO) -> str:
-    """Return the hash of a file, and stay at its beginning."""
-    digest = hashlib.sha256()
-    while chunk := file.read(BLOCK):
-        digest.update(chunk)
-    file.seek(0)
-    return digest.hexdigest()
-
-
-def _values(array: NDArray[np.generic], column: Column, path: Path, labels: list[str]) -> Array:
-    flat = array.reshape(-1)
-    if array.ndim > 1 and flat.size != max(array.shape):
-        shape = " x ".join(map(str, array.shape))
-        raise DataError(
-            f"{column.name} is {shape}, not one column",
-            path=path,
-            remedy="save each column under a name of its own, such as force_N",
-        )
-    if column.unit == "":
-        words = [str(word).strip() for word in flat.tolist()]
-        labels += dict.fromkeys(words)
-        return np.array([labels.index(word) for word in words], float)
-    if flat.dtype.kind not in "iuf":
-        # Times and dates of NumPy are counts of a unit that their type alone knows.
-        is_time = flat.dtype.kind in "mM"
-        raise DataError(
-            f"{column.name} does not hold real numbers" + is_time * ", but times or dates",
-            path=path,
-            remedy="save it in seconds" if is_time else "save it as numbers",
-        )
-    if len(flat) > MAX_ROWS:
-        raise _too_long(path)
-    values = flat.astype(float)
-    bad = np.flatnonzero(~np.isfinite(values))
-    if len(bad):
-        raise DataError(
-            f"{column.name} is {values[bad[0]]} (row {bad[0] + 1})",
-            path=path,
-            remedy="cut the record so that all values are finite",
-        )
-    return values
-
-
-def _read_text(
-    file: BinaryIO, path: Path, wanted: Wanted, digest: str | None, progress: Progress
-) -> MeasurementTable:
     hashed = hashlib.sha256()
     example = ",".join(
         key if "any" in UNITS[key] else standard_name(key) for key in wanted.layouts[0]
@@ -232,8 +122,15 @@ def _read_text(
         name: {key: _in_si(values[:, at[column]], column) for key, column in group.items()}
         for name, group in groups.items()
     }
-    source = Source(path, digest or hashed.hexdigest(), header.synthetic)
+    progress(float(path.stat().st_size))
+    source = Source(path, hashed.hexdigest(), header.synthetic)
     return MeasurementTable(source, layout, data, groups, tuple(parser.labels), header.line + 1)
+
+
+def _in_si(values: Array, column: Column) -> Array:
+    """Convert a column; what leaves the floats by that is refused with the other sizes."""
+    with np.errstate(over="ignore"):
+        return np.asarray(values * column.factor)
 
 
 def _too_long(path: Path) -> DataError:

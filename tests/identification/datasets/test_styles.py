@@ -4,7 +4,6 @@ import warnings
 
 import numpy as np
 import pytest
-from scipy.io import savemat
 
 from nrs_design.errors import DataError
 from nrs_design.identification.datasets import read_tissue
@@ -96,71 +95,6 @@ def test_micro_sign_of_windows(tmp_path):
     text = "Time [s];Deflection [µm];Force [N]\n" + rows(";", ",", (1, 1e6, 1))
     path.write_bytes(text.encode("cp1252"))
     check(read_tissue(path))
-
-
-def test_matlab(tmp_path):
-    path = tmp_path / "record.mat"
-    savemat(path, {"time_s": TIME, "data": {"x": DEFLECTION[:, None] * 1e3, "F": FORCE}})
-    check(read_tissue(path, parse_mapping(["deflection_mm=data.x", "force_N=data.F"])))
-
-
-@pytest.mark.parametrize("synthetic", [False, True])
-def test_numpy(tmp_path, synthetic):
-    path = tmp_path / "record.npz"
-    note = "a synthetic record" if synthetic else "measured"
-    np.savez(path, time_s=TIME, deflection_m=DEFLECTION, force_N=FORCE, note=note)
-    record = read_tissue(path)
-    check(record)
-    assert record.source.synthetic is synthetic
-
-
-def test_columns_of_a_matrix(tmp_path):
-    """Numbers that are no columns come last where columns are missing."""
-    data = np.column_stack([TIME, DEFLECTION, FORCE])
-    savemat(tmp_path / "a.mat", {"J": 0.1, "data": data})
-    mapping = ["time_s=data(:,1)", "deflection_m=data(:,2)", "force_N=data(:,3)"]
-    check(read_tissue(tmp_path / "a.mat", parse_mapping(mapping)))
-    with pytest.raises(DataError, match=r"data\(:,2\), data\(:,3\), J \(expected"):
-        read_tissue(tmp_path / "a.mat")
-    np.savez(tmp_path / "a.npz", data=data)
-    mapping = ["time_s=data[:,0]", "deflection_m=data[:,1]", "force_N=data[:,2]"]
-    check(read_tissue(tmp_path / "a.npz", parse_mapping(mapping)))
-
-
-@pytest.mark.parametrize("ending", ["parquet", "xlsx"])
-def test_tables(tmp_path, ending):
-    pytest.importorskip("pyarrow" if ending == "parquet" else "openpyxl")
-    pandas = pytest.importorskip("pandas")
-    path = tmp_path / f"record.{ending}"
-    frame = pandas.DataFrame({"time_s": TIME, "Force [N]": FORCE, "deflection_m": DEFLECTION})
-    frame.to_parquet(path) if ending == "parquet" else frame.to_excel(path, index=False)
-    check(read_tissue(path))
-
-
-def test_a_parquet_file_whose_index_is_the_time(tmp_path):
-    pytest.importorskip("pyarrow")
-    pandas = pytest.importorskip("pandas")
-    frame = pandas.DataFrame({"force_N": FORCE, "deflection_m": DEFLECTION}, index=TIME)
-    frame.rename_axis("time_s").to_parquet(tmp_path / "a.parquet")
-    check(read_tissue(tmp_path / "a.parquet"))
-
-
-def test_the_sheet_of_a_machine(tmp_path):
-    """Rows without content, and a line of units; another sheet is not read, which is said."""
-    openpyxl = pytest.importorskip("openpyxl")
-    pytest.importorskip("pandas")
-    book = openpyxl.Workbook()
-    head = [["Machine 7"], [], ["Time", "Extension", "Load"], ["(s)", "(mm)", "(kN)"]]
-    data = np.column_stack([TIME, 1e3 * DEFLECTION, 1e-3 * FORCE]).tolist()
-    for row in [*head, *data]:
-        book.active.append(row)
-    book.save(tmp_path / "a.xlsx")
-    check(read_tissue(tmp_path / "a.xlsx", parse_mapping(["deflection_mm=Extension"])))
-    book.create_sheet("Notes", 0).append(["Pork", "belly"])
-    book.save(tmp_path / "a.xlsx")
-    with pytest.raises(DataError, match="it has Pork, belly") as caught:
-        read_tissue(tmp_path / "a.xlsx")
-    assert "'Notes' is read, the first of 2 sheets" in (caught.value.remedy or "")
 
 
 def test_rows_of_separators_above_the_names(tmp_path):

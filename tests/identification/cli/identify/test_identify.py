@@ -36,6 +36,6 @@ def test_bad_input_is_one_message(tmp_path, arguments, message):
 
 
 def test_help_has_examples(tmp_path):
-    for command in ("tissue", "actuator", "delay", "tool"):
+    for command in ("tissue", "actuator", "delay"):
         assert "Example: nrs-design identify" in run("identify", command, "-h", cwd=tmp_path).stdout
     assert "Example: nrs-design audit run.csv" in run("audit", "-h", cwd=tmp_path).stdout

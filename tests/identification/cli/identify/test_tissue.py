@@ -154,10 +154,8 @@ def test_what_cannot_be_written_is_refused_before_the_fit(tmp_path):
     nose = ROOT / "specs/neuroboscope/nose.nrs.yaml"
     other = ROOT / "specs/examples/commuting.nrs.yaml"
     rpm = SOFT_TISSUE
-    poses = ROOT / "specs/data/tool-poses.csv"
     delay = ("delay", volts, "--command", "command_V", "--measured", "velocity_rad_s")
-    fits = ("tissue.identify_tissue", "actuator.identify_actuator", "delay.identify_delay",
-            "tool.identify_tool")  # fmt: skip
+    fits = ("tissue.identify_tissue", "actuator.identify_actuator", "delay.identify_delay")
     with contextlib.ExitStack() as stack:
         for name in fits:
             fit = f"nrs_design.identification.{name}"
@@ -173,7 +171,6 @@ def test_what_cannot_be_written_is_refused_before_the_fit(tmp_path):
             (("actuator", volts, "--write", rpm), "commands in V, and derivative_gain is 2060 rpm"),
             (("actuator", volts, "--write", other), "has no place for identified values"),
             ((*delay, "--write", rpm), "the spec has no sampling"),
-            (("tool", poses, "--write", other), "has no place for identified values"),
         ):
             assert message in run("identify", *arguments, cwd=tmp_path, code=2).stderr, arguments
 

@@ -33,9 +33,7 @@ LONGEST = 60
 
 @command("check-lyapunov")
 def check_lyapunov(
-    file: Annotated[
-        Path, typer.Argument(metavar="FILE", help="Modes and P: a .npz, .mat or .json file.")
-    ],
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="Modes and P: a .json file.")],
     rate: Annotated[
         str | None,
         typer.Option(help="Decide at this rate: alpha in 1/s, in discrete time rho per step."),
@@ -46,7 +44,7 @@ def check_lyapunov(
 ) -> Answer:
     """Decide exactly whether x' P x is a common Lyapunov function, whichever program found P.
 
-    The file holds P and the modes as A (one matrix, a stack, or A1, A2, ...), and may hold rate and
+    The file holds P and the modes as A (one matrix, a list, or A1, A2, ...), and may hold rate and
     time. Exit code 0 if V decreases strictly in every mode, 1 if it does not.
 
     Example: nrs-design check-lyapunov docs/examples/lyapunov.json

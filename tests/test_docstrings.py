@@ -19,10 +19,9 @@ API = ("api/", "identification/api/")
 # Folders whose docstrings are still to be shortened, and what is about to go.
 LATER = (
     *("certificates/", "cli/", "controllers/", "exporters/", "proof/", "search/", "simulation/"),
-    *("spec/", "sweeps/", "switched/", "arrays/archive", "confined", "design/admittance_noise"),
+    *("spec/", "sweeps/", "switched/", "design/admittance_noise"),
     *("design/creep", "design/laws/parallel", "design/parallel", "design/transfer"),
     *("gating/examine", "gating/run", "identification/datasets/records"),
-    *("identification/foreign", "identification/tables/arrays", "identification/tool"),
     *("identification/write_spec", "pipeline/design", "pipeline/free_gains"),
     *("pipeline/quick_verdict", "pipeline/retuned_gains", "pipeline/stability_map"),
     *("pipeline/trade_", "pipeline/written_gains", "reporting/evidence/parameter"),

@@ -68,7 +68,6 @@ def test_adding_is_cheap():
         ("ProportionalForce", "force", set()),
         ("PositionControl", "position", set()),
         ("IntegralForce", "pi_force", set()),
-        ("ParallelForce", "parallel", set()),
     ],
 )
 def test_a_control_law_is_known_to_the_files_of_the_table(law, file, also):

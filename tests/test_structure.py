@@ -325,7 +325,7 @@ SHARED = {
     # The library at the door, and the stage behind it.
     *("certify", "verify"),
     # One operation on numbers of other types, one question to another noun.
-    *("add", "multiply", "is_stable", "read_integer", "content_id", "too_stiff"),
+    *("add", "multiply", "read_integer", "content_id", "too_stiff"),
 }
 
 

@@ -29,14 +29,6 @@ FORCE_COLUMNS = (
     "natural\nfrequency",
     "steady-state\nerror ratio",
 )
-PARALLEL_COLUMNS = (
-    "controller",
-    "k\nN m/rad",
-    "Kp\nrad/(N m)",
-    "Ki\nrad/(N m s)",
-    "unstable for k\nN m/rad",
-)
-
 TORQUE_COLUMNS = (
     "controller",
     "K\nN m/rad",
@@ -118,22 +110,6 @@ def _summary(design: ControllerDesign, analysis: DesignAnalysis) -> dict[str, An
             }
             for item in analysis.force
         ],
-        "parallel": [
-            {
-                "name": item.name,
-                "stiffness": item.stiffness,
-                "Kp": float(item.Kp),
-                "Ki": float(item.Ki),
-                "decided": item.decided,
-                "unstable_stiffness": item.unstable_ends,
-                "units": {
-                    "Kp": unit("rad/(N*m)"),
-                    "Ki": unit("rad/(N*m*s)"),
-                    "stiffness": unit("N*m/rad"),
-                },
-            }
-            for item in analysis.parallel
-        ],
         "torque": [
             {
                 "name": item.name,
@@ -190,10 +166,6 @@ def _print(name: str, design: ControllerDesign, analysis: DesignAnalysis) -> Non
                 say(_offset_text(item))
             elif item.approach.offset == "none":
                 say(_NO_OFFSET.format(item.name))
-    if analysis.parallel:
-        print_table(
-            f"{name}: parallel control", _columns(PARALLEL_COLUMNS), _parallel_rows(analysis)
-        )
 
 
 def _columns(texts: tuple[str, ...]) -> list[str]:
@@ -263,19 +235,6 @@ def _force_rows(analysis: DesignAnalysis) -> list[list[str]]:
             f"{item.steady_error:.3f}",
         ]
         for item in analysis.force
-    ]
-
-
-def _parallel_rows(analysis: DesignAnalysis) -> list[list[str]]:
-    return [
-        [
-            item.name,
-            f"{item.stiffness:.6g}",
-            f"{float(item.Kp):.6g}",
-            f"{float(item.Ki):.6g}",
-            item.unstable_text,
-        ]
-        for item in analysis.parallel
     ]
 
 

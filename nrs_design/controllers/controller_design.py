@@ -11,10 +11,7 @@ from nrs_design.controllers.sensor import Sensor
 from nrs_design.models.drive import Takes, taken_in
 
 # What lets the modes of all controllers share one state.
-SHARED_STATES = (
-    "give all impedance controllers a virtual inertia Mt > 0, or none of them; mix no parallel "
-    "controllers with others"
-)
+SHARED_STATES = "give all impedance controllers a virtual inertia Mt > 0, or none of them"
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,7 +7,7 @@ from dataclasses import replace
 from fractions import Fraction
 
 from nrs_design.axis import AxisType
-from nrs_design.controllers.controller_design import SHARED_STATES, Controller, ControllerDesign
+from nrs_design.controllers.controller_design import SHARED_STATES, ControllerDesign
 from nrs_design.controllers.float32 import float32_not_above
 from nrs_design.controllers.gains import idle_share
 from nrs_design.controllers.laws import DiscreteLaw
@@ -47,21 +47,12 @@ def shipped_law(
         If a controller has no step yet, or a step could leave single precision.
     """
     method = "exact" if spec.sampling is None else spec.sampling.admittance
-    laws = {c.name: _discrete(c, outer or period, method) for c in design.controllers}
+    laws = {c.name: c.law.discretize(outer or period, method) for c in design.controllers}
     law = _step_law(spec, design, laws, period, outer or period)
     check_range(law)
     law = _in_commands(_on_axis(law, design.axis), design.command)
     law = replace(law, logic=_logic_of(spec, law, period))
     return law if spec.safety is None else add_safety(law, SafetyLimits.of(spec.safety, period))
-
-
-def _discrete(controller: Controller, period: Fraction, method: str) -> DiscreteLaw:
-    law = controller.law.discretize(period, method)
-    if law is None:
-        what = f"{controller.name} is a {controller.law.name} controller"
-        because = "its law is known in continuous time only, and no proof is about its steps"
-        raise _without_program(what, because, controller.name)
-    return law
 
 
 def _logic_of(spec: InteractionDesignSpec, law: StepLaw, period: Fraction) -> StepLogic | None:

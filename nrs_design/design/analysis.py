@@ -12,7 +12,6 @@ from nrs_design.design.laws import LAW_DESIGNS
 from nrs_design.design.laws.force import ForceAnalysis
 from nrs_design.design.laws.impedance import ImpedanceAnalysis
 from nrs_design.design.laws.law import AbstractControllerAnalysis, Task
-from nrs_design.design.laws.parallel import ParallelAnalysis
 from nrs_design.design.laws.torque_impedance import TorqueAnalysis
 from nrs_design.design.root_locus import MotionLoopResponse, PdDesign, motion_loop_response
 from nrs_design.design.transfer import TransferFunction
@@ -24,7 +23,6 @@ __all__ = [
     "DesignAnalysis",
     "ForceAnalysis",
     "ImpedanceAnalysis",
-    "ParallelAnalysis",
     "TorqueAnalysis",
     "analyze_design",
 ]
@@ -53,11 +51,6 @@ class DesignAnalysis:
     def force(self) -> tuple[ForceAnalysis, ...]:
         """The force controllers."""
         return self._of(ForceAnalysis)
-
-    @property
-    def parallel(self) -> tuple[ParallelAnalysis, ...]:
-        """The parallel controllers."""
-        return self._of(ParallelAnalysis)
 
     @property
     def torque(self) -> tuple[TorqueAnalysis, ...]:

@@ -16,7 +16,6 @@ if TYPE_CHECKING:
         ForceControllerSpec,
         IdleStatesSpec,
         ImpedanceControllerSpec,
-        ParallelControllerSpec,
         PositionControllerSpec,
     )
     from nrs_design.spec.doubts import Doubt, doubt_spec
@@ -83,7 +82,6 @@ __all__ = [
     "LoadedSpec",
     "ModeSpec",
     "MotionLoopSpec",
-    "ParallelControllerSpec",
     "ParameterSpec",
     "PositionControllerSpec",
     "ProvenanceSpec",
@@ -109,7 +107,7 @@ _HOMES = {
     for module, names in {
         "affine": "Affine",
         "controllers": "ControllerSpec CostWeights ForceControllerSpec "
-        "IdleStatesSpec ImpedanceControllerSpec ParallelControllerSpec "
+        "IdleStatesSpec ImpedanceControllerSpec "
         "PositionControllerSpec",
         "doubts": "Doubt doubt_spec",
         "environment": "ElasticSpec EnvironmentSpec KelvinVoigtSpec",

@@ -40,7 +40,6 @@ from nrs_design.spec.features import (
     NOT_KEPT,
     OFFSET,
     OTHERS,
-    PARALLEL,
     PLACED,
     PRELOADED,
     RULES,
@@ -57,7 +56,6 @@ from nrs_design.spec.features import (
     TOOL,
     TORQUES,
     TWO_PERIODS,
-    UNPARALLEL,
     UNSPRUNG,
     ZEROED,
 )
@@ -90,8 +88,6 @@ COMBINATIONS: tuple[Row[Spec], ...] = (
     not_together(OFFSET, IDLE),
     not_together(IDLE_RESET, BLEEDING),
     not_together(FILTER, OTHERS),
-    # Their modes would share no state.
-    not_together(PARALLEL, UNPARALLEL),
     # The motor. Under a preload, one that carries what is touched rests elsewhere for every gain.
     *_beside(GIVEN_LOOP, MOTOR_RANGE, LOADED),
     not_together(LOADED, MOTOR_RANGE, PRELOADED),
@@ -104,7 +100,6 @@ COMBINATIONS: tuple[Row[Spec], ...] = (
     *_beside(CONSTANT_TISSUE, LOSABLE, COUPLED, TWO_PERIODS, AT_ONCE, MEMORY, PRELOADED),
     not_together(CONSTANT_LAG, TIMED),
     # The sampled loop.
-    *_beside(PARALLEL, SAMPLED),
     *_beside(OFFSET, SAMPLED),
     *_beside(GIVEN_LOOP, SAMPLED),
     *_beside(SAMPLED_DWELL, SAMPLED),

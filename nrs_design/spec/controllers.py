@@ -126,8 +126,6 @@ class AbstractControllerSpec(SpecModel):
 
     # The motion loop integrates a velocity, and follows a position.
     commands: ClassVar[Command]
-    # Whether it is modelled as a processor computes it.
-    sampled: ClassVar[bool] = True
     # Whether it holds a force against what it touches, or a position whatever it touches.
     holds_force: ClassVar[bool] = False
     holds_position: ClassVar[bool] = False
@@ -312,23 +310,6 @@ class IntegralControllerSpec(AbstractControllerSpec):
     )
 
 
-class ParallelControllerSpec(AbstractControllerSpec):
-    """Position command and a PI of the force error in parallel (thesis 2.2.6.4)."""
-
-    commands: ClassVar[Command] = "position"
-    sampled: ClassVar[bool] = False
-    holds_force: ClassVar[bool] = True
-    goals: ClassVar[GoalsSpec | None] = None
-
-    type: Literal["parallel"] = Field(
-        description="parallel: u = Xc + Kp (Fd - F) + the integral of Ki (Fd - F)"
-    )
-    environment: Label = Field(description=_ENVIRONMENT)
-    contacts: Annotated[tuple[Label, ...], *_TOUCHED]
-    proportional_gain: ForceGain = Field(description="Kp in rad/(N*m)")
-    integral_gain: IntegralForceGain = Field(description="Ki in rad/(N*m*s)")
-
-
 class TorqueImpedanceSpec(AbstractControllerSpec):
     """Impedance control of a robot that takes torques (thesis 2.2.6.1)."""
 
@@ -390,7 +371,6 @@ ControllerSpec = Annotated[
     ImpedanceControllerSpec
     | ForceControllerSpec
     | IntegralControllerSpec
-    | ParallelControllerSpec
     | TorqueImpedanceSpec
     | PositionControllerSpec,
     Discriminator("type"),

@@ -320,18 +320,6 @@ DAMPED_FORCE = _F(
     "use an elastic environment for force controllers",
     _damped_force,
 )
-PARALLEL = _F(
-    "{0!r}, a parallel controller,",
-    "controllers.{0}.type",
-    "use impedance, position and force controllers",
-    _controller(lambda c: not c.sampled),
-)
-UNPARALLEL = _F(
-    "{0!r}, a controller of another type,",
-    "controllers.{0}.type",
-    "write a spec for each type",
-    _controller(lambda c: c.sampled),
-)
 SPRUNG = _F(
     "the spring Kt of {0}", "controllers.{0}.Kt", "leave Kt out", _controller(lambda c: c.sprung)
 )

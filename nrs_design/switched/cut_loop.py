@@ -283,9 +283,7 @@ class ProcessorAxis(AbstractAxis):
         return self._modes(self._held(law), contact, place)
 
     def _held(self, law: CompliantLaw) -> DiscreteLaw:
-        held = law.discretize(self.sampling.outer, self.sampling.admittance)
-        assert held is not None, "a spec with sampling has laws that are sampled"
-        return held
+        return law.discretize(self.sampling.outer, self.sampling.admittance)
 
     def admittances(
         self, contact: AbstractLinearLaw, spring: Fraction, place: Place, *, inert: bool

@@ -13,7 +13,7 @@ from nrs_design.controllers.gains import idle_share
 from nrs_design.controllers.laws import DiscreteLaw
 from nrs_design.controllers.parts import FORCE_GAIN
 from nrs_design.controllers.step_law import StepFrame
-from nrs_design.errors import AssemblyError, InternalError
+from nrs_design.errors import AssemblyError
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.linear_form import LinearForm, coordinates
 from nrs_design.models.plant import Plant
@@ -258,11 +258,7 @@ def _turns(sampling: SamplingSpec) -> tuple[Turn, ...]:
 
 def _sampled(controller: Controller, sampling: SamplingSpec, box: GainBox) -> RangedLaw:
     period, method = sampling.outer, sampling.admittance
-    law = controller.law.discretize(period, method)
-    if law is None:
-        # The spec is read with a check that says so at its place.
-        raise InternalError(f"{controller.name} has no sampled law")
-    return RangedLaw.of(law, box, period, method)
+    return RangedLaw.of(controller.law.discretize(period, method), box, period, method)
 
 
 def _frame(

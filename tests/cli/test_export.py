@@ -322,8 +322,8 @@ def test_a_refuted_program_says_so_in_every_file(export, capsys):
 
 
 def test_what_has_no_program_is_told_at_its_place(export, capsys):
-    parallel = SPECS.parent / "docs/examples/parallel.nrs.yaml"
+    offset = SPECS / "neuroboscope/force-limit-offset.nrs.yaml"
     options = ("--format", "c", "--sample-time", "2 ms", "--unproved")
-    assert export(parallel, *options) == 2
+    assert export(offset, *options) == 2
     assert files() == []
-    assert re.search(r"parallel\.nrs\.yaml:\d+:\d+", capsys.readouterr().err)
+    assert re.search(r"force-limit-offset\.nrs\.yaml:\d+:\d+", capsys.readouterr().err)

@@ -30,7 +30,7 @@ def test_every_type_of_controller_has_a_law_and_a_design():
 
 def test_every_law_has_a_name_of_its_own_and_a_unit_for_every_gain():
     laws = (ProportionalDerivative, *LAWS.values())
-    names = ["force", "impedance", "motion", "parallel", "pi-force", "position", "torque-impedance"]
+    names = ["force", "impedance", "motion", "pi-force", "position", "torque-impedance"]
     assert sorted(law.name for law in laws) == names
     for law in laws:
         assert list(law.units) == [field.name for field in fields(law)]

@@ -16,7 +16,6 @@ from tests.support import ROBOT, ROOT, SOFT_TISSUE
 SPECS = {
     "pi": ROBOT / "force-limit-pi.nrs.yaml",
     "viscous": ROBOT / "nose.nrs.yaml",
-    "parallel": ROOT / "docs/examples/parallel.nrs.yaml",
 }
 FIELDS = ("sensitivity_peak", "gain_margin", "phase_margin", "delay_margin", "disk_margin")
 

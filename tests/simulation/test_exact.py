@@ -193,17 +193,6 @@ def test_a_pi_leaves_no_error_and_its_integral_bleeds():
     assert behind == pytest.approx(before, abs=1e-8)
 
 
-def test_parallel_control_rests_at_the_wanted_force():
-    """From contact on: ``F = Fd`` in the end, and in free motion ``Ki Fd`` is the speed."""
-    parallel = "{type: parallel, environment: soft, proportional_gain: 0.02 rad/(N*m), "
-    parallel += "integral_gain: 0.2 rad/(N*m*s)}"
-    scenario = "command: {constant: 0 deg/s}, duration: 3 s, surfaces: [{environment: soft, "
-    run = simulated(text_of({"parallel": parallel}, scenario=scenario + "at: 1e-6 deg}]"))
-    assert run.response["torque"][-1] == pytest.approx(0.3, rel=1e-5)
-    run = simulated(text_of({"parallel": parallel}, scenario=scenario + "at: 70 deg}]"))
-    assert run.response["velocity"][-1] == pytest.approx(0.2 * 0.3, rel=1e-6)
-
-
 def test_insertion_and_withdrawal_change_by_sign():
     run = simulated(text_of())
     assert [name for _, name in run.switches] == ["withdrawal", "insertion"]

@@ -29,7 +29,6 @@ IMPEDANCE = {
 FORCE = {"type": "force", "environment": "soft", "proportional_gain": "0.02 rad/(N*m)"}
 PI = FORCE | {"type": "pi-force", "integral_gain": "0.5 rad/(N*m*s)"}
 ELASTIC = {"model": "elastic", "stiffness": "43 N*m/rad"}
-PARALLEL = PI | {"type": "parallel"}
 SAMPLING = {"period": "2 ms", "delay": 0}
 LOAD = {"load_inertia": "1.213 kg*m^2"}
 TWO = {"environments": {"soft": ELASTIC, "stiff": ELASTIC}}
@@ -75,8 +74,6 @@ CHANGES = {
     f.SPRUNG: {"controllers": {name: {"Kt": "0.5 N*m/rad"} for name in ("first", "second")}},
     f.UNSPRUNG: {"controllers": {"second": IMPEDANCE}},
     f.OTHERS: {"controllers": {"second": FORCE}},
-    f.PARALLEL: {"controllers": {"first": PARALLEL, "second": PARALLEL}},
-    f.UNPARALLEL: {"controllers": {"second": FORCE}},
     f.BLEEDING: {"controllers": {"second": PI}, "idle_states": {"decay": "20 1/s"}},
     f.OFFSET: {"controllers": {"second": FORCE | {"offset": "measured"}}},
     f.IDLE: {"idle_states": {"decay": "20 1/s"}},
@@ -243,7 +240,7 @@ def test_every_feature_has_its_change():
 def test_the_plainest_spec_has_no_feature_that_needs_a_change():
     plain = parse_spec(spec_with())
     found = {feature for feature in CHANGES if feature.find(plain)}
-    assert found == {f.CONTINUOUS, f.UNSPRUNG, f.UNPARALLEL}
+    assert found == {f.CONTINUOUS, f.UNSPRUNG}
 
 
 @pytest.mark.parametrize("row", COMBINATIONS, ids=lambda row: row.message)

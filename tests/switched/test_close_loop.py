@@ -66,6 +66,9 @@ class Lagged(AbstractCompliantLaw):
     def respond(self, force, states):
         return states[0], [combine((-self.K, force), (F(-1), states[0]))]
 
+    def discretize(self, period, method):
+        raise NotImplementedError
+
     @classmethod
     def contact_text(cls, *, alone):
         return None

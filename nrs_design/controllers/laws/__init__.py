@@ -16,7 +16,6 @@ from nrs_design.controllers.laws.law import (
     DiscreteLaw,
 )
 from nrs_design.controllers.laws.motion import NO_MOTION, ProportionalDerivative
-from nrs_design.controllers.laws.parallel import ParallelForce
 from nrs_design.controllers.laws.pi_force import IntegralForce
 from nrs_design.controllers.laws.position import PositionControl
 from nrs_design.spec.controllers import CONTROLLER_TYPES
@@ -41,7 +40,6 @@ __all__ = [
     "CompliantLaw",
     "DiscreteLaw",
     "IntegralForce",
-    "ParallelForce",
     "PositionControl",
     "ProportionalDerivative",
     "ProportionalForce",

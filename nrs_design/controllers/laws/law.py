@@ -100,8 +100,9 @@ class AbstractCompliantLaw(AbstractLaw, Generic[S]):
             Those named in `states`.
         """
 
-    def discretize(self, period: Fraction, method: str) -> DiscreteLaw | None:
-        """Return the numbers that a processor holds, or None where there is no program.
+    @abstractmethod
+    def discretize(self, period: Fraction, method: str) -> DiscreteLaw:
+        """Return the numbers that a processor holds.
 
         Parameters
         ----------
@@ -115,7 +116,6 @@ class AbstractCompliantLaw(AbstractLaw, Generic[S]):
         DesignError
             If a coefficient is beyond single precision.
         """
-        return None
 
     @classmethod
     def parts(cls, used: Collection[str], *, beside: bool) -> tuple[StepPart, ...]:

@@ -273,7 +273,6 @@ def _sampled_bands(
     if ranged or not fixed or task.spec.coupling is not None:
         return ()
     law = controller.law.discretize(sampling.period.exact, sampling.admittance)
-    assert law is not None, "an admittance has a program"
     oldest = sampling.delay[1] + 1
     return sampled_bands(
         task.plant.actuator,

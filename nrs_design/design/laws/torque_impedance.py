@@ -42,7 +42,6 @@ def analyze(task: Task, given: TorqueImpedanceSpec, controller: Controller) -> T
     assert sampling is not None, "such a robot is modelled in the sampled loop"
     T = sampling.period.exact
     held = controller.law.discretize(T, sampling.admittance)
-    assert held is not None, "it has a program"
     Kp, B = held.numbers["Kp"], held.numbers.get("Kd_over_T", Fraction(0)) * T
     J, b = drive.ranges["J"], drive.ranges["B"]
     wall = Wall(float(J.nominal), float(b.nominal), float(T), float(task.spec.late[1]))

@@ -17,7 +17,6 @@ from nrs_design.reporting.sections.impedance import (
     impedance_section,
 )
 from nrs_design.reporting.sections.landscape import landscape_section
-from nrs_design.reporting.sections.parallel import parallel_section
 from nrs_design.reporting.sections.places import At, linked
 from nrs_design.reporting.sections.titles import MOTION
 from nrs_design.reporting.sections.torque import torque_section
@@ -78,8 +77,6 @@ def design_sections(designed: Designed, analysis: DesignAnalysis | None) -> tupl
             parts.append(landscape_section(designed, analysis.impedance))
     if analysis.force:
         parts.append(_force_section(designed, analysis))
-    if analysis.parallel:
-        parts.append(parallel_section(designed.loaded, analysis))
     if analysis.torque:
         parts.append(torque_section(designed.loaded, analysis))
     return tuple(parts)

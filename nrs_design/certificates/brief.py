@@ -52,10 +52,6 @@ def brief(evidence: AbstractEvidence, system: SwitchedSystem, arm: Fraction | No
                 of = f" with a {start.name}{several} up to {lower(size, DIGITS)}{unit}"
                 of += start.beside
             return f"although signals saturate, decays from rest{of}{_contact(evidence, system)}"
-        case Shows.SAFETY:
-            speed = evidence.kept_speed
-            most = "" if speed is None else f", at most {upper(speed, DIGITS)} rad/s"
-            return f"the safety layer keeps its limits whatever is commanded{most}"
         case _:
             # The signal that grows; what follows from it stands behind a colon, or a sentence.
             claim = evidence.claim_in_scope(system)

@@ -37,7 +37,6 @@ Kind = Literal[
     "invert",
     "root",
     "interpolate",
-    "permit",
 ]
 LINEAR: frozenset[Kind] = frozenset({"add", "subtract", "multiply", "saturate"})
 # Of these, the left operand is a coefficient.
@@ -101,7 +100,7 @@ class Operation:
     # ``rest``: a coefficient minus right. ``product``, ``divide``: left times or over right.
     # ``invert``: a coefficient over right. ``root``: the square root of right, without a left
     # operand. ``interpolate``: a table at right, which counts from its first entry and ends at its
-    # last. ``permit``: right where left is not negative, else zero.
+    # last.
     kind: Kind
     # left, right: names of values, of coefficients, or of results of operations before.
     left: str

@@ -100,6 +100,5 @@ _COMPUTED: Mapping[Kind, Callable[[Single, Single], Single]] = MappingProxyType(
         "invert": np.divide,
         "root": lambda _, right: np.sqrt(right),
         "interpolate": _interpolated,
-        "permit": lambda left, right: np.where(left >= 0, right, np.float32(0)),
     }
 )

@@ -13,7 +13,6 @@ from nrs_design.controllers.gains import idle_share
 from nrs_design.controllers.laws import DiscreteLaw
 from nrs_design.controllers.operations import StepLaw
 from nrs_design.controllers.parts import BEYOND
-from nrs_design.controllers.safety import SafetyLimits, add_safety
 from nrs_design.controllers.step_analysis import check_range
 from nrs_design.controllers.step_law import StepFrame, StepLimits, build_law
 from nrs_design.controllers.step_logic import StepLogic
@@ -51,8 +50,7 @@ def shipped_law(
     law = _step_law(spec, design, laws, period, outer or period)
     check_range(law)
     law = _in_commands(_on_axis(law, design.axis), design.command)
-    law = replace(law, logic=_logic_of(spec, law, period))
-    return law if spec.safety is None else add_safety(law, SafetyLimits.of(spec.safety, period))
+    return replace(law, logic=_logic_of(spec, law, period))
 
 
 def _logic_of(spec: InteractionDesignSpec, law: StepLaw, period: Fraction) -> StepLogic | None:

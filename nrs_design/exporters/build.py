@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import struct
-from collections.abc import Iterator
 from fractions import Fraction
 from typing import Any
 
@@ -28,7 +27,6 @@ from nrs_design.exporters.record import (
     SampleTime,
     SpecReference,
 )
-from nrs_design.proof.evidence import Shows
 from nrs_design.proof.evidence.fields import rate_text
 from nrs_design.proof.mode import Time
 from nrs_design.proof.text import exact_text
@@ -141,7 +139,6 @@ def _proof(certificate: Certificate) -> Proof:
     return Proof.model_validate(
         {
             "claim": evidence.claim(system),
-            "safety": next(iter(_safety(certificate)), None),
             "certificate_id": certificate.id,
             "decay_rate": DecayRate.model_validate(
                 {"exact": str(rate), "rounded": rate_text(rate, system.time), "unit": unit}
@@ -150,13 +147,6 @@ def _proof(certificate: Certificate) -> Proof:
             "assumptions": certificate.granted,
         }
     )
-
-
-def _safety(certificate: Certificate) -> Iterator[str]:
-    """Yield what the certificate claims of a safety layer."""
-    for item in certificate.statements:
-        if item.shows is Shows.SAFETY:
-            yield item.claim(certificate.system)
 
 
 def find_mismatch(design: ControllerDesign, certificate: Certificate) -> str | None:

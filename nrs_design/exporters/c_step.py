@@ -107,8 +107,6 @@ def _expression(law: StepLaw, names: CNames, operation: Operation) -> str:
     left = _operand(law, names, operation.left)
     if operation.kind == "saturate":
         return f"saturated({right}, {left})"
-    if operation.kind == "permit":
-        return f"({left} >= 0.0F) ? {right} : 0.0F"
     return f"{left} {SIGN[operation.kind]} {right}"
 
 

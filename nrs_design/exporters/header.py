@@ -18,7 +18,6 @@ def header_lines(record: ExportRecord) -> tuple[str, ...]:
         f"certificate: {certificate}",
         f"verdict: {_verdict(record)}",
         *(() if proof is None else (f"claim: {proof.claim}",)),
-        *(() if proof is None or proof.safety is None else (f"claim: {proof.safety}",)),
         f"sample time: {_sample_time(record)}",
         "units: SI; each gain has its unit beside it, which names that of the motor",
         *(f"outside the proof: {text}" for text in record.outside),

@@ -101,8 +101,6 @@ class Proof(_Frozen):
 
     verdict: Literal["proved"] = "proved"
     claim: str
-    # Only where there is a safety layer: what it keeps.
-    safety: str | None = None
     certificate_id: Sha256
     decay_rate: DecayRate
     coordinates: Literal["deflection"]

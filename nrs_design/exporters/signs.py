@@ -19,8 +19,6 @@ SIGNS: Mapping[str, str] = MappingProxyType(
         "position": "wanted `angle`: of the same axis, sign and zero",
         "wanted_torque": "wanted `torque`: of the same axis and sign",
         "command": "speed command of the motor before its drive; positive towards larger angles",
-        "withheld": "by how much the safety layer shortened the step of the reference; positive "
-        "where that went towards larger angles",
     }
 )
 WRONG = (

@@ -1,4 +1,4 @@
-"""What a program limits: signals that are cut off, and a reference that a safety layer moves."""
+"""What a program limits: signals that are cut off."""
 
 from __future__ import annotations
 
@@ -11,11 +11,7 @@ from nrs_design.proof.matrix import RationalMatrix
 
 # There are two to this power of matrices for each mode.
 MOST_SIGNALS = 4
-Range = tuple[Fraction, Fraction]
-ZERO, ONE = Fraction(0), Fraction(1)
-# What single precision changes: more than the three roundings of a command, over its terms; more
-# than those of angles, over the largest one.
-OF_TERMS, OF_ANGLES = Fraction(1, 2**22), Fraction(1, 2**22)
+ZERO = Fraction(0)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -128,59 +124,3 @@ class Saturation:
                 argument = [a + share * b for a, b in zip(argument, before, strict=True)]
             found.append(list(h) if other else argument)
         return found
-
-
-@dataclass(frozen=True, slots=True)
-class Governed:
-    """A position loop whose reference a safety layer moves; all numbers are those that ship."""
-
-    # Where the motor is: rad/s per unit of the command, and s.
-    gain: Range
-    time_constant: Range
-    # Of the motion controller, in command/rad: its Kp, and Kd over the period.
-    Kp: Fraction
-    D: Fraction
-    tick: Fraction  # The period as the processor holds it, in s
-    # What the layer keeps: rad/s, N m, J, and what it gives back in a sample, J.
-    speed: Fraction
-    torque: Fraction
-    energy: Fraction
-    refill: Fraction
-    stiffness: Range  # Torque over deflection of whatever is touched, in N m/rad
-    oldest: int  # Largest age of the torque that the layer is given, in samples
-    angle: Fraction  # Largest angle and reference, in rad
-    unit: str  # That of the command
-    # Bounds on what disturbs: half a step of the encoder in rad, what the torque of the sensor is
-    # off in N m, and Coulomb friction in the unit of the command.
-    encoder: Fraction = ZERO
-    sensor: Fraction = ZERO
-    friction: Fraction = ZERO
-    damping: Fraction = ZERO  # Of whatever is touched, at most, in N m s/rad
-    command: Fraction | None = None  # Where the command saturates; None for nowhere
-
-    @property
-    def step(self) -> Fraction:
-        """How far a sample moves the reference at most, in rad."""
-        return self.tick * self.speed * (1 + OF_TERMS) + self.angle * OF_ANGLES
-
-    @property
-    def noise(self) -> Fraction:
-        """How far a computed error is off, in rad."""
-        return self.encoder + self.angle * OF_ANGLES
-
-    def find_odd(self) -> str | None:
-        """Say why these are no numbers of a loop, or None."""
-        least = (self.gain[0], self.time_constant[0], self.stiffness[0], self.Kp, self.tick)
-        ranges = (self.gain, self.time_constant, self.stiffness)
-        kept = (self.speed, self.torque, self.energy, self.angle)
-        disturbing = (self.encoder, self.sensor, self.friction, self.damping)
-        borne = (self.D, self.refill, *disturbing, self.command or ONE)
-        if any(n.denominator & (n.denominator - 1) for n in (self.Kp, self.D)):
-            return "a number of its motion loop is not of binary digits"
-        if min(*least, *kept) <= 0 or min(borne) < 0 or any(low > high for low, high in ranges):
-            return "the safety layer has a number that no layer has"
-        if self.tick * self.speed > self.angle:
-            return "a step is larger than the largest angle"
-        if self.torque < Fraction(1, 2**20):
-            return "the limit of its torque is lost where signs are formed"
-        return None if 0 <= self.oldest <= 1000 else "its torque is too old"

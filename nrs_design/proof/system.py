@@ -9,7 +9,7 @@ from nrs_design.proof.channels import Channel, Coupling, Output, Rounding
 from nrs_design.proof.contact import Contact, Flights
 from nrs_design.proof.matrix import RationalMatrix, leading
 from nrs_design.proof.mode import Mode, Time
-from nrs_design.proof.saturation import Governed, Saturation
+from nrs_design.proof.saturation import Saturation
 from nrs_design.proof.switching import ARBITRARY, Clock, Edge, Stay, Switching
 
 
@@ -46,8 +46,6 @@ class SwitchedSystem:
     saturation: Saturation | None = None
     # Which modes are free motion, where it is among them and its loss must be covered.
     flights: Flights | None = None
-    # What moves the reference of its motion loop, where that is a safety layer.
-    safety: Governed | None = None
 
     def __post_init__(self) -> None:
         """Take the word for a time as that time, so that no check takes it for another."""

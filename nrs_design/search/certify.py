@@ -41,7 +41,6 @@ OFF_THE_ORIGIN = 0.7
 NO_RATE = "what was found shows no rate of decay"
 CONSTANT_FORCE = "constant force"
 SATURATION = "decay under saturation"
-SAFETY = "limits of the safety layer"
 NOT_IN_TURNS = (
     "not looked for: where the loop has two periods or misses deadlines, decay is proved, and no "
     "bound"
@@ -110,9 +109,6 @@ def certify(
         ]
         result = _combine(merged, blocks, parts)
     statements = _spread(result.statements, merged, system)
-    kept, tried = _safety(system, allowance, progress)
-    statements += kept
-    result = replace(result, attempts=(*result.attempts, *tried))
     if result.verdict is Verdict.PROVED and limits.more:
         bounds, attempts = _bounds(system, allowance, progress)
         settled, more = _settling(system, allowance, progress)
@@ -267,18 +263,6 @@ def _saturation_search(
     from nrs_design.search.saturated_ellipsoid import search_saturated
 
     return search_saturated
-
-
-def _safety(
-    system: SwitchedSystem, allowance: Allowance, progress: Progress
-) -> tuple[tuple[AbstractEvidence, ...], tuple[Attempt, ...]]:
-    """Show what the safety layer keeps, whatever else is shown, where the system has one."""
-    if system.safety is None:
-        return (), ()
-    from nrs_design.search.safety_layer import search_safety
-
-    progress(SAFETY)
-    return _attempted(SAFETY, partial(search_safety, system), system, allowance)
 
 
 def _attempted(

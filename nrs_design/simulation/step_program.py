@@ -27,10 +27,6 @@ _COMPUTED: Mapping[Kind, Callable[[np.float32, np.float32], np.float32]] = Mappi
         "subtract": sub,
         "multiply": mul,
         "saturate": _saturated,
-        "shift": add,
-        "rest": sub,
-        "product": mul,
-        "permit": lambda left, right: right if left >= 0 else np.float32(0),
     }
 )
 

@@ -125,7 +125,6 @@ def build_conditions(spec: InteractionDesignSpec) -> OperatingConditions:
         initial_force=wanted.exact if isinstance(wanted, Quantity) else wanted,
         preloads=dict(_preloads(spec)),
         sensed=spec.sensor is not None,
-        safety=spec.safety,
     )
 
 

@@ -43,7 +43,6 @@ from nrs_design.spec.features import (
     PLACED,
     PRELOADED,
     RULES,
-    SAFE,
     SAMPLED,
     SAMPLED_DWELL,
     SATURATED,
@@ -106,22 +105,20 @@ COMBINATIONS: tuple[Row[Spec], ...] = (
     *(not_together(DWELL, *features) for features in CHANGING),
     *_beside(TWO_PERIODS, OTHERS, RULES),
     # The rule for misses decides what may follow what; its proof is of one axis.
-    *_beside(MISSES, TWO_PERIODS, RULES, OTHERS, COUPLED, SAFE, CONSTANT_MOTOR, CONSTANT_TISSUE),
+    *_beside(MISSES, TWO_PERIODS, RULES, OTHERS, COUPLED, CONSTANT_MOTOR, CONSTANT_TISSUE),
     # A position of zero is a place of the robot, and nothing says where the contact is from there.
     not_together(ZEROED, PLACED),
-    # The proof of the layer takes a motor that nothing loads, driven by its reference alone.
-    *_beside(SAFE, LOADED, COUPLED, OTHERS, TWO_PERIODS, CONTINUOUS, GIVEN_LOOP, AT_ONCE),
     # Its command is a velocity, and nothing stands where a reference would.
-    *_beside(STREAMED, OTHERS, SPRUNG, IDLE, COUPLED, SAFE, TWO_PERIODS, SATURATED),
+    *_beside(STREAMED, OTHERS, SPRUNG, IDLE, COUPLED, TWO_PERIODS, SATURATED),
     not_together(STREAMED, MOTOR_RANGE, CONTINUOUS),
     # Its law makes the torque, and what is touched brakes the joint between two samples.
-    *_beside(TORQUES, COUPLED, SAFE, TWO_PERIODS, CONTINUOUS),
+    *_beside(TORQUES, COUPLED, TWO_PERIODS, CONTINUOUS),
     # What the axes of an arm do to each other is derived for one contact that is kept.
     *_beside(MOBILE, LOSABLE, DISTURBED, CONSTANT_TISSUE),
     # When a command takes effect within a period is known to the loop of one axis alone.
-    *_beside(TIMED, CONTINUOUS, TWO_PERIODS, COUPLED, SAFE),
+    *_beside(TIMED, CONTINUOUS, TWO_PERIODS, COUPLED),
     # What is about a pivot, or has units of a rotation in its words.
-    *_beside(SLIDING, COUPLED, SAFE, MODE_LOGIC, TOOL),
+    *_beside(SLIDING, COUPLED, MODE_LOGIC, TOOL),
     not_together(COMMAND, OTHERS, SAMPLED),
     # It would move the position that the spring draws to.
     not_together(COMMAND, SPRUNG, SAMPLED),
@@ -139,7 +136,7 @@ COMBINATIONS: tuple[Row[Spec], ...] = (
     not_together(SATURATED, COUPLED, CONTINUOUS),
     not_together(SATURATED, OTHERS, CONTINUOUS),
     *_beside(SATURATED, TWO_PERIODS, GIVEN_LOOP, SPRUNG, IDLE_RESET),
-    *_beside(SATURATED, AT_ONCE, SAFE, TORQUES, MISSES),
+    *_beside(SATURATED, AT_ONCE, TORQUES, MISSES),
     *_beside(SATURATED, MEMORY, HAND, PRELOADED),
     not_together(SATURATED, DAMPED, NOT_KEPT),
 )

@@ -159,7 +159,6 @@ def _interaction(spec: InteractionDesignSpec) -> Iterator[Line]:
         yield from _sampling(spec.sampling)
     for key in (
         "disturbances",
-        "safety",
         "coupling",
         "sensor",
         "monitoring",

@@ -378,7 +378,6 @@ ANGLE = _F(
     "leave largest_angle out",
     _given("disturbances.largest_angle"),
 )
-SAFE = _F("a safety layer", "safety", "leave safety out", _given("safety"))
 RULES = _F(
     "rules of switching",
     "switching",

@@ -305,21 +305,6 @@ def _commands(spec: Spec) -> Iterator[tuple[Location, AboutCommands]]:
             yield at, AboutCommands(spec.command, quantity)
 
 
-def _unsafe(spec: Spec) -> tuple[str, str] | None:
-    """Return what a safety layer is not for, although it is touched, and by which name."""
-    if spec.safety is None:
-        return None
-    (low, high), most = spec.safety.stiffness, spec.safety.damping
-    for item in touched(spec):
-        found = item.law.linear_at_pivot()
-        stiffness, damping = found["stiffness"], found.get("damping")
-        if stiffness.low < low.exact or stiffness.high > high.exact:
-            return "stiffness", item.name
-        if damping is not None and damping.high > (0 if most is None else most.exact):
-            return "damping", item.name
-    return None
-
-
 def _dwell_times(spec: Spec) -> Iterator[tuple[Location, DwellTime]]:
     # Those of a sampled loop are refused as such: no other way to write them helps.
     if spec.sampling is None:
@@ -599,22 +584,6 @@ INTERACTION_CHECKS: tuple[Row[Spec], ...] = (
         _understated,
         "{1!r} is below {2}",
         "write the largest error of a reading, all causes together",
-    ),
-    Row(
-        "safety",
-        lambda s: (
-            s.safety is not None
-            and (s.disturbances is None or s.disturbances.largest_angle is None)
-        ),
-        "how far the safety layer keeps its limits depends on the rounding of angles, and nothing "
-        "says how large they get",
-        "add `disturbances: {{largest_angle: 3 rad}}`",
-    ),
-    Row(
-        "safety.{0}",
-        _unsafe,
-        "{1!r} is touched, and its {0} is not within that of the safety layer",
-        "give the layer a wider range: it is for tissue that the proof does not know",
     ),
     *each(_commands, IN_ITS_UNIT),
     Row(

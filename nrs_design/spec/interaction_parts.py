@@ -40,7 +40,6 @@ from nrs_design.spec.motion import (
 from nrs_design.spec.provenance import IdentifiedSpec
 from nrs_design.spec.quantity import is_less
 from nrs_design.spec.quantity_fields import RangedQuantity, Times, ends_of
-from nrs_design.spec.safety import SafetySpec
 from nrs_design.spec.sampling import DisturbancesSpec, SamplingSpec
 from nrs_design.spec.scenarios import ScenarioSpec
 from nrs_design.spec.sensor import SensorSpec
@@ -123,10 +122,6 @@ class AbstractInteractionSpec(SpecModel):
     )
     disturbances: DisturbancesSpec | None = optional(
         "what acts on the loop from outside; its effect on force and velocity is bounded"
-    )
-    safety: SafetySpec | None = optional(
-        "a safety layer between the controllers and the motion loop, with limits that are kept "
-        "whatever the controllers command"
     )
     coupling: CouplingSpec | None = optional(
         "what the axes do to each other through their links, for a proof about all "
@@ -272,7 +267,7 @@ class AbstractInteractionSpec(SpecModel):
     @property
     def takes_dead_time(self) -> bool:
         """Whether a proof can be about commands that take effect later than at once."""
-        alone = self.coupling is None and self.safety is None
+        alone = self.coupling is None
         return alone and self.sampling is not None and self.sampling.round == 1
 
     @property

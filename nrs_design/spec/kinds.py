@@ -89,10 +89,6 @@ TORQUE = QuantityKind(
     },
     sliding=_sliding("a force", ("N",), "3 N", "N*m"),
 )
-ENERGY = QuantityKind("an energy", ("J",), "5 mJ")
-POWER = QuantityKind(
-    "a power", ("W",), "10 mW", {"J": "that is an energy: a power is per second, write W"}
-)
 INITIAL_TORQUE = replace(
     TORQUE,
     example="0.5 N*m",

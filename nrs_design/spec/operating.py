@@ -13,7 +13,6 @@ if TYPE_CHECKING:
     from nrs_design.spec.controllers import IdleStatesSpec, Offset
     from nrs_design.spec.coupling import CouplingSpec
     from nrs_design.spec.gain_fields import GainSpec
-    from nrs_design.spec.safety import SafetySpec
     from nrs_design.spec.sampling import SamplingSpec
     from nrs_design.spec.switching import SwitchingSpec
 
@@ -50,4 +49,3 @@ class OperatingConditions:
     initial_force: Fraction | Literal["largest"] | None  # Goal about saturation, in N m
     preloads: Mapping[str, Preload]  # Of the environments that are touched
     sensed: bool  # The spec describes a sensor
-    safety: SafetySpec | None  # The layer below the controllers

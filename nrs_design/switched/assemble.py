@@ -21,7 +21,6 @@ from nrs_design.switched.assumptions import (
     identified_texts,
     logic_texts,
     preload_texts,
-    safety_texts,
     scale_texts,
     sensor_texts,
 )
@@ -166,12 +165,10 @@ def assemble(
     boxes = gain_boxes(conditions.gains, design, scale)
     coupling = _coupling_of(conditions.coupling, plant, scale)
     if conditions.sampling is not None:
-        from nrs_design.switched.safety import with_safety
         from nrs_design.switched.sampled_loop import close_sampled_loop
 
         sampling = conditions.sampling
         system = close_sampled_loop(conditions, sampling, plant, design, boxes, coupling)
-        system = with_safety(system, conditions, plant, design)
     else:
         state = state_of(conditions, plant, design, boxes)
         system = _assemble_continuous(conditions, plant, state, coupling)
@@ -200,7 +197,6 @@ def assemble(
         *preload_texts(conditions.preloads, scale),
         *scale_texts(scale),
         *constant_texts(system.switching),
-        *safety_texts(system.safety),
     )
     return _on_axis(replace(system, assumptions=texts), spec.axis)
 

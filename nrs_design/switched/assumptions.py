@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING
 from nrs_design.axis import AxisType
 from nrs_design.controllers.float32 import exact_decimal
 from nrs_design.models.interval import Interval
-from nrs_design.proof.bounds import rounded_down, rounded_up
-from nrs_design.proof.saturation import Governed
+from nrs_design.proof.bounds import rounded_up
 from nrs_design.proof.switching import Switching
 from nrs_design.proof.text import counted, exact_text
 from nrs_design.spec import DwellTime, SampledSystemSpec, SwitchedSystemSpec, SwitchingSpec
@@ -311,20 +310,3 @@ def _listed(transitions: Sequence[tuple[str, str]]) -> str:
     if len(texts) > MAX_LISTED:
         return f"along the {len(texts)} transitions that the spec lists"
     return ", ".join(texts)
-
-
-def safety_texts(loop: Governed | None) -> tuple[Assumption, ...]:
-    """Say that what is proved of the modes is about a layer that is idle, where there is one."""
-    if loop is None:
-        return ()
-    speed, torque = rounded_down(loop.speed, "rad/s"), rounded_down(loop.torque, "N*m")
-    return (
-        say(
-            "safety-layer.idle",
-            f"{speed}, {torque}",
-            speed=speed,
-            torque=torque,
-            energy=rounded_down(loop.energy, "J"),
-        ),
-        say("safety-layer.surface"),
-    )

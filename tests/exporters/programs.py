@@ -15,7 +15,6 @@ from nrs_design.controllers.laws import (
     ProportionalForce,
 )
 from nrs_design.controllers.operations import StepLaw
-from nrs_design.controllers.safety import SafetyLimits, add_safety
 from nrs_design.controllers.sensor import LowPass
 from nrs_design.controllers.step_law import StepFrame, StepLimits, build_law
 from nrs_design.exporters import rendered
@@ -92,10 +91,6 @@ LAWS = {
         frame(LowPass(1, Fraction(200)).discretize(PERIOD)),
         {**PLACED, "insertion": SPRUNG.discretize(PERIOD, "exact")},
         to_float32(Fraction("0.96")),
-    ),
-    "safety": add_safety(
-        law(limits=StepLimits(Fraction(3), to_float32(Fraction("0.13")), None)),
-        SafetyLimits(*map(to_float32, map(Fraction, ("0.2", "0.25", "1e-5", "1e-8")))),
     ),
     "limits": law(limits=StepLimits(Fraction(1, 2), to_float32(Fraction("0.13")), Fraction(4000))),
 }

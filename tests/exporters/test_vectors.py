@@ -68,28 +68,6 @@ def test_cases_reach_every_corner(shape):
             assert ((numbers != 0) & (np.abs(numbers) < np.finfo(np.float32).tiny)).any()
 
 
-def test_cases_of_a_safety_layer_find_it_idle_and_acting_in_every_way():
-    law = LAWS["safety"]
-    vectors = make_vectors(law)
-    valid = vectors.rows[:, vectors.columns.index("valid")] == 1
-    column = {n: vectors.rows[valid, i].view(np.float32) for i, n in enumerate(vectors.columns)}
-    speed, torque, energy = (
-        float(law.coefficient[f"safe_{name}"].of(0)) for name in ("speed", "torque", "energy")
-    )
-    wanted = np.clip(column["velocity_command"], -0.13, 0.13) - column["before.velocity"]
-    acts, inward = column["withheld"] != 0, wanted * column["torque"] > 0
-    light = np.abs(column["torque"]) <= torque
-    moved = column["after.reference"] != column["before.reference"]
-    fast = light & (np.abs(wanted) > speed * 1.001) & moved & acts
-    beyond = ~light & inward & (column["torque"] != 0) & acts & ~moved
-    work = column["torque"] * np.clip(wanted, -speed, speed) * 0.002
-    spent = light & (column["before.spent"] + work > energy * 1.001) & acts & ~moved
-    idle = ~acts & moved & light
-    counts = [int(case.sum()) for case in (fast, beyond, spent, idle)]
-    assert min(counts) > 10, counts
-    assert not (idle & (np.abs(wanted) > speed * 1.001)).any()
-
-
 def test_cases_saturate_and_do_not():
     """In both directions, the command of the hand and that of the motor."""
     law = LAWS["limits"]

@@ -15,7 +15,7 @@ from nrs_design.proof.contact import Contact, Flights
 from nrs_design.proof.evidence import AbstractEvidence
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
-from nrs_design.proof.saturation import CutOff, Governed, Saturation, Start
+from nrs_design.proof.saturation import CutOff, Saturation, Start
 from nrs_design.proof.switching import ARBITRARY, Clock, Reset, Stay, Switching
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.certify import Limits, certify, first_accepted
@@ -308,32 +308,6 @@ def saturating() -> SwitchedSystem:
     return replace(bouncing(), saturation=Saturation(signals, start))
 
 
-def governed() -> SwitchedSystem:
-    """Let a safety layer move the reference of a slow motor, known to a part in a hundred."""
-    loop = Governed(
-        gain=(Fraction("0.99"), Fraction("1.01")),
-        time_constant=(Fraction("0.0099"), Fraction("0.0101")),
-        Kp=Fraction(20),
-        D=Fraction(5),
-        tick=Fraction(1, 100),
-        speed=Fraction(1, 4),
-        torque=Fraction(1, 2),
-        energy=Fraction(1, 64),
-        refill=Fraction(1, 2**20),
-        stiffness=(Fraction(20), Fraction(40)),
-        oldest=1,
-        angle=Fraction(2),
-        unit="V",
-        encoder=Fraction(1, 10_000),
-        sensor=Fraction(1, 1000),
-        friction=Fraction(1, 1000),
-        damping=Fraction(1, 8),
-        command=Fraction(1),
-    )
-    steps = family([["1/2"]], time=Time.DISCRETE)
-    return replace(steps, sample_time=Fraction(1, 100), safety=loop)
-
-
 def kept(system: SwitchedSystem) -> SwitchedSystem:
     """Take the free mode out of a system of which signals saturate."""
     assert system.saturation is not None
@@ -576,7 +550,6 @@ SYSTEMS = {
     "no-common-quadratic": lambda: dayawansa_martin(6),
     "no-common-quadratic, discrete": lambda: ando_shih("0.99"),
     "block-triangular": degenerate_dual,
-    "safety-layer": governed,
     "saturated-ellipsoid": saturating,
     "saturated-ellipsoid, kept": lambda: kept(saturating()),
     "saturated-ellipsoid, scalar": pushed_away,

@@ -26,7 +26,6 @@ from nrs_design.proof.evidence import (
     NoCommonQuadratic,
     OffsetEllipsoid,
     ParameterQuadratic,
-    SafetyLayer,
     SaturatedEllipsoid,
 )
 from nrs_design.proof.matrix import RationalMatrix
@@ -194,63 +193,6 @@ def _constant_force(system: SwitchedSystem, item: ConstantForce) -> bool:
         bordered = [[*row, entry] for row, entry in zip(square, linear, strict=True)]
         forms.append([*bordered, [*linear, corner]])
     return all(is_definite(form) for form in forms)
-
-
-def _safety_layer(system: SwitchedSystem, item: SafetyLayer) -> bool:
-    """All sums anew, in floating point and over far more samples, with the steps of a motor."""
-    loop, T = system.safety, float(system.sample_time or 0)
-    if loop is None or not T:
-        return False
-    tau, Km = (np.array([*map(float, ends)]) for ends in (loop.time_constant, loop.gain))
-    E = np.exp(-T / tau)
-    s = tau * (1 - E)
-    g, h = Km * (T - s[::-1]), Km * (1 - E[::-1])
-    (E, s, g, h), off = zip(*((v.mean(), abs(v[1] - v[0]) / 2) for v in (E, s, g, h)), strict=True)
-    Kp, D = float(loop.Kp), float(loop.D)
-    u = np.array([Kp + D, -D, 0.0])
-    A = np.array([[1, 0, -s], [1, 0, 0], [0, 0, E]]) + np.outer([-g, 0, h], u)
-    powers = [np.eye(3)]
-    while abs(powers[-1]).max() > 1e-17 and len(powers) < 40_000:
-        powers.append(A @ powers[-1])
-    P = np.array(powers)
-    rows = np.array([[1, 0, 0], [1, -1, 0], [0, 0, 1], u])
-    step, spin = (rows @ P)[:, :, 0].T, (rows @ P)[:, :, 2].T
-    change = np.diff(step, prepend=0, append=0)
-    W = float(loop.tick * loop.speed) + 2**-22 * float(loop.angle + loop.tick * loop.speed)
-    noise, friction = float(loop.noise), float(loop.friction)
-    reach = np.zeros(4)
-    for _ in range(2000):
-        error, slip, velocity, command = reach
-        lost = friction + 2**-22 * (Kp * error + D * slip)
-        turned = off[1] * velocity + off[2] * command + (g + off[2]) * lost
-        spun = off[0] * velocity + off[3] * command + (h + off[3]) * lost
-        sums = (abs(each).sum(axis=1) for each in (step, change, spin))
-        reach = sum(n * w for n, w in zip(sums, (W + turned, noise, spun), strict=True))
-    angle = np.concatenate([np.zeros(loop.oldest + 1), 1 - step[0], np.ones(len(P))])
-    carry = max(abs(angle[M:] - angle[: len(angle) - M]).sum() for M in range(1, len(P)))
-    least, most = map(float, loop.stiffness)
-    stray = abs(step[0]).sum() * turned + abs(spin[0]).sum() * spun
-    stray += (abs(change[0]).sum() + 1) * noise
-    speed = reach[2] + 2 * (h + off[3]) * friction
-    depth = carry * W + 2 * stray + speed * T / 2
-    damped = float(loop.damping) * speed
-    seen = float(loop.torque * (1 + Fraction(1, 2**22)) + loop.sensor) + damped
-    wanted = {
-        "velocity": speed,
-        "error": reach[0] + noise,
-        "command": reach[3] + lost - friction,
-        "depth": depth,
-        "torque": most * (seen / least + depth) + damped,
-        "steady": seen + most * depth + damped,
-        "stored": max((seen + k * depth) ** 2 / (2 * k) for k in (least, most)),
-        "lost": 2**-22
-        * float(loop.energy + loop.angle * (Fraction(most * (seen / least + depth)) + loop.sensor)),
-    }
-    kept = all(
-        getattr(item.limits, key) >= Fraction(float(value) * (1 - 1e-9))
-        for key, value in wanted.items()
-    )
-    return kept and (loop.command is None or item.limits.command <= loop.command)
 
 
 def _saturated_steps(system: SwitchedSystem, item: SaturatedEllipsoid) -> bool:
@@ -1202,7 +1144,6 @@ _ORACLES = {
     NoCommonQuadratic: _no_common_quadratic,
     OffsetEllipsoid: _offset_ellipsoid,
     ParameterQuadratic: _parameter_quadratic,
-    SafetyLayer: _safety_layer,
     SaturatedEllipsoid: _saturated_ellipsoid,
     BlockTriangular: _block_triangular,
 }

@@ -138,16 +138,6 @@ CHANGES = {
     f.DISTURBED: {"disturbances": {"command": "8 deg/s"}},
     f.COMMAND: {"disturbances": {"command": "8 deg/s"}},
     f.ANGLE: {"disturbances": {"largest_angle": "20 deg"}},
-    f.SAFE: {
-        "disturbances": {"largest_angle": "20 deg"},
-        "safety": {
-            "speed": "10 deg/s",
-            "torque": "0.3 N*m",
-            "energy": "5 mJ",
-            "stiffness": ["20 N*m/rad", "90 N*m/rad"],
-            "damping": "50 N*m*s/rad",
-        },
-    },
     f.RULES: {"switching": {"transitions": [["first", "second"]]}},
     f.DWELL: {"switching": {"dwell_time": "1 s"}},
     f.SAMPLED_DWELL: {"switching": {"dwell_time": "1 s"}},

@@ -126,13 +126,6 @@ def _header_lines(record: ExportRecord, law: StepLaw, names: CNames) -> Iterator
         )
     if "velocity_limit" in law.coefficient:
         yield "The velocity command saturates at VELOCITY_LIMIT before the law takes it."
-    if "safe_speed" in law.coefficient:
-        yield (
-            "Safety layer: between the controllers and the reference. `withheld` is by how much it "
-            "made the step of the reference smaller, exactly 0 while it is idle: then every other "
-            "bit is that of the law without it. It books work that is done against the torque in "
-            "`spent`; init forgets it, so what it keeps is counted from there."
-        )
     if "d" in law.coefficient and 0 in law.coefficient["d"].values:
         yield (
             "Reset: what is set to zero when an impedance controller is left stays zero until the "

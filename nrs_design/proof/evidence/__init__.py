@@ -30,7 +30,6 @@ if TYPE_CHECKING:
     from nrs_design.proof.evidence.parameter_quadratic import (
         ParameterQuadratic as ParameterQuadratic,
     )
-    from nrs_design.proof.evidence.safety_layer import SafetyLayer as SafetyLayer
     from nrs_design.proof.evidence.saturated_ellipsoid import (
         SaturatedEllipsoid as SaturatedEllipsoid,
     )
@@ -46,7 +45,6 @@ KINDS: Mapping[str, str] = {
     "no-common-quadratic": "NoCommonQuadratic",
     "offset-ellipsoid": "OffsetEllipsoid",
     "parameter-quadratic": "ParameterQuadratic",
-    "safety-layer": "SafetyLayer",
     "saturated-ellipsoid": "SaturatedEllipsoid",
 }
 

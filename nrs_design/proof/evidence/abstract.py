@@ -50,12 +50,11 @@ class Shows(StrEnum):
     BOUND = "a bound on an output"
     CONVERGENCE = "convergence under a constant force"
     REGION = "decay from a region under saturation"
-    SAFETY = "limits under a safety layer"
 
     @property
     def is_good(self) -> bool:
         """Whether it must hold of every motion, not of one that grows."""
-        goods = (Shows.STABILITY, Shows.BOUND, Shows.CONVERGENCE, Shows.REGION, Shows.SAFETY)
+        goods = (Shows.STABILITY, Shows.BOUND, Shows.CONVERGENCE, Shows.REGION)
         return self in goods
 
 
@@ -186,11 +185,6 @@ class AbstractEvidence(ABC):
 
     def proved_rate(self, system: SwitchedSystem) -> Fraction | None:
         """Return the rate of decay (alpha in 1/s, or rho per step), if it shows one."""
-        return None
-
-    @property
-    def kept_speed(self) -> Fraction | None:
-        """Speed of the joint in rad/s that is kept whatever is commanded, if it shows one."""
         return None
 
     def bound(self, system: SwitchedSystem) -> Bound | None:

@@ -16,7 +16,6 @@ from nrs_design.reporting.evidence.obstruction import ObstructionPage
 from nrs_design.reporting.evidence.offers import offer_of
 from nrs_design.reporting.evidence.page import AbstractPage
 from nrs_design.reporting.evidence.parameter import ParameterPage
-from nrs_design.reporting.evidence.safety import SafetyPage
 from nrs_design.reporting.evidence.saturation import SaturationPage
 
 _PAGES: Mapping[Shows, type[AbstractPage]] = {
@@ -26,7 +25,6 @@ _PAGES: Mapping[Shows, type[AbstractPage]] = {
     Shows.BOUND: BoundPage,
     Shows.CONVERGENCE: ForcePage,
     Shows.REGION: SaturationPage,
-    Shows.SAFETY: SafetyPage,
 }
 
 

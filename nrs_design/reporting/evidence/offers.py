@@ -84,13 +84,6 @@ def _graph(e: Any) -> Offer:
     return Offer((*touching, *(flying if several else ())), e.denominator_log2, numbers=numbers)
 
 
-def _limits(e: Any) -> Offer:
-    """Return velocity, error, command, and torque: at will, constant, and what that stores."""
-    most = e.limits
-    numbers = (most.velocity, most.error, most.command, most.torque, most.steady, most.stored)
-    return Offer(numbers=numbers)
-
-
 def _ends(e: Any) -> Offer:
     ends = ((e.low, "low end", Fraction(0)), (e.high, "high end", Fraction(1)))
     return Offer(tuple(Form(Q, name, place=p) for Q, name, p in ends), e.denominator_log2)
@@ -131,6 +124,5 @@ OFFERS: Mapping[str, Callable[[Any], Offer]] = {
     # Its form is of the state behind a one, and not positive: nothing to draw.
     "offset-ellipsoid": lambda e: Offer(),
     "parameter-quadratic": _ends,
-    "safety-layer": _limits,
     "saturated-ellipsoid": _one,
 }

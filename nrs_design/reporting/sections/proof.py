@@ -99,10 +99,10 @@ def _bounds(certification: Certification) -> list[str]:
 
 
 def _beside(result: Result) -> list[str]:
-    """State the claims about a constant force, about saturation and about a safety layer."""
+    """State the claims about a constant force and about saturation."""
     system, said = result.certification.system, list[str]()
     for item in result.certification.statements:
-        if item.shows in (Shows.CONVERGENCE, Shows.REGION, Shows.SAFETY):
+        if item.shows in (Shows.CONVERGENCE, Shows.REGION):
             said.append(item.claim(system))
             if result.loaded.spec.has_ranges:
                 said += page_of(system, item).between_corners()

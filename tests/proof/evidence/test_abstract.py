@@ -375,11 +375,10 @@ FACTS = {
     "covers_coupling": {"coupled-axes", "invariant-ellipsoid", "saturated-ellipsoid"},
     "covers_lost_contact": BOUNCING
     | {"constant-force", "invariant-ellipsoid", "no-common-quadratic", "saturated-ellipsoid"}
-    | {"offset-ellipsoid", "safety-layer"},
+    | {"offset-ellipsoid"},
     "covers_mixtures": SETS
     | BOUNCING
-    | {"common-polynomial", "constant-force", "block-triangular", "saturated-ellipsoid"}
-    | {"safety-layer"},
+    | {"common-polynomial", "constant-force", "block-triangular", "saturated-ellipsoid"},
     "is_common_quadratic": {"common-quadratic", "conewise-quadratic", "coupled-axes"},
     # The blocks of the example have polynomials.
     "keeps_bound_in_mixtures": SETS | CONSTANT | {"conewise-mode-quadratic"} | RULED,

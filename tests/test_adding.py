@@ -90,7 +90,6 @@ def test_a_control_law_is_known_to_the_files_of_the_table(law, file, also):
 HELD = {"type", "model", "linear_model", "kind", "law", "command"}
 # A file of no kind that is known begins with nothing.
 ALLOWED = {
-    ("nrs_design.identification.tables.arrays", "get"),
     # Margins are polynomials that are affine in the parameters of these two contacts alone.
     ("nrs_design.design.proved_margins", "Elastic"),
     ("nrs_design.design.proved_margins", "KelvinVoigt"),
@@ -106,12 +105,10 @@ KINDS_OF_SPECS = {
     ("nrs_design.gating.examine", "interaction-design"),
     ("nrs_design.identification.running.proof", "interaction-design"),
     ("nrs_design.pipeline.certification", "robot"),
-    ("nrs_design.pipeline.certification", "sampled-system"),
     ("nrs_design.pipeline.certification", "switched-system"),
     ("nrs_design.pipeline.design", "interaction-design"),
     ("nrs_design.pipeline.design", "robot"),
     ("nrs_design.pipeline.margins", "robot"),
-    ("nrs_design.pipeline.margins", "sampled-system"),
     ("nrs_design.pipeline.margins", "switched-system"),
     ("nrs_design.reporting.margins", "interaction-design"),
     ("nrs_design.reporting.margins", "switched-system"),
@@ -119,7 +116,6 @@ KINDS_OF_SPECS = {
     ("nrs_design.robot.pipeline", "robot"),
     ("nrs_design.spec.load", "interaction-design"),
     ("nrs_design.switched.assemble", "robot"),
-    ("nrs_design.switched.assemble", "sampled-system"),
     ("nrs_design.switched.assemble", "switched-system"),
 }
 

@@ -140,13 +140,6 @@ def margins_facts(margins: ProofMargins) -> dict[str, Any]:
         }
     if margins.misses is not None:
         content["most_misses"] = _ends(margins.misses)
-    if margins.timing is not None:
-        brackets = {"period": margins.timing.period, "delay": margins.timing.delay}
-        content["longest_times"] = {
-            name: {**_ends(bracket), "unit": "s"}
-            for name, bracket in brackets.items()
-            if bracket is not None
-        }
     if margins.loop is not None:
         content["loop_margins"] = loop_facts(margins.loop)
     return content

@@ -211,7 +211,7 @@ def assemble_spec(
     if designed is not None:
         return assemble(designed.spec, designed.plant, designed.design, scale)
     # A robot has no design either, but no way here.
-    assert loaded.spec.kind in ("switched-system", "sampled-system")
+    assert loaded.spec.kind == "switched-system"
     return assemble_matrices(loaded.spec, scale)
 
 

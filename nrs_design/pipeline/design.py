@@ -23,7 +23,6 @@ if TYPE_CHECKING:
 _FOR_KIND = {
     "robot": "`nrs-design robot`",
     "switched-system": "`nrs-design certify-switching`",
-    "sampled-system": "`nrs-design certify-switching`",
 }
 
 

@@ -19,7 +19,6 @@ from nrs_design.spec.misses import MOST_STATES, MissRuleSpec
 if TYPE_CHECKING:
     from nrs_design.search.loop_margin import Bracket, CommandMargin, MarginBrackets
     from nrs_design.search.margin import BoxMargin, DwellMargin
-    from nrs_design.search.timing_margin import TimingMargin
     from nrs_design.spec.sampling import SamplingSpec
 
 MARGIN_BUDGET = 10.0
@@ -41,7 +40,6 @@ class ProofMargins:
     box: BoxMargin | None = None  # Of the declared ranges
     dwell: DwellMargin | None = None  # Of the time between switches
     misses: Bracket | None = None  # Of the number of deadlines that may be missed
-    timing: TimingMargin | None = None  # Of the longest period and delay of given matrices
 
 
 def run_proof_margins(
@@ -59,8 +57,8 @@ def run_proof_margins(
     changes between two of them and no longest dwell time bounds it. Else a `DesignError`.
     """
     # Before minutes of work.
-    rule, timed = _rule_for_misses(result), result.loaded.spec.kind == "sampled-system"
-    if margin and rule is None and not timed and not _has_loop(result):
+    rule = _rule_for_misses(result)
+    if margin and rule is None and not _has_loop(result):
         _refuse_box(result)
     if shortest_dwell:
         _refuse_dwell(result)
@@ -70,7 +68,6 @@ def run_proof_margins(
         box=_run_box(result, quick, progress) if margin and ranged else None,
         dwell=_run_dwell(result, quick, progress) if shortest_dwell else None,
         misses=_run_misses(rule, result, quick, progress) if margin and rule else None,
-        timing=_run_timing(result, quick, progress) if margin and timed else None,
     )
 
 
@@ -102,36 +99,6 @@ def _run_misses(rule: MissRuleSpec, result: Result, limits: Limits, progress: Pr
 
     most = max(declared, MOST_IN_A_ROW) if rule.consecutive is not None else of - 1
     return find_most_misses(declared, most, decide, result.certification, progress)
-
-
-def _run_timing(result: Result, limits: Limits, progress: Progress) -> TimingMargin:
-    """Find the longest period and the longest delay, each with the other as declared."""
-    from nrs_design.search.certify import certify
-    from nrs_design.search.timing_margin import TimingMargin, find_longest_time
-    from nrs_design.switched.assemble import assemble_matrices
-
-    spec, known = result.loaded.spec, result.certification
-    assert spec.kind == "sampled-system"
-
-    def decide(period: Fraction, delay: Fraction) -> Certification | str:
-        timing = spec.sampling.with_longest(period, delay)
-        if timing.rests[1] > timing.periods[0]:
-            return "a delay may then be longer than a period"
-        system = assemble_matrices(spec.model_copy(update={"sampling": timing}))
-        return certify(system, limits=limits)
-
-    (period, longest), (delay, latest) = spec.sampling.periods, spec.sampling.delays
-    most = period * (spec.sampling.waiting + 1)
-    return TimingMargin(
-        find_longest_time(
-            "period", period, longest, None, lambda t: decide(t, latest), known, progress
-        ),
-        None
-        if spec.sampling.delay is None
-        else find_longest_time(
-            "delay", delay, latest, most, lambda t: decide(longest, t), known, progress
-        ),
-    )
 
 
 def _with_rule(result: Result, rule: MissRuleSpec) -> SwitchedSystem:
@@ -276,12 +243,6 @@ def _refuse_dwell(result: Result) -> None:
     assert loaded.spec.kind != "robot"  # It has no modes, hence no certification.
     if obstacle := loaded.spec.find_dwell_obstacle():
         raise DesignError(obstacle.message, path=loaded.path, remedy=obstacle.remedy)
-    if loaded.spec.kind == "sampled-system":
-        raise DesignError(
-            "a sampled loop has a period, and no time between switches",
-            path=loaded.path,
-            remedy="use --margin: it finds the longest period",
-        )
     if len(system.lasting_modes()) < len(system.modes):
         with placed(loaded):
             raise DesignError(

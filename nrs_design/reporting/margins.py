@@ -35,7 +35,6 @@ def margin_lines(margins: ProofMargins, loaded: LoadedSpec) -> Iterator[Sentence
     yield from _loop_lines(margins, at)
     yield from _dwell_lines(margins, at)
     yield from _misses_lines(margins, at, spec)
-    yield from _timing_lines(margins, at)
     sampled = isinstance(spec, InteractionDesignSpec) and spec.sampling is not None
     if sampled and _refutes(margins):
         yield Sentence(
@@ -108,22 +107,6 @@ def _misses_lines(margins: ProofMargins, at: _At, spec: Spec) -> Iterator[Senten
     said = ("none is proved",) if proved is None else ("proved up to ", proved, where)
     end = (bracket.end,) if refuted is None else ("refuted from ", refuted, " on")
     yield Sentence("most missed deadlines: ", *said, ", ", *end)
-
-
-def _timing_lines(margins: ProofMargins, at: _At) -> Iterator[Sentence]:
-    """State the longest period and delay that are proved, and the shortest that are refuted."""
-    timing = margins.timing
-    brackets = () if timing is None else (("period", timing.period), ("delay", timing.delay))
-    for name, bracket in brackets:
-        if bracket is None:
-            continue
-        said: tuple[str, ...] = ("none is proved",)
-        if bracket.proved is not None:
-            said = ("proved up to ", at(rounded_down(bracket.proved, "s"), "sampling", name))
-        end: tuple[str, ...] = (bracket.end,)
-        if bracket.refuted is not None:
-            end = ("refuted from ", at(rounded_up(bracket.refuted, "s"), "sampling", name), " on")
-        yield Sentence(f"longest {name}: ", *said, ", ", *end)
 
 
 def _loop_lines(margins: ProofMargins, at: _At) -> Iterator[Sentence]:

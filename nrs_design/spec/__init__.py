@@ -50,7 +50,6 @@ if TYPE_CHECKING:
         RobotControlSpec,
         RobotSpec,
     )
-    from nrs_design.spec.sampled_system import SampledSystemSpec
     from nrs_design.spec.switched_system import ModeSpec, SwitchedSystemSpec
     from nrs_design.spec.switching import DwellTime, ResetSpec, SwitchingSpec
 
@@ -90,7 +89,6 @@ __all__ = [
     "ResetSpec",
     "RobotControlSpec",
     "RobotSpec",
-    "SampledSystemSpec",
     "Spec",
     "SwitchedSystemSpec",
     "SwitchingSpec",
@@ -124,7 +122,6 @@ _HOMES = {
         "quantity_fields": "Bounds RangedQuantity",
         "robot": "BalancedLegSpec BalanceSpec BodySpec "
         "DriveSpec LegSpec RobotControlSpec RobotSpec",
-        "sampled_system": "SampledSystemSpec",
         "switched_system": "ModeSpec SwitchedSystemSpec",
         "switching": "DwellTime ResetSpec SwitchingSpec",
     }.items()

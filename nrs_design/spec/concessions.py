@@ -19,7 +19,6 @@ from nrs_design.spec.edits import Keys, in_one_line
 from nrs_design.spec.exact import parse_exact
 from nrs_design.spec.interaction import InteractionDesignSpec
 from nrs_design.spec.load import LoadedSpec
-from nrs_design.spec.sampled_system import SampledSystemSpec
 from nrs_design.spec.switched_system import SwitchedSystemSpec
 from nrs_design.spec.switching import LONGEST_DWELL
 from nrs_design.spec.units import parse_unit
@@ -88,9 +87,6 @@ def concessions(loaded: LoadedSpec, gains: Gains, slowest: float | None) -> Iter
     assert isinstance(said, dict)
     if isinstance(spec, SwitchedSystemSpec):
         yield from _of_matrices(spec, said, slowest)
-    elif isinstance(spec, SampledSystemSpec):
-        yield from _times(said, ("sampling", "delay"))
-        yield from _times(said, ("sampling", "period"))
     elif isinstance(spec, InteractionDesignSpec):
         yield from _of_interaction(spec, said, gains, slowest)
 

@@ -30,7 +30,6 @@ from nrs_design.spec.provenance import (
 from nrs_design.spec.quantity import Quantity
 from nrs_design.spec.quantity_fields import RangedQuantity, Times
 from nrs_design.spec.robot import RobotSpec
-from nrs_design.spec.sampled_system import SampledSystemSpec
 from nrs_design.spec.sampling import SamplingSpec
 from nrs_design.spec.switched_system import SwitchedSystemSpec
 from nrs_design.spec.switching import SwitchingSpec
@@ -70,7 +69,7 @@ def describe(spec: Spec) -> tuple[Line, ...]:
 
     Parameters
     ----------
-    spec : InteractionDesignSpec, SwitchedSystemSpec, SampledSystemSpec or RobotSpec
+    spec : InteractionDesignSpec, SwitchedSystemSpec or RobotSpec
         A validated spec.
 
     Returns
@@ -80,8 +79,6 @@ def describe(spec: Spec) -> tuple[Line, ...]:
     """
     if isinstance(spec, SwitchedSystemSpec):
         return tuple(_modes(spec))
-    if isinstance(spec, SampledSystemSpec):
-        return tuple(_sampled(spec))
     if isinstance(spec, RobotSpec):
         return tuple(describe_model(spec))
     return tuple(_interaction(spec))
@@ -100,14 +97,6 @@ def _modes(spec: SwitchedSystemSpec) -> Iterator[Line]:
     for index, reset in enumerate(spec.resets):
         shape = f"{reset.shape[0]} x {reset.shape[1]}"
         yield Line(f"resets[{index}]", f"{reset.source} to {reset.target}", shape, "")
-
-
-def _sampled(spec: SampledSystemSpec) -> Iterator[Line]:
-    for name, matrices in (("plant", spec.plant.shapes), ("controller", spec.controller.shapes)):
-        for key, (rows, columns) in matrices.items():
-            yield Line(f"{name}.{key}", "", f"{rows} x {columns}", "")
-    yield from _times("sampling.period", spec.sampling.period)
-    yield from _times("sampling.delay", spec.sampling.delay)
 
 
 def _parameter(name: str, parameter: ParameterSpec) -> Iterator[Line]:

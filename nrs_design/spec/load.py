@@ -45,12 +45,11 @@ if TYPE_CHECKING:
     from nrs_design.spec.arm import ArmSpec
     from nrs_design.spec.interaction import InteractionDesignSpec
     from nrs_design.spec.robot import RobotSpec
-    from nrs_design.spec.sampled_system import SampledSystemSpec
     from nrs_design.spec.switched_system import SwitchedSystemSpec
 
-    Spec: TypeAlias = InteractionDesignSpec | SwitchedSystemSpec | SampledSystemSpec | RobotSpec
+    Spec: TypeAlias = InteractionDesignSpec | SwitchedSystemSpec | RobotSpec
 
-SPEC_KINDS = ("interaction-design", "switched-system", "sampled-system", "robot", KIND)
+SPEC_KINDS = ("interaction-design", "switched-system", "robot", KIND)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -244,7 +243,6 @@ def parse_spec(text: str, path: Path | None = None) -> Spec:
 _MODELS = {
     "interaction-design": ("interaction", "InteractionDesignSpec"),
     "robot": ("robot", "RobotSpec"),
-    "sampled-system": ("sampled_system", "SampledSystemSpec"),
     "switched-system": ("switched_system", "SwitchedSystemSpec"),
     KIND: ("task_space", "TaskSpaceSpec"),
 }

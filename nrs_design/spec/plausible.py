@@ -113,11 +113,9 @@ def doubt_sizes(spec: SpecModel) -> Iterator[tuple[tuple[str, ...], str]]:
     """Yield fields of a spec with implausible sizes, as keys that lead there, and a question.
 
     A field is asked about once, by its first size that is not plausible. Where a part of the spec
-    has `accept_doubt`, and no doubts of an identification that this is about, nothing is asked; nor
-    is of given matrices, which may be those of a plant of any size and speed.
+    has `accept_doubt`, and no doubts of an identification that this is about, nothing is asked.
     """
-    if getattr(spec, "kind", "") != "sampled-system":
-        yield from _walk(spec, (), "")
+    yield from _walk(spec, (), "")
 
 
 def unusual(part: SpecModel) -> tuple[str, ...]:

@@ -39,7 +39,7 @@ from nrs_design.switched.parameters import (
 if TYPE_CHECKING:
     from nrs_design.controllers.controller_design import ControllerDesign
     from nrs_design.models.plant import Plant
-    from nrs_design.spec import InteractionDesignSpec, SampledSystemSpec, Spec, SwitchedSystemSpec
+    from nrs_design.spec import InteractionDesignSpec, Spec, SwitchedSystemSpec
     from nrs_design.spec.coupling import CouplingSpec
     from nrs_design.spec.operating import OperatingConditions
     from nrs_design.switched.coupled import AxesCoupling
@@ -81,7 +81,7 @@ def assemble_from_text(
         If gains do not fit the spec, if a stiffness or a gain does not stay positive, or if the
         rules of switching make too many switches.
     """
-    if spec.kind == "switched-system" or spec.kind == "sampled-system":
+    if spec.kind == "switched-system":
         if gains:
             raise AssemblyError("given matrices have no gains")
         return assemble_matrices(spec, scale)
@@ -94,9 +94,7 @@ def assemble_from_text(
     return assemble(spec, plant or build_plant(spec), design, scale)
 
 
-def assemble_matrices(
-    spec: SwitchedSystemSpec | SampledSystemSpec, scale: Fraction = DECLARED
-) -> SwitchedSystem:
+def assemble_matrices(spec: SwitchedSystemSpec, scale: Fraction = DECLARED) -> SwitchedSystem:
     """Return the system of a spec of given matrices, one mode for each corner of its boxes.
 
     Raises
@@ -105,10 +103,6 @@ def assemble_matrices(
         If the scale is negative, or the rules of switching make too many switches.
     """
     _check_scale(scale)
-    if spec.kind == "sampled-system":
-        from nrs_design.switched.timed_loop import close_timed_loop
-
-        return close_timed_loop(spec)
     parameters = read_parameters(spec, scale)
     resets = ((r.source, r.target, RationalMatrix.from_rows(r.map)) for r in spec.resets)
     corners = {mode.name: corner_modes(mode, parameters) for mode in spec.modes}

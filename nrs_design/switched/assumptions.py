@@ -12,8 +12,8 @@ from nrs_design.controllers.float32 import exact_decimal
 from nrs_design.models.interval import Interval
 from nrs_design.proof.bounds import rounded_up
 from nrs_design.proof.switching import Switching
-from nrs_design.proof.text import counted, exact_text
-from nrs_design.spec import DwellTime, SampledSystemSpec, SwitchedSystemSpec, SwitchingSpec
+from nrs_design.proof.text import exact_text
+from nrs_design.spec import DwellTime, SwitchedSystemSpec, SwitchingSpec
 from nrs_design.spec.units import THESIS_COMMAND
 from nrs_design.switched.assumption import Assumption, say
 from nrs_design.switched.parameters import UncertainParameter
@@ -66,25 +66,6 @@ def assume_matrices(
         *scale_texts(scale),
         *_switch_texts(spec),
     )
-
-
-def assume_timing(spec: SampledSystemSpec) -> tuple[Assumption, ...]:
-    """Say what holds for a `sampled-system` spec."""
-    sampling = spec.sampling
-    period = _time_words(sampling.periods)
-    texts = [say("matrices.sampled"), say("timing.period", f"period: {period}", period=period)]
-    if sampling.delays[1] == 0:
-        return (*texts, say("timing.at-once", "no delay"))
-    delay, whole = _time_words(sampling.delays), sampling.waiting
-    name = "delay" if whole == 0 else "waiting" if sampling.rests[1] == 0 else "long-delay"
-    periods = counted(whole, "whole period")
-    return (*texts, say(f"timing.{name}", f"delay: {delay}", delay=delay, periods=periods))
-
-
-def _time_words(ends: tuple[Fraction, Fraction]) -> str:
-    """Say how long something takes."""
-    first, last = map(exact_text, ends)
-    return f"it takes {first} s" if first == last else f"it takes {first} to {last} s"
 
 
 def _switch_texts(spec: SwitchedSystemSpec) -> tuple[Assumption, ...]:

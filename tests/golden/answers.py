@@ -32,8 +32,7 @@ WITHOUT = {
     "transparency": r", range: \[1\.9 N\*m\*s/rad, 2\.1 N\*m\*s/rad\]",
 }
 GOES = re.compile(
-    "soft-tissue-axes|retuned-gains|six-torques|three-axes|parallel|pushed-in|unknown-environment|"
-    "jittery-loop"
+    "soft-tissue-axes|retuned-gains|six-torques|three-axes|parallel|pushed-in|unknown-environment"
 )
 ROBOT = "specs/robots/neuroboscope.nrs.yaml"
 OTHERS = (

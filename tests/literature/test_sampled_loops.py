@@ -13,7 +13,7 @@ from scipy.optimize import brentq
 from nrs_design.certificates.certificate import Verdict
 from nrs_design.search.certification import Limits
 from nrs_design.search.certify import certify
-from tests.switched.test_timed_loop import floats, matrix, sampled, timed
+from tests.switched.timed_loop import floats, sampled, timed
 
 # Zhang, Branicky and Phillips, IEEE Control Systems Magazine 21(1), 2001; since then of Fridman,
 # Seuret and Richard, Automatica 40(8), 2004; Naghshtabrizi, Hespanha and Teel, Systems and Control
@@ -30,7 +30,7 @@ MOTION = ([[0, 1], [0, 0]], [[0], ["126.7"]]), [[-50, "-11.8"]]
 
 def decide(loop, period, delay=None, **limits):
     plant, K = loop
-    system = timed(plant, f"{{K: {matrix(K)}}}", period, delay)
+    system = timed(plant, K, period, delay)
     found = certify(system, limits=Limits(**limits))
     if found.evidence is not None:
         assert found.evidence.find_fault(system) is None

@@ -6,10 +6,10 @@ import pytest
 from nrs_design.search.graph import Graph
 from nrs_design.search.stay_words import stay_words
 from nrs_design.work import Allowance
-from tests.switched.test_timed_loop import timed
+from tests.switched.timed_loop import timed
 
 MOTION = ([[0, 1], [0, 0]], [[0], ["126.7"]])
-GAIN = '{K: [[-50, "-11.8"]]}'
+GAIN = [[-50, "-11.8"]]
 
 
 def words(period, delay, system=None):

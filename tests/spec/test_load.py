@@ -105,7 +105,7 @@ def test_error_names_the_file(tmp_path: Path) -> None:
     [
         ("name: a\n", "`kind` is missing"),
         ("kind: switched-sytem\n", "did you mean switched-system?"),
-        ("kind: tissue\n", "interaction-design, switched-system, sampled-system, robot"),
+        ("kind: tissue\n", "interaction-design, switched-system, robot"),
         ("kind: [a]\n", "single text"),
         ("- kind: a\n", "a mapping of keys"),
         ("just text\n", "a mapping of keys"),

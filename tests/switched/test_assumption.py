@@ -34,7 +34,7 @@ def assumed(path):
     loaded = read_spec(path)
     if loaded.spec.kind == "robot":
         return ()
-    if loaded.spec.kind in ("switched-system", "sampled-system"):
+    if loaded.spec.kind == "switched-system":
         return assemble_matrices(loaded.spec).assumptions
     made = run_design(loaded)
     return assemble(made.spec, made.plant, made.design).assumptions

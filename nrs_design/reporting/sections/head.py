@@ -24,7 +24,7 @@ from nrs_design.reporting.sections.titles import (
     SATURATION,
     SPEC,
 )
-from nrs_design.spec import InteractionDesignSpec, RobotSpec, SampledSystemSpec
+from nrs_design.spec import InteractionDesignSpec, RobotSpec
 from nrs_design.spec.provenance import COVERS, MOTOR_COVERS
 
 if TYPE_CHECKING:
@@ -105,8 +105,6 @@ def switching_words(result: Result) -> str:
     switching = result.certification.system.switching
     spec = result.loaded.spec
     assert not isinstance(spec, RobotSpec)  # It has no modes, hence no certification.
-    if isinstance(spec, SampledSystemSpec):
-        return str(spec.sampling)
     words = [str(spec.switching)]
     if switching.resets:
         words.append("the state is reset at some switches")

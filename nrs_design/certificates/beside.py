@@ -31,13 +31,7 @@ PART = 2**16
 
 @contextmanager
 def proof_beside(document: Mapping[str, Any]) -> Iterator[FindFault | None]:
-    """Begin to prove a document, and give what waits for the fault of it; None if it cannot begin.
-
-    Parameters
-    ----------
-    document : mapping
-        As `nrs_design.certificates.verify.read_document` gives it.
-    """
+    """Begin to prove a document, and give what waits for its fault; None if it cannot begin."""
     begun = _begin(document) if can_copy() else None
     if begun is None:
         yield None
@@ -68,10 +62,7 @@ def proof_beside(document: Mapping[str, Any]) -> Iterator[FindFault | None]:
 def _begin(document: Mapping[str, Any]) -> tuple[int, int, int] | None:
     """Begin to prove a document; None without room for another process.
 
-    Returns
-    -------
-    tuple of int
-        The process, where its answer is read, and what is open for as long as this process lives.
+    Returns the process, where its answer is read, and what is open as long as this process lives.
     """
     pipes: list[int] = []
     try:

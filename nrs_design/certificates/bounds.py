@@ -14,15 +14,7 @@ from nrs_design.proof.system import SwitchedSystem
 def bounds_summary(
     system: SwitchedSystem, statements: Iterable[AbstractEvidence]
 ) -> list[dict[str, Any]]:
-    """Return every bound with what it holds under, for programs.
-
-    Parameters
-    ----------
-    system : SwitchedSystem
-        What the statements are about.
-    statements : iterable of AbstractEvidence
-        Checked; those that are no bounds are passed over.
-    """
+    """Return every bound with what it holds under, for programs; statements have been checked."""
     return [
         {
             "output": bound.output.name,
@@ -46,14 +38,7 @@ def bound_on(
 ) -> Bound | None:
     """Return the bound on an output under all disturbances of a system at once, if it is stated.
 
-    Parameters
-    ----------
-    system : SwitchedSystem
-        What the statements are about.
-    statements : iterable of AbstractEvidence
-        Checked.
-    output : str
-        Its name.
+    The statements have been checked.
     """
     bounds = (item.bound(system) for item in statements)
     every = set(system.channels)
@@ -64,12 +49,7 @@ def bound_on(
 def keeps_command(system: SwitchedSystem, statements: Iterable[AbstractEvidence]) -> bool:
     """Tell whether a bound shows that the motor's driver does not saturate from rest.
 
-    Parameters
-    ----------
-    system : SwitchedSystem
-        What the statements are about.
-    statements : iterable of AbstractEvidence
-        Checked; bounds that leave out what is rounded do not count.
+    The statements have been checked; bounds that leave out what is rounded do not count.
     """
     from nrs_design.spec.motion import MOTOR_COMMAND
 

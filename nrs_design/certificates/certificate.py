@@ -180,15 +180,7 @@ def content_id(document: Mapping[str, Any]) -> str:
 
 
 def dump(certificate: Certificate, origin: str | None = None) -> str:
-    """Return the text of the certificate file.
-
-    Parameters
-    ----------
-    certificate : Certificate
-        What is written.
-    origin : str, optional
-        Where its spec is, seen from the file; see `nrs_design.ownership`.
-    """
+    """Return the text of the certificate file; `origin` is where its spec is, seen from there."""
     document = to_document(certificate)
     document["id"] = content_id(document)
     if origin is not None:

@@ -83,11 +83,6 @@ def decay_rate(certificate: Certificate | None) -> Fraction | None:
     """Return the proved rate in 1/s; None if none is proved, or no period is known.
 
     Of a contraction rho per step, ``(1 - rho)`` over the period is not above it.
-
-    Parameters
-    ----------
-    certificate : Certificate or None
-        Checked.
     """
     evidence = None if certificate is None else certificate.evidence
     if certificate is None or evidence is None:

@@ -61,10 +61,7 @@ class Verification:
 def read_document(path: Path) -> dict[str, Any]:
     """Read a certificate file as JSON without floats or duplicate keys.
 
-    Raises
-    ------
-    CertificateError
-        If the file is missing, too large, or not such JSON.
+    A `CertificateError` if it is missing, too large, or not such JSON.
     """
     content = b""
     try:
@@ -105,13 +102,7 @@ def _read_bytes(path: Path) -> bytes:
 
 
 def prove(document: Mapping[str, Any]) -> Verification:
-    """Check that a certificate holds for its own modes; whose they are is not asked.
-
-    Parameters
-    ----------
-    document : mapping
-        As `read_document` gives it.
-    """
+    """Check that a certificate holds for its own modes; whose they are is not asked."""
 
     def check() -> Verification:
         altered = find_altered(document)
@@ -133,10 +124,7 @@ def find_altered(document: Mapping[str, Any]) -> Verification | None:
 def held_system(document: Mapping[str, Any]) -> SwitchedSystem:
     """Return the system that a certificate holds.
 
-    Raises
-    ------
-    KeyError, TypeError, ValueError
-        If it holds none, or a malformed one.
+    A KeyError, TypeError or ValueError if it holds none, or a malformed one.
     """
     return read_system(read_text(document["spec"]["name"]), document)
 
@@ -167,10 +155,7 @@ def read_certificate(document: Mapping[str, Any], system: SwitchedSystem) -> Cer
 def confirmed(judge: Callable[[], Verification]) -> Verification:
     """Return a judgement: a rejection where something is malformed, and not without flint.
 
-    Raises
-    ------
-    InternalError
-        If flint disagrees with what has been accepted.
+    An `InternalError` if flint disagrees with what has been accepted.
     """
     verification = judged(judge)
     certificate = verification.certificate
@@ -194,13 +179,7 @@ def judged(judge: Callable[[], Verification]) -> Verification:
 
 
 def read_gains(document: Mapping[str, Any]) -> dict[str, dict[str, str]]:
-    """Read the gains of a certificate, by controller.
-
-    Raises
-    ------
-    KeyError, TypeError
-        If they are missing or malformed.
-    """
+    """Read the gains of a certificate, by controller; a KeyError or TypeError if malformed."""
     return {
         name: {gain: read_text(value) for gain, value in _mapping(values).items()}
         for name, values in _mapping(document["gains"]).items()

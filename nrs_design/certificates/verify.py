@@ -41,24 +41,10 @@ def verify(
     spec: LoadedSpec | None = None,
     plant: Plant | None = None,
 ) -> Verification:
-    """Re-check a certificate file, and whether it belongs to a spec.
+    """Re-check a certificate file, and whether it belongs to a spec, as read from its own file.
 
-    Parameters
-    ----------
-    path : Path
-        Certificate file.
-    spec : LoadedSpec, optional
-        The spec, as read from its own file. Without it the proof is checked, for the modes in the
-        certificate, whosever they are.
-    plant : Plant, optional
-        Built from this very spec, where it is in hand; by default it is built here.
-
-    Raises
-    ------
-    CertificateError
-        If the file cannot be read as a certificate of this format at all.
-    InternalError
-        If flint disagrees with what has been accepted.
+    Without a spec the proof is checked for the modes in the certificate, whosever they are. A file
+    that is none at all is a `CertificateError`; flint that disagrees, an `InternalError`.
     """
     return verify_document(read_document(path), spec, plant)
 
@@ -69,17 +55,10 @@ def verify_document(
     plant: Plant | None = None,
     proof: FindFault | None = None,
 ) -> Verification:
-    """Re-check a parsed certificate.
+    """Re-check a parsed certificate; spec and plant as for `verify`.
 
-    Parameters
-    ----------
-    document : mapping
-        As `read_document` gives it.
-    spec, plant
-        As for `verify`.
-    proof : callable, optional
-        Says why `nrs_design.certificates.prove.prove` rejects this very document, or None; by
-        default it is asked here. See `nrs_design.certificates.beside`.
+    `proof` says why `nrs_design.certificates.prove.prove` rejects this very document, or None; by
+    default it is asked here. See `nrs_design.certificates.beside`.
     """
     if spec is None:
         return prove(document)

@@ -43,13 +43,7 @@ SETTINGS = {
 
 
 def make_app(names: Iterable[str] = COMMANDS) -> typer.Typer:
-    """Build the application with some of its commands; only these are imported.
-
-    Parameters
-    ----------
-    names : iterable of str
-        Out of `COMMANDS`.
-    """
+    """Build the application with some of its commands; only these are imported."""
     app = typer.Typer(
         name="nrs-design",
         cls=CommandGroup,

@@ -40,19 +40,7 @@ class CertifiedGains:
     def of(cls, designed: Designed, analysis: DesignAnalysis, out: Path | None) -> Self | None:
         """Choose gains by the goals of the certificate, and write them; None without such goals.
 
-        Parameters
-        ----------
-        designed, analysis
-            The spec, and what its free optimum achieves.
-        out : Path or None
-            The spec with the gains.
-
-        Raises
-        ------
-        DesignError
-            If the goals are not reached.
-        OutputError
-            If a file cannot be written.
+        A `DesignError` if the goals are not reached.
         """
         from nrs_design.certificates.goals import certified_goals
         from nrs_design.pipeline import run_analysis
@@ -162,13 +150,7 @@ class CertifiedGains:
 
 
 def name_for(loaded: LoadedSpec, out: Path) -> str:
-    """Return the name of the new spec; refuse a place that it cannot be at.
-
-    Raises
-    ------
-    OutputError
-        If it cannot be written there.
-    """
+    """Return the name of the new spec; refuse a place that it cannot be at."""
     from nrs_design.errors import SpecError
     from nrs_design.output import check_place
     from nrs_design.ownership import check_certificate
@@ -196,13 +178,7 @@ def _certificate_of(name: str) -> Path:
 
 
 def write_certified(result: Result, out: Path) -> Path:
-    """Write a spec and its certificate, both or none; return where the certificate is.
-
-    Raises
-    ------
-    OutputError
-        If a file cannot be written.
-    """
+    """Write a spec and its certificate, both or none; return where the certificate is."""
     from nrs_design.certificates.certificate import dump
     from nrs_design.output import CERTIFICATE, write_outputs
     from nrs_design.ownership import origin_of

@@ -30,22 +30,7 @@ class Destinations:
 
     @classmethod
     def checked(cls, write: Path | None, report: Path | None, date: datetime | None) -> Self:
-        """Refuse what cannot be written, before the work is done.
-
-        Parameters
-        ----------
-        write : Path or None
-            A spec.
-        report, date
-            As for the class.
-
-        Raises
-        ------
-        OutputError
-            If the name is not one of a page, or something else stands in its place.
-        SpecError
-            If there is something wrong with the spec.
-        """
+        """Refuse what cannot be written, before the work is done; `write` is a spec."""
         from nrs_design.errors import SpecError
         from nrs_design.output import PAGE, check_html, check_place
         from nrs_design.spec import read_spec
@@ -76,18 +61,8 @@ class Destinations:
     ) -> Answer:
         """Write a result to where it is wanted; return the answer, with what a spec has refused.
 
-        Parameters
-        ----------
-        answer : Answer
-            The result.
-        page : callable
-            Returns the page.
-        merge : callable, optional
-            Returns the spec with the result in it.
-        doubts : iterable of str
-            What speaks against the result.
-        caveats : iterable of str
-            What to say instead where the result is merged: a proof will rest on it.
+        `merge` returns the spec with the result in it; `caveats` are said in the place of doubts
+        where the result is merged: a proof will rest on it.
         """
         spec, refused, merged = self.spec, None, None
         if merge is not None and spec is not None:

@@ -108,19 +108,8 @@ def _source(path: Path, line: int) -> str | None:
 def excerpt(line: str, column: int, width: int) -> tuple[str, int]:
     """Cut a line to what is around a column, with escapes for what cannot be shown.
 
-    Parameters
-    ----------
-    line : str
-        The line of the file.
-    column : int
-        Counted from 1.
-    width : int
-        Of what is returned, in columns of a terminal.
-
-    Returns
-    -------
-    str, int
-        The text, and how many columns of it stand before the one that was asked for.
+    The column is counted from 1. Returns the text, and how many columns of a terminal stand before
+    it.
     """
     from rich.cells import cell_len, set_cell_size
 

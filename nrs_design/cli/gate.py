@@ -124,13 +124,7 @@ def gate(
 
 
 def format_of(format_: GateFormat) -> GateFormat:
-    """Return the format that is asked for; --json is short for one of them.
-
-    Raises
-    ------
-    NrsDesignError
-        If both ask for different things.
-    """
+    """Return the format that is asked for; --json is short for one of them."""
     as_json = wants_json()
     if as_json and format_ not in (GateFormat.TEXT, GateFormat.JSON):
         raise NrsDesignError(

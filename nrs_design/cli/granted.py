@@ -12,13 +12,7 @@ if TYPE_CHECKING:
 
 
 def print_granted(result: Result) -> None:
-    """Print what is taken for granted: all of it, or how much and what is not modelled.
-
-    Parameters
-    ----------
-    result : Result
-        What was certified.
-    """
+    """Print what is taken for granted: all of it, or how much and what is not modelled."""
     certification = result.certification
     granted, names = certification.granted, [mode.name for mode in certification.system.modes]
     detail(f"  common quadratic function: {certification.common_quadratic}")

@@ -30,13 +30,7 @@ class CommandGroup(TyperGroup):
             return super().invoke(ctx)
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
-        """Return the command that is named first.
-
-        Raises
-        ------
-        NrsDesignError
-            If there is no such command.
-        """
+        """Return the command that is named first."""
         known = self.list_commands(ctx)
         if not args[0].startswith("-") and args[0] not in known:
             raise NrsDesignError(

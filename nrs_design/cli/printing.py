@@ -34,13 +34,7 @@ _taken: ContextVar[list[str] | None] = ContextVar("taken", default=None)
 
 @contextmanager
 def output(*, as_json: bool, quiet: bool, verbose: bool = False) -> Iterator[None]:
-    """Set what is printed within.
-
-    Parameters
-    ----------
-    as_json, quiet, verbose : bool
-        A JSON document in place of text; no text and no notes; all of the text.
-    """
+    """Set what is printed within: a JSON document, no text and no notes, or all of the text."""
     tokens = _json.set(as_json), _quiet.set(quiet), _verbose.set(verbose)
     try:
         yield
@@ -82,13 +76,7 @@ def print_json(command: str, content: dict[str, Any]) -> None:
 
 @contextmanager
 def taking_json() -> Iterator[list[str]]:
-    """Take the documents that are printed within, in this thread, in place of printing them.
-
-    Yields
-    ------
-    list of str
-        Their texts, as they come.
-    """
+    """Take the documents that are printed within, in this thread, in place of printing them."""
     documents: list[str] = []
     token = _taken.set(documents)
     try:
@@ -130,17 +118,7 @@ def insist(line: str) -> None:
 
 
 def painted(text: str, colour: str, stream: TextIO) -> str:
-    """Colour a text if the stream is a terminal, and its user has not asked for none (NO_COLOR).
-
-    Parameters
-    ----------
-    text : str
-        What is printed.
-    colour : str
-        Such as ``red``.
-    stream : TextIO
-        Where it is printed.
-    """
+    """Colour a text if the stream is a terminal, and its user has not asked for none (NO_COLOR)."""
     dull = os.environ.get("NO_COLOR") or os.environ.get("TERM") == "dumb"
     return text if dull or not stream.isatty() else f"\x1b[{_CODES[colour]}m{text}\x1b[0m"
 
@@ -152,17 +130,7 @@ def columns(stream: TextIO) -> int:
 
 
 def wrapped(line: str, stream: TextIO, hanging: int = 2) -> str:
-    """Break a line between words, as wide as the terminal is.
-
-    Parameters
-    ----------
-    line : str
-        Text without line breaks.
-    stream : TextIO
-        Where it is printed.
-    hanging : int
-        Spaces before the second and every later line.
-    """
+    """Break a line between words, as wide as the terminal is."""
     indent = " " * (len(line) - len(line.lstrip(" ")))
     return textwrap.fill(
         line.strip(),
@@ -178,19 +146,8 @@ def wrapped(line: str, stream: TextIO, hanging: int = 2) -> str:
 def progress(title: str, *, lines: bool = False) -> Iterator[Callable[[str], None]]:
     """Show the current step on stderr: a spinner on a terminal, elsewhere a line now and then.
 
-    Under --quiet, show nothing.
-
-    Parameters
-    ----------
-    title : str
-        What is done.
-    lines : bool
-        Whether to write a line for each step, too, where there is no terminal.
-
-    Yields
-    ------
-    callable
-        Tell it the name of the step that begins.
+    Under --quiet, show nothing. Tell what is yielded the name of the step that begins; `lines`:
+    write a line for each step, too, where there is no terminal.
     """
     if _quiet.get():
         yield lambda step: None

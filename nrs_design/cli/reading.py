@@ -10,18 +10,7 @@ if TYPE_CHECKING:
 
 
 def take_spec(path: Path) -> LoadedSpec:
-    """Read a spec, and say everything until the end of the command about its axis.
-
-    Parameters
-    ----------
-    path : Path
-        Of the file.
-
-    Raises
-    ------
-    SpecError
-        If anything about the file is wrong.
-    """
+    """Read a spec, and say everything until the end of the command about its axis."""
     from nrs_design.axis import take
     from nrs_design.spec import read_spec
 

@@ -32,15 +32,7 @@ class RunFiles:
             check_place(place, kind)
 
     def outputs(self, table: str, figure: Figure) -> list[Output]:
-        """Return what is written.
-
-        Parameters
-        ----------
-        table : str
-            The run as CSV.
-        figure : Figure
-            Drawn as SVG and as PNG.
-        """
+        """Return what is written."""
         from nrs_design.reporting.images import to_png, to_svg_file
 
         contents: list[str | bytes] = [table, to_svg_file(figure), to_png(figure)]

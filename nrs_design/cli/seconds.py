@@ -8,17 +8,9 @@ import typer
 
 
 def seconds(low: float = 0.0, high: float = float("inf")) -> Callable[[str], float]:
-    """Return what reads a time for an option.
+    """Return what reads a time for an option, ``0.001`` or ``1 ms``, between two times in s.
 
-    Parameters
-    ----------
-    low, high : float
-        Smallest and largest time in s.
-
-    Returns
-    -------
-    callable
-        Takes ``0.001`` or ``1 ms``; raises `typer.BadParameter` on anything else.
+    It raises `typer.BadParameter` on anything else.
     """
 
     def read(text: str) -> float:

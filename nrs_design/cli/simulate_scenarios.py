@@ -40,18 +40,7 @@ def simulate_scenarios(
 ) -> Answer:
     """Simulate, and write the figures and tables of every run.
 
-    Parameters
-    ----------
-    designed : Designed
-        The spec and its gains.
-    wanted : Runs
-        Which scenarios, and how they are run.
-    prove : callable
-        Returns the certificate whose bounds are shown, if any; called when all has run.
-    out : Path or None
-        Folder for files.
-    step : callable
-        Told what is done.
+    `prove` returns the certificate whose bounds are shown, if any; it is called when all has run.
     """
     from nrs_design.pipeline.scenarios import run_scenarios
 

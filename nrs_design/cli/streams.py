@@ -28,12 +28,7 @@ class _Unheard(io.FileIO):
 def lasting(stream: TextIO | None) -> TextIO:
     """Return a stream for stdout or stderr that accepts every text, whether it is read or not.
 
-    Characters that the encoding lacks are written as escapes.
-
-    Parameters
-    ----------
-    stream : TextIO or None
-        None if the caller has closed it; then nothing is printed.
+    Characters that the encoding lacks are written as escapes. None is closed: nothing is printed.
     """
     if stream is None:
         return Path(os.devnull).open("w")

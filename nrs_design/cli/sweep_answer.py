@@ -79,14 +79,7 @@ def table_text(job: Job, points: Sequence[PointAnswer]) -> str:
 def view_of(job: Job, points: Sequence[PointAnswer], wanted: Sequence[str]) -> SweepView:
     """Return what people see: what was set, how it ended, and some facts.
 
-    Parameters
-    ----------
-    job : Job
-        What was done.
-    points : sequence of PointAnswer
-        What came of each point.
-    wanted : sequence of str
-        Names of facts; without them, the first ones that differ from point to point.
+    Without names of facts, the first ones that differ from point to point.
     """
     every = _columns(job, points)
     # How it ended has a column of its own.
@@ -126,10 +119,7 @@ def _results(
 ) -> Iterator[tuple[PointAnswer, Mapping[str, Any] | None]]:
     """Yield each point with its answer, read from the store: many do not fit into memory at once.
 
-    Raises
-    ------
-    NrsDesignError
-        If it is no longer what was found.
+    A `NrsDesignError` if an answer is no longer what was found.
     """
     for point in points:
         kept = job.store.read(point.key) if point.key else None

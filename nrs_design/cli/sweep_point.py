@@ -67,15 +67,7 @@ class PointAnswer:
 
 
 def answer_point(job: Job, index: int) -> PointAnswer:
-    """Return what comes of one point: kept, or computed and kept.
-
-    Parameters
-    ----------
-    job : Job
-        What is done at every point.
-    index : int
-        Of the point in the grid.
-    """
+    """Return what comes of one point: kept, or computed and kept."""
     texts = job.grid.texts(index)
     with saying_instead(file_of(job.spec), job.grid.changes(index)):
         try:

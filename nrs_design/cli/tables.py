@@ -17,19 +17,10 @@ _GAP = 3
 
 
 def print_table(title: str, columns: Cells, rows: Sequence[Cells]) -> None:
-    """Print a plain table.
+    """Print a plain table; a second line of a heading is its unit.
 
     Where it is wider than a line may be, rows become columns, side by side as far as they fit; a
     number is never broken.
-
-    Parameters
-    ----------
-    title : str
-        Above the table; may be empty.
-    columns : sequence of str
-        Headings; a second line of one is its unit.
-    rows : sequence of sequence of str
-        Cells, as many in each row as there are headings.
     """
     rows = [["\n".join(map(printable, cell.split("\n"))) for cell in row] for row in rows]
     width = columns_of(sys.stdout)

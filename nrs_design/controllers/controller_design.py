@@ -78,10 +78,7 @@ class ControllerDesign:
     def find_odd_states(self, *, mixed: bool) -> str | None:
         """Say which states of laws no common state has, or None.
 
-        Parameters
-        ----------
-        mixed : bool
-            Whether the states of some controllers are idle while others are active.
+        `mixed`: the states of some controllers are idle while others are active.
         """
         laws = [controller.law for controller in self.controllers]
         kinds = {(law.commands, law.states) for law in self.leading_laws(mixed=mixed)}

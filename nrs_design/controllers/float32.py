@@ -15,12 +15,8 @@ PRECISION, SMALLEST, LIMIT = 24, -149, 128
 def to_float32(value: Fraction) -> Fraction:
     """Round to the nearest single-precision number (ties to even), returned exactly.
 
-    In rationals throughout: by way of a double it would be rounded twice.
-
-    Raises
-    ------
-    DesignError
-        If the value is beyond the range of single precision.
+    In rationals throughout: by way of a double it would be rounded twice. Beyond the range of
+    single precision it is a `DesignError`.
     """
     exponent = value.numerator.bit_length() - value.denominator.bit_length()
     if abs(value) < Fraction(2) ** exponent:
@@ -36,13 +32,7 @@ def to_float32(value: Fraction) -> Fraction:
 
 
 def float32_not_above(value: Fraction) -> Fraction:
-    """Return the largest single-precision number that is not above a value.
-
-    Raises
-    ------
-    DesignError
-        If the value is beyond the range of single precision.
-    """
+    """Return the largest single-precision number that is not above a value."""
     rounded = to_float32(value)
     if rounded <= value:
         return rounded
@@ -56,13 +46,7 @@ def float32_not_above(value: Fraction) -> Fraction:
 
 
 def float32_not_below(value: Fraction) -> Fraction:
-    """Return the smallest single-precision number that is not below a value.
-
-    Raises
-    ------
-    DesignError
-        If the value is beyond the range of single precision.
-    """
+    """Return the smallest single-precision number that is not below a value."""
     return -float32_not_above(-value)
 
 
@@ -75,13 +59,7 @@ def is_float32(value: Fraction) -> bool:
 
 
 def exact_decimal(value: Fraction) -> str:
-    """Return the terminating decimal of a dyadic rational.
-
-    Raises
-    ------
-    ValueError
-        If the denominator is not a power of two.
-    """
+    """Return the terminating decimal of a rational whose denominator is a power of two."""
     exponent = value.denominator.bit_length() - 1
     if value.denominator != 1 << exponent:
         raise ValueError(f"{value} has no terminating binary expansion")

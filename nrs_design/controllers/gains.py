@@ -30,16 +30,9 @@ def gains_of(design: ControllerDesign) -> dict[str, dict[str, str]]:
 def units_of(
     gains: Mapping[str, Mapping[str, str]], command: str, axis: AxisType = AxisType.ROTARY
 ) -> dict[str, dict[str, str]]:
-    """Return the units of gains that are named as `gains_of` names them.
+    """Return the units of gains that are named as `gains_of` names them; the PD is ``motion``.
 
-    Parameters
-    ----------
-    gains : mapping
-        By controller and name; the PD is ``motion``.
-    command : str
-        Unit of the commands that the motor takes.
-    axis : AxisType
-        What they are about.
+    `command` is the unit of the commands that the motor takes.
     """
     units = {gain: unit for law in LAWS.values() for gain, unit in law.units.items()}
     motion = ProportionalDerivative.units_in(command)
@@ -56,11 +49,8 @@ def design_from_gains(
 ) -> ControllerDesign:
     """Rebuild a design from its gains, within what the spec allows.
 
-    Raises
-    ------
-    CertificateError
-        If a gain is missing, is not a single-precision number, or is outside the bounds that
-        the spec sets.
+    A `CertificateError` if one is missing, is no single-precision number, or is outside the bounds
+    that the spec sets.
     """
     expected = {MOTION, *spec.controllers}
     if set(gains) != expected:

@@ -113,10 +113,7 @@ class Operation:
 class StepLaw:
     """One step of a law, with a mode for each controller that the robot switches between.
 
-    Raises
-    ------
-    ValueError
-        If a name is used before it is computed, or twice, or the kinds of operands do not fit.
+    A ValueError if a name is used before it is computed, or twice, or kinds of operands do not fit.
     """
 
     # Controllers, in the order of the spec; none where there is nothing to choose.
@@ -193,12 +190,8 @@ class StepLaw:
     ) -> dict[str, V]:
         """Return all values of a step: the operations, read with some kind of number.
 
-        Parameters
-        ----------
-        known : mapping of str
-            Inputs, states and coefficients.
-        compute : mapping of str to callable
-            What each kind of operation makes of its operands.
+        `known` are inputs, states and coefficients; `compute`, what a kind of operation makes of
+        operands.
         """
         found = dict(known)
         for operation in self.operations:

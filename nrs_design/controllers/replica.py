@@ -27,16 +27,9 @@ class StepResult:
 
 
 def step(law: StepLaw, mode: NDArray[np.uint32], given: Mapping[str, Single]) -> StepResult:
-    """Compute one step for a batch, with one rounding for each operation.
+    """Compute one step for a batch, shape (n,), with one rounding for each operation.
 
-    Parameters
-    ----------
-    law : StepLaw
-        The law.
-    mode : ndarray of uint32
-        Shape (n,); one that there is not makes the step invalid. A law without modes ignores it.
-    given : mapping of str to ndarray
-        Inputs and states by name; single precision, shape (n,).
+    A mode that there is not makes the step invalid; a law without modes ignores it.
     """
     valid = mode < len(law.modes) if law.modes else np.ones(mode.shape, np.bool_)
     for value in law.guarded:

@@ -47,14 +47,9 @@ class Sector:
     ) -> Fraction:
         """Return the torque, in N m, from which on a violation is told whatever the noise is.
 
-        Parameters
-        ----------
-        factor : Fraction
-            The stiffness over the range: over its upper end above one, its lower end below.
-        travel : Fraction
-            How far the joint moves between two torques that are read, in rad.
-        rounding : Fraction
-            How far apart rounding moves two surfaces that are the same, in rad.
+        `factor` is the stiffness over its range: over the upper end above one, the lower end below.
+        In rad: how far the joint moves between two torques that are read, and rounding the same
+        surface.
         """
         if factor > 1:
             k = factor * self.high
@@ -71,13 +66,7 @@ class Sector:
 
 
 def sector_of(spec: InteractionDesignSpec) -> Sector | str:
-    """Return what readings of a run must keep, or why they cannot be held against the spec.
-
-    Parameters
-    ----------
-    spec : InteractionDesignSpec
-        What is proved, and what its readings are worth.
-    """
+    """Return what readings of a run must keep, or why they cannot be held against the spec."""
     if spec.monitoring is None:
         return "the spec has no `monitoring`, so nothing says how far readings are off"
     if spec.contact is None:

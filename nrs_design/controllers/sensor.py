@@ -48,15 +48,7 @@ class LowPass:
     def respond(
         self, force: LinearForm, states: Sequence[LinearForm]
     ) -> tuple[LinearForm, list[LinearForm]]:
-        """Return the filtered force, and the rates of the states.
-
-        Parameters
-        ----------
-        force : LinearForm
-            That acts on the sensor, N m.
-        states : sequence of LinearForm
-            Those named in `states`.
-        """
+        """Return the filtered force, in N m at the sensor, and the rates of the `states`."""
         sources = (force, *states)
         rates = [
             combine((self.pole, before), (-self.pole, own))
@@ -67,10 +59,7 @@ class LowPass:
     def discretize(self, period: Fraction) -> DiscreteLowPass:
         """Discretize each lag for an input that is held over a period in s.
 
-        Raises
-        ------
-        DesignError
-            If a step forgets nothing, so that the force never arrives.
+        A `DesignError` if a step forgets nothing, so that the force never arrives.
         """
         keep = to_float32(exponential_between(-self.pole * period)[0])
         if keep == 1:

@@ -26,24 +26,11 @@ def shipped_law(
     period: Fraction,
     outer: Fraction | None = None,
 ) -> StepLaw:
-    """Write the law of a design out for a sample time.
+    """Write the law of a design out for a sample time in s.
 
-    Parameters
-    ----------
-    spec : InteractionDesignSpec
-        Its limits, and the method by which an admittance becomes a step.
-    design : ControllerDesign
-        Gains that ship.
-    period : Fraction
-        Sample time in s.
-    outer : Fraction, optional
-        That of force, filter and admittance, where it is another: then the operations of either
-        loop are taken at its own samples, by whoever runs them.
-
-    Raises
-    ------
-    DesignError
-        If a controller has no step yet, or a step could leave single precision.
+    `outer` is that of force, filter and admittance, where it is another: whoever runs the
+    operations of either loop takes them at its own samples. A `DesignError` if a controller has no
+    step yet, or a step could leave single precision.
     """
     method = "exact" if spec.sampling is None else spec.sampling.admittance
     laws = {c.name: c.law.discretize(outer or period, method) for c in design.controllers}
@@ -119,13 +106,7 @@ def _without_program(what: str, because: str, controller: str) -> DesignError:
 
 
 def step_limits(spec: InteractionDesignSpec) -> StepLimits:
-    """Return the limits of a spec in single precision, none of them above what is written.
-
-    Parameters
-    ----------
-    spec : InteractionDesignSpec
-        With a largest angle and a largest speed command, or without.
-    """
+    """Return the limits of a spec in single precision, none of them above what is written."""
     angle, command = BEYOND, spec.limits.command
     if spec.disturbances is not None and spec.disturbances.largest_angle is not None:
         angle = float32_not_above(spec.disturbances.largest_angle.not_above)

@@ -22,21 +22,11 @@ ONE = Fraction(1)
 
 
 def rounding_share(count: int) -> Fraction:
-    """Return how much so many roundings change a term at most, over its size.
+    """Return how much so many roundings, 1 to 15, change a term at most, over its size.
 
     Rounding to nearest changes a result by at most ``u = 2^-24`` of its size; a fused product and
     sum rounds once less. That is ``n u / (1 - n u)``, and ``n u (1 + 2^-20)`` is not less for n up
     to 15: a dyadic number.
-
-    Parameters
-    ----------
-    count : int
-        The n, from 1 to 15.
-
-    Raises
-    ------
-    ValueError
-        If there are more.
     """
     if not 1 <= count <= 15:
         raise ValueError(f"{count} roundings are not counted")
@@ -52,16 +42,9 @@ class Term:
     roundings: int  # In how many it takes part
 
     def times(self, factor: Fraction, prefix: str, more: int) -> Term:
-        """Return the term times a factor, which is named in front, with more roundings.
+        """Return the term times a single-precision factor, which is named in front.
 
-        Parameters
-        ----------
-        factor : Fraction
-            A single-precision number.
-        prefix : str
-            Its name, and a blank.
-        more : int
-            Roundings, that of the product included.
+        `prefix` is its name and a blank; `more`, how many roundings, that of the product included.
         """
         return Term(prefix + self.name, combine((factor, self.form)), self.roundings + more)
 
@@ -81,26 +64,14 @@ def rounded_terms(
 ) -> dict[str, tuple[Term, ...]]:
     """Return what each result is a sum of, and in how many roundings each summand takes part.
 
-    Only of results that are used further on: those whose rounding is their own, the outputs and
-    the next states. Of a result with a rounding of its own, the operations after it take the
-    rounded value.
+    Only of results that are used further on: those whose rounding is their own, the outputs and the
+    next states. Of a result with a rounding of its own, the operations after it take the rounded
+    value, with what `errors` adds to it. A product with a coefficient of the law that is zero or
+    one is exact; `numbers` stand in the place of coefficients, with the same roundings.
 
     The rounding of an angle counts apart, in proportion to the largest angle. Where the angle is
     used within the step, it counts with the rounded terms in it besides: nobody has to know how
     large angles get.
-
-    Parameters
-    ----------
-    law : StepLaw
-        The law. A product with a coefficient that is zero or one there is exact.
-    mode : int
-        Which controller is in force.
-    given : mapping of str to LinearForm
-        Inputs and states in coordinates of the caller's choice.
-    numbers : mapping of str to Fraction, optional
-        What coefficients are in the place of those of the law, by name; with the same roundings.
-    errors : mapping of str to LinearForm, optional
-        Of results with a rounding of their own, what that adds to all that takes them.
     """
     _check_linear(law)
     held, off, terms = numbers or {}, errors or {}, dict[str, tuple[Term, ...]]()
@@ -158,14 +129,9 @@ def _terms(
 
 
 def check_range(law: StepLaw) -> None:
-    """See that no operation can leave single precision while values keep their limits.
+    """Refuse a law with an operation that can leave single precision within the limits of values.
 
-    Raises
-    ------
-    DesignError
-        If one can.
-    ValueError
-        If the law is not linear: its results are checked instead.
+    A ValueError if the law is not linear: its results are checked instead.
     """
     _check_linear(law)
     bounds = {value.name: value.limit for value in law.values}
@@ -196,15 +162,6 @@ def counted_terms(
 
     A difference with a rounding of its own, of terms that are rounded themselves, counts twice:
     with them, and as a whole. So what is subtracted exactly needs no rounding of its own.
-
-    Parameters
-    ----------
-    law : StepLaw
-        The law.
-    mode : int
-        Which controller is in force.
-    given : mapping of str to LinearForm
-        Inputs and states in coordinates of the caller's choice; zero is what is not there.
     """
     found: dict[str, dict[str, int]] = {}
     own = {o.name: o.symbol for o in law.operations if o.rounding == "own" and o.kind != "multiply"}

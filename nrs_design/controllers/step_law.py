@@ -104,14 +104,8 @@ def numbers_in_force(
 ) -> dict[str, Fraction]:
     """Return the numbers of all parts while one law is active, by name.
 
-    Parameters
-    ----------
-    law : DiscreteLaw
-        The active one; its numbers need not be those of single precision.
-    parts : iterable of StepPart
-        Of all laws of the program.
-    idle : Fraction or None
-        What a sample leaves of the states of laws that are not active.
+    Those of the law need not be in single precision; `idle` is what a sample leaves of the states
+    of laws that are not active.
     """
     found: dict[str, Fraction] = {}
     for part in parts:
@@ -130,19 +124,10 @@ def _has(law: DiscreteLaw, part: StepPart) -> bool:
 def build_law(
     frame: StepFrame, laws: Mapping[str, DiscreteLaw], idle: Fraction | None = None
 ) -> StepLaw:
-    """Write the laws of controllers out.
+    """Write the laws of controllers out; all admittances have an inertia, or none has.
 
     Without a motion controller, the command is the velocity that impedance controllers make of the
-    sample, or the reference that they move by it.
-
-    Parameters
-    ----------
-    frame : StepFrame
-        Below and before all of them.
-    laws : mapping of str to DiscreteLaw
-        By the names of their controllers; all admittances have an inertia, or none has.
-    idle : Fraction, optional
-        What a sample leaves of the states of laws that are not active.
+    sample, or the reference that they move by it. `idle` as for `numbers_in_force`.
     """
     limits, parts = frame.limits, step_parts(laws.values())
     if frame.takes is Takes.VELOCITY:
@@ -285,14 +270,7 @@ def motion_operations(
 ) -> Iterator[Operation]:
     """Yield the PD controller, from a reference and ``angle`` to ``command``.
 
-    Parameters
-    ----------
-    limits : StepLimits
-        Where the command saturates.
-    reference : str
-        Name of what it follows.
-    takes_force : bool
-        Whether a share of the force is added, which makes ``eased`` of ``command``.
+    `takes_force`: a share of the force is added, which makes ``eased`` of ``command``.
     """
     yield Operation("error", "subtract", reference, "angle", "own", "e")
     yield Operation("proportional", "multiply", "Kp", "error")

@@ -50,21 +50,9 @@ class StepLogic:
 
     @classmethod
     def of(cls, logic: ThresholdLogicSpec, modes: Sequence[str], period: Fraction) -> Self:
-        """Return the logic of a spec in samples.
+        """Return the logic of a spec in samples of a period in s.
 
-        Parameters
-        ----------
-        logic : ThresholdLogicSpec
-            As the spec says.
-        modes : sequence of str
-            Names of the controllers, by number.
-        period : Fraction
-            In s.
-
-        Raises
-        ------
-        DesignError
-            If a threshold is beyond single precision, or a time too long to be counted.
+        A `DesignError` if a threshold is beyond single precision, or a time too long to be counted.
         """
         seen = {name for switch in logic.switches for name in switch.conditions}
         stays = {name: logic.stay(name) for name in modes}
@@ -85,12 +73,8 @@ class StepLogic:
     def step(self, mode: int, held: int, signals: Mapping[str, float]) -> tuple[int, int]:
         """Return mode and count after a sample.
 
-        Parameters
-        ----------
-        mode, held : int
-            The mode before, and for how many samples it has been active.
-        signals : mapping of str to float
-            Single-precision numbers; one that is no number is no reason to switch.
+        Before it, `mode` has been active for `held` samples. Signals are single-precision numbers;
+        one that is no number is no reason to switch.
         """
         if mode >= len(self.stays):
             return self.start, 1

@@ -70,15 +70,7 @@ class Trace:
         return self.constants[held].name
 
     def record(self, kind: Kind, left: str, right: str) -> str:
-        """Return the name of the result of an operation, which is recorded if it is new.
-
-        Parameters
-        ----------
-        kind : str
-            As `Operation` has it.
-        left, right : str
-            Names of its operands.
-        """
+        """Return the name of the result of an operation, which is recorded if it is new."""
         if kind in ("add", "product"):
             left, right = sorted((left, right))
         key = kind, left, right

@@ -48,13 +48,7 @@ def format_of(name: str) -> Format:
 
 
 def known_format(name: str) -> Format:
-    """Return what a format of a design is for, by a name that may be none.
-
-    Raises
-    ------
-    NrsDesignError
-        If there is no such format.
-    """
+    """Return what a format is for, by its name; a `NrsDesignError` if there is no such format."""
     if name not in format_names():
         from nrs_design.spec.faults import did_you_mean
 
@@ -67,29 +61,13 @@ def known_format(name: str) -> Format:
 
 
 def rendered(name: str, export: object) -> dict[str, bytes]:
-    """Return the contents of all files of a format, by what follows the name of the spec.
-
-    Parameters
-    ----------
-    name : str
-        One of `format_names`.
-    export : Export
-        With a record, proved or not.
-    """
+    """Return the contents of all files of a format, by what follows the name of the spec."""
     files: dict[str, bytes] = _module(name).render(export)
     return files
 
 
 def remarks_on(name: str, files: Mapping[str, bytes]) -> tuple[str, ...]:
-    """Return what rendered files lack.
-
-    Parameters
-    ----------
-    name : str
-        One of `format_names`.
-    files : mapping of str to bytes
-        As `rendered` gives them.
-    """
+    """Return what rendered files lack."""
     module = _module(name)
     return tuple(module.remarks(files)) if hasattr(module, "remarks") else ()
 

@@ -41,19 +41,8 @@ def build_record(
 ) -> ExportRecord:
     """Put a design and its proof together.
 
-    Parameters
-    ----------
-    design : ControllerDesign
-        The gains that ship.
-    certificate : Certificate
-        Made or re-checked just now; it must prove stability of exactly these gains.
-    spec : InteractionDesignSpec
-        That the certificate is about.
-
-    Raises
-    ------
-    CertificateError
-        If the certificate proves nothing, or is about other gains.
+    The certificate was made or re-checked just now. A `CertificateError` if it proves nothing, or
+    is about other gains.
     """
     fault = find_mismatch(design, certificate)
     if fault is not None:
@@ -75,20 +64,9 @@ def build_record(
 def build_unproved(
     loaded: LoadedSpec, design: ControllerDesign, reason: str, period: Fraction, proof: Proof | None
 ) -> ExportRecord:
-    """Describe a design that a processor is to run although that is not proved.
+    """Describe a design that a processor is to run although, for a reason, that is not proved.
 
-    Parameters
-    ----------
-    loaded : LoadedSpec
-        An interaction design.
-    design : ControllerDesign
-        Its gains.
-    reason : str
-        Why it is not proved.
-    period : Fraction
-        Sample time in s.
-    proof : Proof or None
-        What is proved of something else, such as the loop in continuous time.
+    The period is in s; `proof` is of something else, such as the loop in continuous time.
     """
     spec = loaded.spec
     assert isinstance(spec, InteractionDesignSpec)

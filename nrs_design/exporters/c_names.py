@@ -82,13 +82,7 @@ class CNames:
         return found
 
     def check(self, law: StepLaw) -> None:
-        """Refuse a law whose names are not names in C: what all programs of it are made of.
-
-        Raises
-        ------
-        DesignError
-            If two controllers have one name in C.
-        """
+        """Refuse a law whose names are not names in C, or two controllers of one name in C."""
         if len({self.mode(name) for name in law.modes}) < len(law.modes):
             raise DesignError(
                 "two controllers have the same name in C",
@@ -110,15 +104,7 @@ def literal(value: Fraction) -> str:
 
 
 def block_comment(lines: Iterable[str], first: bytes) -> str:
-    """Return a block comment that its lines cannot end.
-
-    Parameters
-    ----------
-    lines : iterable of str
-        Each wrapped for itself.
-    first : bytes
-        How it begins, with the line break.
-    """
+    """Return a block comment that its lines cannot end; each is wrapped for itself."""
     wrapped = (
         part
         for line in lines

@@ -31,29 +31,15 @@ FLAGS = (
 def guards(*laws: StepLaw, about: str = "the proof is about", math: bool = False) -> str:
     """Return what refuses other arithmetic, and the functions that the steps of laws call.
 
-    Parameters
-    ----------
-    *laws : StepLaw
-        All laws of a source.
-    about : str
-        How the message begins that IEEE 754 arithmetic is needed.
-    math : bool
-        Whether the source includes math.h.
+    `about` begins the message that IEEE 754 arithmetic is needed; `math`: the source includes
+    math.h.
     """
     kinds = {operation.kind for law in laws for operation in law.operations}
     return fill_template("guards.c.j2", kinds=kinds, about=about, math=math)
 
 
 def declarations(law: StepLaw, names: CNames) -> str:
-    """Return numbers, types and functions of a law, as its header has them.
-
-    Parameters
-    ----------
-    law : StepLaw
-        Its operations.
-    names : CNames
-        Of the spec.
-    """
+    """Return numbers, types and functions of a law, as its header has them."""
     known = "from the spec" if law.modes else "where the formulas hold"
     origins = {
         value.name: "not from the spec" if value.limit in (BEYOND, 2 * BEYOND) else known
@@ -63,15 +49,7 @@ def declarations(law: StepLaw, names: CNames) -> str:
 
 
 def definitions(law: StepLaw, names: CNames) -> str:
-    """Return the functions of a law, as its source has them.
-
-    Parameters
-    ----------
-    law : StepLaw
-        Its operations.
-    names : CNames
-        Of the spec.
-    """
+    """Return the functions of a law, as its source has them."""
     results = {f"out->{name}": value for name, value in law.outputs.items()}
     results |= {f"state->{name}": value for name, value in law.following.items()}
     within = [f"is_within({_operand(law, names, v.name)}, {names.limit(v)})" for v in law.guarded]

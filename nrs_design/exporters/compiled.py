@@ -26,20 +26,7 @@ def compiler() -> str | None:
 
 
 def shared_library(compile_with: str, sources: Mapping[str, str]) -> bytes:
-    """Compile sources to a shared library.
-
-    Parameters
-    ----------
-    compile_with : str
-        A compiler that takes the flags of GCC.
-    sources : mapping of str to str
-        Texts of headers and sources by their names.
-
-    Raises
-    ------
-    DesignError
-        If the compiler refuses them.
-    """
+    """Compile sources, by their names, with a compiler that takes the flags of GCC."""
     with TemporaryDirectory(prefix="nrs-design-") as folder:
         for name, text in sources.items():
             (Path(folder) / name).write_text(text, encoding="ascii")

@@ -89,18 +89,7 @@ def _rows(law: StepLaw) -> Iterator[tuple[str, str, str, str, str]]:
 
 
 def fmu_of(export: Export) -> bytes:
-    """Return the file of an export.
-
-    Parameters
-    ----------
-    export : Export
-        With a record, proved or not.
-
-    Raises
-    ------
-    DesignError
-        If there is no program of a controller yet, or the compiler of this system fails.
-    """
+    """Return the file of an export; a `DesignError` if the compiler of this system fails."""
     return packed(contents(program_of(export), compiler()))
 
 
@@ -116,15 +105,7 @@ def what_it_lacks(file: bytes) -> tuple[str, ...]:
 
 
 def contents(program: Program, compile_with: str | None) -> dict[str, bytes]:
-    """Return every entry by its path.
-
-    Parameters
-    ----------
-    program : Program
-        The law.
-    compile_with : str or None
-        A compiler; None for sources alone.
-    """
+    """Return every entry by its path; without a compiler, for sources alone."""
     record, law, names = program.record, program.law, program.names
     code = {
         f"{names.spec}.h": header_text(record, law, names),
@@ -160,13 +141,7 @@ def guid_of(record: ExportRecord) -> str:
 
 
 def packed(entries: Mapping[str, bytes]) -> bytes:
-    """Pack entries into an archive, the same bytes each time.
-
-    Parameters
-    ----------
-    entries : mapping of str to bytes
-        Contents by path, in their order.
-    """
+    """Pack entries into an archive, the same bytes each time."""
     file = io.BytesIO()
     with zipfile.ZipFile(file, "w", zipfile.ZIP_STORED) as archive:
         for name, content in entries.items():

@@ -40,23 +40,11 @@ class DeployedFiles:
 def compare_deployed(
     place: Path, spec: InteractionDesignSpec, certificate: Certificate
 ) -> DeployedFiles:
-    """Compare a deployed file, or every exported file in a folder, with a certificate.
+    """Compare a deployed file, or every exported file in a folder, with an accepted certificate.
 
-    Parameters
-    ----------
-    place : Path
-        A file that a processor runs, under the name that it was exported with, or a folder that
-        holds at least header and source of the law.
-    spec : InteractionDesignSpec
-        That of the certificate.
-    certificate : Certificate
-        Accepted, and about this spec.
-
-    Raises
-    ------
-    NrsDesignError
-        If a file cannot be read, or is none that is compared, or the certificate says nothing about
-        it.
+    A file has the name that it was exported with; a folder holds at least header and source of the
+    law. A `NrsDesignError` if a file cannot be read or compared, or the certificate does not cover
+    it.
     """
     formats = {
         f"{spec.name}{end}": name

@@ -44,13 +44,7 @@ class Export:
         return self.record is not None or self.verdict == "proved"
 
     def shipped(self) -> ExportRecord:
-        """Return the record.
-
-        Raises
-        ------
-        DesignError
-            If nothing may be exported.
-        """
+        """Return the record; a `DesignError` if nothing may be exported."""
         if self.record is None:
             raise DesignError(f"not exported: {self.reason}", remedy="export a proved design")
         return self.record
@@ -72,24 +66,8 @@ def export_design(
 ) -> Export:
     """Design a spec and return its export record, if the design is proved.
 
-    Parameters
-    ----------
-    loaded : LoadedSpec
-        The spec.
-    certificate : Path, optional
-        A certificate to be re-checked; without it the design is certified afresh.
-    progress : callable
-        Told the name of each step.
-    execution : Execution, optional
-        For files that a processor runs: then the proof must be about the sampled loop.
-
-    Raises
-    ------
-    DesignError
-        If the spec gives matrices, which have no gains, or the design has no answer, or nothing
-        says when a processor runs it.
-    CertificateError
-        If the given file is not a certificate at all.
+    A given certificate is re-checked; without one the design is certified afresh. With an
+    execution, for files that a processor runs, the proof must be about the sampled loop.
     """
     spec = interaction_of(loaded, "has no gains to export")
     _check_one_period(loaded, spec)
@@ -110,17 +88,7 @@ def export_proof(
 ) -> Export:
     """Return what formats take for which a certificate is enough; of a design, with its record.
 
-    Parameters
-    ----------
-    loaded, certificate, progress
-        As for `export_design`.
-
-    Raises
-    ------
-    DesignError
-        If the design has no answer.
-    CertificateError
-        If the given file is no certificate of this spec, or does not hold.
+    A `CertificateError` if the given file is no certificate of this spec, or does not hold.
     """
     if loaded.spec.kind == "interaction-design":
         return export_design(loaded, certificate, progress)

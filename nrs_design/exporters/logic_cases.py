@@ -17,14 +17,7 @@ SPECIAL = (0x7FC00000, 0x7F800000, 0xFF800000, 0)
 def logic_document(logic: StepLogic, count: int = COUNT, seed: int = SEED) -> dict[str, Any]:
     """Return columns and cases, signals as bits in hexadecimal, the rest as integers.
 
-    Parameters
-    ----------
-    logic : StepLogic
-        The logic.
-    count : int
-        How many cases.
-    seed : int
-        The same seed gives the same cases.
+    The same seed gives the same cases.
     """
     columns = ["before.mode", "before.held", *logic.signals, "after.mode", "after.held"]
     return {"start": logic.start, "columns": columns, "cases": [*_cases(logic, count, seed)]}

@@ -21,15 +21,7 @@ OUTSIDE = (
 
 
 def outside_of(*, sampled: bool, rounded: bool) -> tuple[str, ...]:
-    """Return what is outside a proof.
-
-    Parameters
-    ----------
-    sampled : bool
-        Whether the proof is about the loop as a processor samples it.
-    rounded : bool
-        Whether it covers what the arithmetic rounds; in continuous time there is none.
-    """
+    """Return what is outside a proof: of the sampled loop or not, with what is rounded or not."""
     if not sampled:
         return (CONTINUOUS, *OUTSIDE)
     return OUTSIDE if rounded else (NOT_ROUNDED, *OUTSIDE)

@@ -30,16 +30,8 @@ class Program:
 def program_of(export: Export) -> Program:
     """Return the program of an export.
 
-    Parameters
-    ----------
-    export : Export
-        With a record, proved or not.
-
-    Raises
-    ------
-    DesignError
-        If nothing may be exported, or there is no program of a controller yet, or its names are no
-        names in C.
+    A `DesignError` if nothing may be exported, or there is no program of a controller yet, or a
+    name is none in C.
     """
     record = export.shipped()
     assert export.spec is not None

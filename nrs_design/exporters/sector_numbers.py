@@ -29,13 +29,7 @@ Macro = tuple[str, Fraction, str]
 
 
 def sector_macros(sector: Sector) -> Iterator[Macro]:
-    """Yield what each number of the test is called, the number, and what stands beside it.
-
-    Parameters
-    ----------
-    sector : Sector
-        What readings must keep.
-    """
+    """Yield what each number of the test is called, the number, and what stands beside it."""
     yield (
         "TORQUE_NOISE",
         _more(sector.torque_noise),
@@ -69,12 +63,7 @@ def _less(value: Fraction, slacks: int = 1) -> Fraction:
 def sector_words(sector: Sector, travel: Fraction) -> Iterator[str]:
     """Yield what the test tells, and what it finds for certain.
 
-    Parameters
-    ----------
-    sector : Sector
-        What readings must keep.
-    travel : Fraction
-        How far the joint moves between two torques that are read, at the velocity limit, in rad.
+    `travel` is how far the joint moves between two torques that are read, in rad.
     """
     low, high = lower(sector.low, 6), upper(sector.high, 6)
     yield (

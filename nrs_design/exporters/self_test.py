@@ -26,21 +26,7 @@ def self_test(
     names: CNames,
     about: tuple[str, ...],
 ) -> dict[str, bytes]:
-    """Return header and source of the self-test, by their endings.
-
-    Parameters
-    ----------
-    law : StepLaw
-        The law.
-    columns : sequence of str
-        What the cases hold, as vectors name it.
-    rows : ndarray of uint32
-        The cases.
-    names : CNames
-        Of its spec.
-    about : tuple of str
-        What every exported file says of itself.
-    """
+    """Return header and source of the self-test, by their endings."""
     logic = [] if law.logic is None else logic_document(law.logic)["cases"]
     count = len(rows) + len(logic)
     values = {

@@ -28,13 +28,7 @@ WRONG = (
 
 
 def sign_lines(law: StepLaw) -> Iterator[str]:
-    """Yield sign and frame of each input and output of a program.
-
-    Parameters
-    ----------
-    law : StepLaw
-        Of one axis.
-    """
+    """Yield sign and frame of each input and output of a program."""
     yield "Signs and frames:"
     for name in (*(value.name for value in law.inputs), *law.outputs):
         yield f"- {name}: {SIGNS[name]}"

@@ -19,13 +19,7 @@ PLACED = (
 
 
 def start_lines(law: StepLaw) -> Iterator[str]:
-    """Yield the start-up requirements of a program other than starting at rest.
-
-    Parameters
-    ----------
-    law : StepLaw
-        Of one axis.
-    """
+    """Yield the start-up requirements of a program other than starting at rest."""
     if any(value.name == "position" for value in law.inputs):
         yield PLACED
     if any(state.name == "commanded" for state in law.states):

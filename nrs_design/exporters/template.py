@@ -16,15 +16,7 @@ if TYPE_CHECKING:
 
 
 def fill_template(name: str, **values: object) -> str:
-    """Return the text of a template; a name in it that has no value is an error.
-
-    Parameters
-    ----------
-    name : str
-        File in the folder `templates`.
-    **values : object
-        What its names stand for.
-    """
+    """Return the text of a file in `templates`; a name in it that has no value is an error."""
     return _environment().get_template(name).render(values | {"unit": unit})
 
 

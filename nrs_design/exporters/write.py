@@ -21,21 +21,10 @@ _ENDING = re.compile(r"\.[A-Za-z]\w{0,7}")
 
 
 def places(format_: Format, name: str, out: Path) -> dict[str, Path]:
-    """Return where each file of a format goes, by its ending.
+    """Return where each file of a format goes in a folder, by its ending.
 
-    Parameters
-    ----------
-    format_ : Format
-        With one file or several.
-    name : str
-        Of the spec.
-    out : Path
-        A folder. Where the format has one file only, that may be named, with its ending.
-
-    Raises
-    ------
-    OutputError
-        If a file seems to be meant that is none of this format.
+    Where the format has one file only, `out` may be that file. An `OutputError` if a file seems to
+    be meant that is none of this format.
     """
     stem = re.sub(r"\W|^(?=\d)", "_", name) if format_.identifier else name
     files = {ending: out / f"{stem}{ending}" for ending in format_.files}
@@ -59,20 +48,7 @@ def places(format_: Format, name: str, out: Path) -> dict[str, Path]:
 def check_places(format_: Format, files: Mapping[str, Path], name: str | None = None) -> None:
     """Refuse to go on where something else stands in the place of a file.
 
-    Parameters
-    ----------
-    format_ : Format
-        It says how its files begin.
-    files : mapping of str to Path
-        As `places` gives them.
-    name : str, optional
-        Of the spec of a design; a file that says that it is another's stays.
-
-    Raises
-    ------
-    OutputError
-        If the folder is none or lies behind a link, or a file is a link, or none of this format or
-        of this spec.
+    So do a link, a file of another format, and one that says that it is another spec's.
     """
     for ending, path in files.items():
         if path.parent.exists() and not path.parent.is_dir():
@@ -85,22 +61,7 @@ def check_places(format_: Format, files: Mapping[str, Path], name: str | None = 
 
 
 def write_files(format_: Format, files: Mapping[str, Path], contents: Mapping[str, bytes]) -> None:
-    """Write all files of an export, or none.
-
-    Parameters
-    ----------
-    format_ : Format
-        It says how files that are replaced begin.
-    files : mapping of str to Path
-        As `places` gives them.
-    contents : mapping of str to bytes
-        By the same endings.
-
-    Raises
-    ------
-    OutputError
-        If a file cannot be written, or something else stands in its place.
-    """
+    """Write all files of an export, or none."""
     check_places(format_, files)
     write_outputs([(path, contents[end], format_.files[end]) for end, path in files.items()])
 
@@ -110,18 +71,7 @@ def write_export(
 ) -> tuple[str, ...]:
     """Write the certificate first: there is never an export without its proof; return remarks.
 
-    Parameters
-    ----------
-    result : Export
-        That may be written.
-    format_ : str
-        Name of the format.
-    files : mapping of str to Path
-        As `places` gives them.
-    proof : Path or None
-        Where the certificate goes; None if it is in a file already.
-    spec : Path
-        That the certificate names as its own.
+    `proof` is None where the certificate is in a file already; it names `spec` as its own.
     """
     contents = rendered(format_, result)
     if proof is not None and result.certificate is not None:

@@ -53,13 +53,8 @@ BESIDE = frozenset(
 def is_shown(result: Mapping[str, Any], shown: Mapping[str, Any]) -> bool:
     """Tell whether a kept answer says nothing beyond what was shown just now.
 
-    Parameters
-    ----------
-    result : mapping
-        The answer, as it was kept.
-    shown : mapping
-        What a certificate shows that was checked again, under the names of the answer; empty
-        without one, and then nothing may be claimed.
+    `shown` is what a certificate shows that was checked again, under the names of the answer; empty
+    without one, and then nothing may be claimed.
     """
     same = all(name in result and result[name] == value for name, value in shown.items())
     rest = {name: value for name, value in result.items() if name not in shown}

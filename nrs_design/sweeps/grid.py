@@ -67,21 +67,7 @@ class Grid:
 
 
 def read_grid(spec: Path, said: Sequence[str]) -> Grid:
-    """Read what ``--set`` says, and refuse what makes no sweep of this spec.
-
-    Parameters
-    ----------
-    spec : Path
-        A valid spec, or an axis of one.
-    said : sequence of str
-        Each ``PATH=VALUES``.
-
-    Raises
-    ------
-    SpecError
-        If a path is not in the spec or is there twice, values are none or do not fit, or the points
-        are too many.
-    """
+    """Read what ``--set`` says, and refuse what makes no sweep of this spec."""
     if not 1 <= len(said) <= MAX_FIELDS:
         raise SpecError(
             f"a sweep has one to {MAX_FIELDS} fields, not {len(said)}",
@@ -161,13 +147,7 @@ def _refuse_overlaps(grid: Grid) -> None:
 
 
 def _check_unit(field: Field, root: Node, spec: Path) -> None:
-    """Refuse values in another unit than what is there, if the spec does not take them, either.
-
-    Raises
-    ------
-    SpecError
-        As the spec refuses the first of them, with the units that it takes.
-    """
+    """Refuse values in another unit than what is there, if the spec does not take them, either."""
     value = field.values[0]
     there = [_dimension(node.text) for node in _scalars(node_at(root, field.at))]
     if _dimension(value) in there:

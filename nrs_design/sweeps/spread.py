@@ -28,21 +28,9 @@ CHUNKS_PER_WORKER, LARGEST_CHUNK = 8, 200
 
 
 def spread(work: Work[T], points: Collection[int], jobs: int) -> Iterator[tuple[int, T]]:
-    """Yield the number of each point with its result, as they come.
+    """Yield the number of each point with its result, as they come; one job is this process.
 
-    Parameters
-    ----------
-    work : callable
-        Computes a point; it can be pickled.
-    points : collection of int
-        Numbers of the points.
-    jobs : int
-        How many processes; 1 for this one.
-
-    Raises
-    ------
-    NrsDesignError
-        If workers die again and again before any result.
+    The work can be pickled. A `NrsDesignError` if workers die again and again before any result.
     """
     if jobs == 1:
         yield from ((point, work(point)) for point in points)
@@ -99,19 +87,8 @@ def _numbered(work: Work[T], point: int) -> tuple[int, T]:
 def spread_by_dask(work: Work[T], points: Sequence[int], scheduler: str) -> Iterator[tuple[int, T]]:
     """Yield the number of each point with its result, computed by the workers of a scheduler.
 
-    Parameters
-    ----------
-    work : callable
-        Computes a point; it can be pickled, and every worker has this program and its files.
-    points : sequence of int
-        Numbers of the points.
-    scheduler : str
-        Its address, such as ``tcp://10.0.0.1:8786``.
-
-    Raises
-    ------
-    NrsDesignError
-        If dask.distributed is not installed, or there is no such scheduler.
+    The work can be pickled, and every worker has this program and its files. A `NrsDesignError` if
+    dask.distributed is not installed, or there is no such scheduler.
     """
     try:
         from dask.distributed import Client, as_completed

@@ -83,15 +83,5 @@ class Store:
 
 
 def key_of(meaning: Data, asked: Data, version: str) -> str:
-    """Return the name of an answer, in hexadecimal.
-
-    Parameters
-    ----------
-    meaning : Data
-        Hashes of what the spec means, and of the files that it names.
-    asked : Data
-        The command with its options.
-    version : str
-        Of this program.
-    """
+    """Return the name of an answer, in hexadecimal."""
     return hash_meaning({"spec": meaning, "asked": asked, "version": version})

@@ -21,14 +21,9 @@ _EXACT = "_exact"
 
 
 def flat(document: object, name: str = "") -> Iterator[tuple[str, Cell]]:
-    """Yield each number and word of a document with its dotted name.
+    """Yield each number and word of a JSON document with its dotted name.
 
-    Parameters
-    ----------
-    document : object
-        As JSON holds it. Items of a list are called by their ``name``, else counted from 0.
-    name : str
-        Of the document itself.
+    Items of a list are called by their ``name``, else counted from 0.
     """
     inner: Sequence[tuple[str, object]] = ()
     if isinstance(document, Mapping):
@@ -74,13 +69,7 @@ def fact_columns(rows: Iterable[Row]) -> Columns:
 
 
 def chosen(columns: Columns, wanted: Sequence[str]) -> list[str]:
-    """Return the facts that are asked for, each by its whole name, or by how the shortest end.
-
-    Raises
-    ------
-    NrsDesignError
-        If there is none of such a name.
-    """
+    """Return the facts that are asked for, each by its whole name, or by how the shortest end."""
     found: list[str] = []
     for name in wanted:
         named = [one for one in columns.every if one == name or one.endswith(f".{name}")]

@@ -43,18 +43,10 @@ Values: TypeAlias = Spaced | tuple[str, ...]
 
 
 def parse_values(text: str) -> Values:
-    """Read the values of one field.
+    """Read the values of one field: a list with commas, or a range.
 
-    Parameters
-    ----------
-    text : str
-        A list with commas, whose last unit is that of all that have none of their own; or a range
-        ``LOW..HIGH/COUNT UNIT``, or ``LOW..HIGH UNIT`` for the whole numbers from LOW to HIGH.
-
-    Raises
-    ------
-    SpecError
-        If there is no value, one is there twice, or a range is empty, reversed or too long.
+    The last unit is that of all that have none. A range is ``LOW..HIGH/COUNT UNIT``, or ``LOW..HIGH
+    UNIT`` for the whole numbers from LOW to HIGH.
     """
     text = text.strip()
     if found := _RANGE.fullmatch(text):

@@ -121,16 +121,8 @@ class Admittance(AbstractCompliantLaw[ImpedanceControllerSpec]):
     ) -> DiscreteLaw:
         """Return ``v+ = a v + b F``, with which the reference moves on by ``-T v``.
 
-        Parameters
-        ----------
-        a : Fraction or None
-            Without unit; None for a law without inertia, ``v = b F``.
-        b : Fraction
-            In rad/(s N m).
-        T : Fraction
-            The period as the processor holds it, in s.
-        Kt : Fraction
-            In N m/rad; zero is no spring.
+        b in rad/(s N m); T in s, as the processor holds it; Kt in N m/rad. Without inertia a is
+        None, and ``v = b F``.
         """
         numbers = ({} if a is None else {"a": a}) | {"b": b, "T": T}
         return DiscreteLaw(cls, numbers | ({"Kt": Kt} if Kt else {}))
@@ -149,25 +141,10 @@ class Admittance(AbstractCompliantLaw[ImpedanceControllerSpec]):
     ) -> dict[str, Interval]:
         """Return where a, ``c = b/(1 - a)`` and Kt lie; without inertia ``c = b``.
 
-        Exact or by Euler's method, a falls with Bt and rises with Mt, and so it does when it is
-        rounded: its ends are at corners. Each of a and b is rounded once, by at most 2^-24 of its
-        size, which moves c away from 1/Bt by less than eight times that share of it over
-        ``1 - a``, as long as all this is small.
-
-        Parameters
-        ----------
-        gains, period, method
-            As for `AbstractCompliantLaw.enclose`.
-
-        Returns
-        -------
-        dict of str to Interval
-            Without a and c where Mt and Bt are points.
-
-        Raises
-        ------
-        DesignError
-            If single precision loses a coefficient.
+        Without a and c where Mt and Bt are points. Exact or by Euler's method, a falls with Bt and
+        rises with Mt, and so it does when it is rounded: its ends are at corners. Each of a and b
+        is rounded once, by at most 2^-24 of its size, which moves c away from 1/Bt by less than
+        eight times that share of it over ``1 - a``, as long as all this is small.
         """
         spring = {"Kt": gains["Kt"]} if "Kt" in gains else {}
         Mt, Bt = gains["Mt"], gains["Bt"]

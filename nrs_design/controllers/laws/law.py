@@ -90,43 +90,25 @@ class AbstractCompliantLaw(AbstractLaw, Generic[S]):
 
     @abstractmethod
     def respond(self, force: LinearForm, states: Sequence[LinearForm]) -> Response:
-        """Return the command, and the rates of the states, as linear forms of the whole loop.
+        """Return the command, and the rates of the `states`, as linear forms of the whole loop.
 
-        Parameters
-        ----------
-        force : LinearForm
-            Of all contacts on the robot and of the `spring`, N m.
-        states : sequence of LinearForm
-            Those named in `states`.
+        The force is that of all contacts on the robot and of the `spring`, in N m.
         """
 
     @abstractmethod
     def discretize(self, period: Fraction, method: str) -> DiscreteLaw:
-        """Return the numbers that a processor holds.
+        """Return the numbers that a processor holds, for a period in s.
 
-        Parameters
-        ----------
-        period : Fraction
-            In s.
-        method : {"exact", "euler"}
-            How the states of the law are discretized.
-
-        Raises
-        ------
-        DesignError
-            If a coefficient is beyond single precision.
+        The method, for the states of the law, is ``exact`` or ``euler``. A coefficient beyond
+        single precision is a `DesignError`.
         """
 
     @classmethod
     def parts(cls, used: Collection[str], *, beside: bool) -> tuple[StepPart, ...]:
         """Return the operations of the law: by default, those of a position controller.
 
-        Parameters
-        ----------
-        used : collection of str
-            Names of the numbers that laws of the program have.
-        beside : bool
-            Whether some controllers of the program are given a position.
+        `used` are the names of the numbers that laws of the program have; `beside`: some
+        controllers of the program are given a position.
         """
         return (PROPORTIONAL,)
 
@@ -135,17 +117,7 @@ class AbstractCompliantLaw(AbstractLaw, Generic[S]):
     ) -> dict[str, Interval]:
         """Return where what the discrete law is affine in lies while gains are in intervals.
 
-        Parameters
-        ----------
-        gains : mapping
-            Intervals of the gains by name.
-        period, method
-            As for `discretize`.
-
-        Raises
-        ------
-        DesignError
-            If that is not known, or single precision loses a coefficient.
+        A `DesignError` if that is not known, or single precision loses a coefficient.
         """
         raise DesignError(
             f"ranges of the gains of a {self.name} controller are not modelled in the sampled loop",
@@ -185,10 +157,7 @@ class AbstractCompliantLaw(AbstractLaw, Generic[S]):
     def contact_text(cls, *, alone: bool) -> str | None:
         """Say what is taken for granted about contact while it is active; None for nothing.
 
-        Parameters
-        ----------
-        alone : bool
-            Whether all controllers give the motion loop the same kind of command.
+        `alone`: all controllers give the motion loop the same kind of command.
         """
 
     @property

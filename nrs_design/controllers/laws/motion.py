@@ -43,13 +43,7 @@ class ProportionalDerivative(AbstractLaw):
         return self.Kp / self.Kd
 
     def over(self, period: Fraction) -> Fraction:
-        """Return Kd over a period in s: what multiplies the change of the error in a sample.
-
-        Raises
-        ------
-        DesignError
-            If it is beyond single precision.
-        """
+        """Return Kd over a period in s: what multiplies the change of the error in a sample."""
         return to_float32(self.Kd / period)
 
 

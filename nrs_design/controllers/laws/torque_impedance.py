@@ -54,13 +54,7 @@ class TorqueImpedance(AbstractCompliantLaw[TorqueImpedanceSpec]):
         return ("K", "D") if given.inertia_ratio in (None, 1) else ("K", "D", "R")
 
     def respond(self, force: LinearForm, states: Sequence[LinearForm]) -> Response:
-        """Refuse: a robot that takes torques is modelled in the sampled loop alone.
-
-        Raises
-        ------
-        DesignError
-            Always.
-        """
+        """Refuse: a robot that takes torques is modelled in the sampled loop alone."""
         raise DesignError(
             "a law that makes torques has no form in continuous time here",
             remedy="use what is about the sampled loop, such as --engine sampled or --format json",

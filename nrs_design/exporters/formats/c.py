@@ -34,35 +34,14 @@ _SEEN = {"command": "velocity command", "torque": "torque"}
 
 
 def render(export: Export) -> dict[str, bytes]:
-    """Return header and source, by their endings.
-
-    Parameters
-    ----------
-    export : Export
-        With a record, proved or not.
-
-    Raises
-    ------
-    DesignError
-        If there is no program of a controller yet.
-    """
+    """Return header and source, by their endings."""
     program = program_of(export)
     parts = program.record, program.law, program.names
     return {".h": header_text(*parts).encode(), ".c": source_text(*parts).encode()}
 
 
 def header_text(record: ExportRecord, law: StepLaw, names: CNames) -> str:
-    """Return the header.
-
-    Parameters
-    ----------
-    record : ExportRecord
-        What the law is, and what is proved of it.
-    law : StepLaw
-        Its operations.
-    names : CNames
-        Of this spec.
-    """
+    """Return the header."""
     return fill_template(
         "law.h.j2",
         comment=block_comment(_header_lines(record, law, names), C_HEADER),
@@ -75,17 +54,7 @@ def header_text(record: ExportRecord, law: StepLaw, names: CNames) -> str:
 
 
 def source_text(record: ExportRecord, law: StepLaw, names: CNames) -> str:
-    """Return the source.
-
-    Parameters
-    ----------
-    record : ExportRecord
-        What the law is, and what is proved of it.
-    law : StepLaw
-        Its operations.
-    names : CNames
-        Of this spec.
-    """
+    """Return the source."""
     about = (*header_lines(record), f"More is in {record.spec.name}.h.")
     return fill_template(
         "law.c.j2",

@@ -19,18 +19,7 @@ FORMAT = Format(
 
 
 def render(export: Export) -> dict[str, bytes]:
-    """Return the file, by its ending.
-
-    Parameters
-    ----------
-    export : Export
-        With a record, proved or not.
-
-    Raises
-    ------
-    DesignError
-        If there is no program of a controller yet.
-    """
+    """Return the file, by its ending."""
     program = program_of(export)
     text = fill_template(
         "law.cmake.j2",

@@ -31,13 +31,7 @@ _LEFT_OUT = (
 
 
 def render(export: Export) -> dict[str, bytes]:
-    """Return the file of an export, by its ending.
-
-    Raises
-    ------
-    DesignError
-        If the library for Coq has no theorem of this kind of certificate.
-    """
+    """Return the file, by its ending; a `DesignError` where the library has no theorem."""
     certificate = export.certificate
     assert certificate is not None, "what is proved has a certificate"
     theorem = choose_theorem(certificate)

@@ -18,18 +18,7 @@ FORMAT = Format(
 
 
 def render(export: Export) -> dict[str, bytes]:
-    """Return the file, by its ending.
-
-    Parameters
-    ----------
-    export : Export
-        With a record, proved or not.
-
-    Raises
-    ------
-    DesignError
-        If there is no program of a controller yet, or the compiler of this system fails.
-    """
+    """Return the file, by its ending."""
     return {".fmu": fmu_of(export)}
 
 

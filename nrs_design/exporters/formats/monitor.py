@@ -45,18 +45,7 @@ KINDS = {
 
 
 def render(export: Export) -> dict[str, bytes]:
-    """Return header and source, by their endings.
-
-    Parameters
-    ----------
-    export : Export
-        With a record, proved or not.
-
-    Raises
-    ------
-    DesignError
-        If there is no program of a controller yet.
-    """
+    """Return header and source, by their endings."""
     program = program_of(export)
     limits = monitor_limits(export, program.law)
     return {
@@ -66,15 +55,7 @@ def render(export: Export) -> dict[str, bytes]:
 
 
 def header_text(program: Program, limits: MonitorLimits) -> str:
-    """Return the header: limits, types and functions.
-
-    Parameters
-    ----------
-    program : Program
-        The law that is monitored.
-    limits : MonitorLimits
-        What it must keep.
-    """
+    """Return the header: limits, types and functions."""
     names = program.names
     return fill_template(
         "monitor.h.j2",
@@ -91,15 +72,7 @@ def header_text(program: Program, limits: MonitorLimits) -> str:
 
 
 def source_text(program: Program, limits: MonitorLimits) -> str:
-    """Return the source.
-
-    Parameters
-    ----------
-    program : Program
-        The law that is monitored.
-    limits : MonitorLimits
-        What it must keep.
-    """
+    """Return the source."""
     names = program.names
     follows = [
         f"{{{', '.join('true' if may else 'false' for may in row)}}}" for row in limits.follows

@@ -55,18 +55,7 @@ class Vectors:
 
 
 def render(export: Export) -> dict[str, bytes]:
-    """Return vectors and tests, by their endings.
-
-    Parameters
-    ----------
-    export : Export
-        With a record, proved or not.
-
-    Raises
-    ------
-    DesignError
-        If there is no program of a controller yet.
-    """
+    """Return vectors and tests, by their endings."""
     program = program_of(export)
     law, names, lines = program.law, program.names, program.about
     vectors = make_vectors(law)
@@ -79,15 +68,7 @@ def render(export: Export) -> dict[str, bytes]:
 
 
 def make_vectors(law: StepLaw, count: int = COUNT) -> Vectors:
-    """Draw inputs and states, and compute a step of each.
-
-    Parameters
-    ----------
-    law : StepLaw
-        The law.
-    count : int
-        How many cases; always the same ones, with every version of NumPy.
-    """
+    """Draw inputs and states, always the same ones, and compute a step of each."""
     # The bits of this generator are fixed; what NumPy makes of them may change.
     draw = np.random.PCG64(SEED).random_raw
     wild = draw(count) % 4 == 0
@@ -127,17 +108,7 @@ def _bits(values: Single) -> NDArray[np.uint32]:
 
 
 def vectors_text(law: StepLaw, vectors: Vectors, about: tuple[str, ...]) -> str:
-    """Return the JSON document.
-
-    Parameters
-    ----------
-    law : StepLaw
-        The law.
-    vectors : Vectors
-        Its cases.
-    about : tuple of str
-        What every exported file says of itself.
-    """
+    """Return the JSON document."""
     head: dict[str, Any] = {
         "schema": SCHEMA,
         "about": list(about),
@@ -165,15 +136,7 @@ def law_document(law: StepLaw, vectors: Vectors) -> dict[str, Any]:
 
 
 def csv_text(vectors: Vectors, about: tuple[str, ...]) -> str:
-    """Return the same cases as CSV, below comments that begin with ``#``.
-
-    Parameters
-    ----------
-    vectors : Vectors
-        Of a law.
-    about : tuple of str
-        What every exported file says of itself.
-    """
+    """Return the same cases as CSV, below comments that begin with ``#``."""
     lines = [
         VECTOR_TABLE.decode().rstrip(),
         *(f"# {line}" for line in about),
@@ -194,15 +157,7 @@ def _units(law: StepLaw) -> Mapping[str, str]:
 
 
 def pytest_text(names: CNames, about: tuple[str, ...]) -> str:
-    """Return a test for pytest: of the exported C, and of any implementation in Python.
-
-    Parameters
-    ----------
-    names : CNames
-        Of the spec.
-    about : tuple of str
-        What every exported file says of itself.
-    """
+    """Return a test for pytest: of the exported C, and of any implementation in Python."""
     about_lines = "\n".join(f"# {harmless(line)}" for line in about)
     return fill_template(
         "test.py.j2", spec=names.spec, program=program_macro(names), about=about_lines

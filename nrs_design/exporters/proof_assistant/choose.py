@@ -24,13 +24,7 @@ COVERED = (
 
 
 def choose_theorem(certificate: Certificate) -> Theorem:
-    """Return the theorem of a certificate.
-
-    Raises
-    ------
-    DesignError
-        If the library for Coq has none of its kind, or of its shape.
-    """
+    """Return the theorem of a certificate; a `DesignError` if the library for Coq has none."""
     system, evidence = certificate.system, certificate.evidence
     kind = "nothing" if evidence is None else evidence.kind
     if kind not in _BY_KIND:

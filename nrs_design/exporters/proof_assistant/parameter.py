@@ -22,15 +22,7 @@ LIBRARY = ("forms", "polynomials", "continuous", "parameter")
 
 
 def parameter_theorem(system: SwitchedSystem, evidence: ParameterQuadratic) -> Theorem:
-    """Return the theorem of a certificate with a constant parameter.
-
-    Parameters
-    ----------
-    system : SwitchedSystem
-        Whose modes are the ends of it.
-    evidence : ParameterQuadratic
-        That holds for it.
-    """
+    """Return the theorem of a certificate with a constant parameter."""
     definitions, modes = Definitions(), {mode.name: mode.A for mode in system.modes}
     names = identifiers(modes)
     for name, A in modes.items():

@@ -32,15 +32,7 @@ MIXED = "averages of modes, such as values between the corners of ranges"
 
 
 def places_theorem(system: SwitchedSystem, evidence: FormsOnGraph) -> Theorem:
-    """Return the theorem of a certificate with a form for each mode.
-
-    Parameters
-    ----------
-    system : SwitchedSystem
-        With its rules of switching.
-    evidence : FormsOnGraph
-        That holds for it, with quadratic forms.
-    """
+    """Return the theorem of a certificate with a quadratic form for each mode."""
     flows, definitions = system.time is Time.CONTINUOUS, Definitions()
     names = identifiers(mode.name for mode in system.modes)
     texts = _flowing(system, evidence, definitions) if flows else _stepping(system, evidence)

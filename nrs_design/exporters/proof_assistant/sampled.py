@@ -48,18 +48,7 @@ class SampledStatement:
         """Return the k-th mode of all: units, columns, and bounds of the errors, in integers.
 
         The unit of a state is the least multiple of the denominator of the rate in which its column
-        and the bounds are integers.
-
-        Parameters
-        ----------
-        k : int
-            Its number; modes of free motion come after those in contact.
-        mode : Mode
-            The mode.
-        definitions : Definitions
-            Where its columns and rows are defined.
-        free : bool
-            Whether it is one of free motion.
+        and the bounds are integers. Modes of free motion come after those in contact.
         """
         before = self.order[1:] if free else self.order
         rounded = self.system.roundings if self.evidence.covers_rounding else ()
@@ -125,15 +114,7 @@ class SampledStatement:
 
 
 def sampled_theorem(system: SwitchedSystem, evidence: FormsOnGraph) -> Theorem:
-    """Return the theorem of a certificate in discrete time.
-
-    Parameters
-    ----------
-    system : SwitchedSystem
-        With quadratic forms for all its modes, and no force that would pull.
-    evidence : FormsOnGraph
-        That holds for it.
-    """
+    """Return the theorem of a certificate in discrete time, with quadratic forms for all modes."""
     sampled, definitions = SampledStatement(system, evidence), Definitions()
     modes, flying = _define_modes(sampled, definitions)
     nodes, free_nodes = sampled.nodes(free=False), sampled.nodes(free=True)

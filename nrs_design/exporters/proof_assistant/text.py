@@ -22,31 +22,13 @@ class Definitions:
     names: dict[str, str] = field(default_factory=dict)
 
     def share(self, stem: str, text: str) -> str:
-        """Return the name of a term, which is defined where it is new.
-
-        Parameters
-        ----------
-        stem : str
-            What a new name begins with.
-        text : str
-            The term.
-        """
+        """Return the name of a term, which is defined where it is new, with a name on this stem."""
         if text not in self.names:
             self.names[text] = self.define(f"{stem}{len(self.names) + 1}", text)
         return self.names[text]
 
     def define(self, name: str, text: str, remark: str = "") -> str:
-        """Define a name, and return it.
-
-        Parameters
-        ----------
-        name : str
-            That is new.
-        text : str
-            The term.
-        remark : str
-            What is said of it.
-        """
+        """Define a name, and return it."""
         said = f"(* {in_comment(remark)} *)\n" if remark else ""
         self.texts.append(f"{said}Definition {name} := {text}.\n")
         return name
@@ -100,13 +82,7 @@ def in_comment(text: str) -> str:
 
 
 def factor_of(form: IntegerMatrix) -> int:
-    """Return a power of two with which a positive definite form exceeds the sum of squares.
-
-    Raises
-    ------
-    ValueError
-        If the form is not positive definite.
-    """
+    """Return a power of two with which a positive definite form exceeds the sum of squares."""
     if not is_positive_definite(form):
         raise ValueError("no multiple of a form that is not positive definite exceeds it")
     power = 1

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -267,8 +267,6 @@ def _print_gains(certificate: Certificate, spec: Spec) -> None:
         if gains:
             said = (f"{gain} = {value} {units[name][gain]}" for gain, value in gains.items())
             say(f"  {name}: {', '.join(said)}")
-            for gain, low, high in _ranges(spec, name):
-                say(f"  {name}: {gain} anywhere in [{low}, {high}]")
     if isinstance(spec, InteractionDesignSpec) and spec.sampling is not None:
         _print_sampled_derivative(certificate, spec.sampling.period.exact)
 
@@ -292,13 +290,3 @@ def _print_sampled_derivative(certificate: Certificate, period: Fraction) -> Non
             f"  {MOTION}: a program multiplies by Kd/T = {exact_decimal(factor)} {units['Kp']}, "
             f"which makes its Kd about {float(factor * period):.10g} {units['Kd']}"
         )
-
-
-def _ranges(spec: Spec, name: str) -> Iterator[tuple[str, str, str]]:
-    """Yield the gains of a controller that have a range, with its ends as written."""
-    controller = getattr(spec, "controllers", {}).get(name)
-    for gain in ("Mt", "Bt"):
-        declared = getattr(controller, gain, None)
-        if declared is not None and declared.ranged:
-            low, high = declared.range
-            yield gain, low.text, high.text

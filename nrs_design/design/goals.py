@@ -2,16 +2,16 @@
 
 The loop is that of the modes that a certificate is about, cut where the law takes the force.
 Margins are taken in every contact: at the nominal values of the environment that the controller is
-designed for, and at all corners of the declared ranges of all its contacts, of its gains and of the
-motor, sampled at every age of the force sample. Displayed impedance and force error are what the
-design is for: they are taken with the designed gains, in the environment that it is designed for.
-Values between corners are not looked at. All of it is floating point, and no proof.
+designed for, and at all corners of the declared ranges of all its contacts and of the motor,
+sampled at every age of the force sample. Displayed impedance and force error are what the design is
+for: they are taken in the environment that it is designed for. Values between corners are not
+looked at. All of it is floating point, and no proof.
 """
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -77,17 +77,13 @@ class Achieved:
 
 @dataclass(frozen=True, slots=True)
 class ContactCorner:
-    """One contact that a controller is measured in, and where gains and motor are then."""
+    """One contact that a controller is measured in, and where the motor is then."""
 
     label: str  # For people
     environment: str  # Its name
     contact: AbstractLinearLaw  # The environment there
     place: Place  # Of the motor, and the age of the force sample
-    designed: bool  # Whether the gains are the designed ones
-    home: bool  # Whether they are, and this is the environment that the controller is designed for
-    # Mt, Bt: end of a declared range of the gain; None is the designed gain.
-    Mt: float | None = None
-    Bt: float | None = None
+    home: bool  # Whether this is the environment that the controller is designed for
     Kt: Fraction = Fraction(0)  # Spring of the admittance, N m/rad; zero is none
 
 
@@ -139,7 +135,7 @@ class Requirement(AbstractRequirement):
 
     @cached_property
     def nominal(self) -> tuple[ContactCorner, ...]:
-        """Nominal contact, motor and gains, at every age of the force sample."""
+        """Nominal contact and motor, at every age of the force sample."""
         first = next(corner for corner in self.corners if corner.home)
         return tuple(
             corner
@@ -169,8 +165,7 @@ class Requirement(AbstractRequirement):
 
     def loops(self, corner: ContactCorner, Mt: FloatArray, Bt: FloatArray) -> Loops:
         """Return the open loops at a corner."""
-        gains = _gains(corner, Mt, Bt)
-        return self.family(corner).loops(*gains, corner.contact.stiffness)
+        return self.family(corner).loops(Mt, Bt, corner.contact.stiffness)
 
     def displayed(
         self, corner: ContactCorner, Mt: float, Bt: float, omega: FloatArray
@@ -186,29 +181,22 @@ class Requirement(AbstractRequirement):
 
     def _shown(self, corner: ContactCorner, Mt: FloatArray, Bt: FloatArray) -> Loops:
         """Return the displayed impedances at a corner, as what is open."""
-        gains = _gains(corner, Mt, Bt)
-        loops = self.loops(corner, *gains)
-        above, below = self.family(corner).over_admittance(*gains)
+        loops = self.loops(corner, Mt, Bt)
+        above, below = self.family(corner).over_admittance(Mt, Bt)
         return Loops(multiply(loops.numerator, above), multiply(loops.closed, below), loops.period)
 
-    def stiffness_limits(
-        self, Mt: float, Bt: float, *, retuned: bool = True
-    ) -> dict[str, tuple[float, str]]:
-        """Return the smallest stiffness limit in N m/rad in every environment, and where it is.
-
-        `retuned`: the corners of the ranges of gains count as well.
-        """
+    def stiffness_limits(self, Mt: float, Bt: float) -> dict[str, tuple[float, str]]:
+        """Return the smallest stiffness limit in N m/rad in every environment, and where it is."""
         if self.axis is None:
             return {c.environment: (np.nan, NOT_COMPUTED) for c in self.corners}
         found: dict[str, tuple[float, str]] = {}
         seen = set()
         for corner in self.corners:
-            gains = Mt if corner.Mt is None else corner.Mt, Bt if corner.Bt is None else corner.Bt
-            key = corner.contact.at_stiffness(Fraction(1)), corner.place, corner.Kt, gains
-            if (corner.environment, key) in seen or not (retuned or corner.designed):
+            key = corner.contact.at_stiffness(Fraction(1)), corner.place
+            if (corner.environment, key) in seen:
                 continue
             seen.add((corner.environment, key))
-            limit = self.family(corner).stiffness_limit(*gains)
+            limit = self.family(corner).stiffness_limit(Mt, Bt)
             if corner.environment not in found or limit < found[corner.environment][0]:
                 found[corner.environment] = limit, corner.label
         return found
@@ -226,7 +214,7 @@ class Requirement(AbstractRequirement):
         return {}
 
     def _at(self, corner: ContactCorner, measure: Measure, *gains: FloatArray) -> FloatArray:
-        Mt, Bt = _gains(corner, *gains)
+        Mt, Bt = gains
         if measure is CREEP:
             return np.zeros_like(Bt) if corner.Kt else self.force_error / Bt
         if measure is CREEP_ANGLE:
@@ -276,14 +264,6 @@ class Requirement(AbstractRequirement):
 _NEARLY = 1 - 1e-9
 
 
-def _gains(corner: ContactCorner, Mt: FloatArray, Bt: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the gains at a corner."""
-    return (
-        Mt if corner.Mt is None else np.full_like(Mt, corner.Mt),
-        Bt if corner.Bt is None else np.full_like(Bt, corner.Bt),
-    )
-
-
 @dataclass(frozen=True)
 class ForceRequirement(AbstractRequirement):
     """Goals of one force controller."""
@@ -318,52 +298,33 @@ class ForceRequirement(AbstractRequirement):
 def corners_of(
     environments: tuple[Environment, ...],
     home: str,
-    gains: Mapping[str, tuple[Fraction, ...]],
     places: tuple[Place, ...],
     spring: Fraction = Fraction(0),
 ) -> tuple[ContactCorner, ...]:
-    """List where a controller is measured: contacts, ends of ranges of gains, places of the motor.
+    """List where a controller is measured: contacts, and places of the motor.
 
-    Gains without a range are empty; `home` is the contact designed for; the spring is in N m/rad.
+    `home` is the contact designed for; the spring is in N m/rad.
     """
     return tuple(
         corner
         for environment in environments
-        for corner in _corners(environment, home, gains, places, spring)
+        for corner in _corners(environment, home, places, spring)
     )
 
 
 def _corners(
     environment: Environment,
     home: str,
-    gains: Mapping[str, tuple[Fraction, ...]],
     places: tuple[Place, ...],
     spring: Fraction,
 ) -> Iterator[ContactCorner]:
     points = list(environment.corners)
     if environment.nominal not in points:
         points.insert(0, environment.nominal)
-    designed = (None, None, None)
-    retuned = [*product(*(gains.get(name) or (None,) for name in ("Mt", "Bt", "Kt")))]
-    tuned = dict.fromkeys([designed, *retuned])
-    for contact, place, (Mt, Bt, Kt) in product(points, places, tuned):
-        at = [*contact.texts(unit)]
-        at += [f"Mt = {float(Mt):.6g} {unit('kg*m^2')}"] if Mt is not None else []
-        at += [f"Bt = {float(Bt):.6g} {unit('N*m*s/rad')}"] if Bt is not None else []
-        at += [f"Kt = {float(Kt):.6g} {unit('N*m/rad')}"] if Kt is not None else []
-        label = f"{environment.name}, {', '.join((*at, *place.texts))}"
-        as_designed = (Mt, Bt, Kt) == designed
-        yield ContactCorner(
-            label,
-            environment.name,
-            contact,
-            place,
-            as_designed,
-            environment.name == home and as_designed,
-            None if Mt is None else float(Mt),
-            None if Bt is None else float(Bt),
-            spring if Kt is None else Kt,
-        )
+    for contact, place in product(points, places):
+        label = f"{environment.name}, {', '.join((*contact.texts(unit), *place.texts))}"
+        is_home = environment.name == home
+        yield ContactCorner(label, environment.name, contact, place, is_home, spring)
 
 
 def _margin(loops: Loops, measure: Measure) -> FloatArray:

@@ -16,7 +16,7 @@ _DIGITS = 4
 # What the worst values of the measures are, in words.
 MEANING = (
     "Margins: the worst of the loop that certify-switching is about, at the nominal values and at "
-    "every corner of the ranges of all contacts, the gains and the motor, each of them constant; "
+    "every corner of the ranges of all contacts and the motor, each of them constant; "
     "sampled, at every age of the force sample, always the same.",
     "Errors, transparency and effort: the worst with the designed gains, in the environment that "
     "the controller is designed for, at the nominal values and every corner of its ranges and of "
@@ -38,7 +38,7 @@ WEIGHED_MEANING = (
 )
 PASSIVITY_NOT_COMPUTED = (
     "Where a sampled law is passive is not computed with two periods, a spring Kt, late commands, "
-    "a filter of the force, missed deadlines, ranges of gains or of the motor, or beside other "
+    "a filter of the force, missed deadlines, ranges of the motor, or beside other "
     "axes; the frequency of another law is not shown in its place."
 )
 OPTIMUM_MEANING = (

@@ -2,7 +2,7 @@
 
 The worst margin at the corners of all ranges is floating point, and says nothing of values in
 between. Here it is only a proposal: rounded to its unfavorable side, it is proved for every
-stiffness, gain and motor in their ranges, each unknown but constant. With the open loop ``N/D`` and
+stiffness and motor in their ranges, each unknown but constant. With the open loop ``N/D`` and
 ``C = D + N``, of which `nrs_design.switched.cut_loop` gives D and C exactly, everywhere on the
 imaginary axis:
 

@@ -20,7 +20,7 @@ def doubt_stiffness(
     name: str, requirement: Requirement, contacts: tuple[Environment, ...], Mt: float, Bt: float
 ) -> Iterator[Doubt]:
     """Yield the contacts whose stiffness reaches the limit of an admittance."""
-    limits = requirement.stiffness_limits(Mt, Bt, retuned=False)
+    limits = requirement.stiffness_limits(Mt, Bt)
     for contact in contacts:
         highest, (limit, _) = float(contact.stiffness.high), limits[contact.name]
         if highest < limit or math.isnan(limit):
@@ -45,7 +45,7 @@ def enough_damping(
     """
 
     def holds(damping: float) -> bool:
-        limits = requirement.stiffness_limits(Mt, damping, retuned=False)
+        limits = requirement.stiffness_limits(Mt, damping)
         return limits[environment][0] > stiffness
 
     low, high = Bt, Bt

@@ -148,7 +148,7 @@ STIFFNESS_RANGE = Rule(
     "For every impedance controller, the whole declared stiffness range of the environment that "
     "it is designed for lies below the stiffness at which the loop that is proved first becomes "
     "unstable, that stiffness being constant (damping held, or in viscoelastic contact all "
-    "parameters in proportion), at every corner of the ranges of damping, gains and motor and at "
+    "parameters in proportion), at every corner of the ranges of damping and motor and at "
     "every age of a force sample. A "
     "design goal, computed in floating point: not a proof. It is of contact that is kept: with "
     "`contact: losable` a range that reaches the limit is inconclusive. What is proved about the "
@@ -159,11 +159,11 @@ GOAL = Rule(
     "NRS106",
     "The design meets its goal",
     "Every goal that the spec sets for a controller is met by the gains that ship: a margin of the "
-    "loop that is proved at the nominal values and at every corner of the ranges of all contacts, "
-    "gains and motor, sampled at every age of the force sample; the error of the "
+    "loop that is proved at the nominal values and at every corner of the ranges of all "
+    "contacts and the motor, sampled at every age of the force sample; the error of the "
     "displayed impedance or of the steady force at the nominal values and at every corner of the "
-    "ranges of the environment that it is designed for; the creep in free motion at the worst "
-    "gains. Values between corners are not looked at. Computed in floating point: not a proof. "
+    "ranges of the environment that it is designed for; the creep in free "
+    "motion. Values between corners are not looked at. Computed in floating point: not a proof. "
     "docs/design/goals.md defines every goal.",
     "Let `nrs-design optimize` choose gains that are given, widen their bounds, narrow the ranges, "
     "or relax the goal.",
@@ -251,7 +251,7 @@ RESPONSE_GOAL = Rule(
     "The goals `transparency` (largest force of the hand over the velocity of the tool, in free "
     "motion) and `accuracy` (largest share by which the tool is off the commanded velocity) hold "
     "for every impedance controller, at every frequency of their band and at all values of the "
-    "ranges of gains, motor and what is touched, each of them constant. The response is a quotient "
+    "ranges of motor and what is touched, each of them constant. The response is a quotient "
     "of polynomials with exact coefficients, enclosed over the whole box. Proved by a bound; "
     "refuted by a frequency and values at which it is exceeded. What is not covered is said to be "
     "not judged, and the gate fails on it. docs/design/transparency.md has the details.",

@@ -115,9 +115,7 @@ class _Search:
         self._gains = gains_text(result.designed)
 
     def run(self) -> Blocked:
-        found = tuple(
-            concessions(self._result.loaded, self._gains, self._result.certification.rate_limit)
-        )
+        found = tuple(concessions(self._result.loaded, self._result.certification.rate_limit))
         lines = found[:MOST_LINES]
         mild = [line for line in lines if line.least.word != WITHOUT]
         drastic = [line for line in lines if line.least.word == WITHOUT]

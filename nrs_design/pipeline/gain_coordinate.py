@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 
 from nrs_design.controllers.float32 import neighbors, round_significant
 from nrs_design.proof.text import exact_text
-from nrs_design.spec.interaction_parts import MOTION
 
 if TYPE_CHECKING:
     from nrs_design.pipeline.design import Designed
@@ -97,9 +96,5 @@ def freed_gains(designed: Designed) -> Iterator[GainCoordinate]:
         for gain, factors in free.given():
             at = laws[name].gains[gain]
             low, high = factors.min * at, factors.max * at
-            own = None if name == MOTION else designed.spec.controllers[name].gains().get(gain)
-            if own is not None and own.range is not None:
-                # What is given must lie where it may be retuned.
-                low, high = max(low, own.range[0].exact), min(high, own.range[1].exact)
             if low < high:
                 yield GainCoordinate(name, gain, units[name][gain], low, high, given=at)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from nrs_design.controllers.laws import LAWS
 from nrs_design.proof.text import exact_text
@@ -27,7 +27,7 @@ def with_gains(
     written: Written,
     change: Callable[[SpecDocument], None] = lambda document: None,
 ) -> LoadedSpec:
-    """Return the spec with gains given, and its text; ranges of gains stay.
+    """Return the spec with gains given, and its text.
 
     A `SpecError` if that is no valid spec, or a comment would be lost.
     """
@@ -64,10 +64,7 @@ def edited(loaded: LoadedSpec, change: Callable[[SpecDocument], None]) -> Loaded
 def _put(document: SpecDocument, designed: Designed, name: str, gain: str, text: str) -> None:
     """Give a gain of a controller, in the place of what it was chosen by."""
     spec, node = designed.spec.controllers[name], document.root["controllers"][name]
-    given = spec.gains().get(gain)
-    ends = None if given is None or given.range is None else [end.text for end in given.range]
-    said: Any = text if ends is None else {"nominal": text, "range": ends}
-    document.put(node, LAWS[spec.type].fixed.get(gain, gain), said)
+    document.put(node, LAWS[spec.type].fixed.get(gain, gain), text)
     if (replaced := spec.freeable.get(gain)) is not None:
         document.drop(node, replaced)
 

@@ -8,7 +8,7 @@ numbers as they are written, and nothing is written without that proof. With sti
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from decimal import Decimal
 from fractions import Fraction
@@ -50,8 +50,6 @@ class RosExport:
     text: str  # The file; empty without a proof
     # By axis: its modes, and what is shown of them.
     certificates: Mapping[str, Certificate]
-    # Gains of which the spec declares a range: only their designed values are written and proved.
-    ranged: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,8 +108,7 @@ def export_controllers(
         text = ""
         if worst == "proved" and len(certificates) == len(chosen):
             text = _header(name, chosen, sampling, certificates) + body
-        ranged = tuple(dict.fromkeys(gain for item in chosen.values() for gain in _ranged(item)))
-        yield RosExport(name, worst, text, certificates, ranged)
+        yield RosExport(name, worst, text, certificates)
 
 
 def _controllers(designs: Mapping[str, Designed]) -> Iterator[tuple[str, dict[str, Controller]]]:
@@ -142,26 +139,6 @@ def _controllers(designs: Mapping[str, Designed]) -> Iterator[tuple[str, dict[st
                 at=("controllers", own[odd].name),
             )
         yield name, own
-
-
-def _ranged(item: _Chosen) -> tuple[str, ...]:
-    """Return the gains that the spec lets be retuned while the robot runs."""
-    gains = item.designed.spec.controllers[item.controller.name].gains()
-    return tuple(name for name, given in gains.items() if given.ranged)
-
-
-def not_for_ranges(ranged: Sequence[str]) -> str:
-    """Say that a proof is not for the declared ranges of gains.
-
-    Parameters
-    ----------
-    ranged : sequence of str
-        Their names, at least one.
-    """
-    return (
-        f"the declared ranges of {' and '.join(ranged)}: only the designed values are written and "
-        "proved; whoever retunes them needs another export"
-    )
 
 
 def _sampling(designed: Designed) -> SamplingSpec:
@@ -294,7 +271,6 @@ def _header(
     certificates: Mapping[str, Certificate],
 ) -> str:
     least, most = sampling.delay
-    ranged = tuple(dict.fromkeys(gain for item in chosen.values() for gain in _ranged(item)))
     first = next(iter(chosen.values())).designed
     lines = [
         f"nrs-design ros2 of {first.spec.name}, controller {name}, nrs-design {__version__}",
@@ -303,7 +279,6 @@ def _header(
         "samples old",
         *(line for axis, item in chosen.items() for line in _about(axis, item, certificates[axis])),
         *(f"outside the proof: {text}" for text in OUTSIDE),
-        *((f"outside the proof: {not_for_ranges(ranged)}",) if ranged else ()),
         "outside the proof: switching to another controller; the same joint_damping acts on all "
         "axes, and no force on those that are not selected",
         *(("outside the proof: what the axes do to each other",) if len(chosen) > 1 else ()),

@@ -8,13 +8,11 @@ from fractions import Fraction
 
 import numpy as np
 
-from nrs_design.controllers.controller_design import Controller, ControllerDesign
-from nrs_design.controllers.float32 import to_float32
-from nrs_design.controllers.gain_range import gain_interval
+from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.models.actuator import Actuator
 from nrs_design.models.interval import Interval
 from nrs_design.models.plant import Plant
-from nrs_design.simulation.build_scenario import Pick, drawn_laws
+from nrs_design.simulation.build_scenario import drawn_laws
 from nrs_design.simulation.scenario import Scenario
 from nrs_design.spec import InteractionDesignSpec
 from nrs_design.spec.scenarios import LARGEST_SEED
@@ -22,7 +20,7 @@ from nrs_design.spec.scenarios import LARGEST_SEED
 
 @dataclass(frozen=True, slots=True)
 class Drawn:
-    """A run that is to be simulated, with drawn tissue, motor, gains and seed."""
+    """A run that is to be simulated, with drawn tissue, motor and seed."""
 
     scenario: Scenario
     plant: Plant
@@ -38,7 +36,7 @@ def draw(
     scenario: Scenario,
     seed: int,
 ) -> Drawn:
-    """Draw every parameter of tissue and motor, every gain, and the seed of the noise.
+    """Draw every parameter of tissue and motor, and the seed of the noise.
 
     Each is uniform in its range, independent of the others, and stays for the run; what has no
     range stays as it is.
@@ -74,21 +72,8 @@ def draw(
         plant = replace(plant, actuator=motor)
     surfaces = tuple(surface.with_laws(laws) for surface in scenario.surfaces)
     own = int(rng.integers(0, LARGEST_SEED + 1))
-    controllers = tuple(_retuned(spec, one, pick, parameters) for one in design.controllers)
     scenario = replace(scenario, surfaces=surfaces, seed=own)
-    return Drawn(scenario, plant, replace(design, controllers=controllers), parameters)
-
-
-def _retuned(
-    spec: InteractionDesignSpec, controller: Controller, pick: Pick, parameters: dict[str, float]
-) -> Controller:
-    """Draw the gains that have a range, in single precision, as they would ship."""
-    law, gains = controller.law, dict(controller.law.gains)
-    for gain, declared in spec.controllers[controller.name].gains().items():
-        if declared.ranged:
-            gains[gain] = to_float32(Fraction(pick(gain_interval(declared, gains[gain]))))
-            parameters[f"{controller.name} {gain}"] = float(gains[gain])
-    return replace(controller, law=law.of(gains))
+    return Drawn(scenario, plant, design, parameters)
 
 
 def _numbers(law: object) -> Iterable[tuple[str, float]]:

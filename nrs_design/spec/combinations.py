@@ -22,7 +22,6 @@ from nrs_design.spec.features import (
     DISTURBED,
     DWELL,
     FILTER,
-    GAIN_RANGE,
     GIVEN_LOOP,
     HAND,
     HEAVY_AT_ONCE,
@@ -73,7 +72,6 @@ CHANGING: tuple[tuple[Feature[Spec], ...], ...] = (
     (MOTOR_RANGE,),
     (SEVERAL_CONTACTS,),
     (AT_ONCE,),
-    (GAIN_RANGE,),
     (TISSUE_RANGE,),
 )
 

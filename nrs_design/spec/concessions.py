@@ -7,7 +7,7 @@ value, a shorter delay, a dwell time, a key left out. Whether the result is a va
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
@@ -37,7 +37,6 @@ MOST_STEPS = 32
 UP, DOWN, WITHIN, WITH, WITHOUT = "up to", "down to", "within", "with", "without"
 
 Edit = tuple[Keys, Data | None]
-Gains = Mapping[str, Mapping[str, str]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,16 +69,13 @@ class Concession:
         return ((self.at, form.says(step)), *((at, None) for at in self.beside))
 
 
-def concessions(loaded: LoadedSpec, gains: Gains, slowest: float | None) -> Iterator[Concession]:
+def concessions(loaded: LoadedSpec, slowest: float | None) -> Iterator[Concession]:
     """Yield how single lines of a spec could ask for less, the mildest first.
 
     Parameters
     ----------
     loaded : LoadedSpec
         The spec.
-    gains : mapping
-        Those that are designed, as decimals in SI, by controller and name: a range of a gain that
-        the spec leaves to the design is about this one.
     slowest : float or None
         Decay rate of the slowest mode in 1/s, or None: it says which dwell times are tried.
     """
@@ -88,7 +84,7 @@ def concessions(loaded: LoadedSpec, gains: Gains, slowest: float | None) -> Iter
     if isinstance(spec, SwitchedSystemSpec):
         yield from _of_matrices(spec, said, slowest)
     elif isinstance(spec, InteractionDesignSpec):
-        yield from _of_interaction(spec, said, gains, slowest)
+        yield from _of_interaction(spec, said, slowest)
 
 
 def _of_matrices(
@@ -105,7 +101,7 @@ def _of_matrices(
 
 
 def _of_interaction(
-    spec: InteractionDesignSpec, said: dict[str, Data], gains: Gains, slowest: float | None
+    spec: InteractionDesignSpec, said: dict[str, Data], slowest: float | None
 ) -> Iterator[Concession]:
     for name in sorted(spec.touched):
         identified = _identified(said, ("environments", name))
@@ -116,10 +112,6 @@ def _of_interaction(
     for place, quantity in spec.ranges.items():
         if quantity.varies and not quantity.fixed:
             yield _with((*place, "varies"), "false", "true")
-    for name, controller in spec.controllers.items():
-        for key, gain in controller.gains().items():
-            if gain.ranged:
-                yield from _range(said, ("controllers", name, key), center=gains[name].get(key))
     if spec.sampling is not None:
         yield from _delay(*spec.sampling.delay)
         yield from _times(said, ("sampling", "latency"))
@@ -185,15 +177,13 @@ def _identified(said: dict[str, Data], at: Keys) -> tuple[Keys, ...]:
     return tuple((*at, key) for key in ("range_id", "range_covers") if key in part)
 
 
-def _range(
-    said: dict[str, Data], at: Keys, beside: tuple[Keys, ...] = (), center: str | None = None
-) -> Iterator[Concession]:
-    """Yield the range of a quantity, if one is written; the center is by default its nominal."""
+def _range(said: dict[str, Data], at: Keys, beside: tuple[Keys, ...] = ()) -> Iterator[Concession]:
+    """Yield the range of a quantity, if one is written; the center is its nominal value."""
     part = _get(said, at)
     if not isinstance(part, dict) or not isinstance(part.get("range"), tuple):
         return
     low, high = map(str, part["range"])
-    middle = str(part.get("nominal", "")) if center is None else _in_unit_of(low, center)
+    middle = str(part.get("nominal", ""))
     if not middle or _number(low) >= _number(high, low):
         return
     ends = (low, high, middle)
@@ -201,21 +191,12 @@ def _range(
     down = partial(_ends, ends, (True, False))
     both = partial(_ends, ends, (True, True))
     others: tuple[Way, ...] = ()
-    # The range of a gain is about the number that ships, which no decimal of few digits is.
-    if center is None and _number(low, middle) < _number(middle) < _number(high, middle):
+    if _number(low, middle) < _number(middle) < _number(high, middle):
         others = (
             Way(UP, up, lambda k: up(k)[1], high, PARTS),
             Way(DOWN, down, lambda k: down(k)[0], low, PARTS),
         )
     least = Way(WITHIN, both, lambda k: in_one_line(both(k)), in_one_line((low, high)), PARTS)
-    if center is not None:
-        least = Way(
-            WITHIN,
-            lambda k: both(k) if k else None,
-            lambda k: in_one_line(both(k)) if k else "no range",
-            least.asked,
-            PARTS,
-        )
     yield Concession((*at, "range"), least, others, beside)
 
 
@@ -259,12 +240,6 @@ def _number(text: str, unit_of: str = "") -> Fraction:
     if not unit or not other or unit.strip() == other.strip():
         return value
     return value * parse_unit(unit.strip()).factor / parse_unit(other.strip()).factor
-
-
-def _in_unit_of(quantity: str, number: str) -> str:
-    """Return a number in SI as a quantity in the unit of another one."""
-    unit = quantity.partition(" ")[2]
-    return f"{exact_text(Fraction(number) / parse_unit(unit.strip()).factor)} {unit}"
 
 
 def _times(said: dict[str, Data], at: Keys) -> Iterator[Concession]:

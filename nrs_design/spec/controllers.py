@@ -41,11 +41,6 @@ _CONTACTS = (
 
 _GOALS = "goals of this controller; they replace the spec's own, key by key"
 
-_GAIN_RANGE = (
-    "range: [lowest, highest] beside them is what the proof covers if the gain is retuned while "
-    "the robot runs"
-)
-
 
 # What the motion loop gets from a controller.
 Command = Literal["velocity", "position"]
@@ -152,7 +147,7 @@ class AbstractControllerSpec(SpecModel):
         return None
 
     def gains(self) -> dict[str, GainSpec]:
-        """Return the gains that the design may choose, or that may be retuned, by name."""
+        """Return the gains that the design may choose, by name."""
         values = ((name, getattr(self, name)) for name in type(self).model_fields)
         return {name: value for name, value in values if isinstance(value, GainSpec)}
 
@@ -180,17 +175,16 @@ class ImpedanceControllerSpec(AbstractControllerSpec):
     )
     Mt: InertiaGain = Field(
         description="admittance inertia in kg*m^2: one quantity, {min: ..., max: ...} for the "
-        f"design, or {{nominal: ...}}; 0 allowed; {_GAIN_RANGE}"
+        "design, or {nominal: ...}; 0 allowed"
     )
     Bt: DampingGain = Field(
         description="admittance damping in N*m*s/rad: one quantity, {min: ..., max: ...} for the "
-        f"design, or {{nominal: ...}}; > 0; {_GAIN_RANGE}"
+        "design, or {nominal: ...}; > 0"
     )
     Kt: SpringGain | None = optional(
         "admittance spring in N*m/rad, which draws the robot back to its position "
-        "reference: one quantity, or {nominal: ..., range: ...}; > 0; default: no spring; with "
-        "one, contact is taken for kept unless the spec says `contact: losable`; "
-        f"{_GAIN_RANGE}"
+        "reference: one quantity, or {nominal: ...}; > 0; default: no spring; with one, contact "
+        "is taken for kept unless the spec says `contact: losable`"
     )
     weights: CostWeights = Field(
         default_factory=CostWeights, description="weights of the design cost, no unit"

@@ -295,8 +295,6 @@ def _gain(name: str, gain: GainSpec) -> Iterator[Line]:
         yield Line(name, gain.min.text, _text(gain.min.si), unit)
     else:
         yield _interval(name, bounds, bounds, unit)
-    if gain.range is not None:
-        yield _interval(f"{name}.range", gain.range, gain.range, unit)
 
 
 def _number(name: str, number: Fraction) -> Line:

@@ -103,12 +103,6 @@ def _dwell(*, sampled: bool) -> Callable[[Spec], str | None]:
     return find
 
 
-def _gain_range(spec: Spec) -> tuple[str, str] | None:
-    """Return the first controller with a range of a gain, and that gain."""
-    gains = ((name, key, g) for name, c in spec.controllers.items() for key, g in c.gains().items())
-    return next(((name, key) for name, key, gain in gains if gain.ranged), None)
-
-
 def _damped_force(spec: Spec) -> tuple[str, str] | None:
     """Return a controller of the force of what is no spring, and the first such environment."""
     for name, controller in spec.controllers.items():
@@ -328,12 +322,6 @@ UNSPRUNG = _F(
     "controllers.{0}",
     "give all of them a spring",
     _controller(lambda c: not c.sprung),
-)
-GAIN_RANGE = _F(
-    "the range of {0[1]} of {0[0]!r}",
-    "controllers.{0[0]}.{0[1]}",
-    "give the gain one value only",
-    _gain_range,
 )
 BLEEDING = _F(
     "{0!r}, whose integral bleeds,",

@@ -303,11 +303,9 @@ class AbstractInteractionSpec(SpecModel):
 
     @property
     def has_ranges(self) -> bool:
-        """Whether the actuator, a touched environment, a gain or the links have a range."""
+        """Whether the actuator, a touched environment or the links have a range."""
         if self.coupling is not None:
             return True
         if any(not item.fixed for item in self.motor_ranges.values()):
             return True
-        return any(not self.environments[name].fixed for name in self.touched) or any(
-            gain.ranged for c in self.controllers.values() for gain in c.gains().values()
-        )
+        return any(not self.environments[name].fixed for name in self.touched)

@@ -12,7 +12,6 @@ if TYPE_CHECKING:
     from nrs_design.models.contact.law import AbstractNonlinearLaw
     from nrs_design.spec.controllers import IdleStatesSpec, Offset
     from nrs_design.spec.coupling import CouplingSpec
-    from nrs_design.spec.gain_fields import GainSpec
     from nrs_design.spec.sampling import SamplingSpec
     from nrs_design.spec.switching import SwitchingSpec
 
@@ -44,7 +43,6 @@ class OperatingConditions:
     largest_integral: Fraction | None  # Where the integral of the force error is cut off, in rad
     coupling: CouplingSpec | None  # What axes do to each other
     touched: frozenset[str]  # The environments that some controller touches
-    gains: Mapping[str, Mapping[str, GainSpec]]  # Declared, by controller and name
     constant_force: bool  # A goal is about a constant force
     initial_force: Fraction | Literal["largest"] | None  # Goal about saturation, in N m
     preloads: Mapping[str, Preload]  # Of the environments that are touched

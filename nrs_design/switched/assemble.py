@@ -151,12 +151,12 @@ def assemble(
         switches.
     """
     from nrs_design.spec.build_plant import build_conditions
-    from nrs_design.switched.gain_box import gain_boxes
+    from nrs_design.switched.gain_box import GainBox
 
     _check_scale(scale)
     conditions = build_conditions(spec)
     plant = plant.scaled(scale, conditions.touched)
-    boxes = gain_boxes(conditions.gains, design, scale)
+    boxes = {c.name: GainBox.point(c.law) for c in design.controllers}
     coupling = _coupling_of(conditions.coupling, plant, scale)
     if conditions.sampling is not None:
         from nrs_design.switched.sampled_loop import close_sampled_loop

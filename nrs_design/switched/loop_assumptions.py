@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from fractions import Fraction
 from itertools import chain
 
-from nrs_design.axis import AxisType
 from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.controllers.float32 import exact_decimal
 from nrs_design.controllers.gains import idle_decay
@@ -24,7 +23,6 @@ from nrs_design.switched.assumptions import (
     ranges_text,
     rule_texts,
 )
-from nrs_design.switched.gain_box import GainBox
 from nrs_design.switched.shared_state import SharedState
 
 _TAKEN = {
@@ -64,7 +62,8 @@ def assume_loop(
         *_kept_texts(loop, losable=losable, free=free),
         *_switch_texts(loop, rules),
         NOT_MODELLED,
-        *_gain_texts(loop.boxes, loop.design.command, loop.design.axis),
+        say("numbers.gains"),
+        *command_texts(loop.design.command, loop.design.axis),
     )
 
 
@@ -184,13 +183,3 @@ def _switch_texts(loop: SharedState, rules: SwitchingSpec) -> Iterator[Assumptio
     yield from rule_texts(rules, "mode" if rules.names_contacts else "controller")
     if not rules.names_contacts and rules.dwell_time is None:
         yield say("any-signal.environment")
-
-
-def _gain_texts(boxes: Mapping[str, GainBox], command: str, axis: AxisType) -> Iterator[Assumption]:
-    ranged = {name: box for name, box in boxes.items() if not box.fixed}
-    yield say("numbers.gains", where=", or anywhere in their ranges" if ranged else "")
-    yield from command_texts(command, axis)
-    for name, box in ranged.items():
-        yield from box.range_texts(name, axis)
-    for text in dict.fromkeys(box.law.retuned_text for box in ranged.values()):
-        yield say("at-a-switch.law", text=text)

@@ -115,7 +115,6 @@ def assume_sampled(
         ),
         say("numbers.coefficients", coefficients=_coefficients(frame, gains)),
         *(() if frame.step.takes else command_texts(design.command, design.axis)),
-        *_retuned_texts(gains),
         say("arithmetic.rounding", counts=", ".join(f"{n} {k}" for n, k in frame.counts.items())),
         _angle_text(conditions.largest_angle, conditions.axis),
         say(f"not-quantized.{'sensor' if conditions.sensed else 'sampled'}{but}"),
@@ -235,14 +234,6 @@ def _loss_texts(loss: Loss, design: ControllerDesign, frame: Frame) -> Iterator[
         yield from kept_by_laws(design, alone=frame.idle is None)
     elif loss != "on the surface":
         yield say(_LOST[loss])
-
-
-def _retuned_texts(gains: Mapping[str, RangedLaw]) -> Iterator[Assumption]:
-    ranged = {name: item for name, item in gains.items() if item.box.ranges}
-    for name, item in ranged.items():
-        yield from item.texts(name)
-    if ranged:
-        yield say("at-a-switch.sampled-retuned")
 
 
 def _angle_text(angle: Fraction | None, axis: AxisType) -> Assumption:

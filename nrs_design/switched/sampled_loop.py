@@ -96,7 +96,7 @@ def close_sampled_loop(
         too long for what the links do.
     """
     _check_periods(sampling)
-    laws = {c.name: _sampled(c, sampling, boxes[c.name]) for c in design.controllers}
+    laws = {c.name: _sampled(c, sampling) for c in design.controllers}
     ranges = plant.actuator_ranges
     links = coupling if isinstance(coupling, AxesCoupling) else None
     arm = coupling if isinstance(coupling, Mobility) else None
@@ -256,9 +256,9 @@ def _turns(sampling: SamplingSpec) -> tuple[Turn, ...]:
     return Turn.BOTH, Turn.ADMITTANCE if faster else Turn.MOTION
 
 
-def _sampled(controller: Controller, sampling: SamplingSpec, box: GainBox) -> RangedLaw:
+def _sampled(controller: Controller, sampling: SamplingSpec) -> RangedLaw:
     period, method = sampling.outer, sampling.admittance
-    return RangedLaw.of(controller.law.discretize(period, method), box, period, method)
+    return RangedLaw(controller.law.discretize(period, method), Box({}))
 
 
 def _frame(

@@ -13,7 +13,6 @@ from tests.support import (
     HARD,
     PRINT_ERROR,
     ROBOT,
-    ROOT,
     SOFT_TISSUE,
     document_of,
     run,
@@ -112,16 +111,6 @@ def test_remark_that_decides_nothing(tmp_path):
     result = run("verify", "c.json", spec, "-v", cwd=tmp_path, code=3)
     assert result.stdout.startswith("INCONCLUSIVE for this spec, checked exactly")
     assert "does not exist. This alone says nothing about stability." in result.stdout
-
-
-def test_ranges_of_gains_are_said(tmp_path):
-    spec = ROOT / "specs" / "neuroboscope" / "retuned-gains.nrs.yaml"
-    result = run(
-        "verify", ROOT / "reports" / "retuned-gains.cert.json", spec, "-v", cwd=tmp_path, code=0
-    )
-    lines = result.stdout.splitlines()
-    assert "  insertion: Mt anywhere in [0.008 kg*m^2, 0.012 kg*m^2]" in lines
-    assert "  withdrawal: Bt anywhere in [0.832 N*m*s/rad, 1.248 N*m*s/rad]" in lines
 
 
 def test_altered(certified, tmp_path):

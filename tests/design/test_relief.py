@@ -19,7 +19,7 @@ EXACT = TransferFunction((0.99739, 56.8219), (0.0351, 1.99739, 56.8219))  # thes
 
 
 def loops(*contacts, motion=EXACT):
-    return Requirement(axis_with(motion), corners_of(contacts, contacts[0].name, {}, (PLACE,)))
+    return Requirement(axis_with(motion), corners_of(contacts, contacts[0].name, (PLACE,)))
 
 
 def contact(name, k):

@@ -29,7 +29,6 @@ OF_SPECS = ("check", "tune", "certify-switching", "simulate", "optimize")
 # These are to lose a key that goes; what is asked of them does not depend on it.
 WITHOUT = {
     "everything-at-once": r"^coupling:\n( .*\n)*|^ *load_inertia:.*\n",
-    "transparency": r", range: \[1\.9 N\*m\*s/rad, 2\.1 N\*m\*s/rad\]",
 }
 GOES = re.compile(
     "soft-tissue-axes|retuned-gains|six-torques|three-axes|parallel|pushed-in|unknown-environment"

@@ -60,17 +60,6 @@ def test_bounds_of_the_spec_and_factors():
     assert Kp.high == Fraction("1.6") * designed.design.motion.Kp
 
 
-def test_a_spring_stays_where_it_may_be_retuned():
-    spring = "Kt: {nominal: 2 N*m/rad, range: [1.5 N*m/rad, 3 N*m/rad]}"
-    designed = freed(
-        "insertion: {Kt: {min: 0.5, max: 2}}",
-        ("type: impedance\n", f"type: impedance\n    {spring}\n"),
-        ("contact: losable", "contact: kept"),
-    )
-    (Kt,) = freed_gains(designed)
-    assert (Kt.low, Kt.high) == (Fraction("1.5"), 3)
-
-
 def test_written_motion_gains_are_those_that_ship():
     designed = freed("motion: {Kp: {min: 0.6, max: 1.6}, Kd: {min: 0.6, max: 1.6}}")
     written = {("motion", "Kp"): "187770 rpm/rad", ("motion", "Kd"): "2987.5 rpm*s/rad"}

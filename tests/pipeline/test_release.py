@@ -75,7 +75,7 @@ def test_tissue_without_a_rest_position_has_no_deflection(tmp_path):
 
 @pytest.mark.parametrize(
     ("name", "reason"),
-    [("force-limit-offset", "sets parts of the state anew"), ("retuned-gains", None)],
+    [("force-limit-offset", "sets parts of the state anew"), ("soft-tissue-redesigned", None)],
 )
 def test_what_is_not_shown_has_its_reason(name, reason):
     found = physical_outputs(result_of(ROBOT / f"{name}.nrs.yaml"))

@@ -398,19 +398,6 @@ def test_factor_of_the_word_is_that_of_the_golden_ratio(report):
     assert "a mean growth rate of" in words(report("period"))
 
 
-@pytest.mark.slow
-def test_ranges_of_gains_are_listed_with_what_the_proof_needs(report):
-    path = ROOT / "specs" / "neuroboscope" / "retuned-gains.nrs.yaml"
-    text = words(report_of(path))
-    assert "Declared ranges of gains" in text
-    assert "1.72 N*m*s/rad\n2.58 N*m*s/rad" in text
-    assert "These gains may be retuned while the robot runs" in text
-    assert "Controllers that do not keep their velocity when a gain is retuned." in text
-    soft = words(report("proved"))
-    assert "Declared ranges of gains" not in soft
-    assert "keep their velocity" not in soft
-
-
 def test_mixture_shows_the_eigenvalue_of_the_average_and_grows(report):
     mixture = report("mixture")
     text = words(mixture)

@@ -131,9 +131,6 @@ CHANGES = {
     }
     | first(contacts=[["soft", "stiff"]]),
     f.SEVERAL_CONTACTS: TWO | first(contacts=["soft", "stiff"]),
-    f.GAIN_RANGE: first(
-        Bt={"nominal": "2.15 N*m*s/rad", "range": ["2 N*m*s/rad", "2.3 N*m*s/rad"]}
-    ),
     f.FILTER: {"sensor": {"filter": {"cutoff": "30 Hz"}}},
     f.DISTURBED: {"disturbances": {"command": "8 deg/s"}},
     f.COMMAND: {"disturbances": {"command": "8 deg/s"}},

@@ -42,10 +42,6 @@ PARTS_OF = {
         "time_constant: 0.0351 s",
         "time_constant: {nominal: 0.0351 s, range: [0.034 s, 0.036 s]}",
     ),
-    "controllers.insertion.Bt.range": (
-        f"{BT}}}\n  withdrawal",
-        f"{BT}, range: [1 N*m*s/rad, 3 N*m*s/rad]}}\n  withdrawal",
-    ),
 }
 
 
@@ -57,8 +53,7 @@ def loaded(text: str) -> LoadedSpec:
 
 
 def lines_of(spec: LoadedSpec, slowest: float | None = None) -> dict[str, Concession]:
-    gains = {name: {"Bt": "2.15"} for name in getattr(spec.spec, "controllers", ())}
-    return {".".join(map(str, line.at)): line for line in concessions(spec, gains, slowest)}
+    return {".".join(map(str, line.at)): line for line in concessions(spec, slowest)}
 
 
 def at_least(spec: LoadedSpec, line: Concession) -> LoadedSpec:

@@ -8,11 +8,8 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from benchmarks.single_precision import Choices, simulate_single_precision
 from nrs_design.certificates.bounds import bound_on
 from nrs_design.certificates.certificate import Verdict
-from nrs_design.controllers.laws import Admittance
-from nrs_design.controllers.step_law import StepFrame, build_law
 from nrs_design.pipeline import run_design
 from nrs_design.pipeline.certification import assemble_spec
 from nrs_design.proof.contradiction import find_contradiction
@@ -397,17 +394,6 @@ def test_a_force_gain_that_shakes_the_axis_is_refuted(tmp_path):
     assert max(radii) > 1
 
 
-def test_gains_in_a_range_are_corners_of_their_coefficients(tmp_path):
-    ranged = (f"{BT}}}", f"{BT}, range: [1 N*m*s/rad, 3 N*m*s/rad]}}")
-    system = system_of(tmp_path, "{period: 2 ms, delay: 0}", ranged)
-    # Two controllers, two ends of k and of exp(-T/tau), of a and of b/(1 - a).
-    assert len(system.modes) == 32
-    assert len(system.contact.free) == 16
-    texts = " ".join(system.assumptions)
-    assert "b/(1 - a) of insertion stays in [0.33333" in texts
-    assert "each rounded once" in texts
-
-
 @pytest.mark.slow
 def test_runs_of_position_and_force_control_keep_the_certified_bound(tmp_path):
     """200 runs in single precision, half of them greedy, under friction: none is beyond, some near.
@@ -444,44 +430,6 @@ def test_runs_of_position_and_force_control_keep_the_certified_bound(tmp_path):
         worst = np.maximum(worst, high * np.abs(theta))
     assert worst.max() <= float(bound.level)
     assert worst.max() > 0.5 * float(bound.level)
-
-
-@pytest.mark.slow
-def test_runs_that_retune_their_gains_keep_the_certified_bound(tmp_path):
-    """Other gains of the ranges at any sample, in single precision, under commands that go on.
-
-    The bound of the nominal gains alone is exceeded: what is proved for the ranges is needed.
-    """
-    head, _, _ = TEXT.partition("  withdrawal:")
-    sampling = "{period: 2 ms, delay: 1}\ndisturbances: {command: 8 deg/s}\ncontact: kept"
-    bounds = {}
-    for name, gain in (("ranged", ", range: [1.2 N*m*s/rad, 2.5 N*m*s/rad]}"), ("point", "}")):
-        gains = (f"{BT}}}", f"Bt: {{nominal: 2.15 N*m*s/rad{gain}")
-        text = f"{head}switching: arbitrary\n"
-        system = system_of(tmp_path, sampling, gains, text=text)
-        bounds[name] = float(bound_on(system, certify(system).statements, "force").level)
-    rng, runs, steps = np.random.default_rng(18), 200, 800
-    values = [Fraction(float(v)) for v in np.linspace(1.2, 2.5, 14).astype(np.float32)]
-    inertia = Fraction(np.float32(0.01).item())
-    laws = {str(Bt): Admittance(inertia, Bt).discretize(Fraction(1, 500), "exact") for Bt in values}
-    shape = (runs, steps)
-    # Half of the runs keep to few gains and turn the command around in time with the loop.
-    half_period = rng.integers(20, 120, (runs, 1))
-    turned = np.where((np.arange(steps) // half_period) % 2 == 0, 1.0, -1.0)
-    few = np.where(turned > 0, 0, rng.integers(0, 2, (runs, 1)) * 13)
-    steady = np.arange(runs)[:, None] < runs // 2
-    choices = Choices(
-        np.where(steady, few, rng.integers(0, 14, shape)),
-        np.ones(shape, dtype=np.int64),
-        rng.uniform(720.56 * 0.24**2, 768.17 * 0.24**2, shape),
-        np.full(shape, 4.8417e-4),
-        np.full(shape, 0.0351),
-        np.radians(8.0) * turned,
-    )
-    motion = StepFrame(Fraction(np.float32(117359.43).item()), Fraction(1_030_000))
-    law = build_law(motion, laws)
-    forces = simulate_single_precision(law, 0.002, choices, np.zeros(runs), losable=False)
-    assert bounds["point"] < np.abs(forces).max() <= bounds["ranged"]
 
 
 def radius(system, wanted="insertion"):

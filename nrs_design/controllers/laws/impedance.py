@@ -24,16 +24,6 @@ ONE = Fraction(1)
 # Below it, single precision keeps fewer digits.
 _NORMAL = Fraction(1, 2**126)
 
-KEPT_VELOCITY = (
-    "While a gain changes, the admittance keeps its velocity vm: the controller integrates "
-    "vm' = (F - Bt vm)/Mt with the gains of the moment. One that keeps Mt vm, or another memory of "
-    "a filter, is not covered."
-)
-STATIC_LAW = (
-    "With Mt = 0 the admittance has no memory: its velocity is F/Bt with the Bt of the moment, and "
-    "jumps with it."
-)
-
 
 @dataclass(frozen=True, slots=True)
 class Admittance(AbstractCompliantLaw[ImpedanceControllerSpec]):
@@ -180,11 +170,6 @@ class Admittance(AbstractCompliantLaw[ImpedanceControllerSpec]):
             "Contact is not lost while an impedance controller is active: free motion under one is "
             "not one of the modes."
         )
-
-    @property
-    def retuned_text(self) -> str:
-        """Say what the controller keeps while its gains change."""
-        return KEPT_VELOCITY if self.Mt else STATIC_LAW
 
 
 LAW = Admittance

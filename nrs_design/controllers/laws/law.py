@@ -160,11 +160,6 @@ class AbstractCompliantLaw(AbstractLaw, Generic[S]):
         `alone`: all controllers give the motion loop the same kind of command.
         """
 
-    @property
-    def retuned_text(self) -> str:
-        """Say what the controller keeps while its gains change."""
-        return "While a gain changes, the controller keeps its states."
-
 
 # A law that fits its spec: who takes both from one controller need not ask which.
 CompliantLaw = AbstractCompliantLaw[Any]

@@ -12,7 +12,6 @@ import numpy as np
 from nrs_design.axis import unit
 from nrs_design.controllers.controller_design import Controller, ImpedanceOptimum
 from nrs_design.controllers.float32 import exact_decimal, neighbors, round_significant, to_float32
-from nrs_design.controllers.gain_range import faults_of_ranges, gain_interval
 from nrs_design.controllers.laws import Admittance
 from nrs_design.design.constrained import best_rounding, meets, optimize_with_goals
 from nrs_design.design.doubts import doubt_bounds
@@ -71,12 +70,12 @@ class ImpedanceAnalysis(AbstractControllerAnalysis):
     lowest_limit: float
     limit_at: str
     stiff: tuple[Doubt, ...]  # Contacts that are too stiff for the shipped gains
-    # Where the displayed admittance is passive, exactly, over the ranges of gains and motor; None
-    # for a sampled law.
+    # Where the displayed admittance is passive, exactly, over the ranges of the motor; None for a
+    # sampled law.
     band: PassiveBand | None = None
     # The same for the law that is sampled, for every age of the force sample; empty where it is not
     # computed: without sampling, with two periods, a spring, a filter, late commands, or ranges of
-    # gains or motor, and beside other axes.
+    # the motor, and beside other axes.
     sampled: tuple[SampledBand, ...] = ()
     # Of everything that it touches, in m; None if there is none, or not the same for all.
     lever_arm: float | None = None
@@ -128,9 +127,6 @@ def choose(task: Task, given: ImpedanceControllerSpec) -> Choice:
         law = Admittance(Mt, Bt, _spring(given))
     else:
         law, optimum = _optimize(task, given)
-    for gain, outside in faults_of_ranges(given, law.gains):
-        remedy = "move the range, or let min and max lie inside it"
-        raise DesignError(outside, remedy=remedy, at=(gain, "range"))
     return law, optimum
 
 
@@ -166,7 +162,7 @@ def analyze(
         lowest_limit=limit,
         limit_at=limit_at,
         stiff=tuple(doubt_stiffness(controller.name, requirement, task.contacts(given), Mt, Bt)),
-        band=_band(task, given, controller),
+        band=_band(task, controller),
         sampled=_sampled_bands(task, given, controller),
         lever_arm=_lever_arm(task, given),
         responses=tuple(_responses(task, given, controller)),
@@ -180,8 +176,7 @@ def _ranged_loops(
     """Return the loops over whose ranges margins can be proved."""
     if not isinstance(task.axis, ContinuousAxis) or task.plant.load_inertia is not None:
         return ()
-    moving = _moving(task, given, controller)
-    return ranged_loops(task.axis, controller.law, task.contacts(given), moving)
+    return ranged_loops(task.axis, controller.law, task.contacts(given), _moving(task))
 
 
 def _given_optimum(problem: ImpedanceProblem, given: ImpedanceControllerSpec) -> ImpedanceOptimum:
@@ -224,11 +219,11 @@ def _stable_below(requirement: Requirement, Mt: float, Bt: float) -> str:
     return f"it is stable{nominal} below {lower(Fraction(limit), 6)} {unit('N m/rad')}"
 
 
-def _band(task: Task, given: ImpedanceControllerSpec, controller: Controller) -> PassiveBand | None:
-    """Return where the displayed admittance is passive, over the ranges of gains and motor."""
+def _band(task: Task, controller: Controller) -> PassiveBand | None:
+    """Return where the displayed admittance is passive, over the ranges of the motor."""
     if not isinstance(task.axis, ContinuousAxis):
         return None
-    return passive_band(task.axis, controller.law, _moving(task, given, controller))
+    return passive_band(task.axis, controller.law, _moving(task))
 
 
 def _responses(
@@ -240,23 +235,15 @@ def _responses(
         return
     names = [goal.environment for goal in goals.values() if isinstance(goal, AccuracySpec)]
     environments = {name: task.plant.environment(name) for name in names if name is not None}
-    moving = _moving(task, given, controller)
+    moving = _moving(task)
     yield from judged_responses(task.spec, goals, task.axis, controller.law, moving, environments)
 
 
-def _moving(
-    task: Task, given: ImpedanceControllerSpec, controller: Controller
-) -> dict[str, Interval]:
-    """Return the numbers of motor and gains that have ranges, and where they are."""
+def _moving(task: Task) -> dict[str, Interval]:
+    """Return the numbers of the motor that have ranges, and where they are."""
     motor = task.plant.actuator_ranges
     ranges = {"Km": motor.gain, "tau": motor.time_constant}
-    ranges |= _gain_ranges(given, controller)
     return {name: r for name, r in ranges.items() if r.low != r.high}
-
-
-def _gain_ranges(given: ImpedanceControllerSpec, controller: Controller) -> dict[str, Interval]:
-    shipped = controller.law.gains
-    return {name: gain_interval(gain, shipped[name]) for name, gain in given.gains().items()}
 
 
 def _sampled_bands(
@@ -268,9 +255,8 @@ def _sampled_bands(
         return ()
     if sampling.misses is not None:
         return ()
-    ranged = any(r.low != r.high for r in _gain_ranges(given, controller).values())
     fixed = task.plant.actuator_ranges.fixed and task.spec.late_at is None
-    if ranged or not fixed or task.spec.coupling is not None:
+    if not fixed or task.spec.coupling is not None:
         return ()
     law = controller.law.discretize(sampling.period.exact, sampling.admittance)
     oldest = sampling.delay[1] + 1
@@ -354,10 +340,9 @@ def desired_impedance(spec: InteractionDesignSpec, controller: ImpedanceControll
 
 def requirement_of(task: Task, given: ImpedanceControllerSpec) -> Requirement:
     """Return the goals of one controller, and all that is needed to measure it."""
-    gains = {name: _ends(gain) for name, gain in given.gains().items()}
     return Requirement(
         axis=task.axis,
-        corners=task.corners(given, gains, _spring(given)),
+        corners=task.corners(given, _spring(given)),
         goals=goals_of(task.spec, given, (*_measures(task), *HAND_MEASURES)),
         desired=desired_impedance(task.spec, given),
         bandwidth=task.spec.limits.bandwidth.si,
@@ -384,14 +369,6 @@ def _measures(task: Task) -> tuple[Measure, ...]:
 def _lags(task: Task) -> tuple[float, ...]:
     low_pass = task.sensor.filter
     return (1.0,) if low_pass is None else low_pass.denominator
-
-
-def _ends(gain: GainSpec) -> tuple[Fraction, ...]:
-    """Return the ends of a declared range of a gain, as single-precision numbers surround them."""
-    if not gain.ranged:
-        return ()
-    interval = gain_interval(gain, to_float32(gain.min.exact))
-    return interval.low, interval.high
 
 
 def _optimize(task: Task, given: ImpedanceControllerSpec) -> tuple[Admittance, ImpedanceOptimum]:

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from abc import ABC
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from types import MappingProxyType
 from typing import Any
 
 from nrs_design.controllers.controller_design import Controller, ImpedanceOptimum
@@ -55,13 +54,12 @@ class Task:
     def corners(
         self,
         given: ControllerSpec,
-        gains: Mapping[str, tuple[Fraction, ...]] = MappingProxyType({}),
         spring: Fraction = Fraction(0),
     ) -> tuple[ContactCorner, ...]:
         """Return where a controller is measured."""
         assert given.environment is not None  # Of a controller with contact.
         places = (Place(self.plant.actuator),) if self.axis is None else self.axis.places
-        return corners_of(self.contacts(given), given.environment, gains, places, spring)
+        return corners_of(self.contacts(given), given.environment, places, spring)
 
     @property
     def sensor(self) -> Sensor:

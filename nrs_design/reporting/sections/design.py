@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from nrs_design.axis import labelled, unit
 from nrs_design.controllers.float32 import exact_decimal
 from nrs_design.design.transfer import TransferFunction, poles
-from nrs_design.reporting.document import Block, Illustration, Linked, Paragraph, Section, Table
+from nrs_design.reporting.document import Illustration, Linked, Paragraph, Section, Table
 from nrs_design.reporting.figures.complex_plane import draw_root_locus
 from nrs_design.reporting.formatting import number, polynomial_text, root, roots
 from nrs_design.reporting.sections.impedance import (
@@ -62,8 +62,7 @@ _FORCE_ROWS: tuple[tuple[str, Callable[[ForceAnalysis], str]], ...] = (
 
 def design_sections(designed: Designed, analysis: DesignAnalysis | None) -> tuple[Section, ...]:
     """Describe a design; without an analysis only its gains."""
-    blocks = (_gain_table(designed), *_ranges(designed))
-    gains = Section("Designed gains", blocks)
+    gains = Section("Designed gains", (_gain_table(designed),))
     if analysis is None:
         text = (
             "What the gains achieve is not shown: poles and margins exist only where the nominal "
@@ -108,25 +107,6 @@ def _said(designed: Designed, controller: str, gain: str) -> Callable[[str], str
     else:
         place = designed.loaded.place("motion_loop", _MOTION_KEYS.get(gain, gain))
     return lambda text: Linked(text, place.line)
-
-
-def _ranges(designed: Designed) -> tuple[Block, ...]:
-    """List the ranges of gains that the spec declares, if any."""
-    spec, design, rows = designed.spec, designed.design, []
-    for controller in design.controllers:
-        for gain, declared in spec.controllers[controller.name].gains().items():
-            if declared.range is not None and declared.ranged:
-                said = _said(designed, controller.name, gain)
-                low, high = (said(end.text) for end in declared.range)
-                rows.append((controller.name, gain, low, high))
-    if not rows:
-        return ()
-    text = (
-        "These gains may be retuned while the robot runs; the statement about stability is for "
-        "the whole ranges, widened to the single-precision numbers that their ends round to."
-    )
-    columns = ("Controller", "Gain", "Lowest", "Highest")
-    return Paragraph(text), Table("Declared ranges of gains", columns, tuple(rows))
 
 
 def _motion_section(designed: Designed, analysis: DesignAnalysis) -> Section:

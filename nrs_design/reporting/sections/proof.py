@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 from nrs_design.certificates.bounds import keeps_command
 from nrs_design.certificates.certificate import CommonQuadraticStatus
-from nrs_design.controllers.laws.impedance import KEPT_VELOCITY
 from nrs_design.proof.evidence import AbstractEvidence, Shows
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
@@ -71,14 +70,14 @@ def _proved(result: Result, evidence: AbstractEvidence) -> tuple[Block, ...]:
     if design:
         proved.append(
             "The gains in the proof are the single-precision numbers listed below, not their "
-            "rounded display; where a range of a gain is declared, all values in it."
+            "rounded display."
         )
     proved += _bounds(result.certification)
     proved += _beside(result)
     common = _not_covered_by_design(result) if design else _not_covered(system, evidence)
     blocks: list[Block] = [
         Bullets("Proved", tuple(dict.fromkeys(proved))),
-        Bullets("Not proved", (*page.limits(), *_memory(system), *common)),
+        Bullets("Not proved", (*page.limits(), *common)),
     ]
     if result.certification.common_quadratic is CommonQuadraticStatus.IMPOSSIBLE:
         blocks.append(
@@ -129,13 +128,6 @@ def _not_covered_by_design(result: Result) -> tuple[str, ...]:
         *_NOT_COVERED_BY_A_DESIGN,
         _BOUNDED if _bounds(certification) else _UNBOUNDED,
     )
-
-
-def _memory(system: SwitchedSystem) -> tuple[str, ...]:
-    """Say which controllers a proof for ranges of gains with inertia does not cover."""
-    if KEPT_VELOCITY not in system.assumptions:
-        return ()
-    return ("Controllers that do not keep their velocity when a gain is retuned.",)
 
 
 def _not_covered(system: SwitchedSystem, evidence: AbstractEvidence) -> tuple[str, ...]:

@@ -57,7 +57,7 @@ def export(
     Example: nrs-design ros2 export mine.nrs.yaml --axis ry --lag '5..20 ms'
     """
     from nrs_design.pipeline import placed, run_interaction, search_limits
-    from nrs_design.ros2.export import SEVERITY, export_controllers, not_for_ranges
+    from nrs_design.ros2.export import SEVERITY, export_controllers
 
     axes = _axes_of(spec, axis)
     designs = {
@@ -84,9 +84,6 @@ def export(
             note(f"{name}: not exported")
             return
         say(f"{name}: PROVED, exported to {', '.join(written)}", verdict="proved")
-        for item in found:
-            if item.ranged:
-                say(f"  {item.controller}: outside the proof: {not_for_ranges(item.ranged)}")
 
     return Answer(
         lambda: _summary(name, worst, found, written),
@@ -159,6 +156,5 @@ def _summary(name: str, worst: str, found: list[RosExport], written: list[str]) 
         "spec": name,
         "verdict": worst,
         "controllers": {item.controller: item.verdict for item in found},
-        "ranges_not_proved": {i.controller: list(i.ranged) for i in found if i.ranged},
         "files": written,
     }

@@ -128,7 +128,7 @@ def test_without_a_certificate_nothing_speaks_of_a_proof(tmp_path):
 
 def test_a_foreign_certificate_is_rejected(tmp_path, proof):
     _, certificate = proof
-    other = ROOT / "specs/neuroboscope/retuned-gains.nrs.yaml"
+    other = ROOT / "specs/neuroboscope/soft-tissue-redesigned.nrs.yaml"
     done = run("audit", write(tmp_path), other, "--certificate", certificate, cwd=tmp_path, code=2)
     assert "the certificate is rejected: it belongs to another spec" in done.stderr
 

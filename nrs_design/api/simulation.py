@@ -74,11 +74,6 @@ class ScenarioRun(AbstractResult):
         return self.simulated.metrics
 
     @property
-    def parameters(self) -> Mapping[str, float]:
-        """What was drawn from its range, in SI."""
-        return self.simulated.parameters
-
-    @property
     def response(self) -> TimeResponse:
         """All signals over time, as arrays with time last."""
         return self.run.response

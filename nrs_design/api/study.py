@@ -158,7 +158,6 @@ class Study:
         engine: str | None = None,
         period: float | None = None,
         delay: int | None = None,
-        draw: int | None = None,
         certificate: str | Path | None = None,
     ) -> Simulation:
         """Simulate scenarios of the spec, or the one of a spec that has none.
@@ -171,9 +170,6 @@ class Study:
             By default sampled where the spec has sampling or tissue is not linear, else exact.
         period, delay : float and int, optional
             Of the sampled engine, in s and in samples; by default those of the spec.
-        draw : int, optional
-            Seed with which every parameter of tissue and motor, and every gain, is drawn uniformly
-            from its range; `ScenarioRun.parameters` has them. By default the scenario's own.
         certificate : path-like, optional
             Checked against the spec; its bounds stand beside the runs.
 
@@ -199,15 +195,13 @@ class Study:
         """
         from nrs_design.pipeline.scenarios import run_scenarios
 
-        wanted = _runs(scenarios, engine, period, delay, draw)
+        wanted = _runs(scenarios, engine, period, delay)
         designed = self._interaction()
         with pipeline.placed(self.loaded):
             proof = self._proof(designed, certificate)
             return Simulation.of(designed, tuple(run_scenarios(designed, wanted)), proof)
 
-    def worst_case(
-        self, certificate: str | Path | None = None, *, seed: int = 0, rounds: int | None = None
-    ) -> WorstFound:
+    def worst_case(self, certificate: str | Path | None = None) -> WorstFound:
         """Let an adversary choose all that the spec leaves open, and return his worst runs.
 
         What he finds may happen in the model: a lower bound of the worst that may. There is a run
@@ -217,10 +211,6 @@ class Study:
         ----------
         certificate : path-like, optional
             Checked against the spec; its bounds stand beside the runs.
-        seed : int
-            Of what he begins with.
-        rounds : int, optional
-            How often the best runs are changed, and improved again; more find more.
 
         Raises
         ------
@@ -232,7 +222,7 @@ class Study:
         Examples
         --------
         >>> import nrs_design as nrs
-        >>> case = nrs.load("docs/examples/scenarios.nrs.yaml").worst_case(rounds=1)
+        >>> case = nrs.load("docs/examples/scenarios.nrs.yaml").worst_case()
         >>> case.worst["force"] > case.limits["force"]
         True
         """
@@ -241,8 +231,8 @@ class Study:
         designed = self._interaction()
         with pipeline.placed(self.loaded):
             proof = self._proof(designed, certificate)
-            case = run_worst_case(designed, proof, seed=seed, rounds=rounds)
-        return WorstFound(designed, case, seed)
+            case = run_worst_case(designed, proof)
+        return WorstFound(designed, case)
 
     def export(self, certificate: str | Path | None = None) -> Exported:
         """Return the gains that ship with their proof, or why there are none; `save` writes them.
@@ -279,11 +269,7 @@ class Study:
 
 
 def _runs(
-    scenarios: tuple[str, ...],
-    engine: str | None,
-    period: float | None,
-    delay: int | None,
-    draw: int | None,
+    scenarios: tuple[str, ...], engine: str | None, period: float | None, delay: int | None
 ) -> Runs:
     """Return how scenarios are run; who names a period wants the sampled engine."""
     from nrs_design.pipeline.scenarios import Runs
@@ -299,11 +285,9 @@ def _runs(
         raise DesignError(f"the period is {period} s", remedy="give 1e-5 to 1 s")
     if delay is not None and not 0 <= delay <= LONGEST_DELAY:
         raise DesignError(f"the delay is {delay} samples", remedy=f"give 0 to {LONGEST_DELAY}")
-    if draw is not None and draw < 0:
-        raise DesignError(f"the seed is {draw}", remedy="give 0 or more")
     if engine is None and (period is not None or delay is not None):
         engine = "sampled"
-    return Runs(scenarios, engine, period, delay, draw=draw)
+    return Runs(scenarios, engine, period, delay)
 
 
 def load(path: str | Path) -> Study:

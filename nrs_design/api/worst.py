@@ -29,13 +29,10 @@ class WorstFound(AbstractResult):
         The spec and its gains.
     case : nrs_design.pipeline.worst_case.WorstCase
         His runs.
-    seed : int
-        Of the search.
     """
 
     designed: pipeline.Designed
     case: WorstCase
-    seed: int
 
     @property
     def runs(self) -> tuple[WorstRun, ...]:
@@ -66,7 +63,7 @@ class WorstFound(AbstractResult):
         return self.designed.spec.axis
 
     def _facts(self) -> dict[str, Any]:
-        facts = worst_case_facts(self.case, self.seed)
+        facts = worst_case_facts(self.case)
         return spec_facts(self.designed.loaded) | facts | {"files": []}
 
     def _drawings(self) -> Figures:

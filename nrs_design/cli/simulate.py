@@ -23,7 +23,6 @@ from nrs_design.cli.simulate_options import (
     OuterPeriod,
     Period,
     Scenarios,
-    Seed,
     WorstCaseFlag,
 )
 from nrs_design.progress import Progress
@@ -46,7 +45,6 @@ def simulate(
     outer_period: OuterPeriod = None,
     max_steps: MaxSteps = None,
     worst: WorstCaseFlag = False,
-    seed: Seed = 0,
 ) -> Answer:
     """Simulate the interaction of robot, tissue and surgeon, and measure safety and agility.
 
@@ -68,9 +66,6 @@ def simulate(
     if worst and any((scenario, engine, period, delay is not None, outer_period, max_steps)):
         message = "the adversary plays against the loop of the spec, not within a scenario"
         raise typer.BadParameter(message, param_hint="--worst-case")
-    if seed and not worst:
-        message = "needs --worst-case; a scenario has its own seed"
-        raise typer.BadParameter(message, param_hint="--seed")
     loaded = take_spec(spec)
     if engine is None and timed:
         engine = EngineOption.SAMPLED
@@ -80,7 +75,7 @@ def simulate(
         designed = run_interaction(loaded, "describes no interaction")
         prove = partial(_proof, designed, certificate, step, bound=bound)
         if worst:
-            return worst_case(designed, prove(), seed, out, step)
+            return worst_case(designed, prove(), out, step)
         return simulate_scenarios(designed, wanted, prove, out, step)
 
 

@@ -9,9 +9,6 @@ from typing import Annotated
 import typer
 
 from nrs_design.cli.seconds import seconds
-from nrs_design.spec.scenarios import LARGEST_SEED
-
-PANEL = "Worst case"
 
 
 class EngineOption(StrEnum):
@@ -78,11 +75,7 @@ WorstCaseFlag = Annotated[
     bool,
     typer.Option(
         "--worst-case",
-        rich_help_panel=PANEL,
         help="Let an adversary choose controllers, contact, delay and disturbances, and show the "
         "worst runs that he finds.",
     ),
-]
-Seed = Annotated[
-    int, typer.Option(min=0, max=LARGEST_SEED, rich_help_panel=PANEL, help="Of --worst-case.")
 ]

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def worst_case(
-    designed: Designed, proof: Certificate | None, seed: int, out: Path | None, step: Progress
+    designed: Designed, proof: Certificate | None, out: Path | None, step: Progress
 ) -> Answer:
     """Search, and write the figure and the table of every run.
 
@@ -31,8 +31,6 @@ def worst_case(
         The spec and its gains.
     proof : Certificate or None
         Whose bounds are shown.
-    seed : int
-        Of the search.
     out : Path or None
         Folder for files.
     step : callable
@@ -45,17 +43,17 @@ def worst_case(
     if out is not None:
         for name in ("force", "velocity", DEFLECTION):
             _files(designed, out, name).check()
-    case = run_worst_case(designed, proof, seed=seed, progress=step)
+    case = run_worst_case(designed, proof, progress=step)
     step("figures")
     arm = common_lever_arm(designed.spec, designed.spec.touched)
     written = [] if out is None else _write(designed, case, arm, out)
     return Answer(
-        lambda: spec_facts(designed.loaded) | worst_case_facts(case, seed) | {"files": written},
-        lambda: _show(designed.spec.name, case, arm, seed),
+        lambda: spec_facts(designed.loaded) | worst_case_facts(case) | {"files": written},
+        lambda: _show(designed.spec.name, case, arm),
     )
 
 
-def _show(name: str, case: WorstCase, arm: float | None, seed: int) -> None:
+def _show(name: str, case: WorstCase, arm: float | None) -> None:
     from nrs_design.reporting.worst_case import (
         COLUMNS,
         MEANING,
@@ -65,8 +63,7 @@ def _show(name: str, case: WorstCase, arm: float | None, seed: int) -> None:
         worst_rows,
     )
 
-    title = f"{name}: the worst that an adversary found, seed {seed}"
-    print_table(title, COLUMNS, worst_rows(case, arm))
+    print_table(f"{name}: the worst that an adversary found", COLUMNS, worst_rows(case, arm))
     say(MEANING if case.bounds else f"{MEANING.partition(';')[0]}. {NO_BOUND}")
     if not case.declared:
         say(UNDECLARED)

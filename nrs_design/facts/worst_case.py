@@ -8,7 +8,7 @@ if TYPE_CHECKING:
     from nrs_design.pipeline.worst_case import WorstCase
 
 
-def worst_case_facts(case: WorstCase, seed: int) -> dict[str, Any]:
+def worst_case_facts(case: WorstCase) -> dict[str, Any]:
     """Return what the adversary found, in SI."""
     from nrs_design.reporting.worst_case import found_in, left_out
 
@@ -22,13 +22,11 @@ def worst_case_facts(case: WorstCase, seed: int) -> dict[str, Any]:
             "bound_over_found": item.ratio,
             "exceeds_limit": item.exceeds,
             "duration": float(run.time[-1]),
-            "starts": [float(value) for value in run.starts],
         }
         for item, run in zip(found_in(case), case.runs, strict=True)
     ]
     return {
         "worst_case": {
-            "seed": seed,
             "disturbances": [
                 {"name": c.name, "unit": c.unit, "bound": float(c.bound)}
                 for c in case.system.channels

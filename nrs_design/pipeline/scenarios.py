@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,7 +14,6 @@ from nrs_design.progress import Progress, silent
 from nrs_design.wings import load_wing
 
 if TYPE_CHECKING:
-    from nrs_design.simulation.draw import Drawn
     from nrs_design.simulation.run import Run
     from nrs_design.simulation.scenario import Scenario
     from nrs_design.spec import InteractionDesignSpec
@@ -28,8 +27,6 @@ class Simulated:
     scenario: Scenario  # In SI
     run: Run  # As far as it came
     metrics: Mapping[str, Any]  # Of the run, in SI
-    # What was drawn from its range, in SI.
-    parameters: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,8 +41,6 @@ class Runs:
     max_steps: int | None = None  # Of each run
     # Of force, filter and admittance, in s; that of the motion loop where nothing says it.
     outer_period: float | None = None
-    # Seed with which parameters are drawn from their ranges; None for those of the scenario.
-    draw: int | None = None
 
 
 def run_scenarios(
@@ -55,25 +50,7 @@ def run_scenarios(
     wanted = wanted or Runs()
     with placed(designed.loaded):
         for name, group in scenarios_of(designed, wanted):
-            if wanted.draw is None:
-                yield from _simulate(designed, name, group, wanted, progress)
-                continue
-            drawn = _drawn(designed, name, group, wanted.draw)
-            own = replace(designed, plant=drawn.plant, design=drawn.design)
-            (one,) = _simulate(own, name, (drawn.scenario,), wanted, progress)
-            yield replace(one, parameters=drawn.parameters)
-
-
-def _drawn(designed: Designed, name: str, group: Sequence[Scenario], seed: int) -> Drawn:
-    from nrs_design.simulation.draw import draw
-
-    if len(group) > 1:
-        raise DesignError(
-            f"{name} moves three axes, and parameters are drawn for one",
-            remedy="name scenarios of one axis",
-            at=("scenarios", name, "axes"),
-        )
-    return draw(designed.spec, designed.plant, designed.design, group[0], seed)
+            yield from _simulate(designed, name, group, wanted, progress)
 
 
 def _simulate(

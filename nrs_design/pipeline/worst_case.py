@@ -35,9 +35,6 @@ class WorstCase:
 def run_worst_case(
     designed: Designed,
     certificate: Certificate | None = None,
-    *,
-    seed: int = 0,
-    rounds: int | None = None,
     progress: Progress = silent,
 ) -> WorstCase:
     """Let an adversary choose everything that the spec leaves open, and keep the worst runs.
@@ -56,7 +53,7 @@ def run_worst_case(
         outputs = (*system.outputs, *(() if deflection is None else (deflection,)))
         touched = designed.plant.among(designed.design.contacts)
         allowed = {"force": forces_by_mode(system, touched)}
-        runs = worst_runs(system, outputs, allowed, seed=seed, rounds=rounds)
+        runs = worst_runs(system, outputs, allowed)
     except (AssemblyError, ValueError) as error:
         message = error.message if isinstance(error, AssemblyError) else str(error)
         with placed(designed.loaded):

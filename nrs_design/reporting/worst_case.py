@@ -30,9 +30,10 @@ if TYPE_CHECKING:
 COLUMNS = ("", "worst found", "unit", "limit", "certified bound", "bound / found")
 MEANING = (
     "An adversary chose controllers, contact, delay and disturbances within what the spec allows. "
-    "What he found may happen in the model, and is a lower bound of the worst that may; the "
-    "certified bound is an upper one. In his runs a surface that is lost stays in its place. The "
-    "limit of the velocity is that of its command; the axis itself may go beyond."
+    "He began at rest, or settled under what he held for long: pressed in, or on the way to a "
+    "surface. What he found may happen in the model, and is a lower bound of the worst that may; "
+    "the certified bound is an upper one. In his runs a surface that is lost stays in its place. "
+    "The limit of the velocity is that of its command; the axis itself may go beyond."
 )
 NO_BOUND = "No bound is certified beside it: the worst that may happen may be any larger."
 UNDECLARED = (

@@ -1,4 +1,4 @@
-"""An adversary who improves runs from rest, forward and backward, until no choice does more harm.
+"""An adversary who improves runs, forward and backward, until no choice does more harm.
 
 Between two of his choices the loop is linear. So from the end of a run backward, the gradient of
 what he wants to be large tells for each step what every admissible choice would add, if all before
@@ -8,7 +8,7 @@ programming over the rules of switching. Where contact is kept, no sweep makes a
 
 from __future__ import annotations
 
-import math
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -18,120 +18,94 @@ from nrs_design.simulation.game import Aim, Game, Signals, play
 from nrs_design.simulation.norms import Array
 
 # Where a run is continued by the new choices: from these shares of its length on.
-_CUTS = (0.0, 0.5, 0.8)
+_CUTS = (0.0, 0.3, 0.5, 0.7, 0.8, 0.9, 0.95)
 _NO_GAIN = 1e-5
-# Mean length of a change, as a share of a run.
-_SPAN = 0.06
-# Of misjudged choices: from one run to the other, small ones or large ones.
-_ERRORS = (0.01, 0.5)
+# A mode settles if no motion of it keeps more than this share of itself in a step.
+_SETTLES = 1 - 1e-9
+_SIGNS = (1.0, -1.0)
 
 
-def held_signals(game: Game, steps: int) -> Signals:
-    """Return the largest disturbances, held in either direction in one mode after the other.
+def held_signals(game: Game, rest: int, steps: int) -> Signals:
+    """Return the largest disturbances after a rest, held in either direction in every mode.
+
+    In a mode that rules forbid to hold, the run stays as long as it may, and comes back as soon.
+
+    Parameters
+    ----------
+    game : Game
+        With its rules.
+    rest, steps : int
+        Number of steps at rest, and of those after them.
+    """
+    rules, modes = game.rules, np.arange(len(game.maps))
+    actions = np.zeros((rest + steps, len(modes)), dtype=np.int64)
+    node = np.zeros_like(modes)
+    for k in range(len(actions)):
+        choices = rules.choices[node]
+        wanted = rules.mode[choices] == modes[:, None]
+        actions[k] = choices[modes, wanted.argmax(axis=1)]
+        node = rules.target[actions[k]]
+    shares = np.tile(_SIGNS, len(modes))[None, :, None] * np.ones((rest + steps, 1, 1))
+    shares[:rest] = 0.0
+    return Signals.from_rest(
+        game, np.repeat(actions, 2, axis=1), np.repeat(shares, game.disturbances, axis=2)
+    )
+
+
+def settled_signals(game: Game, approach: int, steps: int) -> Signals:
+    """Return what `held_signals` does from where it leads if it is held for long before.
+
+    Pressed into what is touched, or in steady motion towards a surface that was lost.
 
     Parameters
     ----------
     game : Game
         In which every mode may follow every mode.
-    steps : int
-        Number of steps K.
+    approach, steps : int
+        Number of steps before a surface is met, and of those after them.
     """
-    modes = len(game.rules.mode)
-    actions = np.tile(np.repeat(np.arange(modes), 2), (steps, 1))
-    signs = np.tile([1.0, -1.0], modes)[None, :, None]
-    return Signals(actions, np.tile(signs, (steps, 1, game.disturbances)))
+    found = [
+        (mode, sign, state)
+        for mode in range(len(game.maps))
+        for sign in _SIGNS
+        for state in _settled(game, mode, sign, approach)
+    ]
+    shape = approach + steps, 1
+    modes = np.array([mode for mode, _, _ in found], dtype=np.int64)
+    signs = np.array([sign for _, sign, _ in found])[:, None] * np.ones(game.disturbances)
+    return Signals(
+        np.tile(modes, shape),
+        np.tile(signs, (*shape, 1)),
+        np.array([state for _, _, state in found]).reshape(-1, game.order),
+        np.zeros_like(modes),
+    )
 
 
-def random_signals(game: Game, steps: int, runs: int, rng: np.random.Generator) -> Signals:
-    """Draw admissible signals: choices that are kept for random times, after a while at rest.
-
-    Parameters
-    ----------
-    game : Game
-        With its rules.
-    steps, runs : int
-        Number of steps K and of runs S.
-    rng : numpy.random.Generator
-        Seeded.
-    """
-    rules, c = game.rules, game.disturbances
-    actions = np.zeros((steps, runs), dtype=np.int64)
-    shares = np.zeros((steps, runs, c))
-    rest = rng.uniform(0, 0.9, runs) * steps
-    # Some switch hardly ever, others at almost every step.
-    pace = np.exp(rng.uniform(np.log(0.5 / steps), np.log(0.9), runs))
-    node = np.zeros(runs, dtype=np.int64)
-    last = np.zeros(runs, dtype=np.int64)
-    share = rng.choice([-1.0, 1.0], (runs, c))
-    for k in range(steps):
-        choices = rules.choices[node]
-        drawn = choices[np.arange(runs), rng.integers(0, choices.shape[1], runs)]
-        # What was chosen last, or what stays in the mode, comes first among the choices.
-        stays = np.where((choices == last[:, None]).any(axis=1), last, choices[:, 0])
-        turns = rng.random(runs) < pace
-        last = np.where(turns | (k == 0), drawn, stays)
-        flips = rng.random((runs, c)) < pace[:, None]
-        share = np.where(flips, -share, share)
-        actions[k], node = last, rules.target[last]
-        shares[k] = np.where(k < rest[:, None], 0.0, share)
-    return Signals(actions, shares)
+def _settled(game: Game, mode: int, sign: float, approach: int) -> Iterator[Array]:
+    """Yield the states that a mode settles at, in contact and on the way to the surface."""
+    n = game.order
+    A, b = game.maps[mode, :, :n], sign * game.maps[mode, :, n:].sum(axis=1)
+    if _settles(A):
+        state = np.linalg.solve(np.eye(n) - A, b)
+        if not game.flies(state):
+            yield state
+    if not game.losable:
+        return
+    # The deflection, which is the last state, moves on; the others do not feel it.
+    A, b = game.flights[mode, :, :n], sign * game.flights[mode, :, n:].sum(axis=1)
+    if _settles(A[:-1, :-1]) and not A[:-1, -1].any():
+        state = np.append(np.linalg.solve(np.eye(n - 1) - A[:-1, :-1], b[:-1]), 0.0)
+        if (way := float(A[-1] @ state + b[-1])) > 0:
+            state[-1] = -way * approach
+            yield state
 
 
-def changed_signals(game: Game, signals: Signals, copies: int, rng: np.random.Generator) -> Signals:
-    """Change each run within a random span of time, so that it may come to another best one.
-
-    Parameters
-    ----------
-    game : Game
-        With its rules.
-    signals : Signals
-        Of S runs.
-    copies : int
-        How often each is changed.
-    rng : numpy.random.Generator
-        Seeded.
-
-    Returns
-    -------
-    Signals
-        Of S times as many runs as copies: all of them once, then all of them again.
-    """
-    steps = len(signals.actions)
-    actions = np.tile(signals.actions, copies)
-    shares = np.tile(signals.shares, (1, copies, 1))
-    count, k = actions.shape[1], np.arange(steps)[:, None]
-    begin = rng.uniform(0, steps, count)
-    span = (k >= begin) & (k < begin + 1 + rng.exponential(_SPAN * steps, count))
-    kind = rng.integers(0, 3, count)
-    if len(game.rules.choices) == 1:
-        # Where rules are to be kept, a change of one action may forbid what comes after it.
-        drawn = rng.integers(0, len(game.rules.mode), count)
-        actions = np.where(span & (kind != 1), drawn, actions)
-    shares = np.where((span & (kind != 0))[:, :, None], -shares, shares)
-    return Signals(actions, shares)
+def _settles(A: Array) -> bool:
+    return not A.size or bool(np.abs(np.linalg.eigvals(A)).max() < _SETTLES)
 
 
-def misjudged_signals(
-    game: Game, aim: Aim, signals: Signals, copies: int, rng: np.random.Generator
-) -> Signals:
-    """Choose anew along each run, with errors: it keeps the rules, and may come to a better one.
-
-    Parameters
-    ----------
-    game, signals, copies, rng
-        As for `changed_signals`, which it is for where rules are to be kept.
-    aim : Aim
-        What is to become large.
-    """
-    runs = np.tile(np.arange(signals.actions.shape[1]), copies)
-    many = signals.only(runs)
-    policy = _Policy.against(game, aim, many, play(game, many), rng)
-    fresh, cut = policy.follow(game, many), rng.integers(0, len(_CUTS), len(runs))
-    return fresh.only(cut * len(runs) + np.arange(len(runs)))
-
-
-def improve(game: Game, aim: Aim, signals: Signals, sweeps: int) -> tuple[Signals, Array]:
-    """Improve runs until a sweep gains nothing, or there have been enough.
+def improve(game: Game, aim: Aim, signals: Signals, sweeps: int) -> Signals:
+    """Improve what is wanted at the end of runs, until a sweep gains nothing.
 
     Parameters
     ----------
@@ -143,32 +117,28 @@ def improve(game: Game, aim: Aim, signals: Signals, sweeps: int) -> tuple[Signal
         Of the runs to begin with.
     sweeps : int
         Most sweeps.
-
-    Returns
-    -------
-    Signals, and ndarray of shape (S,)
-        The best that each run came to, and what was wanted at its end.
     """
     states = play(game, signals)
     value = _at_end(game, aim, signals, states)
     actions, shares = signals.actions.copy(), signals.shares.copy()
+    best = replace(signals, actions=actions, shares=shares)
     # Runs that the last sweep has improved; the others have come to where they stay.
     moving = np.arange(len(value))
     for _ in range(sweeps):
         if not len(moving):
             break
-        now = Signals(actions[:, moving], shares[:, moving])
+        now = best.only(moving)
         policy = _Policy.against(game, aim, now, states[:, moving])
         fresh = policy.follow(game, now)
         reached = play(game, fresh)
         values = _at_end(game, aim, fresh, reached)
-        best = values.reshape(len(_CUTS), -1).argmax(axis=0)
-        picked = best * len(moving) + np.arange(len(moving))
+        picked = values.reshape(len(_CUTS), -1).argmax(axis=0) * len(moving)
+        picked += np.arange(len(moving))
         gained = values[picked] > value[moving] * (1 + _NO_GAIN)
         moving, picked = moving[gained], picked[gained]
         actions[:, moving], shares[:, moving] = fresh.actions[:, picked], fresh.shares[:, picked]
         states[:, moving], value[moving] = reached[:, picked], values[picked]
-    return Signals(actions, shares), value
+    return best
 
 
 def _at_end(game: Game, aim: Aim, signals: Signals, states: Array) -> Array:
@@ -184,18 +154,8 @@ class _Policy:
     signs: NDArray[np.int8]
 
     @classmethod
-    def against(
-        cls,
-        game: Game,
-        aim: Aim,
-        signals: Signals,
-        states: Array,
-        rng: np.random.Generator | None = None,
-    ) -> _Policy:
-        """Go backward along runs, with the gradient at every node; perhaps not quite for the best.
-
-        With a generator, every choice is judged with an error of its own.
-        """
+    def against(cls, game: Game, aim: Aim, signals: Signals, states: Array) -> _Policy:
+        """Go backward along runs, with the gradient at every node."""
         rules, n = game.rules, game.order
         steps, runs = signals.actions.shape
         nodes = len(rules.choices)
@@ -205,16 +165,12 @@ class _Policy:
         p, c = _final(game, aim, states[-1], runs), np.zeros((nodes, runs))
         pull, reset = _Pull(game), len(rules.jumps) > 1
         taken = rules.jumps[rules.jump]
-        least, most = map(math.log, _ERRORS)
-        errors = 0.0 if rng is None else np.exp(rng.uniform(least, most, runs))
         column, row = np.arange(runs), np.arange(nodes)[:, None]
         for k in range(steps - 1, -1, -1):
             x = (taken @ states[k].T).transpose(0, 2, 1) if reset else states[k]
             pulled = pull(p, x)
             added = np.abs(pulled[:, :, n:]).sum(axis=2) + c[rules.target]
             worth = (pulled[:, :, :n] * x).sum(axis=2) + added
-            if rng is not None:
-                worth *= 1 + errors * rng.standard_normal(worth.shape)
             action = rules.choices[row, worth[rules.choices].argmax(axis=1)]
             own = pulled[action, column]
             actions[k], signs[k] = action, np.where(own[:, :, n:] < 0, -1, 1)
@@ -228,16 +184,15 @@ class _Policy:
         rules = game.rules
         steps, runs = signals.actions.shape
         first = np.repeat((np.array(_CUTS) * steps).astype(int), runs)
-        actions = np.tile(signals.actions, len(_CUTS))
-        shares = np.tile(signals.shares, (1, len(_CUTS), 1))
         column = np.tile(np.arange(runs), len(_CUTS))
-        node = np.zeros(len(first), dtype=np.int64)
+        fresh = signals.only(column)
+        actions, shares, node = fresh.actions, fresh.shares, fresh.nodes
         for k in range(steps):
             new = k >= first
             actions[k] = np.where(new, self.actions[k, node, column], actions[k])
             shares[k] = np.where(new[:, None], self.signs[k, node, column], shares[k])
             node = rules.target[actions[k]]
-        return Signals(actions, shares)
+        return fresh
 
 
 class _Pull:

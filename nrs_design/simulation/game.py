@@ -17,7 +17,7 @@ from nrs_design.simulation.rules import Rules
 
 @dataclass(frozen=True, eq=False)
 class Game:
-    """A loop on a grid of time, which begins at rest."""
+    """A loop on a grid of time."""
 
     # Shape (m, n, n + c). Step of each mode in contact: of the state, and of shares of the largest
     # disturbances.
@@ -122,41 +122,60 @@ class Aim:
 
 @dataclass(frozen=True, eq=False)
 class Signals:
-    """What was chosen in S runs."""
+    """What was chosen in S runs, and where they begin."""
 
     actions: Indices  # Shape (K, S). Of `Rules`, one for each step.
     shares: Array  # Shape (K, S, c). Of the largest disturbances, from -1 to 1.
+    states: Array  # Shape (S, n). At first.
+    nodes: Indices  # Shape (S,). Of `Rules`, at first.
+
+    @classmethod
+    def from_rest(cls, game: Game, actions: Indices, shares: Array) -> Signals:
+        """Return runs that begin at rest, in no mode yet."""
+        runs = actions.shape[1]
+        return cls(actions, shares, np.zeros((runs, game.order)), np.zeros(runs, dtype=np.int64))
 
     def only(self, runs: Indices) -> Signals:
         """Return the signals of some runs."""
-        return Signals(self.actions[:, runs], self.shares[:, runs])
+        return Signals(
+            self.actions[:, runs], self.shares[:, runs], self.states[runs], self.nodes[runs]
+        )
 
     def beside(self, other: Signals) -> Signals:
         """Return these runs and others."""
         return Signals(
             np.concatenate([self.actions, other.actions], axis=1),
             np.concatenate([self.shares, other.shares], axis=1),
+            np.concatenate([self.states, other.states]),
+            np.concatenate([self.nodes, other.nodes]),
         )
 
-    def after_rest(self) -> Signals:
-        """Return the runs without the time in which all of them rest; for rules as for `finer`."""
-        begun = int(self.shares.any(axis=(1, 2)).argmax())
-        return Signals(self.actions[begun:], self.shares[begun:])
+    def spans(self, game: Game, states: Array, first: Indices, steps: int) -> Signals:
+        """Return some steps of each run, from a step of its own on.
 
-    def longer(self) -> Signals:
-        """Return runs twice as long, at rest at first; for rules as for `finer`."""
-        rest = Signals(np.zeros_like(self.actions), np.zeros_like(self.shares))
+        Parameters
+        ----------
+        game : Game
+            That was played.
+        states : ndarray, shape (K + 1, S, n)
+            Along these runs.
+        first : ndarray of int, shape (S,)
+            The steps with which they begin.
+        steps : int
+            How many.
+        """
+        runs, rows = np.arange(len(first)), first + np.arange(steps)[:, None]
+        before = game.rules.target[self.actions[first - 1, runs]]
         return Signals(
-            np.concatenate([rest.actions, self.actions]), np.concatenate([rest.shares, self.shares])
+            self.actions[rows, runs],
+            self.shares[rows, runs],
+            states[first, runs],
+            np.where(first > 0, before, self.nodes),
         )
-
-    def finer(self, times: int) -> Signals:
-        """Return every step cut into some; for rules that let every mode follow every mode."""
-        return Signals(np.repeat(self.actions, times, 0), np.repeat(self.shares, times, 0))
 
 
 def play(game: Game, signals: Signals) -> Array:
-    """Simulate runs from rest.
+    """Simulate runs.
 
     Returns
     -------
@@ -165,6 +184,7 @@ def play(game: Game, signals: Signals) -> Array:
     """
     steps, runs = signals.actions.shape
     states = np.zeros((steps + 1, runs, game.order))
+    states[0] = signals.states
     for k in range(steps):
         states[k + 1] = _step(game, states[k], signals.actions[k], signals.shares[k])
     return states

@@ -70,11 +70,10 @@ class Outputs:
 
 
 def simulate_release(system: SwitchedSystem, outputs: Outputs, Q: Array | None) -> SwitchedRun:
-    """Simulate several adversaries, and keep the run that comes furthest beside its limits.
+    """Simulate an adversary who takes at every step the mode after which something is largest.
 
-    Each takes at every step the mode after which something is largest: the norm of Q, the
-    velocity, or the force. Modes that take turns keep them; where rules forbid to switch at any
-    time, one mode holds throughout.
+    It is the norm of Q, or without one the velocity. Modes that take turns keep them; where rules
+    forbid to switch at any time, the mode holds throughout that comes furthest beside the limits.
 
     Parameters
     ----------
@@ -124,13 +123,12 @@ def _runs(system: SwitchedSystem, outputs: Outputs, Q: Array | None) -> Iterator
             signal = np.full(_STEPS, mode, dtype=np.int64)
             yield simulate_switching(system, signal, start, step)
         return
-    sizes = [_size(outputs.velocity), _size(outputs.force)]
-    for norm in ([] if Q is None else [quadratic_norm(Q)]) + sizes:
-        kept = norm if system.contact is None else clipped(norm)
-        yield greedy_run(system, kept, start, step, _STEPS)
+    norm = _speed(outputs.velocity) if Q is None else quadratic_norm(Q)
+    kept = norm if system.contact is None else clipped(norm)
+    yield greedy_run(system, kept, start, step, _STEPS)
 
 
-def _size(rows: Array) -> Norm:
+def _speed(rows: Array) -> Norm:
     return lambda states: np.asarray(np.abs(states @ rows.T).max(axis=-1))
 
 

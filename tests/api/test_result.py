@@ -51,7 +51,7 @@ def results(tmp_path_factory):
         soft.optimize(),
         simulation,
         simulation[0],
-        study.worst_case(rounds=0),
+        study.worst_case(),
         soft.export(cert),
         soft.audit(log, cert),
         nrs.verify(cert, SOFT_TISSUE),
@@ -111,7 +111,7 @@ def test_names_are_escaped_in_a_notebook():
 def test_words_and_units_are_those_of_the_axis():
     """Of one that slides, in whichever verb and whichever method."""
     study = nrs.load(ROOT / "docs/examples/insertion-axis.nrs.yaml")
-    worst = study.worst_case(rounds=0)
+    worst = study.worst_case()
     assert "mm/s" in worst._repr_html_()
     (run,) = study.simulate()
     assert (run.units["torque"], run.units["depth"]) == ("N", "m")

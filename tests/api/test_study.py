@@ -64,21 +64,9 @@ def test_scenarios_are_simulated():
 
 def test_the_worst_case_stands_beside_limits(tmp_path):
     study = nrs.load(ROOT / "docs/examples/scenarios.nrs.yaml")
-    case = study.worst_case(rounds=0)
+    case = study.worst_case()
     assert {run.output.name for run in case.runs} == {"force", "velocity", "deflection"}
     assert case.limits["force"] == pytest.approx(0.3)
     assert not case.bounds
     with pytest.raises(CertificateError):
         study.worst_case(tmp_path / "none.cert.json")
-
-
-def test_runs_are_drawn():
-    study = nrs.load(ROOT / "docs/examples/scenarios.nrs.yaml")
-    (one,), (again,), (other,) = (study.simulate("shaken", draw=seed) for seed in (2, 2, 3))
-    assert one.parameters == again.parameters != other.parameters
-    assert one.metrics == again.metrics != other.metrics
-    assert study.simulate("shaken")[0].parameters == {}
-    with pytest.raises(DesignError, match="the seed is -1"):
-        study.simulate(draw=-1)
-    with pytest.raises(DesignError, match="three axes"):
-        nrs.load(ROOT / "docs/examples/three-axes.nrs.yaml").simulate(draw=1)

@@ -158,7 +158,6 @@ def test_a_bound_stands_beside_the_peak(spec, tmp_path):
         ({}, ["--engine", "exact", "--period", "0.002"], "has no samples"),
         ({}, ["--certificate", "none.json"], "cannot be read"),
         ({}, ["--engine", "foo"], "Invalid value for '--engine': 'foo' is not one of"),
-        ({}, ["--seed", "1"], "needs --worst-case"),
         ({}, ["--period", "1 parsec"], "parsec"),
         (
             {"more": "sampling: {period: 2 ms, outer_period: 0.1 ms, delay: 0}\n"},

@@ -29,7 +29,6 @@ def test_the_worst_case_beside_limits_and_bounds(spec, tmp_path):
     for item in found.values():
         assert 0 < item["worst_found"] < item["certified_bound"]
         assert item["bound_over_found"] > 1
-        assert item["worst_found"] >= max(item["starts"]) * 0.99
     assert found["force"]["exceeds_limit"] == (found["force"]["worst_found"] > 0.3)
     names = {f"small.worst-{name}.{s}" for name in found for s in ("csv", "svg", "png")}
     assert {path.name for path in (tmp_path / "runs").iterdir()} == names

@@ -193,7 +193,7 @@ def test_ten_thousand_runs_do_not_leave_the_bound(contact, Bt, near):
     modes[-late:, :half] = np.where(kept, chosen, modes[-late:, :half])
     largest = 0.0
     for part in (slice(k, k + 1000) for k in range(0, RUNS, 1000)):
-        states = play(game, Signals(modes[:, part], signs[:, part, None]))
+        states = play(game, Signals.from_rest(game, modes[:, part], signs[:, part, None]))
         values = np.abs(output_values(system, system.outputs[0], states))
         largest = max(largest, float(values.max()))
     level = float(evidence.level)

@@ -35,11 +35,11 @@ def level(system: SwitchedSystem, search=search_offset_ellipsoid, work: float = 
 @pytest.mark.parametrize(
     ("Bt", "Mt", "sections", "most", "ratio"),
     [
-        (BOTH, "0.01", {"disturbances": COMMAND}, 0.89, 2.5),
+        (BOTH, "0.01", {"disturbances": COMMAND}, 0.89, 2.6),
         (BOTH, "0", {"disturbances": COMMAND}, 0.53, 1.6),
         (INSERTION, "0.01", {"disturbances": COMMAND}, 0.48, 1.4),
-        (BOTH, "0.01", SAMPLED, 2.2, 5.7),
-        (BOTH, "0", SAMPLED, 0.66, 1.9),
+        (BOTH, "0.01", SAMPLED, 2.2, 5.8),
+        (BOTH, "0", SAMPLED, 0.66, 2.0),
     ],
 )
 def test_levels_of_the_robot_of_the_thesis(Bt, Mt, sections, most, ratio):

@@ -34,9 +34,9 @@ _TITLE = "Force, deflection and velocity"
 _MODES = 24
 _TEXT = (
     "The axis is pressed in, at rest, until the stiffest contact pushes back with the largest "
-    "torque of the spec, and let go. Of several adversaries, who take at every step the mode after "
-    "which force, velocity or the norm of the proof is largest, the run is shown that comes "
-    "furthest. It is the worst found, not the worst there is; floating point, no part of the proof."
+    "torque of the spec, and let go. An adversary takes at every step the mode after which the "
+    "norm of the proof is largest, or the velocity where none is proved. It is a bad run, not the "
+    "worst there is; floating point, no part of the proof."
 )
 _SAMPLED = (
     "It is shown at the samples, without what the arithmetic rounds; force samples on their way "

@@ -4,12 +4,12 @@ import pytest
 
 from nrs_design.late import late_function, late_names
 from nrs_design.proof import evidence
-from nrs_design.proof.evidence.constant_force import ConstantForce
+from nrs_design.proof.evidence.growing_sequence import GrowingSequence
 
 
 def test_a_name_is_found_in_its_home():
-    find = late_names("nrs_design.proof.evidence", {"ConstantForce": "constant_force"})
-    assert find("ConstantForce") is ConstantForce
+    find = late_names("nrs_design.proof.evidence", {"GrowingSequence": "growing_sequence"})
+    assert find("GrowingSequence") is GrowingSequence
 
 
 def test_a_name_without_a_home_is_none_of_the_package():

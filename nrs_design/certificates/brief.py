@@ -38,8 +38,6 @@ def brief(evidence: AbstractEvidence, system: SwitchedSystem, arm: Fraction | No
             bound = evidence.bound(system)
             assert bound is not None
             return _bound(bound, arm) + _contact(evidence, system)
-        case Shows.CONVERGENCE:
-            return "under a constant force that pushes in, contact settles; no rate is claimed"
         case Shows.NO_COMMON_QUADRATIC:
             return "no common quadratic function exists"
         case Shows.REGION:

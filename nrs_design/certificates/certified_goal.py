@@ -13,7 +13,7 @@ class CertifiedGoal:
 
     key: str  # Of the goal in the spec, such as ``decay_rate``
     said: str  # What is proved; numbers are rounded to their safe side
-    wanted: str  # As the spec writes it; ``largest`` and ``settles`` want no number
+    wanted: str  # As the spec writes it; ``largest`` wants no number
     # Whether what is proved is enough. Where it is not, nothing is known: more may be true.
     met: bool
 

@@ -11,7 +11,6 @@ from nrs_design.certificates.bounds import bound_on
 from nrs_design.certificates.certificate import Certificate, Verdict
 from nrs_design.certificates.certified_goal import CertifiedGoal
 from nrs_design.proof.bounds import rounded_down, rounded_up
-from nrs_design.proof.evidence import Shows
 from nrs_design.proof.mode import Time
 
 if TYPE_CHECKING:
@@ -37,12 +36,6 @@ def certified_goals(spec: Spec, certificate: Certificate | None) -> Iterator[Cer
         yield _decay_rate(goals.decay_rate.exact, goals.decay_rate.text, certificate)
     if goals.delay is not None and spec.sampling is not None:
         yield _delay(spec, goals.delay.exact, goals.delay.text, certificate)
-    if goals.constant_force is not None:
-        statements = () if certificate is None else certificate.statements
-        met = any(item.shows is Shows.CONVERGENCE for item in statements)
-        said = "the force is proved to settle at" if met else "not proved: the force settles at"
-        said += " every constant Fd that pushes in, at every constant stiffness"
-        yield CertifiedGoal("constant_force", said, goals.constant_force, met)
     if isinstance(goals.initial_force, str):
         yield _initial_force(None, goals.initial_force, certificate)
     elif goals.initial_force is not None:

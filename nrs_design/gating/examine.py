@@ -56,9 +56,6 @@ if TYPE_CHECKING:
     from nrs_design.search.certification import Certification
 
 
-_NO_NUMBERS = frozenset({"settles", "largest"})
-
-
 @dataclass(frozen=True)
 class Examiner:
     """Makes obligations about one spec, each with its place."""
@@ -257,7 +254,7 @@ class Examiner:
         """Yield NRS108 for every goal, and limit of contact with people, to be proved."""
         for goal in certified_goals(self.loaded.spec, certificate):
             # What wants no number is said whole already.
-            wanted = "" if goal.wanted in _NO_NUMBERS else f"; {goal.wanted} is wanted"
+            wanted = "" if goal.wanted == "largest" else f"; {goal.wanted} is wanted"
             status = Status.PROVED if goal.met else Status.INCONCLUSIVE
             subject, said = f"system: {goal.key}", goal.said + wanted
             yield self.obligation(CERTIFIED_GOAL, subject, status, said, goal.place)

@@ -171,13 +171,12 @@ GOAL = Rule(
 CERTIFIED_GOAL = Rule(
     "NRS108",
     "The certificate shows the goal",
-    "The goals `peak_torque`, `decay_rate`, `delay`, `constant_force` and `initial_force` are held "
-    "against what is proved: the bound on the force in contact under all disturbances of the spec "
-    "at once, the decay rate, the age of the oldest force sample that the proof covers, that the "
-    "force settles under a constant one that pushes in, and the contact force from which motions "
-    "decay although signals saturate. Decided in exact arithmetic. A bound that is above the goal "
-    "does not say that the goal is missed: the largest value that occurs may be smaller, above all "
-    "where contact may be lost.",
+    "The goals `peak_torque`, `decay_rate`, `delay` and `initial_force` are held against what is "
+    "proved: the bound on the force in contact under all disturbances of the spec at once, the "
+    "decay rate, the age of the oldest force sample that the proof covers, and the contact force "
+    "from which motions decay although signals saturate. Decided in exact arithmetic. A bound that "
+    "is above the goal does not say that the goal is missed: the largest value that occurs may be "
+    "smaller, above all where contact may be lost.",
     "Lower the disturbance (the claim says down to which one the limit is kept), choose gains with "
     "more damping, raise --budget, or relax the goal; for the delay, let `sampling.delay` reach "
     "that far.",

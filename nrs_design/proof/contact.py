@@ -28,9 +28,6 @@ class Contact:
     # Stability must be shown through any loss of contact; otherwise a proof may take for granted
     # that contact is kept, and its claim says so.
     required: bool = False
-    # A constant force may push into contact: the deflection at which its force is that one is the
-    # same in all modes that follow each other, and a statement may be about it.
-    pushed: bool = False
     # All this in words: what is taken for granted by what covers the loss of contact, and by
     # nothing else.
     loss: str = ""

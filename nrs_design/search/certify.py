@@ -39,7 +39,6 @@ from nrs_design.work import Allowance, Fuse, NotAffordableError
 # Share of the work on a bound for ellipsoids off the origin.
 OFF_THE_ORIGIN = 0.7
 NO_RATE = "what was found shows no rate of decay"
-CONSTANT_FORCE = "constant force"
 SATURATION = "decay under saturation"
 NOT_IN_TURNS = (
     "not looked for: where the loop has two periods or misses deadlines, decay is proved, and no "
@@ -111,10 +110,9 @@ def certify(
     statements = _spread(result.statements, merged, system)
     if result.verdict is Verdict.PROVED and limits.more:
         bounds, attempts = _bounds(system, allowance, progress)
-        settled, more = _settling(system, allowance, progress)
         held, last = _saturated(system, allowance, progress)
-        statements += bounds + settled + held
-        result = replace(result, attempts=(*result.attempts, *attempts, *more, *last))
+        statements += bounds + held
+        result = replace(result, attempts=(*result.attempts, *attempts, *last))
     if merged is not system or len(blocks) > 1:
         _check_again(statements, system)
     for statement in statements:
@@ -227,19 +225,6 @@ def _ellipsoids(
 
 def _bound_name(channels: Sequence[Channel], output: Output) -> str:
     return f"bound on {output.name} under {' and '.join(channel.name for channel in channels)}"
-
-
-def _settling(
-    system: SwitchedSystem, allowance: Allowance, progress: Progress
-) -> tuple[tuple[AbstractEvidence, ...], tuple[Attempt, ...]]:
-    """Show that contact settles under a constant force, where one may push in."""
-    if system.contact is None or not system.contact.pushed:
-        return (), ()
-    from nrs_design.search.constant_force import search_constant_force
-
-    progress(CONSTANT_FORCE)
-    search = partial(search_constant_force, system, allowance)
-    return _attempted(CONSTANT_FORCE, search, system, allowance)
 
 
 def _saturated(

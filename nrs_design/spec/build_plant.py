@@ -120,7 +120,6 @@ def build_conditions(spec: InteractionDesignSpec) -> OperatingConditions:
         largest_integral=None if spec.anti_windup is None else spec.anti_windup.clamp.not_above,
         coupling=spec.coupling,
         touched=spec.touched,
-        constant_force=goals is not None and goals.constant_force is not None,
         initial_force=wanted.exact if isinstance(wanted, Quantity) else wanted,
         preloads=dict(_preloads(spec)),
         sensed=spec.sensor is not None,

@@ -10,7 +10,6 @@ from nrs_design.spec.features import (
     AT_ONCE,
     BLEEDING,
     COMMAND,
-    CONSTANT_FORCE,
     CONSTANT_LAG,
     CONSTANT_MOTOR,
     CONSTANT_TISSUE,
@@ -129,8 +128,6 @@ COMBINATIONS: tuple[Row[Spec], ...] = (
     # Modes are not made one by one beside these; free motion is a mode that no rule names.
     *_beside(CONTACT_RULES, IDLE, SAMPLED, OFFSET),
     not_together(CONTACT_RULES, LOSABLE, SPRUNG),
-    # The loop must rest at one deflection under every controller.
-    *_beside(CONSTANT_FORCE, SAMPLED, COUPLED, LOADED, DAMPED, SPRUNG),
     not_together(SATURATED, COUPLED, CONTINUOUS),
     not_together(SATURATED, OTHERS, CONTINUOUS),
     *_beside(SATURATED, TWO_PERIODS, GIVEN_LOOP, SPRUNG, IDLE_RESET),

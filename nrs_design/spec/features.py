@@ -380,12 +380,6 @@ CONTACT_RULES = _F(
     "name controllers alone in the rules",
     lambda s: s.switching.names_contacts,
 )
-CONSTANT_FORCE = _F(
-    "a constant force that settles",
-    "goals.constant_force",
-    "remove the goal",
-    _given("goals.constant_force"),
-)
 SATURATED = _F(
     "decay although signals saturate",
     "goals.initial_force",

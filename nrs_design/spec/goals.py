@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from fractions import Fraction
-from typing import Annotated, Literal
+from typing import Annotated
 
 from pydantic import AfterValidator
 
@@ -38,9 +38,7 @@ ONLY_FOR = {
     "max_force_error": "force",
 }
 # What a certificate must show, for all controllers together.
-OF_THE_CERTIFICATE = frozenset(
-    {"peak_torque", "decay_rate", "delay", "constant_force", "initial_force"}
-)
+OF_THE_CERTIFICATE = frozenset({"peak_torque", "decay_rate", "delay", "initial_force"})
 # A goal for a frequency response, decided by an enclosure of it over all ranges.
 ResponseGoal = TransparencySpec | AccuracySpec
 
@@ -112,11 +110,6 @@ class GoalsSpec(SpecModel):
     delay: Duration | None = optional(
         "age of a force sample up to which the sampled loop must be proved, such as "
         "4 ms; for the whole spec, and with sampling"
-    )
-    constant_force: Literal["settles"] | None = optional(
-        "settles: it must be proved that the force settles at any constant Fd > 0 that "
-        "pushes in, through loss of contact, at any constant stiffness; for the whole spec, with "
-        "`contact: losable` and one elastic environment, in continuous time"
     )
     initial_force: TorqueOrLargest | None = optional(
         "contact force in N*m from which, at rest, every motion must be proved to "

@@ -15,7 +15,6 @@ from nrs_design.spec.controllers import ControllerSpec, names_in, touched_in
 from nrs_design.spec.faults import Location
 from nrs_design.spec.features import (
     BLEEDING,
-    CONSTANT_FORCE,
     CONSTANT_MOTOR,
     COUPLED,
     HAND,
@@ -332,10 +331,6 @@ def _constant_over_samples(spec: Spec) -> tuple[str, str, str, str] | None:
     return *at, f"{float(low):g}", f"{float(high):g}"
 
 
-def _contacts(spec: Spec) -> set[object]:
-    return {contact for c in spec.controllers.values() for contact in c.contacts}
-
-
 INTERACTION_CHECKS: tuple[Row[Spec], ...] = (
     # The drive.
     Row(
@@ -540,21 +535,6 @@ INTERACTION_CHECKS: tuple[Row[Spec], ...] = (
         lambda s: s.goals is not None and s.goals.delay is not None and s.sampling is None,
         "a proof up to a delay is wanted, but the spec has no samples",
         "add `sampling: {{period: 2 ms, delay: [0, 2]}}`, or use min_delay_margin",
-    ),
-    Row(
-        "goals.constant_force",
-        lambda s: CONSTANT_FORCE.find(s) and s.contact != "losable",
-        "that contact settles under a constant force is shown through its loss",
-        "write `contact: losable`",
-    ),
-    Row(
-        "goals.constant_force",
-        lambda s: (
-            CONSTANT_FORCE.find(s)
-            and (len(_contacts(s)) != 1 or not all(isinstance(c, str) for c in _contacts(s)))
-        ),
-        "a constant force settles at one deflection in one environment: another stiffness moves it",
-        "let all controllers touch the same environment and no other, or remove the goal",
     ),
     Row(
         "goals.initial_force",

@@ -43,7 +43,6 @@ class OperatingConditions:
     largest_integral: Fraction | None  # Where the integral of the force error is cut off, in rad
     coupling: CouplingSpec | None  # What axes do to each other
     touched: frozenset[str]  # The environments that some controller touches
-    constant_force: bool  # A goal is about a constant force
     initial_force: Fraction | Literal["largest"] | None  # Goal about saturation, in N m
     preloads: Mapping[str, Preload]  # Of the environments that are touched
     sensed: bool  # The spec describes a sensor

@@ -225,10 +225,6 @@ def _assemble_continuous(
         # A spec with a mobility is sampled.
         assert isinstance(coupling, AxesCoupling)
         system = couple_axes(system, coupling)
-    if conditions.constant_force:
-        from nrs_design.switched.constant_force import with_constant_force
-
-        system = with_constant_force(system)
     if conditions.initial_force is not None:
         from nrs_design.switched.saturation import with_saturation
 

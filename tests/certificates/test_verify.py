@@ -68,7 +68,6 @@ SPECS = {
     "constant": EXAMPLES / "unknown-constant.nrs.yaml",
     "value": ROOT / "docs" / "examples" / "flutter.nrs.yaml",
     "period": ROOT / "docs" / "examples" / "wide-range.nrs.yaml",
-    "pushed": ROOT / "docs" / "examples" / "pushed-in.nrs.yaml",
     "saturating": ROOT / "docs" / "examples" / "saturating.nrs.yaml",
     "blocks": {
         "A": [
@@ -93,8 +92,6 @@ ALL = [name if name in SMALL else pytest.param(name, marks=pytest.mark.slow) for
 # For each kind, the fields that may hold other numbers.
 NUMBERS = {
     "block-triangular": {"blocks", "parts"},
-    # Q and the slope have one denominator, whatever it is.
-    "constant-force": {"Q", "slope", "denominator_log2"},
     "graph": {"nodes", "denominator_log2", "vanishing", "multipliers"},
     "parameter-quadratic": {"low", "high", "denominator_log2"},
     "saturated-ellipsoid": {"Q", "H", "level"},

@@ -54,22 +54,6 @@ def test_proved(tmp_path):
     assert document["verdict"] == "proved"
 
 
-@pytest.mark.slow
-def test_a_constant_force_that_is_not_covered_is_said(tmp_path):
-    """43 to 62 N m/rad needs two parts: no function for all of it is found."""
-    example = ROOT / "docs" / "examples" / "pushed-in.nrs.yaml"
-    text = example.read_text(encoding="utf-8").replace("lever_arm: 0.24 m", "")
-    wide = "stiffness: {nominal: 50 N*m/rad, range: [43 N*m/rad, 62 N*m/rad]}"
-    kept = [line for line in text.splitlines() if "stiffness:" not in line]
-    text = "\n".join(kept).replace("model: elastic", f"model: elastic\n    {wide}")
-    path = tmp_path / "a.nrs.yaml"
-    path.write_text(text, encoding="utf-8")
-    result = run("certify-switching", path, cwd=tmp_path, code=0)
-    assert "pushed-in: PROVED" in result.stdout
-    assert "Under a constant force" not in result.stdout
-    assert "constant force: the solver found no solution" in result.stdout
-
-
 def test_the_force_that_motions_decay_from_is_said(tmp_path):
     text = (ROOT / "docs" / "examples" / "saturating.nrs.yaml").read_text(encoding="utf-8")
     (tmp_path / "a.nrs.yaml").write_text(text, encoding="utf-8")

@@ -183,22 +183,6 @@ def test_goals_that_a_certificate_must_show(tmp_path, goals, level, ends):
     assert {item.status for item in none} <= {Status.INCONCLUSIVE}
 
 
-@pytest.mark.parametrize(("shown", "status"), [(True, "PROVED"), (False, "INCONCLUSIVE")])
-def test_that_the_force_settles_is_held_against_the_certificate(shown, status):
-    from tests.proof.evidence.test_constant_force import PUSHED
-    from tests.proof.systems import settling
-
-    proof = common_quadratic(((1, 0), (0, 1)), 0, Fraction(1, 2))
-    statements = (proof, PUSHED) if shown else (proof,)
-    certificate = Certificate("s", "0", None, {}, settling(), statements, "0")
-    examiner = Examiner.of(read_spec(ROOT / "docs/examples/pushed-in.nrs.yaml"))
-    (found,) = examiner.certified_goals(certificate)
-    assert found.status is Status[status]
-    assert (found.rule.id, found.message.startswith("not proved")) == ("NRS108", not shown)
-    (nothing,) = examiner.certified_goals(None)
-    assert nothing.status is Status.INCONCLUSIVE
-
-
 @pytest.mark.parametrize(
     ("goal", "level", "status", "said"),
     [

@@ -285,14 +285,6 @@ def drifting() -> SwitchedSystem:
     return replace(family([[-2, -1], [1, 0]]), contact=Contact((free,), required=True))
 
 
-def settling() -> SwitchedSystem:
-    """The same without damping, pushed in by a constant force."""
-    system = bouncing()
-    contact = system.contact
-    assert contact is not None
-    return replace(system, contact=replace(contact, pushed=True))
-
-
 def saturating() -> SwitchedSystem:
     """The same mass, pushed by ``v' = v + s1 + s2`` on a ground that does not slow it.
 
@@ -526,7 +518,6 @@ SYSTEMS = {
     "conewise-quadratic, pulling": lambda: bouncing(1),
     "conewise-quadratic, discrete": bouncing_in_steps,
     "conewise-quadratic, pulling in steps": lambda: bouncing_in_steps(1),
-    "constant-force": settling,
     "coupled-axes": lambda: leaning(bouncing(), "1/8"),
     "coupled-axes, kept": lambda: leaning(replace(bouncing(), contact=None), "1/8", "1/8"),
     "coupled-axes, pulling": lambda: leaning(bouncing(1), "1/8"),

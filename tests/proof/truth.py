@@ -18,7 +18,6 @@ from nrs_design.proof.channels import Channel
 from nrs_design.proof.evidence import (
     AbstractEvidence,
     BlockTriangular,
-    ConstantForce,
     ConstantsQuadratic,
     FormsOnGraph,
     GrowingSequence,
@@ -163,36 +162,6 @@ def holds(system: SwitchedSystem, evidence: AbstractEvidence) -> bool:
     if system.clock is not None and not isinstance(evidence, clocked):
         return False
     return _ORACLES[type(evidence)](system, evidence)
-
-
-def _constant_force(system: SwitchedSystem, item: ConstantForce) -> bool:
-    """V' in contact, and in the air as a form in (y, 1), from V as a function of y and e."""
-    contact, Q, s = system.contact, [list(row) for row in item.Q], item.slope
-    if contact is None or not contact.pushed or contact.pulls or s <= 0 or system.couplings:
-        return False
-    if system.time is not Time.CONTINUOUS or system.switching.resets or len(Q) != system.order:
-        return False
-    inner, m = [row[:-1] for row in Q[:-1]], [row[-1] for row in Q[:-1]]
-    forms: list[Rows] = [Q]
-    flying = [[row[:-1] for row in mode.A.fractions()] for mode in contact.free]
-    touching = [[row[:-1] for row in mode.A.fractions()] for mode in system.modes]
-    if not all(A in flying for A in touching) or not all(A in touching for A in flying):
-        return False
-    for mode in system.modes:
-        rows = mode.A.fractions()
-        *moving, (*c, own) = rows
-        if own:
-            return False
-        forms.append(decrease(rows, Q, Fraction(0), system.time))
-        F, h = [row[:-1] for row in moving], [row[-1] for row in moving]
-        size = range(len(h))
-        # y' = F y - h and e' = c y, in V = y' inner y - 2 m'y + r + 2 s (-1 - e).
-        linear = [sum(inner[i][j] * h[j] + F[j][i] * m[j] for j in size) + s * c[i] for i in size]
-        square = decrease(F, inner, Fraction(0), system.time)
-        corner = -2 * sum(m[i] * h[i] for i in size)
-        bordered = [[*row, entry] for row, entry in zip(square, linear, strict=True)]
-        forms.append([*bordered, [*linear, corner]])
-    return all(is_definite(form) for form in forms)
 
 
 def _saturated_steps(system: SwitchedSystem, item: SaturatedEllipsoid) -> bool:
@@ -1136,7 +1105,6 @@ def restrict(system: SwitchedSystem, block: tuple[int, ...]) -> SwitchedSystem:
 
 
 _ORACLES = {
-    ConstantForce: _constant_force,
     ConstantsQuadratic: _constants_quadratic,
     FormsOnGraph: _graph,
     GrowingSequence: _growing_sequence,

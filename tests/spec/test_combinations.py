@@ -139,7 +139,6 @@ CHANGES = {
     f.DWELL: {"switching": {"dwell_time": "1 s"}},
     f.SAMPLED_DWELL: {"switching": {"dwell_time": "1 s"}},
     f.CONTACT_RULES: {"switching": {"transitions": [["first/soft", "second/soft"]]}},
-    f.CONSTANT_FORCE: {"goals": {"constant_force": "settles"}},
     f.SATURATED: {"limits": {"command": "2000 rpm"}, "goals": {"initial_force": "0.1 N*m"}},
     f.STREAMED: {
         "actuator": None,

@@ -8,12 +8,10 @@ from nrs_design.errors import SpecError
 from nrs_design.spec import doubt_spec, parse_spec
 from tests.support import ROOT
 
-PUSHED = (ROOT / "docs/examples/pushed-in.nrs.yaml").read_text("utf-8")
 SATURATING = (ROOT / "docs/examples/saturating.nrs.yaml").read_text("utf-8")
 
 
 def test_the_examples_ask_for_what_is_shown():
-    assert parse_spec(PUSHED).goals.constant_force == "settles"
     assert parse_spec(SATURATING).goals.initial_force.text == "0.5 N*m"
     largest = SATURATING.replace("initial_force: 0.5 N*m", "initial_force: largest")
     assert parse_spec(largest).goals.initial_force == "largest"
@@ -25,18 +23,9 @@ def test_decay_of_damped_contact_that_is_kept_is_modelled():
     assert parse_spec(text.replace("contact: losable", "contact: kept")).goals is not None
 
 
-MORE = "  more:\n    model: elastic\n    stiffness: 50 N*m/rad\ncontrollers:\n"
-TOOL = "  tool: {type: impedance, environment: more, Mt: 0.01 kg*m^2, Bt: 2 N*m*s/rad}\n"
-
-
 @pytest.mark.parametrize(
     ("text", "old", "new", "what"),
     [
-        (PUSHED, "contact: losable", "contact: kept", "write `contact: losable`"),
-        (PUSHED, "contact: losable\n", "", "write `contact: losable`"),
-        (PUSHED, "controllers:\n", MORE + TOOL, "let all controllers touch the same environment"),
-        (PUSHED, "constant_force: settles", "constant_force: moves", "settles"),
-        (PUSHED, "Bt: 1.04", "goals: {constant_force: settles}, Bt: 1.04", "controllers together"),
         (SATURATING, "  command: 2000 rpm\n", "", "add `command` to the limits, in rpm"),
         (SATURATING, "force: 0.5 N*m", "force: most", "write '0.5 N*m', or 'largest'"),
         (SATURATING, "force: 0.5 N*m", "force: 0.5 N", "multiply it by its lever arm"),
@@ -51,7 +40,7 @@ def test_goals_of_the_certificate_are_for_what_it_shows(text, old, new, what):
 
 def test_an_environment_that_is_not_there_is_a_fault_of_its_own():
     with pytest.raises(SpecError, match="there is no environment 'soft'") as caught:
-        parse_spec(PUSHED.replace("  soft:\n", "  other:\n"))
+        parse_spec(SATURATING.replace("  soft:\n", "  other:\n"))
     assert "which has damping" not in str(caught.value)
 
 

@@ -16,7 +16,6 @@ from nrs_design.proof.system import SwitchedSystem
 
 if TYPE_CHECKING:
     from nrs_design.proof.evidence.block_triangular import BlockTriangular as BlockTriangular
-    from nrs_design.proof.evidence.constant_force import ConstantForce as ConstantForce
     from nrs_design.proof.evidence.constants_quadratic import (
         ConstantsQuadratic as ConstantsQuadratic,
     )
@@ -37,7 +36,6 @@ if TYPE_CHECKING:
 # The name in a certificate file, and the class; its module has the same name as the kind.
 KINDS: Mapping[str, str] = {
     "block-triangular": "BlockTriangular",
-    "constant-force": "ConstantForce",
     "constants-quadratic": "ConstantsQuadratic",
     "graph": "FormsOnGraph",
     "growing-sequence": "GrowingSequence",

@@ -48,13 +48,12 @@ class Shows(StrEnum):
     INSTABILITY_IN_CONTACT = "instability if the environment pulled"
     NO_COMMON_QUADRATIC = "no common quadratic function"
     BOUND = "a bound on an output"
-    CONVERGENCE = "convergence under a constant force"
     REGION = "decay from a region under saturation"
 
     @property
     def is_good(self) -> bool:
         """Whether it must hold of every motion, not of one that grows."""
-        goods = (Shows.STABILITY, Shows.BOUND, Shows.CONVERGENCE, Shows.REGION)
+        goods = (Shows.STABILITY, Shows.BOUND, Shows.REGION)
         return self in goods
 
 

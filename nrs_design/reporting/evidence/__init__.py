@@ -9,7 +9,6 @@ from nrs_design.proof.system import SwitchedSystem
 from nrs_design.reporting.evidence.blocks import BlocksPage
 from nrs_design.reporting.evidence.bound import BoundPage
 from nrs_design.reporting.evidence.constants import ConstantsPage
-from nrs_design.reporting.evidence.force import ForcePage
 from nrs_design.reporting.evidence.functions import FunctionsPage
 from nrs_design.reporting.evidence.growth import GrowthPage
 from nrs_design.reporting.evidence.obstruction import ObstructionPage
@@ -23,7 +22,6 @@ _PAGES: Mapping[Shows, type[AbstractPage]] = {
     Shows.INSTABILITY: GrowthPage,
     Shows.NO_COMMON_QUADRATIC: ObstructionPage,
     Shows.BOUND: BoundPage,
-    Shows.CONVERGENCE: ForcePage,
     Shows.REGION: SaturationPage,
 }
 

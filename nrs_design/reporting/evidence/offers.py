@@ -61,10 +61,6 @@ def _one(e: Any) -> Offer:
     return Offer((Form(e.Q),), e.denominator_log2)
 
 
-def _constant_force(e: Any) -> Offer:
-    return Offer((Form(e.Q),), e.denominator_log2, numbers=(e.slope,))
-
-
 def _graph(e: Any) -> Offer:
     """Return the forms: one of several at a place by name, free motion where it is none of them."""
     taus = (item for item in e.multipliers if item.fact.startswith(COUPLING))
@@ -115,7 +111,6 @@ def _sequence(e: Any) -> Offer:
 # By kind of evidence.
 OFFERS: Mapping[str, Callable[[Any], Offer]] = {
     "block-triangular": lambda e: Offer(blocks=e.blocks, parts=e.parts),
-    "constant-force": _constant_force,
     "constants-quadratic": _corners,
     "graph": _graph,
     "growing-sequence": _sequence,

@@ -98,10 +98,10 @@ def _bounds(certification: Certification) -> list[str]:
 
 
 def _beside(result: Result) -> list[str]:
-    """State the claims about a constant force and about saturation."""
+    """State the claims about saturation."""
     system, said = result.certification.system, list[str]()
     for item in result.certification.statements:
-        if item.shows in (Shows.CONVERGENCE, Shows.REGION):
+        if item.shows is Shows.REGION:
             said.append(item.claim(system))
             if result.loaded.spec.has_ranges:
                 said += page_of(system, item).between_corners()

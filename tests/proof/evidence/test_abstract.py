@@ -115,7 +115,6 @@ GROWN = " This growth is that in kept contact, the environment pulling as it pus
     [
         (Shows.STABILITY, KEPT),
         (Shows.BOUND, KEPT),
-        (Shows.CONVERGENCE, KEPT),
         (Shows.INSTABILITY, GROWN),
         (Shows.NO_COMMON_QUADRATIC, ""),
     ],
@@ -175,7 +174,6 @@ NOT_ROUNDED = " This holds for the law computed without rounding."
     [
         (Shows.STABILITY, NOT_ROUNDED),
         (Shows.BOUND, NOT_ROUNDED),
-        (Shows.CONVERGENCE, NOT_ROUNDED),
         (Shows.INSTABILITY, f" {GROWN_WITHOUT_ROUNDING}"),
         (Shows.NO_COMMON_QUADRATIC, ""),
     ],
@@ -206,7 +204,6 @@ def test_a_rate_by_the_step_is_said_in_seconds_too():
     [
         (Shows.STABILITY, True),
         (Shows.BOUND, True),
-        (Shows.CONVERGENCE, True),
         (Shows.INSTABILITY, False),
         (Shows.NO_COMMON_QUADRATIC, False),
     ],
@@ -374,11 +371,11 @@ FACTS = {
     "covers_clock": GRAPHS - RULED | {"growing-sequence"},
     "covers_coupling": {"coupled-axes", "invariant-ellipsoid", "saturated-ellipsoid"},
     "covers_lost_contact": BOUNCING
-    | {"constant-force", "invariant-ellipsoid", "no-common-quadratic", "saturated-ellipsoid"}
+    | {"invariant-ellipsoid", "no-common-quadratic", "saturated-ellipsoid"}
     | {"offset-ellipsoid"},
     "covers_mixtures": SETS
     | BOUNCING
-    | {"common-polynomial", "constant-force", "block-triangular", "saturated-ellipsoid"},
+    | {"common-polynomial", "block-triangular", "saturated-ellipsoid"},
     "is_common_quadratic": {"common-quadratic", "conewise-quadratic", "coupled-axes"},
     # The blocks of the example have polynomials.
     "keeps_bound_in_mixtures": SETS | CONSTANT | {"conewise-mode-quadratic"} | RULED,

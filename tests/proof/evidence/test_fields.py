@@ -33,12 +33,12 @@ from tests.proof.systems import (
     bouncing,
     bouncing_in_steps,
     doubled_in_turns,
+    drifting,
     family,
     genuine,
     juggling_among_modes,
     matrix,
     saturating,
-    settling,
 )
 from tests.support import number_in
 
@@ -291,13 +291,12 @@ def test_the_longest_and_the_shortest_round():
         assert read_system("family", system_fields(system)) == system
 
 
-def test_that_a_force_pushes_in_is_written_only_where_it_does():
-    fields = system_fields(settling())
-    assert fields["contact"]["pushed"] is True
-    assert "pushed" not in system_fields(bouncing())["contact"]
-    assert read_system("family", fields) == settling()
+def test_that_loss_must_be_covered_is_true_or_false():
+    fields = system_fields(drifting())
+    assert fields["contact"]["required"] is True
+    assert read_system("family", fields) == drifting()
     for wrong in (1, "true", None):
-        changed = {**fields, "contact": {**fields["contact"], "pushed": wrong}}
+        changed = {**fields, "contact": {**fields["contact"], "required": wrong}}
         with pytest.raises(TypeError, match="expected true or false"):
             read_system("family", changed)
 

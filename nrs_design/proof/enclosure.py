@@ -41,17 +41,10 @@ def balls(A: RationalMatrix) -> Any:
 
 
 def exponential(A: RationalMatrix, begin: Fraction, end: Fraction) -> Any:
-    """Return balls that contain ``exp(A t)`` for all t from begin to end.
+    """Return balls that contain ``exp(A t)`` for all t from begin to end; A is in 1/s, t in s.
 
     The times are those around their middle: ``exp(A t) = exp(A d) exp(A m)`` with d in a ball
     around zero.
-
-    Parameters
-    ----------
-    A : RationalMatrix, shape (n, n)
-        In 1/s.
-    begin, end : Fraction
-        The first and the last time, in s.
     """
     from flint import arb_mat, fmpq
 
@@ -62,27 +55,13 @@ def exponential(A: RationalMatrix, begin: Fraction, end: Fraction) -> Any:
 
 
 def exponential_near_zero(A: Any, half: Fraction) -> Any:
-    """Return balls that contain ``exp(A t)`` for all t from ``-half`` to ``half``.
-
-    Parameters
-    ----------
-    A : flint.arb_mat, shape (n, n)
-        In 1/s.
-    half : Fraction
-        In s.
-    """
+    """Return balls that contain ``exp(A t)`` for all t from ``-half`` to ``half``, in s."""
     ball = ball_around(half)
     return (A * (-ball).union(ball)).exp()
 
 
 def unit_coordinates(form: Any) -> Any:
-    """Return an exact T with ``T' F T`` near the identity; the identity if F is not definite.
-
-    Parameters
-    ----------
-    form : flint.arb_mat, shape (n, n)
-        The symmetric F.
-    """
+    """Return an exact T with ``T' F T`` near the identity; the identity if F is not definite."""
     from flint import arb_mat
 
     n = form.nrows()
@@ -104,17 +83,7 @@ def unit_coordinates(form: Any) -> Any:
 
 
 def overlap(enclosed: Any, M: RationalMatrix, error: Fraction) -> bool:
-    """Tell whether balls overlap, entry by entry, those of one radius around a rational matrix.
-
-    Parameters
-    ----------
-    enclosed : flint.arb_mat
-        The balls.
-    M : RationalMatrix
-        Of the same shape.
-    error : Fraction
-        The radius.
-    """
+    """Tell whether balls overlap, entry by entry, those of one radius around a rational matrix."""
     radius, ours = ball_around(error), balls(M)
     around, (rows, columns) = (-radius).union(radius), M.shape
     return all(
@@ -132,15 +101,7 @@ def eigenvalues(A: RationalMatrix) -> list[Any]:
 
 
 def characteristic_sign(M: Any, number: Fraction) -> int:
-    """Return the sign of ``det(number I - M)`` for all matrices in M; 0 if it is not certain.
-
-    Parameters
-    ----------
-    M : flint.arb_mat, shape (n, n)
-        Balls.
-    number : Fraction
-        Real.
-    """
+    """Return the sign of ``det(number I - M)`` for all matrices in M; 0 if it is not certain."""
     value = M.charpoly()(ball_around(number))
     return 1 if value > 0 else -1 if value < 0 else 0
 
@@ -151,13 +112,6 @@ def eigenvector(M: Any, low: Fraction, high: Fraction) -> Any:
     Where the characteristic polynomial p has opposite signs at the two, there is a root z between
     them. By Cayley and Hamilton, ``v(z) = adj(z I - M) u`` has ``(z I - M) v(z) = p(z) u = 0``; it
     is enclosed for all numbers in between. What is returned may enclose zero, which is none.
-
-    Parameters
-    ----------
-    M : flint.arb_mat, shape (n, n)
-        Balls.
-    low, high : Fraction
-        The numbers.
     """
     from flint import arb_mat
 

@@ -47,12 +47,7 @@ def is_too_large(M: IntegerMatrix) -> bool:
 def spectrum_work(order: int, bits: int) -> int:
     """Predict what deciding where eigenvalues are takes; `MAX_SPECTRUM_WORK` is some seconds.
 
-    Parameters
-    ----------
-    order : int
-        Rows of the integer matrix.
-    bits : int
-        Its entries, and its denominator if that counts, are smaller in size than ``2^bits``.
+    Entries, and the denominator if that counts, are smaller in size than ``2^bits``.
     """
     longest = order * bits
     return order**3 * longest * (LONG_BITS + longest) // LONG_BITS
@@ -74,15 +69,7 @@ def common_denominator(denominators: Iterable[int]) -> int | None:
 
 
 def add(left: IntegerMatrix, right: IntegerMatrix, weight: int = 1) -> list[list[int]]:
-    """Return ``left + weight right``.
-
-    Parameters
-    ----------
-    left, right : integer matrix
-        Of one shape.
-    weight : int
-        Of the right one.
-    """
+    """Return ``left + weight right``."""
     return [
         [a + weight * b for a, b in zip(*rows, strict=True)]
         for rows in zip(left, right, strict=True)
@@ -95,20 +82,10 @@ def scaled(M: IntegerMatrix, factor: int) -> list[list[int]]:
 
 
 def is_positive_definite(M: IntegerMatrix) -> bool:
-    """Decide whether a symmetric integer matrix is positive definite.
+    """Decide whether a symmetric integer matrix is positive definite; others are a ValueError.
 
     Fraction-free elimination (Bareiss 1968): the k-th pivot is the k-th leading principal minor,
     and by Sylvester's criterion all of them are positive iff M is positive definite.
-
-    Parameters
-    ----------
-    M : sequence of sequence of int, shape (n, n)
-        Must be symmetric.
-
-    Raises
-    ------
-    ValueError
-        If M is empty or not symmetric.
     """
     if not M or not is_symmetric(M):
         raise ValueError("a definiteness test needs a symmetric matrix")
@@ -131,16 +108,11 @@ def is_positive_definite(M: IntegerMatrix) -> bool:
 
 
 def is_positive_semidefinite(M: IntegerMatrix) -> bool:
-    """Decide whether a symmetric integer matrix is positive semidefinite.
+    """Decide whether a symmetric integer matrix is positive semidefinite; others are a ValueError.
 
     Elimination as in `is_positive_definite`, with a symmetric choice of pivots: the Schur
-    complement of a positive diagonal entry is positive semidefinite iff the matrix is, and a
-    matrix with no positive diagonal entry is positive semidefinite iff it is zero.
-
-    Raises
-    ------
-    ValueError
-        If M is empty or not symmetric.
+    complement of a positive diagonal entry is positive semidefinite iff the matrix is, and a matrix
+    with no positive diagonal entry is positive semidefinite iff it is zero.
     """
     if not M or not is_symmetric(M):
         raise ValueError("a definiteness test needs a symmetric matrix")
@@ -158,13 +130,7 @@ def is_positive_semidefinite(M: IntegerMatrix) -> bool:
 
 
 def multiply(left: IntegerMatrix, right: IntegerMatrix) -> list[list[int]]:
-    """Return the matrix product.
-
-    Raises
-    ------
-    ValueError
-        If the factors do not fit, or the rows of one are not of one length.
-    """
+    """Return the matrix product; a ValueError if the factors do not fit, or rows are uneven."""
     if any(len(row) != len(right) for row in left):
         raise ValueError("a product needs as many columns on the left as rows on the right")
     columns = transpose(right)
@@ -177,15 +143,7 @@ def transpose(M: IntegerMatrix) -> list[tuple[int, ...]]:
 
 
 def congruence(L: IntegerMatrix, Q: IntegerMatrix, multiply: Product = multiply) -> list[list[int]]:
-    """Return ``L' Q L``.
-
-    Parameters
-    ----------
-    L, Q : integer matrices
-        Q is square, with as many rows as L.
-    multiply : callable
-        How matrices are multiplied.
-    """
+    """Return ``L' Q L``."""
     return multiply(transpose(L), multiply(Q, L))
 
 
@@ -198,16 +156,8 @@ def lyapunov_decrease(
 ) -> list[list[int]]:
     """Form ``-(A'Q + QA + 2 rate Q)`` for ``A = N / denominator``, times `lyapunov_factor`.
 
-    Parameters
-    ----------
-    N, Q : integer matrices, shape (n, n)
-        Q symmetric.
-    denominator : int
-        Positive.
-    rate : Fraction
-        The claimed decay rate alpha, in 1/s.
-    multiply : callable
-        How matrices are multiplied; only a search has reason to ask for another way.
+    Q is symmetric, the denominator positive, the rate in 1/s. Only a search has reason to ask for
+    another way to multiply.
     """
     QN = multiply(Q, N)
     p, q = 2 * rate.numerator * denominator, rate.denominator
@@ -232,14 +182,7 @@ def stein_decrease(
 ) -> list[list[int]]:
     """Form ``factor^2 Q - A'QA`` for ``A = N / denominator``, times a positive integer.
 
-    Parameters
-    ----------
-    N, Q : integer matrices, shape (n, n)
-        Q symmetric.
-    denominator : int
-        Positive.
-    factor : Fraction
-        The claimed contraction rho per step.
+    Q is symmetric, the denominator positive, the factor the contraction rho per step.
     """
     p, q = (factor.numerator * denominator) ** 2, factor.denominator**2
     return add(scaled(Q, p), congruence(N, Q), -q)
@@ -264,15 +207,10 @@ def characteristic_polynomial(N: IntegerMatrix) -> list[int]:
 def is_hurwitz_polynomial(coefficients: Sequence[int]) -> bool:
     """Decide whether all roots have negative real parts.
 
-    Routh's scheme. Each row is multiplied by a positive integer to stay in integers and divided
-    by its greatest common divisor to stay small; neither changes a sign. With a positive leading
-    coefficient, the roots are all in the open left half-plane iff the scheme runs to its end
-    with a positive first column.
-
-    Parameters
-    ----------
-    coefficients : sequence of int
-        Highest power first; the leading one is not zero.
+    Coefficients begin with the highest power, which is not zero. Routh's scheme. Each row is
+    multiplied by a positive integer to stay in integers and divided by its greatest common divisor
+    to stay small; neither changes a sign. With a positive leading coefficient, the roots are all in
+    the open left half-plane iff the scheme runs to its end with a positive first column.
     """
     if coefficients[0] < 0:
         coefficients = [-c for c in coefficients]

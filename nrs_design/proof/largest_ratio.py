@@ -50,18 +50,10 @@ def largest_ratio(
 ) -> LargestRatio:
     """Bound the largest value of a quotient of polynomials over the unit box.
 
-    Parameters
-    ----------
-    numerator, denominator : sequence of Fraction, fmpq or arb
-        Bernstein coefficients, in the order of indices; neither polynomial is negative in the box.
-    shape : sequence of int
-        How many there are in each direction.
-    limit : Fraction, optional
-        What the quotient should stay below: the bounds are drawn closer until that is decided.
-    nearly : Fraction or None
-        How near the two bounds shall come, as a share; None if any bound will do.
-    most : int
-        How many coefficients are looked at; what is not shown by then is not shown.
+    Neither is negative in the box; Bernstein coefficients come in the order of indices, so many in
+    each direction. The bounds are drawn closer until it is decided whether the quotient stays below
+    a limit, or until they are as near as a share; what is not shown by `most` coefficients is not
+    shown.
     """
     with precision():
         return _search(
@@ -70,15 +62,7 @@ def largest_ratio(
 
 
 def bernstein(powers: Tensor, low: Any, high: Any) -> list[Any]:
-    """Return the Bernstein coefficients of a polynomial between two numbers.
-
-    Parameters
-    ----------
-    powers : sequence of Fraction or fmpq
-        Coefficients of 1, x, x^2, ...
-    low, high : Fraction or fmpq
-        The ends.
-    """
+    """Return Bernstein coefficients between two numbers, of powers from the lowest on."""
     n, span = len(powers) - 1, high - low
     # In u, where x = low + span u.
     moved = [

@@ -63,20 +63,10 @@ def least_cost(
     enough: Fraction,
     most: int,
 ) -> LeastCost:
-    """Bound the least cost over a box of gains from below.
+    """Bound the least cost, a mean over frequencies, over a box of gains from below.
 
-    Parameters
-    ----------
-    frequencies : sequence of Frequency
-        Over which the cost is a mean.
-    weights : tuple of Fraction
-        wD and wR, not negative.
-    Mt, Bt : tuple of Fraction
-        Lowest and highest virtual mass (kg m^2, not negative) and damping (N m s/rad, positive).
-    enough : Fraction
-        The search ends when the bound is at least this.
-    most : int
-        Boxes that are looked at, at least one.
+    Weights are wD and wR, not negative; Mt, not negative, in kg m^2 and Bt, positive, in N m s/rad.
+    The search ends when the bound is `enough`, or after `most` boxes.
     """
     with precision(_BITS):
         cost = _Cost(frequencies, weights, enough)
@@ -97,12 +87,7 @@ def cost_at_most(
 ) -> Fraction:
     """Return a number that the cost of one pair of gains does not exceed.
 
-    Parameters
-    ----------
-    frequencies, weights
-        As for `least_cost`.
-    Mt, Bt : Fraction
-        The gains, kg m^2 and N m s/rad, with which no ``y + F`` is zero.
+    As for `least_cost`; with these gains, no ``y + F`` is zero.
     """
     with precision(_BITS):
         terms = [_Terms.of([f]) for f in frequencies]

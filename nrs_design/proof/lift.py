@@ -63,17 +63,7 @@ def power_lift(N: IntegerMatrix, degree: int) -> list[list[int]]:
 
 
 def vanishes(N: IntegerMatrix, variables: int, degree: int) -> bool:
-    """Decide whether ``z(x)' N z(x)`` is zero for all x.
-
-    Parameters
-    ----------
-    N : integer matrix
-        Symmetric, of as many rows as there are monomials.
-    variables : int
-        Length of x.
-    degree : int
-        Of the monomials z.
-    """
+    """Decide whether ``z(x)' N z(x)`` is zero for all x, z the monomials of a degree."""
     basis = monomials(variables, degree)
     coefficients: dict[Monomial, int] = {}
     for a, row in zip(basis, N, strict=True):

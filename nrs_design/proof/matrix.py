@@ -25,13 +25,7 @@ class RationalMatrix:
     denominator: int = 1  # Positive
 
     def __post_init__(self) -> None:
-        """Take integers of any kind as those of Python, which never overflow.
-
-        Raises
-        ------
-        TypeError
-            If an entry is no integer.
-        """
+        """Take integers of any kind as those of Python, which never overflow."""
         rows = tuple(tuple(map(index, row)) for row in self.numerators)
         object.__setattr__(self, "numerators", rows)
         object.__setattr__(self, "denominator", index(self.denominator))
@@ -40,16 +34,8 @@ class RationalMatrix:
     def from_rows(cls, rows: Rows) -> RationalMatrix:
         """Bring rational rows over their least common denominator.
 
-        Parameters
-        ----------
-        rows : sequence of sequence of number
-            Integers of Python or NumPy, fractions, or floats, which are taken for the binary
-            fractions that they are.
-
-        Raises
-        ------
-        TypeError, ValueError, OverflowError
-            If an entry is none of these, or not finite.
+        Floats are taken for the binary fractions that they are. A TypeError, ValueError or
+        OverflowError if an entry is no number, or not finite.
         """
         ratios = [[_integer_ratio(entry) for entry in row] for row in rows]
         denominator = lcm(*(below for row in ratios for _, below in row))
@@ -107,17 +93,7 @@ def leading(M: Sequence[Sequence[Entry]]) -> list[tuple[Entry, ...]]:
 
 
 def with_crossing(M: Sequence[Sequence[Entry]], k: int, row: Sequence[Entry]) -> list[list[Entry]]:
-    """Return ``M + e r + r' e'`` for the k-th unit vector e.
-
-    Parameters
-    ----------
-    M : matrix, shape (n, n)
-        Integers or fractions.
-    k : int
-        Index of the one in e.
-    row : sequence of number, shape (n,)
-        The r.
-    """
+    """Return ``M + e r + r' e'`` for the k-th unit vector e."""
     rows = [list(entries) for entries in M]
     for j, entry in enumerate(row):
         rows[k][j] += entry
@@ -126,17 +102,7 @@ def with_crossing(M: Sequence[Sequence[Entry]], k: int, row: Sequence[Entry]) ->
 
 
 def bordered(Q: Rows, row: Sequence[Fraction], corner: Fraction) -> RationalMatrix:
-    """Return ``[[Q, r'], [r, corner]]``.
-
-    Parameters
-    ----------
-    Q : matrix, shape (n, n)
-        Numbers.
-    row : sequence of number, shape (n,)
-        The r.
-    corner : Fraction
-        The last entry.
-    """
+    """Return ``[[Q, r'], [r, corner]]``."""
     rows = [[*above, entry] for above, entry in zip(Q, row, strict=True)]
     return RationalMatrix.from_rows([*rows, [*row, corner]])
 

@@ -37,16 +37,7 @@ def offset_steps(
 ) -> Iterator[Step]:
     """Yield every step that takes time, for the state behind a one, with its products.
 
-    Parameters
-    ----------
-    system : SwitchedSystem
-        That may lose contact, of one axis.
-    channels : sequence of Channel
-        Disturbances of it that act at once.
-    grain : int
-        As of `steps_of`.
-    rounding : bool
-        Whether the arithmetic of the law rounds.
+    Of one axis that may lose contact, under disturbances at once; `grain` as of `steps_of`.
     """
     acting = Acting(
         tuple(map(system.channels.index, channels)), (Fraction(0),) * len(channels), rounding

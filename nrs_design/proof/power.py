@@ -13,19 +13,8 @@ def power_between(base: Fraction, exponent: Fraction) -> tuple[Fraction, Fractio
     """Return decimals at most and at least ``base^exponent``, and nearly equal.
 
     With ``exponent = p/q`` and a unit u, ``r u`` is the lower one for the largest r with
-    ``(r u)^q <= base^p``, and ``(r + 1) u`` the upper one, unless the lower one is the power.
-
-    Parameters
-    ----------
-    base : Fraction
-        Positive.
-    exponent : Fraction
-        Of a small denominator: numbers have as many digits as it is large.
-
-    Raises
-    ------
-    ValueError
-        If the base is not positive.
+    ``(r u)^q <= base^p``, and ``(r + 1) u`` the upper one, unless the lower one is the power. The
+    base is positive, else a ValueError; numbers have as many digits as q is large.
     """
     if base <= 0:
         raise ValueError(f"{base} has no power with a rational exponent")

@@ -41,14 +41,7 @@ def agrees(
 ) -> bool:
     """Tell whether the second opinion, too, is that evidence holds which the check has accepted.
 
-    Parameters
-    ----------
-    system : SwitchedSystem
-        That the evidence is about.
-    evidence : AbstractEvidence
-        Of any kind.
-    forms : sequence of integer matrix, optional
-        All forms of the evidence, as the check has made them; by default they are made here.
+    The forms are those that the check has made; by default they are made here.
     """
     if not all(_is_met(A, time) for A, time in _exponents(system, evidence)):
         return False

@@ -20,10 +20,7 @@ from nrs_design.proof.mode import Mode, Time
 def is_stable(A: RationalMatrix, time: Time) -> bool:
     """TRUSTED: decide whether a matrix is Hurwitz (continuous time) or Schur (discrete time).
 
-    Raises
-    ------
-    TooLargeError
-        If that would take more than some seconds.
+    A `TooLargeError` if that would take more than some seconds.
     """
     _check_size(A)
     if time is Time.CONTINUOUS:
@@ -34,10 +31,7 @@ def is_stable(A: RationalMatrix, time: Time) -> bool:
 def worst_eigenvalue(A: RationalMatrix, time: Time) -> str:
     """Return the eigenvalue nearest to or farthest beyond the stability limit, to six digits.
 
-    Raises
-    ------
-    TooLargeError
-        If that would take more than some seconds.
+    A `TooLargeError` if that would take more than some seconds.
     """
     _check_size(A)
     centers = [complex(ball) for ball in eigenvalues(A)]

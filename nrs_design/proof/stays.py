@@ -60,24 +60,15 @@ class EnclosedStep:
     def form(self, before: IntegerMatrix, after: IntegerMatrix, rate: Fraction) -> IntegerMatrix:
         """Return integers below ``T' (F - E' G E) T`` for all its lengths, times a positive number.
 
-        E is the exponential of the mode plus the rate, and then the switch, in balls. With B its
-        derivative, m the middle of the lengths, h half of their range and d the way from m, what
-        comes after is ``g(d) = exp(C d)' g(0) exp(C d)`` with ``C = T^-1 B T``. Of second order in
-        h, it is between the ends: with ``s = (1 + d/h)/2`` and the second derivative g'',
-
-            g(d) = (1 - s) g(-h) + s g(h) - r g'',    0 <= r <= h^2/2,
-
-        entry by entry, each at a length of its own. So what is positive definite at both ends for
-        every such r and g'' is so in between: both are the blocks of the form. The form of F is
-        nearly that of the identity for T, so the balls are no larger than it moves; what is
-        positive definite for any T is without it.
-
-        Parameters
-        ----------
-        before, after : integer matrix
-            The F and G.
-        rate : Fraction
-            The alpha in 1/s.
+        F is before, G after; E is the exponential of the mode plus the rate, in 1/s, and then the
+        switch, in balls. With B its derivative, m the middle of the lengths, h half of their range
+        and d the way from m, what comes after is ``g(d) = exp(C d)' g(0) exp(C d)`` with
+        ``C = T^-1 B T``. Of second order in h, it is between the ends: with ``s = (1 + d/h)/2`` and
+        the second derivative g'', ``g(d) = (1 - s) g(-h) + s g(h) - r g''`` with
+        ``0 <= r <= h^2/2``, entry by entry, each at a length of its own. So what is positive
+        definite at both ends for every such r and g'' is so in between: both are the blocks of the
+        form. The form of F is nearly that of the identity for T, so the balls are no larger than it
+        moves; what is positive definite for any T is without it.
         """
         from nrs_design.proof.enclosure import (
             balls,
@@ -136,16 +127,10 @@ def _own_coordinates(
 def steps_of_stays(
     system: SwitchedSystem, stays: Stays, grain: Callable[[int], int]
 ) -> Iterator[Step | EnclosedStep]:
-    """Yield every step of a system with the modes as places.
+    """Yield every step of a system with the modes, of any sizes, as places.
 
-    Parameters
-    ----------
-    system : SwitchedSystem
-        With modes of any sizes, and resets that fit them; `find_odd_stays` finds nothing.
-    stays : Stays
-        How stays are followed.
-    grain : callable
-        The unit that those of a map of so many steps are multiples of.
+    `find_odd_stays` finds nothing; `grain` is the unit that those of a map of so many steps are
+    multiples of.
     """
     flows, every = system.time is Time.CONTINUOUS, system.stays()
     for mode in system.modes:
@@ -184,16 +169,7 @@ def steps_of_stays(
 def find_odd_stays(system: SwitchedSystem, stays: Stays, bits: int, degree: int = 1) -> str | None:
     """Say why stays cannot be followed so, or None: switches fit, stays are few, short and whole.
 
-    Parameters
-    ----------
-    system : SwitchedSystem
-        With its rules.
-    stays : Stays
-        How they are to be followed.
-    bits : int
-        Of the rate, to the power of the degree.
-    degree : int
-        Of the monomials to which the powers of the modes are lifted.
+    `bits` are those of the rate, to the power of the degree of the monomials.
     """
     if (odd := _find_odd_switch(system)) is not None:
         return odd

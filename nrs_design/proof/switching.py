@@ -151,15 +151,7 @@ class Clock:
         return not self.ahead
 
     def after(self, state: int, *, first: bool) -> int | None:
-        """Return where a mode leads from a state; None where it may not be in force.
-
-        Parameters
-        ----------
-        state : int
-            Counted from zero.
-        first : bool
-            Whether the mode is of the first kind.
-        """
+        """Return where a mode leads from a state; None where it may not be in force."""
         if self.ahead:
             target = self.ahead[state][not first]
             return None if target == NOWHERE else target

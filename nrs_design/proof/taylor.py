@@ -23,20 +23,13 @@ BOUND_BITS = 80
 
 
 def exponential_nearly(A: RationalMatrix, time: Fraction) -> tuple[RationalMatrix, Fraction]:
-    """Return M and e such that the row sums of ``|exp(A t) - M|`` are at most e.
+    """Return M and e such that the row sums of ``|exp(A t) - M|`` are at most e, t >= 0 in s.
 
     ``exp(A t) = exp(X)^(2^h)`` with ``|X| <= 2^-8`` in the norm of the largest row sum. In units:
     rounding X changes it by at most n, and so exp(X) by less than 2 n; the n rounded entries of a
     row in each of Horner's steps add up to less than 2 n, because a step makes earlier errors
     smaller by half; the terms from the 25th on are less than 1. A square has at most the error
     ``2 |E| e + e^2``, and n from rounding.
-
-    Parameters
-    ----------
-    A : RationalMatrix, shape (n, n)
-        In 1/s.
-    time : Fraction
-        In s; not negative.
     """
     n = A.shape[0]
     size = max(sum(map(abs, row)) for row in A.numerators) * time / A.denominator

@@ -21,16 +21,6 @@ def balance(matrices: NDArray[np.float64]) -> NDArray[np.int64]:
 
     Osborne's iteration on the sum of the absolute values of all matrices, rounded to powers of
     two so that scaling loses nothing. A zero row or column keeps its scale.
-
-    Parameters
-    ----------
-    matrices : ndarray, shape (m, n, n)
-        The family.
-
-    Returns
-    -------
-    ndarray of int, shape (n,)
-        Exponents.
     """
     total = np.abs(matrices).sum(axis=0)
     np.fill_diagonal(total, 0.0)
@@ -60,26 +50,13 @@ def scale_states(
 def mean_norm_coordinates(matrices: NDArray[np.float64], time: Time) -> NDArray[np.float64]:
     """Return T such that in coordinates ``x = T z`` the mean of the modes' own norms is round.
 
-    Each stable mode has the norm ``x' P x`` of its Lyapunov equation, scaled to trace one.
-
-    Parameters
-    ----------
-    matrices : ndarray, shape (m, n, n)
-        Stable modes.
-    time : Time
-        Continuous or discrete.
+    Each mode is stable, and has the norm ``x' P x`` of its Lyapunov equation, scaled to trace one.
     """
     return round_coordinates(mean_norm(matrices, time))
 
 
 def round_coordinates(P: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return an upper triangular T such that ``x' P x`` is ``|z|^2`` for ``x = T z``.
-
-    Parameters
-    ----------
-    P : ndarray, shape (n, n)
-        Positive definite.
-    """
+    """Return an upper triangular T such that ``x' P x`` is ``|z|^2`` for ``x = T z``."""
     return np.asarray(np.linalg.inv(np.linalg.cholesky(P)).T)
 
 

@@ -40,26 +40,11 @@ def best_words(
     T: Array | None = None,
     longest: int = MAX_LENGTH,
 ) -> Iterator[tuple[tuple[int, ...], float]]:
-    """Yield closed words, each of which grows more per step than all before it.
+    """Yield closed words of edges with their growth per step, each larger than all before it.
 
-    Parameters
-    ----------
-    graph : StepGraph
-        The steps.
-    allowance : Allowance
-        Lengths for which work or memory do not suffice end the search.
-    floor : float
-        Words that grow by no more per step are not looked for.
-    T : ndarray, shape (nodes, n, n), optional
-        Coordinates of every node, in which norms are taken: those in which what a mean word keeps
-        is round, if none are given.
-    longest : int
-        Steps of a word.
-
-    Yields
-    ------
-    tuple
-        The edges of the word, and its growth per step.
+    Words that grow by no more than the floor are not looked for; lengths for which work or memory
+    do not suffice end the search. Norms are taken in coordinates T of every node, shape
+    (nodes, n, n): by default those in which what a mean word keeps is round.
     """
     T = _round(graph) if T is None else T
     inner = np.linalg.inv(T)[graph.targets] @ graph.maps @ T[graph.sources]
@@ -105,13 +90,7 @@ def _round(graph: StepGraph) -> Array:
 
 
 def round_forms(graph: StepGraph) -> Array:
-    """Return for every node the form of what a mean word keeps of the state; shape (count, n, n).
-
-    Parameters
-    ----------
-    graph : StepGraph
-        The steps.
-    """
+    """Return for every node the form of what a mean word keeps of the state; (count, n, n)."""
     n = graph.maps.shape[1]
     leaving = np.bincount(graph.sources, minlength=graph.count).clip(1)
     unit = np.broadcast_to(np.eye(n), (graph.count, n, n))

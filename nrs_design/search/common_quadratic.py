@@ -112,16 +112,8 @@ def _at_own_rate(
 def round_quadratic(family: Family, Q: Array, claim: Fraction) -> Iterator[FormsOnGraph]:
     """Yield roundings that floating point thinks worth the time of the exact check, and the last.
 
-    The scale of a quadratic function is free: common factors of two go.
-
-    Parameters
-    ----------
-    family : Family
-        The modes.
-    Q : ndarray, shape (n, n)
-        In the coordinates of the family.
-    claim : Fraction
-        The rate to claim.
+    Q is in the coordinates of the family, `claim` the rate. The scale of a quadratic function is
+    free: common factors of two go.
     """
     largest = np.abs(Q).max()
     if not np.isfinite(largest) or largest == 0:

@@ -21,19 +21,7 @@ def compare_methods(
 ) -> tuple[MethodRun, ...]:
     """Run the LMI once, and the iteration in all coordinates and orders.
 
-    Parameters
-    ----------
-    decide : callable
-        Decides the system by one method, within limits, and checks exactly what that finds.
-    limits : Limits
-        How far each search goes; coordinates and order of its gradient settings are replaced.
-    progress : callable
-        Told the name of each run as it begins.
-
-    Raises
-    ------
-    DesignError
-        If the methods do not apply to the system, or there is no mode to start with.
+    A `DesignError` if the methods do not apply to the system, or there is no mode to start with.
     """
     progress("lmi")
     try:

@@ -38,13 +38,7 @@ RESOLUTION, COARSE = 2.0**-7, 0.5
 
 
 def search_constants_quadratic(family: Family) -> Candidates[ConstantsQuadratic]:
-    """Search for the function with the largest rate.
-
-    Raises
-    ------
-    NotAffordableError
-        If work or memory do not suffice.
-    """
+    """Search for the function with the largest rate."""
     system = family.system
     if not np.isfinite(family.matrices).all() or not np.isfinite(family.limit):
         return OUT_OF_RANGE
@@ -77,17 +71,7 @@ class _Solution:
     more_bits: int  # That G needs for its unit
 
     def rounded(self, exponents: Indices, bits: int, rate: Fraction) -> ConstantsQuadratic:
-        """Round to integers.
-
-        Parameters
-        ----------
-        exponents : ndarray of int, shape (n,)
-            Of the coordinates of the family.
-        bits : int
-            After the binary point.
-        rate : Fraction
-            That is claimed.
-        """
+        """Round to integers."""
         top, bits = max(int(exponents.max()), 0), bits + self.more_bits
         shifts = top - exponents
 

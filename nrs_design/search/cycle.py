@@ -25,12 +25,8 @@ STARTS = 4
 def growing_cycles(graph: Graph, allowance: Allowance) -> Iterator[tuple[Cycle, Array]]:
     """Yield the elementary cycles that seem to grow the most, or to decay the least.
 
-    When the work is used up, those that have been looked at are compared.
-
-    Yields
-    ------
-    tuple
-        The jumps of the cycle, and the best times found before each of them.
+    With each, the best times found before its jumps. When the work is used up, those that have been
+    looked at are compared.
     """
     scanned: list[tuple[float, Cycle, Array]] = []
     for cycle in islice(elementary_cycles(graph.jumps), MAX_CYCLES):

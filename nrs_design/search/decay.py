@@ -53,27 +53,8 @@ def fastest_first(
 ) -> Iterator[tuple[Solution, Fraction]]:
     """Yield solutions with the rates to claim, from just below the largest one that is found.
 
-    The search for the largest rate takes at most half of what is allowed.
-
-    Parameters
-    ----------
-    solve : callable
-        Solves for a rate in floating point.
-    limit : float
-        As `limit_rate` gives it.
-    time : Time
-        Continuous or discrete.
-    allowance : Allowance
-        Work and memory.
-    resolution, smallest
-        As for `bisect_position`.
-    nearest
-        As for `nrs_design.search.rounding.claims`.
-
-    Raises
-    ------
-    NotAffordableError
-        If work or memory do not suffice for another solution.
+    The search for the largest rate takes at most half of what is allowed. `limit` is as
+    `limit_rate` gives it; `nearest` as for `nrs_design.search.rounding.claims`.
     """
     half = allowance.part(0.5)
     best = bisect_position(
@@ -91,23 +72,10 @@ def bisect_position(
     resolution: float = RESOLUTION,
     smallest: float = SMALLEST,
 ) -> float:
-    """Bisect for the largest feasible position.
+    """Bisect for the largest feasible position; zero if nothing above the smallest one is.
 
-    When what the search may take is used up, the bisection ends early.
-
-    Parameters
-    ----------
-    is_feasible : callable
-        Decides a position; feasible ones come first.
-    resolution : float
-        The position is bracketed to this share of itself,
-    smallest : float
-        or to this difference, whichever is reached first.
-
-    Returns
-    -------
-    float
-        Zero if nothing above the smallest position is feasible.
+    Feasible positions come first. It is bracketed to a share of itself, `resolution`, or to the
+    difference `smallest`, whichever is reached first; it ends early when the work is used up.
     """
     low, high = 0.0, 1.0
     while high - low > max(resolution * high, smallest):
@@ -127,22 +95,9 @@ def climb_position(
 ) -> float:
     """Climb to the largest feasible position, where each answer takes long and says more than yes.
 
-    The root of the margin is nearly straight until it is nil: the next position is where it would
-    be. When what the search may take is used up, it ends early.
-
-    Parameters
-    ----------
-    ask : callable
-        Decides a position: the margin there, and the position that was shown; or None.
-    start : (float, float)
-        The same of position zero.
-    resolution, smallest
-        As for `bisect_position`.
-
-    Returns
-    -------
-    float
-        The largest position that was shown; zero if there is none.
+    An answer is the margin, and the position that was shown, or None; `start` is that of zero. The
+    root of the margin is nearly straight until it is nil: the next position is where it would be.
+    When the work is used up, it ends early.
     """
     low, high = max(0.0, min(start[1], 1.0)), 1.0
     known, position = [(0.0, sqrt(start[0]))], low
@@ -174,14 +129,7 @@ def _root(first: tuple[float, float], second: tuple[float, float]) -> float:
 def rate_of(matrices: NDArray[np.float64], Q: NDArray[np.float64], time: Time) -> float:
     """Return the best rate that a given Q shows, by generalized eigenvalues.
 
-    Parameters
-    ----------
-    matrices : ndarray, shape (m, n, n)
-        Modes.
-    Q : ndarray, shape (n, n)
-        Positive definite.
-    time : Time
-        Continuous (in 1/s) or discrete (contraction per step).
+    In 1/s; in discrete time, the contraction per step.
     """
     inverse = np.linalg.inv(np.linalg.cholesky(Q))
     forms = inverse @ decreases(matrices, Q, time, 0.0) @ inverse.T

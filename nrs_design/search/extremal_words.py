@@ -38,19 +38,7 @@ def least_growth(
 ) -> tuple[float, Solution] | None:
     """Return nearly the least growth per step that forms show, and them; None above a bound.
 
-    Parameters
-    ----------
-    program : FormsProgram
-        In discrete time.
-    allowance : Allowance
-        Work and memory.
-    low, high : float
-        A growth that some word has, and one that forms are to show.
-
-    Raises
-    ------
-    NotAffordableError
-        If work or memory do not suffice.
+    In discrete time: `low` is a growth that some word has, `high` one that forms are to show.
     """
     if (solution := program.solve(high, allowance)) is None:
         return None
@@ -69,21 +57,9 @@ def words_in_norms(
 ) -> Iterator[tuple[tuple[int, ...], float]]:
     """Yield closed words in the norms of forms, each of which grows more than all before it.
 
-    Parameters
-    ----------
-    program : FormsProgram
-        Of quadratic forms that `draw_memory` drew.
-    solution : Solution
-        The forms.
-    allowance : Allowance
-        Words for which work or memory do not suffice end the search.
-    floor : float
-        Words that grow by no more per step are not looked for.
-
-    Yields
-    ------
-    tuple
-        The edges of the word in the graph of steps of the system, and its growth per step.
+    A word is of edges in the graph of steps of the system, with its growth per step. The program is
+    of quadratic forms that `draw_memory` drew. Words that grow by no more than the floor are not
+    looked for; those for which work or memory do not suffice end the search.
     """
     system = program.drawing.system
     matrices = np.array([mode.A.floats() for mode in system.modes])
@@ -129,13 +105,7 @@ def _edges_of(steps: StepGraph, *, free: bool) -> dict[tuple[int, ...], int]:
 
 
 def search_extremal_words(family: Family) -> Candidates[GrowingSequence]:
-    """Search for a word that grows, in the norms of forms that remember some steps.
-
-    Raises
-    ------
-    NotAffordableError
-        If work or memory do not suffice.
-    """
+    """Search for a word that grows, in the norms of forms that remember some steps."""
     system, allowance = family.system, family.allowance
     fitting = [length for length, cost in memories(system).items() if cost.work <= WORK]
     if not fitting or not np.isfinite(family.matrices).all():

@@ -57,13 +57,7 @@ class Family:
         optimize_rate: bool = True,
         gradient: Gradient | None = None,
     ) -> Family:
-        """Convert and balance the modes of a system; modes of unequal size only give the limit.
-
-        Parameters
-        ----------
-        system, allowance, optimize_rate, gradient
-            As for the class.
-        """
+        """Convert and balance the modes of a system; modes of unequal size only give the limit."""
         allowance, gradient = allowance or Allowance(), gradient or Gradient()
         if not system.is_uniform:
             limit = _limit(system, [to_floats([mode.A]) for mode in system.modes])
@@ -92,15 +86,7 @@ def _limit(system: SwitchedSystem, families: list[NDArray[np.float64]]) -> float
 
 
 def stand_ins(names: Sequence[str], matrices: NDArray[np.float64]) -> dict[str, str]:
-    """Return for each name the first one with nearly the same matrix.
-
-    Parameters
-    ----------
-    names : sequence of str
-        All different.
-    matrices : ndarray, shape (m, n, n)
-        In their order.
-    """
+    """Return for each name the first one with nearly the same matrix."""
     kept: list[int] = []
     found: dict[str, str] = {}
     for i, A in enumerate(matrices):

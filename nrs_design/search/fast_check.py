@@ -34,18 +34,10 @@ def find_fault(
     system: SwitchedSystem,
     charge: Callable[[float], None] = lambda work: None,
 ) -> str | None:
-    """Say why evidence does not hold for a system, or None: `AbstractEvidence.find_fault`, sooner.
+    """Say why evidence does not hold, or None: `AbstractEvidence.find_fault`, sooner.
 
-    Forms that are clearly positive definite are passed over; the plain test decides the others.
-
-    Parameters
-    ----------
-    evidence : AbstractEvidence
-        What is checked.
-    system : SwitchedSystem
-        What it is to be about.
-    charge : callable
-        Told the work of the check, form by form.
+    Forms that are clearly positive definite are passed over; the plain test decides the others. The
+    work of the check is charged form by form.
     """
     charge(PER_CANDIDATE)
     if (unfit := evidence.find_unfit(system)) is not None:
@@ -107,11 +99,6 @@ def multiply_packed(left: IntegerMatrix, right: IntegerMatrix) -> list[list[int]
     Every row of the right factor is written as one long integer, with its entries as digits of a
     base that no entry of the product can overflow. A row of the product is then a sum of as many
     long products as it has factors; half of the base makes its digits positive.
-
-    Raises
-    ------
-    ValueError
-        If the factors do not fit, or the rows of one are not of one length.
     """
     if not right or any(len(row) != len(right) for row in left):
         return multiply(left, right)

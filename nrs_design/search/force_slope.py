@@ -47,18 +47,7 @@ class ForceSlope:
     _allowance: Allowance
 
     def change(self, system: SwitchedSystem) -> float:
-        """Return by how much the logarithm of the bound of a system nearby is larger.
-
-        Parameters
-        ----------
-        system : SwitchedSystem
-            Of the same shape.
-
-        Raises
-        ------
-        NotAffordableError
-            If work or memory do not suffice.
-        """
+        """Return by how much the logarithm of the bound of a system nearby is larger."""
         with floats_in_silence():
             own, _ = _problem(system, self._output, self._frame)
             found = least_level(own, self.share, self._allowance)
@@ -72,26 +61,7 @@ def force_slope(
 ) -> ForceSlope | None:
     """Find the least bound on an output under all disturbances at once, but for roundings.
 
-    Parameters
-    ----------
-    system : SwitchedSystem
-        With disturbances.
-    output : Output
-        What they move.
-    allowance : Allowance
-        Work and memory.
-    share : float, optional
-        That was the best of a system nearby.
-
-    Returns
-    -------
-    ForceSlope or None
-        None if no bound is found in floating point.
-
-    Raises
-    ------
-    NotAffordableError
-        If work or memory do not suffice.
+    `share` was the best of a system nearby. None if no bound is found in floating point.
     """
     with floats_in_silence():
         try:

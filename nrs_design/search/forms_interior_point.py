@@ -74,17 +74,7 @@ class FormsPoint:
 
 
 class FormsCones:
-    """The inequalities of a program, and the operations that a step needs.
-
-    Parameters
-    ----------
-    sizes : sequence of int
-        Orders of the forms.
-    multipliers : int
-        How many there are.
-    kinds : sequence of ConeKind
-        The cones.
-    """
+    """The inequalities of a program, and the operations that a step needs."""
 
     def __init__(self, sizes: Sequence[int], multipliers: int, kinds: Sequence[ConeKind]) -> None:
         self.sizes, self.kinds = list(sizes), list(kinds)
@@ -194,18 +184,10 @@ def maximize(
     goes_on: Callable[[], bool] = lambda: True,
     accuracy: float = ACCURACY,
 ) -> FormsPoint:
-    """Maximize the margin; end where it is found to be negative, too.
+    """Maximize the margin, to a share of itself; end where it is found to be negative, too.
 
-    Parameters
-    ----------
-    cones : FormsCones
-        The inequalities.
-    start : FormsPoint, optional
-        Positive definite forms, and multipliers; else the identity.
-    goes_on : callable
-        Asked before every step; No ends the search with the last iterate.
-    accuracy : float
-        The margin is found to this share of itself.
+    It starts at positive definite forms and multipliers, else at the identity. `goes_on` is asked
+    before every step; No ends the search with the last iterate.
     """
     y = _start(cones, start)
     X = cones.at(y)

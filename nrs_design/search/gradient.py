@@ -43,20 +43,7 @@ class GradientResult:
 
 
 def find_by_gradient(family: Family, allowance: Allowance | None = None) -> GradientResult:
-    """Run the iteration in the coordinates of its settings; Q is for those of the family.
-
-    Parameters
-    ----------
-    family : Family
-        Stable modes, with the settings.
-    allowance : Allowance, optional
-        Work; unlimited by default.
-
-    Raises
-    ------
-    NotAffordableError
-        If the work is used up.
-    """
+    """Run the iteration in the coordinates of its settings; Q is for those of the family."""
     T = _coordinates(family, mean_norm(family.matrices, family.system.time))
     return _iterate_in(T, family, family.matrices, family.gradient, allowance)
 
@@ -64,21 +51,10 @@ def find_by_gradient(family: Family, allowance: Allowance | None = None) -> Grad
 def find_faster_by_gradient(
     family: Family, found: Matrices, allowance: Allowance | None = None
 ) -> GradientResult:
-    """Bisect for the largest rate at which the iteration still ends.
+    """Bisect for the largest rate at which the iteration still ends; return its Q.
 
-    Instead of mean-norm coordinates it takes those in which the best Q so far is round.
-
-    Parameters
-    ----------
-    family, allowance
-        As for `find_by_gradient`; if the work is used up, the bisection ends early.
-    found : ndarray, shape (n, n)
-        A Q for some rate.
-
-    Returns
-    -------
-    GradientResult
-        The Q of the largest rate, and all updates that were made on the way.
+    Instead of mean-norm coordinates it takes those in which the best Q so far is round. It ends
+    early when the work is used up; all updates that were made on the way are counted.
     """
     settings, time = family.gradient.briefly(RATE_UPDATES), family.system.time
     best, updates = found, 0
@@ -125,25 +101,8 @@ def iterate_gradient(
 
     ``v(Q, A) = lambda_max(A'Q + QA + I)`` with the gradient ``A x x' + x x' A'``, x being the top
     eigenvector; in discrete time ``lambda_max(A'QA - Q + I)`` and ``A x x' A' - x x'``. The step is
-    ``mu = (alpha v + r |grad|) / |grad|^2``. The first Q solves the Lyapunov equation of one mode.
-
-    Parameters
-    ----------
-    matrices : ndarray, shape (m, n, n)
-        Stable modes.
-    time : Time
-        Continuous or discrete.
-    settings : Gradient
-        How to iterate; the coordinates are those of the matrices.
-    start : int
-        Which mode gives the first Q.
-    allowance : Allowance, optional
-        Work; unlimited by default.
-
-    Raises
-    ------
-    NotAffordableError
-        If the work is used up.
+    ``mu = (alpha v + r |grad|) / |grad|^2``. The first Q solves the Lyapunov equation of one stable
+    mode, `start`. The coordinates are those of the matrices.
     """
     allowance, m = allowance or Allowance(), len(matrices)
     Q = own_norm(matrices[start], time)

@@ -35,41 +35,20 @@ def _tell_nobody(updates: int, largest: float) -> None:
 class Gradient:
     """Settings of the iteration of Liberzon and Tempo (2004); thesis 5.21-5.28.
 
-    Parameters
-    ----------
-    relaxation : float
-        The alpha of 5.25, from 0 to 2.
-    radius : float
-        The r of 5.25, above 0: a step is at least so long, in the norm of Frobenius.
-    start : str or None
-        The mode whose own Lyapunov equation gives the first Q; by default the first one.
-    order : Order
-        Modes in turn, as 5.26 has it, or drawn at random.
-    seed : int
-        Of the random order.
-    max_updates : int
-        Updates after which the iteration gives up.
-    coordinates : Coordinates
-        ``mean-norm``, where the mean of the modes' own norms is round; ``balanced`` by powers of
-        two; ``given``, the states of the modes, as the thesis has it.
-    tell : callable
-        Told the number of updates and the largest v over all modes: at the start, after each of
-        the first hundred updates, then ever more rarely, and at the end. Of a family that falls
-        into blocks, each block begins anew at zero.
-
-    Raises
-    ------
-    DesignError
-        If a number is out of its range.
+    A number out of its range is a `DesignError`.
     """
 
-    relaxation: float = 1.0
-    radius: float = 1.0
-    start: str | None = None
-    order: Order = Order.ROUND_ROBIN
-    seed: int = 0
-    max_updates: int = 20_000
+    relaxation: float = 1.0  # The alpha of 5.25, from 0 to 2
+    radius: float = 1.0  # The r of 5.25, above 0: the shortest step, in the norm of Frobenius
+    start: str | None = None  # The mode whose own Lyapunov equation gives the first Q
+    order: Order = Order.ROUND_ROBIN  # Modes in turn, as 5.26 has it, or drawn at random
+    seed: int = 0  # Of the random order
+    max_updates: int = 20_000  # Updates after which the iteration gives up
+    # ``mean-norm``, where the mean of the modes' own norms is round; ``balanced`` by powers of two;
+    # ``given``, the states of the modes, as the thesis has it.
     coordinates: Coordinates = Coordinates.MEAN_NORM
+    # Told updates and the largest v over all modes: at the start, after each of the first hundred
+    # updates, then ever more rarely, and at the end. Each block of a family begins at zero.
     tell: Callable[[int, float], None] = _tell_nobody
 
     def __post_init__(self) -> None:
@@ -86,18 +65,7 @@ class Gradient:
 
     @classmethod
     def of_texts(cls, entries: Iterable[str]) -> Self:
-        """Read settings, ``name=value`` each.
-
-        Parameters
-        ----------
-        entries : iterable of str
-            Such as ``radius=1e5``.
-
-        Raises
-        ------
-        DesignError
-            If there is no such setting, it is given twice, or its value is none.
-        """
+        """Read settings, ``name=value`` each."""
         defaults = {field.name: field.default for field in fields(cls) if field.name != "tell"}
         readers = {name: _reader(default) for name, default in defaults.items()}
         return cls(**read_named_values(entries, readers, "the gradient iteration"))

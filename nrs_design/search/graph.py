@@ -53,14 +53,9 @@ class Graph:
 
     @classmethod
     def of(cls, system: SwitchedSystem, matrices: Array) -> Graph:
-        """Read the rules of a system.
+        """Read the rules of a system with modes of one size.
 
-        Parameters
-        ----------
-        system : SwitchedSystem
-            With modes of one size.
-        matrices : ndarray, shape (m, n, n)
-            The modes, perhaps scaled; those of the system itself if there are resets.
+        The modes may be scaled; they are those of the system itself if there are resets.
         """
         stays = system.stays().values()
         shortest = np.array([float(stay.shortest) for stay in stays])

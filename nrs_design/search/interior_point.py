@@ -57,17 +57,7 @@ class _Scaled(NamedTuple):
 
 
 def step_cost(variables: int, cones: int, order: int) -> Cost:
-    """Predict what one step of `maximize_last` takes.
-
-    Parameters
-    ----------
-    variables : int
-        Unknowns.
-    cones : int
-        Matrices that must be positive definite.
-    order : int
-        Their size.
-    """
+    """Predict what one step of `maximize_last` takes."""
     entries = variables * cones * order**2
     products = 2 * variables**2 * cones * order * (order + 1) / 2 + 4 * entries * order
     work = PER_STEP + PER_PRODUCT * products + PER_ENTRY * entries
@@ -82,21 +72,10 @@ def maximize_last(
 ) -> Array:
     """Maximize the last variable, until it is positive and within a factor of the largest one.
 
-    Parameters
-    ----------
-    cones : Cones
-        The constraints.
-    start : ndarray, shape (variables,)
-        Strictly feasible; the matrices that the last variable enters grow as it falls.
-    goes_on : callable
-        Asked before every step; No ends the search with the last iterate.
-    floor : float
-        The optimum counts as found when X and Z are this close to complementary.
-
-    Returns
-    -------
-    ndarray, shape (variables,)
-        The last iterate, in floating point strictly feasible.
+    The start is strictly feasible; the matrices that the last variable enters grow as it falls.
+    `goes_on` is asked before every step: No ends the search with the last iterate, strictly
+    feasible in floating point. The optimum counts as found when X and Z are as close to
+    complementary as `floor`.
     """
     y, X = start, cones.at(start)
     inverse = np.linalg.inv(X)
@@ -156,15 +135,7 @@ def _scale(cones: Cones, X: Array, Z: Array) -> _Scaled:
 def nesterov_todd(X: Array, Z: Array) -> tuple[Array, Array]:
     """Return W with ``W X W' = W^-T Z W^-1`` diagonal, and the diagonals.
 
-    Parameters
-    ----------
-    X, Z : ndarray, shape (cones, n, n)
-        Positive definite.
-
-    Raises
-    ------
-    numpy.linalg.LinAlgError
-        If one is not, in floating point.
+    A LinAlgError if X or Z, shape (cones, n, n), is not positive definite in floating point.
     """
     L = np.linalg.cholesky(X)
     R = np.linalg.cholesky((Z + np.swapaxes(Z, -1, -2)) / 2)
@@ -173,17 +144,7 @@ def nesterov_todd(X: Array, Z: Array) -> tuple[Array, Array]:
 
 
 def step_to_border(d: Array, change: Array, share: float) -> float:
-    """Return how far a step may go, one at most, as a share of the way to the border.
-
-    Parameters
-    ----------
-    d : ndarray, shape (cones, n)
-        Diagonals of what is positive definite.
-    change : ndarray, shape (cones, n, n)
-        Of it.
-    share : float
-        Of the way.
-    """
+    """Return how far a step may go, one at most, as a share of the way to the border."""
     root = np.sqrt(d)
     relative = change / (root[..., None] * root[..., None, :])
     steepest = float(-np.linalg.eigvalsh(relative)[..., 0].min())

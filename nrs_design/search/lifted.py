@@ -45,14 +45,7 @@ def _differences(variables: int, degree: int, scaling: Exponents) -> Array:
 def vanishing_basis(variables: int, degree: int, scaling: Exponents) -> Array:
     """Return an orthonormal basis of the forms that vanish, in the coordinates ``2^e z(x)``.
 
-    Parameters
-    ----------
-    variables : int
-        Length of x.
-    degree : int
-        Of the monomials z.
-    scaling : ndarray of int
-        The exponents e.
+    z are the monomials of a degree in so many variables, e the exponents of the scaling.
     """
     return orthonormal(_differences(variables, degree, scaling))
 

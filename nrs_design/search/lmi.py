@@ -34,16 +34,7 @@ FEWEST_STEPS = 4
 def decreases(matrices: Matrices, Q: Matrices, time: Time, rate: float) -> Matrices:
     """Return, for every mode, the matrix that must be positive definite; shape (m, n, n).
 
-    Parameters
-    ----------
-    matrices : ndarray, shape (m, n, n)
-        The modes.
-    Q : ndarray, shape (n, n)
-        Of the quadratic function; a stack of them must broadcast with the modes.
-    time : Time
-        Which inequality.
-    rate : float
-        The alpha in 1/s, or rho per step.
+    The rate is alpha in 1/s, or rho per step; a stack of Q must broadcast with the modes.
     """
     if time is Time.CONTINUOUS:
         half = Q @ matrices
@@ -52,13 +43,7 @@ def decreases(matrices: Matrices, Q: Matrices, time: Time, rate: float) -> Matri
 
 
 def margins(matrices: Matrices, Q: Matrices, time: Time, rate: float) -> Matrices:
-    """Return the smallest eigenvalue of every mode's decrease; shape (m,).
-
-    Parameters
-    ----------
-    matrices, Q, time, rate
-        As for `decreases`.
-    """
+    """Return the smallest eigenvalue of every mode's decrease; shape (m,)."""
     return np.asarray(np.linalg.eigvalsh(decreases(matrices, Q, time, rate))[:, 0], dtype=float)
 
 
@@ -70,26 +55,8 @@ def find_common_quadratic(
 ) -> Matrices | None:
     """Look for Q with ``A'Q + QA + 2 rate Q < 0`` (or ``A'QA < rate^2 Q``) for all modes.
 
-    Parameters
-    ----------
-    matrices : ndarray, shape (m, n, n)
-        Modes, preferably balanced.
-    time : Time
-        Continuous or discrete.
-    rate : float
-        Decay rate in 1/s, or contraction per step.
-    allowance : Allowance, optional
-        Work and memory; unlimited by default.
-
-    Returns
-    -------
-    ndarray, shape (n, n), or None
-        A solution with positive margins in floating point, or None.
-
-    Raises
-    ------
-    NotAffordableError
-        If work or memory do not suffice, and nothing was found.
+    Modes are preferably balanced. Returns a solution with positive margins in floating point, or
+    None; a `NotAffordableError` if work or memory do not suffice, and nothing was found.
     """
     allowance = allowance or Allowance()
     unit = time_unit(matrices, time)
@@ -121,21 +88,7 @@ def time_unit(matrices: Matrices, time: Time) -> int:
 def solve_by_interior_point(
     matrices: Matrices, time: Time, rate: float, Q: Matrices, allowance: Allowance
 ) -> Matrices:
-    """Improve on Q in the margin form for the given modes, with the method of our own.
-
-    Parameters
-    ----------
-    matrices : ndarray, shape (m, n, n)
-        The modes that count.
-    time : Time
-        Which inequality.
-    rate : float
-        The alpha in 1/s, or rho per step.
-    Q : ndarray, shape (n, n)
-        Where to begin.
-    allowance : Allowance
-        Work and memory that are left.
-    """
+    """Improve on Q in the margin form for the given modes, with the method of our own."""
     m, n = matrices.shape[:2]
     step = step_cost(n * (n + 1) // 2 + 1, m + 2, n)
     allowance.require(Cost(FEWEST_STEPS * step.work, step.memory), _described(m, n))

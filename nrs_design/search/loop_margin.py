@@ -67,26 +67,9 @@ def find_longest_delay(
 
     The modes of a range of delays are those of every shorter range, and more: a proof for one is a
     proof for those, and a refutation one for every longer range. So beyond the delays that are
-    decided, one that is unstable by itself refutes all ranges that reach it; and between the
-    declared one and the longest, both ends are found by bisection.
-
-    Parameters
-    ----------
-    shortest : int
-        Smallest age of the force sample.
-    declared : int
-        Largest one in the spec.
-    longest : int
-        That is decided.
-    decide : callable
-        Gives the verdict on a largest age, or says why it makes no loop.
-    unstable_in : callable
-        Tells in which contact the loop is refuted where all samples have one age, by a test that is
-        quick; empty for any contact, None where it is not.
-    known : Certification or Verdict, optional
-        On the declared delay, perhaps by a longer search.
-    progress : callable
-        Told each delay, and what is known by then.
+    decided, one that is unstable by itself refutes all ranges that reach it (`unstable_in`, a quick
+    test, tells in which contact, empty for any); and between the declared one and the longest, both
+    ends are found by bisection. `known` is on the declared delay, perhaps by a longer search.
     """
     tried: Tried[int] = Tried(decide, progress, "delay")
     if known is not None:
@@ -122,15 +105,7 @@ def _end_of_delays(tried: Tried[int]) -> str:
 
 
 def halve(inside: int, outside: int, accepts: Callable[[int], bool]) -> int:
-    """Bisect between a number that is accepted and one that is not; return the first that is not.
-
-    Parameters
-    ----------
-    inside, outside : int
-        The two numbers.
-    accepts : callable
-        Says whether a number between them is accepted.
-    """
+    """Return the first number that is not accepted, between one that is and one that is not."""
     while outside - inside > 1:
         middle = (inside + outside) // 2
         if accepts(middle):
@@ -156,20 +131,10 @@ def find_longest_period(
     known: Found | None = None,
     progress: Progress = silent,
 ) -> Bracket:
-    """Find a long period with a proof and a short one that is refuted, each for itself.
+    """Find a long period with a proof and a short one that is refuted, each for itself, in s.
 
-    Other periods make other systems: nothing follows from one for the ones in between.
-
-    Parameters
-    ----------
-    period : Fraction
-        Of the spec, in s.
-    decide : callable
-        Gives the verdict on a period, or says why it makes no system.
-    known : Certification or Verdict, optional
-        On the period of the spec, perhaps by a longer search.
-    progress : callable
-        Told each period, and what is known by then.
+    Other periods make other systems: nothing follows from one for the ones in between. `known` is
+    on the period of the spec, perhaps by a longer search.
     """
     tried = Tried(decide, progress, "period", "s")
     if known is not None:
@@ -209,12 +174,8 @@ def _bisect(tried: Tried[Fraction], verdict: Verdict) -> Fraction | None:
 def command_margin(found: Bound, reached: float) -> CommandMargin | None:
     """Return what the disturbances may be for the limit of an output, by proportion.
 
-    Parameters
-    ----------
-    found : Bound
-        Checked: under all disturbances at once.
-    reached : float
-        The output that a simulated run reaches under them.
+    `reached` is what the output of a simulated run reaches under the disturbances of a checked
+    bound.
     """
     limit = found.output.limit
     if limit is None or not reached > 0:

@@ -55,24 +55,9 @@ def find_margin(
     """Bracket the largest provable scale and the smallest refutable one, then bisect both.
 
     A proof for a box is a proof for every smaller one, and a refutation is one for every larger
-    one, so the search needs no more than brackets. Every scale that counts as proved or refuted
-    has evidence that passed the exact check.
-
-    Parameters
-    ----------
-    assemble : callable
-        Gives the system for a scale; an AssemblyError says that the scale makes no sense.
-    certify : callable
-        Decides a system.
-    known : Certification, optional
-        What was found at scale 1, perhaps by a longer search: no worse is reported.
-    progress : callable
-        Told each scale, and what is known by then.
-
-    Raises
-    ------
-    AssemblyError
-        If not even the nominal values make a system, so that no box does.
+    one, so the search needs no more than brackets. Every scale that counts as proved or refuted has
+    evidence that passed the exact check. `known`, found at scale 1, perhaps by a longer search, is
+    the least that is reported. An `AssemblyError` if not even the nominal values make a system.
     """
     proofs = {} if known is None else {Fraction(1): known}
 
@@ -159,23 +144,10 @@ def find_shortest_dwell(
 ) -> DwellMargin:
     """Find the largest switching rate that has a proof: the shortest provable dwell time.
 
-    Parameters
-    ----------
-    system : SwitchedSystem
-        With its own dwell times, perhaps zero; it has no longest ones. One for all modes is sought.
-    certify : callable
-        Decides a system.
-    known : Certification, optional
-        What was found for the system as it stands, perhaps by a longer search: no worse is
-        reported.
-    progress : callable
-        Told each dwell time, and what is known by then.
-
-    Notes
-    -----
     A proof for a dwell time is one for every longer one, and a refutation one for every shorter
-    one. The bracket begins at what is known; it is widened by doubling up to the longest dwell
-    time that a spec can declare, or narrowed by halving, and then bisected.
+    one. The bracket begins at what is known; it is widened by doubling up to the longest dwell time
+    that a spec can declare, or narrowed by halving, and then bisected. One for all modes is sought,
+    and there are no longest ones.
     """
     proofs: dict[Fraction, Certification] = {}
 

@@ -44,15 +44,7 @@ Word = tuple[str, ...]
 
 
 def words(system: SwitchedSystem, length: int) -> list[Word] | None:
-    """Return the words of places of so many letters; None for too many.
-
-    Parameters
-    ----------
-    system : SwitchedSystem
-        With its rules of switching.
-    length : int
-        Of the words.
-    """
+    """Return the words of places of so many letters; None for too many."""
     after = following(system)
     found: list[Word] = [(name,) for name in after]
     for _ in range(length - 1):
@@ -62,15 +54,7 @@ def words(system: SwitchedSystem, length: int) -> list[Word] | None:
 
 
 def count_words(system: SwitchedSystem, length: int) -> tuple[int, int] | None:
-    """Return how many words there are of so many letters, and of one more; None for too many.
-
-    Parameters
-    ----------
-    system : SwitchedSystem
-        With its rules of switching.
-    length : int
-        Of the words.
-    """
+    """Return how many words there are of so many letters, and of one more; None for too many."""
     if length > LONGEST or (found := words(system, length)) is None:
         return None
     after = following(system)
@@ -79,13 +63,7 @@ def count_words(system: SwitchedSystem, length: int) -> tuple[int, int] | None:
 
 
 def following(system: SwitchedSystem) -> dict[str, list[str]]:
-    """Return the modes that a step may lead to from each one, its own among them.
-
-    Parameters
-    ----------
-    system : SwitchedSystem
-        With its rules of switching.
-    """
+    """Return the modes that a step may lead to from each one, its own among them."""
     names = [mode.name for mode in system.modes]
     if system.switching.is_arbitrary:
         return dict.fromkeys(names, names)
@@ -98,18 +76,9 @@ def following(system: SwitchedSystem) -> dict[str, list[str]]:
 
 
 def draw_memory(system: SwitchedSystem, length: int, degree: int = 1) -> Drawing:
-    """Draw a node for each word of so many steps.
+    """Draw a node for each word of so many steps; the degree is half that of the forms.
 
     Without rules, the letter that a step adds is its mode; under rules, the mode that it leads to.
-
-    Parameters
-    ----------
-    system : SwitchedSystem
-        With so many words.
-    length : int
-        Of the memory.
-    degree : int
-        Half that of the forms.
     """
     found, after = words(system, length) or [], following(system)
     number, free = {word: k for k, word in enumerate(found)}, system.switching.is_arbitrary
@@ -135,14 +104,7 @@ def draw_memory(system: SwitchedSystem, length: int, degree: int = 1) -> Drawing
 def memories(system: SwitchedSystem, degree: int = 1, first: int = 1) -> dict[int, Cost]:
     """Return how many steps forms of degree 2d may remember, with what that takes.
 
-    Parameters
-    ----------
-    system : SwitchedSystem
-        In discrete time, with its rules of switching.
-    degree : int
-        The d.
-    first : int
-        No fewer steps than these.
+    In discrete time, and no fewer steps than `first`.
     """
     found = dict[int, Cost]()
     order, own, forms = form_sizes(system.order, degree)
@@ -163,44 +125,17 @@ def memories(system: SwitchedSystem, degree: int = 1, first: int = 1) -> dict[in
 
 
 def quadratic_memories(system: SwitchedSystem) -> dict[int, Cost]:
-    """Return the same of quadratic forms; under rules, those of the modes remember one step.
-
-    Parameters
-    ----------
-    system : SwitchedSystem
-        In discrete time, with its rules of switching.
-    """
+    """Return the same of quadratic forms; under rules, those of the modes remember one step."""
     return memories(system, first=1 if system.switching.is_arbitrary else 2)
 
 
 def quartic_memories(system: SwitchedSystem) -> dict[int, Cost]:
-    """Return the same of forms of degree 4.
-
-    Parameters
-    ----------
-    system : SwitchedSystem
-        In discrete time, with its rules of switching.
-    """
+    """Return the same of forms of degree 4."""
     return memories(system, 2) if system.order > 1 else {}
 
 
 def search_memory(family: Family, length: int, degree: int = 1) -> Candidates[FormsOnGraph]:
-    """Search for forms of degree 2d that remember so many steps.
-
-    Parameters
-    ----------
-    family : Family
-        The modes and their switching.
-    length : int
-        Of the memory.
-    degree : int
-        The d.
-
-    Raises
-    ------
-    NotAffordableError
-        If work or memory do not suffice.
-    """
+    """Search for forms of degree 2d that remember so many steps."""
     cost = memories(family.system, degree)[length]
     family.allowance.require(cost, f"a program for forms that remember {length} steps")
     if not np.isfinite(family.matrices).all():
@@ -214,18 +149,5 @@ def search_memory(family: Family, length: int, degree: int = 1) -> Candidates[Fo
 
 
 def search_quartic_memory(family: Family, length: int) -> Candidates[FormsOnGraph]:
-    """Search for forms of degree 4 that remember so many steps.
-
-    Parameters
-    ----------
-    family : Family
-        The modes and their switching.
-    length : int
-        Of the memory.
-
-    Raises
-    ------
-    NotAffordableError
-        If work or memory do not suffice.
-    """
+    """Search for forms of degree 4 that remember so many steps."""
     return (yield from search_memory(family, length, 2))

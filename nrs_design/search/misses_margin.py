@@ -22,23 +22,11 @@ def find_most_misses(
     known: Found | None = None,
     progress: Progress = silent,
 ) -> Bracket:
-    """Bracket how many steps may be missed, by doubling and bisecting.
+    """Bracket how many steps may be missed, by doubling and bisecting, up to `most`.
 
     What may happen with few misses may happen with more: a proof for a number is one for every
-    smaller one, and a refutation one for every larger one.
-
-    Parameters
-    ----------
-    declared : int
-        In the spec.
-    most : int
-        That is decided, no less than what is declared.
-    decide : callable
-        Gives the verdict on a number, or says why it makes no system.
-    known : Certification or Verdict, optional
-        On the declared number, perhaps by a longer search.
-    progress : callable
-        Told each number, and what is known by then.
+    smaller one, and a refutation one for every larger one. `known` is on the declared number,
+    perhaps by a longer search.
     """
     tried: Tried[int] = Tried(decide, progress, "misses")
     if known is not None:

@@ -61,17 +61,7 @@ def multiplied(contact: Contact, time: Time) -> NDArray[np.int64]:
 
 
 def in_numerators(multipliers: Array, contact: Contact, time: Time) -> Array:
-    """Return multipliers of forces, in discrete time as those of their numerators.
-
-    Parameters
-    ----------
-    multipliers : ndarray
-        As a search finds them.
-    contact : Contact
-        With the forces.
-    time : Time
-        Continuous or discrete.
-    """
+    """Return multipliers of forces, in discrete time as those of their numerators."""
     if time is Time.CONTINUOUS:
         return multipliers
     below = [d for q in contact.pulls for d in (q.denominator, q.denominator, 1)]

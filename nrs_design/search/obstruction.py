@@ -47,24 +47,7 @@ def search_obstruction(family: Family) -> Candidates[NoCommonQuadratic]:
 def solve_dual(matrices: Array, time: Time, allowance: Allowance | None = None) -> Array | None:
     """Maximize s with ``sum A_i X_i + X_i A_i' >= s I`` over ``X_i >= 0`` of total trace one.
 
-    Parameters
-    ----------
-    matrices : ndarray, shape (m, n, n)
-        Modes, preferably balanced; the fewer, the better.
-    time : Time
-        Continuous or discrete.
-    allowance : Allowance, optional
-        Work and memory; unlimited by default.
-
-    Returns
-    -------
-    ndarray, shape (m, n, n), or None
-        The X_i if s > 0.
-
-    Raises
-    ------
-    NotAffordableError
-        If work or memory do not suffice.
+    Returns the X_i, shape (m, n, n), if s > 0; else None. Modes are preferably balanced, and few.
     """
     allowance = allowance or Allowance()
     m, n = matrices.shape[:2]

@@ -59,15 +59,7 @@ def search_offset_ellipsoid(
 ) -> Candidates[OffsetEllipsoid]:
     """Yield ellipsoids off the origin, as `search_ellipsoid` does; with the roundings, or none.
 
-    Parameters
-    ----------
-    system, channels, output, allowance
-        As there; contact may be lost.
-
-    Raises
-    ------
-    NotAffordableError
-        If work or memory do not suffice.
+    Contact may be lost.
     """
     family = Family.of(system)
     motions = Motions.of(family)

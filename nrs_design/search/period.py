@@ -50,13 +50,7 @@ NOTHING_GROWS = "no periodic signal tried makes solutions grow"
 
 
 def search_period(family: Family) -> Candidates[GrowingSequence]:
-    """Search for a period with a spectral radius above one.
-
-    Raises
-    ------
-    NotAffordableError
-        If work or memory do not suffice for another signal.
-    """
+    """Search for a period with a spectral radius above one."""
     system, allowance = family.system, family.allowance
     if system.time is Time.DISCRETE and system.switching.is_arbitrary:
         for word, radius in growing_words(family.matrices, allowance):
@@ -224,14 +218,7 @@ def powers(
 ) -> Iterator[Candidate[GrowingSequence]]:
     """Yield a period with its powers from where the trace should exceed n.
 
-    Parameters
-    ----------
-    system : SwitchedSystem
-        The modes.
-    steps, edges
-        The signal, as in `GrowingSequence`.
-    radius : float
-        Spectral radius over the period; nothing is yielded if it is not above one.
+    Nothing is yielded if the spectral radius over the period is not above one.
     """
     if not radius > 1 or isinf(radius):
         return

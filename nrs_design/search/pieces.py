@@ -24,17 +24,7 @@ SAFE = 1.02
 def enough_pieces(system: SwitchedSystem, graph: FormsOnGraph) -> int | None:
     """Predict into how many pieces stays have to be cut for their enclosures to show a decrease.
 
-    Parameters
-    ----------
-    system : SwitchedSystem
-        In continuous time.
-    graph : FormsOnGraph
-        With its forms and the modes that are left.
-
-    Returns
-    -------
-    int or None
-        None if too many would be needed.
+    In continuous time; None if too many would be needed.
     """
     assert graph.stays is not None
     largest = max(max(map(abs, row)) for node in graph.nodes for row in node.form)

@@ -48,15 +48,7 @@ def _shared_cost(system: SwitchedSystem, degree: int, free: int) -> tuple[Cost, 
 
 
 def form_sizes(variables: int, degree: int) -> tuple[int, int, int]:
-    """Return how many monomials there are, forms of them, and forms that vanish.
-
-    Parameters
-    ----------
-    variables : int
-        Of the monomials.
-    degree : int
-        Of the monomials.
-    """
+    """Return how many monomials there are, forms of them, and forms that vanish."""
     order = comb(variables + degree - 1, degree)
     own = order * (order + 1) // 2
     return order, own, own - comb(variables + 2 * degree - 1, 2 * degree)

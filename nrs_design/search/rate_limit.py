@@ -24,11 +24,6 @@ def rate_limit(system: SwitchedSystem) -> float | None:
     Continuous time: the slowest mode's ``-max Re``, in 1/s. Discrete time: the largest
     ``radius(A_k ... A_1)^(1/k)`` over short products of modes, a lower bound of the joint spectral
     radius; where switching is constrained, of single modes only.
-
-    Parameters
-    ----------
-    system : SwitchedSystem
-        The modes.
     """
     modes = system.lasting_modes()
     if not modes:

@@ -24,28 +24,12 @@ RATE_BITS = 16
 
 
 def rate_at(position: float, limit: float, time: Time) -> float:
-    """Return the rate at a position between mere stability and the limit.
-
-    Parameters
-    ----------
-    position : float
-        From 0, mere stability, to 1, the limit.
-    limit : float
-        The alpha in 1/s, or rho per step, that no proof can beat.
-    time : Time
-        Which of the two.
-    """
+    """Return the rate, in 1/s or per step, at a position from 0, mere stability, to 1."""
     return position * limit if time is Time.CONTINUOUS else 1 - position * (1 - limit)
 
 
 def position_of(rate: float, limit: float, time: Time) -> float:
-    """Return the position of a rate: the inverse of `rate_at`.
-
-    Parameters
-    ----------
-    rate, limit, time
-        As there.
-    """
+    """Return the position of a rate: the inverse of `rate_at`."""
     return rate / limit if time is Time.CONTINUOUS else (1 - rate) / (1 - limit)
 
 
@@ -54,14 +38,7 @@ def claims(
 ) -> Iterator[Fraction]:
     """Yield short rates of exponential decay below a position, the fastest decay first.
 
-    Parameters
-    ----------
-    position, limit, time
-        As for `rate_at`.
-    nearest : float
-        The first back-off: at most this share of the position is claimed.
-    few : bool
-        Not all of them.
+    At most the share `nearest` of the position is claimed; `few`: not all of them.
     """
     back_offs = (back_off for back_off in BACK_OFFS if back_off <= nearest)
     for back_off in islice(back_offs, FEW_RATES if few else None):
@@ -74,15 +51,7 @@ def claims(
 
 
 def digits(fewest: int = BITS[0], *, few: bool = False) -> tuple[int, ...]:
-    """Return numbers of bits after the binary point, from the fewest on.
-
-    Parameters
-    ----------
-    fewest : int
-        The first one.
-    few : bool
-        Not all of them.
-    """
+    """Return numbers of bits after the binary point, from the fewest on; `few`: not all of them."""
     bits = tuple(bits for bits in BITS if bits >= fewest)
     return bits[::FEW_BITS] if few else bits
 
@@ -107,19 +76,7 @@ def round_form(
 ) -> tuple[tuple[int, ...], ...]:
     """Round a symmetric matrix to integers over ``2^bits``, then scale exactly, ``2^s M 2^s``.
 
-    Parameters
-    ----------
-    M : ndarray, shape (n, n)
-        In scaled coordinates.
-    shifts : ndarray of int, shape (n,)
-        The s, none of them negative.
-    bits : int
-        After the binary point; may be negative.
-
-    Raises
-    ------
-    OverflowError
-        If it is beyond the range of floating point.
+    No shift s is negative; bits may be. An OverflowError beyond the range of floating point.
     """
     rounded = np.ldexp((M + M.T) / 2, bits)
     if not np.isfinite(rounded).all():
@@ -135,19 +92,7 @@ def unscale(
 ) -> tuple[tuple[tuple[int, ...], ...], int]:
     """Round to integers over ``2^bits`` and undo the scaling exactly, ``2^-d Q 2^-d``.
 
-    Parameters
-    ----------
-    Q : ndarray, shape (n, n)
-        In scaled coordinates.
-    exponents : ndarray of int, shape (n,)
-        The d.
-    bits : int
-        After the binary point.
-
-    Returns
-    -------
-    tuple
-        The integers, and the logarithm of their denominator, which is two to a power.
+    Returns the integers, and the logarithm of their denominator, which is two to a power.
     """
     top = int(exponents.max())
     return round_form(Q, top - exponents, bits), bits + 2 * top

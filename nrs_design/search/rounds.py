@@ -27,13 +27,7 @@ LETTERS = 8
 
 
 def search_rounds(family: Family) -> Candidates[GrowingSequence]:
-    """Search among rounds of one mode for the first step and one for all others.
-
-    Raises
-    ------
-    NotAffordableError
-        If work or memory do not suffice for longer signals.
-    """
+    """Search among rounds of one mode for the first step and one for all others."""
     system, clock = family.system, family.system.clock
     if clock is None:
         return NOTHING_GROWS
@@ -62,15 +56,7 @@ def search_rounds(family: Family) -> Candidates[GrowingSequence]:
 
 
 def turns_graph(family: Family, clock: Clock) -> StepGraph:
-    """Return the steps that an automaton allows, of modes that differ by no more than rounding.
-
-    Parameters
-    ----------
-    family : Family
-        The modes.
-    clock : Clock
-        The automaton.
-    """
+    """Return the steps that an automaton allows, of modes that differ by no more than rounding."""
     system, names = family.system, frozenset(clock.first)
     kinds = [
         _distinct([mode for mode in system.modes if (mode.name in names) is first])

@@ -52,19 +52,8 @@ def search_saturated(
 ) -> Candidates[SaturatedEllipsoid]:
     """Yield ellipsoids that hold a start, those with the fastest decay first.
 
-    The start is the wanted one; without one, or where it is out of reach, nearly the largest.
-
-    Parameters
-    ----------
-    system : SwitchedSystem
-        Stable, in continuous time, with what saturates.
-    allowance : Allowance
-        Work and memory.
-
-    Raises
-    ------
-    NotAffordableError
-        If work or memory do not suffice.
+    In continuous time. The start is the wanted one; without one, or where it is out of reach,
+    nearly the largest.
     """
     assert system.saturation is not None  # who asks has looked
     family, raw = Family.of(system), Problem.of(system)

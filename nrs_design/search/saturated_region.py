@@ -71,13 +71,7 @@ class Problem:
         return len(self.rows) * (max(self.groups) + 1)
 
     def transformed(self, T: Array) -> Problem:
-        """Return the same in coordinates ``x = T z``.
-
-        Parameters
-        ----------
-        T : ndarray, shape (n, n)
-            Invertible.
-        """
+        """Return the same in coordinates ``x = T z``."""
         inverse, n = np.linalg.inv(T), len(T)
         rows = (np.concatenate([row[:, :n] @ T, row[:, n:]], axis=1) for row in self.rows)
         return replace(
@@ -103,12 +97,7 @@ class Problem:
     def vertices(self, S: Any, Y: Sequence[Any]) -> Iterator[tuple[int, Any]]:
         """Yield, with the index of its mode, ``B S`` for every B that a mode is a mixture of.
 
-        Parameters
-        ----------
-        S : ndarray or expression, shape (n, n)
-            The identity gives the matrices themselves.
-        Y : sequence of ndarray or expression, each of shape (1, n)
-            The rows ``h S``, those of a group one after the other.
+        Y are the rows ``h S``, those of a group one after the other; S the identity gives the B.
         """
         n, linear, count = self.A.shape[1], self.linear, len(self.rows)
         for k, replaced in product(range(len(self.A)), product((False, True), repeat=count)):
@@ -151,14 +140,9 @@ class Region:
 
 
 def row_unknowns(n: int, rows: int) -> tuple[Array, list[Array]]:
-    """Return what each unknown makes of a symmetric matrix, and of rows; the last one of neither.
+    """Return what each unknown makes of a symmetric matrix, and of rows.
 
-    Parameters
-    ----------
-    n : int
-        Order of the matrix, and length of the rows.
-    rows : int
-        How many rows there are.
+    The last unknown makes nothing of either.
     """
     basis, total = symmetric_basis(n), n * (n + 1) // 2 + rows * n + 1
     S, Y = np.zeros((total, n, n)), [np.zeros((total, 1, n)) for _ in range(rows)]
@@ -170,28 +154,14 @@ def row_unknowns(n: int, rows: int) -> tuple[Array, list[Array]]:
 
 
 def last_unknown(n: int, rows: int) -> Array:
-    """Return what each unknown makes of the number that is to be large.
-
-    Parameters
-    ----------
-    n, rows
-        As for `row_unknowns`.
-    """
+    """Return what each unknown makes of the number that is to be large."""
     number = np.zeros((n * (n + 1) // 2 + rows * n + 1, 1, 1))
     number[-1] = 1.0
     return number
 
 
 def bordered_by(S: Array, y: Array) -> Array:
-    """Return ``[[S, y'], [y, 0]]`` for every unknown.
-
-    Parameters
-    ----------
-    S : ndarray, shape (k, n, n)
-        Of every unknown.
-    y : ndarray, shape (k, 1, n)
-        Likewise.
-    """
+    """Return ``[[S, y'], [y, 0]]`` for every unknown."""
     n = S.shape[-1]
     whole = np.zeros((len(S), n + 1, n + 1))
     whole[:, :n, :n] = S
@@ -200,14 +170,6 @@ def bordered_by(S: Array, y: Array) -> Array:
 
 
 def solved(blocks: Sequence[tuple[Array, Array]], allowance: Allowance) -> Array | None:
-    """Make the last unknown large where all blocks are positive; None where it is not positive.
-
-    Parameters
-    ----------
-    blocks : sequence of pairs of ndarray
-        A constant, and what each unknown adds to it.
-    allowance : Allowance
-        Work and memory.
-    """
+    """Make the last unknown large where all blocks are positive; None where it is not positive."""
     x = solve_blocks(blocks, allowance)
     return x if x is not None and x[-1] > 0 else None

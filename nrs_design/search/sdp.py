@@ -85,14 +85,8 @@ def _weights(n: int) -> Array:
 def program_cost(variables: int, shared: int, cones: Iterable[tuple[int, int]]) -> Cost:
     """Predict what `maximize_margin` takes, before its constraints are built.
 
-    Parameters
-    ----------
-    variables : int
-        Number of unknowns.
-    shared : int
-        How many of them remain coupled when each cone's own have been eliminated.
-    cones : iterable of (int, int)
-        Order of each cone, and how many unknowns it depends on.
+    `shared` unknowns remain coupled when each cone's own have been eliminated; a cone is its order,
+    and how many unknowns it depends on.
     """
     rows, entries, products, factor = 0.0, 0.0, shared**3 / 3, shared**2 / 2
     count = 0
@@ -128,15 +122,7 @@ class Sparse:
     def of(
         cls, values: Array, rows: NDArray[Any], columns: NDArray[Any], shape: tuple[int, int]
     ) -> Sparse:
-        """Put entries in order; what is given twice counts as their sum.
-
-        Parameters
-        ----------
-        values, rows, columns : ndarray, shape (k,)
-            The entries and where they are.
-        shape : (int, int)
-            Of the matrix.
-        """
+        """Put entries in order; what is given twice counts as their sum."""
         places, entry = np.unique(columns * shape[0] + rows, return_inverse=True)
         data: Array = np.bincount(entry, values, len(places)).astype(float)
         ends = np.searchsorted(places, np.arange(shape[1] + 1) * shape[0])
@@ -181,22 +167,7 @@ class Begun:
 
 
 def begin(allowance: Allowance, cost: Cost, what: str) -> Begun:
-    """Charge the work that a program is predicted to take, if it fits.
-
-    Parameters
-    ----------
-    allowance : Allowance
-        What may still be done.
-    cost : Cost
-        As `program_cost` predicts it.
-    what : str
-        The program, in words.
-
-    Raises
-    ------
-    NotAffordableError
-        If work or memory do not suffice.
-    """
+    """Charge the work that a program is predicted to take, if it fits."""
     allowance.take(cost, what)
     return Begun(allowance, cost.per_step)
 
@@ -204,17 +175,8 @@ def begin(allowance: Allowance, cost: Cost, what: str) -> Begun:
 def solve_blocks(blocks: Sequence[tuple[Array, Array]], allowance: Allowance) -> Array | None:
     """Make the last unknown as large as all blocks stay positive semidefinite with.
 
-    Parameters
-    ----------
-    blocks : sequence of (ndarray, ndarray), shapes (m, m) and (N, m, m)
-        A constant, and what every unknown adds to it.
-    allowance : Allowance
-        Work and memory.
-
-    Returns
-    -------
-    ndarray, shape (N,), or None
-        As `maximize_margin` returns it.
+    A block is a constant (m, m), and what every unknown adds to it (N, m, m); the result is as of
+    `maximize_margin`.
     """
     unknowns = len(blocks[0][1])
     cost = program_cost(unknowns, unknowns, [(len(constant), unknowns) for constant, _ in blocks])
@@ -236,23 +198,8 @@ def maximize_margin(
 ) -> Array | None:
     """Maximize the last variable subject to ``offset - rows x`` in a product of cones.
 
-    Parameters
-    ----------
-    rows : ndarray or Sparse, shape (M, N)
-        The first `equalities` rows are equations, the others packed positive semidefinite cones.
-    offset : ndarray, shape (M,)
-        Right-hand side.
-    sizes : sequence of int
-        Order of each cone.
-    begun : Begun
-        The program: how many steps the solver may make.
-    equalities : int
-        Number of equations.
-
-    Returns
-    -------
-    ndarray, shape (N,), or None
-        What the solver returned, whatever its status; None if that is not finite.
+    The first `equalities` rows are equations, the others packed positive semidefinite cones of
+    these sizes. Returns what the solver returned, whatever its status; None if that is not finite.
     """
     found = find_maximum(rows, offset, sizes, begun, equalities)
     return None if found is None else found.x
@@ -265,13 +212,7 @@ def find_maximum(
     begun: Begun,
     equalities: int = 0,
 ) -> Maximum | None:
-    """Do the same as `maximize_margin`, and return the dual variables as well.
-
-    Parameters
-    ----------
-    rows, offset, sizes, begun, equalities
-        As there.
-    """
+    """Do the same as `maximize_margin`, and return the dual variables as well."""
     import clarabel
 
     variables = rows.shape[1]

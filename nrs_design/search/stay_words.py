@@ -26,12 +26,7 @@ LENGTHS, BRIEF = 5, 1e-6
 def stay_words(graph: Graph, allowance: Allowance) -> Iterator[tuple[Cycle, Array]]:
     """Yield words that grow, each more than all before it; if none does, the best one.
 
-    Parameters
-    ----------
-    graph : Graph
-        In continuous time. Nothing is yielded where a stay has no longest length, or none varies.
-    allowance : Allowance
-        What the search may take.
+    In continuous time; nothing is yielded where a stay has no longest length, or none varies.
     """
     varies = graph.longest > graph.shortest
     if graph.flows.time is Time.DISCRETE or np.isinf(graph.longest).any() or not varies.any():

@@ -25,12 +25,8 @@ FLAT = 1e-9
 def round_stays(system: SwitchedSystem, leaving: Collection[str]) -> dict[str, FormCoordinates]:
     """Return coordinates of each mode in which what a mean signal keeps of the state is round.
 
-    Parameters
-    ----------
-    system : SwitchedSystem
-        In continuous time.
-    leaving : collection of str
-        Modes that are left after a stay in the middle of its range; others stay until they decay.
+    Modes that are left, are so after a stay in the middle of its range; others stay until they
+    decay.
     """
     edges = [(edge, _flow(system, edge, edge.source.name in leaving)) for edge in system.edges()]
     counts = {mode.name: 0 for mode in system.modes}

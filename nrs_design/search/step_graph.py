@@ -45,12 +45,7 @@ class StepGraph:
     def of(cls, system: SwitchedSystem, matrices: Array) -> StepGraph | None:
         """Return the graph of a system; None where it is none of single steps, or too large.
 
-        Parameters
-        ----------
-        system : SwitchedSystem
-            With modes of one size.
-        matrices : ndarray, shape (m, n, n)
-            The modes, perhaps scaled; those of the system itself if there are resets.
+        The modes may be scaled; they are those of the system itself if there are resets.
         """
         names = tuple(mode.name for mode in system.modes)
         if system.time is not Time.DISCRETE or system.clock is not None:
@@ -96,19 +91,7 @@ class StepGraph:
     def of_clock(
         cls, clock: Clock, names: Sequence[str], matrices: Array, first: Sequence[bool]
     ) -> StepGraph:
-        """Return the graph of an automaton: a node is one of its states.
-
-        Parameters
-        ----------
-        clock : Clock
-            The automaton.
-        names : sequence of str
-            Of the modes.
-        matrices : ndarray, shape (m, n, n)
-            The modes.
-        first : sequence of bool
-            Whether each is of the first kind.
-        """
+        """Return the graph of an automaton: a node is one of its states."""
         rows = [
             (state, target, k)
             for state, kind, target in clock.turns()
@@ -122,13 +105,7 @@ class StepGraph:
         return cls(tuple(names), sources, targets, modes, ways, maps, count, has_choice=False)
 
     def sequence(self, word: Sequence[int]) -> tuple[Steps, tuple[int, ...]]:
-        """Return a closed word as the stays of a signal, with the resets that it takes.
-
-        Parameters
-        ----------
-        word : sequence of int
-            Edges, of which the last leads to where the first begins.
-        """
+        """Return a closed word as the stays of a signal, with the resets that it takes."""
         word = list(word)
         jumps = [k for k, edge in enumerate(word) if self.ways[edge] >= 0]
         if not jumps:

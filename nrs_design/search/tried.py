@@ -21,17 +21,8 @@ Number = TypeVar("Number", int, Fraction)
 class Tried(Generic[Number]):
     """The verdict at every number that was tried, or why it makes no system.
 
-    What is refuted in kept contact counts as refuted; `refuted_in` says so.
-
-    Parameters
-    ----------
-    decide : callable
-        Gives the verdict at a number, alone or with all that was found, or says why the number
-        makes no system.
-    progress : callable
-        Told each number before it is decided, and what is known by then.
-    what, unit : str
-        By which a number is told, such as ``period`` and ``s``.
+    What is refuted in kept contact counts as refuted; `refuted_in` says so. `what` and `unit` tell
+    a number, such as ``period`` and ``s``; progress is told it before it is decided.
     """
 
     def __init__(
@@ -98,13 +89,7 @@ class Tried(Generic[Number]):
         return "" if beyond is None else str(self._found[beyond])
 
     def end(self, reach: str, beyond: str) -> str:
-        """Say where numbers that are not refuted end, and why there.
-
-        Parameters
-        ----------
-        reach, beyond : str
-            Before the longest number, and before why longer ones make no system.
-        """
+        """Say where numbers that are not refuted end, and why there."""
         why = f"{beyond} ({fault})" if (fault := self.fault()) else "the search ends there"
         return f"none {reach} {self._text(self.longest())} is refuted: {why}"
 
@@ -121,21 +106,9 @@ class Tried(Generic[Number]):
 def sharpen(
     accepted: Fraction, other: Fraction, steps: int, accepts: Callable[[Fraction], bool]
 ) -> Fraction:
-    """Bisect between a number that is accepted and one that is not.
+    """Bisect, so many steps, between a number that is accepted and one that is not.
 
-    Parameters
-    ----------
-    accepted, other : Fraction
-        The two numbers.
-    steps : int
-        How often the way between them is halved.
-    accepts : callable
-        Says whether a number between them is accepted.
-
-    Returns
-    -------
-    Fraction
-        The last number that was accepted.
+    Returns the last one that was accepted.
     """
     for _ in range(steps):
         middle = (accepted + other) / 2

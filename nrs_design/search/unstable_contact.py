@@ -50,13 +50,7 @@ def examine_free_motion(family: Family) -> Candidates[GrowingSequence]:
 
 
 def search_contact(family: Family) -> Candidates[GrowingSequence]:
-    """Search for a mode that pushes in and grows, and for sequences of contact and flight.
-
-    Raises
-    ------
-    NotAffordableError
-        If time or memory do not suffice.
-    """
+    """Search for a mode that pushes in and grows, and for sequences of contact and flight."""
     loop = _Loop.of(family)
     for mode in range(len(loop.names)):
         yield from loop.candidates([mode])

@@ -123,14 +123,7 @@ def _corners(system: SwitchedSystem, matrices: Array) -> Array:
 def _growth(corners: Array, shares: Array, time: Time) -> Array:
     """Return how far beyond the stability limit the worst eigenvalue is.
 
-    Parameters
-    ----------
-    corners : ndarray, shape (c, n, n)
-        A mode at the corners of the parameters.
-    shares : ndarray, shape (m, k)
-        Values of the parameters.
-    time : Time
-        Continuous or discrete.
+    Of a mode at the corners, shape (c, n, n), for values of the parameters, shape (m, k).
     """
     weights = np.ones((len(shares), 1))
     for share in shares.T:

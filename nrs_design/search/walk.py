@@ -29,12 +29,8 @@ STRIDE = 4
 def growing_walks(graph: Graph, allowance: Allowance) -> Iterator[tuple[Cycle, Array]]:
     """Yield closed walks that seem to grow the most per time, the shortest first.
 
-    Walks from mode to mode are carried on where they can make the most of a state per time.
-
-    Yields
-    ------
-    tuple
-        The jumps of the walk, and the times before each of them.
+    With each, the times before its jumps. Walks from mode to mode are carried on where they can
+    make the most of a state per time.
     """
     if len(graph.jumps) > MAX_JUMPS:
         return

@@ -20,19 +20,9 @@ PER_PRODUCT = 3e-8
 
 
 def growing_words(matrices: Array, allowance: Allowance) -> Iterator[tuple[tuple[int, ...], float]]:
-    """Yield for each length the word with the largest spectral radius.
+    """Yield for each length the word with the largest spectral radius, and that.
 
-    Parameters
-    ----------
-    matrices : ndarray, shape (m, n, n)
-        The modes.
-    allowance : Allowance
-        Words of a length for which work or memory do not suffice end the search.
-
-    Yields
-    ------
-    tuple
-        The modes of the word in order, and its spectral radius.
+    Words of a length for which work or memory do not suffice end the search.
     """
     m, length = len(matrices), 1
     while length < MAX_WORD_LENGTH and m ** (length + 1) <= MAX_WORDS:

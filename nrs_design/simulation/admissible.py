@@ -69,20 +69,10 @@ def admissible_run(
 ) -> SwitchedRun:
     """Simulate a greedy adversary that keeps the rules.
 
-    After every dwell time it stays for another step, if the mode need not be left, or switches and
-    stays for a dwell time: whichever loses the least of ``sqrt(x' Q_i x)`` of the active mode per
-    time. It is a bad run, not the worst one.
-
-    Parameters
-    ----------
-    system : SwitchedSystem
-        Modes, perhaps of different sizes, and rules.
-    functions : mapping
-        Matrix Q_i of every mode by its name, positive definite.
-    step : float
-        Wanted time between decisions, in s; in each mode the dwell time is a multiple of it.
-    steps : int
-        Number N of steps, at least.
+    After every dwell time it stays for another step, of nearly `step` s, if the mode need not be
+    left, or switches and stays for a dwell time: whichever loses the least of ``sqrt(x' Q_i x)`` of
+    the active mode per time. It is a bad run, of at least `steps` steps, not the worst one.
+    `functions` are the positive definite Q_i by mode.
     """
     stays = system.stays()
     paces = [
@@ -103,17 +93,7 @@ def admissible_run(
 def active_norms(
     system: SwitchedSystem, response: SwitchedRun, functions: Mapping[str, Array]
 ) -> Array:
-    """Return ``sqrt(x' Q_i x)`` of the active mode over its first value; shape (N + 1,).
-
-    Parameters
-    ----------
-    system : SwitchedSystem
-        The modes.
-    response : SwitchedRun
-        A run of N steps.
-    functions : mapping
-        The Q of every mode, by name.
-    """
+    """Return ``sqrt(x' Q_i x)`` of the active mode over its first value; shape (N + 1,)."""
     active = np.append(response.mode, response.mode[-1])
     values = np.empty(len(active))
     for index in set(active.tolist()):

@@ -26,16 +26,9 @@ _SIGNS = (1.0, -1.0)
 
 
 def held_signals(game: Game, rest: int, steps: int) -> Signals:
-    """Return the largest disturbances after a rest, held in either direction in every mode.
+    """Return the largest disturbances, held in either direction in one mode after the other.
 
-    In a mode that rules forbid to hold, the run stays as long as it may, and comes back as soon.
-
-    Parameters
-    ----------
-    game : Game
-        With its rules.
-    rest, steps : int
-        Number of steps at rest, and of those after them.
+    Every mode of the game may follow every mode.
     """
     rules, modes = game.rules, np.arange(len(game.maps))
     actions = np.zeros((rest + steps, len(modes)), dtype=np.int64)
@@ -56,13 +49,6 @@ def settled_signals(game: Game, approach: int, steps: int) -> Signals:
     """Return what `held_signals` does from where it leads if it is held for long before.
 
     Pressed into what is touched, or in steady motion towards a surface that was lost.
-
-    Parameters
-    ----------
-    game : Game
-        In which every mode may follow every mode.
-    approach, steps : int
-        Number of steps before a surface is met, and of those after them.
     """
     found = [
         (mode, sign, state)
@@ -105,18 +91,9 @@ def _settles(A: Array) -> bool:
 
 
 def improve(game: Game, aim: Aim, signals: Signals, sweeps: int) -> Signals:
-    """Improve what is wanted at the end of runs, until a sweep gains nothing.
+    """Improve runs until a sweep gains nothing, or there have been enough.
 
-    Parameters
-    ----------
-    game : Game
-        What can happen.
-    aim : Aim
-        What is to become large at the end of each run.
-    signals : Signals
-        Of the runs to begin with.
-    sweeps : int
-        Most sweeps.
+    Returns the best that each run came to, and what was wanted at its end, shape (S,).
     """
     states = play(game, signals)
     value = _at_end(game, aim, signals, states)

@@ -27,17 +27,7 @@ _TINY = 1e-9
 def build_control(
     spec: InteractionDesignSpec, written: ControlSpec | None, surfaces: tuple[Surface, ...]
 ) -> Control:
-    """Return who is in control when, by default what fits the names and kinds of the controllers.
-
-    Parameters
-    ----------
-    spec : InteractionDesignSpec
-        With its controllers and mode logic.
-    written : ControlSpec or None
-        As a scenario says it.
-    surfaces : tuple of Surface
-        What is touched in that scenario.
-    """
+    """Return who is in control when, by default what fits names and kinds of the controllers."""
     first = next(iter(spec.controllers))
     if written is None:
         return _usual(spec, first) if spec.mode_logic is None else by_logic(spec)
@@ -70,13 +60,7 @@ def _usual(spec: InteractionDesignSpec, first: str) -> Control:
 
 
 def by_sign(insertion: str, withdrawal: str) -> Control:
-    """Return insertion and withdrawal by the signs of command and torque (thesis 6.3.2).
-
-    Parameters
-    ----------
-    insertion, withdrawal : str
-        Controllers.
-    """
+    """Return insertion and withdrawal by the signs of command and torque (thesis 6.3.2)."""
     pushes_out = (Condition(COMMAND, high=-_TINY), Condition(TORQUE, low=_TINY))
     back = (Condition(COMMAND, low=_TINY),)
     lost = (Condition(TORQUE, high=0.0),)
@@ -91,15 +75,7 @@ def by_sign(insertion: str, withdrawal: str) -> Control:
 
 
 def by_threshold(position: str, force: str, torque: float) -> Control:
-    """Return position control up to a torque in N m, force control beyond it (thesis 6.3.3).
-
-    Parameters
-    ----------
-    position, force : str
-        Controllers.
-    torque : float
-        The threshold.
-    """
+    """Return position control up to a torque in N m, force control beyond it (thesis 6.3.3)."""
     reached = (Condition(TORQUE, low=torque), Condition(COMMAND, low=_TINY))
     return Control(
         position,

@@ -40,19 +40,6 @@ def draw(
 
     Each is uniform in its range, independent of the others, and stays for the run; what has no
     range stays as it is.
-
-    Parameters
-    ----------
-    spec : InteractionDesignSpec
-        With the ranges.
-    plant : Plant
-        Of that spec.
-    design : ControllerDesign
-        The gains that ship.
-    scenario : Scenario
-        Of one axis.
-    seed : int
-        The same one gives the same run.
     """
     rng = np.random.default_rng(seed)
     parameters: dict[str, float] = {}

@@ -24,13 +24,7 @@ class DrivenJoint:
 
     @classmethod
     def of(cls, drive: Drive) -> DrivenJoint:
-        """Return a drive at rest.
-
-        Parameters
-        ----------
-        drive : Drive
-            What is touched does not act on it.
-        """
+        """Return a drive at rest; what is touched does not act on it."""
         n = drive.order
         known = {s: float(interval.nominal) for s, interval in drive.ranges.items()}
         values = {s: 1 / v if s in drive.inverse else v for s, v in known.items()}
@@ -40,16 +34,9 @@ class DrivenJoint:
         return cls(generator, speed, np.zeros(len(drive.states) - 1))
 
     def after(self, theta: float, omega: float, command: float, time: float) -> tuple[float, float]:
-        """Return angle and velocity after a time, and keep the other states.
+        """Return angle (rad) and velocity (rad/s) after a time in s, and keep the other states.
 
-        Parameters
-        ----------
-        theta, omega : float
-            In rad and rad/s.
-        command : float
-            In its unit, held.
-        time : float
-            In s.
+        The command, in its unit, is held.
         """
         from scipy.linalg import expm
 

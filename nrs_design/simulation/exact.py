@@ -58,25 +58,9 @@ def simulate_exactly(
 ) -> Run:
     """Simulate a scenario in continuous time, without what acts on the sampled loop alone.
 
-    Parameters
-    ----------
-    spec : InteractionDesignSpec
-        With idle states and offsets.
-    plant : Plant
-        Of that spec; its nominal motor.
-    design : ControllerDesign
-        Gains that ship.
-    scenario : Scenario
-        What happens.
-    max_steps : int
-        A run that takes more ends there, and one with an event in less than `EVENT_STEPS` of them.
-    tell : callable
-        Told how far the run is.
-
-    Raises
-    ------
-    DesignError
-        If a surface is not linear, or a law is not modelled with it.
+    A run that takes more than `max_steps` ends there, and one with an event in less than
+    `EVENT_STEPS` of them. A `DesignError` if a surface is not linear, or a law is not modelled with
+    it.
     """
     return _Engine(Loop(spec, plant, design, scenario), max_steps, tell).run()
 

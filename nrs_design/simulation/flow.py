@@ -121,12 +121,7 @@ class Flow:
     def first_doubtful(self, states: Array, sides: Array) -> int:
         """Return the first step in which a signal may change its side, or how many steps there are.
 
-        Parameters
-        ----------
-        states : ndarray, shape (N, n)
-            At the beginnings of the steps.
-        sides : ndarray, shape (e,)
-            1 or -1.
+        States at the beginnings of the steps, shape (N, n); sides 1 or -1, shape (e,).
         """
         e = len(sides)
         if e == 0:
@@ -144,14 +139,7 @@ class Flow:
     def first_crossing(self, z: Array, width: float, sides: Array) -> float | None:
         """Return the first time at which a signal has changed its side, or None.
 
-        Parameters
-        ----------
-        z : ndarray, shape (n,)
-            State at the beginning.
-        width : float
-            How far to look, from zero to h, in s.
-        sides : ndarray, shape (e,)
-            1 or -1.
+        From the state z, shape (n,), within `width` s; sides 1 or -1, shape (e,).
         """
         if not len(sides):
             return None

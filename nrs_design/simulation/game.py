@@ -31,21 +31,10 @@ class Game:
 
     @classmethod
     def of(cls, system: SwitchedSystem, channels: Sequence[Channel], step: float) -> Game:
-        """Lay a system on a grid of time, in floating point.
+        """Lay a system of modes of one size on a grid of time, in floating point.
 
-        Parameters
-        ----------
-        system : SwitchedSystem
-            Modes of one size.
-        channels : sequence of Channel
-            The disturbances that act.
-        step : float
-            Over which choices are held, in s; one in discrete time.
-
-        Raises
-        ------
-        ValueError
-            If the rules of switching are too fine for this grid.
+        Choices are held over a step, in s; one in discrete time. A ValueError if the rules of
+        switching are too fine for this grid.
         """
         contact = system.contact
         free = () if contact is None else contact.free
@@ -98,18 +87,7 @@ class Aim:
     def values(self, game: Game, states: Array, modes: Indices) -> tuple[Array, Array]:
         """Return the largest size at states in modes, and the row with the sign that has it.
 
-        Parameters
-        ----------
-        game : Game
-            That is played.
-        states : ndarray, shape (S, n)
-            One of each run.
-        modes : ndarray of int, shape (S,)
-            In force there.
-
-        Returns
-        -------
-        ndarray, shape (S,), and ndarray, shape (S, n)
+        For S runs: states of shape (S, n) and modes (S,) give sizes (S,) and rows (S, n).
         """
         runs, found = np.arange(len(states)), states @ self.rows.T
         size = np.where(self.allowed[modes], found if self.one_sided else np.abs(found), -np.inf)
@@ -151,19 +129,7 @@ class Signals:
         )
 
     def spans(self, game: Game, states: Array, first: Indices, steps: int) -> Signals:
-        """Return some steps of each run, from a step of its own on.
-
-        Parameters
-        ----------
-        game : Game
-            That was played.
-        states : ndarray, shape (K + 1, S, n)
-            Along these runs.
-        first : ndarray of int, shape (S,)
-            The steps with which they begin.
-        steps : int
-            How many.
-        """
+        """Return some steps of each run, from a step of its own on."""
         runs, rows = np.arange(len(first)), first + np.arange(steps)[:, None]
         before = game.rules.target[self.actions[first - 1, runs]]
         return Signals(
@@ -175,13 +141,7 @@ class Signals:
 
 
 def play(game: Game, signals: Signals) -> Array:
-    """Simulate runs.
-
-    Returns
-    -------
-    ndarray, shape (K + 1, S, n)
-        Where a switch resets the state, before the reset.
-    """
+    """Simulate runs from rest; shape (K + 1, S, n), at a switch before the reset."""
     steps, runs = signals.actions.shape
     states = np.zeros((steps + 1, runs, game.order))
     states[0] = signals.states

@@ -32,27 +32,11 @@ def greedy_run(
     """Simulate the greedy adversary: always the possible mode after which the norm is largest.
 
     Modes in contact are possible while the deflection, the last state, is positive, and free modes
-    while it is not; in continuous time contact changes at the end of a step only, so steps must be
-    short. A mode of a clock is possible where that allows it. It is a bad run, not the worst one:
-    nothing is proved by it.
-
-    Parameters
-    ----------
-    system : SwitchedSystem
-        Modes of one size, without resets.
-    norms : callable, or sequence of callable
-        What to make large, of states of shape (..., n); with a clock, one for each of its states.
-    initial : ndarray, shape (n,)
-        State at time zero, where a round of the clock begins, or no deadline has been missed.
-    step : float
-        Time between decisions, in s; one in discrete time.
-    steps : int
-        Number of decisions N.
-
-    Returns
-    -------
-    SwitchedRun
-        Its modes are those of `all_modes`.
+    while it is not; in continuous time contact changes at the end of a step only, so steps, in s,
+    must be short. A mode of a clock is possible where that allows it. It is a bad run, not the
+    worst one: nothing is proved by it. Norms take states of shape (..., n); with a clock, there is
+    one for each of its states, and time zero begins a round, or no deadline has been missed. The
+    modes of the run are those of `all_modes`.
     """
     each = [norms] if callable(norms) else list(norms)
     possible, advance = _possible(system), _advance(system, step)
@@ -75,12 +59,7 @@ def greedy_run(
 def relative_norms(run: SwitchedRun, norms: Norm | Sequence[Norm]) -> Array:
     """Return the norm along a run over its first value; shape (N + 1,).
 
-    Parameters
-    ----------
-    run : SwitchedRun
-        With a clock, one that begins with a round.
-    norms : callable, or sequence of callable
-        As `greedy_run` takes them.
+    Norms as for `greedy_run`; with a clock, the run begins with a round.
     """
     if callable(norms):
         values = norms(run.state)

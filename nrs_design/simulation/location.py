@@ -44,20 +44,9 @@ def make_location(
 ) -> Location:
     """Return the loop under a controller in contact, with the signals that may end it.
 
-    Parameters
-    ----------
-    loop : Loop
-        With its scenario.
-    controller : str
-        In force.
-    inside : sequence of bool
-        For every surface, whether the robot is below it.
-    touched : tuple of int
-        Indices of the surfaces that push.
-    direction : int
-        Sign of the surface that was touched last.
-    index : int
-        In the order in which locations are entered.
+    `inside`: whether the robot is below each surface; `touched`: indices of those that push;
+    `direction`: sign of the one that was touched last; `index`: locations are counted as they are
+    entered.
     """
     scenario = loop.scenario
     mode, one = loop.mode(controller, touched), loop.row("one")

@@ -39,13 +39,7 @@ class LoopMode:
 
 @dataclass(frozen=True)
 class Loop:
-    """One axis with its controllers and surfaces.
-
-    Raises
-    ------
-    DesignError
-        If something is not modelled here, on `mode`.
-    """
+    """One axis with its controllers and surfaces; `mode` refuses what is not modelled here."""
 
     spec: InteractionDesignSpec  # With idle states and offsets
     plant: Plant  # The motor and its load
@@ -154,29 +148,14 @@ class Loop:
         return element.k * self.depth(j, mode) + element.c * surface.sign * mode.velocity
 
     def mode(self, controller: str, touched: Sequence[int]) -> LoopMode:
-        """Return the loop with a controller in force, touching some surfaces.
-
-        Parameters
-        ----------
-        controller : str
-            Its name.
-        touched : sequence of int
-            Indices of surfaces.
-        """
+        """Return the loop with a controller in force, touching surfaces of some indices."""
         active = next(c for c in self.design.controllers if c.name == controller)
         return _Closing(self, active, tuple(touched)).mode()
 
     def signal(self, name: str, mode: LoopMode, direction: int) -> Array:
-        """Return the row of a signal that the mode logic sees.
+        """Return the row of a signal that the mode logic sees, named as in `Condition`.
 
-        Parameters
-        ----------
-        name : str
-            As in `nrs_design.simulation.scenario.Condition`.
-        mode : LoopMode
-            In force.
-        direction : int
-            1 if the tissue is met by rising angles, -1 if by falling ones.
+        The direction is 1 if the tissue is met by rising angles, -1 if by falling ones.
         """
         if name == COMMAND:
             return direction * self.row("hand")

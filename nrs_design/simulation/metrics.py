@@ -55,15 +55,7 @@ def rms(t: Array, y: Array) -> float:
 
 
 def time_above(t: Array, y: Array, limit: float) -> float:
-    """Return for how long a signal is above a limit, in s; crossings are interpolated.
-
-    Parameters
-    ----------
-    t, y : ndarray, shape (N,)
-        As everywhere here.
-    limit : float
-        In the unit of the signal.
-    """
+    """Return for how long a signal is above a limit, in s; crossings are interpolated."""
     low, high = np.minimum(y[1:], y[:-1]), np.maximum(y[1:], y[:-1])
     crosses = (low <= limit) & (high > limit)
     share = np.where(low > limit, 1.0, 0.0)
@@ -74,17 +66,8 @@ def time_above(t: Array, y: Array, limit: float) -> float:
 def displayed_impedance(command: Array, torque: Array) -> tuple[Array, Mask]:
     """Return ``|F| / |v_c|`` where there is contact and a command to divide by (thesis 6.3.1).
 
-    Parameters
-    ----------
-    command : ndarray, shape (N,)
-        Commanded velocity v_c in rad/s.
-    torque : ndarray, shape (N,)
-        Torque F of the contact in N m.
-
-    Returns
-    -------
-    ndarray of shape (N,), and of bool
-        In N m s/rad, zero where it is not taken; and where it is taken.
+    From v_c in rad/s and F in N m, shape (N,): in N m s/rad, zero where it is not taken; and where
+    it is taken.
     """
     size = np.abs(command)
     taken = (torque != 0) & (size > SMALLEST_SHARE * size.max(initial=0.0))
@@ -96,20 +79,8 @@ def displayed_impedance(command: Array, torque: Array) -> tuple[Array, Mask]:
 def impedance_rmse(t: Array, command: Array, torque: Array, desired: float) -> float | None:
     """Return the root mean square of displayed less desired impedance (thesis 6.3, 6.4).
 
-    ``sqrt(1/T int (|F|/|v_c| - Z_des)^2 dt)`` over the time in contact; the thesis measures
-    0.1234 to 0.5333 N m s/rad on the robot.
-
-    Parameters
-    ----------
-    t, command, torque : ndarray, shape (N,)
-        As for `displayed_impedance`.
-    desired : float
-        Z_des in N m s/rad.
-
-    Returns
-    -------
-    float or None
-        In N m s/rad; None without contact under a command.
+    ``sqrt(1/T int (|F|/|v_c| - Z_des)^2 dt)`` in N m s/rad, over the time in contact; the thesis
+    measures 0.1234 to 0.5333 on the robot. None without contact under a command.
     """
     quotient, taken = displayed_impedance(command, torque)
     both = taken[1:] & taken[:-1]
@@ -125,14 +96,8 @@ def withdrawal_times(t: Array, command: Array, torque: Array) -> tuple[float, ..
     """Return how long each move out of tissue took, in s (thesis 6.3.2, figures 6.18 to 6.21).
 
     From the moment when the command begins to point out of tissue that pushes, to the loss of
-    contact; a move that is turned round, or not over at the end, does not count.
-
-    Parameters
-    ----------
-    t, command : ndarray, shape (N,)
-        Commanded velocity over time.
-    torque : ndarray, shape (N,)
-        Of the contact: it has the sign of a command into the tissue.
+    contact; a move that is turned round, or not over at the end, does not count. The torque of the
+    contact has the sign of a command into the tissue.
     """
     found: list[float] = []
     begin: float | None = None
@@ -166,13 +131,7 @@ class Effort:
 
 
 def effort(t: Array, torque: Array, velocity: Array) -> Effort:
-    """Return the effort of a run: `Effort` has the equations.
-
-    Parameters
-    ----------
-    t, torque, velocity : ndarray, shape (N,)
-        Of what the hand holds, over time.
-    """
+    """Return the effort of a run: `Effort` has the equations."""
     energy = integral(t, np.abs(torque * velocity))
     return Effort(integral(t, np.abs(torque)), rms(t, torque), energy)
 
@@ -186,13 +145,6 @@ def steady_state_error(t: Array, y: Array, wanted: float) -> float:
     """Return by which share of a wanted value the mean of the last tenth of a run misses it.
 
     ``|1 - mean(y)/wanted|``; the thesis finds 2 to 12 % for proportional force control.
-
-    Parameters
-    ----------
-    t, y : ndarray, shape (N,)
-        The response over time.
-    wanted : float
-        Not zero.
     """
     last = t >= t[-1] - LAST_SHARE * (t[-1] - t[0])
     return abs(1 - mean(t[last], y[last]) / wanted)

@@ -15,17 +15,7 @@ class Motor:
     friction: float = 0.0  # In the unit of the command
 
     def after(self, theta: float, omega: float, command: float, time: float) -> tuple[float, float]:
-        """Return angle and velocity after a time, exactly.
-
-        Parameters
-        ----------
-        theta, omega : float
-            In rad and rad/s.
-        command : float
-            In its unit, held.
-        time : float
-            In s.
-        """
+        """Return angle (rad) and velocity (rad/s) after a time in s, exactly; a command is held."""
         friction = self.friction
         if not friction:
             return self._glide(theta, omega, self.Km * command, time)

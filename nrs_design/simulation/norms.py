@@ -26,13 +26,7 @@ _ROUNDS = 4
 
 
 def quadratic_norm(Q: Array) -> Norm:
-    """Return ``sqrt(x' Q x)``.
-
-    Parameters
-    ----------
-    Q : ndarray, shape (n, n)
-        Symmetric and positive definite.
-    """
+    """Return ``sqrt(x' Q x)``; Q is symmetric and positive definite."""
     root = np.linalg.cholesky(Q)
 
     def norm(states: Array) -> Array:
@@ -54,16 +48,9 @@ def deflected(states: Array) -> Array:
 
 
 def polynomial_norm(Q: IntegerMatrix, degree: int, order: int) -> Norm:
-    """Return ``V(x)^(1/2d)`` times a constant, for a form V of degree 2d.
+    """Return ``V(x)^(1/2d)`` times a constant, for a form V of degree 2d in n states.
 
-    Parameters
-    ----------
-    Q : sequence of sequences of int, shape (K, K)
-        Gram matrix of V, in the monomials as `lift.monomials` orders them.
-    degree : int
-        The d.
-    order : int
-        Number of states n.
+    Q is the Gram matrix of V, in the monomials as `lift.monomials` orders them.
     """
     basis = np.array(monomials(order, degree))
     exponents = diagonal_exponents(Q)
@@ -85,17 +72,7 @@ def diagonal_exponents(Q: IntegerMatrix) -> list[int]:
 
 
 def scaled_form(M: IntegerMatrix, exponents: Sequence[int], scale: int = 1) -> Array:
-    """Return ``M_ij / (scale 2^(e_i + e_j))``: integers may be beyond the range of doubles.
-
-    Parameters
-    ----------
-    M : integer matrix
-        n x n.
-    exponents : sequence of int
-        The e, one for each row.
-    scale : int
-        Common denominator.
-    """
+    """Return ``M_ij / (scale 2^(e_i + e_j))``: integers may be beyond the range of doubles."""
     return np.array(
         [
             [
@@ -114,28 +91,12 @@ def scaled_matrices(*matrices: IntegerMatrix) -> list[Array]:
 
 
 def modes_at(system: SwitchedSystem, p: Fraction) -> SwitchedSystem:
-    """Return the modes at one value of a constant parameter, switched arbitrarily.
-
-    Parameters
-    ----------
-    system : SwitchedSystem
-        With the two ends of the parameter.
-    p : Fraction
-        From 0 (low end) to 1 (high end).
-    """
+    """Return the modes at one value, from 0 to 1, of a constant parameter, switched arbitrarily."""
     return replace(system_at(system, (p,)), switching=Switching())
 
 
 def modes_at_corner(system: SwitchedSystem, corner: int) -> SwitchedSystem:
-    """Return the modes at one corner of the constant parameters, switched arbitrarily.
-
-    Parameters
-    ----------
-    system : SwitchedSystem
-        With the corners of the parameters.
-    corner : int
-        From 0 on, in the order of a set.
-    """
+    """Return the modes at one corner of the constant parameters, switched arbitrarily."""
     at = {corners[corner] for corners in system.switching.fixed_ends}
     modes = tuple(mode for mode in system.modes if mode.name in at)
     return system.with_modes(modes, system.states, Switching())

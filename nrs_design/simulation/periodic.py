@@ -47,19 +47,8 @@ def periodic_run(
     """Simulate a periodic signal until its growth can be seen.
 
     The run ends when the state has grown a hundredfold, but not before three periods (if that is
-    not too far), nor after thirty.
-
-    Parameters
-    ----------
-    system : SwitchedSystem
-        Modes of one size; resets are applied where the signal switches.
-    steps : sequence of (int, float)
-        Mode and time in it, over one period.
-    edges : sequence of int
-        For each step, which reset to the next mode is taken; empty where there is no choice.
-    eigenvalue : float, optional
-        Of one period: the run begins in the direction of the nearest one; by default, in that of
-        the largest.
+    not too far), nor after thirty. It begins in the direction of the nearest eigenvalue of one
+    period, by default the largest. `edges`: which reset each step takes, where there is a choice.
     """
     legs = _legs(system, steps, edges)
     monodromy = reduce(lambda product, leg: leg.whole @ product, legs, np.eye(system.order))
@@ -91,15 +80,7 @@ def mixture_matrix(system: SwitchedSystem, weights: Sequence[tuple[str, Fraction
 def steps_of_mixture(
     system: SwitchedSystem, weights: Sequence[tuple[str, Fraction]]
 ) -> list[tuple[int, float]]:
-    """Return one period in which every mode has its share, short enough to follow the average.
-
-    Parameters
-    ----------
-    system : SwitchedSystem
-        Modes, in continuous time.
-    weights : sequence of (str, Fraction)
-        Share of each mode.
-    """
+    """Return one period in which every mode has its share, short enough to follow the average."""
     index = {mode.name: k for k, mode in enumerate(system.modes)}
     wanted = float(np.linalg.eigvals(mixture_matrix(system, weights)).real.max())
     shortest = fine_step(system)

@@ -10,20 +10,10 @@ from nrs_design.simulation.norms import Array
 
 
 def mode_rates(system: SwitchedSystem, Q: Array) -> Array:
-    """Return how fast ``sqrt(x' Q x)`` decays at least in every mode by itself.
+    """Return how fast ``sqrt(x' Q x)`` decays at least in every mode by itself, shape (m,).
 
-    Parameters
-    ----------
-    system : SwitchedSystem
-        Modes.
-    Q : ndarray, shape (n, n)
-        Symmetric and positive definite.
-
-    Returns
-    -------
-    ndarray, shape (m,)
-        Continuous time: the largest alpha with ``A'Q + QA + 2 alpha Q <= 0``, in 1/s; negative
-        where the norm can grow. Discrete time: the smallest rho with ``A'QA <= rho^2 Q``.
+    Continuous time: the largest alpha with ``A'Q + QA + 2 alpha Q <= 0``, in 1/s; negative where
+    the norm can grow. Discrete time: the smallest rho with ``A'QA <= rho^2 Q``.
     """
     inverse = np.linalg.inv(np.linalg.cholesky(Q))
     largest = np.linalg.eigvalsh(inverse @ np.array(drift(system, Q)) @ inverse.T)[:, -1]

@@ -53,12 +53,8 @@ class Outputs:
     def shares(self, run: SwitchedRun, *, losable: bool) -> tuple[Array, Array]:
         """Return force, shape (N + 1, r), and velocity, shape (N + 1,), over their limits.
 
-        Parameters
-        ----------
-        run : SwitchedRun
-            Along which they are taken.
-        losable : bool
-            There is no force where the last state, the deflection, is not positive.
+        Where contact is `losable`, there is no force unless the last state, the deflection, is
+        positive.
         """
         states, mode = run.state, np.append(run.mode, run.mode[-1:])
         force = states @ self.force.T / self.largest_force
@@ -70,24 +66,12 @@ class Outputs:
 
 
 def simulate_release(system: SwitchedSystem, outputs: Outputs, Q: Array | None) -> SwitchedRun:
-    """Simulate an adversary who takes at every step the mode after which something is largest.
+    """Simulate several adversaries, and keep the run that comes furthest beside its limits.
 
-    It is the norm of Q, or without one the velocity. Modes that take turns keep them; where rules
-    forbid to switch at any time, the mode holds throughout that comes furthest beside the limits.
-
-    Parameters
-    ----------
-    system : SwitchedSystem
-        With the deflection as its last state where contact may be lost by it.
-    outputs : Outputs
-        What is watched.
-    Q : ndarray or None
-        Of a proved function, if there is one.
-
-    Returns
-    -------
-    SwitchedRun
-        Its modes are those of `all_modes`.
+    Each takes at every step the mode after which something is largest: the norm of a proved Q, the
+    velocity, or the force. Modes that take turns keep them; where rules forbid to switch at any
+    time, one mode holds throughout. The last state is the deflection where contact may be lost by
+    it; the modes of the run are those of `all_modes`.
     """
     losable = system.contact is not None
     # A run that grows may leave the range of numbers before it is cut.
@@ -135,20 +119,8 @@ def _speed(rows: Array) -> Norm:
 def certified(rows: Array, Q: Array, start: Array, rate: float, time: Array) -> Array:
     """Return how large ``|row w|`` can be at most along a run that a quadratic function bounds.
 
-    From ``|w(t)| <= exp(-rate t) |w(0)|`` in the norm of Q, for the largest of all rows.
-
-    Parameters
-    ----------
-    rows : ndarray, shape (r, n)
-        Of outputs.
-    Q : ndarray, shape (n, n)
-        Positive definite.
-    start : ndarray, shape (n,)
-        The w at time zero.
-    rate : float
-        The proved one, in 1/s.
-    time : ndarray, shape (N + 1,)
-        In s.
+    From ``|w(t)| <= exp(-rate t) |w(0)|`` in the norm of Q, for the largest of all rows; the rate
+    is in 1/s.
     """
     reach = np.sqrt(np.einsum("ri,ri->r", rows, np.linalg.solve(Q, rows.T).T).max())
     return np.asarray(reach * np.sqrt(start @ Q @ start) * np.exp(-rate * time))

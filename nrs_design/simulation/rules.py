@@ -39,12 +39,7 @@ class Rules:
     def of(cls, system: SwitchedSystem, step: float) -> Rules:
         """Lay the rules of a system on a grid; a stay is never shorter or longer than allowed.
 
-        Parameters
-        ----------
-        system : SwitchedSystem
-            Modes of one size, with its rules of switching; where modes take turns, without any.
-        step : float
-            Time of a step, as `fitting_step` gives it.
+        The step is as `fitting_step` gives it; where modes take turns, there are no rules.
         """
         count = len(system.modes)
         identity = np.eye(system.order)[None]
@@ -58,19 +53,9 @@ class Rules:
 
 
 def fitting_step(system: SwitchedSystem, step: float) -> float:
-    """Return a time step near the requested one that divides every dwell time.
+    """Return a time step in s near the requested one that divides every dwell time.
 
-    Parameters
-    ----------
-    system : SwitchedSystem
-        With its rules.
-    step : float
-        Wanted time of a step in s; in discrete time it stays as it is.
-
-    Raises
-    ------
-    ValueError
-        If the rules are too fine for a grid.
+    In discrete time it stays as it is. A ValueError if the rules are too fine for a grid.
     """
     if system.time is Time.DISCRETE:
         return step

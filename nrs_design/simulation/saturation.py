@@ -17,11 +17,6 @@ def saturated_rates(system: SwitchedSystem) -> Callable[[Array], Array]:
     """Return the function from states, one for each mode and free mode, to their rates.
 
     In discrete time it leads to the next states.
-
-    Parameters
-    ----------
-    system : SwitchedSystem
-        With what saturates.
     """
     saturation = system.saturation
     assert saturation is not None  # who asks has looked
@@ -41,15 +36,7 @@ def saturated_rates(system: SwitchedSystem) -> Callable[[Array], Array]:
 
 
 def share_cut_off(system: SwitchedSystem, run: SwitchedRun) -> dict[str, float]:
-    """Return in which share of the steps of a run each signal is cut off, by its name.
-
-    Parameters
-    ----------
-    system : SwitchedSystem
-        With what saturates.
-    run : SwitchedRun
-        As `greedy_run` gives it.
-    """
+    """Return in which share of the steps of a run each signal is cut off, by its name."""
     saturation = system.saturation
     assert saturation is not None  # who asks has looked
     rows = [row[run.mode] for row in _rows(saturation)]
@@ -84,14 +71,8 @@ def _signals(
 def saturated_step(system: SwitchedSystem, step: float) -> Callable[[Array, Indices], Array]:
     """Return the function from a state and modes to the states after a step in each of them.
 
-    By the classical Runge-Kutta method in continuous time.
-
-    Parameters
-    ----------
-    system : SwitchedSystem
-        With what saturates.
-    step : float
-        In s; in discrete time it is one of the system.
+    By the classical Runge-Kutta method in continuous time; in discrete time the step is that of the
+    system.
     """
     rates = saturated_rates(system)
     total = len(system.modes) + (0 if system.contact is None else len(system.contact.free))

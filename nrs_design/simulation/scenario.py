@@ -43,32 +43,15 @@ class Profile:
 
     @classmethod
     def sinusoid(cls, amplitude: float, omega: float, mean: float = 0.0) -> Profile:
-        """Return ``mean + amplitude sin(omega t)``.
-
-        Parameters
-        ----------
-        amplitude, mean : float
-            In rad/s.
-        omega : float
-            In rad/s.
-        """
+        """Return ``mean + amplitude sin(omega t)`` in rad/s; omega in rad/s, too."""
         return cls((Piece(0.0, mean, amplitude * omega),), omega, mean)
 
     @classmethod
     def through(cls, times: Array, velocities: Array) -> Profile:
-        """Return straight lines between points; the last velocity is kept.
+        """Return straight lines between points, in s and rad/s; the last velocity is kept.
 
-        Parameters
-        ----------
-        times : ndarray, shape (N,)
-            In s, from zero, never falling; twice the same is a jump.
-        velocities : ndarray, shape (N,)
-            In rad/s.
-
-        Raises
-        ------
-        ValueError
-            If the times do not begin at zero or fall, or a number is not finite.
+        Twice the same time is a jump. A ValueError if the times do not begin at zero or fall, or a
+        number is not finite.
         """
         if not (np.isfinite(times).all() and np.isfinite(velocities).all()):
             raise ValueError("a time or a velocity is not a finite number")

@@ -32,13 +32,7 @@ _COMPUTED: Mapping[Kind, Callable[[np.float32, np.float32], np.float32]] = Mappi
 
 
 class StepProgram:
-    """The operations of a law, for one sample at a time.
-
-    Parameters
-    ----------
-    law : StepLaw
-        The law.
-    """
+    """The operations of a law, for one sample at a time."""
 
     def __init__(self, law: StepLaw) -> None:
         self.law = law
@@ -54,20 +48,10 @@ class StepProgram:
     def step(
         self, mode: int, given: Sequence[np.float32]
     ) -> tuple[list[np.float32], list[np.float32], bool]:
-        """Compute one step.
+        """Compute one step; return outputs, states after it, and whether it is valid.
 
-        Parameters
-        ----------
-        mode : int
-            Index of the controller.
-        given : sequence of float32
-            Inputs and states, as `StepLaw.values` lists them.
-
-        Returns
-        -------
-        list, list, bool
-            Outputs, states after the step, and whether it is valid: otherwise outputs are zero
-            and states stay as they were.
+        Inputs and states are given as `StepLaw.values` lists them. If it is not valid, outputs are
+        zero and states stay as they were.
         """
         if not all(-most <= v <= most for v, most in zip(given, self._limits, strict=True)):
             return [np.float32(0)] * len(self._outputs), [*given[len(self.law.inputs) :]], False

@@ -27,17 +27,7 @@ SETTLED = 0.2
 
 
 def summarize(spec: InteractionDesignSpec, scenario: Scenario, run: Run) -> dict[str, Any]:
-    """Return the metrics of a run, in SI.
-
-    Parameters
-    ----------
-    spec : InteractionDesignSpec
-        With its limits.
-    scenario : Scenario
-        That was simulated.
-    run : Run
-        Its run.
-    """
+    """Return the metrics of a run, in SI."""
     response = run.response
     t, torque, velocity = response.t, response["torque"], response["velocity"]
     limit, desired = spec.limits.torque.si, spec.limits.torque.si / spec.limits.velocity.si
@@ -67,17 +57,7 @@ def summarize(spec: InteractionDesignSpec, scenario: Scenario, run: Run) -> dict
 
 
 def rms_where(t: np.ndarray[Any, Any], y: np.ndarray[Any, Any], where: Any) -> float:
-    """Return the root mean square over the time in which something holds; 0 if it never does.
-
-    Parameters
-    ----------
-    t : ndarray, shape (N,)
-        In s.
-    y : ndarray, shape (N,)
-        The signal.
-    where : ndarray of bool, shape (N,)
-        What holds.
-    """
+    """Return the root mean square over the time in which something holds; 0 if it never does."""
     held = time_above(t, where.astype(float), 0.5)
     length = float(t[-1] - t[0])
     if not held:

@@ -50,16 +50,8 @@ def simulate_switching(
 ) -> SwitchedRun:
     """Simulate a switching signal that is constant over each step, exactly at the steps.
 
-    Parameters
-    ----------
-    system : SwitchedSystem
-        Modes of one size, without resets.
-    signal : ndarray of int, shape (N,)
-        Mode index in each step.
-    initial : ndarray, shape (n,)
-        State at time zero.
-    step : float
-        In s; one in discrete time.
+    The modes are of one size, without resets. The signal holds the index of the mode in each step
+    of a time in s, one in discrete time.
     """
     transitions = transition_matrices(system, step)
     states = [initial]
@@ -76,17 +68,7 @@ def worst_direction(system: SwitchedSystem, Q: Array) -> Array:
 
 
 def sampled_direction(system: SwitchedSystem, norm: Norm, step: float) -> Array:
-    """Return the state of norm one, among some, whose norm is largest after one step.
-
-    Parameters
-    ----------
-    system : SwitchedSystem
-        The modes.
-    norm : Norm
-        In which they are compared.
-    step : float
-        In s, or steps.
-    """
+    """Return the state of norm one, among some, whose norm is largest after one step."""
     n = system.order
     rng = np.random.default_rng(0)
     directions = rng.standard_normal((_DIRECTIONS, n)) / norm(np.eye(n))
@@ -122,13 +104,6 @@ def unstable_run(system: SwitchedSystem, mode: int) -> SwitchedRun:
 
     The run ends when the eigenvalue has let the state grow a hundredfold; where it lies on the
     stability limit, after ten periods or time constants.
-
-    Parameters
-    ----------
-    system : SwitchedSystem
-        Modes of one size.
-    mode : int
-        Index of the mode to stay in.
     """
     values, vectors = np.linalg.eig(np.array(system.modes[mode].A.floats()))
     continuous = system.time is Time.CONTINUOUS

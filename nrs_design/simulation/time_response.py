@@ -76,13 +76,7 @@ class TimeResponse:
         return len(self.t)
 
     def __getitem__(self, name: str) -> Array:
-        """Return an output, an input or a state by its name, shape (N,); outputs come first.
-
-        Raises
-        ------
-        KeyError
-            If there is none of that name.
-        """
+        """Return an output, an input or a state by its name, shape (N,); outputs come first."""
         return self.signals[name]
 
     @property

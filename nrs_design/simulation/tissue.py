@@ -39,10 +39,7 @@ class Tissue:
     def torque(self, theta: float, omega: float) -> float:
         """Return the torque of all surfaces on the robot in N m: none of them pulls.
 
-        Parameters
-        ----------
-        theta, omega : float
-            Angle and velocity in rad and rad/s.
+        At an angle in rad and a velocity in rad/s.
         """
         total = 0.0
         for j, surface in enumerate(self.surfaces):
@@ -69,15 +66,7 @@ class Tissue:
         self.noted = list(self.touched)
 
     def creep(self, before: list[float], after: list[float], time: float) -> None:
-        """Move the dampers while the depths change evenly.
-
-        Parameters
-        ----------
-        before, after : list of float
-            Depths in rad.
-        time : float
-            That it takes, in s.
-        """
+        """Move the dampers while the depths, in rad, change evenly within a time in s."""
         for j, (begin, end) in enumerate(zip(before, after, strict=True)):
             element = self.surfaces[j].element
             middle = (begin + end) / 2

@@ -47,27 +47,12 @@ class WorstRun:
 def worst_runs(
     system: SwitchedSystem, outputs: Sequence[Output], allowed: Mapping[str, NDArray[np.bool_]]
 ) -> tuple[WorstRun, ...]:
-    """Let an adversary choose modes and disturbances, for each of some outputs.
+    """Let an adversary choose modes and disturbances from rest, for each of some outputs.
 
-    He keeps the rules of switching and holds his choices over a step. He begins at rest, and where
-    he may switch at any time also settled in a mode, pressed in or on the way to a surface: a loop
-    at rest far from it comes there. In continuous time, contact is made and lost at the ends of
-    steps only.
-
-    Parameters
-    ----------
-    system : SwitchedSystem
-        Modes of one size, with disturbances and no clock beside rules.
-    outputs : sequence of Output
-        Of that system, or other rows over its state.
-    allowed : mapping of str to ndarray of bool, shape (m, r)
-        Which rows of an output apply in which mode, where switching is ruled.
-
-    Raises
-    ------
-    ValueError
-        If modes are of different sizes or are ends of a constant parameter, if nothing disturbs, or
-        if the rules are too fine for a grid.
+    He keeps the rules of switching, and holds his choices over a step. In continuous time, contact
+    is made and lost at the ends of steps only. `allowed` tells which rows of an output, shape
+    (m, r), apply in which mode. A ValueError if modes are of different sizes or are ends of a
+    constant parameter, if nothing disturbs, or if the rules are too fine for a grid.
     """
     _check(system)
     searches = [_Search.of(system, step, settled=_is_free(system)) for step in _steps(system)]
@@ -75,16 +60,9 @@ def worst_runs(
 
 
 def worst_against(system: SwitchedSystem, bound: Bound) -> WorstRun:
-    """Let an adversary try to reach a bound from rest.
+    """Let an adversary try to reach a bound, within seconds; `worst_runs` searches longer.
 
     A bound holds however modes follow each other, and so he need keep no rules of switching.
-
-    Parameters
-    ----------
-    system : SwitchedSystem
-        That the bound is about.
-    bound : Bound
-        Whose disturbances act, and whose output is to become large.
     """
     free = replace(system, switching=ARBITRARY, clock=None, channels=tuple(bound.channels))
     searches = [_Search.of(free, step, settled=False) for step in _steps(free)]

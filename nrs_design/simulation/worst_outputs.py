@@ -25,15 +25,6 @@ def output_values(system: SwitchedSystem, output: Output, states: Array) -> Arra
     """Return an output along a run for every row of it; shape (K + 1, r).
 
     Tissue that can be lost pushes and never pulls.
-
-    Parameters
-    ----------
-    system : SwitchedSystem
-        That the output is of.
-    output : Output
-        One of its outputs, or other rows over its state.
-    states : ndarray, shape (K + 1, n)
-        Of the run.
     """
     rows = np.array([row.floats()[0] for row in output.rows])
     if system.contact is None:
@@ -43,26 +34,12 @@ def output_values(system: SwitchedSystem, output: Output, states: Array) -> Arra
 
 
 def pushes_only(system: SwitchedSystem, output: Output) -> bool:
-    """Tell whether an output is of tissue that can be lost: it pushes and never pulls.
-
-    Parameters
-    ----------
-    system : SwitchedSystem
-        That the output is of.
-    output : Output
-        One of its outputs, or other rows over its state.
-    """
+    """Tell whether an output is of tissue that can be lost: it pushes and never pulls."""
     return system.contact is not None and output.name in _PUSHED
 
 
 def deflection_of(system: SwitchedSystem) -> Output | None:
-    """Return the deflection as an output; None where it is no state.
-
-    Parameters
-    ----------
-    system : SwitchedSystem
-        Of an interaction design.
-    """
+    """Return the deflection as an output; None where it is no state."""
     from nrs_design.proof.matrix import RationalMatrix
 
     axis = axis_with(system.states)
@@ -74,19 +51,9 @@ def deflection_of(system: SwitchedSystem) -> Output | None:
 
 
 def forces_by_mode(system: SwitchedSystem, touched: Sequence[Environment]) -> NDArray[np.bool_]:
-    """Tell which rows of the force belong to the contact and its corner in each mode.
+    """Tell which rows of the force belong to the contact and its corner in each mode; shape (m, r).
 
-    Parameters
-    ----------
-    system : SwitchedSystem
-        Whose modes are named after controller, contact and corner.
-    touched : sequence of Environment
-        All contacts, in the order of the rows.
-
-    Returns
-    -------
-    ndarray of bool, shape (m, r)
-        A mode that names no contact may have any of them.
+    Modes are named after controller, contact and corner; one that names no contact may have any.
     """
     labels = [
         {environment.name, *(f"{p}-{end}" for p, (end, _) in zip(names, ends, strict=True) if end)}
@@ -105,15 +72,9 @@ def certified_bounds(
 ) -> dict[str, float]:
     """Return what is certified about every output, not below it, and about the deflection.
 
-    Where the force is a stiffness times the deflection, the bound holds for every stiffness in its
-    range, so also for the highest.
-
-    Parameters
-    ----------
-    system : SwitchedSystem
-        What the statements are about.
-    statements : iterable of AbstractEvidence
-        Checked; bounds under all disturbances at once count.
+    Of checked statements, bounds under all disturbances at once count. Where the force is a
+    stiffness times the deflection, the bound holds for every stiffness in its range, so also for
+    the highest.
     """
     found: dict[str, float] = {}
     checked = tuple(statements)

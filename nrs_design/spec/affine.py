@@ -51,13 +51,7 @@ class Affine:
         return Affine(self.constant * factor, slopes)
 
     def at(self, values: Mapping[str, Fraction]) -> Fraction:
-        """Evaluate at the given parameter values.
-
-        Raises
-        ------
-        KeyError
-            If a parameter has no value.
-        """
+        """Evaluate at the given parameter values; a KeyError if one is missing."""
         return self.constant + sum(
             (slope * values[name] for name, slope in self.slopes), Fraction(0)
         )

@@ -60,13 +60,7 @@ class Row(Generic[S]):
     features: tuple[Feature[Any], ...] = ()
 
     def faults(self, said: Any) -> Iterator[PydanticCustomError]:
-        """Yield a fault for each part in which the condition holds.
-
-        Parameters
-        ----------
-        said : object
-            What the spec says; of a type that the parts, or the condition, take.
-        """
+        """Yield a fault for each part in which the condition holds."""
         for place, part in self.parts(said):
             if found := self.find(part):
                 # A named tuple is one thing that is found.
@@ -81,27 +75,15 @@ class Row(Generic[S]):
 
 
 def each(parts: Callable[[S], Iterable[tuple[Location, T]]], *checks: Row[T]) -> tuple[Row[S], ...]:
-    """Return checks of every part of a spec as checks of the whole.
-
-    Parameters
-    ----------
-    parts : callable
-        Takes the whole and yields its parts, each with its place.
-    *checks : Row
-        Of one part.
-    """
+    """Return checks of every part of a spec as checks of the whole."""
     return tuple(replace(check, parts=parts) for check in checks)  # type: ignore[misc]
 
 
 def not_together(*features: Feature[S], form: str = "{}: not modelled") -> Row[S]:
     """Return the row that refuses features which are not modelled together.
 
-    Parameters
-    ----------
-    *features : Feature
-        Refused if a spec has all of them, at the place of the first.
-    form : str
-        Of the message, with a place for what the spec has.
+    A spec that has all of them is refused at the place of the first; `form` has a place for what it
+    has.
     """
 
     def find(said: S) -> tuple[object, ...]:
@@ -125,14 +107,7 @@ def find_faults(
 ) -> list[dict[str, Any]]:
     """Return the faults that a table of checks finds.
 
-    Parameters
-    ----------
-    checks : sequence of Row
-        The table.
-    said : object
-        What the spec says.
-    partial : bool
-        Parts of it may be missing, as they are not valid: checks that ask for them are left out.
+    `partial`: parts that are not valid may be missing; checks that ask for them are left out.
     """
     found: list[dict[str, Any]] = []
     for check in checks:
@@ -166,13 +141,7 @@ def exclusive(one: str, other: str) -> tuple[Row[Any], ...]:
 
 
 def exactly_one(ways: dict[str, str]) -> tuple[Row[Any], ...]:
-    """Return the checks that just one of two keys is given.
-
-    Parameters
-    ----------
-    ways : dict of str to str
-        How each key is written.
-    """
+    """Return the checks that just one of two keys is given."""
     one, other = ways
     return (
         Row(

@@ -94,11 +94,8 @@ Data = str | tuple["Data", ...] | dict[str, "Data"]
 def read_source(path: Path) -> tuple[bytes, str]:
     """Read a spec file: its bytes, and the text that they encode.
 
-    Raises
-    ------
-    SpecError
-        If the file is missing, unreadable, not a regular file, empty, a page, larger than 1 MiB or
-        not UTF-8.
+    A `SpecError` if it is missing, unreadable, no regular file, empty, a page, larger than 1 MiB or
+    not UTF-8.
     """
     content = _read_bytes(path)
     if is_page(content):
@@ -158,26 +155,11 @@ def _read_bytes(path: Path) -> bytes:
 
 
 def parse_document(text: str, path: Path | None = None) -> Node:
-    """Parse one YAML document of plain mappings, lists and scalars.
+    """Parse one YAML document of plain mappings, lists and scalars, which are text, never numbers.
 
-    Parameters
-    ----------
-    text : str
-        The YAML text.
-    path : Path, optional
-        Named in errors.
-
-    Returns
-    -------
-    Mapping, Sequence or Scalar
-        The root node. Scalars are text, never numbers.
-
-    Raises
-    ------
-    SpecError
-        With line and column, for syntax errors, nesting deeper than 20, more than 150,000 keys
-        and values, one longer than 1000 characters, anchors, aliases, tags, merge keys, duplicate
-        keys, keys that are not text, missing values and several documents.
+    A `SpecError`, with line and column, for syntax errors, nesting deeper than 20, more than
+    150,000 keys and values, one longer than 1000 characters, anchors, aliases, tags, merge keys,
+    duplicate keys, keys that are not text, missing values and several documents.
     """
     root, faults = parse_with_faults(text, path)
     if faults:
@@ -188,16 +170,8 @@ def parse_document(text: str, path: Path | None = None) -> Node:
 def parse_with_faults(text: str, path: Path | None = None) -> tuple[Node, tuple[Fault, ...]]:
     """Parse a document as `parse_document` does, past all faults that leave the rest readable.
 
-    Returns
-    -------
-    node, tuple of Fault
-        The tree, in which an empty text stands where a value could not be read, and what is wrong
-        with its syntax.
-
-    Raises
-    ------
-    SpecError
-        If the rest of the file cannot be read; it holds the faults before, too.
+    Returns the tree, in which an empty text stands where a value could not be read, and the faults.
+    If the rest cannot be read, the `SpecError` holds the faults before, too.
     """
     builder = _Builder(text, path)
     return builder.build(), tuple(builder.faults)

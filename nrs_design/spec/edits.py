@@ -8,15 +8,7 @@ Keys = tuple[str | int, ...]
 
 
 def node_at(root: Node, at: Keys) -> Node | None:
-    """Return what stands at a place, or None if the document does not have it.
-
-    Parameters
-    ----------
-    root : Node
-        The document.
-    at : tuple of str or int
-        Keys and indices from there.
-    """
+    """Return what stands at a place, or None if the document does not have it."""
     node: Node | None = root
     for part in at:
         if isinstance(node, Mapping) and isinstance(part, str):
@@ -31,14 +23,8 @@ def node_at(root: Node, at: Keys) -> Node | None:
 def changed(root: Node, at: Keys, said: Data | None) -> Node:
     """Return a document that says something else at one place; everything keeps its position.
 
-    Parameters
-    ----------
-    root : Node
-        The document.
-    at : tuple of str or int
-        Where; the mapping or list above it is there. A key that it lacks goes last.
-    said : Data or None
-        What it says there; None leaves the key or the item out.
+    The mapping or list above the place is there; a key that it lacks goes last. None leaves the key
+    or the item out.
     """
     first, rest = at[0], at[1:]
     if isinstance(root, Sequence) and isinstance(first, int):

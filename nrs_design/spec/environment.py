@@ -182,10 +182,8 @@ class AbstractEnvironmentSpec(IdentifiedRangesSpec):
     def drawn_at_pivot(self, pick: Callable[[Interval], float]) -> dict[str, float]:
         """Return one number for each parameter, and whatever else the law takes, for a rotation.
 
-        Parameters
-        ----------
-        pick : callable
-            Takes a range and returns a number within; asked in the order of the parameters.
+        `pick` takes a range and returns a number within; it is asked in the order of the
+        parameters.
         """
         return {name: pick(interval) for name, interval in self.exact_at_pivot().items()}
 
@@ -338,13 +336,7 @@ class HuntCrossleySpec(AbstractEnvironmentSpec):
         return False
 
     def drawn_at_pivot(self, pick: Callable[[Interval], float]) -> dict[str, float]:
-        """Return the tangent, the exponent, and the angle at which the tangent is given.
-
-        Parameters
-        ----------
-        pick : callable
-            Takes a range and returns a number within; asked in the order of the parameters.
-        """
+        """Return the tangent, the exponent, and the angle at which the tangent is given."""
         tangent = super().drawn_at_pivot(pick)
         arm = 1.0 if self.lever_arm is None else self.lever_arm.si
         exponent = pick(Interval(self.exponent.nominal, *self.exponent.range))

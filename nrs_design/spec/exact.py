@@ -49,21 +49,9 @@ def is_number(text: str) -> bool:
 def parse_exact(text: str) -> Fraction:
     """Read an integer, a decimal or a ratio ``p/q`` exactly.
 
-    Parameters
-    ----------
-    text : str
-        At most 100 ASCII characters; decimal exponents between -100 and 100.
-
-    Returns
-    -------
-    Fraction
-        The number as written, without rounding.
-
-    Raises
-    ------
-    SpecError
-        If the text is anything else: ``nan``, ``true``, ``1/0``, a unicode minus, other digits
-        than 0-9, underscores, hexadecimal or octal notation, or a number beyond the caps.
+    At most 100 ASCII characters, and exponents between -100 and 100. A `SpecError` for anything
+    else: ``nan``, ``true``, ``1/0``, a unicode minus, other digits than 0-9, underscores,
+    hexadecimal or octal notation.
     """
     if len(text) > MAX_LENGTH:
         raise SpecError(

@@ -43,25 +43,11 @@ class _Token(NamedTuple):
 
 
 def parse_affine(text: str) -> Affine:
-    """Read a number or an expression that is affine in its parameters.
+    """Read a number or an expression that is affine in its parameters, such as ``-2 - k``.
 
     Numbers, names, ``+ - * /`` and parentheses, at most 200 ASCII characters and 20 levels. One
-    factor of every product and every divisor must be constant.
-
-    Parameters
-    ----------
-    text : str
-        Such as ``-2 - k`` or ``1/6``. Which names are parameters is not checked here.
-
-    Returns
-    -------
-    Affine
-        The function, exactly.
-
-    Raises
-    ------
-    SpecError
-        If the text is no such expression, or is not affine.
+    factor of every product and every divisor must be constant. Which names are parameters is not
+    checked here. A `SpecError` for anything else.
     """
     if len(text) > MAX_LENGTH:
         raise SpecError(

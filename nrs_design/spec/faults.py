@@ -20,15 +20,7 @@ FAULT = "spec_fault"
 
 
 def fault(message: str, remedy: str, *at: int | str) -> PydanticCustomError:
-    """Build the exception by which a validator reports a fault.
-
-    Parameters
-    ----------
-    message, remedy : str
-        What is wrong, and what to do.
-    *at : int or str
-        Where, below the value that is being validated.
-    """
+    """Build the exception by which a validator reports a fault, and where below its value."""
     context = {"message": message, "remedy": remedy, "at": at}
     return PydanticCustomError(FAULT, "{message}", context)
 
@@ -76,16 +68,7 @@ def did_you_mean(
 ) -> str:
     """Suggest the nearest choice, and list them all if they are few.
 
-    Parameters
-    ----------
-    word : str
-        What is written.
-    choices : collection of str
-        What could be.
-    noun : str
-        How the list begins.
-    called : sequence of str
-        Choices that are called so elsewhere.
+    `noun` begins the list; `called` are choices that are called so elsewhere.
     """
     alike = [choice for choice in choices if choice.lower() == word.lower()]
     if not choices:

@@ -24,15 +24,7 @@ _CHANGES: ContextVar[tuple[str, tuple[Change, ...]] | None] = ContextVar("change
 
 @contextmanager
 def saying_instead(file: Path, changes: Sequence[Change]) -> Iterator[None]:
-    """Read a file as if it said something else at some places.
-
-    Parameters
-    ----------
-    file : Path
-        Of a spec; every other file is read as it is.
-    changes : sequence of (keys, text)
-        Places that the document has, and what is read there.
-    """
+    """Read a file as if it said something else at places that it has; other files as they are."""
     token = _CHANGES.set((os.path.realpath(file), tuple(changes)))
     try:
         yield

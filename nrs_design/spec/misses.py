@@ -24,12 +24,8 @@ _Count = Annotated[int, whole(1, MOST_STEPS)]
 def _checks(example: str, otherwise: str) -> tuple[Row[Any], ...]:
     """Return what a rule must be.
 
-    Parameters
-    ----------
-    example : str
-        What stands in a rule beside its numbers, with a comma.
-    otherwise : str
-        What to write where all may be missed.
+    `example` stands in a rule beside its numbers, with a comma; `otherwise` is to be written where
+    all may be missed.
     """
     return (
         Row(
@@ -86,24 +82,12 @@ class MissRuleSpec(SpecModel):
         return comb(of, most)
 
     def with_misses(self, number: int) -> Self:
-        """Return the rule with another number of misses, in the same window or in a row.
-
-        Parameters
-        ----------
-        number : int
-            Smaller than the window.
-        """
+        """Return the rule with another number of misses, smaller than the window."""
         what = "at_most" if self.consecutive is None else "consecutive"
         return self.model_copy(update={what: number})
 
     def said(self, of: str) -> str:
-        """Say the rule in a few words, such as ``at most 2 of any 10 periods in a row``.
-
-        Parameters
-        ----------
-        of : str
-            What may be missed, in the singular.
-        """
+        """Say the rule in a few words, such as ``at most 2 of any 10 periods in a row``."""
         if self.consecutive is not None:
             return f"at most {self.consecutive} {of}{'s' * (self.consecutive > 1)} in a row"
         return f"at most {self.at_most} of any {self.of} {of}s in a row"
@@ -177,11 +161,6 @@ def automaton_of(at_most: int, of: int) -> MissAutomaton:
     A state is how long ago the misses were that still bound what follows. The i-th youngest, a
     steps ago, leaves at most ``at_most - i`` misses for the next ``of - 1 - a`` steps; where these
     are no more than that, neither it nor an older one bounds anything, after any further steps.
-
-    Parameters
-    ----------
-    at_most, of : int
-        At most so many misses in so many steps; the first is the smaller one, and positive.
     """
 
     def bounding(ages: tuple[int, ...]) -> tuple[int, ...]:

@@ -39,15 +39,9 @@ def optional(description: str) -> Any:
 class ReadBy:
     """Marks a field whose value is what a function makes of the text, or of the data.
 
-    Pydantic's own marker would also form the schema of the type that comes out, for writing it,
-    which takes longer than to validate a spec; nobody writes specs this way.
-
-    Parameters
-    ----------
-    read : callable
-        Takes the value as it stands in the file; its errors are those of the field.
-    schema : dict, optional
-        JSON Schema of what may stand there.
+    Errors of the function are those of the field. Pydantic's own marker would also form the schema
+    of the type that comes out, for writing it, which takes longer than to validate a spec; nobody
+    writes specs this way. `schema` is the JSON Schema of what may stand there.
     """
 
     def __init__(

@@ -62,33 +62,13 @@ _MAPPINGS = ("model_type", "model_attributes_type", "dict_type")
 
 
 def file_faults(error: ValidationError, model: type[BaseModel], root: Node) -> tuple[Fault, ...]:
-    """Return what validation reports as faults of the file, each with its place, in file order.
-
-    Parameters
-    ----------
-    error : ValidationError
-        As raised by the model.
-    model : type
-        The model that validated the file.
-    root : Node
-        The parsed file, for the positions.
-    """
+    """Return what validation reports as faults of the file, each with its place, in file order."""
     found = (resolved for e in _genuine(error) for resolved in _resolve(e, model, root))
     return _in_file_order(found)
 
 
 def faults_between(spec: SpecModel, model: type[BaseModel], root: Node) -> tuple[Fault, ...]:
-    """Return the faults between parts of a spec; checks of parts that it lacks are left out.
-
-    Parameters
-    ----------
-    spec : SpecModel
-        With those parts that are valid themselves.
-    model : type
-        Its model.
-    root : Node
-        The parsed file, for the positions.
-    """
+    """Return the faults between parts of a spec; checks of parts that it lacks are left out."""
     contexts = find_faults(spec.checks, spec, partial=True)
     details: ErrorDetails = {"type": FAULT, "loc": (), "msg": "", "input": None}
     return _in_file_order(_resolve_one(details | {"ctx": c}, model, root) for c in contexts)
@@ -168,14 +148,7 @@ def _without_tag(location: Location) -> Location:
 def place_of(root: Node, location: Location, at_key: bool) -> Position:
     """Position of the node, or of the nearest one above it that the file holds.
 
-    Parameters
-    ----------
-    root : Node
-        The document.
-    location : tuple
-        Keys and indices from there.
-    at_key : bool
-        Return the place of the key, not that of its value.
+    `at_key`: that of the key, not of its value.
     """
     node, place = root, root.position
     for depth, part in enumerate(location):
@@ -274,14 +247,7 @@ def fields_at(
 ) -> dict[str, str]:
     """Names and descriptions of the keys at a location as validation reports it, tags included.
 
-    Parameters
-    ----------
-    model : type
-        Of the whole file.
-    location : sequence of int or str
-        Where to look.
-    needed : bool
-        Only those that must be there; all, if none must.
+    `needed`: only those that must be there; all, if none must.
     """
     if not location:
         fields = list(model.model_fields.items())

@@ -39,15 +39,7 @@ class Size:
         return value == 0 or self.low <= abs(value) <= self.high
 
     def doubt(self, value: float, number: str, unit: str) -> str | None:
-        """Ask about a value that is not plausible; None for one that is.
-
-        Parameters
-        ----------
-        value : float
-            In SI.
-        number, unit : str
-            As written.
-        """
+        """Ask about a value, in SI, that is not plausible; None for one that is."""
         if self.holds(value):
             return None
         written = float(parse_unit(unit).factor) * math.pi ** parse_unit(unit).pi_power
@@ -75,12 +67,7 @@ def sizes() -> tuple[Size, ...]:
 def size_of(field: str, dimension: tuple[int, ...]) -> Size | None:
     """Return the row of the table for a field of a spec; None for a quantity that it lacks.
 
-    Parameters
-    ----------
-    field : str
-        Key in a spec; of a bound or an end of a range, the key above.
-    dimension : tuple of int
-        Of the quantity.
+    Of a bound or an end of a range, the field is the key above.
     """
     rows = [size for size in sizes() if parse_unit(size.unit).dimension == dimension]
     named = (size for size in rows if field in size.fields)
@@ -88,18 +75,9 @@ def size_of(field: str, dimension: tuple[int, ...]) -> Size | None:
 
 
 def doubt_size(field: str, value: float, unit: str, number: str | None = None) -> str | None:
-    """Ask about a size that is no spec's, such as one that was identified; None if it is plausible.
+    """Ask about a size in SI that is no spec's, such as one that was identified; None if plausible.
 
-    Parameters
-    ----------
-    field : str
-        Key that it has, or would have, in a spec.
-    value : float
-        In SI.
-    unit : str
-        The SI unit.
-    number : str, optional
-        As it is shown.
+    `field` is the key that it has, or would have, in a spec.
     """
     size = size_of(field, parse_unit(unit).dimension)
     return None if size is None else size.doubt(value, number or f"{value:.4g}", unit)

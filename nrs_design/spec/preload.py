@@ -97,19 +97,8 @@ def power_box(
 ) -> tuple[Interval, Interval]:
     """Return where stiffness and damping stay while the deflection stays in its preload.
 
-    Parameters
-    ----------
-    stiffness, damping : Interval
-        Of the tangent at the deflection a.
-    exponent : ExponentSpec
-        phi.
-    reach : tuple of Fraction
-        The preload over a, lowest and highest, positive.
-
-    Returns
-    -------
-    tuple of Interval
-        Of stiffness and damping, rounded outwards; the nominal values are those at a.
+    From those of the tangent at the deflection a, and the lowest and highest preload over a. The
+    ranges are rounded outwards; the nominal values are those at a.
     """
     low, high = reach
     ends = exponent.range

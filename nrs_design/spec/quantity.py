@@ -63,13 +63,7 @@ class Quantity:
 
     @property
     def exact(self) -> Fraction:
-        """SI value as a fraction.
-
-        Raises
-        ------
-        ValueError
-            If the unit's factor is irrational (``deg``, ``Hz``).
-        """
+        """SI value as a fraction; a ValueError if that is irrational (``deg``, ``Hz``)."""
         if not self.is_exact:
             raise ValueError(f"{self.text!r} is not rational in SI: its unit holds a factor of pi")
         return self.rational_part
@@ -147,24 +141,10 @@ def written_as(units: Sequence[str]) -> str:
 
 
 def parse_quantity(text: str, kind: QuantityKind) -> Quantity:
-    """Read a number, a space and a unit, and check what they measure.
+    """Read a number, a space and a unit, such as ``0.3 N*m``, and check what they measure.
 
-    Parameters
-    ----------
-    text : str
-        Such as ``0.3 N*m``.
-    kind : QuantityKind
-        What the field measures.
-
-    Returns
-    -------
-    Quantity
-        The number exactly as written, with its unit.
-
-    Raises
-    ------
-    SpecError
-        If the number, the unit or its dimension is wrong, or the magnitude is not physical.
+    The number is kept as written. A `SpecError` if number, unit or dimension is wrong, or the
+    magnitude is not physical.
     """
     number, _, unit = text.partition(" ")
     if not unit:
@@ -198,13 +178,7 @@ def _meant(written: str, kind: QuantityKind) -> str:
 
 
 def checked_kind(quantity: Quantity, kind: QuantityKind) -> Quantity:
-    """Return the quantity if it is of this kind and of a physical magnitude.
-
-    Raises
-    ------
-    SpecError
-        Otherwise.
-    """
+    """Return the quantity if it is of this kind and of a physical magnitude, else a `SpecError`."""
     if not kind.accepts(quantity.dimension):
         raise SpecError(
             f"{quoted(quantity.text)} is not {kind.name}, expected {' or '.join(kind.units)}",

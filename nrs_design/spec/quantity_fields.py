@@ -33,18 +33,7 @@ def read_quantity(
 ) -> Quantity:
     """Read a quantity of a kind from text, and check its sign unless it is ``signed``.
 
-    Parameters
-    ----------
-    value : object
-        As the document gives it.
-    kind : QuantityKind
-        What is measured.
-    *at : int or str
-        Where it stands, for faults.
-    positive : bool
-        Refuse zero too.
-    signed : bool
-        Allow negative ones.
+    `positive` refuses zero too; `at` is where it stands, for faults.
     """
     kind = kind.on(current())
 
@@ -224,17 +213,7 @@ QuantityOrFault = Quantity | PydanticCustomError
 
 
 def read_entries(value: object, keys: tuple[str, ...], reader: Reader) -> object:
-    """Read the entries that are quantities; what else is wrong is left to the model.
-
-    Parameters
-    ----------
-    value : object
-        A mapping, as the document gives it.
-    keys : tuple of str
-        The entries that are read.
-    reader : callable
-        Reads one of them.
-    """
+    """Read the entries that are quantities; what else is wrong is left to the model."""
     if not isinstance(value, dict):
         return value
     return value | {key: _read_or_fault(reader, value[key]) for key in value if key in keys}

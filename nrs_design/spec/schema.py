@@ -20,14 +20,10 @@ def schema_text() -> str:
 
 
 def json_schema() -> dict[str, Any]:
-    """Describe both kinds of specs as one JSON Schema, draft-07.
+    """Describe all kinds of specs as one JSON Schema, draft-07: ``kind`` selects the model.
 
-    Returns
-    -------
-    dict
-        A schema with ``definitions``, in which ``kind`` selects the model. Quantities are strings
-        with a pattern; exact numbers are numbers or strings. Every key has a description that
-        names its unit.
+    Quantities are strings with a pattern; exact numbers are numbers or strings. Every key has a
+    description that names its unit.
     """
     definitions: dict[str, Any] = {}
     choices = []

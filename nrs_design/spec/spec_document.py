@@ -36,17 +36,7 @@ class SpecDocument:
         self.root: Any = self._yaml.load(self._given)
 
     def put(self, node: Any, key: str, value: object) -> None:
-        """Set a key; a new one goes second to last, as the last one carries what comes after.
-
-        Parameters
-        ----------
-        node : mapping
-            Where it is.
-        key : str
-            In it.
-        value : object
-            Texts, and lists and dictionaries of them.
-        """
+        """Set a key; a new one goes second to last, as the last one carries what comes after."""
         flow = _flow(value)
         if key in node or not len(node):
             node[key] = flow
@@ -63,13 +53,7 @@ class SpecDocument:
             node.ca.items.setdefault(list(node)[-1], comments)
 
     def text(self) -> str:
-        """Return the new text, checked.
-
-        Raises
-        ------
-        SpecError
-            If the result is no valid spec, or a comment would be lost.
-        """
+        """Return the new text; a `SpecError` if it is no valid spec, or a comment would be lost."""
         stream = io.StringIO()
         self._yaml.dump(self.root, stream)
         text = stream.getvalue()
@@ -98,13 +82,7 @@ def _alone(root: Node) -> str:
 
 
 def plain(said: Data) -> Any:
-    """Return what a document says as lists and dictionaries; whole numbers need no quotes.
-
-    Parameters
-    ----------
-    said : Data
-        As `nrs_design.spec.document.to_data` gives it.
-    """
+    """Return what a document says as lists and dictionaries; whole numbers need no quotes."""
     if isinstance(said, str):
         return int(said) if said.isdecimal() else said
     if isinstance(said, tuple):

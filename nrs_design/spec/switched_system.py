@@ -58,13 +58,7 @@ class ModeSpec(SpecModel):
         return frozenset(name for row in self.A for entry in row for name in entry.names)
 
     def matrix(self, values: Mapping[str, Fraction]) -> list[list[Fraction]]:
-        """Return the matrix at the given parameter values.
-
-        Raises
-        ------
-        KeyError
-            If a parameter of the matrix has no value.
-        """
+        """Return the matrix at the given parameter values; a KeyError if one is missing."""
         return [[entry.at(values) for entry in row] for row in self.A]
 
     def _not_square(self) -> tuple[int, int] | None:

@@ -62,10 +62,7 @@ DwellTimes = DwellTime | dict[str, DwellTime]
 def parse_dwell_time(text: str) -> DwellTime:
     """Read a time such as ``2.76 s``, or a number of steps such as ``3 steps``.
 
-    Raises
-    ------
-    SpecError
-        If it is neither, is not positive, or is beyond 4096 s or steps.
+    A `SpecError` if it is neither, is not positive, or is beyond 4096 s or steps.
     """
     number, _, unit = text.partition(" ")
     if unit.strip(" ") in ("step", "steps"):
@@ -271,15 +268,7 @@ def matrix_checks(
     rows: Callable[[Any], Collection[Collection[object]]],
     numbers: Callable[[Any], Iterable[Fraction]],
 ) -> tuple[Row[Any], ...]:
-    """Return the checks of a matrix: rows of one length, a common denominator of few digits.
-
-    Parameters
-    ----------
-    key : str
-        Its key.
-    rows, numbers : callable
-        Take what holds it, and return its rows and all its numbers.
-    """
+    """Return the checks of a matrix: rows of one length, a common denominator of few digits."""
     return (
         *each(
             lambda s: (((key, *at), found) for at, found in _uneven(rows(s))),
@@ -365,12 +354,7 @@ def switching_checks(
 ) -> tuple[Row[Any], ...]:
     """Return the checks that rules name what exists, and can be kept.
 
-    Parameters
-    ----------
-    rules, names : callable
-        The rules of a spec, and the names that there are.
-    noun : str
-        Mode or controller, for faults.
+    `noun` is mode or controller, for faults.
     """
     return (
         *each(lambda s: _named(rules(s), names(s), noun), NO_SUCH),

@@ -23,21 +23,9 @@ _EXPLANATIONS: tuple[tuple[str, str, str], ...] = (
 
 
 def explain_syntax(error: YAMLError, text: str, index: int) -> tuple[str, str, int]:
-    """Translate a parser error.
+    """Translate a parser error: what is wrong, the remedy, and where a reader sees the fault.
 
-    Parameters
-    ----------
-    error : YAMLError
-        As raised by ruamel.yaml.
-    text : str
-        The file.
-    index : int
-        Where the parser saw the fault, counted in characters from 0.
-
-    Returns
-    -------
-    str, str, int
-        What is wrong, the remedy, and where a reader sees the fault.
+    The index, where the parser saw it, counts characters from 0.
     """
     if isinstance(error, ReaderError):
         return "a control character is not allowed here", "remove it", index

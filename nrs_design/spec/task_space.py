@@ -96,17 +96,7 @@ def axis_names(root: Node) -> tuple[str, ...]:
 def axis_document(root: Node, path: Path) -> Mapping:
     """Return an axis as the document of an interaction design, with its places in the file.
 
-    Parameters
-    ----------
-    root : Node
-        Of a valid file with axes.
-    path : Path
-        The address of one.
-
-    Raises
-    ------
-    SpecError
-        If the address names none of them.
+    The path is the address of the axis; a `SpecError` if it names none of them.
     """
     file, known = file_of(path), axis_names(root)
     if file == path:

@@ -244,13 +244,7 @@ class ThresholdLogicSpec(SpecModel):
     )
 
     def lost_names(self, controllers: Mapping[str, object]) -> tuple[str, ...]:
-        """Return the names of controllers in it that there are not.
-
-        Parameters
-        ----------
-        controllers : mapping of str
-            Those of the spec.
-        """
+        """Return the names of controllers in it that there are not."""
         return tuple(name for name in self.controllers if name not in controllers)
 
     @property
@@ -337,13 +331,6 @@ def values_at_switch(logic: ThresholdLogicSpec, switch: LogicSwitchSpec) -> Mapp
 
     That is where its condition is the last one to come true: the threshold, the noise, and what the
     signal moves in its age and while the timer holds the switch back.
-
-    Parameters
-    ----------
-    logic : ThresholdLogicSpec
-        With signals and timers.
-    switch : LogicSwitchSpec
-        One of its switches.
     """
     found = {}
     for name, condition in switch.conditions.items():

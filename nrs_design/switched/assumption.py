@@ -49,15 +49,6 @@ class Assumption(str):
     """The sentence that a certificate holds, which knows its id and its bound.
 
     A certificate keeps the sentence alone: what is read from one is a plain string.
-
-    Parameters
-    ----------
-    sentence : str
-        Word for word.
-    id : str
-        Of the kind and the sentence, such as ``tissue.linear``.
-    bound : str
-        Within what it must hold.
     """
 
     __slots__ = ("bound", "id")
@@ -83,10 +74,7 @@ class Assumption(str):
 def omitted(granted: Iterable[str]) -> tuple[str, ...]:
     """Return what is not modelled, in a few words each; the sentences say it whole.
 
-    Parameters
-    ----------
-    granted : iterable of str
-        Those that are no `Assumption` say nothing of their kind.
+    Those that are no `Assumption` say nothing of their kind.
     """
     said = (_omits(item) for item in granted if isinstance(item, Assumption))
     return tuple(dict.fromkeys(words for words in said if words))
@@ -110,16 +98,9 @@ def kinds() -> dict[str, AssumptionKind]:
 
 
 def say(id: str, bound: str | None = None, /, **fields: object) -> Assumption:
-    """Return an assumption in words.
+    """Return an assumption in words, by the id of its sentence, such as ``tissue.linear``.
 
-    Parameters
-    ----------
-    id : str
-        Of its sentence, such as ``tissue.linear``.
-    bound : str, optional
-        Its numbers; by default what the kind says.
-    **fields : object
-        Of the sentence.
+    `bound` are its numbers, by default what the kind says; the fields are those of the sentence.
     """
     kind_id, _, name = id.partition(".")
     kind = kinds()[kind_id]

@@ -28,23 +28,8 @@ def with_command(
     """Let the largest velocity command act on a loop, with force and velocity as its outputs.
 
     The command goes where the velocity of the admittance is subtracted, into the motion loop, in
-    contact and free alike.
-
-    Parameters
-    ----------
-    system : SwitchedSystem
-        The loop without inputs.
-    state : SharedState
-        Of its modes.
-    disturbances : mapping
-        The command, and how large it gets.
-    torque : Fraction
-        Limit of the contact force about the pivot, in N m.
-
-    Raises
-    ------
-    AssemblyError
-        If it is not modelled for these controllers or environments.
+    contact and free alike. `torque` is the limit of the contact force about the pivot, in N m. An
+    `AssemblyError` if it is not modelled for these controllers or environments.
     """
     laws = {controller.name: controller.law for controller in state.design.controllers}
     plain = all(law.commands == "velocity" for law in laws.values())
@@ -74,13 +59,7 @@ def with_command(
 
 
 def check_memory(environments: Sequence[Environment]) -> None:
-    """Refuse tissue that creeps, for which no bound under a command is stated.
-
-    Raises
-    ------
-    AssemblyError
-        If one of the contacts remembers.
-    """
+    """Refuse tissue that creeps, for which no bound under a command is stated."""
     if any(environment.law.remembers for environment in environments):
         raise AssemblyError(
             "a bound under a velocity command is stated on elastic and damped environments",

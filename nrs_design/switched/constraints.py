@@ -29,24 +29,11 @@ def assemble_switching(
     groups: Groups,
     resets: Iterable[Jump] = (),
 ) -> Switching:
-    """Carry the rules of a spec over to the assembled modes.
+    """Carry the rules of a spec over to the assembled modes, which are grouped by its names.
 
     Corners and contacts of one name follow each other freely, because parameters and environment
-    move as they like. Switches between names are allowed, and reset, for all their corners.
-
-    Parameters
-    ----------
-    rules : SwitchingSpec
-        In terms of the names of the spec.
-    groups : mapping
-        The assembled modes that each name stands for, in their order.
-    resets : iterable of (str, str, RationalMatrix)
-        Source, target and map, in terms of the same names.
-
-    Raises
-    ------
-    AssemblyError
-        If the rules become too many.
+    move as they like. Switches between names are allowed, and reset, for all their corners. An
+    `AssemblyError` if the rules become too many.
     """
     common = rules.dwell_time.value if isinstance(rules.dwell_time, DwellTime) else Fraction(0)
     transitions = None
@@ -59,15 +46,7 @@ def assemble_switching(
 
 
 def zeroing(states: Sequence[str], zeroed: Container[str]) -> RationalMatrix:
-    """Return the map that sets some states to zero, and leaves the others.
-
-    Parameters
-    ----------
-    states : sequence of str
-        Names of all.
-    zeroed : container of str
-        Names of those that are set.
-    """
+    """Return the map that sets some states to zero, and leaves the others."""
     each = zip(states, coordinates(len(states)), strict=True)
     return RationalMatrix.from_rows([zero(len(states)) if s in zeroed else row for s, row in each])
 

@@ -45,13 +45,7 @@ class Joint:
         return self.at({"Km": motor.gain, "tau": motor.time_constant})
 
     def at(self, values: Mapping[str, Fraction]) -> JointMotionLoop:
-        """Return the loop at the values of ``Km`` and ``tau``.
-
-        Parameters
-        ----------
-        values : mapping
-            By symbols; others are left alone.
-        """
+        """Return the loop at the values of ``Km`` and ``tau``."""
         gains = self.motion.Kp, self.motion.Kd
         return JointMotionLoop(*gains, values["Km"], values["tau"], self.load_inertia)
 

@@ -38,16 +38,8 @@ def assume_loop(
 ) -> tuple[Assumption, ...]:
     """Say what holds for an interaction design.
 
-    Parameters
-    ----------
-    loop : SharedState
-        All controllers in one state.
-    rules : SwitchingSpec
-        For the change of controllers.
-    losable : bool
-        The system says how contact is lost; then a statement says whether it is kept.
-    free : bool
-        Free motion is one of the modes.
+    `losable`: the system says how contact is lost, and a statement whether it is kept; `free`: free
+    motion is one of the modes.
     """
     loops = ("nominal-motor.given",) if loop.given else ("nominal-motor.designed",)
     return (
@@ -159,15 +151,7 @@ def _kept_texts(loop: SharedState, *, losable: bool, free: bool) -> Iterator[Ass
 
 
 def kept_by_laws(design: ControllerDesign, *, alone: bool) -> Iterator[Assumption]:
-    """Say what each law of a design takes for granted about contact.
-
-    Parameters
-    ----------
-    design : ControllerDesign
-        With the laws.
-    alone : bool
-        No controller of another kind is beside it.
-    """
+    """Say what each law of a design takes for granted about contact."""
     used = {controller.law.name for controller in design.controllers}
     texts = (law.contact_text(alone=alone) for name, law in LAWS.items() if name in used)
     return (say("contact-kept.law", text=text) for text in texts if text is not None)

@@ -22,19 +22,8 @@ def modes_with_misses(
     """Return the modes by what they lead to, and the switches that a rule for misses allows.
 
     What may follow depends on the state of the automaton alone, so a mode is named by the state
-    that it leads to, such as ``miss/s3``. Corners of one mode may take turns at every step.
-
-    Parameters
-    ----------
-    groups : mapping of str to sequence of Mode
-        The corners of each mode of the spec; all but that of a miss are hits.
-    rule : MissesSpec
-        The rule.
-
-    Raises
-    ------
-    AssemblyError
-        If there are too many switches.
+    that it leads to, such as ``miss/s3``. Corners of one mode may take turns at every step. All
+    groups but that of a miss are hits. An `AssemblyError` if there are too many switches.
     """
     automaton = automaton_of(*rule.window)
     # By the state that they lead to, and whether they are a miss; each in the order of states.
@@ -71,15 +60,7 @@ def modes_with_misses(
 
 
 def clock_of(automaton: MissAutomaton, in_time: tuple[str, ...]) -> Clock:
-    """Return which modes may be in force at a step, by the automaton of a rule.
-
-    Parameters
-    ----------
-    automaton : MissAutomaton
-        Of the rule.
-    in_time : tuple of str
-        The modes of a step that is no miss; all others are misses.
-    """
+    """Return which modes may be in force at a step, by the automaton of a rule."""
     pairs = zip(automaton.hit, automaton.miss, strict=True)
     ahead = ((hit, NOWHERE if miss is None else miss) for hit, miss in pairs)
     return Clock(automaton.count, in_time, tuple(ahead))

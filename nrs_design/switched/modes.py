@@ -60,20 +60,9 @@ def velocity_mode(
 ) -> Rows:
     """Return A in deflection coordinates: for impedance control, thesis 6.28.
 
-    ``xp' = Ap xp + Bp u``, ``v = Cp xp``, the contact from v to F, and the law from F to u.
-
-    Parameters
-    ----------
-    motion : Realization or JointMotionLoop
-        The motion loop.
-    law : CompliantLaw
-        With its gains; it commands a velocity.
-    contact : AbstractLinearLaw
-        Of the environment, at fixed parameters.
-    low_pass : LowPass, optional
-        Through which the law gets the force; its states stand between those of law and contact.
-    cut : ForceShare
-        How much of the force acts; by default all of it.
+    ``xp' = Ap xp + Bp u``, ``v = Cp xp``, the contact from v to F, and the law, which commands a
+    velocity, from F to u. States of the low-pass stand between those of law and contact. `cut` is
+    how much of the force acts.
     """
     own = motion.order + len(law.states)
     touch = own + (0 if low_pass is None else low_pass.order)
@@ -101,10 +90,7 @@ def _acceleration(
 ) -> LinearForm:
     """Return the rate of the velocity, where the force does not act on it at once.
 
-    Raises
-    ------
-    AssemblyError
-        If it does: the equations would be implicit.
+    An `AssemblyError` if it does: the equations would be implicit.
     """
     loaded = isinstance(motion, JointMotionLoop) and motion.J is not None
     if not law.states or loaded:
@@ -122,17 +108,7 @@ def _acceleration(
 def to_force_coordinates(
     rows: Rows, motion: Realization | JointMotionLoop, contact: AbstractLinearLaw
 ) -> Rows:
-    """Replace the last state delta by the force ``F = k delta + b Cp xp``.
-
-    Parameters
-    ----------
-    rows : Rows
-        A in deflection coordinates.
-    motion : Realization or JointMotionLoop
-        The motion loop.
-    contact : AbstractLinearLaw
-        Of the environment, at fixed parameters.
-    """
+    """Replace the last state delta by the force ``F = k delta + b Cp xp``."""
     last = coordinates(len(rows))[-1:]
     return with_last(rows, contact.react(motion.output(len(rows)), last)[0])
 
@@ -148,12 +124,9 @@ def with_last(rows: Rows, form: LinearForm) -> Rows:
 def with_idle(rows: Rows, rates: Mapping[int, Fraction]) -> Rows:
     """Return a mode among states that it does not use.
 
-    Parameters
-    ----------
-    rows : Rows
-        Its A.
-    rates : mapping of int to Fraction
-        At which rate in 1/s the others decay, by their places among all.
+    These decay at rates in 1/s, by their places among all.
+
+    These decay at rates in 1/s, by their places among all.
     """
     size = len(rows) + len(rates)
     full = [zero(size) for _ in range(size)]
@@ -177,29 +150,12 @@ def position_mode(
     """Return A where the motion loop follows a position: for force control, thesis 6.46.
 
     ``xi' = Ap xi + Bp u``, ``theta = Cp xi``, and the law from F to u. A velocity is integrated
-    first, ``r' = -vm`` and ``u = r``. Where the integral w of another controller bleeds, it is in
-    u, and the last state.
+    first, ``r' = -vm`` and ``u = r``. Where the integral w of another controller bleeds, at a rate
+    in 1/s, it is in u, and the last state. Without a contact, nothing is touched; `cut` is how much
+    of the force acts.
 
-    Parameters
-    ----------
-    motion : Realization
-        Of the motion loop.
-    law : CompliantLaw
-        With its gains.
-    contact : AbstractLinearLaw, optional
-        Of the environment, at fixed parameters; by default, nothing is touched.
-    environment : str
-        Its name, for errors.
-    bleeding : Fraction, optional
-        Rate in 1/s at which the integral of another controller decays; by default there is none.
-    cut : ForceShare
-        How much of the force acts; by default all of it.
-
-    Raises
-    ------
-    AssemblyError
-        If the law commands a position and the environment is no spring: with damping, its force
-        depends on the command itself; with a memory, on more than the position.
+    An `AssemblyError` if the law commands a position and the environment is no spring: with
+    damping, its force depends on the command itself; with a memory, on more than the position.
     """
     integrates = law.commands == "velocity"
     own = motion.order + len(law.states)
@@ -229,16 +185,8 @@ def position_mode(
 def lead(motion: Realization) -> list[Fraction]:
     """Return ``u - theta`` as a linear form of ``w = xi'``: the y with ``y Ap = -C``.
 
-    Parameters
-    ----------
-    motion : Realization
-        Of the motion loop, from position to position.
-
-    Raises
-    ------
-    AssemblyError
-        If the motion loop does not rest where it is commanded to be, ``G(0) != 1``: then the lead
-        depends on the position too.
+    An `AssemblyError` if the motion loop does not rest where it is commanded to be, ``G(0) != 1``:
+    then the lead depends on the position too.
     """
     last, C = motion.A[-1], motion.C
     if C[0] != -last[0] or not last[0]:

@@ -55,23 +55,9 @@ def motor_command(
 
     Impedance controllers change the reference after the command, so it is one and the same form of
     the states in all modes, in contact and free. A rounding is at most a share of other forms, so
-    the command is a mixture of rows in which every share is added or subtracted.
-
-    Parameters
-    ----------
-    largest : Fraction or None
-        Limit of the driver, if one is named.
-    unit : str
-        Of the limit.
-    frame : Frame
-        Of all modes.
-    channels : sequence of Channel
-        The disturbances.
-
-    Returns
-    -------
-    MotorCommand or None
-        None where nothing disturbs, there is no limit, or the command is not of this form.
+    the command is a mixture of rows in which every share is added or subtracted. None without
+    disturbances or a limit, or where it is not of this form. None without disturbances or a limit,
+    or where it is not of this form.
     """
     moving = all(law.law.commands == "velocity" for law in frame.laws)
     if largest is None or not channels or not moving or frame.holds:

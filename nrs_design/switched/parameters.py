@@ -52,14 +52,9 @@ def constant_parameters(
 
 
 def corner_modes(mode: ModeSpec, parameters: Sequence[UncertainParameter]) -> tuple[Mode, ...]:
-    """Return the corners of one mode.
+    """Return the corners of one mode; parameters that it does not depend on make none.
 
-    Parameters that the mode does not depend on make no corners.
-
-    Raises
-    ------
-    InternalError
-        If the matrix halfway is not the mean of the corners.
+    An `InternalError` if the matrix halfway is not the mean of the corners.
     """
     axes = [p for p in parameters if p.name in mode.parameters]
     others = {p.name: p.interval.nominal for p in parameters}

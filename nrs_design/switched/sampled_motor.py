@@ -26,18 +26,11 @@ ROOM = 2**10
 
 
 def motor_box(ranges: ActuatorRanges, period: Fraction) -> Box:
-    """Return where Km, ``E = exp(-T/tau)`` and ``s = tau (1 - E)`` lie.
+    """Return where Km, ``E = exp(-T/tau)`` and ``s = tau (1 - E)`` lie, T in s.
 
     Where tau is known, s is affine in E and is left out. Else both rise with tau, and ``s/T`` is
     the integral of ``E^t`` over t from 0 to 1: concave in E. So the curve is above the chord
     between its ends and below its tangents there (docs/certificates/ranges.md).
-
-    Parameters
-    ----------
-    ranges : ActuatorRanges
-        Of gain and time constant, which last for a period.
-    period : Fraction
-        In s.
     """
     tau = ranges.time_constant
     fast, slow = (exponential_between(-period / end) for end in (tau.low, tau.high))
@@ -72,14 +65,9 @@ def motor_box(ranges: ActuatorRanges, period: Fraction) -> Box:
 
 
 def way_between(time: Fraction, rate: Interval) -> tuple[Fraction, Fraction]:
-    """Enclose ``(1 - exp(-g h)) / g``: how far a motor of speed 1 goes on in a time.
+    """Enclose ``(1 - exp(-g h)) / g``: how far a motor of speed 1 goes on in a time h in s.
 
-    Parameters
-    ----------
-    time : Fraction
-        The h in s; not negative.
-    rate : Interval
-        The g in 1/s; positive. The larger it is, the shorter the way.
+    The rate g, in 1/s, is positive: the larger it is, the shorter the way.
     """
     if not time:
         return ZERO, ZERO

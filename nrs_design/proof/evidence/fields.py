@@ -39,12 +39,8 @@ MAX_ROUND, MAX_STATES = 100, 1000
 def written(value: Any) -> Any:
     """Return a value as JSON holds it.
 
-    A matrix that is the only one of an object stands among its other fields.
-
-    Raises
-    ------
-    ValueError
-        If a number of a matrix has more digits than a file holds.
+    A matrix that is the only one of an object stands among its other fields. A ValueError if a
+    number of a matrix has more digits than a file holds.
     """
     if isinstance(value, RationalMatrix):
         return _matrix_fields(value)
@@ -70,10 +66,7 @@ def _has_fields(value: object) -> bool:
 def read_object(kind: type[T], value: object) -> T:
     """Read a dataclass or a named tuple that `written` has written.
 
-    Raises
-    ------
-    KeyError, TypeError, ValueError
-        If a field is missing, malformed or unknown.
+    A KeyError, TypeError or ValueError if a field is missing, malformed or unknown.
     """
     if not isinstance(value, Mapping):
         raise TypeError(f"expected an object, not {quoted(str(value))}")
@@ -194,33 +187,17 @@ _PLAIN: Mapping[Any, Callable[[object], Any]] = {
 
 
 def system_fields(system: SwitchedSystem) -> dict[str, Any]:
-    """Return what a certificate says about its system, apart from the name.
-
-    Raises
-    ------
-    ValueError
-        If a number of a mode or a reset has more digits than a file holds.
-    """
+    """Return what a certificate says about its system, apart from the name."""
     fields: dict[str, Any] = written(system)
     del fields["name"]
     return {**fields, "switching": fields.get("switching", WITHOUT_RULES)}
 
 
 def read_system(name: str, fields: Mapping[str, Any]) -> SwitchedSystem:
-    """Read the system that `system_fields` has written.
+    """Read the system that `system_fields` has written; other keys are not looked at.
 
-    Parameters
-    ----------
-    name : str
-        Of the spec that it comes from.
-    fields : mapping
-        Of a certificate; other keys are not looked at.
-
-    Raises
-    ------
-    KeyError, TypeError, ValueError
-        If a field is missing or malformed, a matrix has no shape or no positive denominator, two
-        modes have one name, or the modes are too large to check.
+    A KeyError, TypeError or ValueError if a field is missing or malformed, a matrix has no shape or
+    no positive denominator, two modes have one name, or the modes are too large to check.
     """
     own = {key: value for key, value in fields.items() if key in SwitchedSystem.__slots__}
     own |= {"name": name}

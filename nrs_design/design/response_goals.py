@@ -173,15 +173,14 @@ def _found(
 def _sampled(
     axis: ProcessorAxis, law: CompliantLaw, ranges: Mapping[str, Interval]
 ) -> SampledAdmittance:
-    """Return a law as a processor runs it, with the ranges of motor and gains."""
+    """Return a law as a processor runs it, with the ranges of the motor."""
     motor = axis.places[0].motor
-    known = {"Km": motor.gain, "tau": motor.time_constant, **law.gains}
+    known = {"Km": motor.gain, "tau": motor.time_constant}
     box = {name: Interval.point(value) for name, value in known.items()} | dict(ranges)
     return SampledAdmittance(
         motion=axis.motion,
         motor=ActuatorRanges(box["Km"], box["tau"], motor.command),
         law=Admittance.of(law.gains),
-        gains={name: box[name] for name in law.gains},
         method=axis.sampling.admittance,
         period=axis.period,
         low_pass=axis.low_pass,

@@ -8,10 +8,10 @@ part of the same frequency, as in `nrs_design.design.sampled_passivity`:
 With ``w = j t``, ``t = tan(omega T/2)``, ``z = (1 + w)/(1 - w)`` and ``c = atan(t)/t``, omega is
 ``2 c t/T`` and the second factor ``1/(c (1 + w))``; how old a force sample is does not change a
 magnitude, as long as it is always the same. ``F/V`` is a quotient of polynomials in w that are
-affine in each of Km, ``E = exp(-T/tau)``, ``s = tau (1 - E)``, and a and b/(1 - a) of the law
-``v+ = a v + b F``. These are taken for themselves, and tau and c, where they stand beside, at their
-largest, where ``|c (1 + 2 c tau w/T)|`` is largest, too. That covers more than there is, and little
-more on a short piece of the band and of the range of tau.
+affine in each of Km, ``E = exp(-T/tau)`` and ``s = tau (1 - E)``. These are taken for themselves,
+and tau and c, where they stand beside, at their largest, where ``|c (1 + 2 c tau w/T)|`` is
+largest, too. That covers more than there is, and little more on a short piece of the band and of
+the range of tau.
 """
 
 from __future__ import annotations
@@ -49,7 +49,6 @@ class SampledAdmittance:
     motion: ProportionalDerivative  # The PD gains that ship
     motor: ActuatorRanges  # Where the motor is
     law: Admittance  # Without a spring
-    gains: Mapping[str, Interval]  # Where Mt and Bt are
     method: str  # By which the law is discretized
     period: Fraction  # In s
     low_pass: LowPass | None = None  # Of the force
@@ -61,9 +60,8 @@ class SampledAdmittance:
         ends = [exponential_between(-self.period / end) for end in (tau.low, tau.high)]
         E = ends[0][0], ends[1][1]
         s = tau.low * (1 - ends[0][1]), tau.high * (1 - ends[1][0])
-        found = self.law.enclose(self.gains, self.period, self.method)
-        found |= {"Km": self.motor.gain}
-        moving = {name: r for name, r in found.items() if r.low != r.high}
+        Km = self.motor.gain
+        moving = {} if Km.low == Km.high else {"Km": Km}
         return moving | {"E": Interval(E[0], *E), "s": Interval(min(s), min(s), max(s))}
 
     def quotient(self, values: Mapping[str, Fraction], c: Fraction) -> Quotient:
@@ -72,7 +70,6 @@ class SampledAdmittance:
         Km = values.get("Km", self.motor.gain.nominal)
         tau = self.motor.time_constant.high
         E, s = values["E"], values["s"]
-        numbers = {**numbers, **self.law.numbers_at(numbers, values)}
         D = self.motion.over(T)
         C, lag = [self.motion.Kp + D, -D], [ONE, -E]
         turned = multiply([ONE, -ONE, ZERO], lag)
@@ -108,8 +105,8 @@ class SampledAdmittance:
         return tuple(replace(self, motor=motor) for motor in motors)
 
     def corners(self) -> Iterator[tuple[dict[str, Fraction], SampledAdmittance]]:
-        """Yield this at each corner of the ranges of motor and gains, and the values there."""
-        ranges = {"Km": self.motor.gain, "tau": self.motor.time_constant, **self.gains}
+        """Yield this at each corner of the ranges of the motor, and the values there."""
+        ranges = {"Km": self.motor.gain, "tau": self.motor.time_constant}
         names = [name for name, r in ranges.items() if r.low != r.high]
         for ends in product(*((ranges[name].low, ranges[name].high) for name in names)):
             at = dict(zip(names, ends, strict=True))
@@ -119,8 +116,7 @@ class SampledAdmittance:
                 gain=at.get("Km", nominal.gain),
                 time_constant=at.get("tau", nominal.time_constant),
             )
-            law = replace(self.law, **{name: at[name] for name in ("Mt", "Bt") if name in at})
-            yield at, replace(self, motor=ActuatorRanges.point(point), law=law, gains={})
+            yield at, replace(self, motor=ActuatorRanges.point(point))
 
     def squared(self, t: Fraction) -> Any:
         """Enclose ``|F/V|^2`` in a ball, where nothing has a range; t is ``tan(omega T/2)``."""

@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from dataclasses import replace
 from fractions import Fraction
 from itertools import chain
-from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from nrs_design.axis import AxisType
@@ -43,7 +42,6 @@ if TYPE_CHECKING:
     from nrs_design.spec.coupling import CouplingSpec
     from nrs_design.spec.operating import OperatingConditions
     from nrs_design.switched.coupled import AxesCoupling
-    from nrs_design.switched.gain_box import GainBox
     from nrs_design.switched.mobility import Mobility
     from nrs_design.switched.shared_state import SharedState
 
@@ -78,8 +76,8 @@ def assemble_from_text(
     Raises
     ------
     AssemblyError, CertificateError
-        If gains do not fit the spec, if a stiffness or a gain does not stay positive, or if the
-        rules of switching make too many switches.
+        If gains do not fit the spec, if a stiffness does not stay positive, or if the rules of
+        switching make too many switches.
     """
     if spec.kind == "switched-system":
         if gains:
@@ -136,7 +134,7 @@ def assemble(
     Parameters
     ----------
     spec : InteractionDesignSpec
-        With the name, the rules of switching and the ranges of gains.
+        With the name and the rules of switching.
     plant : Plant
         As `nrs_design.spec.build_plant.build_plant` makes it of this spec.
     design : ControllerDesign
@@ -147,24 +145,21 @@ def assemble(
     Raises
     ------
     AssemblyError
-        If a stiffness or a gain does not stay positive, or if the rules of switching make too many
-        switches.
+        If a stiffness does not stay positive, or if the rules of switching make too many switches.
     """
     from nrs_design.spec.build_plant import build_conditions
-    from nrs_design.switched.gain_box import GainBox
 
     _check_scale(scale)
     conditions = build_conditions(spec)
     plant = plant.scaled(scale, conditions.touched)
-    boxes = {c.name: GainBox.point(c.law) for c in design.controllers}
     coupling = _coupling_of(conditions.coupling, plant, scale)
     if conditions.sampling is not None:
         from nrs_design.switched.sampled_loop import close_sampled_loop
 
         sampling = conditions.sampling
-        system = close_sampled_loop(conditions, sampling, plant, design, boxes, coupling)
+        system = close_sampled_loop(conditions, sampling, plant, design, coupling)
     else:
-        state = state_of(conditions, plant, design, boxes)
+        state = state_of(conditions, plant, design)
         system = _assemble_continuous(conditions, plant, state, coupling)
     (drive,) = spec.drives
     constants = tuple(
@@ -236,7 +231,6 @@ def state_of(
     conditions: OperatingConditions,
     plant: Plant,
     design: ControllerDesign,
-    boxes: Mapping[str, GainBox] = MappingProxyType({}),
 ) -> SharedState:
     """Return the state that the modes of an interaction design share in continuous time.
 
@@ -246,8 +240,6 @@ def state_of(
         With what idle states do, and the offset of force controllers.
     plant, design
         As for `assemble`.
-    boxes : mapping of str to GainBox
-        Where the gains may be, by controller; by default, at what ships.
 
     Raises
     ------
@@ -258,7 +250,7 @@ def state_of(
 
     loop = plant.motion_loop(design.motion.Kp, design.motion.Kd)
     idle, offset = conditions.idle, conditions.offset
-    return shared_state(plant, loop, design, idle=idle, offset=offset, boxes=boxes)
+    return shared_state(plant, loop, design, idle=idle, offset=offset)
 
 
 def _coupling_of(

@@ -1,11 +1,10 @@
 """Close the loop around every contact: the modes of one robot axis, in one state.
 
-One mode for each controller and each corner of the box of its gains and of the parameters of each
-environment that it may touch. Every entry of A is affine in stiffness, in damping (or in one over
-it, as the law of the environment says) and in the gains (or in one over them, as the law of the
-controller says), and where the motor has ranges in its gain and in one over its time constant, each
-for itself, so A is a convex combination of the corners in the whole box, and what decreases in the
-corners decreases there, however fast the parameters move.
+One mode for each controller and each corner of the box of the parameters of each environment that
+it may touch. Every entry of A is affine in stiffness and in damping (or in one over it, as the law
+of the environment says), and where the motor has ranges in its gain and in one over its time
+constant, each for itself, so A is a convex combination of the corners in the whole box, and what
+decreases in the corners decreases there, however fast the parameters move.
 """
 
 from __future__ import annotations
@@ -108,12 +107,12 @@ def _by_contact(modes: Iterable[Mode]) -> dict[str, tuple[Mode, ...]]:
 
 def _all_modes(controller: Controller, state: SharedState, *, free: bool) -> Iterator[Mode]:
     """Yield the modes of a controller in all its contacts, and free ones if they are asked for."""
-    law, gains = controller.law, state.boxes[controller.name].box
+    law = controller.law
     if not controller.contacts:
         yield Mode(controller.name, RationalMatrix.from_rows(state.placed(law)))
     for environment in state.contacts(controller):
         name = f"{controller.name}/{environment.name}"
-        box = state.contact_box(environment).beside(gains).beside(state.motor_box)
+        box = state.contact_box(environment).beside(state.motor_box)
         for corner, rows in box.corners(partial(state.rows, law, environment), name):
             yield Mode(corner, RationalMatrix.from_rows(rows))
     if free:

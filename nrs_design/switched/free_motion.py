@@ -115,14 +115,12 @@ def _not_losable(which: str) -> AssemblyError:
 
 
 def free_modes(controller: Controller, state: SharedState) -> Iterator[Mode]:
-    """Yield the modes of a controller that touches nothing, at every corner of its gains."""
-    box = state.boxes[controller.name].box.beside(state.motor_box)
+    """Yield the modes of a controller that touches nothing, at every corner of the motor."""
 
     def rows_at(values: Mapping[str, Fraction]) -> Rows:
-        law = controller.law.of(values)
-        return velocity_mode(state.motion_at(values), law, NOTHING, state.low_pass)
+        return velocity_mode(state.motion_at(values), controller.law, NOTHING, state.low_pass)
 
-    for corner, rows in box.corners(rows_at, f"{controller.name}/{FREE}"):
+    for corner, rows in state.motor_box.corners(rows_at, f"{controller.name}/{FREE}"):
         yield Mode(corner, RationalMatrix.from_rows(rows))
 
 

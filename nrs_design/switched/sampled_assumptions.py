@@ -10,6 +10,7 @@ from typing import Literal
 from nrs_design.axis import AxisType
 from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.controllers.float32 import exact_decimal
+from nrs_design.controllers.laws import DiscreteLaw
 from nrs_design.models.actuator import ActuatorRanges
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.drive import Drive, Takes
@@ -31,7 +32,6 @@ from nrs_design.switched.assumptions import (
     rule_texts,
 )
 from nrs_design.switched.command_timing import CommandTiming
-from nrs_design.switched.gain_box import RangedLaw
 from nrs_design.switched.loop_assumptions import kept_by_laws
 from nrs_design.switched.sampled_frame import Frame
 from nrs_design.switched.sampled_motor import EXPONENTIAL_BITS
@@ -60,7 +60,7 @@ def assume_sampled(
     sampling: SamplingSpec,
     ranges: ActuatorRanges,
     frame: Frame,
-    gains: Mapping[str, RangedLaw],
+    laws: Mapping[str, DiscreteLaw],
     design: ControllerDesign,
     loss: Loss,
     environments: Sequence[Environment],
@@ -77,8 +77,8 @@ def assume_sampled(
         Where the actuator may be.
     frame : Frame
         Of all modes.
-    gains : mapping
-        The laws by the names of their controllers.
+    laws : mapping
+        Those by the names of their controllers.
     design : ControllerDesign
         With the contacts.
     loss : str
@@ -113,7 +113,7 @@ def assume_sampled(
             if sampling.misses is None
             else (say("any-signal.in-time"),)
         ),
-        say("numbers.coefficients", coefficients=_coefficients(frame, gains)),
+        say("numbers.coefficients", coefficients=_coefficients(frame, laws)),
         *(() if frame.step.takes else command_texts(design.command, design.axis)),
         say("arithmetic.rounding", counts=", ".join(f"{n} {k}" for n, k in frame.counts.items())),
         _angle_text(conditions.largest_angle, conditions.axis),
@@ -250,11 +250,11 @@ def _delay_text(least: int, most: int) -> Assumption:
     return say("sample-age.fixed" if most else "sample-age.now", oldest, most=oldest)
 
 
-def _coefficients(frame: Frame, gains: Mapping[str, RangedLaw]) -> str:
+def _coefficients(frame: Frame, laws: Mapping[str, DiscreteLaw]) -> str:
     texts = [f"Kp = {exact_decimal(frame.step.Kp)}", f"Kd/T = {exact_decimal(frame.step.D)}"]
     texts, known = [] if frame.step.takes else texts, frame.listed.law.coefficient
-    for name, item in gains.items():
-        symbols = zip(item.law.numbers, item.law.coefficients.items(), strict=True)
+    for name, law in laws.items():
+        symbols = zip(law.numbers, law.coefficients.items(), strict=True)
         coefficients = (said for key, said in symbols if key in known)
         texts += [f"{key} of {name} = {exact_decimal(c)}" for key, c in coefficients]
     return ", ".join(texts)

@@ -207,15 +207,14 @@ class Frame:
             Age of its force sample.
         values : mapping
             The numbers of the motor, as its box names them; in contact the stiffness ``k`` and the
-            damping ``b`` that the force sample shows; other names say where the law itself is in
-            a range.
+            damping ``b`` that the force sample shows.
         turn : Turn
             What is computed; the rest holds what it had.
         """
         contact = values.get("k", ZERO), values.get("b", ZERO)
         # An older sample is a state, whatever is touched now.
         seen = contact if delay == 0 else (ZERO, ZERO)
-        made = _sample(self, law, delay, seen, turn, retuned="a" in values)
+        made = _sample(self, law, delay, seen, turn)
         ages = [*([] if turn is Turn.MOTION else [_force(self, *contact)]), *made.at.samples]
         _, others = _around(made.after)
         taken = {
@@ -295,8 +294,6 @@ def _sample(
     delay: int,
     contact: tuple[Fraction, Fraction],
     turn: Turn,
-    *,
-    retuned: bool,
 ) -> _Sample:
     """Return what `Frame.rows` knows before the motor's parameters."""
     shares, at, _ = _beginning(frame)
@@ -322,7 +319,7 @@ def _sample(
         after |= {name: step.result(made, nothing) for name, made in following.items()}
         moved = (ONE if law.law.commands == "velocity" else ZERO, at[REFERENCE])
         after |= {name: combine((ONE, after[name]), moved) for name in _places(after)}
-        sizes |= step.other_sizes(retuned=retuned)
+        sizes |= step.other_sizes()
     return _made(frame, after, drive, cut, [sizes.get(name, nothing) for name in shares], at)
 
 

@@ -247,17 +247,10 @@ class RoundedStep:
             sizes[second(name)] = combine((shares[second(name)] * (Kp + D), summands[name]))
         return sizes
 
-    def other_sizes(self, *, retuned: bool) -> dict[str, LinearForm]:
-        """Return what bounds the roundings of all other results.
-
-        Parameters
-        ----------
-        retuned : bool
-            Whether the coefficient of the velocity has a range: its corners suffice for what is
-            affine in it.
-        """
+    def other_sizes(self) -> dict[str, LinearForm]:
+        """Return what bounds the roundings of all other results."""
         sizes: dict[str, LinearForm] = {}
-        factors = {STEP: "T"} if retuned else {STEP: "T", KEPT: "a"}
+        factors = {STEP: "T", KEPT: "a"}
         own = {*own_results(self.listed.law)}
         for result in self.terms.keys() - {"error", self._command}:
             beyond = 1 + self.shares[STEP] if result in own else ONE

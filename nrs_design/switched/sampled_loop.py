@@ -38,7 +38,6 @@ from nrs_design.switched.free_motion import (
     lost_on_surface,
     outputs_of,
 )
-from nrs_design.switched.gain_box import GainBox, RangedLaw
 from nrs_design.switched.held_drive import HeldDrive
 from nrs_design.switched.held_motor import HeldMotor, hold
 from nrs_design.switched.misses import MISS, clock_of
@@ -63,16 +62,15 @@ def close_sampled_loop(
     sampling: SamplingSpec,
     plant: Plant,
     design: ControllerDesign,
-    boxes: Mapping[str, GainBox],
     coupling: AxesCoupling | Mobility | None = None,
 ) -> SwitchedSystem:
     """Assemble every mode of the sampled loop.
 
-    One mode for each controller, delay and corner of the ranges of stiffness, damping, gains and
-    actuator. The map is affine in stiffness, damping, ``Km``, in ``E`` and ``s`` together and in
-    what the coefficients of a law are made of, each for itself, so it is a convex combination of
-    the corners in the whole box. E and s are transcendental: both are enclosed, and so they have
-    ranges even where gain and time constant are known.
+    One mode for each controller, delay and corner of the ranges of stiffness, damping and actuator.
+    The map is affine in stiffness, damping, ``Km``, and in ``E`` and ``s`` together, each for
+    itself, so it is a convex combination of the corners in the whole box. E and s are
+    transcendental: both are enclosed, and so they have ranges even where gain and time constant are
+    known.
 
     Parameters
     ----------
@@ -84,8 +82,6 @@ def close_sampled_loop(
         Actuator and environments.
     design : ControllerDesign
         Gains that ship.
-    boxes : mapping
-        Where the gains of controllers may be, by name.
     coupling : AxesCoupling or Mobility, optional
         What the links do to each axis.
 
@@ -96,17 +92,17 @@ def close_sampled_loop(
         too long for what the links do.
     """
     _check_periods(sampling)
-    laws = {c.name: _sampled(c, sampling) for c in design.controllers}
+    period, method = sampling.outer, sampling.admittance
+    laws = {c.name: c.law.discretize(period, method) for c in design.controllers}
     ranges = plant.actuator_ranges
     links = coupling if isinstance(coupling, AxesCoupling) else None
     arm = coupling if isinstance(coupling, Mobility) else None
     slowed = ranges if links is None else slowed_motor(ranges, links)
     timing = timing_of(sampling, conditions.late)
-    each = [item.law for item in laws.values()]
     motor = hold(slowed, timing)
     if plant.drive is not None:
         motor = HeldDrive.of(plant.drive if arm is None else arm.mean(plant.drive), timing)
-    frame = _frame(conditions.idle, sampling, design, each, motor, timing)
+    frame = _frame(conditions.idle, sampling, design, tuple(laws.values()), motor, timing)
     environments = plant.among(design.contacts)
     loss = _loss_of_contact(conditions.contact, environments, design)
     loop = _Loop(frame, sampling.delay, loses=loss.startswith("anywhere"))
@@ -197,7 +193,7 @@ def _motions(
     loop: _Loop,
     plant: Plant,
     design: ControllerDesign,
-    laws: Mapping[str, RangedLaw],
+    laws: Mapping[str, DiscreteLaw],
     loss: Loss,
 ) -> tuple[dict[str, tuple[SampledMode, ...]], tuple[SampledMode, ...]]:
     """Return the motions of each controller, and those of free motion beside them.
@@ -216,7 +212,7 @@ def _motions(
         elif loss.startswith("anywhere"):
             parts[c.name] += loop.in_the_air(c.name, laws[c.name])
     if frame.turns[-1].is_miss:
-        law = next(iter(laws.values())).law
+        law = next(iter(laws.values()))
         contacts = dict.fromkeys(name for c in design.controllers for name in c.contacts)
         touched = [*map(plant.environment, contacts)]
         parts[f"/{MISS}"] = tuple(loop.missed(law, touched))
@@ -226,7 +222,7 @@ def _motions(
         elif loss.startswith("anywhere"):
             parts[f"/{MISS}"] += tuple(loop.missed(law, ()))
     if Turn.MOTION in frame.turns:
-        law = next(iter(laws.values())).law
+        law = next(iter(laws.values()))
         # No controller has a name with a slash.
         parts[f"/{Turn.MOTION}"] = tuple(loop.between(law, str(Turn.MOTION)))
         free += loop.between(law, f"{Turn.MOTION}/{FREE}") if free else ()
@@ -254,11 +250,6 @@ def _turns(sampling: SamplingSpec) -> tuple[Turn, ...]:
         return (Turn.BOTH,)
     faster = sampling.outer < sampling.period.exact
     return Turn.BOTH, Turn.ADMITTANCE if faster else Turn.MOTION
-
-
-def _sampled(controller: Controller, sampling: SamplingSpec) -> RangedLaw:
-    period, method = sampling.outer, sampling.admittance
-    return RangedLaw(controller.law.discretize(period, method), Box({}))
 
 
 def _frame(
@@ -296,7 +287,7 @@ class _Loop:
     loses: bool = False  # Whether contact may be lost anywhere
 
     def in_contact(
-        self, controller: Controller, gains: RangedLaw, environments: Iterable[Environment]
+        self, controller: Controller, law: DiscreteLaw, environments: Iterable[Environment]
     ) -> tuple[SampledMode, ...]:
         """Return the motions of a controller in all contacts, and in the air if it has none.
 
@@ -305,7 +296,7 @@ class _Loop:
         """
         found: list[SampledMode] = []
         if not controller.contacts:
-            found += self._corners(gains, self.frame.motor.box, controller.name)
+            found += self._corners(law, self.frame.motor.box, controller.name)
             environments = environments if self.frame.remembers else ()
         environments = tuple(environments)
         for environment in environments:
@@ -313,16 +304,16 @@ class _Loop:
             if self.frame.motor.drive is not None and self.frame.motor.drive.loaded:
                 # It may be another one within a period, too, or nothing where contact is lost.
                 touched = anything_of(environments, lost=self.loses)
-            forced = any(FORCE_GAIN in law.numbers for law in self.frame.laws)
+            forced = any(FORCE_GAIN in one.numbers for one in self.frame.laws)
             motor = self.frame.motor.touching(touched, forced=forced)
             loop = replace(self, frame=replace(self.frame, motor=motor))
             name = f"{controller.name}/{environment.name}"
-            found += loop._corners(gains, Box(touched).beside(motor.box), name)
+            found += loop._corners(law, Box(touched).beside(motor.box), name)
         return tuple(found)
 
-    def in_the_air(self, controller: str, gains: RangedLaw) -> tuple[SampledMode, ...]:
+    def in_the_air(self, controller: str, law: DiscreteLaw) -> tuple[SampledMode, ...]:
         """Return the motions of a controller that touches nothing."""
-        return tuple(self._corners(gains, self.frame.motor.box, f"{controller}/{FREE}"))
+        return tuple(self._corners(law, self.frame.motor.box, f"{controller}/{FREE}"))
 
     def between(self, law: DiscreteLaw, name: str) -> Iterator[SampledMode]:
         """Yield the motions at samples of the motion loop alone, which no force reaches."""
@@ -367,13 +358,12 @@ class _Loop:
             for corner, rows in box.corners(rows_at, name):
                 yield SampledMode.of(corner, rows, len(frame.states), begins=False)
 
-    def _corners(self, gains: RangedLaw, box: Box, name: str) -> Iterator[SampledMode]:
+    def _corners(self, law: DiscreteLaw, box: Box, name: str) -> Iterator[SampledMode]:
         """Yield the motions in one contact, at every delay that makes a difference."""
-        box = box.beside(gains.box)
         _, values = next(box.named_values(name))
         ages = range(self.delays[0], self.delays[1] + 1)
         # A law that takes no force has the same map at every age of its sample.
-        youngest, oldest = (self._rows(gains, age, Turn.BOTH, values) for age in self.delays)
+        youngest, oldest = (self._rows(law, age, Turn.BOTH, values) for age in self.delays)
         if youngest == oldest:
             ages = ages[:1]
         for turn, delay in product(self.frame.turns, ages):
@@ -381,15 +371,15 @@ class _Loop:
                 continue
             late = f"{name}/delay-{delay}" if len(ages) > 1 else name
             late = f"{late}/{turn}" if turn is Turn.ADMITTANCE else late
-            rows_at = partial(self._rows, gains, delay, turn)
+            rows_at = partial(self._rows, law, delay, turn)
             for corner, rows in box.corners(rows_at, late):
                 size = len(self.frame.states)
                 yield SampledMode.of(corner, rows, size, begins=turn is Turn.BOTH)
 
     def _rows(
-        self, gains: RangedLaw, delay: int, turn: Turn, values: Mapping[str, Fraction]
+        self, law: DiscreteLaw, delay: int, turn: Turn, values: Mapping[str, Fraction]
     ) -> list[LinearForm]:
-        return self.frame.rows(gains.at(values), delay, values, turn)
+        return self.frame.rows(law, delay, values, turn)
 
 
 def _loss_of_contact(

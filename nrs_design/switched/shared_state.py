@@ -14,7 +14,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from types import MappingProxyType
 
 from nrs_design.controllers.controller_design import (
     SHARED_STATES,
@@ -32,7 +31,6 @@ from nrs_design.models.motion_loop import JointMotionLoop, MotionLoop, Realizati
 from nrs_design.models.plant import Plant
 from nrs_design.spec import IdleStatesSpec
 from nrs_design.spec.controllers import Offset
-from nrs_design.switched.gain_box import GainBox
 from nrs_design.switched.joint import Joint
 from nrs_design.switched.modes import (
     Rows,
@@ -53,7 +51,6 @@ class SharedState:
     """All controllers of an axis in one state."""
 
     design: ControllerDesign  # Gains that ship
-    boxes: Mapping[str, GainBox]  # Where the gains of the controllers may be, by name
     environments: tuple[Environment, ...]
     realization: Realization  # Of the motion loop
     given: bool  # Whether the spec states the motion loop
@@ -137,7 +134,7 @@ class SharedState:
     def rows(
         self, law: CompliantLaw, environment: Environment, values: Mapping[str, Fraction]
     ) -> Rows:
-        """Return A at the given gains of the law and parameters of the contact.
+        """Return A under a law at the given parameters of the contact.
 
         Parameters
         ----------
@@ -146,12 +143,12 @@ class SharedState:
         environment : Environment
             That is touched.
         values : mapping
-            Gains, parameters of the contact, of the motor, and rates of memories, by name.
+            Parameters of the contact, of the motor, and rates of memories, by name.
         """
-        held, contact = law.of(values), environment.at(values)
+        contact = environment.at(values)
         if self.idle is not None or law.commands == "position":
-            return self.placed(held, contact, environment.name)
-        rows = velocity_mode(self.motion_at(values), held, contact, self.low_pass)
+            return self.placed(law, contact, environment.name)
+        rows = velocity_mode(self.motion_at(values), law, contact, self.low_pass)
         first = len(self.names) - len(self.memories)
         memories = enumerate(self.memories, first)
         return with_idle(rows, {i: values[_rate(e)] for i, e in memories if e != environment})
@@ -193,7 +190,6 @@ def shared_state(
     *,
     idle: IdleStatesSpec | None = None,
     offset: Offset = "none",
-    boxes: Mapping[str, GainBox] = MappingProxyType({}),
 ) -> SharedState:
     """Return what the modes of an interaction design share.
 
@@ -203,8 +199,8 @@ def shared_state(
         Environments.
     loop : MotionLoop
         Closed motion loop G.
-    design, idle, offset, boxes
-        See `SharedState`; without a box, the gains of a controller are what ships.
+    design, idle, offset
+        See `SharedState`.
 
     Raises
     ------
@@ -215,7 +211,6 @@ def shared_state(
     leading = design.leading_laws(mixed=idle is not None)
     state = SharedState(
         design,
-        {**{c.name: GainBox.point(c.law) for c in design.controllers}, **boxes},
         plant.among(design.contacts),
         realize(loop),
         loop.given,

@@ -55,11 +55,6 @@ class LagForce(AbstractCompliantLaw[Any]):
         """The lagged correction."""
         return ("lagged [rad]",)
 
-    @property
-    def inverse(self) -> frozenset[str]:
-        """The loop is affine in Kp and 1/tau."""
-        return frozenset({"tau"})
-
     def respond(self, force: LinearForm, states: Sequence[LinearForm]) -> Response:
         """Return ``x``, with ``x' = -(Kp F + x)/tau``."""
         (x,) = states

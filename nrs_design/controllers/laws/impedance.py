@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import product
 from types import MappingProxyType
 from typing import ClassVar
 
@@ -13,16 +12,11 @@ from nrs_design.controllers.float32 import to_float32
 from nrs_design.controllers.laws.law import AbstractCompliantLaw, DiscreteLaw, Response
 from nrs_design.controllers.operations import Operation, Value
 from nrs_design.controllers.parts import BEYOND, FORCE, HAND, StepGain, StepPart
-from nrs_design.controllers.step_analysis import UNIT
-from nrs_design.errors import DesignError
-from nrs_design.models.interval import Interval
 from nrs_design.models.linear_form import LinearForm, combine
 from nrs_design.proof.taylor import exponential_between
 from nrs_design.spec.controllers import Command, ImpedanceControllerSpec
 
 ONE = Fraction(1)
-# Below it, single precision keeps fewer digits.
-_NORMAL = Fraction(1, 2**126)
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,11 +69,6 @@ class Admittance(AbstractCompliantLaw[ImpedanceControllerSpec]):
         """The velocity in words; none without inertia."""
         return ("the velocity vm",) if self.Mt else ()
 
-    @property
-    def inverse(self) -> frozenset[str]:
-        """With inertia the loop is affine in 1/Mt and Bt, without it in 1/Bt."""
-        return frozenset({"Mt" if self.Mt else "Bt"})
-
     def respond(self, force: LinearForm, states: Sequence[LinearForm]) -> Response:
         """Return ``-vm``, with ``Mt vm' = F - Bt vm``; without inertia ``vm = F / Bt``.
 
@@ -126,41 +115,6 @@ class Admittance(AbstractCompliantLaw[ImpedanceControllerSpec]):
         """
         return (_admittance(sprung="Kt" in used, inert="a" in used, beside=beside),)
 
-    def enclose(
-        self, gains: Mapping[str, Interval], period: Fraction, method: str
-    ) -> dict[str, Interval]:
-        """Return where a, ``c = b/(1 - a)`` and Kt lie; without inertia ``c = b``.
-
-        Without a and c where Mt and Bt are points. Exact or by Euler's method, a falls with Bt and
-        rises with Mt, and so it does when it is rounded: its ends are at corners. Each of a and b
-        is rounded once, by at most 2^-24 of its size, which moves c away from 1/Bt by less than
-        eight times that share of it over ``1 - a``, as long as all this is small.
-        """
-        spring = {"Kt": gains["Kt"]} if "Kt" in gains else {}
-        Mt, Bt = gains["Mt"], gains["Bt"]
-        if Mt.low == Mt.high and Bt.low == Bt.high:
-            return spring
-        corners = product((Mt.low, Mt.high), (Bt.low, Bt.high))
-        ends = [Admittance(m, b).discretize(period, method).numbers for m, b in corners]
-        least, most = min(end["b"] for end in ends), max(end["b"] for end in ends)
-        kept = [end["a"] for end in ends if "a" in end]
-        if not kept:
-            return {"c": Interval(least, least, most)} | spring
-        low, high = min(kept), max(kept)
-        share = _share(low, high, least)
-        least, most = (1 - share) / Bt.high, (1 + share) / Bt.low
-        return {"a": Interval(low, low, high), "c": Interval(least, least, most)} | spring
-
-    @staticmethod
-    def numbers_at(
-        numbers: Mapping[str, Fraction], values: Mapping[str, Fraction]
-    ) -> Mapping[str, Fraction]:
-        """Return a, b and Kt at values of a, ``c = b/(1 - a)`` and Kt."""
-        found = {**numbers} | {name: values[name] for name in ("a", "Kt") if name in values}
-        if "c" in values:
-            found["b"] = values["c"] * (1 - found["a"] if "a" in found else 1)
-        return found
-
     @classmethod
     def contact_text(cls, *, alone: bool) -> str:
         """Say that contact is not lost."""
@@ -173,20 +127,6 @@ class Admittance(AbstractCompliantLaw[ImpedanceControllerSpec]):
 
 
 LAW = Admittance
-
-
-def _share(low: Fraction, high: Fraction, least: Fraction) -> Fraction:
-    """Return how far c is from 1/Bt at most, over its size, where a and b are at least or most."""
-    if high < 1 and least >= _NORMAL:
-        share = 8 * UNIT * max(-low, ONE) / (1 - high)
-        if share <= Fraction(1, 16):
-            return share
-    raise DesignError(
-        "somewhere in the ranges of its gains, single precision loses a coefficient of an "
-        "admittance",
-        remedy="narrow the ranges of Mt and Bt, or sample with another period",
-        at=("controllers",),
-    )
 
 
 _VELOCITY = Value(

@@ -17,8 +17,6 @@ from typing import Any, ClassVar, Generic, Self, TypeVar
 
 from nrs_design.controllers.float32 import to_float32
 from nrs_design.controllers.parts import PROPORTIONAL, StepPart
-from nrs_design.errors import DesignError
-from nrs_design.models.interval import Interval
 from nrs_design.models.linear_form import LinearForm
 from nrs_design.spec.controllers import AbstractControllerSpec, Command
 from nrs_design.spec.quantity import exact_number
@@ -76,11 +74,6 @@ class AbstractCompliantLaw(AbstractLaw, Generic[S]):
         return self.states
 
     @property
-    def inverse(self) -> frozenset[str]:
-        """Gains in one over which `respond` is affine; it is affine in all others."""
-        return frozenset()
-
-    @property
     def spring(self) -> Fraction:
         """Stiffness in N m/rad that draws the robot back to its position reference; 0 is none.
 
@@ -111,26 +104,6 @@ class AbstractCompliantLaw(AbstractLaw, Generic[S]):
         controllers of the program are given a position.
         """
         return (PROPORTIONAL,)
-
-    def enclose(
-        self, gains: Mapping[str, Interval], period: Fraction, method: str
-    ) -> dict[str, Interval]:
-        """Return where what the discrete law is affine in lies while gains are in intervals.
-
-        A `DesignError` if that is not known, or single precision loses a coefficient.
-        """
-        raise DesignError(
-            f"ranges of the gains of a {self.name} controller are not modelled in the sampled loop",
-            remedy="leave the ranges out",
-            at=("controllers",),
-        )
-
-    @staticmethod
-    def numbers_at(
-        numbers: Mapping[str, Fraction], values: Mapping[str, Fraction]
-    ) -> Mapping[str, Fraction]:
-        """Return the numbers of a discrete law at values of what `enclose` encloses."""
-        return numbers
 
     @classmethod
     def gains_in(cls, given: S) -> tuple[str, ...]:
@@ -170,8 +143,7 @@ class DiscreteLaw:
     """A law as a processor computes it once a period: its operations, with their numbers."""
 
     law: type[CompliantLaw]
-    # Single-precision numbers by the names of `StepGain`, or what they are at a corner of a range;
-    # those that are missing are zero.
+    # Single-precision numbers by the names of `StepGain`; those that are missing are zero.
     numbers: Mapping[str, Fraction]
 
     def __hash__(self) -> int:
@@ -184,7 +156,3 @@ class DiscreteLaw:
         parts = self.law.parts(self.numbers, beside=False)
         symbols = {gain.name: gain.symbol for part in parts for gain in part.gains}
         return {symbols[name]: number for name, number in self.numbers.items()}
-
-    def at(self, values: Mapping[str, Fraction]) -> DiscreteLaw:
-        """Return the law at values of what `AbstractCompliantLaw.enclose` encloses."""
-        return DiscreteLaw(self.law, self.law.numbers_at(self.numbers, values))

@@ -5,9 +5,7 @@ from fractions import Fraction
 
 import pytest
 
-from nrs_design.controllers.laws import AbstractCompliantLaw, Admittance, ProportionalForce
-from nrs_design.errors import DesignError
-from nrs_design.models.interval import Interval
+from nrs_design.controllers.laws import AbstractCompliantLaw, Admittance
 from nrs_design.spec import PositionControllerSpec
 
 
@@ -37,13 +35,6 @@ def test_a_gain_that_neither_spec_nor_law_limits_is_not_allowed():
 def test_by_default_a_law_has_no_states():
     law = Unbounded(Fraction(1))
     assert law.states == law.state_words == ()
-    assert law.inverse == frozenset()
-
-
-def test_ranges_of_gains_are_refused_where_nothing_encloses_the_numbers():
-    gain = {"K": Interval.point(Fraction(1))}
-    with pytest.raises(DesignError, match="are not modelled in the sampled loop"):
-        ProportionalForce(Fraction(1)).enclose(gain, Fraction(1, 500), "exact")
 
 
 def test_gains_are_taken_by_name():

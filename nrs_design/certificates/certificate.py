@@ -18,6 +18,9 @@ SCHEMA = "nrs-design/certificate/8"
 # What says nothing about the claim, so that the id does not cover it.
 UNSIGNED = frozenset({"id", "origin"})
 
+# Of what a statement shows: that some motion grows.
+GROWTH = frozenset({Shows.INSTABILITY, Shows.INSTABILITY_IN_CONTACT})
+
 Gains = Mapping[str, Mapping[str, str]]
 
 
@@ -51,6 +54,9 @@ class Certificate:
     system: SwitchedSystem  # What the statements are about
     statements: tuple[AbstractEvidence, ...]  # What is shown, each with its numbers; at least one
     version: str  # Version of this package
+    # At which points of the ranges the system stands; empty for all of them. What grows there
+    # refutes the spec, and nothing else there says anything of it.
+    points: str = ""
 
     @property
     def verdict(self) -> str:
@@ -159,13 +165,27 @@ def to_document(certificate: Certificate) -> dict[str, Any]:
         "spec": {"name": certificate.spec_name, "sha256": certificate.spec_sha256},
         "coordinates": certificate.coordinates,
         "gains": {name: dict(values) for name, values in certificate.gains.items()},
-        **system_fields(system),
+        **({} if not certificate.points else {"points": certificate.points}),
+        **_own_fields(certificate),
         "statements": [
             {"kind": item.kind, "claim": item.claim(system), **item.to_fields()}
             for item in certificate.statements
         ],
         "package": {"name": "nrs-design", "version": certificate.version},
     }
+
+
+def is_of_growth(certificate: Certificate) -> bool:
+    """Tell whether a statement of a certificate is that some motion grows."""
+    return any(item.shows in GROWTH for item in certificate.statements)
+
+
+def _own_fields(certificate: Certificate) -> dict[str, Any]:
+    """Return the fields of the system; which modes are attained, only where something grows."""
+    fields = system_fields(certificate.system)
+    if not is_of_growth(certificate):
+        fields.pop("enclosures", None)
+    return fields
 
 
 def canonical(document: Mapping[str, Any]) -> str:

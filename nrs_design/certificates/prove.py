@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from nrs_design.certificates.certificate import (
+    GROWTH,
     SCHEMA,
     UNSIGNED,
     Certificate,
@@ -133,6 +134,8 @@ def check_document(document: Mapping[str, Any], system: SwitchedSystem) -> Verif
     """Check every statement of a document for a system, and all that follows from it."""
     certificate = read_certificate(document, system)
     fault = _find_difference(document, certificate)
+    if certificate.points and not all(item.shows in GROWTH for item in certificate.statements):
+        fault = fault or "it is about points of the ranges, where only growth says something"
     forms = tuple(list[IntegerMatrix]() for _ in certificate.statements)
     for statement, made in zip(certificate.statements, forms, strict=True):
         fault = fault or statement.find_fault(system, made)
@@ -149,7 +152,13 @@ def read_certificate(document: Mapping[str, Any], system: SwitchedSystem) -> Cer
         system=system,
         statements=_statements(document, system),
         version=read_text(document["package"]["version"]),
+        points=read_points(document),
     )
+
+
+def read_points(document: Mapping[str, Any]) -> str:
+    """Read at which points of the ranges a system stands; empty for all of them."""
+    return read_text(document["points"]) if "points" in document else ""
 
 
 def confirmed(judge: Callable[[], Verification]) -> Verification:

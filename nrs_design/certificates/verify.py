@@ -8,10 +8,11 @@ and the assumptions must be the same.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import fields
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from nrs_design.certificates.certificate import is_of_growth
 from nrs_design.certificates.prove import (
     Verification,
     check_document,
@@ -23,6 +24,7 @@ from nrs_design.certificates.prove import (
     read_certificate,
     read_document,
     read_gains,
+    read_points,
 )
 from nrs_design.proof.system import SwitchedSystem
 
@@ -88,8 +90,11 @@ def _verify(
     from nrs_design.switched.assemble import assemble_from_text
 
     gains = read_gains(document)
-    system = assemble_from_text(spec.spec, gains, plant=plant)
+    system = assemble_from_text(spec.spec, gains, plant=plant, points=read_points(document))
     held = held_system(document)
+    if not held.enclosures and not is_of_growth(read_certificate(document, system)):
+        # Which modes are attained does not matter where nothing grows, and is left out there.
+        held = replace(held, enclosures=system.enclosures)
     for field in fields(SwitchedSystem):
         if getattr(held, field.name) != getattr(system, field.name):
             return Verification(None, f"its field {field.name!r} is not that of the spec")

@@ -91,15 +91,46 @@ def run_certification(
 
     progress("design")
     designed, system = _assembled(loaded)
-    certification = certify(system, method, limits or search_limits(loaded.spec), progress)
-    certificate = certificate_of(loaded, designed, certification)
+    limits = limits or search_limits(loaded.spec)
+    certification = certify(system, method, limits, progress)
+    points = ""
+    if certification.verdict is Verdict.INCONCLUSIVE and certification.refuted_in is None:
+        points, certification = _at_points(loaded, designed, certification, limits, progress)
+    certificate = certificate_of(loaded, designed, certification, points)
     return Result(loaded, designed, certification, certificate)
+
+
+def _at_points(
+    loaded: LoadedSpec,
+    designed: Designed | None,
+    known: Certification,
+    limits: Limits,
+    progress: Progress,
+) -> tuple[str, Certification]:
+    """Look for growth at points of the ranges, which a wide enclosure of them does not refute."""
+    from nrs_design.search.certify import certify
+    from nrs_design.switched.assemble import POINTS, assemble
+
+    if designed is None or designed.spec.sampling is None:
+        return "", known
+    for points in POINTS:
+        with placed(loaded):
+            system = assemble(designed.spec, designed.plant, designed.design, points=points)
+        if system.modes == known.system.modes:
+            continue
+        found = certify(system, Method.PERIOD, replace(limits, budget=limits.budget / 4), progress)
+        tried = tuple(replace(a, step=f"{a.step}, at {points}") for a in found.attempts)
+        known = replace(known, attempts=(*known.attempts, *tried))
+        if found.verdict is Verdict.REFUTED or found.refuted_in is not None:
+            return points, replace(found, attempts=known.attempts)
+    return "", known
 
 
 def certificate_of(
     loaded: LoadedSpec,
     designed: Designed | None,
     certification: Certification,
+    points: str = "",
 ) -> Certificate | None:
     """Return what may be written to a file; None if nothing was shown."""
     if not certification.statements:
@@ -112,6 +143,7 @@ def certificate_of(
         system=certification.system,
         statements=certification.statements,
         version=__version__,
+        points=points,
     )
 
 

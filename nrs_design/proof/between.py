@@ -84,6 +84,7 @@ def between(
             for item, (acts, sizes) in zip(coupled, seen, strict=True)
         ),
         saturation=None,
+        enclosures=(),
     )
 
 

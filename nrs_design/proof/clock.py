@@ -54,6 +54,7 @@ def on_turn(system: SwitchedSystem, clock: Clock, *, first: bool) -> SwitchedSys
         channels=tuple(channels),
         saturation=None,
         clock=None,
+        enclosures=tuple(item for item in system.enclosures if (item[0] in names) is first),
     )
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from itertools import product
@@ -95,7 +95,37 @@ def system_at(system: SwitchedSystem, shares: Sequence[Fraction]) -> SwitchedSys
             if own.intersection(ends)
         ),
     )
-    return system.with_modes(tuple(modes), system.states, switching)
+    enclosures = tuple(_enclosures_at(system, sets))
+    return system.with_modes(tuple(modes), system.states, switching, enclosures)
+
+
+def _enclosures_at(
+    system: SwitchedSystem, sets: Sequence[tuple[str, ...]]
+) -> Iterator[tuple[str, ...]]:
+    """TRUSTED: yield what the sets of modes are at a value; they have one weight at all corners.
+
+    Where sets at the corners are not of one size, or a mode is not at one place in each of them,
+    one is yielded that no system has.
+    """
+    places = {
+        name: (k, i, len(names))
+        for k, names in enumerate(system.enclosures)
+        for i, name in enumerate(names)
+    }
+    found: dict[tuple[int, ...], dict[int, str]] = {}
+    sizes: dict[tuple[int, ...], int] = {}
+    for name, *corners in sets:
+        at = [places[corner] for corner in corners if corner in places]
+        if not at:
+            continue
+        if len(at) < len(corners) or len({(i, size) for _, i, size in at}) > 1:
+            yield ()
+            return
+        key = tuple(k for k, _, _ in at)
+        found.setdefault(key, {})[at[0][1]] = name
+        sizes[key] = at[0][2]
+    for key, names in found.items():
+        yield tuple(names[i] for i in sorted(names)) if len(names) == sizes[key] else ()
 
 
 def _common_stay(switching: Switching, modes: Sequence[str]) -> Stay:

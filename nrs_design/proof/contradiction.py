@@ -27,6 +27,7 @@ def find_contradiction(system: SwitchedSystem) -> str | None:
         or _find_odd_coupling(system)
         or _find_odd_clock(system)
         or _find_odd_saturation(system)
+        or _find_odd_enclosure(system)
     )
 
 
@@ -199,6 +200,16 @@ def _find_odd_start(system: SwitchedSystem, start: Start) -> str | None:
     # Where contact is lost, V is not x'Qx.
     if system.free and any(x.numerators[-1][0] < 0 for x in states):
         return f"{start.name} stands for a state without contact"
+    return None
+
+
+def _find_odd_enclosure(system: SwitchedSystem) -> str | None:
+    sizes = {mode.name: mode.A.shape for mode in system.every_mode}
+    named = [name for names in system.enclosures for name in names]
+    if not sizes.keys() >= set(named) or len(set(named)) < len(named):
+        return "an enclosure is not one of modes, or a mode is in two of them"
+    if any(len({sizes[name] for name in names}) != 1 for names in system.enclosures):
+        return "an enclosure is empty, or its modes are not of one size"
     return None
 
 

@@ -46,13 +46,22 @@ class SwitchedSystem:
     saturation: Saturation | None = None
     # Which modes are free motion, where it is among them and its loss must be covered.
     flights: Flights | None = None
+    # Sets of modes, in contact or free, none of which need be attained: wherever one of a set may
+    # be in force, some combination of them may, with weights that are not negative and have the sum
+    # one. Sets that are one at the corners of constant parameters have the same weights, in their
+    # order. A mode that is in no set is attained itself.
+    enclosures: tuple[tuple[str, ...], ...] = ()
 
     def __post_init__(self) -> None:
         """Take the word for a time as that time, so that no check takes it for another."""
         object.__setattr__(self, "time", Time(self.time))
 
     def with_modes(
-        self, modes: tuple[Mode, ...], states: tuple[str, ...], switching: Switching
+        self,
+        modes: tuple[Mode, ...],
+        states: tuple[str, ...],
+        switching: Switching,
+        enclosures: tuple[tuple[str, ...], ...] | None = None,
     ) -> SwitchedSystem:
         """Return other modes for the same signals; what acts on these ones is left behind.
 
@@ -64,6 +73,8 @@ class SwitchedSystem:
             Their states.
         switching : Switching
             Their rules.
+        enclosures : tuple of tuple of str, optional
+            Their sets; by default those of these modes, by the same names.
         """
         return SwitchedSystem(
             name=self.name,
@@ -72,6 +83,7 @@ class SwitchedSystem:
             modes=modes,
             assumptions=self.assumptions,
             switching=switching,
+            enclosures=self.enclosures if enclosures is None else enclosures,
         )
 
     @property
@@ -101,6 +113,10 @@ class SwitchedSystem:
             Mode(mode.name, RationalMatrix(tuple(leading(mode.A.numerators)), mode.A.denominator))
             for mode in self.free
         )
+
+    def enclosure_of(self, mode: str) -> tuple[str, ...]:
+        """TRUSTED: return the modes between which what is attained is; a mode that is, alone."""
+        return next((names for names in self.enclosures if mode in names), (mode,))
 
     @property
     def order(self) -> int:

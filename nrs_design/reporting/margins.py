@@ -35,19 +35,6 @@ def margin_lines(margins: ProofMargins, loaded: LoadedSpec) -> Iterator[Sentence
     yield from _loop_lines(margins, at)
     yield from _dwell_lines(margins, at)
     yield from _misses_lines(margins, at, spec)
-    sampled = isinstance(spec, InteractionDesignSpec) and spec.sampling is not None
-    if sampled and _refutes(margins):
-        yield Sentence(
-            "refutations are for an over-approximation of the drive; no real drive in the range "
-            "need be unstable"
-        )
-
-
-def _refutes(margins: ProofMargins) -> bool:
-    """Tell whether a refutation ends one of the margins."""
-    loop = margins.loop
-    ends = (margins.box, *(() if loop is None else (loop.delay, loop.period)))
-    return any(end is not None and end.refuted is not None for end in ends)
 
 
 def _box_lines(margins: ProofMargins, at: _At, ranges: str) -> Iterator[Sentence]:

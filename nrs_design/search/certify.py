@@ -40,6 +40,11 @@ from nrs_design.work import Allowance, Fuse, NotAffordableError
 OFF_THE_ORIGIN = 0.7
 NO_RATE = "what was found shows no rate of decay"
 SATURATION = "decay under saturation"
+SUSPICIOUS, ENCLOSURE = "suspicious modes", "enclosure of the ranges"
+WIDE = (
+    "is not stable, and no loop of the spec need be there: nothing that covers the enclosure can "
+    "be proved; narrow the ranges, or split a constant one into a spec for each part"
+)
 NOT_IN_TURNS = (
     "not looked for: where the loop has two periods or misses deadlines, decay is proved, and no "
     "bound"
@@ -339,6 +344,10 @@ def _climb(
         found, attempt = _attempted(name, partial(search, family), system, allowance)
         attempts += attempt
         if not found:
+            # Nothing that covers the enclosure holds, and no loop of the spec need be there.
+            if method is not Method.PERIOD and (corner := _unstable_corner(name, family)):
+                attempts.append(Attempt(ENCLOSURE, f"mode {corner} {WIDE}", 0.0))
+                break
             continue
         (evidence,) = found
         # Growth that the environment would have to pull for is none that ends the search.
@@ -347,6 +356,16 @@ def _climb(
             continue
         return _conclude(system, name, (evidence, *remarks), tuple(attempts))
     return _conclude(system, str(method), tuple(remarks), tuple(attempts))
+
+
+def _unstable_corner(rung: str, family: Family) -> str | None:
+    """Name a mode that is not stable and need not be attained, after it has been looked for."""
+    if rung != SUSPICIOUS or not family.system.enclosures:
+        return None
+    from nrs_design.search.unstable_mode import find_unstable_corner
+
+    with floats_in_silence():
+        return find_unstable_corner(family)
 
 
 def _known(system: SwitchedSystem, remarks: Sequence[AbstractEvidence]) -> frozenset[Shows]:

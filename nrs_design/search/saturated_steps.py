@@ -191,6 +191,7 @@ def _lean(system: SwitchedSystem, kept: list[int]) -> SwitchedSystem:
         roundings=tuple(replace(item, **_parts(item, kept)) for item in system.roundings),
         couplings=tuple(replace(item, **_parts(item, kept)) for item in system.couplings),
         saturation=replace(system.saturation, signals=signals),
+        enclosures=(),
     )
 
 

@@ -23,7 +23,7 @@ def merge_equal_modes(system: SwitchedSystem) -> SwitchedSystem:
     Equal modes may differ in what disturbs them, so disturbances and outputs are left behind; with
     what the arithmetic or other axes add to them, they are not equal.
     """
-    if system.roundings or system.couplings:
+    if system.roundings or system.couplings or system.enclosures:
         return system
     first: dict[RationalMatrix, int] = {}
     for index, mode in enumerate(system.modes):

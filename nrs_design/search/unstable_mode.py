@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.proof.evidence import GrowingSequence
-from nrs_design.proof.evidence.growing_sequence import staying
+from nrs_design.proof.evidence.growing_sequence import decides, staying
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.spectrum import affordable, is_stable
@@ -68,6 +68,19 @@ def unstable_modes(modes: Iterable[Mode], family: Family) -> Candidates[GrowingS
         return None
     tested = f"{count} modes tested exactly, all stable" if count else "none"
     return tested + (f"; {skipped} not tried, their numbers are too large" * (skipped > 0))
+
+
+def find_unstable_corner(family: Family) -> str | None:
+    """Name a mode that is not stable, and need not be attained; None if there is none."""
+    system = family.system
+    corners = {name for names in system.enclosures for name in names}
+    lasting = {mode.name for mode in system.lasting_modes()}
+    pairs = zip(system.modes, seems_stable(family), strict=True)
+    suspicious = (mode for mode, ok in pairs if not ok and mode.name in corners & lasting)
+    for mode, fits in affordable(suspicious):
+        if fits and decides(system, mode.name) and not is_stable(mode.A, system.time):
+            return mode.name
+    return None
 
 
 def exact_test_cost(A: RationalMatrix) -> Cost:

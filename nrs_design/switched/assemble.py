@@ -19,6 +19,7 @@ from nrs_design.switched.assumptions import (
     constant_texts,
     identified_texts,
     logic_texts,
+    points_texts,
     preload_texts,
     scale_texts,
     sensor_texts,
@@ -48,6 +49,9 @@ if TYPE_CHECKING:
 __all__ = ["GIVEN_MATRICES", "assemble", "assemble_from_text", "assemble_matrices"]
 
 DECLARED = Fraction(1)
+# Points of the ranges of a sampled loop.
+ENDS, NOMINAL = "ends", "nominal"
+POINTS = (ENDS, NOMINAL)
 
 
 def assemble_from_text(
@@ -55,6 +59,7 @@ def assemble_from_text(
     gains: Mapping[str, Mapping[str, str]],
     scale: Fraction = DECLARED,
     plant: Plant | None = None,
+    points: str = "",
 ) -> SwitchedSystem:
     """Assemble the switched system of a spec from the gains that a certificate quotes.
 
@@ -72,6 +77,8 @@ def assemble_from_text(
         nominal values only.
     plant : Plant, optional
         Built from this very spec, where it is in hand; by default it is built here.
+    points : str
+        As for `assemble`.
 
     Raises
     ------
@@ -82,6 +89,8 @@ def assemble_from_text(
     if spec.kind == "switched-system":
         if gains:
             raise AssemblyError("given matrices have no gains")
+        if points:
+            raise AssemblyError("the corners of given matrices are points of the ranges already")
         return assemble_matrices(spec, scale)
     if spec.kind == "robot":
         raise AssemblyError("a robot spec has no modes")
@@ -89,7 +98,7 @@ def assemble_from_text(
     from nrs_design.spec.build_plant import build_plant
 
     design = design_from_gains(spec, gains)
-    return assemble(spec, plant or build_plant(spec), design, scale)
+    return assemble(spec, plant or build_plant(spec), design, scale, points=points)
 
 
 def assemble_matrices(spec: SwitchedSystemSpec, scale: Fraction = DECLARED) -> SwitchedSystem:
@@ -128,6 +137,8 @@ def assemble(
     plant: Plant,
     design: ControllerDesign,
     scale: Fraction = DECLARED,
+    *,
+    points: str = "",
 ) -> SwitchedSystem:
     """Return the closed loop of an interaction design, one mode for each corner of its boxes.
 
@@ -141,29 +152,44 @@ def assemble(
         The gains that ship.
     scale : Fraction
         Not negative: every declared range is stretched by it about its nominal value.
+    points : str
+        One of `POINTS`, of a sampled loop: what is attained there, instead of what encloses all
+        ranges. What grows there refutes the spec, and a proof there is none of the spec.
 
     Raises
     ------
     AssemblyError
-        If a stiffness does not stay positive, or if the rules of switching make too many switches.
+        If there are no such points, a stiffness does not stay positive, or the rules of switching
+        make too many switches.
     """
     from nrs_design.spec.build_plant import build_conditions
 
     _check_scale(scale)
     conditions = build_conditions(spec)
+    if points and (points not in POINTS or conditions.sampling is None):
+        raise AssemblyError(f"there is no system at the points {points!r} of the ranges")
+    scale = Fraction(0) if points == NOMINAL else scale
     plant = plant.scaled(scale, conditions.touched)
     coupling = _coupling_of(conditions.coupling, plant, scale)
     if conditions.sampling is not None:
         from nrs_design.switched.sampled_loop import close_sampled_loop
 
         sampling = conditions.sampling
-        system = close_sampled_loop(conditions, sampling, plant, design, coupling)
+        system = close_sampled_loop(
+            conditions, sampling, plant, design, coupling, points=bool(points)
+        )
     else:
         state = state_of(conditions, plant, design)
         system = _assemble_continuous(conditions, plant, state, coupling)
     (drive,) = spec.drives
     constants = tuple(
-        constants_of(plant, conditions.touched, drive, sampled=conditions.sampling is not None)
+        constants_of(
+            plant,
+            conditions.touched,
+            drive,
+            sampled=conditions.sampling is not None,
+            points=bool(points),
+        )
     )
     if conditions.sampling is not None and conditions.constant_late is not None:
         said = conditions.constant_late, conditions.late, conditions.sampling.step
@@ -185,6 +211,7 @@ def assemble(
         *identified_texts(spec),
         *preload_texts(conditions.preloads, scale),
         *scale_texts(scale),
+        *points_texts(points),
         *constant_texts(system.switching),
     )
     return _on_axis(replace(system, assumptions=texts), spec.axis)

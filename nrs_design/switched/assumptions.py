@@ -158,6 +158,13 @@ def scale_texts(scale: Fraction) -> tuple[Assumption, ...]:
     return () if scale == 1 else (say("range.scaled", scale=scale),)
 
 
+def points_texts(points: str) -> tuple[Assumption, ...]:
+    """Say at which points of the ranges the modes are, unless they are about all of them."""
+    if not points:
+        return ()
+    return (say("range.points", points="ends" if points == "ends" else "nominal values"),)
+
+
 def command_texts(command: str, axis: AxisType) -> Iterator[Assumption]:
     """Say in which unit the motor is commanded, where it is not the rpm of the thesis."""
     if command != THESIS_COMMAND:

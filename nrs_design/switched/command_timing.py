@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import ceil, floor
 
@@ -26,11 +27,18 @@ class CommandTiming:
     earliest: Fraction = ZERO
     latest: Fraction = ZERO
     jitter: Fraction = ZERO  # By how much a period is longer or shorter at most, in s
+    # The time from every sample to its command in s, of all that may be, and periods do not differ.
+    at: Fraction | None = None
 
     @property
     def lengths(self) -> Interval:
         """How long a period is, in s."""
         return Interval(self.period, self.period - self.jitter, self.period + self.jitter)
+
+    @property
+    def steps(self) -> Interval:
+        """How long periods are, in s; where one time is attained at every sample, all alike."""
+        return self.lengths if self.at is None else Interval.point(self.period)
 
     @property
     def oldest(self) -> int:
@@ -52,6 +60,20 @@ class CommandTiming:
         """Ages of the commands that may take effect within a period, the oldest first."""
         return range(self.oldest - 1, self.newest - 1, -1)
 
+    def points(self) -> Iterator[tuple[tuple[str, ...], CommandTiming]]:
+        """Yield times that are attained at every sample, with the label of each.
+
+        Where each sample has its own time, one is followed by the other.
+        """
+        if not self.varies:
+            yield (), self
+        elif len(self.within) == 1 and not self.jitter:
+            (age,) = self.within
+            yield (f"h{age}-max",), replace(self, at=self.earliest)
+            yield (f"h{age}-min",), replace(self, at=self.latest)
+        else:
+            yield (), replace(self, at=self.latest)
+
     def left(self, age: int) -> Interval:
         """Return how long before the end of a period commands of an age or newer are in force.
 
@@ -67,6 +89,9 @@ class CommandTiming:
         Interval
             In s; its ends are not negative, nor above the longest period.
         """
+        if self.at is not None:
+            begin = min(max(self.at - age * self.period, ZERO), self.period)
+            return Interval.point(self.period - begin)
         shortest, longest = self.lengths.low, self.lengths.high
         begins = self.earliest - age * longest, self.latest - age * shortest
         low = shortest - min(max(begins[1], ZERO), shortest)

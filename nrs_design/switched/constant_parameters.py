@@ -75,7 +75,7 @@ def constant_lateness(
 
 
 def constants_of(
-    plant: Plant, touched: Collection[str], drive: str, *, sampled: bool
+    plant: Plant, touched: Collection[str], drive: str, *, sampled: bool, points: bool = False
 ) -> Iterator[ConstantParameter]:
     """Yield the constant parameters of a plant.
 
@@ -90,6 +90,8 @@ def constants_of(
     sampled : bool
         Whether the loop is sampled: its numbers enclose those of a constant time constant, so their
         corners are none of its values.
+    points : bool
+        Whether there are modes at its ends instead.
     """
     if plant.drive is not None and sampled:
         yield from _enclosed(_of_drive(plant.drive, drive))
@@ -101,8 +103,9 @@ def constants_of(
         yield _between_ends(f"{drive}.gain", ranges.gain, "Km", unit)
     if ranges.time_constant.is_constant:
         name, tau = f"{drive}.time_constant", ranges.time_constant
+        said = FixedParameter(name, tau.low, tau.high, "s", enclosed=points)
         yield (
-            ConstantParameter(FixedParameter(name, tau.low, tau.high, "s"), _ENCLOSED)
+            ConstantParameter(said, ("tau-min", "tau-max") if points else _ENCLOSED)
             if sampled
             else _between_ends(name, tau, "tau", "s", inverse=True)
         )

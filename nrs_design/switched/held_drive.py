@@ -101,7 +101,7 @@ class HeldDrive(HeldMotor):
         own = dict(drive.ranges)
         if drive.loaded:
             own |= {s: nothing if touched is None else touched.get(s, nothing) for s in LOAD}
-        times = {"T": timing.lengths}
+        times = {"T": timing.steps}
         times |= {f"h{age}": timing.left(age) for age in timing.within}
         reached = _reached(times) if drive.speed is not None else {}
         with precision(BITS):
@@ -127,6 +127,21 @@ class HeldDrive(HeldMotor):
     def states(self) -> tuple[str, ...]:
         """Names and units of the states, the deflection left out."""
         return self.moved.states
+
+    @property
+    def attained(self) -> frozenset[str]:
+        """None: what is between corners is not what interpolates."""
+        return frozenset()
+
+    def points(self) -> Iterator[tuple[tuple[str, ...], HeldDrive]]:
+        """Yield drives that there are, at the ends of the ranges, with the labels of each."""
+        ranges = self.moved.ranges
+        for ends in product(*(interval.ends for interval in ranges.values())):
+            named = [(s, *end) for s, end in zip(ranges, ends, strict=True)]
+            labels = tuple(f"{symbol}-{end}" for symbol, end, _ in named if end)
+            drive = self.moved.at({symbol: value for symbol, _, value in named})
+            for times, timing in self.timing.points():
+                yield (*labels, *times), HeldDrive.of(drive, timing, load=self.load)
 
     def touching(self, touched: Mapping[str, Interval], *, forced: bool) -> HeldMotor:
         """Return the drive while something is touched that acts on it.

@@ -13,9 +13,10 @@ and s(h_j), one after the other (docs/certificates/time-inside-the-period.md).
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
 from fractions import Fraction
+from itertools import product
 from math import ceil
 
 from nrs_design.models.actuator import ActuatorRanges
@@ -28,6 +29,8 @@ from nrs_design.switched.parameter_box import Box
 from nrs_design.switched.sampled_motor import motor_box, way_between, way_unit
 
 ONE, ZERO = Fraction(1), Fraction(0)
+# Symbols of a motor at the ends of its ranges.
+GAIN, TIME_CONSTANT = "Km", "tau"
 # A result beside the states: how far the joint goes in a period.
 WAY = "way"
 
@@ -68,6 +71,15 @@ class HeldMotor(ABC):
     def states(self) -> tuple[str, ...]:
         """Names and units of its states, the speed first and the deflection left out."""
         return (OMEGA,)
+
+    @property
+    def attained(self) -> frozenset[str]:
+        """The symbols whose ends, together, are those of some motor; the others only enclose it."""
+        return frozenset({"Km"})
+
+    @abstractmethod
+    def points(self) -> Iterator[tuple[tuple[str, ...], HeldMotor]]:
+        """Yield motors that there are, at the ends of the ranges, with the labels of each."""
 
     @abstractmethod
     def symbols_of(self, result: str) -> frozenset[str]:
@@ -114,6 +126,7 @@ class HeldMotor(ABC):
 class MotorAtOnce(HeldMotor):
     """Under one command, by ``E = exp(-T/tau)`` and ``s = tau (1 - E)``."""
 
+    ranges: ActuatorRanges
     period: Fraction  # The T in s
     time_constant: Fraction | None  # The tau in s, if it is known: s is then left out
 
@@ -122,7 +135,12 @@ class MotorAtOnce(HeldMotor):
         """Return the motors of some ranges, which last for a period."""
         tau = ranges.time_constant
         known = tau.nominal if tau.low == tau.high else None
-        return cls(motor_box(ranges, period), period, known)
+        return cls(motor_box(ranges, period), ranges, period, known)
+
+    def points(self) -> Iterator[tuple[tuple[str, ...], HeldMotor]]:
+        """Yield motors that there are, at the ends of the ranges, with the labels of each."""
+        for labels, at in _ends_of(self.ranges):
+            yield labels, MotorAtOnce.of(at, self.period)
 
     def symbols_of(self, result: str) -> frozenset[str]:
         """Return the symbols of the numbers that a result depends on."""
@@ -152,6 +170,8 @@ class MotorAtOnce(HeldMotor):
 class MotorInTime(HeldMotor):
     """Under commands that take effect within the period, or for periods of several lengths."""
 
+    ranges: ActuatorRanges
+    timing: CommandTiming
     spans: tuple[RestOfPeriod, ...]  # The period, and what is left of it from each change on
 
     @classmethod
@@ -168,9 +188,15 @@ class MotorInTime(HeldMotor):
         tau = ranges.time_constant
         g = Interval(1 / tau.nominal, 1 / tau.high, 1 / tau.low)
         later = (RestOfPeriod.of(timing.left(age), g, str(age)) for age in timing.within)
-        spans = (RestOfPeriod.of(timing.lengths, g), *later)
+        spans = (RestOfPeriod.of(timing.steps, g), *later)
         ranged = {name: ends for span in spans for name, ends in span.ranges.items()}
-        return cls(Box({"Km": ranges.gain, "g": g, **ranged}), spans)
+        return cls(Box({"Km": ranges.gain, "g": g, **ranged}), ranges, timing, spans)
+
+    def points(self) -> Iterator[tuple[tuple[str, ...], HeldMotor]]:
+        """Yield motors that there are, at the ends of the ranges, with the labels of each."""
+        for labels, at in _ends_of(self.ranges):
+            for times, timing in self.timing.points():
+                yield (*labels, *times), MotorInTime.of(at, timing)
 
     def symbols_of(self, result: str) -> frozenset[str]:
         """Return the symbols of the numbers that a result depends on."""
@@ -273,6 +299,14 @@ def _highest(rising: tuple[Fraction, Fraction], falling: tuple[Fraction, Fractio
     if ends[0] >= 0 or ends[1] <= 0:
         return max(min(pair) for pair in zip(rising, falling, strict=True))
     return rising[0] + (rising[1] - rising[0]) * ends[0] / (ends[0] - ends[1])
+
+
+def _ends_of(ranges: ActuatorRanges) -> Iterator[tuple[tuple[str, ...], ActuatorRanges]]:
+    """Yield the motors at the ends of ranges, with the labels of those that are not known."""
+    for (first, gain), (last, tau) in product(ranges.gain.ends, ranges.time_constant.ends):
+        named = ((GAIN, first), (TIME_CONSTANT, last))
+        labels = tuple(f"{symbol}-{end}" for symbol, end in named if end)
+        yield labels, replace(ranges, gain=Interval.point(gain), time_constant=Interval.point(tau))
 
 
 def hold(ranges: ActuatorRanges, timing: CommandTiming) -> HeldMotor:

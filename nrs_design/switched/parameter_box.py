@@ -12,7 +12,7 @@ it is affine together.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import combinations, product, starmap
@@ -118,6 +118,22 @@ class Box:
             labels = [f"{symbol}-{end}" for symbol, end in zip(ends, at[:-1], strict=True) if end]
             labels += [f"hull-{at[-1]}"] if len(self.hull) > 1 else []
             yield "/".join([name, *labels]), self._at(ends, at)
+
+    def points(self, name: str, attained: Collection[str]) -> Iterator[str]:
+        """Yield, for the corners in their order, the names of what they are corners of.
+
+        Parameters
+        ----------
+        name : str
+            Of the mode.
+        attained : collection of str
+            Symbols whose ends are values of the loop. Those of the others only enclose it.
+        """
+        symbols = [*self.ranges]
+        ends = {symbol: dict(interval.ends) for symbol, interval in self.ranges.items()}
+        for at in self._points(ends, self._hull_labels()):
+            pairs = zip(symbols, at[:-1], strict=True)
+            yield "/".join([name, *(f"{s}-{end}" for s, end in pairs if end and s in attained)])
 
     def corners(self, rows_at: RowsAt, name: str) -> Iterator[tuple[str, Rows]]:
         """Yield the corners, the last parameter turning fastest.

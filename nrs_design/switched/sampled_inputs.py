@@ -29,11 +29,12 @@ class SampledMode:
     sizes: tuple[LinearForm, ...]
     command: LinearForm  # Before it is cut off
     slip: LinearForm
+    point: str  # What it is a corner of, with others: of them all, one map is attained
     begins: bool = True
 
     @classmethod
     def of(
-        cls, name: str, rows: Sequence[LinearForm], n: int, *, begins: bool = True
+        cls, name: str, rows: Sequence[LinearForm], n: int, point: str, *, begins: bool = True
     ) -> SampledMode:
         """Take apart the rows of a frame.
 
@@ -45,12 +46,14 @@ class SampledMode:
             As `Frame.rows` gives them.
         n : int
             Number of states.
+        point : str
+            As for the class.
         begins : bool
             As for the class.
         """
         *rows, command, slip = rows
         mode = Mode(name, RationalMatrix.from_rows([row[:n] for row in rows[:n]]))
-        return cls(mode, tuple(rows[:n]), tuple(rows[n:]), command, slip, begins)
+        return cls(mode, tuple(rows[:n]), tuple(rows[n:]), command, slip, point, begins)
 
     def column(self, i: int) -> RationalMatrix:
         """Return what the i-th of inputs and, after them, roundings does to the states."""

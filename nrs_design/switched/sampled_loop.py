@@ -15,6 +15,7 @@ from nrs_design.controllers.parts import FORCE_GAIN
 from nrs_design.controllers.step_law import StepFrame
 from nrs_design.errors import AssemblyError
 from nrs_design.models.contact.environment import Environment
+from nrs_design.models.interval import Interval
 from nrs_design.models.linear_form import LinearForm, coordinates
 from nrs_design.models.plant import Plant
 from nrs_design.proof.channels import Coupling, Output
@@ -63,6 +64,8 @@ def close_sampled_loop(
     plant: Plant,
     design: ControllerDesign,
     coupling: AxesCoupling | Mobility | None = None,
+    *,
+    points: bool = False,
 ) -> SwitchedSystem:
     """Assemble every mode of the sampled loop.
 
@@ -84,6 +87,9 @@ def close_sampled_loop(
         Gains that ship.
     coupling : AxesCoupling or Mobility, optional
         What the links do to each axis.
+    points : bool
+        Whether only what is attained at the ends of all ranges is in force, instead of what
+        encloses all that is between.
 
     Raises
     ------
@@ -105,7 +111,8 @@ def close_sampled_loop(
     frame = _frame(conditions.idle, sampling, design, tuple(laws.values()), motor, timing)
     environments = plant.among(design.contacts)
     loss = _loss_of_contact(conditions.contact, environments, design)
-    loop = _Loop(frame, sampling.delay, loses=loss.startswith("anywhere"))
+    motors = tuple(_labelled(motor.points())) if points else ()
+    loop = _Loop(frame, sampling.delay, loses=loss.startswith("anywhere"), motors=motors)
     parts, free = _motions(frame, loop, plant, design, laws, loss)
     groups = {key: tuple(item.mode.name for item in part) for key, part in parts.items()}
     motions = tuple(chain.from_iterable(parts.values()))
@@ -169,8 +176,9 @@ def close_sampled_loop(
         clock=_clock(sampling, begins),
         axes=None if links is None or not channels else links.count,
         flights=flights,
+        enclosures=tuple(_enclosures(every)),
     )
-    if conditions.initial_force is not None:
+    if conditions.initial_force is not None and not points:
         acted: Iterable[Coupling] = ()
         if links is not None:
             acted = couplings_of(
@@ -186,6 +194,21 @@ def close_sampled_loop(
             system, conditions, frame, every, environments, tuple(acted)
         )
     return system
+
+
+def _labelled(
+    motors: Iterable[tuple[tuple[str, ...], HeldMotor]],
+) -> Iterator[tuple[str, HeldMotor]]:
+    for labels, motor in motors:
+        yield "".join(f"/{label}" for label in labels), motor
+
+
+def _enclosures(every: Iterable[SampledMode]) -> Iterator[tuple[str, ...]]:
+    """Yield the modes that enclose one map together."""
+    found: dict[str, list[str]] = {}
+    for item in every:
+        found.setdefault(item.point, []).append(item.mode.name)
+    yield from (tuple(names) for names in found.values() if len(names) > 1)
 
 
 def _motions(
@@ -210,7 +233,7 @@ def _motions(
         if loss == "on the surface":
             free += loop.in_the_air(c.name, laws[c.name])
         elif loss.startswith("anywhere"):
-            parts[c.name] += loop.in_the_air(c.name, laws[c.name])
+            parts[c.name] += tuple(loop.in_the_air(c.name, laws[c.name]))
     if frame.turns[-1].is_miss:
         law = next(iter(laws.values()))
         contacts = dict.fromkeys(name for c in design.controllers for name in c.contacts)
@@ -285,6 +308,50 @@ class _Loop:
     frame: Frame
     delays: tuple[int, int]
     loses: bool = False  # Whether contact may be lost anywhere
+    # Motors that there are, each with its label, instead of what encloses them all.
+    motors: tuple[tuple[str, HeldMotor], ...] = ()
+
+    def with_motor(self, motor: HeldMotor) -> _Loop:
+        """Return the loop with another motor."""
+        return replace(self, frame=replace(self.frame, motor=motor))
+
+    def moved(self) -> Iterator[tuple[str, _Loop]]:
+        """Yield the loop with every motor, and the label of each."""
+        for label, motor in self.motors or (("", self.frame.motor),):
+            yield label, self.with_motor(motor)
+
+    def touching(
+        self, environment: Environment, environments: Iterable[Environment], *, forced: bool
+    ) -> Iterator[tuple[str, _Loop, Box]]:
+        """Yield the loop in contact with every motor, a label, and where stiffness and damping are.
+
+        Parameters
+        ----------
+        environment : Environment
+            That is touched.
+        environments : iterable of Environment
+            All that may be touched.
+        forced : bool
+            Whether the law takes the force of the sample.
+        """
+        own = {"k": environment.stiffness, "b": damping_of(environment)}
+        for label, loop in self.moved():
+            motor = loop.frame.motor
+            if motor.drive is None or not motor.drive.loaded:
+                yield label, loop, Box(own)
+            elif self.motors and environment.depends:
+                yield label, loop.with_motor(motor.touching(own, forced=forced)), Box(own)
+            elif not self.motors:
+                # It may be another one within a period, too, or nothing where contact is lost.
+                touched = anything_of(environments, lost=self.loses)
+                yield label, loop.with_motor(motor.touching(touched, forced=forced)), Box(touched)
+            else:
+                for ends in product(*(interval.ends for interval in own.values())):
+                    named = [(symbol, *end) for symbol, end in zip(own, ends, strict=True)]
+                    labels = "".join(f"/{symbol}-{end}" for symbol, end, _ in named if end)
+                    touched = {symbol: Interval.point(value) for symbol, _, value in named}
+                    again = motor.touching(touched, forced=forced)
+                    yield f"{labels}{label}", loop.with_motor(again), Box(touched)
 
     def in_contact(
         self, controller: Controller, law: DiscreteLaw, environments: Iterable[Environment]
@@ -296,33 +363,26 @@ class _Loop:
         """
         found: list[SampledMode] = []
         if not controller.contacts:
-            found += self._corners(law, self.frame.motor.box, controller.name)
+            for label, loop in self.moved():
+                found += loop._corners(law, Box({}), f"{controller.name}{label}")
             environments = environments if self.frame.remembers else ()
         environments = tuple(environments)
+        forced = any(FORCE_GAIN in one.numbers for one in self.frame.laws)
         for environment in environments:
-            touched = {"k": environment.stiffness, "b": damping_of(environment)}
-            if self.frame.motor.drive is not None and self.frame.motor.drive.loaded:
-                # It may be another one within a period, too, or nothing where contact is lost.
-                touched = anything_of(environments, lost=self.loses)
-            forced = any(FORCE_GAIN in one.numbers for one in self.frame.laws)
-            motor = self.frame.motor.touching(touched, forced=forced)
-            loop = replace(self, frame=replace(self.frame, motor=motor))
             name = f"{controller.name}/{environment.name}"
-            found += loop._corners(law, Box(touched).beside(motor.box), name)
+            for label, loop, box in self.touching(environment, environments, forced=forced):
+                found += loop._corners(law, box, f"{name}{label}", environment)
         return tuple(found)
 
-    def in_the_air(self, controller: str, law: DiscreteLaw) -> tuple[SampledMode, ...]:
-        """Return the motions of a controller that touches nothing."""
-        return tuple(self._corners(law, self.frame.motor.box, f"{controller}/{FREE}"))
+    def in_the_air(self, controller: str, law: DiscreteLaw) -> Iterator[SampledMode]:
+        """Yield the motions of a controller that touches nothing."""
+        for label, loop in self.moved():
+            yield from loop._corners(law, Box({}), f"{controller}/{FREE}{label}")
 
     def between(self, law: DiscreteLaw, name: str) -> Iterator[SampledMode]:
         """Yield the motions at samples of the motion loop alone, which no force reaches."""
-
-        def rows_at(values: Mapping[str, Fraction]) -> list[LinearForm]:
-            return self.frame.rows(law, 0, values, Turn.MOTION)
-
-        for corner, rows in self.frame.motor.box.corners(rows_at, name):
-            yield SampledMode.of(corner, rows, len(self.frame.states), begins=False)
+        for label, loop in self.moved():
+            yield from loop._of_no_law(law, Turn.MOTION, Box({}), f"{name}{label}")
 
     def missed(
         self, law: DiscreteLaw, environments: Iterable[Environment]
@@ -336,30 +396,45 @@ class _Loop:
         environments : iterable of Environment
             What may be touched; none for free motion.
         """
-        turn = self.frame.turns[-1]
-        contacts: list[Environment | None] = [*environments]
-        for environment in contacts or [None]:
-            box, motor = self.frame.motor.box, self.frame.motor
-            if environment is not None:
-                touched = {"k": environment.stiffness, "b": damping_of(environment)}
-                if motor.drive is not None and motor.drive.loaded:
-                    every = (e for e in contacts if e is not None)
-                    touched = anything_of(every, lost=self.loses)
-                motor = motor.touching(touched, forced=self.frame.longest_delay > 0)
+        turn, remembers = self.frame.turns[-1], self.frame.longest_delay > 0
+        contacts = tuple(environments)
+        for environment in contacts:
+            for label, loop, box in self.touching(environment, contacts, forced=remembers):
                 # The force of a sample that nobody takes matters where it is still on its way.
-                own = Box(touched) if self.frame.longest_delay else Box({})
-                box = own.beside(motor.box)
-            frame = replace(self.frame, motor=motor)
+                kept = box if remembers else Box({})
+                name = f"{MISS}/{environment.name}{label}"
+                yield from loop._of_no_law(law, turn, kept, name, environment)
+        if not contacts:
+            for label, loop in self.moved():
+                yield from loop._of_no_law(law, turn, Box({}), f"{MISS}/{FREE}{label}")
 
-            def rows_at(values: Mapping[str, Fraction], frame: Frame = frame) -> list[LinearForm]:
-                return frame.rows(law, 0, values, turn)
+    def _of_no_law(
+        self, law: DiscreteLaw, turn: Turn, box: Box, name: str, touched: Environment | None = None
+    ) -> Iterator[SampledMode]:
+        """Yield the motions in which nothing of a law is computed."""
+        frame = self.frame
 
-            name = f"{MISS}/{FREE if environment is None else environment.name}"
-            for corner, rows in box.corners(rows_at, name):
-                yield SampledMode.of(corner, rows, len(frame.states), begins=False)
+        def rows_at(values: Mapping[str, Fraction]) -> list[LinearForm]:
+            return frame.rows(law, 0, values, turn)
 
-    def _corners(self, law: DiscreteLaw, box: Box, name: str) -> Iterator[SampledMode]:
+        box = box.beside(frame.motor.box)
+        corners = zip(box.corners(rows_at, name), self._points(box, name, touched), strict=True)
+        for (corner, rows), point in corners:
+            yield SampledMode.of(corner, rows, len(frame.states), point, begins=False)
+
+    def _points(self, box: Box, name: str, touched: Environment | None) -> Iterator[str]:
+        """Yield, for every corner, of which map that is attained it is a corner."""
+        motor, attained = self.frame.motor, set(self.frame.motor.attained)
+        loaded = motor.drive is not None and motor.drive.loaded
+        if not loaded and not (touched is not None and touched.depends):
+            attained |= {"k", "b"}
+        return box.points(name, attained)
+
+    def _corners(
+        self, law: DiscreteLaw, box: Box, name: str, touched: Environment | None = None
+    ) -> Iterator[SampledMode]:
         """Yield the motions in one contact, at every delay that makes a difference."""
+        box = box.beside(self.frame.motor.box)
         _, values = next(box.named_values(name))
         ages = range(self.delays[0], self.delays[1] + 1)
         # A law that takes no force has the same map at every age of its sample.
@@ -372,9 +447,10 @@ class _Loop:
             late = f"{name}/delay-{delay}" if len(ages) > 1 else name
             late = f"{late}/{turn}" if turn is Turn.ADMITTANCE else late
             rows_at = partial(self._rows, law, delay, turn)
-            for corner, rows in box.corners(rows_at, late):
+            corners = zip(box.corners(rows_at, late), self._points(box, late, touched), strict=True)
+            for (corner, rows), point in corners:
                 size = len(self.frame.states)
-                yield SampledMode.of(corner, rows, size, begins=turn is Turn.BOTH)
+                yield SampledMode.of(corner, rows, size, point, begins=turn is Turn.BOTH)
 
     def _rows(
         self, law: DiscreteLaw, delay: int, turn: Turn, values: Mapping[str, Fraction]

@@ -1,7 +1,6 @@
 """What `--margin` says of delay, period and disturbances, beside the box of ranges."""
 
 import re
-from dataclasses import replace
 from fractions import Fraction
 
 import pytest
@@ -12,7 +11,7 @@ from nrs_design.reporting.document import Linked, parts_of
 from nrs_design.reporting.margins import margin_lines
 from nrs_design.search.loop_margin import Bracket, CommandMargin, MarginBrackets
 from nrs_design.spec import read_spec
-from tests.support import ROOT, SOFT_TISSUE, document_of, run
+from tests.support import SOFT_TISSUE, document_of, run
 
 TEXT = SOFT_TISSUE.read_text(encoding="utf-8")
 THIRD = Fraction(1, 3)
@@ -48,16 +47,6 @@ def test_what_is_not_found_is_said():
     assert delay.endswith("without disturbances, no bound was looked at")
     assert "none is proved, about 0.333" in period
     assert "rounded down" in command
-
-
-def test_what_refutes_a_sampled_loop_may_be_no_motor():
-    """The sentence follows only what is refuted, and only where the loop is sampled."""
-    path = ROOT / "docs" / "examples" / "late-force.nrs.yaml"
-    *_, last = margin_lines(ProofMargins(FOUND), read_spec(path))
-    assert "for an over-approximation of the drive" in last
-    proved = replace(FOUND, period=Bracket(THIRD, None, "the search ends"))
-    for margins, loaded in ((proved, read_spec(path)), (FOUND, read_spec(SOFT_TISSUE))):
-        assert not any("enclose" in line for line in margin_lines(ProofMargins(margins), loaded))
 
 
 def test_numbers_of_margins_lead_to_their_lines():

@@ -460,3 +460,20 @@ def test_constant_parameters_have_a_range(low, high, inverse, odd):
     assert found == ("constant parameter k has no range, or no modes" if odd else None)
     alone = replace(switching, fixed_ends=())
     assert find_contradiction(replace(system, switching=alone)).endswith("or no modes")
+
+
+@pytest.mark.parametrize(
+    ("sets", "reason"),
+    [
+        ((("m0", "m1"),), None),
+        ((("m0", "m9"),), "not one of modes"),
+        ((("m0", "m1"), ("m1", "m2")), "in two of them"),
+        (((),), "is empty"),
+        ((("m0", "small"),), "not of one size"),
+    ],
+)
+def test_enclosures_are_sets_of_modes(sets, reason):
+    two = [[0, 1], [-1, -1]]
+    system = family(two, two, two, [[-1]], names=("m0", "m1", "m2", "small"))
+    found = find_contradiction(replace(system, enclosures=sets))
+    assert found is None if reason is None else reason in found

@@ -1,5 +1,6 @@
 """A motor under commands that take effect within a period: formulas, enclosures, known answers."""
 
+from dataclasses import replace
 from decimal import Decimal, localcontext
 from fractions import Fraction
 from itertools import pairwise
@@ -75,7 +76,7 @@ def test_the_motion_is_that_of_the_split_period(tau, lefts):
     timing = CommandTiming(T, F(0), F(len(lefts)) * T * F(3, 4))
     motor = MotorInTime.of(RANGES, timing)
     spans = (motor.spans[0], *motor.spans[-len(lefts) :]) if lefts else motor.spans[:1]
-    motor = MotorInTime(motor.box, spans)
+    motor = replace(motor, spans=spans)
     values = {"Km": F(Km), "g": F(1 / tau)}
     for span, time in zip(spans, (period, *lefts), strict=True):
         way = tau * (1 - np.exp(-time / tau))

@@ -34,6 +34,11 @@ class Environment:
         return self.nonlinear is not None or any(part.preloaded for part in self.parts)
 
     @property
+    def depends(self) -> bool:
+        """Whether stiffness and damping depend on each other: not every corner is attained."""
+        return self.preloaded or (self.each_losable and "b" in self.parameters)
+
+    @property
     def parameters(self) -> dict[str, Interval]:
         """The ranges by the names of the parameters."""
         return dict(zip(self.law.parameters(), self.ranges, strict=True))

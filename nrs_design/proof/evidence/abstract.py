@@ -23,9 +23,10 @@ from nrs_design.proof.text import exact_text
 PULLING = ", the environment pulling as it pushes"
 ROUNDED = "What single-precision arithmetic rounds in the law is included."
 NOT_ROUNDED = "This holds for the law computed without rounding."
-GROWN_WITHOUT_ROUNDING = (
-    "The instability is proved for exact arithmetic and for an over-approximation of the drive; no "
-    "real drive in the range need be unstable."
+GROWN_WITHOUT_ROUNDING = "The instability is proved for exact arithmetic."
+GROWN_THROUGHOUT = (
+    "No corner of an enclosure need be attained: the growth is that of all maps between its "
+    "corners."
 )
 GROWN_ALONE = (
     "This growth is that of one axis on which the others do not act, which is within what is said "
@@ -210,6 +211,8 @@ class AbstractEvidence(ABC):
             said.append(NOT_ROUNDED)
         elif system.roundings and self.shows is Shows.INSTABILITY:
             said.append(GROWN_WITHOUT_ROUNDING)
+        if system.enclosures and self.shows is Shows.INSTABILITY:
+            said.append(GROWN_THROUGHOUT)
         if system.couplings and self.shows is Shows.INSTABILITY:
             said.append(GROWN_ALONE)
         return " ".join(said)

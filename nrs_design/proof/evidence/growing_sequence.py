@@ -12,7 +12,13 @@ from nrs_design.proof.bounds import at_least, nearly
 from nrs_design.proof.clock import keeps_turns
 from nrs_design.proof.constant import find_odd_shares, system_at, value_text
 from nrs_design.proof.evidence.abstract import AbstractEvidence, Shows
-from nrs_design.proof.evidence.growth import Steps, grows_in_contact, has_growing_trace
+from nrs_design.proof.evidence.growth import (
+    MAX_DOUBLINGS,
+    Steps,
+    grows_in_contact,
+    grows_throughout,
+    has_growing_trace,
+)
 from nrs_design.proof.exact import IntegerMatrix, TooLargeError, common_denominator
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Time
@@ -23,9 +29,10 @@ from nrs_design.proof.system import SwitchedSystem
 MAX_STEPS = 1024
 MAX_TIME = 4096
 MAX_WORK = 5_000_000
-MAX_DOUBLINGS = 60
 # Longer shares make no better averages and values, only longer computations.
 MAX_SHARE_DENOMINATOR = 2**64
+# A corner of an enclosure refutes nothing.
+UNATTAINED = "no loop of the spec need be there"
 # Nor does a factor that is known to more digits.
 MAX_FACTOR_DENOMINATOR = 2**1024
 
@@ -179,11 +186,20 @@ class GrowingSequence(AbstractEvidence):
         if self.edges and self.doublings is None:
             return "only a period has resets"
         if self.is_average:
-            return self._find_odd_weights(system.time)
+            return self._find_odd_weights(system.time) or self._find_unattained(system)
         whole = system.time is Time.DISCRETE or self.factor is not None
         if whole and any(time.denominator != 1 for _, time in self.steps):
             return "a number of steps is not whole"
-        return None
+        return self._find_unattained(system)
+
+    def _find_unattained(self, system: SwitchedSystem) -> str | None:
+        """Say which mode need not be attained, where what is cannot be enclosed; or None."""
+        if system.time is Time.DISCRETE:
+            return None
+        odd = (name for name, _ in self.steps if system.enclosure_of(name) != (name,))
+        return next(
+            (f"mode {name} is a corner of an enclosure: {UNATTAINED}" for name in odd), None
+        )
 
     def _find_odd_weights(self, time: Time) -> str | None:
         if time is Time.DISCRETE and len(self.steps) > 1:
@@ -207,6 +223,13 @@ class GrowingSequence(AbstractEvidence):
             if has_growing_trace(system, self.steps, self.edges, self.doublings):
                 return None
             return "the enclosure of the monodromy matrix does not show growth"
+        enclosed = system.enclosure_of(self.steps[0][0])
+        if len(enclosed) > 1:
+            modes = {mode.name: mode.A for mode in (*system.modes, *system.free_motions())}
+            if grows_throughout(modes[name] for name in enclosed):
+                return None
+            name = self.steps[0][0]
+            return f"not all that mode {name} is a corner of is surely unstable: {UNATTAINED}"
         what = f"mode {self.steps[0][0]}" if len(self.steps) == 1 else "the average of the modes"
         try:
             stable = is_stable(average(system, self.steps), system.time)

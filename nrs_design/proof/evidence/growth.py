@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from fractions import Fraction
+from functools import reduce
 from typing import Any
 
 from nrs_design.proof.contact import Flights
 from nrs_design.proof.enclosure import balls, eigenvector, exponential, precision
+from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
 
 # Each mode with its time in s, or number of steps.
 Steps = tuple[tuple[str, Fraction], ...]
+MAX_DOUBLINGS = 60
 
 
 def has_growing_trace(
@@ -37,6 +40,49 @@ def has_growing_trace(
         return bool(abs(trace) > system.order)
 
 
+def attained(system: SwitchedSystem, mode: str) -> Any:
+    """TRUSTED: enclose what is attained of a mode, at flint's current precision.
+
+    That is the mode itself, or some combination of the set that it is in.
+    """
+    modes = {mode.name: mode.A for mode in system.every_mode}
+    return hull(balls(modes[name]) for name in system.enclosure_of(mode))
+
+
+def hull(matrices: Iterable[Any]) -> Any:
+    """TRUSTED: return balls that contain all combinations of matrices of balls."""
+    from flint import arb_mat
+
+    first, *others = matrices
+    if not others:
+        return first
+    rows, columns = range(first.nrows()), range(first.ncols())
+    return arb_mat(
+        [
+            [reduce(lambda a, b: a.union(b), (M[i, j] for M in (first, *others))) for j in columns]
+            for i in rows
+        ]
+    )
+
+
+def grows_throughout(matrices: Iterable[RationalMatrix]) -> bool:
+    """TRUSTED: decide whether no combination of some matrices is Schur, by traces of powers.
+
+    All eigenvalues at most one in modulus would give ``|tr M^k| <= n`` for every k.
+    """
+    with precision():
+        power = hull(map(balls, matrices))
+        n = power.nrows()
+        for _ in range(MAX_DOUBLINGS + 1):
+            trace = sum((power[i, i] for i in range(n)), start=0 * power[0, 0])
+            if not trace.is_finite():
+                return False
+            if abs(trace) > n:
+                return True
+            power = power * power
+    return False
+
+
 def monodromy(system: SwitchedSystem, steps: Steps, edges: Sequence[int] = ()) -> Any:
     """TRUSTED: enclose the matrix of a periodic signal, at flint's current precision.
 
@@ -56,11 +102,11 @@ def monodromy(system: SwitchedSystem, steps: Steps, edges: Sequence[int] = ()) -
     names = [name for name, _ in steps]
     product: Any = None
     for k, (name, time) in enumerate(steps):
-        A, switch = modes[name], (name, names[(k + 1) % len(names)])
+        switch = (name, names[(k + 1) % len(names)])
         if system.time is Time.CONTINUOUS:
-            factor = exponential(A, time, time)
+            factor = exponential(modes[name], time, time)
         else:
-            factor = balls(A) ** int(time)
+            factor = attained(system, name) ** int(time)
         product = factor if product is None else factor * product
         if switch in maps:
             product = balls(maps[switch][edges[k] if edges else 0]) * product
@@ -90,11 +136,10 @@ def grows_in_contact(system: SwitchedSystem, steps: Steps, low: Fraction, high: 
         Between which its eigenvalue must be.
     """
     with precision():
-        modes = {mode.name: mode.A for mode in system.every_mode}
         v = eigenvector(growth_matrix(system, steps), low, high)
         turned = set() if v is None else {False, True}
         for name, count in steps:
-            A = balls(modes[name])
+            A = attained(system, name)
             for _ in range(int(count) if turned else 0):
                 turned &= _signs(system, name, v)
                 v = A * v

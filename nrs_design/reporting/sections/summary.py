@@ -60,7 +60,7 @@ def summary_of(result: Result) -> tuple[str, str]:
         return _proved(result, evidence), granted
     kept = _grown(system, evidence)
     if system.roundings:
-        kept += ", for an over-approximation of the drive"
+        kept += ", for exact arithmetic"
     name = page_of(system, evidence).name
     return (
         f"Refuted: no guarantee of stability is possible under {_signals(system)}{kept}; the "

@@ -958,3 +958,83 @@ def test_ends_of_other_systems_are_no_ends():
     wrong = Switching(fixed_ends=(("m0", "m9"),))
     for switching in (wrong, Switching(fixed_ends=(("m0", "m0"),)), Switching()):
         assert evidence.find_fault(replace(branicky(), switching=switching)) is not None
+
+
+def enclosing(*factors, names=("m0", "m1")):
+    """Modes of one state, of which only combinations need be attained."""
+    system = family(*([[factor]] for factor in factors), time=Time.DISCRETE)
+    return replace(system, enclosures=(names,))
+
+
+@pytest.mark.parametrize(
+    ("factors", "grows"),
+    [
+        (("1.1", "1.2"), True),
+        (("1.1", "0.5"), False),
+        # From -1.1 to 1.1 there is zero, although each end grows.
+        (("1.1", "-1.1"), False),
+        # No trace of a power says that a radius of exactly one does not decay.
+        (("1", "1.1"), False),
+    ],
+)
+@pytest.mark.parametrize("doublings", [None, 3])
+def test_corners_of_an_enclosure_grow_all_or_refute_nothing(factors, grows, doublings):
+    system = enclosing(*factors)
+    evidence = replace(staying("m0"), doublings=doublings)
+    assert (evidence.find_fault(system) is None) is grows
+    attained = replace(system, enclosures=())
+    assert evidence.find_fault(attained) is None or factors[0] == "1"
+
+
+def test_the_other_corner_of_an_enclosure_is_as_good():
+    """A set stands for what is attained, so each mode of it does."""
+    system = enclosing("1.1", "1.2")
+    assert staying("m1").find_fault(system) is None
+    assert "No corner of an enclosure need be attained" in staying("m1").claim(system)
+
+
+def test_a_sequence_goes_through_all_that_is_enclosed():
+    """Of 3/2 and 1/2..5/6 in turn, only the larger one grows; of 3/2 and 5/6, both do."""
+    signal = GrowingSequence((("m0", Fraction(1)), ("m1", Fraction(1))), 4)
+    for low, grows in (("0.5", False), ("0.8", True)):
+        system = family([["3/2"]], [["5/6"]], [[low]], time=Time.DISCRETE)
+        system = replace(system, enclosures=(("m1", "m2"),))
+        assert (signal.find_fault(system) is None) is grows
+
+
+def test_growth_that_keeps_the_signs_is_that_of_all_that_is_enclosed():
+    system, evidence = genuine("growing-sequence, contact")
+    assert evidence.factor is not None
+    assert evidence.find_fault(system) is None
+    name = evidence.steps[0][0]
+    mode = next(mode for mode in system.every_mode if mode.name == name)
+    still = Mode("still", matrix([[v / 2 for v in row] for row in mode.A.fractions()]))
+    system = replace(system, modes=(*system.modes, still), enclosures=((name, "still"),))
+    assert "does not show a growing motion" in evidence.find_fault(system)
+
+
+def test_in_continuous_time_a_corner_of_an_enclosure_refutes_nothing():
+    system = replace(family([["1"]], [["2"]]), enclosures=(("m0", "m1"),))
+    assert "is a corner of an enclosure" in staying("m0").find_fault(system)
+    average = GrowingSequence((("m0", Fraction(1, 2)), ("m1", Fraction(1, 2))))
+    assert "is a corner of an enclosure" in average.find_fault(system)
+
+
+@pytest.mark.parametrize(
+    ("sets", "share", "grows"),
+    [
+        # Halfway it is from 1.1 to 1.2, at the low end from 0.9 on.
+        ((("m0", "m1"), ("m2", "m3")), Fraction(1, 2), True),
+        ((("m0", "m1"), ("m2", "m3")), Fraction(0), False),
+        # Which weights belong together is not known.
+        ((("m0", "m1"), ("m3", "m2")), Fraction(1, 2), False),
+        ((("m0", "m1", "m2"),), Fraction(1, 2), False),
+        ((("m0", "m1"),), Fraction(1, 2), False),
+    ],
+)
+def test_at_a_value_of_a_constant_enclosures_are_between_its_corners(sets, share, grows):
+    system = family([["0.9"]], [["1"]], [["1.3"]], [["1.4"]], time=Time.DISCRETE)
+    ends = Switching(fixed_ends=(("m0", "m2"), ("m1", "m3")))
+    system = replace(system, switching=ends, enclosures=sets)
+    evidence = replace(staying("m0 to m2"), shares=(share,))
+    assert (evidence.find_fault(system) is None) is grows

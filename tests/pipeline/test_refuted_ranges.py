@@ -1,0 +1,252 @@
+"""Loops with ranges that are enclosed: what refutes them grows in a loop of the spec."""
+
+import re
+from dataclasses import replace
+from fractions import Fraction
+from itertools import product
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.linalg import expm
+
+from nrs_design.certificates.certificate import Certificate, content_id, to_document
+from nrs_design.certificates.prove import prove
+from nrs_design.certificates.verify import verify_document
+from nrs_design.pipeline import run_certification, run_design
+from nrs_design.pipeline.certification import assemble_spec, gains_text
+from nrs_design.proof.evidence.growing_sequence import staying
+from nrs_design.search.certification import Limits
+from nrs_design.search.certify import ENCLOSURE
+from nrs_design.spec import LoadedSpec, parse_spec
+from nrs_design.switched.assemble import assemble
+from tests.proof.graphs import common_quadratic
+from tests.support import matrix
+
+# The largest spectral radius of an admissible loop is 0.98951, by a grid of 40 x 60 values.
+TORQUES = """\
+kind: interaction-design
+name: torques
+axis: prismatic
+torque_interface: {inertia: {nominal: 8 kg, range: [5 kg, 12 kg], varies: false}, friction: 1 N*s/m}
+limits: {velocity: 100 mm/s, torque: 20 N, bandwidth: 2 Hz}
+environments:
+  table:
+    model: elastic
+    stiffness: {nominal: 5000 N/m, range: [1000 N/m, 20000 N/m], varies: false}
+controllers:
+  c: {type: torque-impedance, environment: table, stiffness: 1000 N/m, damping: 125.2 N*s/m}
+switching: arbitrary
+sampling: {period: 2 ms, delay: 0, latency: 2 ms}
+contact: kept
+"""
+# It is from 0.9537 to 0.9710 for all lags.
+LAG = """\
+kind: interaction-design
+name: lag
+axis: prismatic
+position_interface: {time_constant: {nominal: 0.02 s, range: [0.005 s, 0.06 s], varies: false}}
+limits: {velocity: 250 mm/s, torque: 50 N, bandwidth: 2 Hz}
+environments: {hand: {model: elastic, stiffness: 300 N/m}}
+controllers: {drag: {type: impedance, environment: hand, Mt: 5 kg, Bt: 60 N*s/m}}
+switching: arbitrary
+sampling: {period: 8 ms, delay: 0}
+contact: kept
+"""
+QUICK = Limits(budget=2.0, optimize_rate=False, more=False)
+# Of a torque-controlled loop: period in s, friction in N s/m, and for inertia in kg, stiffness of
+# what is touched in N/m and of the controller, and its damping in N s/m, the logarithm of two.
+T, FRICTION = 0.002, 1.0
+values = st.floats(0, 1, allow_subnormal=False)
+loops = st.tuples(values, values, values, values, values, values, st.sampled_from([0, 1, 2]))
+
+
+def spec_of(loop):
+    """Return a loop with wide ranges of constants, and where its numbers are."""
+    inertia, wide, stiffness, stiff, K, D, late = loop
+    J = round(2 + 10 * inertia, 2), round((2 + 10 * inertia) * (1 + 3 * wide), 2)
+    k = round(300 * 30**stiffness), round(300 * 30**stiffness * (1.1 + 9 * stiff))
+    law = round(300 * 10**K), round(20 * 200**D, 1)
+    latency = ("0 ms", "2 ms", "{range: [0.4 ms, 1.6 ms], varies: false}")[late]
+    text = f"""\
+kind: interaction-design
+name: random
+axis: prismatic
+torque_interface:
+  inertia: {{nominal: {J[0]} kg, range: [{J[0]} kg, {J[1]} kg], varies: false}}
+  friction: 1 N*s/m
+limits: {{velocity: 100 mm/s, torque: 20 N, bandwidth: 2 Hz}}
+environments:
+  table:
+    model: elastic
+    stiffness: {{nominal: {k[0]} N/m, range: [{k[0]} N/m, {k[1]} N/m], varies: false}}
+controllers:
+  c:
+    type: torque-impedance
+    environment: table
+    stiffness: {law[0]} N/m
+    damping: {law[1]} N*s/m
+switching: arbitrary
+sampling: {{period: 2 ms, delay: 0, latency: {latency}}}
+contact: kept
+"""
+    lates = ((0.0,), (T,), (0.0004, 0.0016))[late]
+    return text, J, k, law, lates
+
+
+def step(J, k, law, late):
+    """The map of a period of [speed, error before, command before, deflection]."""
+    G = np.array([[-FRICTION / J, -k / J, 1 / J], [1, 0, 0], [0, 0, 0]])
+    first, last = expm(G * late), expm(G * (T - late))
+    K, D = law
+    command = np.array([0.0, -D / T, 0.0, -K - D / T])
+    before = np.array([0.0, 0.0, 1.0, 0.0])
+    z = np.zeros((2, 4))
+    z[0, 0] = z[1, 3] = 1
+    z = first[:2, :2] @ z + np.outer(first[:2, 2], before)
+    z = last[:2, :2] @ z + np.outer(last[:2, 2], command)
+    return np.array([z[0], [0, 0, 0, -1.0], command, z[1]])
+
+
+def radius(M):
+    return np.abs(np.linalg.eigvals(M)).max()
+
+
+def largest(J, k, law, lates):
+    """The largest spectral radius on a grid of constants, its ends with it."""
+    grid = product(np.geomspace(*J, 12), np.geomspace(*k, 16), np.linspace(lates[0], lates[-1], 4))
+    return max(radius(step(m, stiffness, law, late)) for m, stiffness, late in grid)
+
+
+def loaded_of(text):
+    return LoadedSpec(path=Path("loop.nrs.yaml"), sha256="", text=text, spec=parse_spec(text))
+
+
+def decide(text):
+    return run_certification(loaded_of(text), limits=QUICK)
+
+
+def witness(found, J, k, law, lates):
+    """The product of the maps along the sequence that a certificate names, at real values."""
+    evidence = found.certification.evidence
+    ends = {"J": J, "k": k, "h0": (T - lates[-1], T - lates[0])}
+    total, constants = np.eye(4), []
+    for name, count in evidence.steps:
+        label = dict(re.findall(r"/(\w+)-(min|max)", name))
+        at = {s: both[label.get(s) == "max"] for s, both in ends.items()}
+        constants.append(at)
+        total = (
+            np.linalg.matrix_power(step(at["J"], at["k"], law, T - at["h0"]), int(count)) @ total
+        )
+    assert all(at == constants[0] for at in constants)
+    return total
+
+
+@pytest.mark.parametrize("text", [TORQUES, LAG])
+def test_a_corner_of_an_enclosure_does_not_refute(text):
+    """A mode of the enclosure is not stable; that nothing is shown is said with the reason."""
+    result = decide(text)
+    assert result.certification.verdict == "inconclusive"
+    (said,) = (a.outcome for a in result.certification.attempts if a.step == ENCLOSURE)
+    assert "is not stable, and no loop of the spec need be there" in said
+    assert result.certificate is None
+
+
+def test_the_kernel_refuses_a_forged_corner():
+    """The mode is not stable; that it need not be attained is in the system."""
+    loaded = loaded_of(TORQUES)
+    designed = run_design(loaded)
+    system = assemble_spec(loaded, designed)
+    evidence = staying("c/table/k-min/J-max/hull-1")
+    assert "surely unstable" in evidence.find_fault(system)
+    assert evidence.find_fault(replace(system, enclosures=())) is None
+    forged = Certificate(
+        loaded.spec.name,
+        loaded.sha256,
+        "deflection",
+        gains_text(designed),
+        system,
+        (evidence,),
+        "0",
+    )
+    for enclosures, fault in ((system.enclosures, "surely unstable"), ((), "'enclosures' is not")):
+        document = to_document(replace(forged, system=replace(system, enclosures=enclosures)))
+        document["id"] = content_id(document)
+        assert fault in verify_document(document, loaded).fault
+
+
+UNSTABLE = TORQUES.replace("damping: 125.2", "damping: 5000")
+
+
+def test_growth_does_not_belong_to_a_spec_without_its_enclosures():
+    """Where a proof is checked beside, too: it knows the modes that the file holds."""
+    result = decide(UNSTABLE)
+    bare = replace(result.certificate, system=replace(result.certificate.system, enclosures=()))
+    document = to_document(bare) | {"id": bare.id}
+    said = verify_document(document, result.loaded, proof=lambda: None).fault
+    assert "'enclosures' is not that of the spec" in said
+
+
+def test_what_grows_at_the_ends_of_ranges_refutes():
+    """Its certificate is about points of the ranges, and says so."""
+    result = decide(UNSTABLE)
+    assert result.certification.verdict == "refuted"
+    assert result.certificate.points == "ends"
+    document = to_document(result.certificate) | {"id": result.certificate.id}
+    assert verify_document(document, result.loaded).fault is None
+    assert any("at their ends" in text for text in document["assumptions"])
+    grown = witness(result, (5.0, 12.0), (1000.0, 20000.0), (1000.0, 5000.0), (T,))
+    assert radius(grown) == pytest.approx(1.3565, abs=0.01)
+
+
+def test_a_proof_at_points_of_the_ranges_proves_nothing():
+    result = decide(UNSTABLE)
+    system = assemble(
+        result.designed.spec, result.designed.plant, result.designed.design, points="ends"
+    )
+    stable = replace(
+        system,
+        modes=tuple(
+            replace(m, A=matrix([[0] * m.A.shape[0]] * m.A.shape[0])) for m in system.modes
+        ),
+    )
+    unit = tuple(tuple(int(i == j) for j in range(stable.order)) for i in range(stable.order))
+    proof = common_quadratic(unit, 0, Fraction(1, 2))
+    certificate = Certificate("s", "0" * 64, None, {}, stable, (proof,), "0", points="ends")
+    document = to_document(certificate)
+    document["id"] = content_id(document)
+    assert "where only growth says something" in prove(document).fault
+    del document["points"]
+    document["id"] = content_id(document)
+    assert prove(document).fault is None
+
+
+def test_other_points_than_those_of_the_spec_are_not_read():
+    result = decide(UNSTABLE)
+    document = to_document(result.certificate) | {"points": "anywhere"}
+    document["id"] = content_id(document)
+    assert "no system at the points" in verify_document(document, result.loaded).fault
+
+
+@given(loops)
+@settings(max_examples=4)
+def test_nothing_admissible_is_refuted(loop):
+    """What refutes grows at real values; what is proved does not on a grid of them."""
+    text, J, k, law, lates = spec_of(loop)
+    result = decide(text)
+    if result.certification.verdict == "refuted":
+        assert radius(witness(result, J, k, law, lates)) > 1
+    elif result.certification.verdict == "proved":
+        assert largest(J, k, law, lates) < 1
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize("seed", range(20))
+def test_many_loops(seed):
+    """Of 200 loops, none is refuted without a loop that grows."""
+    rng = np.random.default_rng(seed)
+    for _ in range(10):
+        loop = (*rng.uniform(0, 1, 6), int(rng.integers(3)))
+        test_nothing_admissible_is_refuted.hypothesis.inner_test(loop)

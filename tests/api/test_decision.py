@@ -28,13 +28,6 @@ def test_a_decision_is_told_in_a_line():
     assert repr(nrs.certify(pair(6), name="pair")) == "<Decision pair: PROVED>"
 
 
-def test_a_page_ends_as_one(tmp_path):
-    for name in ("page.pdf", "page.txt"):
-        with pytest.raises(OutputError, match="not the name of a page in HTML"):
-            nrs.certify([[[-1]]]).report(tmp_path / name)
-    assert not list(tmp_path.iterdir())
-
-
 def test_a_file_is_no_folder(tmp_path):
     """What looks like a file would become a folder of that name."""
     with pytest.raises(OutputError, match=r"name of a file; .*pair\.cert\.json"):

@@ -34,10 +34,7 @@ def test_what_is_refuted_does_not():
 def test_files_are_written_with_their_proof(tmp_path):
     exported = nrs.load(SOFT_TISSUE).export()
     (file,) = exported.save(tmp_path)
-    assert sorted(path.name for path in tmp_path.iterdir()) == [
-        "soft-tissue.cert.json",
-        file.name,
-    ]
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["soft-tissue.cert.json", file.name]
     assert nrs.verify(tmp_path / "soft-tissue.cert.json", SOFT_TISSUE)
     command = tmp_path / "command"
     run("export", SOFT_TISSUE, "--out", command, cwd=tmp_path)

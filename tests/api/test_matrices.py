@@ -15,11 +15,7 @@ from tests.api.pairs import ROTATION, pair
 
 @pytest.mark.parametrize(
     ("a", "verdict", "common_quadratic"),
-    [
-        (5, "proved", "exists"),
-        (6, "proved", "impossible"),
-        (12, "refuted", "impossible"),
-    ],
+    [(5, "proved", "exists"), (6, "proved", "impossible"), (12, "refuted", "impossible")],
 )
 def test_known_answers(a, verdict, common_quadratic):
     decision = nrs.certify(pair(a))

@@ -102,19 +102,6 @@ def test_verify_beside_a_spec_loads_no_heavy_library(tmp_path):
     assert not heavy & set(facts["modules"])
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("command", ["certify-switching", "verify"])
-def test_given_matrices_need_no_model_of_a_design(tmp_path, command):
-    run("certify-switching", COMMUTING, "--out", "a.cert.json", cwd=tmp_path)
-    arguments = [COMMUTING] if command == "certify-switching" else ["a.cert.json", COMMUTING]
-    result, facts = loaded_by(tmp_path, command, *arguments)
-    assert result.returncode == 0, result.stderr
-    assert "nrs_design.switched.assemble" in facts["modules"]
-    for needless in ("models.plant", "models.contact", "controllers.laws", "switched.close_loop"):
-        assert f"nrs_design.{needless}" not in facts["modules"]
-    assert not {"rich", "jinja2", "scipy", "nrs_design.search.margin"} & set(facts["modules"])
-
-
 def test_imports_wait_for_no_collection_of_garbage(tmp_path):
     program = (
         "import gc, sys\n"

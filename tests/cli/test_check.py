@@ -13,14 +13,6 @@ def test_check_prints_values_as_written_and_in_si(tmp_path: Path) -> None:
     assert line.split()[1:] == ["8", "deg/s", "0.139626", "rad/s"]
 
 
-def test_check_json_lists_the_lever_arm_conversion(tmp_path: Path) -> None:
-    document = document_of("check", SOFT_TISSUE, cwd=tmp_path)
-    assert document["schema"] == "nrs-design/check/1"
-    values = [(v["si"], v["unit"]) for v in document["specs"][0]["values"]]
-    # Thesis 6.3.1.1: 747.1461 N/m at 0.24 m.
-    assert ("43.0356", "N*m/rad") in [(si[:7], unit) for si, unit in values]
-
-
 def test_check_goes_on_after_a_broken_spec(tmp_path: Path) -> None:
     broken = tmp_path / "broken.nrs.yaml"
     broken.write_text("kind: switched-system\nname: x\ntime: continuous\nmodes: []\n")

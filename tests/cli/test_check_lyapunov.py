@@ -35,14 +35,6 @@ def test_decay_that_is_slower_than_asked_is_told(tmp_path):
     assert "no decay" not in done.stdout
 
 
-def test_failing_mode_and_vector(tmp_path):
-    file = tmp_path / "a.json"
-    file.write_text('{"A": [[[-1, -5], [0.2, -1]]], "P": [[1, 0], [0, 1]]}')
-    done = run("check-lyapunov", file, cwd=tmp_path, code=1)
-    assert "in mode A1 it does not decrease" in done.stdout
-    assert "at x = (" in done.stdout
-
-
 def test_discrete(tmp_path):
     file = tmp_path / "a.json"
     file.write_text('{"A": [[0.5]], "P": [[1]]}')

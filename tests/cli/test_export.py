@@ -69,19 +69,6 @@ def test_export_writes_the_record_and_its_certificate(export, capsys, out, where
     assert document["record"] == json.loads(Path(where).read_text())
 
 
-def test_the_files_of_another_spec_are_not_overwritten(export, capsys, certificate):
-    for name in ("a.nrs.yaml", "b.nrs.yaml"):
-        Path(name).write_bytes(SPEC.read_bytes())
-    Path("mine.json").write_text(certificate)
-    assert export("a.nrs.yaml") == 0
-    before = contents()
-    assert export("b.nrs.yaml") == 2
-    assert export("b.nrs.yaml", "--certificate", "mine.json") == 2
-    assert "belongs to a.nrs.yaml" in capsys.readouterr().err
-    assert export("a.nrs.yaml", "--out", "a.nrs.yaml") == 2
-    assert contents() == before
-
-
 def test_given_certificate_is_used_and_not_written_again(export, certificate):
     Path("mine.json").write_text(certificate)
     assert export(SPEC, "--certificate", "mine.json") == 0
@@ -112,24 +99,6 @@ def test_certificate_that_does_not_cover_the_design(export, certificate, capsys,
     assert "not exported" in capsys.readouterr().err
 
 
-def test_valid_certificate_of_other_gains(export, tmp_path, capsys):
-    """A certificate that verifies, since the gains are within the bounds of the spec."""
-    from nrs_design.search.certify import certify
-    from nrs_design.switched.assemble import assemble_from_text
-
-    loaded = read_spec(SPEC)
-    design = run_certification(loaded)
-    gains = {**design.certificate.gains, "insertion": {"Mt": "0.015625", "Bt": "2.125"}}
-    system = assemble_from_text(loaded.spec, gains)
-    statements = certify(system).statements
-    other = replace(design.certificate, gains=gains, system=system, statements=statements)
-    Path("mine.json").write_text(dump(other))
-    assert verify(Path("mine.json"), loaded).fault is None
-    assert export(SPEC, "--certificate", "mine.json") == 1
-    assert "other gains of insertion" in capsys.readouterr().err
-    assert files() == ["mine.json"]
-
-
 def test_certificate_that_is_none(export):
     assert export(SPEC, "--certificate", "missing.json") == 2
     Path("mine.json").write_text("[]")
@@ -148,19 +117,6 @@ def test_refuted_design_is_not_exported(export, capsys):
     assert export("stiff.nrs.yaml", "--certificate", "mine.json", "--json") == 1
     assert json.loads(capsys.readouterr().out)["verdict"] == "refuted"
     assert files() == ["mine.json", "stiff.nrs.yaml"]
-
-
-def test_inconclusive_design_is_not_exported(export, monkeypatch):
-    from nrs_design.certificates.certificate import CommonQuadraticStatus, Verdict
-    from nrs_design.search.certification import Certification
-
-    def give_up(system, *arguments, **options):
-        unknown = CommonQuadraticStatus.UNKNOWN
-        return Certification(system, Verdict.INCONCLUSIVE, unknown, "auto", (), ())
-
-    monkeypatch.setattr("nrs_design.search.certify.certify", give_up)
-    assert export(SPEC) == 3
-    assert files() == []
 
 
 def test_outputs_that_cannot_be(export, capsys):
@@ -287,26 +243,6 @@ int main(void) { return nrs_other_self_test() + nrs_every_2_ms_self_test() + 2; 
     subprocess.run([cc, *flags, "-DNRS_OTHER_TEST_PROGRAM", *sources], check=True)
     done = subprocess.run(["./program"], check=True, capture_output=True)
     assert done.stdout == b"other: all 1000 cases are the same\n"
-
-
-@pytest.mark.parametrize("name", ["x.txt", "x.c", "x.h"])
-def test_a_file_that_no_format_writes_is_no_folder(export, capsys, sampled, name):
-    spec, certificate = sampled
-    before = files()
-    assert export(spec, "--certificate", certificate, "--format", "c", "--out", name) == 2
-    assert "seems to be a file" in capsys.readouterr().err
-    assert files() == before
-
-
-def test_a_co_simulation_model(export, capsys, sampled, monkeypatch):
-    spec, certificate = sampled
-    options = ("--certificate", certificate, "--format", "fmu")
-    monkeypatch.setattr("nrs_design.exporters.cosimulation.compiler", lambda: None)
-    assert export(spec, *options, "--out", "model.fmu") == 0
-    assert "sources only" in capsys.readouterr().err
-    assert export(spec, *options, "--out", "model.fmu", "--json") == 0
-    (remark,) = json.loads(capsys.readouterr().out)["remarks"]
-    assert "sources only" in remark
 
 
 def test_a_refuted_program_says_so_in_every_file(export, capsys):

@@ -47,8 +47,7 @@ def test_json_has_no_number_that_is_none(capsys):
 
 
 @pytest.mark.parametrize(
-    ("variables", "coloured"),
-    [({}, True), ({"NO_COLOR": "1"}, False), ({"TERM": "dumb"}, False)],
+    ("variables", "coloured"), [({}, True), ({"NO_COLOR": "1"}, False), ({"TERM": "dumb"}, False)]
 )
 def test_colours_are_for_those_who_want_them(monkeypatch, variables, coloured):
     for name in ("NO_COLOR", "TERM"):

@@ -7,7 +7,7 @@ import pytest
 from typer.testing import CliRunner
 
 from nrs_design.cli.app import make_app
-from nrs_design.errors import CertificateError, OutputError
+from nrs_design.errors import OutputError
 
 ROOT = Path(__file__).parents[2]
 COMMUTING = str(ROOT / "specs/examples/commuting.nrs.yaml")
@@ -35,31 +35,6 @@ def test_default_is_a_page_in_reports(tmp_path, monkeypatch):
     assert done.stdout == "commuting: PROVED\n"
     page = (tmp_path / "reports/commuting.html").read_text()
     assert page.startswith("<!DOCTYPE html>")
-
-
-@pytest.mark.slow
-def test_the_page_of_another_spec_is_not_overwritten(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    for name in ("a.nrs.yaml", "b.nrs.yaml"):
-        Path(name).write_text(Path(COMMUTING).read_text())
-    assert run("a.nrs.yaml").exit_code == 0
-    page = Path("reports/commuting.html").read_bytes()
-    places = (("--out", "reports/commuting.html"), ("--format", "png"))
-    for place in ((), *places):
-        refused = run("b.nrs.yaml", *place)
-        assert isinstance(refused.exception, OutputError)
-        assert "belongs to a.nrs.yaml" in str(refused.exception)
-        assert [path.name for path in Path("reports").iterdir()] == ["commuting.html"]
-    assert run("a.nrs.yaml").exit_code == 0
-    assert Path("reports/commuting.html").read_bytes() == page
-
-
-def test_a_file_that_is_no_report_is_not_overwritten(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    Path("notes").write_text("precious")
-    refused = run(COMMUTING, "--format", "html", "--out", "notes")
-    assert "not overwritten" in str(refused.exception)
-    assert Path("notes").read_text() == "precious"
 
 
 @pytest.mark.parametrize(
@@ -139,12 +114,3 @@ def test_a_certificate_at_hand_is_shown(tmp_path):
     text = page.read_text(encoding="utf-8")
     assert json.loads(certificate.read_text(encoding="utf-8"))["id"] in text
     assert "each of its statements was checked again exactly" in text
-
-
-def test_a_certificate_of_another_spec_is_refused(tmp_path):
-    with pytest.raises(CertificateError, match="another spec"):
-        CliRunner().invoke(
-            make_app(),
-            ["report", COMMUTING, "--certificate", str(ROOT / "reports/ando-shih.cert.json")],
-            catch_exceptions=False,
-        )

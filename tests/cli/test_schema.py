@@ -11,15 +11,6 @@ import pytest
 from tests.support import run, typed
 
 
-def test_no_spec_is_overwritten(tmp_path: Path) -> None:
-    spec = tmp_path / "a.nrs.yaml"
-    spec.write_text("kind: switched-system")
-    run("schema", "--out", spec.name, cwd=tmp_path, code=2)
-    assert spec.read_text() == "kind: switched-system"
-    for _ in range(2):
-        run("schema", "--out", "nrs.schema.json", cwd=tmp_path, code=0)
-
-
 @pytest.mark.slow
 def test_schema_is_draft_07(tmp_path: Path) -> None:
     typed("schema", "--out", "nrs.schema.json", cwd=tmp_path, code=0)

@@ -72,17 +72,6 @@ def test_a_run_goes_on_from_what_is_kept(tmp_path, spec):
     assert second.stdout == first.stdout
 
 
-@pytest.mark.parametrize("spoil", ["", "{", "[]", '{"schema": "nrs-design/point/1"}', "\0"])
-def test_a_spoilt_answer_is_computed_again(tmp_path, spec, spoil):
-    command = ("sweep", spec, "--set", f"{STIFFNESS}=700 N/m", "check", "--json")
-    first = run(*command, cwd=tmp_path, code=0)
-    (entry,) = kept(tmp_path / "mine.sweep")
-    entry.write_text(spoil, encoding="utf-8")
-    second = run(*command, cwd=tmp_path, code=0)
-    assert "1 computed, 0 were there" in second.stderr
-    assert second.stdout == first.stdout
-
-
 def interrupted(tmp_path, command, how):
     """Run a command as typed, and end it by a signal when a few answers are kept."""
     process = subprocess.Popen(
@@ -115,13 +104,8 @@ def test_a_run_that_is_killed_goes_on(tmp_path, spec, how, code):
 
 def test_results_do_not_depend_on_how_many_processes_compute_them(tmp_path, spec):
     command = (
-        "sweep",
-        spec,
-        "--set",
-        f"{STIFFNESS}=700..2000/6 N/m",
-        "certify-switching",
-        "--json",
-    )
+        "sweep", spec, "--set", f"{STIFFNESS}=700..2000/6 N/m", "certify-switching", "--json",
+    )  # fmt: skip
     alone = run(*command, "--store", "one", cwd=tmp_path, code=1)
     two = run(*command, "--store", "two", "--jobs", 2, cwd=tmp_path, code=1)
     assert two.stdout == alone.stdout
@@ -204,26 +188,6 @@ def test_proved_is_used_again_only_with_a_certificate_that_holds(tmp_path, spec)
     assert "0 computed, 1 were there" in certified(tmp_path, spec).stderr
 
 
-def test_the_certificate_of_another_point_proves_nothing(tmp_path, spec):
-    refuted = certified(tmp_path, spec, "2000")
-    answer, certificate = answer_and_certificate(tmp_path)
-    elsewhere = certificate.with_name("elsewhere.json")
-    certificate.rename(elsewhere)
-    answer.unlink()
-    certified(tmp_path, spec)
-    (tmp_path / "other").mkdir()
-    proof = next(p for p in kept(tmp_path / "mine.sweep") if p.name.endswith(".cert.json"))
-    proved = proof.with_name(proof.name.replace(".cert", ""))
-    certificate.write_bytes(proof.read_bytes())
-    said = json.loads(proved.read_text(encoding="utf-8"))["result"]
-    from nrs_design.sweeps.store import Kept
-
-    answer.write_text(Kept(0, said).text(answer.stem), encoding="utf-8")
-    again = certified(tmp_path, spec, "2000")
-    assert again.stdout == refuted.stdout
-    assert again.returncode == 1
-
-
 def test_a_value_that_makes_no_valid_spec_is_a_wrong_point(tmp_path, spec):
     mixed = f"{STIFFNESS}=700,-5 N/m"
     swept = document_of("sweep", spec, "--set", mixed, "check", cwd=tmp_path, code=2)
@@ -234,29 +198,6 @@ def test_a_value_that_makes_no_valid_spec_is_a_wrong_point(tmp_path, spec):
     assert len(kept(tmp_path / "mine.sweep")) == 1
     told = run("sweep", spec, "--set", mixed, "check", cwd=tmp_path, code=2).stdout
     assert f"wrong: {STIFFNESS}=-5 N/m: " in told
-
-
-@pytest.mark.parametrize(
-    ("said", "message"),
-    [
-        ("environments.soft.stifness=1 N/m", "did you mean environments.soft.stiffness"),
-        (f"{STIFFNESS}=5..1/3 N/m", "reversed"),
-        (f"{STIFFNESS}=5..5/3 N/m", "empty"),
-        (f"{STIFFNESS}=1..2/1 N/m", "two ends"),
-        (f"{STIFFNESS}=1.5..2 N/m", "has no count"),
-        (f"{STIFFNESS}=1..1000000000 N/m", "1000000000 points are more than 1000000"),
-        (f"{STIFFNESS}=1,2 s", "is not a stiffness"),
-        (f"{STIFFNESS}=1,2", "has no unit"),
-        (f"{STIFFNESS}=1,,2 N/m", "lacks a value"),
-        (f"{STIFFNESS}=1,1 N/m", "twice"),
-        (f"{STIFFNESS}", "sets nothing"),
-        (f"{STIFFNESS}=[1 N/m]", "a list or a mapping"),
-    ],
-)
-def test_what_makes_no_sweep_is_refused(tmp_path, spec, said, message):
-    done = run("sweep", spec, "--set", said, "check", cwd=tmp_path, code=2)
-    assert message in done.stderr.replace("\n", " ")
-    assert kept(tmp_path) == []
 
 
 @pytest.mark.parametrize(

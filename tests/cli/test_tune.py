@@ -1,7 +1,5 @@
 """`nrs-design tune`, as a user types it."""
 
-import json
-
 import pytest
 
 from tests.support import FORCE_LIMIT, ROBOT, SOFT_TISSUE, document_of, run
@@ -9,48 +7,6 @@ from tests.support import FORCE_LIMIT, ROBOT, SOFT_TISSUE, document_of, run
 GIVEN = """motion_loop:
   transfer_function: {numerator: [28.416, 1618.80], denominator: [1, 56.89, 1618.80]}
 """
-
-
-def test_motion_loop_of_the_thesis(tmp_path):
-    """Thesis 4.3: zero 56.9706, gain 2065.4 (2060 used), poles -28.453 +- 28.448j, 6.8 %."""
-    document = document_of("tune", FORCE_LIMIT, cwd=tmp_path, code=0)
-    assert document["schema"] == "nrs-design/tune/1"
-    motion = document["motion"]
-    assert motion["root_locus"]["zero"] == pytest.approx(56.9706, rel=5e-4)
-    assert motion["root_locus"]["derivative_gain"] == pytest.approx(2065.4, rel=1e-3)
-    assert motion["Kd"] == 2060
-    assert motion["Kp"] == 117359.4375
-    upper = next(pole for pole in motion["poles"] if pole[1] > 0)
-    assert upper == pytest.approx([-28.453, 28.448], rel=1e-3)
-    assert motion["overshoot_percent"] == pytest.approx(6.8, abs=0.2)
-
-
-def test_force_loop_of_the_thesis(tmp_path):
-    """Thesis 6.3.3.1: Kp = 0.02; the damping ratio it really gives is 0.741 at 54.9 rad/s."""
-    (force,) = document_of("tune", FORCE_LIMIT, cwd=tmp_path)["force"]
-    assert force["name"] == "force"
-    assert force["Kp"] == pytest.approx(0.02)
-    assert force["damping_ratio"] == pytest.approx(0.741, abs=1e-3)
-    assert force["natural_frequency"] == pytest.approx(54.9, abs=0.1)
-
-
-def test_force_limit_with_its_offset(tmp_path):
-    """The numbers are those of the law as declared: 8 deg/s, Fd = 0.3 N m."""
-    shown = run("tune", ROBOT / "force-limit-offset.nrs.yaml", cwd=tmp_path).stdout
-    assert "X_i is the measured position at the switch" in shown
-    assert "peaks at 0.324 N m and settles 0.00 % off 0.3 N m" in shown
-    spec = tmp_path / "reference.nrs.yaml"
-    text = (ROBOT / "force-limit-offset.nrs.yaml").read_text()
-    spec.write_text(text.replace("offset: measured", "offset: reference"))
-    result = run("tune", spec, "--json", cwd=tmp_path)
-    (force,) = json.loads(result.stdout)["force"]
-    assert force["offset"] == "reference"
-    assert force["steady_state_ratio"] == pytest.approx(0.1894, abs=1e-4)
-    assert force["peak_torque"] == pytest.approx(0.3763, abs=1e-4)
-    # That misses the goal of the spec.
-    assert result.returncode == 1
-    (goal,) = [goal for goal in force["goals"] if goal["goal"] == "max_force_error"]
-    assert goal["status"] == "missed"
 
 
 def test_given_motion_loop_is_said_to_be_given(tmp_path):

@@ -10,8 +10,7 @@ from hypothesis import strategies as st
 
 from nrs_design.controllers.laws import IntegralForce, PositionControl
 from nrs_design.controllers.replica import step
-from nrs_design.controllers.step_analysis import check_range
-from nrs_design.controllers.step_law import INTEGRAL_LIMIT, StepFrame, StepLimits, build_law
+from nrs_design.controllers.step_law import StepFrame, StepLimits, build_law
 
 PERIOD, CLAMP = Fraction(1, 500), Fraction(1, 64)
 LAWS = {
@@ -54,11 +53,3 @@ def test_it_comes_back_from_the_clamp_at_once():
         ends.append(count)
     assert ends[0] == pytest.approx(500, abs=2)
     assert ends[1] <= 9
-
-
-def test_the_list_holds_the_clamp_as_one_operation_without_rounding():
-    (operation,) = (o for o in CUT.operations if o.kind == "saturate")
-    assert (operation.name, operation.left) == ("next_integral", INTEGRAL_LIMIT)
-    assert CUT.coefficient[INTEGRAL_LIMIT].values == (CLAMP,)
-    assert len(CUT.operations) == len(FREE.operations) + 1
-    check_range(CUT)

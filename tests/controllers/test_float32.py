@@ -98,14 +98,10 @@ def test_no_terminating_expansion():
 @pytest.mark.parametrize(
     ("value", "digits", "rounded"),
     [
-        (2065.4, 3, "2070"),
-        (2.1496, 3, "2.15"),
-        (56.9706, 4, "56.97"),
-        (9.99, 1, "10"),
-        (-0.012345, 2, "-0.012"),
-        (0.0, 3, "0"),
+        (2065.4, 3, "2070"), (2.1496, 3, "2.15"), (56.9706, 4, "56.97"), (9.99, 1, "10"),
+        (-0.012345, 2, "-0.012"), (0.0, 3, "0"),
     ],
-)
+)  # fmt: skip
 def test_round_significant(value, digits, rounded):
     assert round_significant(value, digits) == Fraction(rounded)
 

@@ -23,22 +23,6 @@ def altered(texts, controller, gain, value):
     return {**texts, controller: {**texts[controller], gain: value}}
 
 
-def test_gains_of_the_thesis():
-    """Thesis 6.3.2.1: Mt = 0.01, Bt = 2.15 and 1.04; thesis 4.3: Kd = 2060, Kp = 117359.43."""
-    _, texts = gains()
-    assert texts == {
-        "motion": {"Kp": "117359.4375", "Kd": "2060"},
-        "insertion": {
-            "Mt": "0.00999999977648258209228515625",
-            "Bt": "2.150000095367431640625",
-        },
-        "withdrawal": {
-            "Mt": "0.00999999977648258209228515625",
-            "Bt": "1.03999996185302734375",
-        },
-    }
-
-
 @pytest.mark.parametrize("kind", PATHS)
 def test_round_trip(kind):
     spec, texts = gains(kind)

@@ -1,4 +1,3 @@
-from dataclasses import fields
 from fractions import Fraction
 from typing import get_args
 
@@ -9,14 +8,12 @@ from nrs_design.controllers.laws import (
     Admittance,
     IntegralForce,
     PositionControl,
-    ProportionalDerivative,
     ProportionalForce,
 )
 from nrs_design.controllers.step_law import StepFrame, build_law
 from nrs_design.design.laws import LAW_DESIGNS
 from nrs_design.models.linear_form import combine, coordinates, zero
 from nrs_design.spec import ControllerSpec
-from nrs_design.spec.units import parse_unit
 from tests.controllers.roundings import linear_forms
 
 ONE = Fraction(1)
@@ -26,17 +23,6 @@ def test_every_type_of_controller_has_a_law_and_a_design():
     union = get_args(ControllerSpec)[0]
     types = {get_args(given.model_fields["type"].annotation)[0] for given in get_args(union)}
     assert set(LAWS) == set(LAW_DESIGNS) == types
-
-
-def test_every_law_has_a_name_of_its_own_and_a_unit_for_every_gain():
-    laws = (ProportionalDerivative, *LAWS.values())
-    names = ["force", "impedance", "motion", "pi-force", "position", "torque-impedance"]
-    assert sorted(law.name for law in laws) == names
-    for law in laws:
-        assert list(law.units) == [field.name for field in fields(law)]
-    # A torque over an angular velocity.
-    assert parse_unit(Admittance.units["Bt"]).dimension == parse_unit("N*m/(rad/s)").dimension
-    assert Admittance(Fraction(1), Fraction(2)).gains == {"Mt": 1, "Bt": 2}
 
 
 def test_a_spring_is_a_gain_only_where_there_is_one():

@@ -44,16 +44,11 @@ def test_a_list_that_does_not_fit_is_refused():
 @pytest.mark.parametrize(
     ("kind", "left", "right"),
     [
-        ("add", "two", "x"),
-        ("multiply", "x", "x"),
-        ("multiply", "table", "x"),
-        ("interpolate", "two", "x"),
-        ("interpolate", "x", "x"),
-        ("product", "x", "two"),
-        ("divide", "y", "x"),
-        ("root", "", "nothing"),
+        ("add", "two", "x"), ("multiply", "x", "x"), ("multiply", "table", "x"),
+        ("interpolate", "two", "x"), ("interpolate", "x", "x"), ("product", "x", "two"),
+        ("divide", "y", "x"), ("root", "", "nothing"),
     ],
-)
+)  # fmt: skip
 def test_operands_of_another_kind_are_refused(kind, left, right):
     with pytest.raises(ValueError, match="y is"):
         short(kind, left, right)

@@ -9,20 +9,12 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from nrs_design.controllers.float32 import is_float32
-from nrs_design.controllers.sensor import (
-    LowPass,
-    Sensor,
-    build_sensor,
-    length_between,
-)
+from nrs_design.controllers.sensor import LowPass, Sensor, build_sensor, length_between
 from nrs_design.errors import DesignError
 from nrs_design.spec.sensor import SensorSpec
 
 F = Fraction
-TOOL = {
-    "mass": "0.797 kg",
-    "center_of_mass": {"x": "0 m", "y": "0 m", "z": "0.2 m"},
-}
+TOOL = {"mass": "0.797 kg", "center_of_mass": {"x": "0 m", "y": "0 m", "z": "0.2 m"}}
 
 
 def sensor(**fields):

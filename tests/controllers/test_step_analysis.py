@@ -6,10 +6,7 @@ from fractions import Fraction
 import pytest
 
 from nrs_design.controllers.operations import Coefficient, Operation, StepLaw, Value
-from nrs_design.controllers.step_analysis import (
-    check_range,
-    rounded_terms,
-)
+from nrs_design.controllers.step_analysis import check_range, rounded_terms
 from nrs_design.errors import DesignError
 from nrs_design.models.linear_form import combine, coordinates
 from tests.controllers.roundings import linear_forms, term_counts

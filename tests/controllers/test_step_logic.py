@@ -15,24 +15,19 @@ PERIOD = Fraction(1, 1024)
 
 
 def spec(hold=None, above="0.5 rad/s"):
-    document = {
-        "type": "thresholds",
-        "start": "insertion",
-        "signals": {
-            "command": {"noise": "0.125 rad/s", "age": "4 ms", "largest_rate": "40 rad/s^2"},
-            "torque": {"noise": "0.001 N*m", "age": "4 ms", "largest_rate": "2 N*m/s"},
-        },
-        "switches": [
-            {
-                "from": "insertion",
-                "to": "withdrawal",
-                "command": {"below": "-0.5 rad/s"},
-                "torque": {"above": "0.125 N*m"},
-            },
-            {"from": "withdrawal", "to": "insertion", "command": {"above": above}},
-            {"from": "withdrawal", "to": "insertion", "torque": {"below": "0.0625 N*m"}},
-        ],
-    }
+    command = {"noise": "0.125 rad/s", "age": "4 ms", "largest_rate": "40 rad/s^2"}
+    torque = {"noise": "0.001 N*m", "age": "4 ms", "largest_rate": "2 N*m/s"}
+    out, back = (
+        {"from": "insertion", "to": "withdrawal"},
+        {"from": "withdrawal", "to": "insertion"},
+    )
+    switches = [
+        out | {"command": {"below": "-0.5 rad/s"}, "torque": {"above": "0.125 N*m"}},
+        back | {"command": {"above": above}},
+        back | {"torque": {"below": "0.0625 N*m"}},
+    ]
+    document = {"type": "thresholds", "start": "insertion", "switches": switches}
+    document["signals"] = {"command": command, "torque": torque}
     return ThresholdLogicSpec.model_validate(document | ({"hold": hold} if hold else {}))
 
 

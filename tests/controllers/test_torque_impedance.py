@@ -23,11 +23,7 @@ def test_a_wanted_inertia_scales_spring_damper_and_force():
     assert PLAIN.gains == {"K": 30, "D": 3}
     assert SHAPED.gains == {"K": 30, "D": 3, "R": F(1, 2)}
     assert PLAIN.discretize(T, "exact").numbers == {"Kp": 30, "Kd_over_T": 3000}
-    assert SHAPED.discretize(T, "exact").numbers == {
-        "Kp": 60,
-        "Kd_over_T": 6000,
-        "Kf_torque": 1,
-    }
+    assert SHAPED.discretize(T, "exact").numbers == {"Kp": 60, "Kd_over_T": 6000, "Kf_torque": 1}
     assert TorqueImpedance.of(SHAPED.gains) == SHAPED
 
 

@@ -53,45 +53,30 @@ def law(*, Mt="0.01", Kt=("0", "0"), order=0, method="exact", limits=None) -> St
     return build_law(frame(low_pass, limits), laws)
 
 
-PLACED = {
-    "position": PositionControl().discretize(PERIOD, "exact"),
-    "force": ProportionalForce(to_float32(Fraction("0.02"))).discretize(PERIOD, "exact"),
-}
+PLACED = {"position": PositionControl(), "force": ProportionalForce(to_float32(Fraction("0.02")))}
 ADMITTANCE = Admittance(to_float32(Fraction("0.01")), to_float32(Fraction("2.15")))
 INTEGRAL = IntegralForce(to_float32(Fraction("0.02")), Fraction(1, 2))
-SPRUNG = replace(ADMITTANCE, Kt=Fraction(1, 2))
+LAG = LowPass(1, Fraction(200)).discretize(PERIOD)
+
+
+def mixture(low_pass=None, limits=None, **others) -> StepLaw:
+    """Build controllers of position and force with others beside them."""
+    laws = {name: one.discretize(PERIOD, "exact") for name, one in {**PLACED, **others}.items()}
+    idle = (to_float32(Fraction("0.96")),) if others else ()
+    return build_law(frame(low_pass, limits), laws, *idle)
+
+
+CLAMPED = StepLimits(Fraction(3), command=Fraction(4000), integral=Fraction(1, 128))
 LAWS = {
-    "force and position": build_law(frame(LowPass(1, Fraction(200)).discretize(PERIOD)), PLACED),
+    "force and position": mixture(LAG),
     "inertia": law(),
     "static": law(Mt="0"),
     "filter and spring": law(order=2, Kt=("0.5", "0")),
     "static, filter, spring": law(Mt="0", order=1, Kt=("0.5", "3"), method="euler"),
-    "mixed": build_law(
-        frame(),
-        {**PLACED, "insertion": ADMITTANCE.discretize(PERIOD, "exact")},
-        to_float32(Fraction("0.96")),
-    ),
-    "integral": build_law(
-        frame(),
-        {
-            **PLACED,
-            "insertion": ADMITTANCE.discretize(PERIOD, "exact"),
-            "hold": IntegralForce(to_float32(Fraction("0.02")), Fraction(1, 2)).discretize(
-                PERIOD, "exact"
-            ),
-        },
-        to_float32(Fraction("0.96")),
-    ),
-    "clamped": build_law(
-        frame(limits=StepLimits(Fraction(3), command=Fraction(4000), integral=Fraction(1, 128))),
-        {**PLACED, "hold": INTEGRAL.discretize(PERIOD, "exact")},
-        to_float32(Fraction("0.96")),
-    ),
-    "mixed, spring": build_law(
-        frame(LowPass(1, Fraction(200)).discretize(PERIOD)),
-        {**PLACED, "insertion": SPRUNG.discretize(PERIOD, "exact")},
-        to_float32(Fraction("0.96")),
-    ),
+    "mixed": mixture(insertion=ADMITTANCE),
+    "integral": mixture(insertion=ADMITTANCE, hold=INTEGRAL),
+    "clamped": mixture(limits=CLAMPED, hold=INTEGRAL),
+    "mixed, spring": mixture(LAG, insertion=replace(ADMITTANCE, Kt=Fraction(1, 2))),
     "limits": law(limits=StepLimits(Fraction(1, 2), to_float32(Fraction("0.13")), Fraction(4000))),
 }
 

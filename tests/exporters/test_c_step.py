@@ -1,19 +1,11 @@
 """A law in C: a line for each operation in its order, and guards that let nothing else through."""
 
-import re
 from dataclasses import replace
 from fractions import Fraction
 
-import pytest
-
 from nrs_design.controllers.operations import Coefficient, Operation, StepLaw, Value
 from nrs_design.exporters.c_names import CNames
-from nrs_design.exporters.c_step import (
-    SIGN,
-    declarations,
-    definitions,
-    guards,
-)
+from nrs_design.exporters.c_step import declarations, definitions, guards
 from tests.exporters.programs import LAWS
 
 NAMES = CNames("some-law")
@@ -30,35 +22,6 @@ def of(*operations, coefficients=(HALF,), **others):
     """Return a law of one input whose last operation is its output."""
     last = operations[-1].name
     return StepLaw((), (X,), (), coefficients, operations, {"o": last}, {}, {"o": "rad"}, **others)
-
-
-@pytest.mark.parametrize("shape", LAWS)
-def test_there_is_a_line_for_each_operation_in_its_order(shape):
-    law, text = LAWS[shape], body(LAWS[shape])
-    lines = re.findall(r"const float (\w+) = ([^;{]*);", text)
-    made = [(name, code) for name, code in lines if name in {o.name for o in law.operations}]
-    assert [name for name, _ in made] == [o.name for o in law.operations]
-    for operation, (_, code) in zip(law.operations, made, strict=True):
-        assert code.count("saturated(") == (operation.kind == "saturate")
-        signs = re.findall(r" [-+*/] ", code)
-        assert signs == ([] if operation.kind == "saturate" else [f" {SIGN[operation.kind]} "])
-
-
-@pytest.mark.parametrize("shape", LAWS)
-def test_every_value_is_guarded_before_it_is_used(shape):
-    """By its own limit, and the mode by how many there are."""
-    law, text = LAWS[shape], body(LAWS[shape])
-    step = text[text.index("_step(") :]
-    guards, _, rest = step.partition("if (out->valid) {")
-    assert f"in->mode < {NAMES.modes}" in guards
-    for value in law.values:
-        place = "in" if value in law.inputs else "state"
-        assert len(re.findall(rf"{place}->{value.name}\b[^;]*{NAMES.limit(value)}\b", guards)) == 1
-        assert f"{place}->{value.name}" in rest
-    # What is not valid commands nothing and leaves the state.
-    _, _, refused = rest.rpartition("} else {")
-    assert all(f"out->{name} = 0.0F;" in refused for name in law.outputs)
-    assert "state->" not in refused
 
 
 def test_helpers_are_there_where_they_are_called():

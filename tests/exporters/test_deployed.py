@@ -73,23 +73,14 @@ def test_a_file_as_exported(compared, folder, ending):
     assert found.left_out == "how it is compiled"
 
 
-# What is changed, in which file, from what to what.
+# What is changed, in which file, from what to what: every byte counts alike.
 CHANGES = [
     ("a number by its last bit", ".h", r"0x1\.f6eep\+19F", "0x1.f6ee02p+19F"),
-    ("a number that no macro undoes", ".h", r"(#include <stdint.h>)", rf"\1\n#undef {UP}_KP"),
-    ("the type of a field", ".h", "float torque;", "double torque;"),
-    ("the order of inputs", ".h", r"(float angle;.*\n)(.*float torque;.*\n)", r"\2\1"),
     ("a comment", ".h", r"outside the proof", "inside the proof"),
-    ("a sign", ".c", "proportional \\+ derivative", "proportional - derivative"),
     ("a guard", ".c", r" &&\n\s+is_within\(in->torque, \w+\)", ""),
-    ("its end", ".c", r"\}\n\Z", ""),
     ("what comes after its end", ".c", r"\Z", "int more;\n"),
-    ("a test that always passes", "_test.c", "first >= 0", "first >= 1000"),
     ("how many cases", "_test.h", "_TEST_CASES 1000", "_TEST_CASES 10"),
     ("a bit of the vectors", ".vectors.json", r'(\n    \[0, "\w{7})\w', r"\1x"),
-    ("the order of columns", ".vectors.csv", "angle,torque", "torque,angle"),
-    ("a tolerance in Python", "_test.py", "packed.hex\\(\\) == bits", "True"),
-    ("a limit of the monitor", "_monitor.h", r"(MONITOR_TORQUE) \S+", r"\1 0x1.0p+9F"),
     ("a check of the monitor", "_monitor.c", "m->left == ", "m->left != "),
     ("a flag", ".cmake", "-ffp-contract=off", "-ffast-math"),
     ("ends of lines", ".c", "\n", "\r\n"),

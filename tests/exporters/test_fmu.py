@@ -1,7 +1,6 @@
 """The co-simulation model: what FMPy says of it, and every bit that it computes."""
 
 import io
-import re
 import zipfile
 from dataclasses import replace
 from functools import cache
@@ -17,13 +16,7 @@ from fmpy.validation import validate_fmu
 from nrs_design.controllers.replica import step
 from nrs_design.exporters import format_of
 from nrs_design.exporters.c_names import CNames
-from nrs_design.exporters.cosimulation import (
-    contents,
-    description,
-    guid_of,
-    packed,
-    wrapper_text,
-)
+from nrs_design.exporters.cosimulation import contents, description, guid_of, packed
 from nrs_design.exporters.formats.fmu import remarks, render
 from nrs_design.exporters.formats.vectors import make_vectors
 from nrs_design.exporters.program import Program
@@ -31,17 +24,6 @@ from tests.exporters.programs import LAWS, STRICT, built, compiler
 from tests.support import thinned
 
 T = 0.002
-# FMI 2.0: what every model has, and what those for co-simulation have besides.
-FUNCTIONS = (
-    *("GetTypesPlatform", "GetVersion", "SetDebugLogging", "Instantiate", "FreeInstance"),
-    *("SetupExperiment", "EnterInitializationMode", "ExitInitializationMode", "Terminate"),
-    *("Reset", "GetReal", "GetInteger", "GetBoolean", "GetString", "SetReal", "SetInteger"),
-    *("SetBoolean", "SetString", "GetFMUstate", "SetFMUstate", "FreeFMUstate"),
-    *("SerializedFMUstateSize", "SerializeFMUstate", "DeSerializeFMUstate"),
-    *("GetDirectionalDerivative", "SetRealInputDerivatives", "GetRealOutputDerivatives"),
-    *("DoStep", "CancelStep", "GetStatus", "GetRealStatus", "GetIntegerStatus"),
-    *("GetBooleanStatus", "GetStringStatus"),
-)
 
 
 def program(law, export):
@@ -248,30 +230,6 @@ def test_its_page_says_what_is_proved_and_what_is_not(sampled_export):
     assert "Taken for granted" not in unproved
 
 
-def text_of(shape, export):
-    return wrapper_text(program(LAWS[shape], export))
-
-
-def test_every_function_of_the_standard_is_there_once(sampled_export):
-    found = re.findall(r"\bFMI2\(fmi2(\w+)\)\(", text_of("limits", sampled_export))
-    assert sorted(found) == sorted(FUNCTIONS)
-
-
-@pytest.mark.parametrize("shape", LAWS)
-def test_no_place_is_left_open(sampled_export, shape):
-    """The GUID, the sample time and every variable are in; inputs come first and may be set."""
-    law, text = LAWS[shape], text_of(shape, sampled_export)
-    assert "@" not in text
-    assert f'strcmp(guid, "{guid_of(sampled_export.record)}")' in text
-    assert "#define PERIOD 0.002\n" in text
-    places = re.findall(r"case (\d+)U:\n        return &m->([\w.]+);", text)
-    wanted = [f"in.{v.name}" for v in law.inputs] + [f"out.{name}" for name in law.outputs]
-    wanted += [f"state.{v.name}" for v in law.states]
-    assert places == [(str(k), place) for k, place in enumerate(wanted)]
-    assert f"at[k] >= {len(law.inputs)}U" in text
-    assert all(f"m->in.{v.name} = 0.0F;" in text for v in law.inputs)
-
-
 @pytest.fixture(params=LAWS)
 def law(request):
     return LAWS[request.param]
@@ -294,13 +252,6 @@ def test_every_variable_of_a_step(law, described):
         (real,) = found[value.name]
         assert real.get("unit") == value.unit
         assert found[value.name].get("description") == value.meaning
-
-
-def test_outputs_are_where_the_structure_says(law, described):
-    variables = [v.get("name") for v in described.iter("ScalarVariable")]
-    for part in ("Outputs", "InitialUnknowns"):
-        places = [int(u.get("index")) for u in described.find(f"ModelStructure/{part}")]
-        assert [variables[place - 1] for place in places] == [*law.outputs, "valid"]
 
 
 def test_names_verdict_and_step(described):

@@ -1,10 +1,7 @@
 """The lines that every exported file holds."""
 
-from fractions import Fraction
-
 import pytest
 
-from nrs_design.exporters.export import Execution, export_design
 from nrs_design.exporters.header import header_lines
 
 
@@ -33,12 +30,3 @@ def test_sample_time_and_delay(sampled_export, continuous_export):
         (continuous_export.record, "none, the statement is about continuous time"),
     ):
         assert f"sample time: {said}" in header_lines(shown)
-
-
-def test_what_is_not_proved(continuous):
-    record = export_design(continuous, execution=Execution(Fraction(1, 500), unproved=True)).record
-    (verdict,) = [line for line in header_lines(record) if line.startswith("verdict")]
-    assert verdict.startswith("verdict: UNPROVED: the certificate is about continuous time")
-    bare = record.model_copy(update={"proof": None})
-    assert "certificate: none" in header_lines(bare)
-    assert not [line for line in header_lines(bare) if line.startswith("claim")]

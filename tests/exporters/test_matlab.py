@@ -207,38 +207,6 @@ def test_octave_rebuilds_margins_and_steps(export, tmp_path):
         assert last == pytest.approx(end, abs=2e-5)
 
 
-# The same without any package: the response at a frequency, and a unit step of the closed loop.
-PLAIN = """\
-d = load("soft-tissue.mat");
-for o = d.open_loops'
-  T = o.sample_time;
-  n = rows(o.A);
-  if T, z = @(w) exp(1j*w*T); else, z = @(w) 1j*w; end
-  L = @(w) o.C*((z(w)*eye(n) - o.A)\\o.B);
-  w = fzero(@(w) abs(L(w)) - 1, [0.01 1000]);
-  g = logspace(log10(w), log10(1500), 400);
-  s = imag(arrayfun(L, g));
-  k = find(s(1:end-1).*s(2:end) < 0, 1);
-  v = fzero(@(w) imag(L(w)), g([k k+1]));
-  F = [o.A - o.B*o.C, o.B; zeros(1, n), 1];
-  if ! T, F(end) = 0; F = expm(F); T = 1; end
-  x = F^round(1/T)*[zeros(n, 1); 1];
-  printf("%.9g %.9g %.9g\\n", -1/real(L(v)), arg(-L(w)), o.C*x(1:n));
-end
-"""
-
-
-def test_octave_rebuilds_them_without_a_package(export, tmp_path):
-    lines = run_octave(export, tmp_path, PLAIN)
-    known = open_loops_in(export, tmp_path)
-    assert len(lines) == len(known)
-    for line, (loop, end) in zip(lines, known, strict=True):
-        gain, phase, last = map(float, line.split())
-        assert gain == pytest.approx(loop["gain_margin"], rel=1e-6)
-        assert phase == pytest.approx(loop["phase_margin"], rel=1e-6)
-        assert last == pytest.approx(end, rel=1e-6)
-
-
 def test_margins_of_python_control_are_those_of_the_file(export, tmp_path):
     """Taken of A, B, C and D, and not of the polynomials that ours are taken of."""
     for loop, _ in open_loops_in(export, tmp_path):

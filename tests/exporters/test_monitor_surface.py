@@ -307,10 +307,7 @@ def test_audit_tells_the_same_of_a_log(monitor, tmp_path, surface, factor):
 
 @pytest.mark.parametrize(
     ("changes", "reason"),
-    [
-        ({"monitoring": None}, "no `monitoring`"),
-        ({"contact": None}, "does not say by `contact`"),
-    ],
+    [({"monitoring": None}, "no `monitoring`"), ({"contact": None}, "does not say by `contact`")],
 )
 def test_what_is_not_monitored_says_why(sampled_export, changes, reason):
     spec, _ = CASES["fixed"]

@@ -32,18 +32,12 @@ def test_three_forms_of_a_gain_are_the_same_number(value):
 @pytest.mark.parametrize(
     "change",
     [
-        {"exact": "0.5000001"},
-        {"float32": 0.25},
-        {"float32": float("inf")},
-        {"float32": float("nan")},
-        {"float32_bits": "0x3f000001"},
-        {"float32_bits": "0x7fc00000"},
-        {"float32_bits": "3f000000"},
-        {"exact": 0.5},
-        {"extra": 1},
+        {"exact": "0.5000001"}, {"float32": 0.25}, {"float32": float("inf")},
+        {"float32": float("nan")}, {"float32_bits": "0x3f000001"}, {"float32_bits": "0x7fc00000"},
+        {"float32_bits": "3f000000"}, {"exact": 0.5}, {"extra": 1},
     ],
     ids=str,
-)
+)  # fmt: skip
 def test_forms_that_differ_are_refused(change):
     good = {"name": "k", "unit": "1", "exact": "0.5", "float32": 0.5, "float32_bits": "0x3f000000"}
     assert Gain(**good).exact == "0.5"
@@ -60,11 +54,6 @@ def test_json_is_the_dump_of_the_record(record):
     assert document["schema"] == "nrs-design/export/1"
 
 
-def test_record_is_frozen(record):
-    with pytest.raises(ValidationError):
-        record.spec = None
-
-
 def test_every_record_keeps_the_published_schema(record, sampled_export, continuous):
     """With and without an offset, a sample time and a proof of it."""
     schema = json.loads(record_schema_text())
@@ -79,17 +68,12 @@ def test_every_record_keeps_the_published_schema(record, sampled_export, continu
 @pytest.mark.parametrize(
     "change",
     [
-        {"extra": 1},
-        {"schema": "nrs-design/export/2"},
-        {"controllers": []},
-        {"verdict": "refuted"},
-        {"proof": {"verdict": "inconclusive"}},
-        {"sample_time": 0.002},
-        {"delay": [0, 1, 2]},
-        {"spec": {"name": "x", "sha256": "0"}},
+        {"extra": 1}, {"schema": "nrs-design/export/2"}, {"controllers": []},
+        {"verdict": "refuted"}, {"proof": {"verdict": "inconclusive"}}, {"sample_time": 0.002},
+        {"delay": [0, 1, 2]}, {"spec": {"name": "x", "sha256": "0"}},
     ],
     ids=str,
-)
+)  # fmt: skip
 def test_the_schema_refuses_what_the_record_refuses(record, change):
     document = {**json.loads(dump_record(record)), **change}
     assert not Draft202012Validator(json.loads(record_schema_text())).is_valid(document)

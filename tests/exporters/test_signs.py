@@ -1,12 +1,11 @@
 """Signs that the header states are those that the law computes with."""
 
 import numpy as np
-import pytest
 
 from nrs_design.controllers.replica import step
 from nrs_design.exporters.c_names import CNames
 from nrs_design.exporters.formats.c import header_text
-from nrs_design.exporters.signs import SIGNS, sign_lines
+from nrs_design.exporters.signs import sign_lines
 from tests.exporters.programs import LAWS
 
 
@@ -18,14 +17,6 @@ def commanded(law, mode, **inputs):
         assert result.valid.all()
         given |= result.states
     return float(result.outputs["command"][0])
-
-
-@pytest.mark.parametrize("shape", LAWS)
-def test_every_input_and_output_has_its_sign(shape):
-    law = LAWS[shape]
-    names = [*(value.name for value in law.inputs), *law.outputs]
-    lines = [*sign_lines(law)]
-    assert lines[1:-1] == [f"- {name}: {SIGNS[name]}" for name in names]
 
 
 def test_a_joint_yields_to_what_pushes_it():

@@ -4,7 +4,7 @@ import pytest
 
 from nrs_design.errors import OutputError
 from nrs_design.exporters import Format
-from nrs_design.exporters.write import check_places, places, write_files
+from nrs_design.exporters.write import places, write_files
 
 ONE = Format("", "", {".mat": b"MAT"})
 TWO = Format("", "", {".c": b"/* ours", ".h": b"/* ours"})
@@ -45,23 +45,3 @@ def test_nothing_is_written_where_one_file_is_another_s(tmp_path):
         write_files(TWO, places(TWO, "x", tmp_path), CONTENTS)
     assert [path.name for path in tmp_path.iterdir()] == ["x.h"]
     assert (tmp_path / "x.h").read_bytes() == b"int mine;"
-
-
-def test_a_file_is_no_folder_and_a_link_is_not_followed(tmp_path):
-    (tmp_path / "file").touch()
-    with pytest.raises(OutputError, match="a file, not a folder"):
-        check_places(TWO, places(TWO, "x", tmp_path / "file"))
-    (tmp_path / "real").mkdir()
-    (tmp_path / "link").symlink_to(tmp_path / "real")
-    with pytest.raises(OutputError, match="behind the symbolic link"):
-        write_files(TWO, places(TWO, "x", tmp_path / "link"), CONTENTS)
-    assert not list((tmp_path / "real").iterdir())
-
-
-def test_nothing_is_written_where_one_file_is_a_link(tmp_path):
-    """A new header beside an old source would be a law that nobody proved."""
-    (tmp_path / "real").touch()
-    (tmp_path / "x.h").symlink_to(tmp_path / "real")
-    with pytest.raises(OutputError, match="symbolic link"):
-        write_files(TWO, places(TWO, "x", tmp_path), CONTENTS)
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["real", "x.h"]

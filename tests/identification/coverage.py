@@ -51,9 +51,7 @@ TISSUES: Mapping[str, Tissue] = {
 }
 
 # A record in air does not tell its stiffness at rest from 0, which is a doubt.
-UNDETERMINED: Mapping[str, Tissue] = {
-    "nose": Tissue(synthetic.NOSE, slow, 0.0165, 600_000),
-}
+UNDETERMINED: Mapping[str, Tissue] = {"nose": Tissue(synthetic.NOSE, slow, 0.0165, 600_000)}
 
 
 def touching(tissue: Tissue, seed: int) -> TissueRecord:

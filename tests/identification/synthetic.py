@@ -46,19 +46,7 @@ _LABEL = "# synthetic record, made by tests.identification.synthetic: not a meas
 
 
 def pressing(duration: float, rate: float, depth: float, period: float, seed: int) -> Motion:
-    """Return presses by hand: in, hold and out, no two alike.
-
-    Parameters
-    ----------
-    duration, period : float
-        In s.
-    rate : float
-        Samples per s.
-    depth : float
-        Largest deflection in m (rad).
-    seed : int
-        Of depths and ramps.
-    """
+    """Return presses by hand, no two alike: duration and period in s, depth in m (rad)."""
     generator = np.random.default_rng([seed, 1])
     time = np.arange(round(duration * rate) + 1) / rate
     deflection = np.zeros_like(time)
@@ -74,21 +62,7 @@ def pressing(duration: float, rate: float, depth: float, period: float, seed: in
 def tissue_record(
     law: AbstractContactLaw, motion: Motion, noise: float, seed: int, resolution: float = 0.0
 ) -> tuple[Motion, Array]:
-    """Return what sensors make of a tissue: rounded deflection, and force with noise.
-
-    Parameters
-    ----------
-    law : AbstractContactLaw
-        The true one.
-    motion : Motion
-        The true deflection.
-    noise : float
-        Standard deviation of white noise on the force, in N (N m).
-    seed : int
-        Of the noise.
-    resolution : float
-        Step of the deflection sensor in m (rad), 0 for none.
-    """
+    """Return what sensors make of a tissue: noise in N (N m), resolution in m (rad), 0 for none."""
     generator = np.random.default_rng(seed)
     force = law.simulate(motion) + noise * generator.standard_normal(len(motion))
     deflection = motion.deflection
@@ -106,25 +80,10 @@ def actuator_record(
     periods: int = 8,
     noise: float = 3e-4,
 ) -> tuple[Array, Array, Array]:
-    """Return time, command and angle of a sinusoid experiment.
+    """Return time, command and angle of a sinusoid of a frequency in Hz, an amplitude in rpm.
 
     The motor is simulated in steps of a twentieth of a sample and sticks while the command is
-    below the friction.
-
-    Parameters
-    ----------
-    frequency : float
-        In Hz.
-    seed : int
-        Of the noise on the angle.
-    amplitude : float
-        In rpm.
-    rate : float
-        Samples per s.
-    periods : int
-        Length of the record, at least 1.5 s.
-    noise : float
-        Standard deviation in rad, before rounding to the encoder's step.
+    below the friction; noise in rad comes before the rounding of the encoder.
     """
     generator = np.random.default_rng(seed)
     count = round(max(periods / frequency, 1.5) * rate) + 1

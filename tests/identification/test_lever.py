@@ -3,8 +3,8 @@
 import pytest
 
 from nrs_design.errors import DataError
-from nrs_design.identification.lever import parameter_units, parse_arm
-from nrs_design.models.contact import Elastic, HuntCrossley, KelvinVoigt
+from nrs_design.identification.lever import parse_arm
+from nrs_design.models.contact import Elastic
 
 
 def test_thesis_arm():
@@ -27,9 +27,3 @@ def test_thesis_arm():
 def test_bad_arm(text, rotational, error, reason):
     with pytest.raises(error, match=reason):
         parse_arm(text, rotational=rotational)
-
-
-def test_units():
-    assert parameter_units(KelvinVoigt(1.0, 1.0), False) == ("N/m", "N s/m")
-    assert parameter_units(KelvinVoigt(1.0, 1.0), True) == ("N m/rad", "N m s/rad")
-    assert parameter_units(HuntCrossley(1.0, 1.0, 1.2), False) == ("N/m^φ", "N s/m^(φ+1)", "")

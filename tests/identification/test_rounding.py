@@ -3,11 +3,7 @@
 import numpy as np
 import pytest
 
-from nrs_design.identification.rounding import (
-    resolution,
-    rounding_of_velocity,
-    rounding_scatter,
-)
+from nrs_design.identification.rounding import resolution, rounding_of_velocity, rounding_scatter
 
 TIME = np.arange(2000) / 100
 SMOOTH = 0.005 * (1 - np.cos(TIME))

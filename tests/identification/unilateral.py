@@ -81,18 +81,9 @@ def robot_record(
     drift: float = 0.0,
     side: int = 1,
 ) -> TissueRecord:
-    """Return a record in the coordinates of a robot, with air as a part of the travel.
+    """Return a record in the coordinates of a robot: zero in m, tare in N, drift in N/s.
 
-    Parameters
-    ----------
-    law, motion, noise, seed
-        As in `tests.identification.synthetic.tissue_record`.
-    air : float
-        Travel in air over the depth of the motion.
-    zero, tare, drift : float
-        Position of contact in m, force in air in N, and its change in N/s.
-    side : int
-        -1 if the tissue is where positions are smaller.
+    The travel in air is a multiple of the depth; on side -1 the tissue is at smaller positions.
     """
     depth = float(motion.deflection.max())
     position = (1 + air) * motion.deflection - air * depth

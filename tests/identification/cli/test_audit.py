@@ -42,19 +42,8 @@ def without_command(tmp_path):
 @pytest.mark.slow
 def test_a_good_run_is_not_inside_as_its_stiffness_is_estimated(tmp_path, proof):
     spec, certificate = proof
-    done = run(
-        "audit",
-        without_command(tmp_path),
-        spec,
-        "--certificate",
-        certificate,
-        *LIMIT,
-        "--report",
-        "run.html",
-        "-v",
-        cwd=tmp_path,
-        code=3,
-    )
+    given = ("--certificate", certificate, *LIMIT, "--report", "run.html", "-v")
+    done = run("audit", without_command(tmp_path), spec, *given, cwd=tmp_path, code=3)
     assert (tmp_path / "run.html").read_bytes().startswith(PAGE)
     assert "INCONCLUSIVE: no bound was left as far as could be judged" in done.stdout
     (line,) = (s for s in done.stdout.splitlines() if s.startswith("estimated, not judged: "))
@@ -87,15 +76,8 @@ def test_the_stiffness_is_tested_where_readings_are_known(tmp_path):
 
 def test_outside(tmp_path, proof):
     spec, certificate = proof
-    document = document_of(
-        "audit",
-        write(tmp_path, stiffness=60.0),
-        spec,
-        "--certificate",
-        certificate,
-        cwd=tmp_path,
-        code=1,
-    )
+    given = (write(tmp_path, stiffness=60.0), spec, "--certificate", certificate)
+    document = document_of("audit", *given, cwd=tmp_path, code=1)
     assert document["schema"] == "nrs-design/audit/1"
     assert (document["verdict"], document["proved"]) == ("outside", True)
     assert document["first_violation"]["check"] == "force"

@@ -176,17 +176,13 @@ def test_mega_is_not_milli():
 @pytest.mark.parametrize(
     ("name", "factor", "unit"),
     [
-        ("force_kgf", 9.80665, "N"),
-        ("force_gf", 9.80665e-3, "N"),
-        ("force_lbf", 4.4482216152605, "N"),
-        ("deflection_in", 0.0254, "m"),
-        ("velocity_rpm", 2 * np.pi / 60, "rad_s"),
-        ("command_rpm", 1.0, "rpm"),
-        ("command_deg_s", 60 / 360, "rpm"),
-        ("command_rad_s", 60 / (2 * np.pi), "rpm"),
+        ("force_kgf", 9.80665, "N"), ("force_gf", 9.80665e-3, "N"),
+        ("force_lbf", 4.4482216152605, "N"), ("deflection_in", 0.0254, "m"),
+        ("velocity_rpm", 2 * np.pi / 60, "rad_s"), ("command_rpm", 1.0, "rpm"),
+        ("command_deg_s", 60 / 360, "rpm"), ("command_rad_s", 60 / (2 * np.pi), "rpm"),
         ("command_mV", 1e-3, "V"),
     ],
-)
+)  # fmt: skip
 def test_factors(name, factor, unit):
     """1 kgf = 9.80665 N by definition; 1 rpm = 2 pi/60 rad/s, but a command in rpm is a number."""
     found = read_name(name)

@@ -4,11 +4,7 @@ import numpy as np
 import pytest
 
 from nrs_design.errors import DataError
-from nrs_design.identification.datasets import (
-    read_actuator,
-    read_signals,
-    read_tissue,
-)
+from nrs_design.identification.datasets import read_actuator, read_signals, read_tissue
 from tests.support import run
 
 HEAD = "time_s,deflection_m,force_N\n"
@@ -60,70 +56,35 @@ WRONG = {
     "empty cell": ("a.csv", text(replace=[(5, "0.05,,5")]), "deflection_m is missing", 7),
     "short row": ("a.csv", text(replace=[(5, "0.05,5")]), "row has 2 values", 7),
     "empty row": ("a.csv", text(replace=[(5, "")]), "row is empty", 7),
+    "an underscore": ("a.csv", text(replace=[(5, "0.05,1_0,2")]), "not a number", 7),
+    "digits of another script": ("a.csv", text(replace=[(5, "0.05,٣,2")]), "not a number", 7),
+    "a long row": ("a.csv", text(replace=[(5, "0.05,0.1,2,9")]), "row has 4 values", 7),
     "a word": ("a.csv", text(replace=[(5, "0.05,0.1,off")]), "'off', not a number", 7),
     "not finite": ("a.csv", text(replace=[(5, "0.05,0.1,nan")]), "force_N is nan", 7),
-    "thousands": (
-        "a.csv",
-        text(HEAD.replace(",", ";"), body=[f"{i};{i % 9};1,{100 + i}" for i in range(60)]),
-        "may be",
-        2,
-    ),
-    "a point among commas": (
-        "a.csv",
-        text(
-            HEAD.replace(",", ";"),
-            [(7, "1.234;0,1;7,5")],
-            [line.replace(",", ";").replace(".", ",") for line in BODY],
-        ),
-        "decimal comma",
-        9,
-    ),
-    "decimal commas between commas": (
-        "a.csv",
-        text(body=[f"0,{i:02d},0,00{i % 9},{i}" for i in range(60)]),
-        "row has 5 values",
-        2,
-    ),
-    "a point among commas in quotes": (
-        "a.csv",
-        text(
-            replace=[(7, '"1.234","0,1","7,5"')],
-            body=[",".join(f'"{i},{n:02d}"' for i in range(3)) for n in range(60)],
-        ),
-        "decimal comma",
-        9,
-    ),
-    "marks between thousands in quotes": (
-        "a.csv",
-        text(body=[f'"{i}","{i % 9}","1,{100 + i}"' for i in range(60)]),
-        "may be",
-        2,
-    ),
+    "thousands": ("a.csv", text(HEAD.replace(",", ";"),
+        body=[f"{i};{i % 9};1,{100 + i}" for i in range(60)]), "may be", 2),
+    "a point among commas": ("a.csv", text(HEAD.replace(",", ";"), [(7, "1.234;0,1;7,5")],
+        [line.replace(",", ";").replace(".", ",") for line in BODY]), "decimal comma", 9),
+    "decimal commas between commas": ("a.csv",
+        text(body=[f"0,{i:02d},0,00{i % 9},{i}" for i in range(60)]), "row has 5 values", 2),
+    "a point among commas in quotes": ("a.csv", text(replace=[(7, '"1.234","0,1","7,5"')],
+        body=[",".join(f'"{i},{n:02d}"' for i in range(3)) for n in range(60)]), "decimal comma",
+        9),
+    "marks between thousands in quotes": ("a.csv",
+        text(body=[f'"{i}","{i % 9}","1,{100 + i}"' for i in range(60)]), "may be", 2),
     "a quote that does not end": ("a.csv", text(replace=[(7, '"0.07,0.007,7')]), "has 1 values", 9),
     "time repeats": ("a.csv", text(replace=[(5, BODY[4])]), "time repeats", 7),
     "time goes back": ("a.csv", text(replace=[(5, "0.01,0.005,5")]), "time goes back", 7),
     "a gap": ("a.csv", text(body=[*BODY[:45], "9.5,0.01,3", "9.51,0.02,2", "9.52,0.03,1"] + [
         f"9.{i},0.01,{i % 7}" for i in range(53, 60)]), "a gap of .* and no 50 rows", 47),
-    "a huge value": (
-        "a.csv",
-        text(replace=[(5, "0.05,1e297,5")]),
-        r"deflection_m is 1e\+297: no sensor",
-        7,
-    ),
-    "huge in another unit": (
-        "a.csv",
-        text(HEAD.replace("time_s", "time_min"), [(59, "1e308,0.1,5")]),
-        "time_min is inf",
-        61,
-    ),
+    "a huge value": ("a.csv", text(replace=[(5, "0.05,1e297,5")]),
+        r"deflection_m is 1e\+297: no sensor", 7),
+    "huge in another unit": ("a.csv", text(HEAD.replace("time_s", "time_min"), [(59,
+        "1e308,0.1,5")]), "time_min is inf", 61),
     "infinite": ("a.csv", text(replace=[(5, "0.05,0.1,-inf")]), "force_N is -inf", 7),
     "tiny changes": ("a.csv", column(1, 1e-200 * TIME), "never changes by more than 6e-201", 2),
-    "changes by rounding": (
-        "a.csv",
-        column(2, 0.3 + 1e-17 * FLAT),
-        "force never changes by more than",
-        2,
-    ),
+    "changes by rounding": ("a.csv", column(2, 0.3 + 1e-17 * FLAT),
+        "force never changes by more than", 2),
     "no time passes": ("a.csv", column(0, 1e-200 * TIME), "time hardly advances", 61),
     "too short": ("a.csv", text(body=BODY[:10]), "has 10 rows", 11),
     "nothing moves": ("a.csv", column(1, [0.1] * 60), "deflection never changes", 2),
@@ -157,64 +118,26 @@ def swing(i):
 OTHERS = {
     "no output": (read_actuator, rows("time_s,command_V", clock, swing), "angle_rad", 1),
     "no command": (read_actuator, rows("time_s,angle_rad", clock, swing), "command", 1),
-    "a command in ohm": (
-        read_actuator,
-        rows("time_s,command_ohm,angle_rad", clock, swing, swing),
-        "'ohm'",
-        1,
-    ),
-    "a velocity without unit": (
-        read_actuator,
-        rows("time_s,command_V,velocity", clock, swing, swing),
-        "velocity.*has no unit",
-        1,
-    ),
-    "a command that never changes": (
-        read_actuator,
-        rows("time_s,command_rpm,angle_rad", clock, 3000, swing),
-        "command never changes",
-        2,
-    ),
-    "a motor at rest": (
-        read_actuator,
-        rows("time_s,command_rpm,angle_rad", clock, swing, 0.5),
-        "angle never changes",
-        2,
-    ),
-    "two angles": (
-        read_actuator,
-        rows("time_s,command_V,angle_rad,angle_deg", clock, swing, swing, swing),
-        "there twice",
-        1,
-    ),
-    "two frequencies": (
-        read_actuator,
-        b"frequency_hz,magnitude_db,phase_deg\n1,0,-5\n2,0,-9\n",
-        "2 frequencies are too few",
-        3,
-    ),
-    "a frequency of zero": (
-        read_actuator,
-        b"frequency_hz,magnitude_db,phase_deg\n1,0,-5\n0,0,-9\n3,0,-9\n",
-        "not positive",
-        3,
-    ),
+    "a command in ohm": (read_actuator, rows("time_s,command_ohm,angle_rad", clock, swing, swing),
+        "'ohm'", 1),
+    "a velocity without unit": (read_actuator, rows("time_s,command_V,velocity", clock, swing,
+        swing), "velocity.*has no unit", 1),
+    "a command that never changes": (read_actuator, rows("time_s,command_rpm,angle_rad", clock,
+        3000, swing), "command never changes", 2),
+    "a motor at rest": (read_actuator, rows("time_s,command_rpm,angle_rad", clock, swing, 0.5),
+        "angle never changes", 2),
+    "two angles": (read_actuator, rows("time_s,command_V,angle_rad,angle_deg", clock, swing, swing,
+        swing), "there twice", 1),
+    "two frequencies": (read_actuator, b"frequency_hz,magnitude_db,phase_deg\n1,0,-5\n2,0,-9\n",
+        "2 frequencies are too few", 3),
+    "a frequency of zero": (read_actuator,
+        b"frequency_hz,magnitude_db,phase_deg\n1,0,-5\n0,0,-9\n3,0,-9\n", "not positive", 3),
     "nothing measured": (read_signals, rows("time_s,command_V", clock, swing), "missing", 1),
-    "a signal that never changes": (
-        read_signals,
-        rows("time_s,command_V,angle_rad", clock, swing, 1),
-        "never changes",
-        2,
-    ),
-    "two records": (
-        read_signals,
-        rows(
-            "time_s_1,command_V_1,angle_rad_1,time_s_2,command_V_2,angle_rad_2",
-            *[clock, swing, swing] * 2,
-        ),
-        "2 groups",
-        None,
-    ),
+    "a signal that never changes": (read_signals, rows("time_s,command_V,angle_rad", clock, swing,
+        1), "never changes", 2),
+    "two records": (read_signals,
+        rows("time_s_1,command_V_1,angle_rad_1,time_s_2,command_V_2,angle_rad_2", *[clock, swing,
+        swing] * 2), "2 groups", None),
 }  # fmt: skip
 
 

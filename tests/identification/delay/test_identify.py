@@ -172,10 +172,7 @@ def test_what_is_smooth_between_samples():
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("record", "name", "delay"),
-    [
-        (signals.copy(1), "a copy", signals.DELAY),
-        (signals.lag(1), "a first-order lag", LATE),
-    ],
+    [(signals.copy(1), "a copy", signals.DELAY), (signals.lag(1), "a first-order lag", LATE)],
 )
 def test_a_pause_parts_a_record(record, name, delay):
     kept = np.r_[0:700, 760:1400, 1430:2000]

@@ -44,24 +44,6 @@ def test_blocks_do_not_show(tmp_path, monkeypatch):
     assert np.column_stack(list(whole.values())).tolist() == values.tolist()
 
 
-@pytest.mark.parametrize(
-    ("old", "new", "line", "message"),
-    [
-        ("0.2,0.002,2", "0.2,0.002,2,9", 4, "the row has 4 values"),
-        ("0.2,0.002,2", "0.2,1_0,2", 4, "not a number"),
-        ("0.2,0.002,2", "0.2,٣,2", 4, "not a number"),
-        ("0.4,0.004,4\n", "0.4,0.004,", 6, "force_N is missing"),
-        ("force_N", "angle_rad", 1, "missing"),
-    ],
-)
-def test_one_message_with_the_row(tmp_path, old, new, line, message):
-    with pytest.raises(DataError, match=message) as caught:
-        read(tmp_path, GOOD.replace(old, new))
-    assert caught.value.line == line
-    assert caught.value.path is not None
-    assert caught.value.remedy
-
-
 def test_the_row_is_right_in_later_blocks(tmp_path, monkeypatch):
     monkeypatch.setattr(module, "BLOCK", 64)
     rows = "".join(f"{i},{i},{i}\n" for i in range(300))

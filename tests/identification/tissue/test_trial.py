@@ -63,9 +63,7 @@ def test_pauses_part_a_record_whose_stretches_are_fitted_together(law, noise):
     whole = record(law, motion, noise, 3)
     kept = np.r_[0:500, 640:660, 700:1100, 1250 : len(motion)]
     parted = replace(
-        whole,
-        motion=Motion(motion.time[kept], motion.deflection[kept]),
-        force=whole.force[kept],
+        whole, motion=Motion(motion.time[kept], motion.deflection[kept]), force=whole.force[kept]
     )
     found = identify_tissue([parted])
     assert found.chosen.law.name == law.name

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from nrs_design.errors import AssemblyError, DesignError, InternalError
-from nrs_design.models.contact import LAWS, LINEAR_LAWS, Hand, KelvinVoigt, Motion
+from nrs_design.models.contact import Hand, KelvinVoigt, Motion
 from nrs_design.models.contact.environment import Environment, touch_at_once
 from nrs_design.models.interval import Interval
 from nrs_design.models.linear_form import coordinates
@@ -54,11 +54,6 @@ def test_the_mass_is_never_left_out():
     hand = Environment("hand", Hand, ranges)
     with pytest.raises(InternalError, match="mass of hand"):
         touch_at_once((hand, hand), losable=False)
-
-
-def test_no_record_of_a_press_is_fitted_by_it():
-    assert "hand" not in LAWS
-    assert LINEAR_LAWS["hand"] is Hand
 
 
 def test_at_the_pivot_every_parameter_takes_the_square_of_the_arm():

@@ -10,20 +10,6 @@ from tests.identification.support import wobble
 positive = st.floats(1e-3, 1e3)
 
 
-# Thesis tables 2.4 and 2.5; eta recomputed from the printed elements.
-@pytest.mark.parametrize(
-    ("elements", "eta"),
-    [
-        ((0.233, 0.972, 23.631), (0.18795, 19.06169, 19.61079)),
-        ((0.479, 3.303, 30.456), (0.41833, 26.59867, 8.05288)),
-    ],
-)
-def test_coefficients_of_nose_and_concha(elements, eta):
-    law = KelvinBoltzmann(*elements)
-    assert law.eta == pytest.approx(eta, rel=3e-5)
-    assert law.relaxation_time == law.eta[2]
-
-
 @given(positive, positive, positive)
 def test_round_trip(k1, k2, b):
     law = KelvinBoltzmann(k1, k2, b)

@@ -22,42 +22,22 @@ def document(*arguments, cwd):
     return found
 
 
-MOVED = ("--velocity", "0.5,-0.3,0.8", "--acceleration", "1,2,-1")
-LEVEL = {"G": [-3.334268, 3.327126, 2.913252], "Gs": [-1.829253, 1.829253, 1.309862]}
-ASIDE, JOINTS = [0.1, -0.2, 0.2], [0.21320221, -0.07155944, 0.80477127]
+ASIDE = [0.1, -0.2, 0.2]
+MOVED = ("--pose", "0.1,-0.2,0.2", "--velocity", "0.5,-0.3,0.8", "--acceleration", "1,2,-1")
 
 
 @pytest.mark.parametrize(
     ("command", "options", "facts"),
     [
-        ("dynamics", ("--pose", "0,0,0.2"), LEVEL | {"torque": LEVEL["G"]}),
-        (
-            "dynamics",
-            ("--pose", "0.1,-0.2,0.2", *MOVED),
-            {"torque": [-3.412764, 3.14203, 2.681441]},
-        ),
+        ("dynamics", MOVED, {"torque": [-3.412764, 3.14203, 2.681441]}),
         ("dynamics", ("--pose=-0.1,-0.2,0.2", "--tilt", "-28.5"), {"base_tilt": -0.497419}),
-        (
-            "dynamics",
-            (),
-            {"mean_shares": {"gravity": 0.7551, "coriolis": 0.1145, "inertia": 0.1303}},
-        ),
-        ("kinematics", ("--pose", "0.1,-0.2,0.2"), {"pose": ASIDE, "joints": JOINTS}),
         ("kinematics", ("--joints", "0.21320221,-0.07155944,0.80477127"), {"pose": ASIDE}),
-        ("kinematics", (), {"reachable_share": 0.9995045}),
-        ("check", (), {"valid": True, "moving_mass_kg": 2.0153}),
     ],
 )
 def test_facts(tmp_path, command, options, facts):
     found = document(command, *options, cwd=tmp_path)
     for name, value in facts.items():
-        assert found[name] == pytest.approx(value, abs=1e-4 if name == "mean_shares" else 1e-6)
-
-
-def test_balance(tmp_path):
-    found = document("balance", cwd=tmp_path)
-    assert found["left"]["stiffness"] == pytest.approx(1804.2, abs=0.1)
-    assert max(found["with_balance"]["rms"]) < min(found["without_balance"]["rms"]) / 4
+        assert found[name] == pytest.approx(value, abs=1e-6)
 
 
 def test_check_says_what_is_out_of_reach_and_why(tmp_path):
@@ -88,12 +68,9 @@ def test_columns_are_named(tmp_path):
 @pytest.mark.slow
 def test_correction_table_for_the_controller(tmp_path):
     found = document("correction", "--table", "K.csv", "--figures", "out", cwd=tmp_path)
-    assert found["trajectories"][0]["mean_ratio"] == pytest.approx([1.823, 1.819, 2.282], abs=6e-4)
     drawn = [f"out/{name}.{end}" for name in PICTURES for end in ("svg", "png")]
     assert found["files"] == ["K.csv", *drawn]
     assert (tmp_path / "out" / "inertia-errors.png").stat().st_size > 10_000
-    errors = found["apart"]["inertia_error"]
-    assert errors["single"] > errors["rows"] > errors["entries"] > found["apart"]["gravity_error"]
     with (tmp_path / "K.csv").open() as file:
         rows = list(csv.DictReader(file))
     by_tilt = {float(row["theta4_deg"]): row for row in rows}
@@ -132,8 +109,6 @@ def test_figures(tmp_path, command, name):
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (("dynamics", ROBOT, "--pose", "0,0"), "three numbers"),
-        (("kinematics", ROBOT, "--pose", "0,0,200"), "depths are in m: 200 mm are 0.2"),
         (("dynamics", ROBOT, "--pose", "10,0,0.2"), "angles are in rad: 10 deg are 0.174533"),
         (("dynamics", ROBOT, "--velocity", "1,1,1"), "--pose"),
         (("kinematics", ROBOT, "--pose", "0,0,0.2", "--joints", "0,0,0"), "not both"),

@@ -21,11 +21,8 @@ def quick(tmp_path_factory):
 def test_every_controller_in_one_document(quick):
     _, found = quick
     assert found["schema"] == "nrs-design/robot-track/1"
-    assert [run["controller"] for run in found["runs"]] == [
-        "computed-torque",
-        "independent-joint",
-        "balanced",
-    ]
+    controllers = ["computed-torque", "independent-joint", "balanced"]
+    assert [run["controller"] for run in found["runs"]] == controllers
     assert {run["moved"] for run in found["runs"]} == {"phi"}
     assert found["base_tilt"] == pytest.approx(-0.497419, abs=1e-6)
     assert any("backlash" in line for line in found["not_modelled"])
@@ -42,17 +39,8 @@ def test_figures(quick):
 @pytest.mark.slow
 def test_table_for_people_beside_the_print(tmp_path):
     # The shortest experiment of the thesis.
-    result = run(
-        "robot",
-        "track",
-        ROBOT,
-        "--controller",
-        "independent-joint",
-        "--experiment",
-        "phi",
-        cwd=tmp_path,
-        code=0,
-    )
+    given = ("--controller", "independent-joint", "--experiment", "phi")
+    result = run("robot", "track", ROBOT, *given, cwd=tmp_path, code=0)
     (row,) = [line.split() for line in result.stdout.splitlines() if "independent-joint" in line]
     assert row[1:4] == ["phi", "10", "0.1075"]
     # Table 4.6.

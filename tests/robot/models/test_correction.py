@@ -12,27 +12,7 @@ from nrs_design.robot.models import (
     tilt_table,
     tilt_tables,
 )
-from nrs_design.robot.models.correction import (
-    DEPTH_SINES,
-    TABLE_3_5,
-    correct,
-    to_csv,
-)
-
-
-# Recomputed; the thesis prints 1.8318 1.8263 2.2651, 1.8310 1.8257 2.2111, 1.8212 1.8157 2.1845.
-@pytest.mark.parametrize(
-    ("sine", "expected"),
-    [
-        (DEPTH_SINES[0], (1.823, 1.819, 2.282)),
-        (DEPTH_SINES[1], (1.823, 1.819, 2.224)),
-        (DEPTH_SINES[2], (1.813, 1.809, 2.195)),
-    ],
-)
-def test_depth_alone(robot, sine, expected):
-    found = correction_coefficients(robot, sine)
-    assert found.mean_ratio == pytest.approx(expected, abs=6e-4)
-    assert found.least_squares == pytest.approx(expected, abs=6e-4)
+from nrs_design.robot.models.correction import DEPTH_SINES, TABLE_3_5, correct, to_csv
 
 
 def test_table_for_the_controller(robot):

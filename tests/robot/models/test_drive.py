@@ -11,11 +11,6 @@ def test_ratios_of_the_thesis(drive):
     assert (drive.ratio, drive.encoder_ratio) == (905, 5)
 
 
-def test_rotor_beside_the_load(drive):
-    # Errata: I_L/N^2 is 4.53 % of the inertia of the actuator (thesis 4.3 says about 4 %).
-    assert 0.055 / drive.inertia == pytest.approx(0.0453, abs=5e-5)
-
-
 def test_free_motor_answers_as_identified(drive):
     # Thesis 4.9: speed of the encoder over command is 4.8417e-4/(0.0351 s + 1).
     speed = drive.encoder_ratio * drive.torque_per_command / drive.damping

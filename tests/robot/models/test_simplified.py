@@ -23,11 +23,6 @@ def only_platform(robot):
     return replace(robot, legs=(left, right, rotor))
 
 
-def test_gravity_at_home(robot):
-    expected = [-1.829253, 1.829253, 1.309862]
-    assert simplified_dynamics(robot, robot.home).Gs == pytest.approx(expected, abs=1e-6)
-
-
 @given(pose=poses, tilt=tilts)
 def test_it_is_the_full_model_without_links(robot, pose, tilt):
     robot = robot.tilted(tilt)

@@ -24,14 +24,6 @@ def test_grids(robot):
     assert grid[-1, -1, -1] == pytest.approx([*np.radians([15, 20]), 0.25])
 
 
-def test_corners(robot):
-    survey = survey_workspace(robot)
-    deepest = {(round(phi, 3), round(psi, 3)): d for phi, psi, d in survey.deepest}
-    assert deepest[0.262, -0.349] == deepest[-0.262, -0.349] == pytest.approx(0.2445, abs=1e-4)
-    assert deepest[0.262, 0.349] == pytest.approx(0.25)
-    assert 0.999 < survey.reachable < 1
-
-
 def test_peaks_are_reached_and_not_exceeded(robot):
     grid = workspace_grid(robot, 5, 3)
     peaks = joint_peaks(robot, grid)

@@ -34,37 +34,6 @@ def test_end_to_end(tmp_path):
     assert "synthetic" in check
 
 
-def test_tissue_table(tmp_path):
-    result = run("identify", "tissue", *SOFT, "--lever-arm", "0.24 m", "-v", cwd=tmp_path, code=0)
-    assert result.stdout.startswith("SYNTHETIC data")
-    for law in ("elastic", "kelvin-voigt", "maxwell", "kelvin-boltzmann", "hunt-crossley"):
-        assert law in result.stdout
-    assert "at the pivot: k = 42.9" in result.stdout
-    assert "least BIC" in result.stdout
-
-
-def test_nose_of_the_thesis(tmp_path):
-    """Thesis table 2.4: k1 0.233, k2 0.972, b 23.631; RMSE 0.0216, 0.0165, 0.0062, 0.0111."""
-    document = document_of("identify", "tissue", *NOSE, cwd=tmp_path)
-    assert document["chosen"] == "kelvin-boltzmann"
-    model = next(m for m in document["models"] if m["law"] == "kelvin-boltzmann")
-    for name, value in (("k1", 0.233), ("k2", 0.972), ("b", 23.631)):
-        assert model["parameters"][name]["low"] < value < model["parameters"][name]["high"]
-    rmse = [record["rmse"] for record in model["records"]]
-    assert rmse == pytest.approx([0.0216, 0.0165, 0.0062, 0.0111], rel=0.05)
-    assert model["relaxation_time_s"] == pytest.approx(19.6, rel=0.02)
-
-
-@pytest.mark.slow
-def test_what_is_chosen_for_the_nose_can_be_proved(tmp_path):
-    spec = tmp_path / "nose.nrs.yaml"
-    shutil.copy(ROOT / "specs/neuroboscope/nose.nrs.yaml", spec)
-    run("identify", "tissue", *NOSE, "--write", spec, cwd=tmp_path, code=0)
-    assert "model: kelvin-boltzmann" in spec.read_text()
-    assert "nose-4.csv" in spec.read_text()
-    assert run("certify-switching", spec, cwd=tmp_path, code=0).stdout.startswith("nose: PROVED")
-
-
 def test_writing_a_law_that_fits_worse_warns(tmp_path):
     spec = tmp_path / "copy.nrs.yaml"
     shutil.copy(SOFT_TISSUE, spec)
@@ -88,13 +57,6 @@ def test_offsets_and_cuts_are_said(tmp_path):
     """A robot at 400 N/m behind 0.1 m, with a tare of -1.3 N and air before the contact."""
     data = robot_record(KelvinVoigt(400.0, 3.0), quick(2), 0.05, 2, zero=0.1, tare=-1.3)
     path = press_csv(tmp_path, data)
-    document = document_of("identify", "tissue", path, cwd=tmp_path)
-    assert document["chosen"] == "kelvin-voigt"
-    assert document["caveats"] == []
-    (fit,) = next(m for m in document["models"] if m["law"] == "kelvin-voigt")["records"]
-    assert fit["offsets"]["zero"]["value"] == pytest.approx(0.1, abs=2e-4)
-    assert fit["used"] < fit["samples"]
-    assert any("at the edge of contact" in cut for cut in fit["cuts"])
     command = ("identify", "tissue", path, "--prony", "--report", "page.html")
     text = run(*command, "-v", cwd=tmp_path).stdout
     assert "3 touches" in text

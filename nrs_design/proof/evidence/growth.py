@@ -46,10 +46,10 @@ def attained(system: SwitchedSystem, mode: str) -> Any:
     That is the mode itself, or some combination of the set that it is in.
     """
     modes = {mode.name: mode.A for mode in system.every_mode}
-    return hull(balls(modes[name]) for name in system.enclosure_of(mode))
+    return all_between(balls(modes[name]) for name in system.enclosure_of(mode))
 
 
-def hull(matrices: Iterable[Any]) -> Any:
+def all_between(matrices: Iterable[Any]) -> Any:
     """TRUSTED: return balls that contain all combinations of matrices of balls."""
     from flint import arb_mat
 
@@ -71,7 +71,7 @@ def grows_throughout(matrices: Iterable[RationalMatrix]) -> bool:
     All eigenvalues at most one in modulus would give ``|tr M^k| <= n`` for every k.
     """
     with precision():
-        power = hull(map(balls, matrices))
+        power = all_between(map(balls, matrices))
         n = power.nrows()
         for _ in range(MAX_DOUBLINGS + 1):
             trace = sum((power[i, i] for i in range(n)), start=0 * power[0, 0])

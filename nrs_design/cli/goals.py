@@ -31,7 +31,7 @@ def _print_goals(name: str, items: Iterable[AbstractControllerAnalysis]) -> None
             found.measure.goal_text(found.goal),
             found.text,
             found.where,
-            "met" if found.met else "MISSED",
+            found.standing.text,
         ]
         for item in items
         for found in item.judged
@@ -73,7 +73,8 @@ def design_answer(
     designed, analysis
         The spec, and what its design achieves.
     items : iterable of AbstractControllerAnalysis
-        The controllers that the command is about; its exit code is 1 if one misses a goal.
+        The controllers that the command is about; its exit code is 1 if one misses a goal, and 3
+        if one has a goal that is not judged.
     facts, show : callable
         Return the content of the JSON document; print the text.
     proved : bool
@@ -103,10 +104,20 @@ def design_answer(
     return Answer(
         lambda: spec_facts(loaded) | facts() | {"warnings": [str(doubt) for doubt in doubts]},
         show_all,
-        exit_codes.unless(
-            not proved or any(not found.met for item in items for found in item.achieved)
-        ),
+        _exit_code(items, proved=proved),
     )
+
+
+def _exit_code(items: Iterable[AbstractControllerAnalysis], *, proved: bool) -> int:
+    """Return 1 where a goal is missed or one of the proof is not proved, 3 where one is open."""
+    from nrs_design.design.standing import Standing
+
+    # Proofs take a second, and are for goals.
+    asked = [item for item in items if any(found.goal is not None for found in item.achieved)]
+    found = {one.standing for item in asked for one in item.judged}
+    if not proved or Standing.MISSED in found:
+        return exit_codes.REFUTED
+    return exit_codes.INCONCLUSIVE if Standing.NOT_JUDGED in found else exit_codes.PROVED
 
 
 def _say_unjudged(spec: InteractionDesignSpec) -> None:

@@ -26,6 +26,15 @@ def cells(item: ImpedanceAnalysis) -> list[str]:
     ]
 
 
+def worst_of(items: Sequence[ImpedanceAnalysis]) -> str:
+    """Say over what the margins of a table are the worst."""
+    if all(
+        one.proved is not None or one.everywhere for i in items for one in map(i.shown, MARGINS)
+    ):
+        return "the worst over all ranges"
+    return "the worst at the corners of all ranges"
+
+
 def basis(items: Sequence[ImpedanceAnalysis]) -> str:
     """Say which margins are proved of all controllers, and what the others are."""
     proved = [m.title for m in MARGINS if all(m.title in item.proved_titles for item in items)]

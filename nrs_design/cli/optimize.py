@@ -114,7 +114,7 @@ def _print(spec: InteractionDesignSpec, analysis: DesignAnalysis) -> None:
     detail(f"{spec.name}: G(s) = {motion}, {source}")
     if not analysis.impedance:
         return
-    from nrs_design.cli.marked import basis, cells, marks
+    from nrs_design.cli.marked import basis, cells, marks, worst_of
 
     columns = [
         "controller",
@@ -129,7 +129,7 @@ def _print(spec: InteractionDesignSpec, analysis: DesignAnalysis) -> None:
         f"stands up to\n{unit('N m/rad')}",
     ]
     print_table(
-        f"{spec.name}: the worst over all ranges", columns, [*map(cells, analysis.impedance)]
+        f"{spec.name}: {worst_of(analysis.impedance)}", columns, [*map(cells, analysis.impedance)]
     )
     for line in marks(analysis.impedance):
         say(line)

@@ -129,7 +129,8 @@ def parameters_at(
     gain, tau = values.get("Km", nominal.gain), values.get("tau", nominal.time_constant)
     place = Place(replace(nominal, gain=gain, time_constant=tau))
     gains = {name: values.get(name, given) for name, given in law.gains.items()}
-    return law.of(gains), place, tau * (gains["Mt"] or gains["Bt"])
+    own = gains.get("Mt") or gains.get("Bt") or ONE  # Only an admittance divides by one.
+    return law.of(gains), place, tau * own
 
 
 def _poles_in_the_air(law: CompliantLaw, free: Polynomial) -> Polynomial:

@@ -4,15 +4,17 @@ The loop is that of the modes that a certificate is about, cut where the law tak
 Margins are taken in every contact: at the nominal values of the environment that the controller is
 designed for, and at all corners of the declared ranges of all its contacts and of the motor,
 sampled at every age of the force sample. Displayed impedance and force error are what the design is
-for: they are taken in the environment that it is designed for. Values between corners are not
-looked at. All of it is floating point, and no proof.
+for: they are taken in the environment that it is designed for. The worst of a goal is also looked
+for at some points between the corners. All of it is floating point, and no proof: a goal is met
+where it is proved over all ranges, where nothing has a range, or where the measure rises or falls
+with each parameter throughout, so that a corner is the worst.
 """
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from itertools import product
@@ -37,12 +39,14 @@ from nrs_design.design.measures import (
     GAIN_MARGIN,
     HAND_EFFORT,
     IMPEDANCE_ERROR,
+    MONOTONE,
     PHASE_MARGIN,
     SENSITIVITY_PEAK,
     TRANSPARENCY,
     Measure,
 )
 from nrs_design.design.polynomials import multiply
+from nrs_design.design.standing import Standing
 from nrs_design.design.transfer import BoolArray, ComplexArray, FloatArray, TransferFunction
 from nrs_design.errors import DesignError
 from nrs_design.models.contact import AbstractLinearLaw
@@ -51,6 +55,11 @@ from nrs_design.switched.cut_loop import AbstractAxis, Place
 
 # In the place of a corner.
 NOT_COMPUTED = "not computed: the force is sampled more often than the motion loop"
+
+
+# Into how many parts a range is divided where the worst of a goal is looked for between corners: of
+# one range, of each of two, of each of more.
+_PARTS = (16, 4, 2)
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,6 +72,8 @@ class Achieved:
     goal: float | None = None  # What the spec asks for, in SI units
     # What no values in the ranges are worse than, each of them constant; None if not shown.
     proved: Fraction | None = None
+    # Whether it is the worst of all ranges: nothing has one, or the measure is worst at a corner.
+    everywhere: bool = False
 
     @property
     def text(self) -> str:
@@ -70,9 +81,31 @@ class Achieved:
         return self.measure.text(self.value if self.proved is None else self.proved)
 
     @property
-    def met(self) -> bool:
-        """Whether there is no goal, or the value reaches it."""
-        return self.goal is None or self.measure.violation(self.value, self.goal) <= 0
+    def standing(self) -> Standing:
+        """How the goal stands; one that there is not is met."""
+        if self.goal is None:
+            return Standing.MET
+        if (missed := self.measure.violation(self.value, self.goal)) > 0:
+            return Standing.MISSED
+        everywhere = self.everywhere and missed <= 0  # What is not computed is not met.
+        return Standing.MET if everywhere or self._is_proved else Standing.NOT_JUDGED
+
+    @property
+    def basis(self) -> str:
+        """What the standing of a goal rests on."""
+        if self.standing is Standing.NOT_JUDGED:
+            return "not judged: floating point in some points, and no proof in between"
+        if self.everywhere or not self._is_proved:
+            return "floating point, not a proof"
+        return "proved over all ranges"
+
+    @property
+    def _is_proved(self) -> bool:
+        """Whether what is proved reaches the goal."""
+        if self.proved is None or self.goal is None:
+            return False
+        wanted = Fraction(self.goal)
+        return self.proved <= wanted if self.measure.upper else self.proved >= wanted
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,7 +138,7 @@ class AbstractRequirement(ABC):
         count = len(gains[0]) if gains else 1
         if self.axis is None and measure not in CREEP_MEASURES:
             return np.full(count, np.nan), [NOT_COMPUTED] * count
-        corners = [c for c in self.corners if c.home or measure not in AT_HOME]
+        corners = [*self._measured_at(measure)]
         table = np.array([self._at(corner, measure, *gains) for corner in corners])
         worst = table.argmax(axis=0) if measure.upper else table.argmin(axis=0)
         values = np.take_along_axis(table, worst[None, :], axis=0)[0]
@@ -113,12 +146,47 @@ class AbstractRequirement(ABC):
         return values, ["free motion" if in_the_air else corners[i].label for i in worst]
 
     def achieved(self, measures: tuple[Measure, ...], *gains: float) -> tuple[Achieved, ...]:
-        """Return the worst value of every measure, beside its goal."""
-        goals, found = dict(self.goals), []
-        for measure in measures:
-            (value,), (where,) = self.values(measure, *(np.array([gain]) for gain in gains))
-            found.append(Achieved(measure, float(value), where, goals.get(measure)))
-        return tuple(found)
+        """Return the worst value of every measure, beside its goal.
+
+        Where corners meet the goal, it is also looked for between them.
+        """
+        return tuple(self._achieved(measure, *gains) for measure in measures)
+
+    def _achieved(self, measure: Measure, *gains: float) -> Achieved:
+        own = tuple(np.array([gain]) for gain in gains)
+        (value,), (where,) = self.values(measure, *own)
+        found = Achieved(
+            measure,
+            float(value),
+            where,
+            dict(self.goals).get(measure),
+            everywhere=measure in MONOTONE or self._is_one_point(measure),
+        )
+        if found.goal is None or found.standing is not Standing.NOT_JUDGED or np.isnan(value):
+            return found
+        (value,), (where,) = replace(self, corners=self._between).values(measure, *own)
+        beyond = replace(found, value=float(value), where=where)
+        return beyond if beyond.standing is Standing.MISSED else found
+
+    def _measured_at(self, measure: Measure) -> Iterator[ContactCorner]:
+        return (corner for corner in self.corners if corner.home or measure not in AT_HOME)
+
+    def _is_one_point(self, measure: Measure) -> bool:
+        """Tell whether nothing has a range: ages of the force are taken one by one."""
+        found: dict[tuple[str, int], set[object]] = {}
+        for corner in self._measured_at(measure):
+            place = replace(corner.place, age=0, texts=())
+            point = corner.contact, place, corner.Kt
+            found.setdefault((corner.environment, corner.place.age), set()).add(point)
+        return all(len(points) == 1 for points in found.values())
+
+    @cached_property
+    def _between(self) -> tuple[ContactCorner, ...]:
+        """Points of the contacts between their corners."""
+        groups: dict[tuple[str, Place], list[ContactCorner]] = {}
+        for corner in self.corners:
+            groups.setdefault((corner.environment, corner.place), []).append(corner)
+        return tuple(inner for group in groups.values() for inner in _inside(group))
 
     @abstractmethod
     def _at(self, corner: ContactCorner, measure: Measure, *gains: FloatArray) -> FloatArray: ...
@@ -151,8 +219,9 @@ class Requirement(AbstractRequirement):
         return np.asarray(np.all([each.stable for each in loops], axis=0))
 
     def corner(self, label: str) -> ContactCorner:
-        """Return the corner of a label."""
-        return next(corner for corner in self.corners if corner.label == label)
+        """Return the corner, or point between corners, of a label."""
+        points = (*self.corners, *self._between)
+        return next(corner for corner in points if corner.label == label)
 
     def violation(self, Mt: FloatArray, Bt: FloatArray) -> FloatArray:
         """Return by which part the worst goal is missed; not positive where all are met."""
@@ -325,6 +394,25 @@ def _corners(
         label = f"{environment.name}, {', '.join((*contact.texts(unit), *place.texts))}"
         is_home = environment.name == home
         yield ContactCorner(label, environment.name, contact, place, is_home, spring)
+
+
+def _inside(group: Sequence[ContactCorner]) -> Iterator[ContactCorner]:
+    """Yield points of the box whose corners are a group, and those corners."""
+    yield from group
+    first = group[0]
+    sides = [(min(ends), max(ends)) for ends in zip(*(c.contact.exact for c in group), strict=True)]
+    count = sum(low < high for low, high in sides)
+    parts = _PARTS[min(count, len(_PARTS)) - 1]
+    grids = [
+        [low + (high - low) * i / parts for i in range(parts + 1)] if low < high else [low]
+        for low, high in sides
+    ]
+    known = {corner.contact.exact for corner in group}
+    for values in product(*grids):
+        if values not in known:
+            contact = type(first.contact)(*values)
+            at = (*contact.texts(unit), *first.place.texts)
+            yield replace(first, contact=contact, label=f"{first.environment}, {', '.join(at)}")
 
 
 def _margin(loops: Loops, measure: Measure) -> FloatArray:

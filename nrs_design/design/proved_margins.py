@@ -24,7 +24,7 @@ from dataclasses import dataclass, replace
 from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 from fractions import Fraction
 from itertools import pairwise
-from math import isfinite
+from math import isfinite, prod
 from typing import Any
 
 import numpy as np
@@ -50,12 +50,15 @@ from nrs_design.design.measures import (
     DELAY_MARGIN,
     DISK_MARGIN,
     GAIN_MARGIN,
+    HAND_EFFORT,
     IMPEDANCE_ERROR,
     PHASE_MARGIN,
     SENSITIVITY_PEAK,
+    TRANSPARENCY,
     Measure,
 )
 from nrs_design.design.polynomials import frequencies, squared
+from nrs_design.design.standing import Standing
 from nrs_design.models.contact import Elastic, KelvinVoigt
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.interval import Interval
@@ -64,7 +67,7 @@ from nrs_design.proof.largest_ratio import largest_ratio
 from nrs_design.switched.cut_loop import ContinuousAxis, multiply
 
 # Bernstein coefficients that are looked at for one question, and ranges at once.
-_MOST, _RANGES = 40_000, 2
+_MOST, _RANGES = 40_000, 4
 # Beyond the worst value at the corners: between them it may be worse.
 _SLACK = (ZERO, Fraction(1, 1000), Fraction(1, 100))
 _DIGITS = 4
@@ -79,8 +82,8 @@ class RangedLoop:
     """The loops of one controller in one environment, over all ranges."""
 
     axis: ContinuousAxis  # From which the modes follow
-    law: CompliantLaw  # An admittance with the gains that ship
-    environment: Environment  # Elastic or Kelvin-Voigt
+    law: CompliantLaw  # With the gains that ship
+    environment: Environment  # With any linear law
     ranges: Mapping[str, Interval]  # Where ``Km``, ``tau``, ``Mt``, ``Bt`` and ``Kt`` are
     desired: Fraction = ONE  # Desired impedance, N m s/rad
     bandwidth: Fraction = ONE  # Highest frequency of the command, rad/s
@@ -103,12 +106,24 @@ class RangedLoop:
         """
         return _PROOFS[measure](self, value)
 
-    def _cut(self, values: Mapping[str, Fraction]) -> tuple[Polynomial, Polynomial]:
-        """Return D and C, affine in each parameter."""
+    def _cut(
+        self, values: Mapping[str, Fraction], *, held: bool = False
+    ) -> tuple[Polynomial, Polynomial]:
+        """Return D and C, affine in each parameter.
+
+        Each parameter is in the force, or in one row of the matrix: in that of the motor, the law
+        or the memory of the contact, which are multiplied by what they are divided by. The force is
+        one linear form of the state, and where it is in several rows, their determinant is affine
+        in it all the same.
+
+        `held`: D is that of nothing touched, for a hand that holds the robot.
+        """
         law, place, factor = parameters_at(self.axis, self.law, values)
-        fixed = {name: r.low for name, r in self.environment.parameters.items()}
-        loop = self.axis.cut(law, self.environment.at({**fixed, **values}), place)
-        opened, closed = ([factor * c for c in p] for p in (loop.opened, loop.closed))
+        contact = {**{name: r.low for name, r in self.environment.parameters.items()}, **values}
+        factor *= prod(contact[name] for name in self.environment.law.inverse)
+        loop = self.axis.cut(law, self.environment.at(contact), place)
+        first = loop.free if held else loop.opened
+        opened, closed = ([factor * c for c in p] for p in (first, loop.closed))
         return opened, closed
 
     def _stays_stable(self, gain: Fraction) -> bool:
@@ -143,6 +158,29 @@ class RangedLoop:
             lambda d, c: shown(d, c)[::-1], error / self.desired, self.bandwidth
         )
 
+    def _has_transparency(self, share: Fraction) -> bool:
+        """Tell whether ``N/C`` is nowhere below a share in the band."""
+
+        def followed(values: Mapping[str, Fraction]) -> Quotient:
+            opened, closed = self._cut(values, held=True)
+            return Quotient(closed, _minus(closed, opened), ())
+
+        return self._stays_below(followed, 1 / share, self.bandwidth)
+
+    def _has_effort(self, effort: Fraction) -> bool:
+        """Tell whether ``Ze D/C`` is nowhere above an effort in the band."""
+        law = self.environment.law
+        if law not in (Elastic, KelvinVoigt):
+            return False
+
+        def felt(values: Mapping[str, Fraction]) -> Quotient:
+            opened, closed = self._cut(values, held=True)
+            hand = {name: r.low for name, r in self.environment.parameters.items()} | {**values}
+            above = multiply(opened, [hand.get("b", ZERO), hand["k"]])
+            return Quotient(above, multiply(closed, [ONE, ZERO]), ())
+
+        return self._stays_below(felt, effort, self.bandwidth)
+
     def _is_below(
         self,
         quotient: Callable[[Polynomial, Polynomial], tuple[Polynomial, Polynomial]],
@@ -150,10 +188,16 @@ class RangedLoop:
         band: Fraction | None = None,
     ) -> bool:
         """Tell whether a response is nowhere above a limit, up to a frequency if there is one."""
+        return self._stays_below(
+            lambda values: Quotient(*quotient(*self._cut(values)), ()), limit, band
+        )
 
-        def at(values: Mapping[str, Fraction]) -> Quotient:
-            return Quotient(*quotient(*self._cut(values)), ())
-
+    def _stays_below(
+        self,
+        at: Callable[[Mapping[str, Fraction]], Quotient],
+        limit: Fraction,
+        band: Fraction | None,
+    ) -> bool:
         made = corners_in(at, self.box)
         sides = [[lowest_first(c[i]) for c in made] for i in (0, 1)]
         rest = min(zeros_at_rest(p) for side in sides for p in side)
@@ -240,6 +284,8 @@ _PROOFS: dict[Measure, Callable[[RangedLoop, Fraction], bool]] = {
     DELAY_MARGIN: RangedLoop._has_delay,
     DISK_MARGIN: RangedLoop._has_disk,
     IMPEDANCE_ERROR: RangedLoop._has_impedance,
+    TRANSPARENCY: RangedLoop._has_transparency,
+    HAND_EFFORT: RangedLoop._has_effort,
 }
 PROVABLE = tuple(_PROOFS)
 
@@ -250,29 +296,22 @@ def ranged_loops(
     environments: Sequence[Environment],
     ranges: Mapping[str, Interval],
 ) -> tuple[RangedLoop, ...]:
-    """Return the loops of a controller in all its contacts; none where not all are covered.
-
-    Contact is elastic or Kelvin-Voigt, and at most two numbers have ranges at once.
-    """
+    """Return the loops of a controller in all its contacts; none where one has too many ranges."""
     loops = tuple(RangedLoop(axis, law, environment, ranges) for environment in environments)
-    covered = all(
-        loop.environment.law in (Elastic, KelvinVoigt) and len(loop.box) <= _RANGES
-        for loop in loops
-    )
-    return loops if covered else ()
+    return loops if all(len(loop.box) <= _RANGES for loop in loops) else ()
 
 
 def with_proofs(
     achieved: Sequence[Achieved],
     loops: Sequence[RangedLoop],
-    home: str,
-    desired: float,
-    bandwidth: float,
+    home: str = "",
+    desired: float = 1.0,
+    bandwidth: float = 1.0,
 ) -> tuple[Achieved, ...]:
     """Return measured values with what is proved of them over all ranges: a second's work.
 
     The desired impedance is in N m s/rad, the highest frequency of the command in rad/s; `home` is
-    the environment that the gains are designed for.
+    the environment that the gains are designed for. They are of impedance controllers alone.
     """
     if not loops or not all(loop.stable for loop in loops):
         return tuple(achieved)
@@ -289,7 +328,7 @@ def with_proofs(
     ]
     return tuple(
         replace(found, proved=_proved(found, at_home if found.measure in AT_HOME else loops))
-        if found.measure in PROVABLE and isfinite(found.value) and found.value > 0
+        if found.measure in PROVABLE and found.value > 0 and found.standing is not Standing.MISSED
         else found
         for found in achieved
     )
@@ -305,20 +344,24 @@ def _proved(found: Achieved, loops: Sequence[RangedLoop]) -> Fraction | None:
 
 def _proposed(found: Achieved) -> Iterator[Fraction]:
     """Yield values, the best first: as it is shown, the goal, and what is a little worse."""
+    wanted = found.goal
+    if not isfinite(found.value):
+        # What nothing limits at the corners.
+        if wanted is not None:
+            yield Fraction(wanted)
+        return
     upper, scale = found.measure.upper, found.measure.exact_scale
     context = Context(prec=_DIGITS, rounding=ROUND_CEILING if upper else ROUND_FLOOR)
     value = Fraction(found.value) * scale
     for slack in _SLACK:
         worse = value * (1 + slack if upper else 1 - slack)
         shown = Fraction(context.create_decimal(Decimal(float(worse)))) / scale
-        if not found.met or found.goal is None or not _misses(found, shown):
+        if wanted is None or found.measure.violation(float(shown), wanted) <= 0:
             yield shown
         elif not slack:
-            yield Fraction(found.goal)
-
-
-def _misses(found: Achieved, value: Fraction) -> bool:
-    return found.goal is not None and found.measure.violation(float(value), found.goal) > 0
+            yield Fraction(wanted)
+    if wanted is not None:
+        yield Fraction(wanted)
 
 
 def _minus(P: Polynomial, Q: Polynomial) -> Polynomial:

@@ -53,5 +53,5 @@ def _summary(found: Achieved) -> dict[str, Any]:
         "proved": _safe(found),
         "unit": measure.si_unit,
         "at": found.where,
-        "status": None if found.goal is None else "met" if found.met else "missed",
+        "status": None if found.goal is None else str(found.standing),
     }

@@ -20,6 +20,7 @@ from nrs_design.certificates.certificate import (
 )
 from nrs_design.certificates.goals import certified_goals
 from nrs_design.certificates.units import gain_units
+from nrs_design.design.standing import Standing
 from nrs_design.errors import DesignError
 from nrs_design.gating.obligations import Caution, Findings, Obligation, SpecOutcome, Status
 from nrs_design.gating.places import Places
@@ -54,6 +55,14 @@ if TYPE_CHECKING:
     from nrs_design.gating.lock import LockedGoal
     from nrs_design.pipeline.scenarios import Simulated
     from nrs_design.search.certification import Certification
+
+
+# What is not judged lets no gate pass.
+_ENDS = {
+    Standing.MET: Status.MET,
+    Standing.NOT_JUDGED: Status.INCONCLUSIVE,
+    Standing.MISSED: Status.MISSED,
+}
 
 
 @dataclass(frozen=True)
@@ -226,19 +235,21 @@ class Examiner:
     def goals(self, analysis: DesignAnalysis) -> Iterator[Obligation]:
         """Yield NRS106 for every goal of every controller."""
         for item in analysis.measured:
-            for found in item.achieved:
+            # Proofs take a second, and are for goals.
+            asked = any(found.goal is not None for found in item.achieved)
+            for found in item.judged if asked else ():
                 if found.goal is None:
                     continue
                 measure = found.measure
-                reached = f"{measure.text(found.value)} at worst, in {found.where}"
+                reached = f"{found.text} at worst, in {found.where}"
                 message = (
                     f"design goal: {measure.title} of controller {item.name} is "
                     f"{found.where if isnan(found.value) else reached}; "
-                    f"{measure.goal_text(found.goal)} is wanted (floating point, not a proof)"
+                    f"{measure.goal_text(found.goal)} is wanted ({found.basis})"
                 )
                 subject = f"{item.name}: {measure.goal}"
-                place = self.places.goal(item.name, measure.goal)
-                yield self.obligation(GOAL, subject, _met(found.met), message, place)
+                place, status = self.places.goal(item.name, measure.goal), _ENDS[found.standing]
+                yield self.obligation(GOAL, subject, status, message, place)
 
     def responses(self, analysis: DesignAnalysis) -> Iterator[Obligation]:
         """Yield NRS112 for every goal for a frequency response of every controller."""

@@ -163,7 +163,11 @@ GOAL = Rule(
     "contacts and the motor, sampled at every age of the force sample; the error of the "
     "displayed impedance or of the steady force at the nominal values and at every corner of the "
     "ranges of the environment that it is designed for; the creep in free "
-    "motion. Values between corners are not looked at. Computed in floating point: not a proof. "
+    "motion. It is met where that is proved of all values in the ranges, each of them constant, "
+    "where nothing has a range, and where the measure is worst at a corner; the last two are "
+    "computed in floating point. It is inconclusive where corners meet it, and no proof covers "
+    "what is between: of sampled loops with ranges there is none yet. It is missed where a corner, "
+    "or a point between, misses it. "
     "docs/design/goals.md defines every goal.",
     "Let `nrs-design optimize` choose gains that are given, widen their bounds, narrow the ranges, "
     "or relax the goal.",

@@ -3,6 +3,7 @@
 import math
 from dataclasses import replace
 from fractions import Fraction
+from itertools import product
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from hypothesis import strategies as st
 from nrs_design.controllers.laws import Admittance
 from nrs_design.controllers.sensor import LowPass
 from nrs_design.design.goals import Achieved
+from nrs_design.design.hands_on import hand_effort, transparency
 from nrs_design.design.impedance import ImpedanceLoop
 from nrs_design.design.loop_family import LoopFamily
 from nrs_design.design.loops import Loops
@@ -19,12 +21,15 @@ from nrs_design.design.measures import (
     DELAY_MARGIN,
     DISK_MARGIN,
     GAIN_MARGIN,
+    HAND_EFFORT,
     IMPEDANCE_ERROR,
     PHASE_MARGIN,
     SENSITIVITY_PEAK,
+    TRANSPARENCY,
 )
 from nrs_design.design.proved_margins import RangedLoop, ranged_loops, with_proofs
-from nrs_design.models.contact import Elastic, KelvinVoigt, Maxwell
+from nrs_design.design.standing import Standing
+from nrs_design.models.contact import Elastic, Hand, KelvinBoltzmann, KelvinVoigt, Maxwell
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.interval import Interval
 from nrs_design.thesis import thesis
@@ -176,7 +181,7 @@ def test_a_value_that_is_shown_is_the_one_that_is_proved():
     )
     # Shown, 3.753 would miss the goal, which is proved itself.
     assert peak.proved == Fraction(3.75299)
-    assert peak.met
+    assert peak.standing is Standing.MET
     # What nothing limits, and what is wrong, is not proved.
     assert free.proved is None
     assert creep.proved is None
@@ -185,8 +190,57 @@ def test_a_value_that_is_shown_is_the_one_that_is_proved():
 def test_what_is_covered():
     law, soft = Admittance(Fraction("0.01"), Fraction(2)), contact(*SOFT)
     assert len(ranged_loops(thesis.AXIS, law, [soft], {})) == 1
-    many = {name: interval("1", "2") for name in ("Mt", "Bt")}
+    many = {name: interval("1", "2") for name in ("Mt", "Bt", "Km", "tau")}
     assert ranged_loops(thesis.AXIS, law, [soft], many) == ()
-    parameters = tuple(interval("1", "1") for _ in Maxwell.parameters())
-    creeping = Environment("slow", Maxwell, parameters)
-    assert ranged_loops(thesis.AXIS, law, [soft, creeping], {}) == ()
+
+
+def at_points(ranged, measure):
+    """Return the worst margin on a grid of the contact's parameters, each loop cut exactly."""
+    ends = ranged.environment.parameters
+    sides = [[r.low + (r.high - r.low) * i / 12 for i in range(13)] for r in ends.values()]
+    found = []
+    for values in product(*sides):
+        contact = ranged.environment.law(*values)
+        cut = ranged.axis.cut(ranged.law, contact, ranged.axis.places[0])
+        exact = [c - o for c, o in zip(cut.closed, cut.opened, strict=True)], cut.opened
+        loops = Loops(*(np.array([p], dtype=np.float64) for p in exact))
+        found.append(float(FOUND[measure](loops)[0]))
+    return max(found) if measure.upper else min(found)
+
+
+@pytest.mark.parametrize("measure", [SENSITIVITY_PEAK, GAIN_MARGIN, DISK_MARGIN])
+@pytest.mark.parametrize(
+    ("law", "ranges"),
+    [
+        (Maxwell, (("30", "60"), ("2", "8"))),
+        (KelvinBoltzmann, (("10", "20"), ("20", "40"), ("5", "5"))),
+        (Hand, (("25", "60"), ("0.2", "0.2"), ("0", "0.05"))),
+    ],
+)
+def test_contacts_that_remember_or_have_a_mass(law, ranges, measure):
+    """A bound holds of each point on a grid, and is at most 1 % worse than the worst of them."""
+    environment = Environment("soft", law, tuple(interval(*ends) for ends in ranges))
+    ranged = loop("0.05", "3", environment)
+    value, better = at_points(ranged, measure), 1 if measure.upper else -1
+    assert ranged.stable
+    assert ranged.holds(measure, Fraction(value * (1 + better * 1e-2)))
+    assert not ranged.holds(measure, Fraction(value * (1 - better * 1e-4)))
+
+
+def test_what_a_hand_feels():
+    """Against the responses in floating point, on a grid of stiffness and damping."""
+    environment = contact("25", "60", damping=("0", "0.5"))
+    ranged = loop("0.1", "4.6", environment)
+    grid = product(np.linspace(25, 60, 8), np.linspace(0, 0.5, 6))
+    found = []
+    for k, b in grid:
+        held = KelvinVoigt(Fraction(k), Fraction(b))
+        one = LoopFamily(ranged.axis, held, Fraction(0), ranged.axis.places[0])
+        loops = one.felt(np.array([0.1]), np.array([4.6]), k)
+        band = float(ranged.bandwidth)
+        found.append((transparency(loops, band)[0], hand_effort(loops, held, band)[0]))
+    share, effort = min(s for s, _ in found), max(e for _, e in found)
+    assert ranged.holds(TRANSPARENCY, Fraction(share * 0.999))
+    assert not ranged.holds(TRANSPARENCY, Fraction(share * 1.001))
+    assert ranged.holds(HAND_EFFORT, Fraction(effort * 1.001))
+    assert not ranged.holds(HAND_EFFORT, Fraction(effort * 0.999))

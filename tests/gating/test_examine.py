@@ -141,9 +141,26 @@ def test_an_unstable_design_has_no_margins_and_misses(examiner):
     [(None, []), (2.0, [Status.MET]), (2.5, [Status.MET]), (2.6, [Status.MISSED])],
 )
 def test_goals_are_met_missed_or_not_set(examiner, goal, statuses):
-    item = SimpleNamespace(name="a", achieved=[Achieved(GAIN_MARGIN, 2.5, "soft", goal)])
+    achieved = [Achieved(GAIN_MARGIN, 2.5, "soft", goal, everywhere=True)]
+    item = SimpleNamespace(name="a", achieved=achieved, judged=achieved)
     found = list(examiner.goals(SimpleNamespace(measured=[item])))
     assert [obligation.status for obligation in found] == statuses
+
+
+@pytest.mark.parametrize(
+    ("proved", "status", "words"),
+    [
+        (None, Status.INCONCLUSIVE, "not judged"),
+        (Fraction("1.9"), Status.INCONCLUSIVE, "not judged"),
+        (Fraction("2.1"), Status.MET, "proved over all ranges"),
+    ],
+)
+def test_no_goal_is_met_by_corners_alone(examiner, proved, status, words):
+    achieved = [Achieved(GAIN_MARGIN, 2.5, "soft", 2.0, proved)]
+    item = SimpleNamespace(name="a", achieved=achieved, judged=achieved)
+    (found,) = examiner.goals(SimpleNamespace(measured=[item]))
+    assert found.status is status
+    assert words in found.message
 
 
 def wanting(tmp_path, goals):

@@ -159,7 +159,7 @@ def test_worst_values_stand_beside_the_goals(tmp_path):
     assert rows["insertion", "disk margin"][0] == "–"
     assert ("Design goals", "2 of 4 missed (floating point)") in found.facts
     text = words(found)
-    assert "not a proof; values between corners are not looked at" in text
+    assert "not a proof; between corners a goal is looked at in some points" in text
     assert "insertion: factor off the desired impedance 2.066 (usual: at most 2)" in text
 
 

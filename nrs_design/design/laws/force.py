@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cached_property
 
 from nrs_design.controllers.controller_design import Controller
 from nrs_design.controllers.float32 import round_significant, to_float32
-from nrs_design.controllers.laws import ProportionalForce
+from nrs_design.controllers.laws import CompliantLaw, ProportionalForce
 from nrs_design.design.force_limit import Approach, peak_force, steady_force_error
 from nrs_design.design.force_loop import ForceLoop, design_force_gain, force_loop_response
-from nrs_design.design.goals import ForceRequirement
+from nrs_design.design.goals import Achieved, ForceRequirement
 from nrs_design.design.laws.law import (
     AbstractControllerAnalysis,
     Choice,
@@ -20,9 +21,11 @@ from nrs_design.design.laws.law import (
     naming,
 )
 from nrs_design.design.measures import FORCE_MEASURES
+from nrs_design.design.proved_margins import RangedLoop, ranged_loops, with_proofs
 from nrs_design.design.transfer import TransferFunction
 from nrs_design.spec import ForceControllerSpec
 from nrs_design.spec.controllers import IntegralControllerSpec
+from nrs_design.switched.cut_loop import ContinuousAxis
 
 
 @dataclass(frozen=True)
@@ -38,6 +41,23 @@ class ForceAnalysis(AbstractControllerAnalysis):
     peak: float | None  # Largest force then, in N m; None without offset
     # What Kp times the stiffness multiplies in the open loop: G, or that with an integral.
     forward: TransferFunction
+    # Over whose ranges margins can be proved; empty for a sampled law, or one over a motor with
+    # ranges.
+    loops: tuple[RangedLoop, ...] = ()
+
+    @cached_property
+    def judged(self) -> tuple[Achieved, ...]:
+        """The worst values, with what is proved of them over all values of the ranges."""
+        return with_proofs(self.achieved, self.loops)
+
+
+def loops_of(
+    task: Task, given: ForceControllerSpec | IntegralControllerSpec, law: CompliantLaw
+) -> tuple[RangedLoop, ...]:
+    """Return the loops over whose ranges the margins of a law can be proved."""
+    if not isinstance(task.axis, ContinuousAxis) or not task.plant.actuator_ranges.fixed:
+        return ()
+    return ranged_loops(task.axis, law, task.contacts(given), {})
 
 
 def proportional_gain(task: Task, given: ForceControllerSpec | IntegralControllerSpec) -> Fraction:
@@ -69,8 +89,9 @@ def analyze(task: Task, given: ForceControllerSpec, controller: Controller) -> F
         left = steady_force_error(task.motion, stiffness, gain, approach)
         peak = peak_force(task.motion, stiffness, gain, approach)
         achieved = requirement.achieved(FORCE_MEASURES)
+    loops = loops_of(task, given, controller.law)
     return ForceAnalysis(
-        controller.name, achieved, stiffness, loop, approach, left, peak, task.motion
+        controller.name, achieved, stiffness, loop, approach, left, peak, task.motion, loops
     )
 
 

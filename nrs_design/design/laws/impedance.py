@@ -80,8 +80,8 @@ class ImpedanceAnalysis(AbstractControllerAnalysis):
     # Of everything that it touches, in m; None if there is none, or not the same for all.
     lever_arm: float | None = None
     responses: tuple[JudgedResponse, ...] = ()  # Goals for its frequency responses, with proofs
-    # Over whose ranges margins can be proved; empty for a sampled law, a motor with a load, a
-    # contact that is neither elastic nor Kelvin-Voigt, or more than two ranges at once.
+    # Over whose ranges margins can be proved; empty for a sampled law, or more than four ranges at
+    # once.
     loops: tuple[RangedLoop, ...] = ()
 
     @cached_property
@@ -174,7 +174,7 @@ def _ranged_loops(
     task: Task, given: ImpedanceControllerSpec, controller: Controller
 ) -> tuple[RangedLoop, ...]:
     """Return the loops over whose ranges margins can be proved."""
-    if not isinstance(task.axis, ContinuousAxis) or task.plant.load_inertia is not None:
+    if not isinstance(task.axis, ContinuousAxis):
         return ()
     return ranged_loops(task.axis, controller.law, task.contacts(given), _moving(task))
 

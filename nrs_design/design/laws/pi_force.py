@@ -14,7 +14,7 @@ from nrs_design.controllers.laws.pi_force import IntegralForce
 from nrs_design.design.force_limit import Approach, peak_force
 from nrs_design.design.force_loop import force_loop_response
 from nrs_design.design.goals import ForceRequirement
-from nrs_design.design.laws.force import ForceAnalysis, proportional_gain
+from nrs_design.design.laws.force import ForceAnalysis, loops_of, proportional_gain
 from nrs_design.design.laws.law import Choice, LawDesign, Task, goals_of, naming
 from nrs_design.design.measures import MARGINS
 from nrs_design.design.transfer import TransferFunction
@@ -87,7 +87,8 @@ def analyze(task: Task, given: IntegralControllerSpec, controller: Controller) -
         loop = force_loop_response(motion, stiffness, Kp)
         peak = peak_force(task.motion, stiffness, Kp, approach)
         achieved = requirement.achieved(MARGINS)
-    return ForceAnalysis(name, achieved, stiffness, loop, approach, 0.0, peak, motion)
+    loops = loops_of(task, given, controller.law)
+    return ForceAnalysis(name, achieved, stiffness, loop, approach, 0.0, peak, motion, loops)
 
 
 DESIGN = LawDesign(choose, analyze)

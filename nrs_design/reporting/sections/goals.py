@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from nrs_design.certificates.goals import certified_goals
 from nrs_design.design.goals import Achieved
 from nrs_design.design.measures import MEANING, RESPONSE_MEANING
+from nrs_design.design.standing import Standing
 from nrs_design.reporting.document import (
     Block,
     Bullets,
@@ -56,8 +57,9 @@ def judged_goals(result: Result, analysis: DesignAnalysis | None) -> tuple[State
     """Return how all goals of a spec stand together, and the same in words."""
     proofs = tuple(certified_goals(result.loaded.spec, result.certificate))
     measured = () if analysis is None else analysis.measured
-    goals = [f for item in measured for f in item.achieved if f.goal is not None]
-    missed = sum(not found.met for found in goals)
+    goals = [f for item in measured for f in item.judged if f.goal is not None]
+    missed = sum(found.standing is Standing.MISSED for found in goals)
+    unjudged = sum(found.standing is Standing.NOT_JUDGED for found in goals)
     responses = [f for item in (analysis.impedance if analysis else ()) for f in item.responses]
     refuted = [found.key for found in responses if found.refuted]
     open_ = [goal.key for goal in proofs if not goal.met]
@@ -68,8 +70,10 @@ def judged_goals(result: Result, analysis: DesignAnalysis | None) -> tuple[State
         said.append("not computed: a nominal loop is unstable")
     elif missed:
         said.append(f"{missed} of {len(goals)} missed (floating point)")
-    elif goals:
-        said.append(f"all {len(goals)} met (floating point)")
+    elif goals and not unjudged:
+        said.append(f"all {len(goals)} met")
+    if unjudged and not uncomputed:
+        said.append(f"{unjudged} of {len(goals)} not judged between the corners of ranges")
     shown = [goal.key for goal in proofs if goal.met]
     shown += [found.key for found in responses if found.proved]
     for how, keys in (("REFUTED", refuted), ("NOT proved", open_), ("proved", shown)):
@@ -77,7 +81,7 @@ def judged_goals(result: Result, analysis: DesignAnalysis | None) -> tuple[State
             said.append(f"{how}: {', '.join(dict.fromkeys(keys))}")
     if not said:
         return State.UNKNOWN, "no goals set"
-    state = State.DOUBTFUL if open_ or uncomputed else State.GOOD
+    state = State.DOUBTFUL if open_ or uncomputed or unjudged else State.GOOD
     return State.BAD if missed or refuted else state, "; ".join(filter(None, said))
 
 
@@ -106,7 +110,7 @@ def _measured(result: Result, analysis: DesignAnalysis | None) -> Iterator[Block
     if designed is None or analysis is None:
         return
     rows = tuple(
-        _row(designed, item.name, found) for item in analysis.measured for found in item.achieved
+        _row(designed, item.name, found) for item in analysis.measured for found in item.judged
     )
     if not rows:
         return
@@ -167,7 +171,7 @@ def _row(designed: Designed, name: str, found: Achieved) -> tuple[str, ...]:
     goal, result = "–", "no goal"
     if found.goal is not None:
         goal = Linked(measure.goal_text(found.goal), _line(designed, name, measure.goal))
-        result = "met" if found.met else "MISSED"
+        result = found.standing.text
     return (
         name,
         measure.title,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
@@ -17,6 +18,12 @@ if TYPE_CHECKING:
     from nrs_design.spec import InteractionDesignSpec, Spec
 
 
+# Goals that `optimize` chooses free gains by, where other commands take those of the least cost:
+# numbers that a proof shows, and last what is proved about.
+STEERING = ("decay_rate", "peak_torque", "delay")
+_FREE = "with the gains of the least cost; optimize --out NEW.nrs.yaml chooses others by this goal"
+
+
 def certified_goals(spec: Spec, certificate: Certificate | None) -> Iterator[CertifiedGoal]:
     """Yield the goals that what is proved decides, in exact arithmetic.
 
@@ -27,6 +34,20 @@ def certified_goals(spec: Spec, certificate: Certificate | None) -> Iterator[Cer
     certificate : Certificate or None
         Checked; None if nothing was shown.
     """
+    for goal in _goals(spec, certificate):
+        others = not goal.met and goal.key in STEERING and _has_free_gains(spec)
+        yield replace(goal, said=f"{goal.said}, {_FREE}") if others else goal
+
+
+def _has_free_gains(spec: Spec) -> bool:
+    """Tell whether a spec leaves gains to choose."""
+    if spec.kind != "interaction-design":
+        return False
+    bounded = (c for c in spec.controllers.values() if c.type == "impedance")
+    return bool(spec.design.free) or any(not (c.Mt.fixed and c.Bt.fixed) for c in bounded)
+
+
+def _goals(spec: Spec, certificate: Certificate | None) -> Iterator[CertifiedGoal]:
     # To name the class would load it, and all its parts, for specs that have no goals.
     if spec.kind != "interaction-design" or (goals := spec.goals) is None:
         return
@@ -53,6 +74,8 @@ def _peak_torque(wanted: Fraction, text: str, certificate: Certificate | None) -
         f"while {', '.join(acting)} and nothing else disturbs, the force is proved to stay below "
         f"{rounded_up(found.level, _effort(certificate))}, from rest"
     )
+    if certificate is not None and certificate.system.contact is None:
+        said += ", while contact is kept"
     return CertifiedGoal("peak_torque", said, text, found.level <= wanted)
 
 

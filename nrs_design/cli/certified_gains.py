@@ -97,6 +97,9 @@ class CertifiedGains:
         for goal in self.goals:
             ends = "PROVED" if goal.met else "NOT PROVED"
             say(f"goal {goal.key}, {goal.wanted}: {ends}: {goal.said}")
+        if self.spec is None:
+            say("  the spec does not give these gains: --out NEW.nrs.yaml writes it with them;")
+            say("  certify-switching, report, gate and export take those of the least cost")
         print_granted(found.result)
         more, rate = max(found.cost - found.free_cost, 0.0), found.free_rate
         # A rate that is not positive is no decay.

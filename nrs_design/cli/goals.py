@@ -110,14 +110,14 @@ def design_answer(
 
 def _exit_code(items: Iterable[AbstractControllerAnalysis], *, proved: bool) -> int:
     """Return 1 where a goal is missed or one of the proof is not proved, 3 where one is open."""
-    from nrs_design.design.standing import Standing
+    from nrs_design.design.measures import GoalStanding
 
     # Proofs take a second, and are for goals.
     asked = [item for item in items if any(found.goal is not None for found in item.achieved)]
     found = {one.standing for item in asked for one in item.judged}
-    if not proved or Standing.MISSED in found:
+    if not proved or GoalStanding.MISSED in found:
         return exit_codes.REFUTED
-    return exit_codes.INCONCLUSIVE if Standing.NOT_JUDGED in found else exit_codes.PROVED
+    return exit_codes.INCONCLUSIVE if GoalStanding.NOT_JUDGED in found else exit_codes.PROVED
 
 
 def _say_unjudged(spec: InteractionDesignSpec) -> None:

@@ -43,10 +43,10 @@ from nrs_design.design.measures import (
     PHASE_MARGIN,
     SENSITIVITY_PEAK,
     TRANSPARENCY,
+    GoalStanding,
     Measure,
 )
 from nrs_design.design.polynomials import multiply
-from nrs_design.design.standing import Standing
 from nrs_design.design.transfer import BoolArray, ComplexArray, FloatArray, TransferFunction
 from nrs_design.errors import DesignError
 from nrs_design.models.contact import AbstractLinearLaw
@@ -81,19 +81,19 @@ class Achieved:
         return self.measure.text(self.value if self.proved is None else self.proved)
 
     @property
-    def standing(self) -> Standing:
+    def standing(self) -> GoalStanding:
         """How the goal stands; one that there is not is met."""
         if self.goal is None:
-            return Standing.MET
+            return GoalStanding.MET
         if (missed := self.measure.violation(self.value, self.goal)) > 0:
-            return Standing.MISSED
+            return GoalStanding.MISSED
         everywhere = self.everywhere and missed <= 0  # What is not computed is not met.
-        return Standing.MET if everywhere or self._is_proved else Standing.NOT_JUDGED
+        return GoalStanding.MET if everywhere or self._is_proved else GoalStanding.NOT_JUDGED
 
     @property
     def basis(self) -> str:
         """What the standing of a goal rests on."""
-        if self.standing is Standing.NOT_JUDGED:
+        if self.standing is GoalStanding.NOT_JUDGED:
             return "not judged: floating point in some points, and no proof in between"
         if self.everywhere or not self._is_proved:
             return "floating point, not a proof"
@@ -162,11 +162,11 @@ class AbstractRequirement(ABC):
             dict(self.goals).get(measure),
             everywhere=measure in MONOTONE or self._is_one_point(measure),
         )
-        if found.goal is None or found.standing is not Standing.NOT_JUDGED or np.isnan(value):
+        if found.goal is None or found.standing is not GoalStanding.NOT_JUDGED or np.isnan(value):
             return found
         (value,), (where,) = replace(self, corners=self._between).values(measure, *own)
         beyond = replace(found, value=float(value), where=where)
-        return beyond if beyond.standing is Standing.MISSED else found
+        return beyond if beyond.standing is GoalStanding.MISSED else found
 
     def _measured_at(self, measure: Measure) -> Iterator[ContactCorner]:
         return (corner for corner in self.corners if corner.home or measure not in AT_HOME)

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
+from enum import StrEnum
 from fractions import Fraction
 
 from nrs_design.axis import current, unit
@@ -65,6 +66,19 @@ def computed(proved: Mapping[str, Sequence[str]]) -> Iterator[str]:
             f"{', '.join(own)}: {said}."
         )
     yield f"{'All else: computed' if names else 'Computed'}{MEANING[-1].removeprefix('Computed')}"
+
+
+class GoalStanding(StrEnum):
+    """How a goal for a measure stands."""
+
+    MET = "met"
+    NOT_JUDGED = "not judged"  # Nothing in the ranges was found to miss it, nor is it proved there
+    MISSED = "missed"
+
+    @property
+    def text(self) -> str:
+        """The same for people."""
+        return "MISSED" if self is GoalStanding.MISSED else str(self)
 
 
 @dataclass(frozen=True, slots=True)

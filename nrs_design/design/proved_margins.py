@@ -55,10 +55,10 @@ from nrs_design.design.measures import (
     PHASE_MARGIN,
     SENSITIVITY_PEAK,
     TRANSPARENCY,
+    GoalStanding,
     Measure,
 )
 from nrs_design.design.polynomials import frequencies, squared
-from nrs_design.design.standing import Standing
 from nrs_design.models.contact import Elastic, KelvinVoigt
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.interval import Interval
@@ -328,7 +328,9 @@ def with_proofs(
     ]
     return tuple(
         replace(found, proved=_proved(found, at_home if found.measure in AT_HOME else loops))
-        if found.measure in PROVABLE and found.value > 0 and found.standing is not Standing.MISSED
+        if found.measure in PROVABLE
+        and found.value > 0
+        and found.standing is not GoalStanding.MISSED
         else found
         for found in achieved
     )

@@ -20,7 +20,7 @@ from nrs_design.certificates.certificate import (
 )
 from nrs_design.certificates.goals import certified_goals
 from nrs_design.certificates.units import gain_units
-from nrs_design.design.standing import Standing
+from nrs_design.design.measures import GoalStanding
 from nrs_design.errors import DesignError
 from nrs_design.gating.obligations import Caution, Findings, Obligation, SpecOutcome, Status
 from nrs_design.gating.places import Places
@@ -59,9 +59,9 @@ if TYPE_CHECKING:
 
 # What is not judged lets no gate pass.
 _ENDS = {
-    Standing.MET: Status.MET,
-    Standing.NOT_JUDGED: Status.INCONCLUSIVE,
-    Standing.MISSED: Status.MISSED,
+    GoalStanding.MET: Status.MET,
+    GoalStanding.NOT_JUDGED: Status.INCONCLUSIVE,
+    GoalStanding.MISSED: Status.MISSED,
 }
 
 

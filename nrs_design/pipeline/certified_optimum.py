@@ -19,7 +19,7 @@ import numpy as np
 
 from nrs_design.axis import unit
 from nrs_design.certificates.certificate import Verdict
-from nrs_design.certificates.goals import certified_goals
+from nrs_design.certificates.goals import STEERING, certified_goals
 from nrs_design.errors import DesignError
 from nrs_design.pipeline.certification import Result, assemble_spec, run_certification
 from nrs_design.pipeline.design import Designed, placed
@@ -38,8 +38,6 @@ if TYPE_CHECKING:
     from nrs_design.spec import Quantity
     from nrs_design.spec.spec_document import SpecDocument
 
-# Goals that gains are steered by: numbers that a proof shows, and last what is proved about.
-STEERING = ("decay_rate", "peak_torque", "delay")
 # Roundings that are proved at most.
 MOST_ROUNDINGS = 4
 # Where the proof falls short, there is more room for roundings.

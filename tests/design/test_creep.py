@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from nrs_design.controllers.step_law import StepFrame
-from nrs_design.design.measures import CREEP, CREEP_ANGLE
-from nrs_design.design.standing import Standing
+from nrs_design.design.measures import CREEP, CREEP_ANGLE, GoalStanding
 from nrs_design.errors import DesignError
 from nrs_design.pipeline import run_analysis, run_design
 from nrs_design.spec import read_spec
@@ -55,7 +54,7 @@ def test_a_goal_raises_the_damping(tmp_path):
     plain = run_analysis(designed(tmp_path)).impedance[1]
     wanted = run_analysis(designed(tmp_path, "goals: {max_creep: 1 deg/s}")).impedance[1]
     assert not achieved(plain)[CREEP].goal
-    assert achieved(wanted)[CREEP].standing is Standing.MET
+    assert achieved(wanted)[CREEP].standing is GoalStanding.MET
     assert wanted.Bt >= ERROR / np.radians(1) > plain.Bt
 
 
@@ -67,7 +66,7 @@ def test_a_spring_ends_it_at_an_angle(tmp_path):
     creep = achieved(found.impedance[0])
     assert creep[CREEP].value == 0
     assert creep[CREEP_ANGLE].value == pytest.approx(ERROR / 0.25, rel=1e-12)
-    assert creep[CREEP_ANGLE].standing is Standing.MET
+    assert creep[CREEP_ANGLE].standing is GoalStanding.MET
 
 
 FILTER = "\n  filter: {order: 2, cutoff: 60 Hz}\n"

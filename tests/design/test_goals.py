@@ -21,8 +21,8 @@ from nrs_design.design.measures import (
     IMPEDANCE_ERROR,
     IMPEDANCE_MEASURES,
     SENSITIVITY_PEAK,
+    GoalStanding,
 )
-from nrs_design.design.standing import Standing
 from nrs_design.design.transfer import TransferFunction
 from nrs_design.models.contact import Elastic, KelvinVoigt
 from nrs_design.models.contact.environment import Environment
@@ -81,7 +81,7 @@ def test_an_unstable_corner_is_the_worst():
     found = worst(impedance((SOFT, stiff), ((SENSITIVITY_PEAK, 100.0),)), Bt=1.04)
     assert found[SENSITIVITY_PEAK].value == math.inf
     assert found[SENSITIVITY_PEAK].where == "stiff, k = 90 N*m/rad"
-    assert found[SENSITIVITY_PEAK].standing is Standing.MISSED
+    assert found[SENSITIVITY_PEAK].standing is GoalStanding.MISSED
     assert found[DELAY_MARGIN].value == 0
 
 
@@ -98,7 +98,7 @@ def test_the_force_error_is_worst_in_the_softest_contact():
     found = {item.measure: item for item in requirement.achieved(FORCE_MEASURES)}
     assert found[FORCE_ERROR].value == pytest.approx(1 / (1 + 0.02 * 41.5))
     assert found[FORCE_ERROR].where == "soft, k = 41.5 N*m/rad"
-    assert found[FORCE_ERROR].standing is Standing.MET
+    assert found[FORCE_ERROR].standing is GoalStanding.MET
     assert found[SENSITIVITY_PEAK].goal is None
 
 

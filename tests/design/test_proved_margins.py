@@ -26,9 +26,9 @@ from nrs_design.design.measures import (
     PHASE_MARGIN,
     SENSITIVITY_PEAK,
     TRANSPARENCY,
+    GoalStanding,
 )
 from nrs_design.design.proved_margins import RangedLoop, ranged_loops, with_proofs
-from nrs_design.design.standing import Standing
 from nrs_design.models.contact import Elastic, Hand, KelvinBoltzmann, KelvinVoigt, Maxwell
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.interval import Interval
@@ -181,7 +181,7 @@ def test_a_value_that_is_shown_is_the_one_that_is_proved():
     )
     # Shown, 3.753 would miss the goal, which is proved itself.
     assert peak.proved == Fraction(3.75299)
-    assert peak.standing is Standing.MET
+    assert peak.standing is GoalStanding.MET
     # What nothing limits, and what is wrong, is not proved.
     assert free.proved is None
     assert creep.proved is None

@@ -157,7 +157,10 @@ def digest(text: str) -> str:
 def differences(
     old: Any, new: Any, at: str = "", rates: tuple[float, float] = (0, 0)
 ) -> Iterator[str]:
-    """Yield where an answer is another one; a proved rate may be larger, with what states it."""
+    """Yield where an answer is another one; a proved rate may be larger, with what states it.
+
+    That a bound is proved now, where none was, is no difference.
+    """
     if isinstance(old, dict) and isinstance(new, dict):
         before, now = old.get("decay_rate"), new.get("decay_rate")
         if isinstance(before, float) and isinstance(now, float):
@@ -171,6 +174,8 @@ def differences(
     elif isinstance(old, list) and isinstance(new, list) and len(old) == len(new):
         for i, (before, now) in enumerate(zip(old, new, strict=True)):
             yield from differences(before, now, f"{at}[{i}]", rates)
+    elif at.endswith(".proved") and old is None and isinstance(new, float):
+        return
     elif not agrees(old, new, exact=".gains" in at, rates=rates):
         yield f"{at}: {old!r} before, {new!r} now"
 

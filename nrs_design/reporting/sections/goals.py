@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 
 from nrs_design.certificates.goals import certified_goals
 from nrs_design.design.goals import Achieved
-from nrs_design.design.measures import MEANING, RESPONSE_MEANING
-from nrs_design.design.standing import Standing
+from nrs_design.design.measures import MEANING, RESPONSE_MEANING, GoalStanding
 from nrs_design.reporting.document import (
     Block,
     Bullets,
@@ -58,8 +57,8 @@ def judged_goals(result: Result, analysis: DesignAnalysis | None) -> tuple[State
     proofs = tuple(certified_goals(result.loaded.spec, result.certificate))
     measured = () if analysis is None else analysis.measured
     goals = [f for item in measured for f in item.judged if f.goal is not None]
-    missed = sum(found.standing is Standing.MISSED for found in goals)
-    unjudged = sum(found.standing is Standing.NOT_JUDGED for found in goals)
+    missed = sum(found.standing is GoalStanding.MISSED for found in goals)
+    unjudged = sum(found.standing is GoalStanding.NOT_JUDGED for found in goals)
     responses = [f for item in (analysis.impedance if analysis else ()) for f in item.responses]
     refuted = [found.key for found in responses if found.refuted]
     open_ = [goal.key for goal in proofs if not goal.met]

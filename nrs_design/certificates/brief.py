@@ -20,16 +20,9 @@ DIGITS = 4
 
 
 def brief(evidence: AbstractEvidence, system: SwitchedSystem, arm: Fraction | None = None) -> str:
-    """Say what a statement shows: its number first, and for which signals and contact.
+    """Say what a checked statement shows: its number first, and for which signals and contact.
 
-    Parameters
-    ----------
-    evidence : AbstractEvidence
-        A statement that was checked.
-    system : SwitchedSystem
-        What it is about.
-    arm : Fraction, optional
-        Distance from the pivot in m, at which a bound of a torque is said as a force, too.
+    `arm` is the distance from the pivot in m at which a bound of a torque is said as a force, too.
     """
     match evidence.shows:
         case Shows.STABILITY:

@@ -27,12 +27,7 @@ _FREE = "with the gains of the least cost; optimize --out NEW.nrs.yaml chooses o
 def certified_goals(spec: Spec, certificate: Certificate | None) -> Iterator[CertifiedGoal]:
     """Yield the goals that what is proved decides, in exact arithmetic.
 
-    Parameters
-    ----------
-    spec : Spec
-        One without such goals, or of another kind, has none.
-    certificate : Certificate or None
-        Checked; None if nothing was shown.
+    The certificate has been checked; None if nothing was shown.
     """
     for goal in _goals(spec, certificate):
         others = not goal.met and goal.key in STEERING and _has_free_gains(spec)

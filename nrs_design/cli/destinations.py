@@ -115,20 +115,7 @@ def _write_spec(spec: LoadedSpec, text: str) -> None:
 
 
 def check_beside(loaded: LoadedSpec, out: Path) -> None:
-    """Refuse a place for a changed spec at which the files that it names are not found.
-
-    Parameters
-    ----------
-    loaded : LoadedSpec
-        The spec that is changed.
-    out : Path
-        Where the result is to be written.
-
-    Raises
-    ------
-    OutputError
-        If it names files relative to its own folder, and is to be written elsewhere.
-    """
+    """Refuse a place for a changed spec at which the files that it names are not found."""
     from nrs_design.errors import OutputError
     from nrs_design.gating.recorded import hash_followed
 

@@ -23,19 +23,7 @@ if TYPE_CHECKING:
 def worst_case(
     designed: Designed, proof: Certificate | None, out: Path | None, step: Progress
 ) -> Answer:
-    """Search, and write the figure and the table of every run.
-
-    Parameters
-    ----------
-    designed : Designed
-        The spec and its gains.
-    proof : Certificate or None
-        Whose bounds are shown.
-    out : Path or None
-        Folder for files.
-    step : callable
-        Told what is done.
-    """
+    """Search, and write the figure and the table of every run."""
     from nrs_design.pipeline.worst_case import run_worst_case
     from nrs_design.simulation.run import common_lever_arm
     from nrs_design.simulation.worst_outputs import DEFLECTION

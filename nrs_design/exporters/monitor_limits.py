@@ -39,15 +39,7 @@ class MonitorLimits:
 
 
 def monitor_limits(export: Export, law: StepLaw) -> MonitorLimits:
-    """Return what the loop of an export must keep.
-
-    Parameters
-    ----------
-    export : Export
-        With a record, proved or not.
-    law : StepLaw
-        Of the program: its controllers, and the states that a monitor is given.
-    """
+    """Return what the loop of an export must keep."""
     record, spec, modes = export.shipped(), export.spec, law.modes
     assert spec is not None
     assert record.sample_time is not None

@@ -52,15 +52,7 @@ class MonitoredRegion:
 
 
 def region_of(export: Export, law: StepLaw) -> MonitoredRegion | str:
-    """Return the region of the proof, or why it is not monitored.
-
-    Parameters
-    ----------
-    export : Export
-        With its certificate.
-    law : StepLaw
-        That ships, whose states the monitor is given.
-    """
+    """Return the region of the proof, or why it is not monitored; the law is the one that ships."""
     certificate, spec, designed = export.certificate, export.spec, export.designed
     if certificate is None or spec is None or designed is None:
         return _NONE

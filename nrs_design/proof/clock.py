@@ -16,18 +16,9 @@ Leads: TypeAlias = tuple[int | None, ...]
 
 
 def on_turn(system: SwitchedSystem, clock: Clock, *, first: bool) -> SwitchedSystem:
-    """Return a system with the modes of one kind alone.
+    """Return a system whose modes take turns with the modes of one kind alone.
 
     What disturbs it stays: the rows of roundings are over the states and all disturbances.
-
-    Parameters
-    ----------
-    system : SwitchedSystem
-        Whose modes take turns.
-    clock : Clock
-        Of the system.
-    first : bool
-        Whether of the first kind.
     """
     names = frozenset(clock.first)
     kept = [(mode.name in names) is first for mode in system.every_mode]
@@ -61,15 +52,9 @@ def on_turn(system: SwitchedSystem, clock: Clock, *, first: bool) -> SwitchedSys
 def keeps_turns(clock: Clock, steps: Sequence[tuple[str, Fraction]]) -> bool:
     """Tell whether a signal may be repeated without end, from some state.
 
-    Where it leads from each state is a map of states. If it can be made as often as there are
-    states, it has come back to a state at which it began, and goes on for ever.
-
-    Parameters
-    ----------
-    clock : Clock
-        Of a system.
-    steps : sequence of (str, Fraction)
-        Modes with whole numbers of steps, in order.
+    Its steps are whole numbers. Where it leads from each state is a map of states. If it can be
+    made as often as there are states, it has come back to a state at which it began, and goes on
+    for ever.
     """
     first = frozenset(clock.first)
     states = range(clock.length)

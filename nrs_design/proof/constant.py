@@ -32,10 +32,7 @@ def find_odd_shares(switching: Switching, shares: Sequence[Fraction]) -> str | N
 def corner_weights(shares: Sequence[Fraction]) -> list[Fraction]:
     """TRUSTED: return the weights of the corners at a value, the last parameter turning fastest.
 
-    Parameters
-    ----------
-    shares : sequence of Fraction
-        For each parameter, how far it is on the way from its low to its high end.
+    A share is how far a parameter is on the way from its low to its high end.
     """
     return [prod(at, start=Fraction(1)) for at in product(*((1 - s, s) for s in shares))]
 
@@ -44,21 +41,9 @@ def system_at(system: SwitchedSystem, shares: Sequence[Fraction]) -> SwitchedSys
     """TRUSTED: return the modes at one value of the constant parameters, under the same rules.
 
     A switch is allowed, and a stay long and short enough, if it is so at all corners of the
-    parameters. Resets are left out.
-
-    Parameters
-    ----------
-    system : SwitchedSystem
-        With the corners of the parameters in `Switching.fixed_ends`.
-    shares : sequence of Fraction
-        For each parameter, from 0 (low end) to 1 (high end).
-
-    Raises
-    ------
-    KeyError
-        If an end is no mode of the system.
-    ValueError
-        If there is not one share for each parameter.
+    parameters, those of `Switching.fixed_ends`. Resets are left out. Shares go from 0 (low end) to
+    1 (high end). A KeyError if an end is no mode, a ValueError if there is not one share for each
+    parameter.
     """
     if (odd := find_odd_shares(system.switching, shares)) is not None:
         raise ValueError(odd)

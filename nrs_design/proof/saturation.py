@@ -70,16 +70,8 @@ class Saturation:
         """Yield the matrices between which the loop is while every ``|h x|`` is within its limit.
 
         The signal is then a mixture of its argument and of ``h x``, since it is the argument cut
-        off at a limit that ``h x`` keeps.
-
-        Parameters
-        ----------
-        A : RationalMatrix, shape (n, n)
-            The k-th mode, of those in contact and after them those that are free.
-        k : int
-            Which.
-        held : sequence of rows, each of n numbers
-            The h of every signal.
+        off at a limit that ``h x`` keeps. A is the k-th mode, of those in contact and after them
+        those that are free; `held` are the h of every signal.
         """
         for changes in self.changes(k, held, 0):
             moved = [list(row) for row in A.fractions()]
@@ -93,14 +85,8 @@ class Saturation:
     ) -> Iterator[list[list[Fraction]]]:
         """Yield by how much the signals differ from what they are while nothing is cut off.
 
-        Between these the loop is, as `between` says; each is a row for every signal.
-
-        Parameters
-        ----------
-        k, held
-            As for `between`.
-        errors : int
-            How many errors there are behind the state in the rows.
+        Between these the loop is, as `between` says; each is a row for every signal, with so many
+        errors behind the state.
         """
         wide = [[*h, *(ZERO,) * errors] for h in held]
         linear = self._signals(k, wide, errors, (False,) * len(self.signals))

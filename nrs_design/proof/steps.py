@@ -108,18 +108,10 @@ class Step:
     ) -> IntegerMatrix:
         """Return what must be positive definite, times a positive number.
 
-        Parameters
-        ----------
-        before, after : integer matrix
-            Numerators of the functions: of the state before, and of what `rows` give.
-        keeps : Fraction
-            What is left of the function after a map; twice the rate of a flow.
-        multiplier : callable
-            The multiplier of a fact, by its name.
-        log2 : int
-            Functions and multipliers are numerators over two to this power.
-        multiply : callable
-            How matrices are multiplied; only a search has reason to ask for another way.
+        `before` and `after` are numerators over ``2^log2``, as multipliers of facts are, of the
+        functions of the state before, and of what `rows` give; `keeps` is what is left of the
+        function after a map, or twice the rate of a flow. Only a search has reason to ask for
+        another way to multiply.
         """
         if self.is_flow:
             form, factor = self._flowing(before, keeps, log2, multiply)
@@ -182,17 +174,7 @@ class Step:
 def map_step(
     where: str, mode: str, places: tuple[str, str], A: RationalMatrix, grain: int, time: int = 1
 ) -> Step:
-    """Return a map that nothing acts on.
-
-    Parameters
-    ----------
-    where, mode, places, time
-        As of `Step`.
-    A : RationalMatrix
-        The map.
-    grain : int
-        Every unit is a multiple of it; see `grain_of`.
-    """
+    """Return a map that nothing acts on; every unit is a multiple of the grain."""
     d, columns = A.denominator, transpose(A.numerators)
     units = [lcm(grain, d // gcd(d, *column)) for column in columns]
     rows = [
@@ -202,15 +184,7 @@ def map_step(
 
 
 def flow_step(where: str, mode: str, place: str, A: RationalMatrix) -> Step:
-    """Return a flow that nothing acts on.
-
-    Parameters
-    ----------
-    where, mode, place
-        As of `Step`.
-    A : RationalMatrix, shape (n, n)
-        Of the derivative.
-    """
+    """Return a flow that nothing acts on; A is of the derivative."""
     n, over = len(A.numerators), A.denominator
     return Step(where, mode, place, place, n, (1,) * n, A.numerators, over, is_flow=True)
 
@@ -225,16 +199,8 @@ def grain_of(keeps: Fraction) -> int:
 def steps_of(system: SwitchedSystem, acting: Acting, grain: int, *, lost: bool) -> Iterator[Step]:
     """Yield every step of a system under arbitrary switching, between contact and free motion.
 
-    Parameters
-    ----------
-    system : SwitchedSystem
-        With modes of one size.
-    acting : Acting
-        What acts on the state.
-    grain : int
-        Every unit of a map is a multiple of it.
-    lost : bool
-        Whether contact is lost and made, as the system says how; it is kept otherwise.
+    The modes are of one size; every unit of a map is a multiple of the grain. Contact is kept
+    unless it is `lost` and made, as the system says how.
     """
     contact = system.contact if lost else None
     free = () if contact is None else contact.free

@@ -59,35 +59,14 @@ def certify(
 ) -> Certification:
     """Prove or refute uniform exponential stability under arbitrary switching.
 
-    Equal modes are merged, and a family that is block triangular in a common order of the states
-    is decided block by block. Then the rungs are climbed, cheapest first, until one decides.
+    Equal modes are merged, and a family that is block triangular in a common order of the states is
+    decided block by block. Then the rungs are climbed, cheapest first, until one decides. Every
+    statement has passed the exact check, and flint's second opinion as far as that goes
+    (`nrs_design.proof.second_opinion`).
 
-    Parameters
-    ----------
-    system : SwitchedSystem
-        Exact modes.
-    method : Method
-        One rung, or all of them in turn.
-    limits : Limits, optional
-        How far to go.
-    progress : callable
-        Told the name of each rung as it begins.
-
-    Returns
-    -------
-    Certification
-        Every statement in it has passed the exact check, and flint's second opinion as far as
-        that goes (`nrs_design.proof.second_opinion`).
-
-    Raises
-    ------
-    DesignError
-        If the method does not apply to the system, or settings of the gradient iteration do not
-        apply to the method or the modes.
-    ClockError
-        If the clock stopped the search: what it would have found is not known.
-    InternalError
-        If two exact computations disagree.
+    A `DesignError` if the method or settings of the gradient iteration do not apply; a `ClockError`
+    if the clock stopped the search: what it would have found is not known; an `InternalError` if
+    two exact computations disagree.
     """
     limits = limits or Limits()
     allowance = _allowance(limits)
@@ -131,19 +110,7 @@ def certify(
 def refuted_at_once(system: SwitchedSystem, limits: Limits | None = None) -> str | None:
     """Tell in which contact a mode, or a round of two, grows: of those that are suspected.
 
-    Floating point suspects. Empty for any contact, None if none grows.
-
-    Parameters
-    ----------
-    system : SwitchedSystem
-        The modes and their switching.
-    limits : Limits, optional
-        Work and memory for the exact tests.
-
-    Raises
-    ------
-    ClockError
-        If the clock stopped it.
+    Floating point suspects, exact tests decide. Empty for any contact, None if none grows.
     """
     found = certify_growth(system, limits)
     evidence = found.statements[:1]
@@ -151,18 +118,7 @@ def refuted_at_once(system: SwitchedSystem, limits: Limits | None = None) -> str
 
 
 def certify_growth(system: SwitchedSystem, limits: Limits | None = None) -> Certification:
-    """Refute by one mode, or a round of two, that grows: of those that are suspected.
-
-    Parameters
-    ----------
-    system, limits
-        As for `refuted_at_once`.
-
-    Raises
-    ------
-    ClockError
-        If the clock stopped it.
-    """
+    """Refute by one mode, or a round of two, that grows: of those that are suspected."""
     from nrs_design.search.rounds import search_rounds
     from nrs_design.search.unstable_mode import examine_suspicious_modes
 
@@ -396,16 +352,8 @@ def first_accepted(
 ) -> tuple[AbstractEvidence | None, str]:
     """Return the first candidate that the exact check accepts, and in words how the search ended.
 
-    Nothing becomes evidence but here, or from evidence that was accepted here.
-
-    Parameters
-    ----------
-    candidates : generator of Candidate
-        As a search yields them; no more than needed are asked for.
-    system : SwitchedSystem
-        What they are to be evidence about.
-    allowance : Allowance, optional
-        The checks are charged to it; none is left out for it.
+    Nothing becomes evidence but here, or from evidence that was accepted here. No more candidates
+    than needed are asked for. Checks are charged to the allowance; none is left out for it.
     """
     charge = (allowance or Allowance()).charge
     fault: str | None = None

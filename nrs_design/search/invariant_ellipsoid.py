@@ -48,25 +48,10 @@ STEPS = 4000
 def search_ellipsoid(
     system: SwitchedSystem, channels: Sequence[Channel], output: Output, allowance: Allowance
 ) -> Candidates[InvariantEllipsoid]:
-    """Yield ellipsoids that bound an output under disturbances, the smallest level first.
+    """Yield ellipsoids that bound an output under disturbances at once, the smallest level first.
 
-    Where the arithmetic rounds, ellipsoids that cover that come before others.
-
-    Parameters
-    ----------
-    system : SwitchedSystem
-        Stable; with the disturbances and the output.
-    channels : sequence of Channel
-        The disturbances that act at once.
-    output : Output
-        What they move.
-    allowance : Allowance
-        Work and memory.
-
-    Raises
-    ------
-    NotAffordableError
-        If work or memory do not suffice.
+    The system is stable. Where the arithmetic rounds, ellipsoids that cover that come before
+    others.
     """
     family = Family.of(system)
     motions = Motions.of(family)
@@ -119,15 +104,7 @@ def seven_digits(number: float) -> Fraction:
 
 
 def reach_and_level(problem: DisturbedProblem, T: Array) -> tuple[float, float]:
-    """Return how far state and output go under one mode alone, in coordinates ``x = T z``.
-
-    Parameters
-    ----------
-    problem : DisturbedProblem
-        In the coordinates of a family.
-    T : ndarray, shape (n, n)
-        Invertible.
-    """
+    """Return how far state and output go under one mode alone, in coordinates ``x = T z``."""
     n = problem.order
     inverse = np.linalg.inv(T)
     size = level = 0.0
@@ -150,30 +127,12 @@ def reach_and_level(problem: DisturbedProblem, T: Array) -> tuple[float, float]:
 
 
 def largest_share(limit: float, time: Time) -> float:
-    """Return the share that no form can beat.
-
-    Parameters
-    ----------
-    limit : float
-        The rate that no form can beat.
-    time : Time
-        Of which it is.
-    """
+    """Return the share that no form can beat."""
     return 2 * limit if time is Time.CONTINUOUS else 1 - limit**2
 
 
 def best_share(attempt: Callable[[float], float], limit: float, time: Time) -> tuple[float, float]:
-    """Return the least value found, and the share that gives it.
-
-    Parameters
-    ----------
-    attempt : callable
-        Of a share.
-    limit : float
-        The rate that no form can beat.
-    time : Time
-        Of which it is.
-    """
+    """Return the least value found, and the share that gives it."""
     top = largest_share(limit, time)
     tried: dict[float, float] = {}
 
@@ -200,21 +159,8 @@ def least_level(
 ) -> DisturbedSolution | None:
     """Minimize the square of the level; or, for a given one, leave as much to spare as possible.
 
-    Parameters
-    ----------
-    own : DisturbedProblem
-        In coordinates of like size, with outputs over a scale.
-    share : float
-        Of all disturbances together.
-    allowance : Allowance
-        Work and memory.
-    level : float, optional
-        The square of the level that is given.
-
-    Raises
-    ------
-    NotAffordableError
-        If work or memory do not suffice.
+    In coordinates of like size, with outputs over a scale, for a share of all disturbances
+    together.
     """
     n, lost, c, basis = own.order, own.multipliers, own.disturbances, symmetric_basis(own.order)
     k, unknowns = len(basis), len(basis) + lost + c + own.errors + 1

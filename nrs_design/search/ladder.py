@@ -247,19 +247,9 @@ def steps(
 ) -> Iterator[Step]:
     """Yield the names of the rungs with their searches, in the order in which they are tried.
 
-    Parameters
-    ----------
-    system : SwitchedSystem
-        The modes and their switching.
-    method : Method
-        What was asked for: one of the `applicable_methods`, or all of them.
-    limits : Limits
-        How far to go.
-    allowance : Allowance
-        What is left of the budget when a step is asked for decides how far degrees rise.
-    known : callable
-        Tells what has been shown by now: where there is no common quadratic function, none is
-        searched for; where it is not stable in kept contact, only growth with contact that is lost.
+    What is left of the budget when a step is asked for decides how far degrees rise. `known` tells
+    what has been shown by now: where there is no common quadratic function, none is searched for;
+    where it is not stable in kept contact, only growth with contact that is lost.
     """
     facts = Facts.of(system)
     rising = []

@@ -48,13 +48,7 @@ class RateSlope:
     _per_rate: float  # What the margin changes by for 1/s
 
     def change(self, system: SwitchedSystem) -> float:
-        """Return by how much the rate of a system nearby is larger, in first order, 1/s.
-
-        Parameters
-        ----------
-        system : SwitchedSystem
-            Of the same shape.
-        """
+        """Return by how much the rate of a system nearby is larger, in first order, 1/s."""
         program, total = self._program, 0.0
         changed = program.edges_at(system)
         for k in self._dual.duals:
@@ -65,13 +59,7 @@ class RateSlope:
 
 
 def may_have_slope(system: SwitchedSystem) -> bool:
-    """Tell whether one form for all modes is what a proof of a system could be.
-
-    Parameters
-    ----------
-    system : SwitchedSystem
-        The modes and their switching.
-    """
+    """Tell whether one form for all modes is what a proof of a system could be."""
     facts = Facts.of(system)
     timed = facts.is_continuous or system.sample_time is not None
     return facts.may_share_an_ellipsoid and not facts.takes_turns and timed
@@ -86,28 +74,9 @@ def rate_slope(
 ) -> RateSlope | None:
     """Find the best rate of one form for all modes; negative if they are shown to grow no faster.
 
-    Parameters
-    ----------
-    system : SwitchedSystem
-        For which `may_have_slope` holds.
-    guess : float, optional
-        About what the rate is, 1/s.
-    allowance : Allowance, optional
-        Work and memory.
-    resolution : float
-        The best rate is bracketed to this share of the guess, or of the fastest decay of a mode.
-    wanted : float, optional
-        A rate that is far from this one is bracketed less closely, 1/s.
-
-    Returns
-    -------
-    RateSlope or None
-        None if floating point shows nothing.
-
-    Raises
-    ------
-    NotAffordableError
-        If work or memory do not suffice.
+    For systems for which `may_have_slope` holds; None if floating point shows nothing. The rate, in
+    1/s, is bracketed to a share, `resolution`, of the guess or of the fastest decay of a mode; one
+    that is far from `wanted` less closely.
     """
     allowance = allowance or Allowance()
     with floats_in_silence():

@@ -107,20 +107,8 @@ def search_saturated_steps(
 ) -> Candidates[SaturatedEllipsoid]:
     """Yield ellipsoids that hold a start, those with the fastest decay first.
 
-    The start is the wanted one; without one, or where it is out of reach, nearly the largest.
-    Where the arithmetic rounds, ellipsoids that cover that come before others.
-
-    Parameters
-    ----------
-    system : SwitchedSystem
-        Stable, in discrete time, with what saturates.
-    allowance : Allowance
-        Work and memory.
-
-    Raises
-    ------
-    NotAffordableError
-        If work or memory do not suffice.
+    In discrete time. The start is the wanted one; without one, or where it is out of reach, nearly
+    the largest. Where the arithmetic rounds, ellipsoids that cover that come before others.
     """
     assert system.saturation is not None  # who asks has looked
     kept, stands = _stand_ins(system)

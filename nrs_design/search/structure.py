@@ -38,15 +38,7 @@ def merge_equal_modes(system: SwitchedSystem) -> SwitchedSystem:
 
 
 def stand_in(name: str | None, system: SwitchedSystem, merged: SwitchedSystem) -> str | None:
-    """Return the name of the merged mode that stands for a mode of a system, if there is one.
-
-    Parameters
-    ----------
-    name : str or None
-        Of the mode.
-    system, merged : SwitchedSystem
-        Before and after `merge_equal_modes`.
-    """
+    """Return the name of the merged mode that stands for a mode of a system, if there is one."""
     given = next((mode for mode in system.modes if mode.name == name), None)
     return next((mode.name for mode in merged.modes if given and mode.A == given.A), None)
 

@@ -43,15 +43,7 @@ def examine_every_mode(family: Family) -> Candidates[GrowingSequence]:
 
 
 def unstable_modes(modes: Iterable[Mode], family: Family) -> Candidates[GrowingSequence]:
-    """Decide exactly, mode by mode; in the end say how many are stable, if all are.
-
-    Parameters
-    ----------
-    modes : iterable of Mode
-        Each may be in force for ever.
-    family : Family
-        With the time and what is left of the budget.
-    """
+    """Decide exactly, mode by mode; in the end say how many are stable, if all are."""
     time, count, skipped, found = family.system.time, 0, 0, False
     for mode, fits in affordable(modes):
         if not fits:

@@ -22,21 +22,7 @@ def uncovered(
     scenario: Scenario,
     run: Run,
 ) -> Iterator[str]:
-    """Yield what happens in a run that the bound does not cover; nothing if it holds.
-
-    Parameters
-    ----------
-    spec : InteractionDesignSpec
-        That the bound is about.
-    system : SwitchedSystem
-        Of that spec.
-    statement : AbstractEvidence
-        Checked; it states a bound.
-    scenario : Scenario
-        That was simulated.
-    run : Run
-        Its run.
-    """
+    """Yield what happens in a run that a checked bound does not cover; nothing if it holds."""
     bound = statement.bound(system)
     assert bound is not None
     limits = {channel.name: float(channel.bound) for channel in bound.channels}
@@ -68,13 +54,7 @@ def undecayed(
     scenario: Scenario,
     run: Run,
 ) -> Iterator[str]:
-    """Yield why a certified rate does not cover the end of a run; nothing if it does.
-
-    Parameters
-    ----------
-    spec, system, statement, scenario, run
-        As `uncovered` takes them; the statement has a rate.
-    """
+    """Yield why a certified rate, of a checked statement, does not cover the end of a run."""
     if end_of_command(scenario) is None:
         yield "the command does not come to an end before the run does"
     if scenario.errors != Errors():

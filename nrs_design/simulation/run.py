@@ -85,12 +85,7 @@ class Run:
 def common_lever_arm(spec: InteractionDesignSpec, touched: Iterable[str]) -> float | None:
     """Return the lever arm in m that environments have in common; None if there is no such.
 
-    Parameters
-    ----------
-    spec : InteractionDesignSpec
-        With the environments.
-    touched : iterable of str
-        Their names; what is no environment by itself has no arm.
+    What is no environment by itself has no arm.
     """
     known = spec.environments
     arms = {known[name].lever_arm if name in known else None for name in touched}

@@ -17,24 +17,11 @@ from nrs_design.spec import InteractionDesignSpec
 def sampled_axis(
     spec: InteractionDesignSpec, plant: Plant, design: ControllerDesign, scenario: Scenario
 ) -> SampledAxis:
-    """Return an axis with its law, at rest at the start of a scenario.
+    """Return an axis with its law, at rest at the start of a scenario, its motor the nominal one.
 
-    Parameters
-    ----------
-    spec : InteractionDesignSpec
-        With its sampling.
-    plant : Plant
-        Of that spec; its nominal motor.
-    design : ControllerDesign
-        Gains that ship.
-    scenario : Scenario
-        What happens, with noise, jitter and delay from its seed.
-
-    Raises
-    ------
-    DesignError
-        If the spec has no sampling or periods that never meet, states the motion loop itself, if
-        the command swings faster than samples can show, or there is no program of a controller.
+    Noise, jitter and delay come from the seed of the scenario. A `DesignError` if the spec has no
+    sampling or periods that never meet, states the motion loop itself, if the command swings faster
+    than samples can show, or there is no program of a controller.
     """
     if spec.sampling is None:
         raise DesignError(

@@ -72,12 +72,8 @@ class Concession:
 def concessions(loaded: LoadedSpec, slowest: float | None) -> Iterator[Concession]:
     """Yield how single lines of a spec could ask for less, the mildest first.
 
-    Parameters
-    ----------
-    loaded : LoadedSpec
-        The spec.
-    slowest : float or None
-        Decay rate of the slowest mode in 1/s, or None: it says which dwell times are tried.
+    The gains are those that are designed, as decimals in SI. `slowest` is the decay rate of the
+    slowest mode in 1/s: it says which dwell times are tried.
     """
     spec, said = loaded.spec, to_data(loaded.root)
     assert isinstance(said, dict)

@@ -65,17 +65,9 @@ class Line(NamedTuple):
 
 
 def describe(spec: Spec) -> tuple[Line, ...]:
-    """List what a spec says.
+    """List what a spec says: name, text as written, SI value and SI unit of each line.
 
-    Parameters
-    ----------
-    spec : InteractionDesignSpec, SwitchedSystemSpec or RobotSpec
-        A validated spec.
-
-    Returns
-    -------
-    tuple of Line
-        Name, text as written, SI value and SI unit. Linear stiffness is shown at the pivot.
+    Linear stiffness is shown at the pivot.
     """
     if isinstance(spec, SwitchedSystemSpec):
         return tuple(_modes(spec))

@@ -91,23 +91,9 @@ class LoadedSpec:
 
 
 def read_spec(path: str | os.PathLike[str]) -> LoadedSpec:
-    """Read and validate a spec file.
+    """Read and validate a spec file; of one with several axes, one of them: ``FILE#AXIS``.
 
-    Parameters
-    ----------
-    path : path-like
-        A YAML file; the name ``*.nrs.yaml`` is a convention, not a condition. Of a file with
-        several axes, one of them: ``FILE#AXIS``.
-
-    Returns
-    -------
-    LoadedSpec
-        The spec, its text and the hash of what it says.
-
-    Raises
-    ------
-    SpecError
-        With path, line, column, message and remedy, if anything about the file is wrong.
+    A `SpecError`, with path, line, column, message and remedy, if anything about it is wrong.
     """
     named = Path(path)
     file = file_of(named)
@@ -127,13 +113,7 @@ def read_axes(path: Path) -> tuple[LoadedSpec, ...]:
 
 
 def axes_at(path: Path) -> tuple[Path, ...]:
-    """Return the addresses of all axes of a file that holds several; else the path itself.
-
-    Raises
-    ------
-    SpecError
-        If such a file is not valid.
-    """
+    """Return the addresses of all axes of a file that holds several; else the path itself."""
     if file_of(path) != path:
         return (path,)
     _, text = read_source(path)
@@ -154,17 +134,7 @@ def _document(text: str, file: Path) -> tuple[Node, tuple[Fault, ...]]:
 def respecified(loaded: LoadedSpec, root: Node) -> LoadedSpec:
     """Return what a spec would be if its file said what a changed document says.
 
-    Parameters
-    ----------
-    loaded : LoadedSpec
-        The spec and where it came from.
-    root : Node
-        Its document, changed by `nrs_design.spec.edits.changed`.
-
-    Raises
-    ------
-    SpecError
-        If that is no valid spec.
+    See `nrs_design.spec.edits.changed`; a `SpecError` if that is no valid spec.
     """
     return _loaded(loaded.path, loaded.text, root, ())
 
@@ -224,17 +194,7 @@ def load_spec(path: str | os.PathLike[str]) -> Spec:
 def parse_spec(text: str, path: Path | None = None) -> Spec:
     """Validate the text of a spec.
 
-    Parameters
-    ----------
-    text : str
-        YAML text.
-    path : Path, optional
-        Named in errors.
-
-    Raises
-    ------
-    SpecError
-        With line, column, message and remedy.
+    A `SpecError` with line, column, message and remedy; the path is named in it.
     """
     return _validate(*parse_with_faults(text, path), path)
 
@@ -282,15 +242,7 @@ def _validated(model: type[Any], root: Node, syntax: tuple[Fault, ...], path: Pa
 
 
 def valid_parts(model: type[SpecModel], said: Data) -> SpecModel:
-    """Return a spec without the parts that are not valid: to ask for one is an AttributeError.
-
-    Parameters
-    ----------
-    model : type
-        Of the spec.
-    said : dict
-        What the file says.
-    """
+    """Return a spec without the parts that are not valid: to ask for one is an AttributeError."""
     valid: dict[str, Any] = {}
     missing: list[str] = []
     for name in model.model_fields:

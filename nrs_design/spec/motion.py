@@ -78,15 +78,7 @@ IN_ITS_UNIT = Row[AboutCommands](
 
 
 def commands_in(command: str, *places: str) -> tuple[Row[Any], ...]:
-    """Return the checks that quantities about commands are in the unit that the motor takes.
-
-    Parameters
-    ----------
-    command : str
-        The unit.
-    *places : str
-        Of the quantities, as keys with dots between.
-    """
+    """Return the checks that quantities about commands are in the unit that the motor takes."""
 
     def parts(said: object) -> Iterator[tuple[Location, AboutCommands]]:
         for place in places:

@@ -136,24 +136,10 @@ def _effort(dimension: tuple[int, ...]) -> str:
 
 @functools.lru_cache(maxsize=256)
 def parse_unit(text: str) -> Unit:
-    """Read a unit such as ``N*m*s/rad`` or ``rad/(N*m)``.
+    """Read a unit such as ``N*m*s/rad`` or ``rad/(N*m)``, of at most 60 ASCII characters.
 
-    Products are written ``*``, quotients ``/`` (from left to right), integer powers ``^``.
-
-    Parameters
-    ----------
-    text : str
-        The unit, at most 60 ASCII characters.
-
-    Returns
-    -------
-    Unit
-        Its factor to SI and its dimension.
-
-    Raises
-    ------
-    SpecError
-        If a symbol is unknown or the text is no product of units.
+    Products are written ``*``, quotients ``/`` (from left to right), integer powers ``^``. A
+    `SpecError` if a symbol is unknown or the text is no product of units.
     """
     if len(text) > MAX_UNIT_LENGTH:
         raise SpecError(f"the unit {quoted(text)} is too long", remedy="write it in base units")

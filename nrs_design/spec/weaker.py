@@ -73,13 +73,7 @@ class Change:
 
 
 def find_changes(before: Data, after: Data) -> Iterator[Change]:
-    """Yield where a spec differs from an earlier one.
-
-    Parameters
-    ----------
-    before, after : dict, tuple or str
-        What the files say, as `nrs_design.spec.document.to_data` gives it.
-    """
+    """Yield where a spec differs from an earlier one."""
     yield from _changes(_written_out(before, after), _written_out(after, before), ())
 
 

@@ -49,17 +49,7 @@ _STAYS = {
 def assume_matrices(
     spec: SwitchedSystemSpec, parameters: Sequence[UncertainParameter], scale: Fraction
 ) -> tuple[Assumption, ...]:
-    """Say what holds for a `switched-system` spec.
-
-    Parameters
-    ----------
-    spec : SwitchedSystemSpec
-        With the rules of switching.
-    parameters : sequence of UncertainParameter
-        Where they lie, already scaled.
-    scale : Fraction
-        By how much they are.
-    """
+    """Say what holds for a `switched-system` spec whose parameters are scaled already."""
     return (
         GIVEN_MATRICES[0],
         *map(_parameter_text, parameters),
@@ -213,12 +203,7 @@ def _coverage(name: str, covered: str, item: IdentifiedRangesSpec) -> Assumption
 def preload_texts(preloads: Mapping[str, Preload], scale: Fraction) -> Iterator[Assumption]:
     """Say what linear ranges cover of laws that are known within a preload.
 
-    Parameters
-    ----------
-    preloads : mapping of str to Preload
-        By the names of the environments that are touched.
-    scale : Fraction
-        By how much their ranges are stretched: less than declared do not cover the law.
+    Ranges that are stretched by less than declared do not cover the law.
     """
     for name, (law, low, high) in preloads.items():
         if scale < 1:
@@ -233,16 +218,8 @@ def sensor_texts(
 ) -> Iterator[Assumption]:
     """Say how the law gets the force, and what a proof leaves out of its errors.
 
-    Parameters
-    ----------
-    sensor : Sensor
-        Of the design.
-    period : Fraction or None
-        Of the processor in s, where there is one.
-    disturbed : bool
-        Whether bounds on disturbances are stated.
-    axis : AxisType
-        What they are about.
+    The period is that of the processor in s, if there is one; `disturbed`: bounds on disturbances
+    are stated.
     """
     if sensor.filter is not None:
         order = sensor.filter.order

@@ -38,22 +38,9 @@ def close_loop(
 ) -> SwitchedSystem:
     """Assemble every mode of an interaction design.
 
-    Parameters
-    ----------
-    name : str
-        Name of the spec.
-    state : SharedState
-        Of all modes.
-    rules : SwitchingSpec, optional
-        Rules for the change of controllers; by default any may follow any other at any time.
-    contact : {"losable", "kept"}, optional
-        Whether contact may be lost; by default it is where that is modelled, and a statement says
-        whether it covers it.
-
-    Raises
-    ------
-    AssemblyError
-        If contact may be lost, and that is not modelled.
+    Without rules any controller may follow any other at any time. Contact, losable or kept, may by
+    default be lost where that is modelled, and a statement says whether it covers it. An
+    `AssemblyError` if it may be lost, and that is not modelled.
     """
     rules, controllers = rules or SwitchingSpec(), state.design.controllers
     sprung = any(controller.law.spring for controller in controllers)

@@ -77,17 +77,8 @@ class CommandTiming:
     def left(self, age: int) -> Interval:
         """Return how long before the end of a period commands of an age or newer are in force.
 
-        Where none of them takes effect in a period, that is no time.
-
-        Parameters
-        ----------
-        age : int
-            One of `within`.
-
-        Returns
-        -------
-        Interval
-            In s; its ends are not negative, nor above the longest period.
+        Where none of them takes effect in a period, that is no time. The ends, in s, are not
+        negative, nor above the longest period.
         """
         if self.at is not None:
             begin = min(max(self.at - age * self.period, ZERO), self.period)
@@ -102,11 +93,6 @@ class CommandTiming:
 def timing_of(sampling: SamplingSpec, late: tuple[Fraction, Fraction]) -> CommandTiming:
     """Return when commands of a processor take effect.
 
-    Parameters
-    ----------
-    sampling : SamplingSpec
-        The processor.
-    late : tuple of Fraction
-        Shortest and longest time from a sample to its command, in s.
+    `late` is the shortest and longest time from a sample to its command, in s.
     """
     return CommandTiming(sampling.step, *late, sampling.unsteady)

@@ -28,10 +28,7 @@ NOTHING = KelvinVoigt(Fraction(0), Fraction(0))
 def lost_contact(state: SharedState, contact: str | None) -> Contact | None:
     """Return how contact is lost, or None where that is not modelled.
 
-    Raises
-    ------
-    AssemblyError
-        If it is not modelled, and the spec asks for it.
+    An `AssemblyError` if the spec asks for it then.
     """
     if not _can_be_free(state):
         if contact == "losable":
@@ -44,17 +41,7 @@ def lost_contact(state: SharedState, contact: str | None) -> Contact | None:
 def lost_on_surface(
     free: Iterable[Mode], pulls: Iterable[RationalMatrix], contact: str | None
 ) -> Contact:
-    """Return that contact is lost where the tissue ends, or would have to pull.
-
-    Parameters
-    ----------
-    free : iterable of Mode
-        In force without contact.
-    pulls : iterable of RationalMatrix
-        Forces of what could pull.
-    contact : {"losable", "kept"} or None
-        What the spec asks for.
-    """
+    """Return that contact is lost where the tissue ends, or would have to pull."""
     losable, loss = contact == "losable", say("contact-lost.surface")
     return Contact(tuple(free), tuple(pulls), required=losable, loss=loss)
 
@@ -62,21 +49,8 @@ def lost_on_surface(
 def adds_free_motion(state: SharedState, contact: str | None, rules: SwitchingSpec) -> bool:
     """Tell whether free motion is one of the modes: with springs, it ends at rest in one place.
 
-    That contact is lost at any deflection is more than happens, and is covered on demand only.
-
-    Parameters
-    ----------
-    state : SharedState
-        Of all modes.
-    contact : {"losable", "kept"} or None
-        What the spec asks for.
-    rules : SwitchingSpec
-        Rules for the change of controllers.
-
-    Raises
-    ------
-    AssemblyError
-        If it is not modelled, or excluded by the rules of switching, and the spec asks for it.
+    That contact is lost at any deflection is more than happens, and is covered on demand only. An
+    `AssemblyError` if the spec asks for it, and it is not modelled or the rules exclude it.
     """
     if contact != "losable":
         return False
@@ -132,16 +106,8 @@ def flights_among(
 ) -> Flights:
     """Tell which modes are free motion, where it is among them.
 
-    Parameters
-    ----------
-    names : iterable of str
-        Of all modes.
-    environments : iterable of Environment
-        All contacts.
-    pulls : iterable of RationalMatrix
-        Forces of what could pull.
-    controllers : container of str
-        Those whose modes without contact are free motion, too.
+    `pulls` are forces of what could pull; modes of `controllers` without contact are free motion,
+    too.
     """
     known = {environment.name for environment in environments}
     touching, flying = [], []
@@ -165,11 +131,6 @@ def could_pull(environments: Iterable[Environment]) -> tuple[Environment, ...]:
 
     Without damping nothing lags, and there are none. Beside damped environments springs count, too:
     what flies because every force would pull must not be pushed by a spring instead.
-
-    Parameters
-    ----------
-    environments : iterable of Environment
-        All that may be touched.
     """
     environments = tuple(environments)
     return environments if any("b" in e.parameters for e in environments) else ()
@@ -178,17 +139,7 @@ def could_pull(environments: Iterable[Environment]) -> tuple[Environment, ...]:
 def force_rows(
     velocity: LinearForm, states: Sequence[str], environments: Iterable[Environment]
 ) -> Iterator[RationalMatrix]:
-    """Yield the force, as a row over the states, of each corner of each contact.
-
-    Parameters
-    ----------
-    velocity : LinearForm
-        Of the contact, as a form of the states.
-    states : sequence of str
-        Names of the states.
-    environments : iterable of Environment
-        All contacts.
-    """
+    """Yield the force, as a row over the states, of each corner of each contact."""
     unit = coordinates(len(states))
     for environment in environments:
         shared, *memories = environment.law.states
@@ -205,15 +156,7 @@ def outputs_of(
     environments: Iterable[Environment],
     limit: Fraction,
 ) -> tuple[Output, ...]:
-    """Return the force at the corners of its ranges, with what it is meant to keep, and velocity.
-
-    Parameters
-    ----------
-    velocity, states, environments
-        As for `force_rows`.
-    limit : Fraction
-        Of the force, in N m.
-    """
+    """Return the force at the corners of its ranges, with its limit in N m, and the velocity."""
     rows = tuple(force_rows(velocity, states, environments))
     force = (Output("force", "N*m", rows, limit),) if rows else ()
     return (*force, Output("velocity", "rad/s", (RationalMatrix.from_rows([velocity]),)))

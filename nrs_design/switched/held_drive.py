@@ -81,21 +81,9 @@ class HeldDrive(HeldMotor):
     ) -> HeldDrive:
         """Return the drive while something is touched, or nothing.
 
-        Parameters
-        ----------
-        drive : Drive
-            With its ranges.
-        timing : CommandTiming
-            When commands take effect.
-        touched : mapping of str to Interval, optional
-            Stiffness and damping by the symbols of `LOAD`; by default nothing is touched.
-        load : tuple of str
-            How a box names them.
-
-        Raises
-        ------
-        AssemblyError
-            If a period is so long for its ranges that an entry is not enclosed.
+        `touched` are stiffness and damping by the symbols of `LOAD`; `load` is how a box names
+        them. An `AssemblyError` if a period is so long for the ranges that an entry is not
+        enclosed.
         """
         nothing = Interval.point(ZERO)
         own = dict(drive.ranges)
@@ -146,13 +134,8 @@ class HeldDrive(HeldMotor):
     def touching(self, touched: Mapping[str, Interval], *, forced: bool) -> HeldMotor:
         """Return the drive while something is touched that acts on it.
 
-        Parameters
-        ----------
-        touched : mapping of str to Interval
-            Stiffness and damping.
-        forced : bool
-            Whether the law takes the force of the sample; what acts over the period has symbols of
-            its own then.
+        `forced`: the law takes the force of the sample; what acts over the period has symbols of
+        its own then.
         """
         if not self.drive.loaded:
             return self
@@ -166,13 +149,7 @@ class HeldDrive(HeldMotor):
         return frozenset(named.get(s, s) for e in found for s in (*e.depends, e.symbol))
 
     def result(self, name: str, given: Commands, values: Mapping[str, Fraction]) -> LinearForm:
-        """Return a state after the period, or how far the joint goes in it.
-
-        Parameters
-        ----------
-        name, given, values
-            As for `HeldMotor.result`.
-        """
+        """Return a state after the period, or how far the joint goes in it."""
         row, drive = self._row(name), self.drive
         shares = dict(self._shares(values))
         states = given.states if drive.speed is None else given.states[1:]
@@ -332,13 +309,7 @@ def _sizes(M: Any) -> Any:
 
 
 def _check_length(drive: Drive, numbers: Mapping[str, Interval], period: Interval) -> None:
-    """Refuse a period of which the exponential is out of reach.
-
-    Raises
-    ------
-    AssemblyError
-        If it is so many time constants long.
-    """
+    """Refuse a period of so many time constants that its exponential is out of reach."""
     ends = {s: _ends(i, inverse=s in drive.inverse) for s, i in numbers.items()}
     n, anywhere = drive.order, {s: _hull(*e) for s, e in ends.items()}
     G = _generator(drive.rates, anywhere, n)

@@ -83,38 +83,14 @@ class HeldMotor(ABC):
 
     @abstractmethod
     def symbols_of(self, result: str) -> frozenset[str]:
-        """Return the symbols of the numbers that a result depends on.
-
-        Parameters
-        ----------
-        result : str
-            One of the states, or `WAY`.
-        """
+        """Return the symbols of the numbers that a result, a state or `WAY`, depends on."""
 
     @abstractmethod
     def result(self, name: str, given: Commands, values: Mapping[str, Fraction]) -> LinearForm:
-        """Return a state after the period, or how far the joint goes in it.
-
-        Parameters
-        ----------
-        name : str
-            One of the states, or `WAY`.
-        given : Commands
-            What acts on it.
-        values : mapping
-            The numbers by their symbols.
-        """
+        """Return a state after the period, or how far the joint goes in it (`WAY`)."""
 
     def touching(self, touched: Mapping[str, Interval], *, forced: bool) -> HeldMotor:
-        """Return the motor while it touches something: by default, that does not act on it.
-
-        Parameters
-        ----------
-        touched : mapping of str to Interval
-            Stiffness and damping.
-        forced : bool
-            Whether the law takes the force of the sample.
-        """
+        """Return the motor while it touches something: by default, that does not act on it."""
         return self
 
     def slip(self, given: Commands, values: Mapping[str, Fraction]) -> LinearForm:
@@ -147,13 +123,7 @@ class MotorAtOnce(HeldMotor):
         return frozenset({"Km", "s" if result == WAY and self.time_constant is None else "E"})
 
     def result(self, name: str, given: Commands, values: Mapping[str, Fraction]) -> LinearForm:
-        """Return the speed after the period, or how far the joint turns in it.
-
-        Parameters
-        ----------
-        name, given, values
-            As for `HeldMotor.result`.
-        """
+        """Return the speed after the period, or how far the joint turns in it."""
         return self._way(given, values) if name == WAY else self._speed(given, values)
 
     def _speed(self, given: Commands, values: Mapping[str, Fraction]) -> LinearForm:
@@ -176,15 +146,7 @@ class MotorInTime(HeldMotor):
 
     @classmethod
     def of(cls, ranges: ActuatorRanges, timing: CommandTiming) -> MotorInTime:
-        """Return the motors of some ranges, which last for a period.
-
-        Parameters
-        ----------
-        ranges : ActuatorRanges
-            Of gain and time constant.
-        timing : CommandTiming
-            When commands take effect.
-        """
+        """Return the motors of some ranges, which last for a period."""
         tau = ranges.time_constant
         g = Interval(1 / tau.nominal, 1 / tau.high, 1 / tau.low)
         later = (RestOfPeriod.of(timing.left(age), g, str(age)) for age in timing.within)
@@ -203,13 +165,7 @@ class MotorInTime(HeldMotor):
         return frozenset(self.box.ranges) - ({"g"} if result == WAY else set())
 
     def result(self, name: str, given: Commands, values: Mapping[str, Fraction]) -> LinearForm:
-        """Return the speed after the period, or how far the joint turns in it.
-
-        Parameters
-        ----------
-        name, given, values
-            As for `HeldMotor.result`.
-        """
+        """Return the speed after the period, or how far the joint turns in it."""
         return self._way(given, values) if name == WAY else self._speed(given, values)
 
     def _speed(self, given: Commands, values: Mapping[str, Fraction]) -> LinearForm:
@@ -249,16 +205,9 @@ class RestOfPeriod:
 
     @classmethod
     def of(cls, time: Interval, rate: Interval, age: str = "") -> RestOfPeriod:
-        """Enclose the ways of motors.
+        """Enclose the ways of motors, for a time h in s and rates g in 1/s.
 
-        Parameters
-        ----------
-        time : Interval
-            The h in s.
-        rate : Interval
-            The g in 1/s.
-        age : str
-            Of the command that is in force for so long; empty for the whole period.
+        `age` is that of the command that is in force for so long; empty for the whole period.
         """
         first, above = way_between(time.low, rate)
         last, beyond = way_between(time.high, rate)
@@ -310,15 +259,7 @@ def _ends_of(ranges: ActuatorRanges) -> Iterator[tuple[tuple[str, ...], Actuator
 
 
 def hold(ranges: ActuatorRanges, timing: CommandTiming) -> HeldMotor:
-    """Return the motors of some ranges under commands that are held.
-
-    Parameters
-    ----------
-    ranges : ActuatorRanges
-        Of gain and time constant, which last for a period.
-    timing : CommandTiming
-        When commands take effect.
-    """
+    """Return the motors of some ranges, which last for a period, under commands that are held."""
     if not timing.within and not timing.jitter:
         return MotorAtOnce.of(ranges, timing.period)
     return MotorInTime.of(ranges, timing)

@@ -56,11 +56,6 @@ def around(ranges: Mapping[str, Interval]) -> Points:
 
     With n numbers that have a range, all of them at their low ends, and each of them alone n times
     as far as its high end.
-
-    Parameters
-    ----------
-    ranges : mapping of str to Interval
-        By symbols.
     """
     lowest = {symbol: interval.low for symbol, interval in ranges.items()}
     widths = {s: interval.high - interval.low for s, interval in ranges.items()}
@@ -82,13 +77,7 @@ class Box:
     hull: Points = ({},)
 
     def beside(self, other: Box) -> Box:
-        """Return the box of the parameters of both.
-
-        Raises
-        ------
-        InternalError
-            If a symbol stands for two parameters, or both have a triangle or a hull.
-        """
+        """Return the box of the parameters of both, which have no symbol in common."""
         if common := self.ranges.keys() & other.ranges.keys():
             raise InternalError(f"the symbol {min(common)} stands for two parameters")
         if self.triangle and other.triangle:
@@ -107,11 +96,10 @@ class Box:
         return 2 / (1 / interval.low + 1 / interval.high)
 
     def named_values(self, name: str) -> Iterator[tuple[str, dict[str, Fraction]]]:
-        """Yield the corners of a mode, the last parameter turning fastest.
+        """Yield the corners of a mode with their values, the last parameter turning fastest.
 
-        A corner is named after its ends, such as ``a/soft/k-min/Mt-max``, and after the point of
-        the hull, such as ``hull-2``; a point has the name of the mode. With it are the values of
-        the parameters.
+        A corner is named after its ends, such as ``a/soft/k-min``, and after the point of the hull,
+        such as ``hull-2``; a point has the name of the mode.
         """
         ends = {symbol: dict(interval.ends) for symbol, interval in self.ranges.items()}
         for at in self._points(ends, self._hull_labels()):
@@ -136,25 +124,9 @@ class Box:
             yield "/".join([name, *(f"{s}-{end}" for s, end in pairs if end and s in attained)])
 
     def corners(self, rows_at: RowsAt, name: str) -> Iterator[tuple[str, Rows]]:
-        """Yield the corners, the last parameter turning fastest.
+        """Yield the corners of a mode with their matrices, the last parameter turning fastest.
 
-        Parameters
-        ----------
-        rows_at : callable
-            Gives the matrix for the values of the parameters by their symbols.
-        name : str
-            Of the mode whose corners they are.
-
-        Yields
-        ------
-        tuple of str and rows
-            The name, such as ``a/soft/k-min/Mt-max`` (that of the mode for a point), and the
-            matrix.
-
-        Raises
-        ------
-        InternalError
-            If the matrix is not affine along each axis.
+        Named as in `named_values`. An `InternalError` if the matrix is not affine along each axis.
         """
         found = [(corner, rows_at(values)) for corner, values in self.named_values(name)]
         ends = {symbol: dict(interval.ends) for symbol, interval in self.ranges.items()}

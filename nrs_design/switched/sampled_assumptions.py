@@ -65,27 +65,7 @@ def assume_sampled(
     loss: Loss,
     environments: Sequence[Environment],
 ) -> tuple[Assumption, ...]:
-    """Say what holds for the sampled loop of an interaction design.
-
-    Parameters
-    ----------
-    conditions : OperatingConditions
-        With the rules of switching.
-    sampling : SamplingSpec
-        Its processor.
-    ranges : ActuatorRanges
-        Where the actuator may be.
-    frame : Frame
-        Of all modes.
-    laws : mapping
-        Those by the names of their controllers.
-    design : ControllerDesign
-        With the contacts.
-    loss : str
-        Where contact is lost.
-    environments : sequence of Environment
-        All contacts.
-    """
+    """Say what holds for the sampled loop of an interaction design."""
     reset = conditions.idle is not None and conditions.idle.reset
     disturbed = conditions.disturbances is not None
     # Sentences that do not hold for the disturbances of the spec begin with that.

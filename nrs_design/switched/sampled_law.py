@@ -86,16 +86,7 @@ class ListedLaw:
     ) -> dict[str, tuple[Term, ...]]:
         """Return what each result is a sum of.
 
-        Parameters
-        ----------
-        law : DiscreteLaw
-            In force.
-        numbers : mapping of str to Fraction
-            The coefficients by name.
-        given : mapping of str to LinearForm
-            Inputs and states; those that are missing are zero.
-        rounded : mapping of str to LinearForm
-            By what terms are off, by name.
+        Inputs and states that are missing are zero; `rounded` is by what terms are off, by name.
         """
         mode = law.law.name
         nothing = zero(len(next(iter(given.values()))))
@@ -115,17 +106,7 @@ class ListedLaw:
     def off(
         self, law: DiscreteLaw, result: str, rounded: Mapping[str, LinearForm]
     ) -> list[LinearForm]:
-        """Return the rounding errors of the terms of a result.
-
-        Parameters
-        ----------
-        law : DiscreteLaw
-            In force.
-        result : str
-            Name of the result.
-        rounded : mapping of str to LinearForm
-            By what terms are off, by name.
-        """
+        """Return the rounding errors of the terms of a result, from those of all terms."""
         return [rounded[name] for name in self.counts[law.law.name][result]]
 
 
@@ -133,19 +114,9 @@ class ListedLaw:
 def list_law(order: int, kinds: Kinds, takes: Takes | None = None) -> ListedLaw:
     """Write the list out, and count its roundings.
 
-    Parameters
-    ----------
-    order : int
-        Lags of the filter of the force.
-    kinds : tuple
-        As `kinds_of` returns them.
-    takes : Takes, optional
-        What the robot takes, if there is no motion controller of ours.
-
-    Raises
-    ------
-    InternalError
-        If a term takes a rounded number and nothing bounds what that adds to its own rounding.
+    `order` is that of the filter of the force; `takes` is what the robot takes without a motion
+    controller of ours. An `InternalError` if a term takes a rounded number and nothing bounds what
+    that adds.
     """
     laws = {law.name: DiscreteLaw(law, dict.fromkeys(names, ANY)) for law, names in kinds}
     low_pass = DiscreteLowPass(order, ANY, ANY) if order else None

@@ -134,17 +134,7 @@ class SharedState:
     def rows(
         self, law: CompliantLaw, environment: Environment, values: Mapping[str, Fraction]
     ) -> Rows:
-        """Return A under a law at the given parameters of the contact.
-
-        Parameters
-        ----------
-        law : CompliantLaw
-            Of the controller.
-        environment : Environment
-            That is touched.
-        values : mapping
-            Parameters of the contact, of the motor, and rates of memories, by name.
-        """
+        """Return A under a law at the given parameters of the contact."""
         contact = environment.at(values)
         if self.idle is not None or law.commands == "position":
             return self.placed(law, contact, environment.name)
@@ -158,14 +148,7 @@ class SharedState:
     ) -> Rows:
         """Return a mode with the idle states that it leaves alone, or in coordinates of motion.
 
-        Parameters
-        ----------
-        law : CompliantLaw
-            Of the controller.
-        contact : AbstractLinearLaw, optional
-            What is touched; by default nothing.
-        environment : str
-            Its name.
+        Without a contact nothing is touched.
         """
         others = self.bleeding if self.idle is not None and not law.bleeds else ()
         decay = Fraction(0) if self.idle is None else idle_decay(self.idle)
@@ -191,22 +174,7 @@ def shared_state(
     idle: IdleStatesSpec | None = None,
     offset: Offset = "none",
 ) -> SharedState:
-    """Return what the modes of an interaction design share.
-
-    Parameters
-    ----------
-    plant : Plant
-        Environments.
-    loop : MotionLoop
-        Closed motion loop G.
-    design, idle, offset
-        See `SharedState`.
-
-    Raises
-    ------
-    AssemblyError
-        If the modes do not share one state.
-    """
+    """Return what the modes of an interaction design share; an `AssemblyError` if nothing."""
     laws = [controller.law for controller in design.controllers]
     leading = design.leading_laws(mixed=idle is not None)
     state = SharedState(

@@ -64,10 +64,7 @@ def class_of(kind: str) -> type[AbstractEvidence]:
 def read_evidence(fields: Mapping[str, Any], system: SwitchedSystem) -> AbstractEvidence:
     """Read one statement of a certificate file.
 
-    Raises
-    ------
-    KeyError, TypeError, ValueError
-        If its kind is unknown, or a field is missing or malformed.
+    A KeyError, TypeError or ValueError if its kind is unknown, or a field is missing or malformed.
     """
     kind = fields["kind"]
     if kind not in KINDS:

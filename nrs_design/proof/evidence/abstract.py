@@ -256,11 +256,8 @@ class AbstractEvidence(ABC):
     def from_fields(cls, fields: Mapping[str, Any], system: SwitchedSystem) -> Self:
         """Read its numbers from a certificate file.
 
-        Raises
-        ------
-        KeyError, TypeError, ValueError
-            If a field is missing, malformed or unknown, or no sentence about the system can be made
-            of them.
+        A KeyError, TypeError or ValueError if a field is missing, malformed or unknown, or no
+        sentence about the system can be made of them.
         """
         own = {key: value for key, value in fields.items() if key not in _OF_A_STATEMENT}
         evidence = read_object(cls, own)
@@ -286,15 +283,9 @@ class AbstractEvidence(ABC):
     def spread(self, merged: SwitchedSystem, system: SwitchedSystem) -> AbstractEvidence:
         """Carry evidence over from modes of which no two are equal to all modes of a system.
 
-        By default nothing changes: names of modes stay valid, and what holds for a mode holds for
-        its equals. A kind with numbers for every mode repeats them.
-
-        Parameters
-        ----------
-        merged : SwitchedSystem
-            What this is evidence for: the first of every set of equal modes.
-        system : SwitchedSystem
-            The same with all modes.
+        By default nothing changes: names of modes stay valid, and what holds for a mode, the first
+        of its equals in `merged`, holds for its equals. A kind with numbers for every mode repeats
+        them.
         """
         return self
 
@@ -303,12 +294,7 @@ class AbstractEvidence(ABC):
     ) -> str | None:
         """TRUSTED: say why the evidence does not hold for the system, or None if it holds.
 
-        Parameters
-        ----------
-        system : SwitchedSystem
-            That it is about.
-        made : list, optional
-            Every form that is decided is put into it, for a second opinion.
+        Every form that is decided is put into `made`, for a second opinion.
         """
         unfit = self.find_unfit(system)
         return find_indefinite(self.forms(system), made) if unfit is None else unfit
@@ -341,14 +327,9 @@ class AbstractEvidence(ABC):
 
 
 def in_seconds(rate: Fraction, step: Fraction) -> str:
-    """Say what a contraction rho per step is in seconds: ``-log(rho) >= 1 - rho``.
+    """Say what a contraction rho per step, below one, is in seconds: ``-log(rho) >= 1 - rho``.
 
-    Parameters
-    ----------
-    rate : Fraction
-        The rho, below one.
-    step : Fraction
-        How long a step takes, in s.
+    The step is in s.
     """
     alpha = at_least((1 - rate) / step, "1/s")
     return f"A step takes {exact_text(step)} s, so that is exp(-alpha t) with alpha {alpha}."
@@ -395,17 +376,7 @@ class AbstractFunction(AbstractEvidence):
 
 
 def find_odd_form(Q: IntegerMatrix, denominator_log2: int, order: int) -> str | None:
-    """Say why a form does not have its shape, or None.
-
-    Parameters
-    ----------
-    Q : integer matrix
-        Its numerators.
-    denominator_log2 : int
-        They are over two to this power.
-    order : int
-        Number of states.
-    """
+    """Say why a form, of numerators over a power of two, does not have its shape, or None."""
     if not is_square(Q, order):
         return f"Q is not a {order} x {order} matrix"
     if not 0 <= denominator_log2 <= MAX_INTEGER_BITS:

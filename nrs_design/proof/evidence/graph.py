@@ -468,18 +468,9 @@ class FormsOnGraph(AbstractFunction):
     def inequality(
         self, step: AnyStep, a: int, b: int, system: SwitchedSystem, multiply: Product = multiply
     ) -> IntegerMatrix:
-        """Return the inequality of an edge.
+        """Return the inequality of a step from node a to node b.
 
-        Parameters
-        ----------
-        step : Step or EnclosedStep
-            Of the system.
-        a, b : int
-            The nodes before and after it.
-        system : SwitchedSystem
-            That moves.
-        multiply : callable
-            How matrices are multiplied; only a search has reason to ask for another way.
+        Only a search has reason to ask for another way to multiply.
         """
         if not isinstance(step, Step):
             return step.form(self.nodes[a].form, self.nodes[b].form, self.rate)
@@ -574,16 +565,8 @@ def steps_together(
 ) -> tuple[Step, ...]:
     """TRUSTED: return the steps of a system with contact and free motion as places.
 
-    Parameters
-    ----------
-    system : SwitchedSystem
-        With modes of one size, which may take turns.
-    acting : Acting
-        What acts on the state.
-    rate : Fraction
-        That maps are to keep; it decides in which units they are counted.
-    lost : bool
-        Whether contact is lost and made; it is kept otherwise.
+    The modes are of one size, and may take turns; contact is kept unless it is `lost` and made. The
+    rate that maps are to keep decides in which units they are counted.
     """
     grain = grain_of(rate**2)
     if system.clock is None:
@@ -614,16 +597,8 @@ def steps_by_mode(
 ) -> tuple[AnyStep, ...]:
     """TRUSTED: return the steps of a system with the modes as places.
 
-    Parameters
-    ----------
-    system : SwitchedSystem
-        With its rules of switching.
-    stays : Stays
-        How stays are followed.
-    rate : Fraction
-        That maps are to keep; it decides in which units they are counted.
-    degree : int
-        Of the monomials.
+    The rate that maps are to keep decides in which units they are counted; the degree is that of
+    the monomials.
     """
     from nrs_design.proof.stays import steps_of_stays
 
@@ -636,14 +611,7 @@ def steps_by_mode(
 def lifted(step: Step, degree: int, rate: Fraction) -> Step:
     """TRUSTED: return a step without facts as one of the monomials of a degree.
 
-    Parameters
-    ----------
-    step : Step
-        Of the state.
-    degree : int
-        The d.
-    rate : Fraction
-        That maps are to keep; it decides in which units they are counted.
+    The rate that maps are to keep decides in which units they are counted.
     """
     from nrs_design.proof.lift import derivative_lift, power_lift
 

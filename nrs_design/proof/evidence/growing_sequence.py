@@ -343,12 +343,7 @@ class GrowingSequence(AbstractEvidence):
 def average(system: SwitchedSystem, weights: Sequence[tuple[str, Fraction]]) -> RationalMatrix:
     """TRUSTED: return the weighted sum of modes; of free motion, without the deflection.
 
-    Raises
-    ------
-    KeyError
-        If there is no mode of a name.
-    TooLargeError
-        If the weights or the modes have too many digits to add them up.
+    A KeyError if there is no mode of a name, a `TooLargeError` for too many digits.
     """
     modes = {mode.name: mode.A for mode in (*system.modes, *system.free_motions())}
     matrices = [modes[name] for name, _ in weights]

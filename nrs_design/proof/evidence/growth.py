@@ -23,14 +23,7 @@ def has_growing_trace(
 ) -> bool:
     """TRUSTED: decide whether ``|tr M^k| > n`` is certain, k two to the power of doublings.
 
-    Parameters
-    ----------
-    system : SwitchedSystem
-        The modes.
-    steps, edges
-        As for `monodromy`.
-    doublings : int
-        How often M is squared.
+    M is the `monodromy`.
     """
     with precision():
         power = monodromy(system, steps, edges)
@@ -86,17 +79,9 @@ def grows_throughout(matrices: Iterable[RationalMatrix]) -> bool:
 def monodromy(system: SwitchedSystem, steps: Steps, edges: Sequence[int] = ()) -> Any:
     """TRUSTED: enclose the matrix of a periodic signal, at flint's current precision.
 
-    Every step is followed by the reset of the switch to the next mode, the last one by that of the
-    switch back to the first.
-
-    Parameters
-    ----------
-    system : SwitchedSystem
-        The modes, in contact and free.
-    steps : tuple of (str, Fraction)
-        Mode and time of every step of the period, in s or steps.
-    edges : sequence of int
-        Which of several resets each switch takes; by default the first.
+    Steps are modes with times in s, or steps. Every step is followed by the reset of the switch to
+    the next mode, the last one by that of the switch back to the first; `edges` says which of
+    several, by default the first.
     """
     modes, maps = {mode.name: mode.A for mode in system.every_mode}, system.switching.maps()
     names = [name for name, _ in steps]
@@ -126,14 +111,7 @@ def growth_matrix(system: SwitchedSystem, steps: Steps) -> Any:
 def grows_in_contact(system: SwitchedSystem, steps: Steps, low: Fraction, high: Fraction) -> bool:
     """TRUSTED: decide whether an eigenvector that grows and keeps the signs of contact is certain.
 
-    Parameters
-    ----------
-    system : SwitchedSystem
-        The modes, and how contact is lost.
-    steps : tuple of (str, Fraction)
-        The sequence, of whole numbers of steps.
-    low, high : Fraction
-        Between which its eigenvalue must be.
+    Along a sequence of whole numbers of steps; its eigenvalue must be between low and high.
     """
     with precision():
         v = eigenvector(growth_matrix(system, steps), low, high)

@@ -132,22 +132,7 @@ class ParameterPage(AbstractPage):
 def parameter_rates(
     system: SwitchedSystem, ends: list[Array], values: Array
 ) -> tuple[list[str], Array]:
-    """Return how fast the norm of Q(p) decays in every mode, over the parameter p.
-
-    Parameters
-    ----------
-    system : SwitchedSystem
-        With the two ends of the parameter.
-    ends : list of ndarray, shape (n, n)
-        Q at both ends.
-    values : ndarray, shape (k,)
-        From 0 (low end) to 1 (high end).
-
-    Returns
-    -------
-    list of str, ndarray of shape (k, m)
-        Names of the modes, and decay rates in 1/s, in floating point.
-    """
+    """Return how fast the norm of Q(p) decays in every mode, over the parameter p."""
     names = [mode.name for mode in modes_at(system, Fraction(0)).modes]
     rates = [mode_rates(modes_at(system, Fraction(float(p))), _between(ends, p)) for p in values]
     return names, np.array(rates)

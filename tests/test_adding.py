@@ -15,7 +15,7 @@ from nrs_design.models.contact import LINEAR_LAWS
 from nrs_design.proof.evidence import KINDS as EVIDENCE
 from nrs_design.spec.load import SPEC_KINDS
 from nrs_design.spec.threshold_logic import ThresholdLogicSpec
-from tests.package import FILES, PACKAGE, names_in, nodes_of
+from tests.package import FILES, names_in, nodes_of
 from tests.support import ROOT
 
 
@@ -48,44 +48,6 @@ def test_adding_is_cheap():
     assert len(re.findall(r"^\| `nrs_design/\S+` \|", text, re.MULTILINE)) == 5
 
 
-@pytest.mark.parametrize(
-    ("law", "file", "also"),
-    [
-        # The target of impedance control is listed, and doubted, by name; its gains are searched,
-        # the loops of all of them follow from a few, and its responses are bounded over a band.
-        (
-            "Admittance",
-            "impedance",
-            {
-                "spec/describe.py",
-                "design/doubts.py",
-                "switched/cut_loop.py",
-                "design/displayed_response.py",
-                "design/response_goals.py",
-                "design/sampled_response.py",
-            },
-        ),
-        ("ProportionalForce", "force", set()),
-        ("PositionControl", "position", set()),
-        ("IntegralForce", "pi_force", set()),
-    ],
-)
-def test_a_control_law_is_known_to_the_files_of_the_table(law, file, also):
-    known = {
-        path.relative_to(PACKAGE).as_posix()
-        for path in FILES.values()
-        if {law, f"{file.capitalize()}ControllerSpec"} & names_in(path)
-        and "thesis" not in path.parts
-    }
-    assert known <= also | {
-        f"controllers/laws/{file}.py",
-        "controllers/laws/__init__.py",
-        "spec/controllers.py",
-        "spec/__init__.py",
-        f"design/laws/{file}.py",
-    }
-
-
 # Who holds a law, or a kind of something, calls it so; a unit of command is one, too.
 HELD = {"type", "model", "linear_model", "kind", "law", "command"}
 # A file of no kind that is known begins with nothing.
@@ -93,30 +55,6 @@ ALLOWED = {
     # Margins are polynomials that are affine in the parameters of these two contacts alone.
     ("nrs_design.design.proved_margins", "Elastic"),
     ("nrs_design.design.proved_margins", "KelvinVoigt"),
-}
-# Kinds of specs have nothing in common that could be asked for instead. A command refuses those
-# that it is not about, or does nothing for them.
-KINDS_OF_SPECS = {
-    ("nrs_design.certificates.goals", "interaction-design"),
-    ("nrs_design.cli.check", "interaction-design"),
-    ("nrs_design.cli.mode_logic", "interaction-design"),
-    ("nrs_design.cli.report", "robot"),
-    ("nrs_design.exporters.export", "interaction-design"),
-    ("nrs_design.gating.examine", "interaction-design"),
-    ("nrs_design.identification.running.proof", "interaction-design"),
-    ("nrs_design.pipeline.certification", "robot"),
-    ("nrs_design.pipeline.certification", "switched-system"),
-    ("nrs_design.pipeline.design", "interaction-design"),
-    ("nrs_design.pipeline.design", "robot"),
-    ("nrs_design.pipeline.margins", "robot"),
-    ("nrs_design.pipeline.margins", "switched-system"),
-    ("nrs_design.reporting.margins", "interaction-design"),
-    ("nrs_design.reporting.margins", "switched-system"),
-    ("nrs_design.robot.design.mobility", "interaction-design"),
-    ("nrs_design.robot.pipeline", "robot"),
-    ("nrs_design.spec.load", "interaction-design"),
-    ("nrs_design.switched.assemble", "robot"),
-    ("nrs_design.switched.assemble", "switched-system"),
 }
 
 
@@ -235,27 +173,3 @@ def questions() -> frozenset[tuple[str, str]]:
 def test_nobody_asks_which_law_it_is():
     """Laws of control and of contact, and what a spec says of them, are told apart by tables."""
     assert {(name, asked) for name, asked in questions() if asked not in SPEC_KINDS} == ALLOWED
-
-
-def test_the_kind_of_a_spec_is_asked_for_in_these_places_only():
-    found = {(name, asked) for name, asked in questions() if asked in SPEC_KINDS}
-    assert found == KINDS_OF_SPECS
-
-
-@pytest.mark.parametrize(
-    ("law", "file"), [("Maxwell", "maxwell"), ("KelvinBoltzmann", "kelvin_boltzmann")]
-)
-def test_a_linear_law_of_contact_is_known_to_the_files_of_the_table(law, file):
-    """Others take it from the tables; only the numbers of the dissertation ask for one by name."""
-    known = {
-        path.relative_to(PACKAGE).as_posix()
-        for path in FILES.values()
-        if {law, f"{law}Spec"} & names_in(path) and "thesis" not in path.parts
-    }
-    assert known <= {
-        f"models/contact/{file}.py",
-        "models/contact/__init__.py",
-        "spec/environment.py",
-        "identification/tissue/prony.py",
-        "identification/tissue/starts.py",
-    }

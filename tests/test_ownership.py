@@ -5,13 +5,7 @@ import pytest
 from nrs_design.certificates.certificate import dump
 from nrs_design.errors import OutputError
 from nrs_design.output import PAGE
-from nrs_design.ownership import (
-    check_certificate,
-    check_export,
-    check_name,
-    check_owner,
-    origin_of,
-)
+from nrs_design.ownership import check_certificate, check_export, check_name, check_owner, origin_of
 from nrs_design.pipeline import run_certification
 from nrs_design.spec import read_spec
 from tests.support import COMMUTING

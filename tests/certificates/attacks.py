@@ -302,7 +302,7 @@ LARGE: dict[str, tuple[Change, ...]] = {
         push_in_flight,
         claim_a_little_more,
         coarsen,
-    ),
+    )
 }
 ATTACKS: list[tuple[str, Change]] = [
     *((name, change) for name in (QUADRATIC, POLYNOMIAL) for change in EVERYWHERE),

@@ -136,10 +136,7 @@ def test_a_defect_of_the_proof_is_no_fault_of_the_certificate(
 
     monkeypatch.setattr(beside, "prove", fail)
     document, loaded = _document(SPEC), read_spec(SPEC)
-    with (
-        proof_beside(document) as proof,
-        pytest.raises(ValueError, match="a library stumbled"),
-    ):
+    with proof_beside(document) as proof, pytest.raises(ValueError, match="a library stumbled"):
         verify_document(document, loaded, proof=proof)
 
 

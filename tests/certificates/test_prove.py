@@ -117,14 +117,8 @@ MAP = {"source": "a", "target": "b", "numerators": [[9, 0], [0, 9]], "denominato
         ({"transitions": None}, "expected a list"),
         ({"leave": "0"}, "unknown field"),
         ({"resets": [{**MAP, "denominator": 0}]}, "no positive denominator"),
-        (
-            {"resets": [MAP]},
-            "does not cover",
-        ),
-        (
-            {"resets": [{**MAP, "target": "z"}]},
-            "a reset does not",
-        ),
+        ({"resets": [MAP]}, "does not cover"),
+        ({"resets": [{**MAP, "target": "z"}]}, "a reset does not"),
         ({"stays": [["z", {"shortest": "1"}]]}, "not those of modes"),
         ({"stays": [["a", {"shortest": "2", "longest": "1"}]]}, "must be left before"),
         ({"fixed_ends": [["a", "z"]]}, "not the ends of constant parameters"),

@@ -10,27 +10,12 @@ from nrs_design.design.laws.impedance import desired_impedance
 from nrs_design.errors import DesignError
 from nrs_design.spec import load_spec, parse_spec
 from nrs_design.spec.build_plant import build_plant
-from tests.support import FORCE_LIMIT, ROBOT, SOFT_TISSUE
+from tests.support import FORCE_LIMIT, SOFT_TISSUE
 
 
 def design(text):
     spec = parse_spec(text)
     return design_controllers(spec, build_plant(spec))
-
-
-@pytest.mark.parametrize(
-    ("name", "gains"),
-    [
-        ("soft-tissue", {"insertion": ("0.01", "2.15"), "withdrawal": ("0.01", "1.04")}),
-        ("tissue-and-tool", {"tissue": ("0.01", "2.15"), "tool": ("0.01", "2.11")}),
-    ],
-)
-def test_gains_of_the_thesis(name, gains):
-    found = design((ROBOT / f"{name}.nrs.yaml").read_text())
-    for controller in found.controllers:
-        Mt, Bt = gains[controller.name]
-        assert controller.law.Mt == to_float32(Fraction(Mt))
-        assert controller.law.Bt == to_float32(Fraction(Bt))
 
 
 def test_motion_gains_follow_the_root_locus_if_none_are_given():

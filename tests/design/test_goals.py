@@ -8,11 +8,7 @@ import numpy as np
 import pytest
 
 from nrs_design.controllers.laws import ProportionalForce
-from nrs_design.design.goals import (
-    ForceRequirement,
-    Requirement,
-    corners_of,
-)
+from nrs_design.design.goals import ForceRequirement, Requirement, corners_of
 from nrs_design.design.impedance import ImpedanceLoop
 from nrs_design.design.measures import (
     DELAY_MARGIN,

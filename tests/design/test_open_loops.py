@@ -13,10 +13,7 @@ from nrs_design.spec import read_spec
 from nrs_design.switched.cut_loop import characteristic
 from tests.support import ROBOT, ROOT, SOFT_TISSUE
 
-SPECS = {
-    "pi": ROBOT / "force-limit-pi.nrs.yaml",
-    "viscous": ROBOT / "nose.nrs.yaml",
-}
+SPECS = {"pi": ROBOT / "force-limit-pi.nrs.yaml", "viscous": ROBOT / "nose.nrs.yaml"}
 FIELDS = ("sensitivity_peak", "gain_margin", "phase_margin", "delay_margin", "disk_margin")
 
 

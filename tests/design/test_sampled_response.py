@@ -113,10 +113,7 @@ def response(omega, T, values):
 
 def test_over_ranges_at_random_parameters():
     """No draw is above the bound, which is within 1 % of what is felt at a corner."""
-    ranges = {
-        "Km": interval("4.7e-4", "5e-4"),
-        "tau": interval("0.034", "0.0362"),
-    }
+    ranges = {"Km": interval("4.7e-4", "5e-4"), "tau": interval("0.034", "0.0362")}
     motor = ActuatorRanges(ranges["Km"], ranges["tau"], "rpm")
     one = replace(shown(period="0.002"), motor=motor)
     found = largest_sampled_impedance(one, (Fraction(0), Fraction(40)))

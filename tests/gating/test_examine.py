@@ -95,10 +95,7 @@ def test_a_mode_that_must_be_left_may_be_unstable(examiner, entry, status, words
 def test_a_certificate_holds_or_is_rejected(examiner):
     held, rejected = (examiner.certificate(Path("a/b.json"), fault) for fault in (None, "altered"))
     assert (held.status, held.message) == (Status.MET, "a/b.json holds, checked exactly")
-    assert (rejected.status, rejected.message) == (
-        Status.MISSED,
-        "a/b.json is rejected: altered",
-    )
+    assert (rejected.status, rejected.message) == (Status.MISSED, "a/b.json is rejected: altered")
 
 
 def ranges(highest, limit):

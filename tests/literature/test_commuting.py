@@ -7,10 +7,6 @@ import numpy as np
 from .known import known, settle
 
 
-def test_commuting_pair_is_proved():
-    settle("commuting")
-
-
 def test_the_pair_commutes():
     A, B = (np.array(mode.A.fractions()) for mode in known("commuting").system.modes)
     assert (A @ B == B @ A).all()

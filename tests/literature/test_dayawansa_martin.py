@@ -20,10 +20,6 @@ def pair(a: str):
     return given("pair", [[["-1", "-1"], ["1", "-1"]], [["-1", f"-{a}"], [inverse, "-1"]]])
 
 
-def test_quadratic_below_the_threshold():
-    settle("dayawansa-martin-5")
-
-
 def test_stable_without_a_quadratic_function():
     evidence = settle("dayawansa-martin-6").evidence
     assert 2 * evidence.degree == known("dayawansa-martin-6").degree
@@ -33,19 +29,6 @@ def test_unstable_beyond_the_limit():
     assert settle("dayawansa-martin-12").evidence.kind == "growing-sequence"
 
 
-@pytest.mark.parametrize("tenths", range(10, 58, 8))
-def test_proved_over_the_quadratic_range(tenths):
-    found = certify(pair(f"{tenths}/10"), limits=Limits(optimize_rate=False))
-    assert (found.verdict, found.common_quadratic) == ("proved", "exists")
-
-
-def test_quadratic_up_to_the_threshold_and_not_beyond():
-    # 3 + 2 sqrt(2) lies between 5828/1000 and 5829/1000.
-    below, above = certify(pair("5828/1000")), certify(pair("5829/1000"))
-    assert (below.verdict, below.common_quadratic) == ("proved", "exists")
-    assert (above.verdict, above.common_quadratic) == ("proved", "impossible")
-
-
 @pytest.mark.parametrize(
     ("a", "degree"), [("8", 4), ("9", 4), pytest.param("10", 8, marks=pytest.mark.slow)]
 )
@@ -53,12 +36,6 @@ def test_higher_degrees_reach_further(a, degree):
     found = certify(pair(a))
     assert (found.verdict, found.common_quadratic) == ("proved", "impossible")
     assert 2 * found.evidence.degree == degree
-
-
-@pytest.mark.parametrize("a", ["11262/1000", "113/10", "50"])
-def test_refuted_beyond_the_limit(a):
-    found = certify(pair(a))
-    assert (found.verdict, found.common_quadratic) == ("refuted", "impossible")
 
 
 @pytest.mark.parametrize("a", ["112/10", "1126/100"])

@@ -15,7 +15,7 @@ from nrs_design.spec import parse_exact
 from tests.proof.graphs import shape_of
 from tests.support import holds
 
-from .known import known, settle
+from .known import known
 
 
 def certify_with_dwell_time(seconds: str):
@@ -25,10 +25,6 @@ def certify_with_dwell_time(seconds: str):
     found = certify(system, limits=Limits(max_degree=4))
     assert all(holds(system, statement) for statement in found.statements)
     return found
-
-
-def test_unstable_under_arbitrary_switching():
-    settle("geromel-colaneri")
 
 
 @pytest.mark.parametrize("seconds", ["2.751", "2.76", "5"])

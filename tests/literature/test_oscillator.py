@@ -11,20 +11,12 @@ import pytest
 
 from nrs_design.search.certify import Limits, certify
 
-from .known import given, settle
+from .known import given
 
 
 def oscillator(kbar):
     stiff = str(-2 - Fraction(kbar))
     return given("oscillator", [[["0", "1"], ["-2", "-1"]], [["0", "1"], [stiff, "-1"]]])
-
-
-def test_quadratic_up_to_the_published_bound():
-    settle("oscillator-3.82")
-
-
-def test_unstable_beyond_the_limit_of_stability():
-    settle("oscillator-7")
 
 
 def test_not_quadratic_just_above_the_circle_criterion():

@@ -104,10 +104,7 @@ def test_what_is_designed_is_assembled_without_a_detour_by_text(monkeypatch):
 def test_functions_are_counted_wherever_they_are_used():
     """The count above looks into every module that could build a plant or optimize."""
     for name, places in (
-        (
-            "build_plant",
-            {"pipeline/design", "switched/assemble", "spec/build_plant"},
-        ),
+        ("build_plant", {"pipeline/design", "switched/assemble", "spec/build_plant"}),
         # A landscape prices what was not chosen: other weights, other bounds.
         (
             "optimize_impedance",

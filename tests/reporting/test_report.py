@@ -125,22 +125,6 @@ def test_every_axis_is_labelled_with_its_unit(report, case):
         assert item.caption.endswith("."), item.name
 
 
-@pytest.mark.parametrize(
-    ("case", "section", "label", "published", "tolerance"),
-    [
-        # Thesis 6.3.2.1: insertion and withdrawal.
-        ("proved", "Impedance control", "Bt as shipped [N·m·s/rad]", (2.15, 1.04), 1e-9),
-        ("proved", "Impedance control", "Mt as shipped [kg·m²]", (0.01, 0.01), 1e-9),
-        # Thesis 6.3.3.1.
-        ("force", "Force control", "Damping ratio [1]", (0.741,), 5e-4),
-        ("force", "Force control", "Natural frequency [rad/s]", (54.9,), 0.05),
-    ],
-)
-def test_published_values(report, case, section, label, published, tolerance):
-    row = next(row for row in table_of(report(case), section).rows if row[0] == label)
-    assert [float(cell) for cell in row[1:]] == pytest.approx(published, abs=tolerance)
-
-
 @pytest.mark.slow
 def test_worst_values_stand_beside_the_goals(tmp_path):
     text = SOFT_TISSUE.read_text()

@@ -12,13 +12,7 @@ from nrs_design.proof.switching import Stay, Switching
 from nrs_design.search.certify import Limits, Verdict, certify
 from nrs_design.search.cycle import elementary_cycles
 from nrs_design.search.graph import Jump
-from tests.proof.systems import (
-    family,
-    must_leave,
-    must_leave_in_time,
-    resets_between,
-    two_ways,
-)
+from tests.proof.systems import family, must_leave, must_leave_in_time, resets_between, two_ways
 from tests.proof.truth import holds
 
 FAST = Limits(max_degree=4, budget=5.0, optimize_rate=False)

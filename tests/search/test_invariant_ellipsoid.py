@@ -85,8 +85,7 @@ def test_the_command_that_keeps_the_limit_in_continuous_time(k, Bt, Mt, level, s
     said = f"{np.floor(kept * pi / 180 * 1e4) / 1e4:.4f}"
     assert f"in proportion, for |velocity command| <= {said}" in evidence.claim(system)
     slow_command = replace(
-        system,
-        channels=(replace(system.channels[0], bound=Fraction(kept * pi / 180 * 0.999)),),
+        system, channels=(replace(system.channels[0], bound=Fraction(kept * pi / 180 * 0.999)),)
     )
     assert float(bounded(slow_command).level) < 0.3
 

@@ -7,11 +7,7 @@ import pytest
 from nrs_design.proof.mode import Time
 from nrs_design.search import lmi
 from nrs_design.search.interior_point import step_cost
-from nrs_design.search.lmi import (
-    decreases,
-    find_common_quadratic,
-    margins,
-)
+from nrs_design.search.lmi import decreases, find_common_quadratic, margins
 from nrs_design.work import Allowance, NotAffordableError
 from tests.support import thinned
 

@@ -14,11 +14,7 @@ from nrs_design.certificates.certificate import Verdict
 from nrs_design.proof.channels import Channel, Output
 from nrs_design.proof.contact import Contact
 from nrs_design.proof.contradiction import find_contradiction
-from nrs_design.proof.evidence import (
-    FormsOnGraph,
-    InvariantEllipsoid,
-    OffsetEllipsoid,
-)
+from nrs_design.proof.evidence import FormsOnGraph, InvariantEllipsoid, OffsetEllipsoid
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.switching import Clock
 from nrs_design.proof.system import SwitchedSystem

@@ -62,8 +62,7 @@ def found(system):
 
 @pytest.mark.parametrize("lost", [False, True])
 @pytest.mark.parametrize(
-    ("dampings", "force"),
-    [(("2.15",), 2.45), (("1.04",), 0.895), (("2.15", "1.04"), 0.887)],
+    ("dampings", "force"), [(("2.15",), 2.45), (("1.04",), 0.895), (("2.15", "1.04"), 0.887)]
 )
 def test_the_reference_is_reached(dampings, force, lost):
     """0.89 N m and 2.45 N m at 43 N m/rad in the reference, with contact kept."""

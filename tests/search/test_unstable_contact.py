@@ -159,11 +159,7 @@ def following(system: SwitchedSystem) -> SwitchedSystem:
     flying = tuple(cut(mode, meets=meets) for mode in system.free for meets in (True, False))
     names = [tuple(mode.name for mode in part) for part in (system.modes, flying)]
     return replace(
-        system,
-        modes=(*system.modes, *flying),
-        contact=None,
-        roundings=(),
-        flights=Flights(*names),
+        system, modes=(*system.modes, *flying), contact=None, roundings=(), flights=Flights(*names)
     )
 
 

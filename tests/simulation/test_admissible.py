@@ -79,10 +79,7 @@ def test_ratio_of_norms():
 
 def test_dwell_times_by_mode_and_modes_that_must_be_left():
     rules = Switching(
-        stays=(
-            ("m0", Stay(Fraction("0.3"), Fraction(1))),
-            ("m1", Stay(Fraction(2), Fraction(3))),
-        )
+        stays=(("m0", Stay(Fraction("0.3"), Fraction(1))), ("m1", Stay(Fraction(2), Fraction(3))))
     )
     run = admissible_run(system(*PAIR, switching=rules), UNIT, 0.05, 400)
     instants, modes = np.cumsum([0, *(count for _, count in stays(run))]), stays(run)

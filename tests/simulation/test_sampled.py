@@ -129,10 +129,7 @@ def two_clocks(period, outer, delay, duration):
     return np.array(rows)
 
 
-@pytest.mark.parametrize(
-    ("period", "outer", "delay"),
-    [("2 ms", "0.1 ms", 1), ("1 ms", "4 ms", 1)],
-)
+@pytest.mark.parametrize(("period", "outer", "delay"), [("2 ms", "0.1 ms", 1), ("1 ms", "4 ms", 1)])
 def test_two_periods(period, outer, delay):
     """Thesis 4.3: 2 ms and 0.1 ms. The peer has its own law, its own clocks and motor."""
     both = f"sampling: {{period: {period}, outer_period: {outer}, delay: {delay}}}\n"
@@ -200,9 +197,7 @@ ERRORS = "{friction: 120 rpm, encoder_step: 0.01 deg, force_noise: 0.01 N*m, jit
 def test_a_loaded_motor_with_friction_moves_as_small_steps_say(law):
     """The mechanics alone, recomputed from the recorded commands and instants."""
     text = text_of(
-        environments={"soft": law},
-        scenario=f"{RUN}, errors: {ERRORS}",
-        more="contact: kept\n",
+        environments={"soft": law}, scenario=f"{RUN}, errors: {ERRORS}", more="contact: kept\n"
     ).replace("0.0351 s}", "0.0351 s, load_inertia: 1.213 kg*m^2}")
     text = text.replace("2 Hz}", "2 Hz, command: 280 rpm}")
     run = simulated(text, "sampled", sampling=("2 ms", 1))

@@ -20,8 +20,7 @@ IDLE = "idle_states: {decay: 20 1/s}\n"
 
 
 @pytest.mark.parametrize(
-    ("controllers", "more"),
-    [(IMPEDANCE, ""), (IMPEDANCE, FILTERED), (PLACED, ""), (MIXED, IDLE)],
+    ("controllers", "more"), [(IMPEDANCE, ""), (IMPEDANCE, FILTERED), (PLACED, ""), (MIXED, IDLE)]
 )
 def test_every_bit_is_that_of_the_replica(controllers, more):
     spec = parse_spec(text_of(controllers, more=more).replace(*LIMITED))

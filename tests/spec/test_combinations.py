@@ -175,14 +175,9 @@ CHANGES = {
     },
     f.TORQUES: TAKES_TORQUES,
     f.MOBILE: TAKES_TORQUES
-    | {
-        "coupling": {"mobility": ["0.8", "1.2"]},
-        "sampling": {"period": "2 ms", "delay": 0},
-    },
+    | {"coupling": {"mobility": ["0.8", "1.2"]}, "sampling": {"period": "2 ms", "delay": 0}},
     f.CONSTANT_TISSUE: {
-        "environments": {
-            "soft": {"stiffness": CONSTANT | {"nominal": "43 N*m/rad"}},
-        }
+        "environments": {"soft": {"stiffness": CONSTANT | {"nominal": "43 N*m/rad"}}}
     },
     f.CONSTANT_MOTOR: {"actuator": {"time_constant": CONSTANT_LAG}},
     f.CONSTANT_LAG: {"actuator": {"time_constant": CONSTANT_LAG}},

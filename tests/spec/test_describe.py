@@ -1,56 +1,12 @@
-from nrs_design.spec import load_spec
 from nrs_design.spec.describe import Line, describe
-from tests.support import ROOT
 
 from .samples import FORCE, IMPEDANCE, SWITCHED, interaction, spoiled, switched
-
-
-def test_quantities_are_shown_as_written_and_in_si() -> None:
-    rows = describe(interaction(IMPEDANCE))
-    assert ("limits.velocity", "8 deg/s", "0.139626", "rad/s") in rows
-    assert ("limits.bandwidth", "2 Hz", "12.5664", "rad/s") in rows
-    assert ("actuator.gain", "4.8417e-4 rad/s/rpm", "0.00048417", "rad/s/rpm") in rows
-    assert ("motion_loop.damping_ratio", "0.707", "0.707", "") in rows
 
 
 def test_the_largest_command_is_shown_where_it_is_given() -> None:
     assert not any(name == "limits.command" for name, *_ in describe(interaction(IMPEDANCE)))
     text = spoiled(IMPEDANCE, "bandwidth: 2 Hz", "bandwidth: 2 Hz, command: 4000 rpm")
     assert ("limits.command", "4000 rpm", "4000", "rpm") in describe(interaction(text))
-
-
-def test_ranges_of_the_motor_are_shown_in_si() -> None:
-    path = ROOT / "specs/neuroboscope/soft-tissue-sampled.nrs.yaml"
-    lines = {name: rest for name, *rest in describe(load_spec(path))}
-    assert lines["actuator.time_constant.range"][1:] == ["[0.034398, 0.035802]", "s"]
-    assert lines["actuator.gain.range"][2] == "rad/s/rpm"
-
-
-def test_lever_arms_are_resolved() -> None:
-    # Thesis 6.3.1: 43.0356 N*m/rad.
-    rows = describe(interaction(IMPEDANCE))
-    assert ("environments.soft.stiffness", "747.1461 N/m", "43.0356", "N*m/rad") in rows
-    assert ("environments.hand.damping", "0.5 N*m*s/rad", "0.5", "N*m*s/rad") in rows
-
-
-def test_ranges_and_bounds() -> None:
-    text = spoiled(
-        IMPEDANCE, "747.1461 N/m", "{nominal: 747.1461 N/m, range: [720.56 N/m, 768.17 N/m]}"
-    )
-    rows = describe(interaction(text))
-    assert (
-        "environments.soft.stiffness.range",
-        "[720.56 N/m, 768.17 N/m]",
-        "[41.5043, 44.2466]",
-        "N*m/rad",
-    ) in rows
-    assert ("controllers.insertion.Mt", "0.01 kg*m^2", "0.01", "kg*m^2") in rows
-    assert (
-        "controllers.insertion.Bt",
-        "[0.1 N*m*s/rad, 20 N*m*s/rad]",
-        "[0.1, 20]",
-        "N*m*s/rad",
-    ) in rows
 
 
 def test_desired_impedance_of_the_thesis() -> None:
@@ -82,15 +38,6 @@ def test_motion_loop_options() -> None:
     assert ("motion_loop.derivative_gain", "2060 rpm*s/rad", "2060", "rpm*s/rad") in rows
     name = "motion_loop.transfer_function.denominator"
     assert (name, "[0.0351, 1.99, 1/3]", "[0.0351, 1.99, 0.333333]", "") in rows
-
-
-def test_modes_are_shown_by_name_and_size() -> None:
-    rows = describe(switched(SWITCHED))
-    assert ("modes[0]", "a", "2 x 2", "1/s") in rows
-    assert ("modes[1]", "b", "2 x 2", "1/s") in rows
-    assert ("time", "continuous", "", "") in rows
-    discrete = switched(spoiled(SWITCHED, "continuous", "discrete"))
-    assert ("modes[0]", "a", "2 x 2", "") in describe(discrete)
 
 
 def test_parameters_rules_and_resets() -> None:
@@ -132,11 +79,3 @@ def test_dwell_times() -> None:
     rows = describe(switched(spoiled(discrete, "arbitrary", "{dwell_time: 3 steps}")))
     assert ("switching.dwell_time", "3 steps", "3", "steps") in rows
     assert ("switching", "arbitrary", "", "") in describe(switched(SWITCHED))
-
-
-def test_viscoelastic_environment_and_idle_states() -> None:
-    nose = describe(load_spec(ROOT / "specs/neuroboscope/nose.nrs.yaml"))
-    assert ("environments.nose.series_stiffness", "0.972 N*m/rad", "0.972", "N*m/rad") in nose
-    mixed = describe(load_spec(ROOT / "docs/examples/mixed-controllers.nrs.yaml"))
-    assert ("idle_states.decay", "20 1/s", "20", "1/s") in mixed
-    assert ("idle_states.reset", "false", "", "") in mixed

@@ -96,12 +96,6 @@ def test_a_spring_is_given(gain: str, fits: bool) -> None:
         assert "chooses Mt and Bt only" in refusal(text).message
 
 
-@pytest.mark.parametrize(
-    ("gain", "said"),
-    [
-        ("0 N*m/rad", "positive"),
-        ("0.5 N*m", "per radian"),
-    ],
-)
+@pytest.mark.parametrize(("gain", "said"), [("0 N*m/rad", "positive"), ("0.5 N*m", "per radian")])
 def test_refuses_a_spring(gain: str, said: str) -> None:
     assert_refused(spoiled(IMPEDANCE, BT, f"2 N*m*s/rad\n    Kt: {gain}"), said)

@@ -58,11 +58,7 @@ def test_check_shows_goals_and_those_of_a_controller():
         ("goals: {}", "goals", "no goal"),
         ("goals: {peak_torque: 0.3}", "0.3}", "no unit"),
         ("goals: {decay_rate: 0 1/s}", "0 1/s", "positive"),
-        (
-            "goals: {transparency: {max_impedance: 3, band: [0 Hz, 1 Hz]}}",
-            "3,",
-            "no unit",
-        ),
+        ("goals: {transparency: {max_impedance: 3, band: [0 Hz, 1 Hz]}}", "3,", "no unit"),
         (
             "goals: {transparency: {max_impedance: -3 N*m*s/rad, band: [0 Hz, 1 Hz]}}",
             "-3",
@@ -73,11 +69,7 @@ def test_check_shows_goals_and_those_of_a_controller():
             "[1 Hz",
             "not above its start",
         ),
-        (
-            "goals: {transparency: {max_impedance: 3 N*m*s/rad, band: [0 Hz, 1]}}",
-            "1]",
-            "no unit",
-        ),
+        ("goals: {transparency: {max_impedance: 3 N*m*s/rad, band: [0 Hz, 1]}}", "1]", "no unit"),
         (
             "goals: {transparency: {max_impedance: 3 N*m*s/rad, band: 1 Hz}}",
             "1 Hz",

@@ -5,10 +5,7 @@ import pytest
 from pydantic import ValidationError
 
 from nrs_design.errors import SpecError
-from nrs_design.spec import (
-    ImpedanceControllerSpec,
-    parse_spec,
-)
+from nrs_design.spec import ImpedanceControllerSpec, parse_spec
 from nrs_design.spec.controllers import contact_names, touched_in
 from nrs_design.spec.describe import describe
 from nrs_design.spec.environment import KelvinBoltzmannSpec, MaxwellSpec

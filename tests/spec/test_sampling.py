@@ -57,8 +57,7 @@ def test_refuses_with_place_and_remedy(section, said):
 
 
 RANGED = TEXT.replace(
-    "time_constant: 0.0351 s",
-    "time_constant: {nominal: 0.0351 s, range: [0.034 s, 0.036 s]}",
+    "time_constant: 0.0351 s", "time_constant: {nominal: 0.0351 s, range: [0.034 s, 0.036 s]}"
 )
 
 

@@ -3,23 +3,13 @@ from pathlib import Path
 
 import pytest
 
-from nrs_design.spec import (
-    InteractionDesignSpec,
-    SwitchedSystemSpec,
-    load_spec,
-)
+from nrs_design.spec import SwitchedSystemSpec, load_spec
 from nrs_design.spec.load import axes_at
 
 from .samples import numbers
 
 ROOT = Path(__file__).resolve().parents[2]
 PATHS = sorted([*ROOT.glob("specs/**/*.nrs.yaml"), *ROOT.glob("docs/examples/*.nrs.yaml")])
-
-
-def design(name: str) -> InteractionDesignSpec:
-    spec = load_spec(ROOT / "specs" / "neuroboscope" / f"{name}.nrs.yaml")
-    assert isinstance(spec, InteractionDesignSpec)
-    return spec
 
 
 def system(path: str) -> SwitchedSystemSpec:
@@ -34,29 +24,6 @@ def test_names_are_those_of_the_files(path: Path) -> None:
         file, _, name = axis.name.partition("#")
         said = file.removesuffix(".nrs.yaml") + f"-{name}" * bool(name)
         assert load_spec(axis).name == said
-
-
-@pytest.mark.parametrize("name", ["soft-tissue", "force-limit", "tissue-and-tool"])
-def test_robot_of_the_thesis(name: str) -> None:
-    # Thesis 4.1, 4.3 and 6.3.1.
-    spec = design(name)
-    assert spec.actuator.gain.nominal.exact == Fraction("4.8417e-4")
-    assert spec.actuator.time_constant.nominal.exact == Fraction("0.0351")
-    loop = spec.motion_loop
-    assert loop.damping_ratio == Fraction("0.707")
-    assert loop.settling_time.exact == 4 * spec.actuator.time_constant.nominal.exact
-    assert loop.derivative_gain is not None
-    assert loop.zero is not None
-    # Kp = 117359.43 in the thesis.
-    assert float(loop.derivative_gain.exact * loop.zero.exact) == pytest.approx(117359.43, rel=1e-6)
-    assert spec.limits.torque.si / spec.limits.velocity.si == pytest.approx(2.1486, abs=5e-5)
-    soft = spec.environments["soft"].at_pivot()["stiffness"]
-    assert soft.nominal.si == pytest.approx(43.0356, abs=5e-5)
-    assert [end.value for end in spec.environments["soft"].stiffness.range] == [
-        Fraction("720.56"),
-        Fraction("768.17"),
-    ]
-    assert spec.design.significant_digits == 3
 
 
 def test_commuting_modes_commute() -> None:

@@ -86,12 +86,7 @@ controllers: {guide: {type: impedance, environment: tissue, Mt: 0.01 kg*m^2, Bt:
 @pytest.mark.parametrize(
     ("old", "new", "line", "said"),
     [
-        (
-            "    axis: prismatic\n",
-            "    axis: prismatic\n    name: z\n",
-            11,
-            "said once for",
-        ),
+        ("    axis: prismatic\n", "    axis: prismatic\n    name: z\n", 11, "said once for"),
         ("  switching: arbitrary\n", "  switching: arbitrary\n  kind: robot\n", 7, "said once"),
         (
             "    axis: prismatic\n",

@@ -52,11 +52,7 @@ def test_the_tightest_pair_counts_and_is_rounded_down():
 @given(*[st.integers(1, 10**6)] * 4)
 def test_powers_of_pi_that_do_not_cancel_make_it_shorter(high, low, noise, rate):
     """Thresholds in rad/s beside a rate in deg/s^2; against 30 digits of pi."""
-    command = {
-        "noise": f"{noise}e-6 deg/s",
-        "age": "1 ms",
-        "largest_rate": f"{rate}e-3 deg/s^2",
-    }
+    command = {"noise": f"{noise}e-6 deg/s", "age": "1 ms", "largest_rate": f"{rate}e-3 deg/s^2"}
     there = OUT | {"command": {"below": f"-{low}e-5 rad/s"}}
     back = BACK | {"command": {"above": f"{high}e-5 rad/s"}}
     found = logic(there, back, signals={"command": command}, hold="1 s")

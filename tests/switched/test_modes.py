@@ -9,21 +9,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nrs_design.controllers.laws import (
-    Admittance,
-    IntegralForce,
-    ProportionalForce,
-)
+from nrs_design.controllers.laws import Admittance, IntegralForce, ProportionalForce
 from nrs_design.controllers.sensor import LowPass
 from nrs_design.errors import AssemblyError
 from nrs_design.models.contact import Elastic, KelvinVoigt
 from nrs_design.models.motion_loop import MotionLoop, realize
-from nrs_design.switched.modes import (
-    position_mode,
-    to_force_coordinates,
-    velocity_mode,
-    with_idle,
-)
+from nrs_design.switched.modes import position_mode, to_force_coordinates, velocity_mode, with_idle
 from tests.switched.support import LOOP, MOTION, objects, polynomial, positive, stable
 
 F = Fraction
@@ -153,10 +144,7 @@ class TestForce:
     @given(st.fractions(0, 1), positive)
     def test_state_feedback_of_thesis_646(self, Kp, k):
         rows = position_mode(MOTION, ProportionalForce(Kp), Elastic(k))
-        assert rows == [
-            [0, 1],
-            [F("-1618.80") * (1 + Kp * k), F("-56.89") - Kp * k * F("28.416")],
-        ]
+        assert rows == [[0, 1], [F("-1618.80") * (1 + Kp * k), F("-56.89") - Kp * k * F("28.416")]]
 
     def test_damping_is_not_modelled(self):
         with pytest.raises(AssemblyError, match="damping") as caught:

@@ -92,10 +92,7 @@ def test_reference_leaves_the_state_and_measured_sets_the_lead_to_zero():
     }
 
 
-@given(
-    seed=st.integers(0, 2**32 - 1),
-    offset=st.sampled_from(["reference", "measured"]),
-)
+@given(seed=st.integers(0, 2**32 - 1), offset=st.sampled_from(["reference", "measured"]))
 def test_run_with_the_memory_itself(seed, offset):
     """[xi, u] with X_i held and taken anew, Fd the force at the switch: what is eliminated."""
     rng = np.random.default_rng(seed)
@@ -149,8 +146,7 @@ def test_two_force_controllers_reset_between_them_too():
     gentle = designed.controllers[1]
     law = ProportionalForce(F(1, 64))
     both = type(designed)(
-        designed.motion,
-        (*designed.controllers, type(gentle)("gentle", law, "soft", ("soft",))),
+        designed.motion, (*designed.controllers, type(gentle)("gentle", law, "soft", ("soft",)))
     )
     found = assemble(spec, build_plant(spec), both)
     pairs = {(r.source.split("/")[0], r.target.split("/")[0]) for r in found.switching.resets}

@@ -10,10 +10,7 @@ from nrs_design.errors import InternalError
 from nrs_design.models.interval import Interval
 from nrs_design.spec import parse_spec
 from nrs_design.switched.assemble import assemble_from_text
-from nrs_design.switched.parameters import (
-    UncertainParameter,
-    corner_modes,
-)
+from nrs_design.switched.parameters import UncertainParameter, corner_modes
 
 ENTRIES = ("0", "k", "-2 - k", "3/4*k - m + 0.5", "(k - r)/3", "m", "1/6", "r + m + k")
 HALVES = st.fractions(-20, 20, max_denominator=4)

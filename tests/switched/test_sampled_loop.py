@@ -285,8 +285,7 @@ def test_two_periods_of_the_thesis_robot(tmp_path, sampling, verdict, least):
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("nominal", "ends", "delay", "least"),
-    [("1", ("0", "3"), 0, "2.2"), ("5", ("5", "9"), 1, "1")],
+    ("nominal", "ends", "delay", "least"), [("1", ("0", "3"), 0, "2.2"), ("5", ("5", "9"), 1, "1")]
 )
 def test_damped_contact_that_is_lost_is_proved(tmp_path, nominal, ends, delay, least):
     ranged = f"[{ends[0]} N*s/m, {ends[1]} N*s/m]"
@@ -305,12 +304,7 @@ MIXED = (ROOT / "docs/examples/mixed-controllers.nrs.yaml").read_text(encoding="
 
 def test_position_and_force_control_share_the_motion(tmp_path):
     system = system_of(tmp_path, "{period: 2 ms, delay: [0, 1]}", text=FORCE)
-    assert system.states == (
-        "omega [rad/s]",
-        "e before [rad]",
-        "F 1 before [N*m]",
-        "delta [rad]",
-    )
+    assert system.states == ("omega [rad/s]", "e before [rad]", "F 1 before [N*m]", "delta [rad]")
     # Two ends of exp(-T/tau); in contact two ends of k, for force control two delays besides.
     assert len(system.modes) == 2 + 4 + 8
     assert system.contact is None

@@ -209,9 +209,7 @@ def test_rules_that_are_none(tmp_path, rule, said):
 
 @pytest.mark.parametrize(
     ("change", "said"),
-    [
-        ("switching: arbitrary", "switching: {transitions: [[insertion, withdrawal]]}"),
-    ],
+    [("switching: arbitrary", "switching: {transitions: [[insertion, withdrawal]]}")],
 )
 def test_what_misses_are_not_modelled_beside(tmp_path, change, said):
     assert change in SOFT_TISSUE.read_text(encoding="utf-8")

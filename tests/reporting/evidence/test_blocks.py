@@ -5,9 +5,7 @@ from fractions import Fraction
 
 import pytest
 
-from nrs_design.proof.evidence import (
-    BlockTriangular,
-)
+from nrs_design.proof.evidence import BlockTriangular
 from nrs_design.proof.evidence.growing_sequence import staying
 from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Switching

@@ -93,23 +93,6 @@ def test_two_resets_from_one_mode_to_another(tmp_path):
     assert "reset 2 of 2 to contact" in (tmp_path / "page.html").read_text()
 
 
-@pytest.mark.slow
-def test_a_mode_that_must_be_left(tmp_path):
-    path = EXAMPLES / "failing-controller.nrs.yaml"
-    result = run("certify-switching", path, "-v", cwd=tmp_path, code=0)
-    assert "at most 1 step in both-fail" in result.stdout
-    file = tmp_path / "reports" / "failing-controller.cert.json"
-    run("verify", file, path, "-v", cwd=tmp_path, code=0)
-    document = json.loads(file.read_text())
-    document["statements"][0]["stays"]["leaving"].append("works")
-    file.write_text(json.dumps(document | {"id": content_id(document)}))
-    forged = run("verify", file, path, "-v", cwd=tmp_path, code=1)
-    assert "has no longest dwell time" in forged.stdout + forged.stderr
-    run("report", path, "--out", "page.html", "-v", cwd=tmp_path, code=0)
-    assert "the machine itself must leave in time" in (tmp_path / "page.html").read_text()
-    run("certify-switching", path, "--shortest-dwell", "-v", cwd=tmp_path, code=2)
-
-
 CORNERS = """\
 kind: switched-system
 name: corners
@@ -131,23 +114,6 @@ def test_constants_are_the_difference_between_refuted_and_proved(tmp_path):
     path.write_text(CORNERS.replace(", varies: false", ""))
     run("verify", "reports/corners.cert.json", path, "-v", cwd=tmp_path, code=1)
     assert "Repeating" in run("certify-switching", path, "-v", cwd=tmp_path, code=1).stdout
-
-
-def test_a_value_inside_refutes(tmp_path):
-    """All corners are triangular and stable; in the middle both states drive each other."""
-    path = tmp_path / "a.nrs.yaml"
-    head, _, _ = CORNERS.partition("parameters:")
-    path.write_text(
-        f"""{head}parameters:
-  k: {{nominal: 0, range: [-1, 1], varies: false}}
-  m: {{nominal: 0, range: [-1, 1], varies: false}}
-modes: [{{name: a, A: [["1/2", "3/5 - 3/5*k"], ["3/5 + 3/5*k", "1/4 + m/4"]]}}]
-switching: arbitrary
-"""
-    )
-    result = run("certify-switching", path, cwd=tmp_path, code=1)
-    assert "At k = 0 and m = 1, which the range allows and which does not change" in result.stdout
-    run("verify", "reports/corners.cert.json", path, cwd=tmp_path, code=1)
 
 
 @pytest.mark.parametrize(
@@ -306,18 +272,6 @@ def test_work_is_counted_alike_in_every_run(tmp_path):
     one, other = ({a["step"]: a["work"] for a in each["attempts"]} for each in found)
     assert one == other
     assert one["lmi"] > 0
-
-
-@pytest.mark.parametrize(
-    ("spec", "code", "verdict"), [(PRINT_ERROR, 1, "refuted"), (None, 3, "inconclusive")]
-)
-def test_json_without_a_proof(tmp_path, spec, code, verdict):
-    path = spec or write_spec(tmp_path / "eleven.nrs.yaml", *HARD).path
-    document = document_of("certify-switching", path, "--budget", 0, cwd=tmp_path, code=code)
-    assert document["verdict"] == verdict
-    assert document["decay_rate"] is None
-    assert (document["certificate"] is None) == (verdict == "inconclusive")
-    assert (document["claim"] is None) == (verdict == "inconclusive")
 
 
 @pytest.mark.slow

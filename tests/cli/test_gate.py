@@ -139,16 +139,6 @@ def test_hostile_file_names(gate, capsys, name):
     assert gate(f"specs/{name}", "--locked", "--format", "github") == 0
 
 
-def test_places_that_cannot_be_written(gate, capsys):
-    file = Path("specs/stable.nrs.yaml")
-    assert gate("specs", "--no-reports", "--reports", file / "reports") == 2
-    assert "NRS005 error" in capsys.readouterr().out
-    assert gate("specs", "--no-reports", "--lock", file / "nrs.lock") == 2
-    assert "error[NRS005]" in capsys.readouterr().err
-    assert gate("specs", "--no-reports", "--out", file / "out") == 2
-    assert file.read_text() == STABLE
-
-
 def test_a_lock_that_cannot_be_written_is_said_before_the_proofs(gate, capsys):
     Path("nrs.lock").mkdir()
     assert gate("specs", "--no-reports") == 2

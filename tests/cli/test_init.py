@@ -62,27 +62,21 @@ def test_the_schema_that_editors_look_for_is_there(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("taken", ["velocity", "position", "torque"])
-def test_a_robot_without_a_motor_has_a_template_of_its_own(taken: str, tmp_path: Path) -> None:
-    run("init", "interaction-design", "--drive", taken, "--out", "mine.nrs.yaml", cwd=tmp_path)
+@pytest.mark.parametrize("axis", ["", "prismatic"])
+def test_a_robot_without_a_motor_has_a_template_of_its_own(
+    taken: str, axis: str, tmp_path: Path
+) -> None:
+    asked = "--drive", taken, *(("--axis", axis) if axis else ()), "--out", "mine.nrs.yaml"
+    if (taken, axis) == ("torque", "prismatic"):
+        assert axis in run("init", "interaction-design", *asked, cwd=tmp_path, code=2).stderr
+        return
+    run("init", "interaction-design", *asked, cwd=tmp_path)
     text = (tmp_path / "mine.nrs.yaml").read_text(encoding="utf-8")
     assert f"{taken}_interface:" in text
     assert "\nname: mine " in text
+    assert ("\naxis: prismatic " in text) == bool(axis)
     result = run("gate", "mine.nrs.yaml", "--no-reports", cwd=tmp_path, code=0)
     assert "all fulfilled" in result.stdout
     assert "warning" not in result.stderr
     refused = run("init", "robot", "--drive", taken, cwd=tmp_path, code=2)
     assert "interaction-design" in refused.stderr
-
-
-@pytest.mark.parametrize("taken", ["velocity", "position"])
-def test_one_that_slides_has_one_too(taken: str, tmp_path: Path) -> None:
-    asked = "--drive", taken, "--axis", "prismatic", "--out", "mine.nrs.yaml"
-    run("init", "interaction-design", *asked, cwd=tmp_path)
-    text = (tmp_path / "mine.nrs.yaml").read_text(encoding="utf-8")
-    assert "\naxis: prismatic " in text
-    result = run("gate", "mine.nrs.yaml", "--no-reports", cwd=tmp_path, code=0)
-    assert "all fulfilled" in result.stdout
-    assert "warning" not in result.stderr
-    torque = "init", "interaction-design", "--drive", "torque", "--axis", "prismatic"
-    refused = run(*torque, cwd=tmp_path, code=2)
-    assert "prismatic" in refused.stderr

@@ -52,22 +52,6 @@ def test_the_same_run_gives_the_same_bytes_and_never_those_of_another_spec(spec,
     assert first.items() < {f.name: f.read_bytes() for f in (tmp_path / "a").iterdir()}.items()
 
 
-@pytest.mark.parametrize(
-    ("suffix", "content"),
-    [("csv", b"t,angle\n"), ("svg", b"<svg/>"), ("png", b"GIF89a")],
-)
-def test_what_is_not_ours_stays_and_nothing_is_written(spec, tmp_path, suffix, content):
-    """A budget that would stop the run is not even used: the folder is looked at before."""
-    file = tmp_path / f"runs/small.run.{suffix}"
-    file.parent.mkdir()
-    file.write_bytes(content)
-    result = run("simulate", spec(), "--out", "runs", "--max-steps", "1", cwd=tmp_path)
-    assert (result.returncode, result.stdout) == (2, "")
-    assert "not overwritten" in result.stderr
-    assert [*file.parent.iterdir()] == [file]
-    assert file.read_bytes() == content
-
-
 def test_a_log_of_the_law_that_ships_can_be_audited(spec, tmp_path):
     """Its columns have names of their own; thesis 6.3.2.1: the law has a velocity as a state."""
     table = simulated(text_of(scenario=RUN, more=SAMPLED), "sampled").response.to_csv()
@@ -88,17 +72,6 @@ def test_a_saturated_command_is_said(spec, tmp_path):
     assert f"met its limit at {saturated} samples" in told
 
 
-def test_json(spec, tmp_path):
-    document = document_of("simulate", spec(more=SAMPLED), cwd=tmp_path)
-    assert document["schema"] == "nrs-design/simulate/1"
-    (one,) = document["runs"]
-    assert (one["scenario"], one["engine"], one["stopped"]) == ("run", "sampled", None)
-    assert 0.05 < one["metrics"]["peak_torque"] < 0.4
-    assert one["metrics"]["withdrawal_times"]
-    assert one["switches"][0]["to"] == "withdrawal"
-    assert one["certified_bounds"] == []
-
-
 def test_what_an_engine_leaves_out_is_said(spec, tmp_path):
     path = spec(RUN + ", errors: {force_noise: 0.01 N*m}")
     assert "noise and jitter of the scenario" in run("simulate", path, "-v", cwd=tmp_path).stdout
@@ -117,12 +90,6 @@ def test_controllers_in_force_and_age_of_the_force_are_said(spec, tmp_path):
     assert "age of the force in samples: 3\n" in late
     twice = run("simulate", path, "--outer-period", "0.001", "-v", cwd=tmp_path).stdout
     assert "motion loop every 0.002 s, force sample every 0.001 s" in twice
-
-
-def test_a_spec_without_scenarios_has_one(spec, tmp_path):
-    result = run("simulate", spec(scenario=None), "-v", cwd=tmp_path)
-    assert "insertion-and-withdrawal: exact engine" in result.stdout
-    assert "continuous time, force of the moment" in result.stdout
 
 
 def test_a_bound_stands_beside_the_peak(spec, tmp_path):

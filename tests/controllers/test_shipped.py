@@ -16,7 +16,7 @@ from nrs_design.models.linear_form import coordinates, zero
 from nrs_design.pipeline import run_design
 from nrs_design.spec import read_spec
 from tests.controllers.roundings import linear_forms
-from tests.support import ROBOT, ROOT, SOFT_TISSUE
+from tests.support import ROOT, SOFT_TISSUE
 
 PERIOD = Fraction(1, 500)
 BY_SIGN = ROOT / "docs/examples/insertion-by-sign.nrs.yaml"
@@ -79,13 +79,6 @@ def test_coefficients_are_those_of_the_sampled_design():
         wanted = controller.law.discretize(PERIOD, "exact").numbers
         assert {name: law.coefficient[name].of(k) for name in wanted} == wanted
     assert law_of(found, 2 * PERIOD) != law
-
-
-def test_what_has_no_program_is_refused():
-    with pytest.raises(DesignError, match="offset") as caught:
-        law_of(run_design(read_spec(ROBOT / "force-limit-offset.nrs.yaml")))
-    assert "--format json" in caught.value.remedy
-    assert caught.value.at[0] == "controllers"
 
 
 def test_all_kinds_of_controllers_in_one_law():

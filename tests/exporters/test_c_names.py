@@ -1,7 +1,6 @@
 """Names, numbers and comments of exported C."""
 
 import re
-from dataclasses import replace
 from fractions import Fraction
 
 import pytest
@@ -9,7 +8,6 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from nrs_design.controllers.float32 import to_float32
-from nrs_design.errors import DesignError
 from nrs_design.exporters.c_names import CNames, block_comment, literal
 from nrs_design.exporters.c_step import declarations
 from tests.exporters.programs import LAWS
@@ -38,12 +36,6 @@ def test_every_number_of_a_law_has_a_macro_of_its_own():
     assert numbers["NRS_X_MODE_WITHDRAWAL"] == "1U"
     assert numbers["NRS_X_KT_OF_INSERTION"] == literal(Fraction(1, 2))
     assert {"NRS_X_KP", "NRS_X_T", "NRS_X_MAX_ANGLE"} < set(numbers)
-
-
-def test_controllers_that_are_one_in_c_are_refused():
-    twice = replace(LAWS["inertia"], modes=("a-b", "a.b"))
-    with pytest.raises(DesignError, match="same name in C"):
-        CNames("x").check(twice)
 
 
 @pytest.mark.parametrize(

@@ -1,11 +1,10 @@
 """A law in C: a line for each operation in its order, and guards that let nothing else through."""
 
-from dataclasses import replace
 from fractions import Fraction
 
 from nrs_design.controllers.operations import Coefficient, Operation, StepLaw, Value
 from nrs_design.exporters.c_names import CNames
-from nrs_design.exporters.c_step import declarations, definitions, guards
+from nrs_design.exporters.c_step import definitions, guards
 from tests.exporters.programs import LAWS
 
 NAMES = CNames("some-law")
@@ -60,13 +59,3 @@ def test_operations_of_every_kind():
 def test_a_result_that_is_checked_is_refused():
     made = of(Operation("y", "invert", "h", "x"), checks={"y": Fraction(8)})
     assert "is_within(y, 0x1.0p+3F)" in body(made)
-
-
-def test_what_is_declared_names_units_and_meaning():
-    law = LAWS["limits"]
-    text = declarations(law, NAMES)
-    for value in law.values:
-        assert f"float {value.name}; /* {value.unit}: {value.meaning}" in text
-    assert "float command; /* rpm" in text
-    renamed = replace(law, units={"command": "V"})
-    assert "float command; /* V" in declarations(renamed, NAMES)

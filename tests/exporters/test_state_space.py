@@ -1,6 +1,5 @@
 """Parts and modes for python-control, beside the exact matrices and the formulas of the thesis."""
 
-import re
 from dataclasses import replace
 from fractions import Fraction
 
@@ -85,14 +84,6 @@ def test_disturbances_are_inputs(sampled):
         for column, channel in enumerate(system.channels):
             exact = [float(row[0]) for row in channel.columns[index].fractions()]
             assert list(space.B[:, column]) == exact
-
-
-def test_the_page_can_be_typed(monkeypatch, capsys):
-    monkeypatch.chdir(ROOT)
-    _, section = (ROOT / "docs/python.md").read_text().split("## python-control")
-    (code,) = re.findall("```python\n(.*?)```", section, re.DOTALL)
-    exec(code, {"nrs": nrs})
-    assert capsys.readouterr().out == "True\n"
 
 
 def test_the_loop_closes_to_the_mode(parts, continuous_export):

@@ -1,12 +1,10 @@
 """How often 95 % intervals of a tissue hold the truth: every law under every option.
 
-``python -m tests.identification.coverage`` prints the table of `coverage.md`, in about ten minutes;
-names of laws and options after it choose cells.
+``python -m tests.identification.coverage`` prints the table of `coverage.md`, in about ten minutes.
 """
 
 from __future__ import annotations
 
-import argparse
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 
@@ -158,14 +156,9 @@ def _held(tissue: Tissue, option: Option, seed: int) -> Iterator[tuple[str, bool
 
 def main() -> None:
     """Print one line for each cell."""
-    parser = argparse.ArgumentParser(description=main.__doc__)
-    parser.add_argument("--seeds", type=int, default=SEEDS)
-    parser.add_argument("--tissue", action="append", choices=[*TISSUES, *UNDETERMINED])
-    parser.add_argument("--option", action="append", choices=OPTIONS)
-    chosen = parser.parse_args()
-    for option in chosen.option or OPTIONS:
-        for tissue in chosen.tissue or TISSUES:
-            found = rates(tissue, option, chosen.seeds)
+    for option in OPTIONS:
+        for tissue in TISSUES:
+            found = rates(tissue, option)
             text = ", ".join(f"{name} {rate:.1f}" for name, rate in found.items())
             print(f"{option} | {tissue} | {text}", flush=True)
 

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from nrs_design.identification.datasets import read_actuator, read_tissue
 from tests.identification import synthetic
 from tests.support import ROOT
 
@@ -25,10 +24,3 @@ def test_committed_sample_is_what_the_generator_makes(name):
     old, new = (np.loadtxt(lines[2:], delimiter=",") for lines in (committed, made))
     # Other builds of numpy may round the last digit differently.
     assert np.allclose(old, new, rtol=0, atol=1.1e-3)
-
-
-@pytest.mark.parametrize("name", SAMPLES)
-def test_samples_are_read_as_synthetic(name):
-    reader = read_actuator if name.startswith("actuator") else read_tissue
-    found = reader(DATA / name)
-    assert (found[0] if isinstance(found, tuple) else found).source.synthetic

@@ -9,10 +9,8 @@ from hypothesis import strategies as st
 
 from nrs_design.errors import AssemblyError
 from nrs_design.models.drive import (
-    Takes,
     lagging_drive,
     position_drive,
-    taken_in,
     torque_drive,
     velocity_drive,
 )
@@ -20,8 +18,6 @@ from nrs_design.models.interval import Interval
 from nrs_design.models.motion_loop import MotionLoop
 
 F = Fraction
-# Thesis 6.13 with the motor of table 4.1, of second order with a zero.
-THESIS = MotionLoop((F("28.4"), F(1619)), (F(1), F("56.9"), F(1619)))
 COEFFICIENT = st.integers(1, 50).map(F)
 
 
@@ -115,9 +111,3 @@ def test_ranges_are_stretched_and_stay_positive():
     assert drive.at({"J": F(3)}).ranges["J"] == Interval.point(F(3))
     with pytest.raises(AssemblyError, match="does not stay physical"):
         drive.scaled(F(3))
-
-
-def test_a_unit_says_what_is_taken():
-    assert taken_in("N*m") is Takes.TORQUE
-    assert taken_in("rad") is Takes.POSITION
-    assert taken_in("rpm") is None

@@ -74,18 +74,6 @@ def test_the_stiffness_is_tested_where_readings_are_known(tmp_path):
     assert document["stiffness_not_tested_because"] is None
 
 
-def test_outside(tmp_path, proof):
-    spec, certificate = proof
-    given = (write(tmp_path, stiffness=60.0), spec, "--certificate", certificate)
-    document = document_of("audit", *given, cwd=tmp_path, code=1)
-    assert document["schema"] == "nrs-design/audit/1"
-    assert (document["verdict"], document["proved"]) == ("outside", True)
-    assert document["first_violation"]["check"] == "force"
-    assert document["synthetic"] is True
-    assert all(w["low_Nm_rad"] < 60.0 < w["high_Nm_rad"] for w in document["stiffness"])
-    assert document["estimated_share_of_time"] == 1.0
-
-
 def test_an_unproved_spec_is_said_loudly(tmp_path):
     done = run("audit", write(tmp_path), SOFT_TISSUE, "-v", cwd=tmp_path, code=3)
     assert "UNPROVED SPEC: no certificate is named" in done.stdout

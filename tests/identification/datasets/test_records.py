@@ -49,20 +49,17 @@ def test_gap(tmp_path):
     assert len(tissue(tmp_path, time=TIME + 0.05 * (np.arange(200) // 50)).force) == 200
 
 
-def test_jitter_is_no_gap(tmp_path):
-    jitter = np.random.default_rng(0).uniform(-0.004, 0.004, 200)
-    assert len(tissue(tmp_path, time=TIME + jitter).force) == 200
-
-
-def test_a_rest_is_no_saturation(tmp_path):
-    held = np.minimum(DEFLECTION, 0.006)
-    assert len(tissue(tmp_path, deflection=held).force) == 200
-
-
-def test_out_of_contact_is_no_saturation(tmp_path):
-    deflection = DEFLECTION - 0.004
-    force = np.maximum(750 * deflection, 0.0)
-    assert len(tissue(tmp_path, deflection=deflection, force=force).force) == 200
+@pytest.mark.parametrize(
+    "columns",
+    [
+        {"time": TIME + np.random.default_rng(0).uniform(-0.004, 0.004, 200)},
+        {"deflection": np.minimum(DEFLECTION, 0.006)},
+        {"deflection": DEFLECTION - 0.004, "force": np.maximum(750 * (DEFLECTION - 0.004), 0.0)},
+    ],
+    ids=["jitter is no gap", "a rest is no saturation", "out of contact is none"],
+)
+def test_what_a_record_may_be(tmp_path, columns):
+    assert len(tissue(tmp_path, **columns).force) == 200
 
 
 def test_groups_of_columns(tmp_path):

@@ -111,14 +111,6 @@ def test_opposite_signs_are_said():
     assert any("opposite" in doubt for doubt in found.doubts)
 
 
-@pytest.mark.slow
-def test_swapped_columns_are_said():
-    record = signals.copy(4)
-    found = identify_delay(replace(record, sent=record.seen, seen=record.sent))
-    assert any("before" in doubt for doubt in found.doubts)
-    assert found.samples.value == 0.0
-
-
 def test_a_delay_beyond_what_is_looked_for_has_no_interval():
     """0.5 s in a record of 4 s were "0.48 [0.459, 0.502] s", or "0 [0, 0.045] s", at 95 %."""
     record = signals.copy(1)

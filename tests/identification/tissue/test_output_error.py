@@ -49,13 +49,6 @@ def test_exact_without_noise(law):
     assert fit.law.values == pytest.approx(law.values, rel=1e-5)
 
 
-def test_criteria():
-    fit = fit_record(KelvinVoigt, record(KelvinVoigt(0.5, 1.0), slow(), 0.01))
-    n = len(fit.record.force)
-    assert fit.aic == pytest.approx(n * np.log(fit.rmse**2) + 8)
-    assert fit.bic == pytest.approx(n * np.log(fit.rmse**2) + 4 * np.log(n))
-
-
 def test_long_records_are_searched_thinned_and_fitted_whole(monkeypatch):
     data = record(synthetic.NOSE, slow(3), 0.01, 3)
     whole = fit_record(type(synthetic.NOSE), data)

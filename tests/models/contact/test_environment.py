@@ -14,12 +14,6 @@ SPAN = Interval(F(2), F(1), F(3))
 POINT = Interval.point(F(5))
 
 
-def test_nominal_law():
-    hand = Environment("hand", KelvinVoigt, (SPAN, Interval(F(1), F(0), F(5))))
-    assert hand.nominal == KelvinVoigt(F(2), F(1))
-    assert hand.stiffness == SPAN
-
-
 def test_a_corner_for_every_end_of_what_has_a_range():
     nose = Environment("nose", KelvinBoltzmann, (SPAN, POINT, SPAN))
     assert [law.exact for law in nose.corners] == [(1, 5, 1), (1, 5, 3), (3, 5, 1), (3, 5, 3)]

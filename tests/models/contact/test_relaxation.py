@@ -29,10 +29,3 @@ def test_slope_by_the_logarithm_of_the_time_constant(log_tau):
     above, below = (Relaxation(motion, np.exp(log_tau + step)).y for step in (h, -h))
     slope = Relaxation(motion, float(np.exp(log_tau))).slope
     assert slope == pytest.approx((above - below) / (2 * h), abs=1e-7)
-
-
-def test_limits():
-    motion = wobble(3)
-    # Never forgets, and forgets at once.
-    assert Relaxation(motion, 1e12).y == pytest.approx(motion.deflection, rel=1e-9, abs=1e-9)
-    assert np.abs(Relaxation(motion, 1e-9).y).max() < 1e-7

@@ -7,10 +7,8 @@ import pytest
 
 from nrs_design.errors import DesignError
 from nrs_design.robot.models import (
-    balanced_robot,
     design_balance,
     gravity_torque,
-    inverse_dynamics,
     jacobian,
     residual_torque,
     spring_torque,
@@ -74,14 +72,6 @@ def test_spring_torque_is_the_slope_of_its_energy(robot, balance):
         for column in jacobian(robot, pose).T
     ]
     assert spring_torque(robot, balance, pose) == pytest.approx(slopes, abs=1e-6)
-
-
-def test_counter_masses_cost_inertia(robot, balance):
-    heavy = balanced_robot(robot, balance)
-    pose, rest, push = robot.home, np.zeros(3), np.ones(3)
-    light_torque = inverse_dynamics(replace(robot, gravity=0.0), pose, rest, push)
-    heavy_torque = inverse_dynamics(replace(heavy, gravity=0.0), pose, rest, push)
-    assert np.linalg.norm(heavy_torque) > np.linalg.norm(light_torque)
 
 
 def test_a_spec_without_balance(robot, spec):

@@ -57,33 +57,6 @@ def test_gravity_is_the_slope_of_the_potential(robot, pose, tilt):
     assert gravity_torque(robot, pose) == pytest.approx(slopes, abs=1e-7)
 
 
-@given(pose=poses)
-def test_potential_is_that_of_the_centers_of_mass(robot, pose):
-    # The platform alone: its center of mass by thesis 3.32.
-    bare = robot.without_links()
-    phi, psi, d = pose
-    x = np.arcsin(np.sin(phi) / np.cos(psi))
-    lateral, axial = 0.0367, d + 0.010
-    height = axial * np.cos(x) * np.cos(psi) - lateral * np.cos(x) * np.sin(psi)
-    assert potential_energy(bare, pose) == pytest.approx(0.7972 * 9.81 * height, rel=1e-12)
-
-
-@given(pose=poses, velocity=rates, acceleration=rates)
-def test_power_of_the_torques_is_the_rate_of_energy(robot, pose, velocity, acceleration):
-    h = 1e-5
-    along = jacobian(robot, pose) @ velocity
-    turn = (jacobian(robot, pose + h * along) - jacobian(robot, pose - h * along)) / (2 * h)
-    curve = jacobian(robot, pose) @ acceleration + turn @ velocity
-
-    def energy(t):
-        x = pose + t * along + t * t / 2 * curve
-        v = velocity + t * acceleration
-        return v @ mass_matrix(robot, x) @ v / 2 + potential_energy(robot, x)
-
-    power = inverse_dynamics(robot, pose, velocity, acceleration) @ velocity
-    assert (energy(h) - energy(-h)) / (2 * h) == pytest.approx(power, abs=1e-5)
-
-
 def test_batch_is_pose_by_pose(robot):
     rng = np.random.default_rng(3)
     pose = rng.uniform((-0.24, -0.33, 0.155), (0.24, 0.33, 0.24), (10_000, 3))

@@ -1,7 +1,6 @@
 import numpy as np
 import pytest
 
-from nrs_design.reporting.images import to_svg_file
 from nrs_design.robot.reporting.figures.tracking import draw_tracking
 from nrs_design.robot.simulation.tracking import Experiment, TrackingRecord
 
@@ -36,10 +35,6 @@ def test_bars_are_the_errors(figure):
     (points,) = figure.axes[2].lines
     assert list(points.get_ydata()) == [0.1, 0.2, 0.3]
     assert not figure.axes[3].lines
-
-
-def test_the_same_drawing_every_time(figure):
-    assert to_svg_file(figure) == to_svg_file(figure)
 
 
 def test_one_motion_without_measurements():

@@ -13,19 +13,6 @@ from nrs_design.errors import DesignError, NrsDesignError, SpecError
 from tests.api.pairs import ROTATION, pair
 
 
-@pytest.mark.parametrize(
-    ("a", "verdict", "common_quadratic"),
-    [(5, "proved", "exists"), (6, "proved", "impossible"), (12, "refuted", "impossible")],
-)
-def test_known_answers(a, verdict, common_quadratic):
-    decision = nrs.certify(pair(a))
-    assert (decision.verdict, decision.common_quadratic) == (verdict, common_quadratic)
-    assert (decision.decay_rate is not None) == (verdict == "proved")
-    assert decision.claim in str(decision)
-    assert decision.attempts
-    assert decision.assumptions[0].startswith("The modes are the matrices")
-
-
 def test_ways_to_give_the_same_modes():
     texts = nrs.certify([[["-1", "-1"], ["1", "-1"]], [["-1", "-5"], ["1/5", "-1"]]])
     exact = nrs.certify({"m1": ROTATION, "m2": pair(5)[1]})

@@ -9,7 +9,6 @@ from itertools import count
 
 import pytest
 
-from nrs_design.certificates.certificate import content_id
 from nrs_design.proof.bounds import rounded_down, rounded_up
 from nrs_design.spec import read_spec
 from tests.pipeline.test_subsets import HEAVY
@@ -83,12 +82,6 @@ def test_two_resets_from_one_mode_to_another(tmp_path):
     assert "Mode free is left after at most 4 s." in result.stdout
     file = tmp_path / "reports" / "contact-either-way.cert.json"
     run("verify", file, path, "-v", cwd=tmp_path, code=1)
-    document = json.loads(file.read_text())
-    (statement,) = document["statements"]
-    statement["edges"] = [1 - edge for edge in statement["edges"]]
-    file.write_text(json.dumps(document | {"id": content_id(document)}))
-    forged = run("verify", file, path, "-v", cwd=tmp_path)
-    assert "rejected" in (forged.stdout + forged.stderr).lower()
     run("report", path, "--out", "page.html", "-v", cwd=tmp_path, code=1)
     assert "reset 2 of 2 to contact" in (tmp_path / "page.html").read_text()
 

@@ -1,35 +1,10 @@
 """`nrs-design optimize`, as a user types it."""
 
-import math
 import re
-from fractions import Fraction
 
 import pytest
 
 from tests.support import FORCE_LIMIT, ROOT, SOFT_TISSUE, document_of, run
-
-
-def test_passivity_of_the_sampled_law(tmp_path):
-    """For every age of the force sample, with an exact witness beyond the band."""
-    text = (ROOT / "specs/neuroboscope/soft-tissue-sampled.nrs.yaml").read_text()
-    for controller in document_of("optimize", write(tmp_path, text), cwd=tmp_path)["controllers"]:
-        # Its motor has ranges, over which it is not decided, and no other law's is shown.
-        assert controller["sampled_passivity"] == []
-        assert controller["passive_up_to_rad_s"] is None
-        assert "ranges of gains or of the motor" in controller["passivity_not_computed"]
-    known = re.sub(r"\{nominal: ([^,]*), range: .*rpm\]\}", r"\1", text)
-    known = re.sub(r"\{nominal: (0.0351 s), range: .*\]\}", r"\1", known)
-    for controller in document_of("optimize", write(tmp_path, known), cwd=tmp_path)["controllers"]:
-        fresh, late = controller["sampled_passivity"]
-        assert (fresh["delay"], late["delay"]) == (0, 1)
-        assert late["passive_up_to_rad_s"] < fresh["passive_up_to_rad_s"]
-        for band in (fresh, late):
-            low, high = band["not_passive_between_rad_s"]
-            assert band["passive_up_to_rad_s"] < low <= high
-            omega = 2 * math.atan(Fraction(band["not_passive_at_tangent"])) / 0.002
-            assert omega == pytest.approx(low, abs=1e-8)
-    first, _ = document_of("optimize", SOFT_TISSUE, cwd=tmp_path)["controllers"]
-    assert first["sampled_passivity"] == []
 
 
 def write(tmp_path, text):

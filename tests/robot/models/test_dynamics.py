@@ -1,4 +1,4 @@
-"""Properties of the full dynamics; its values are in test_reference and test_pinocchio."""
+"""Properties of the full dynamics; its values are in test_pinocchio."""
 
 import numpy as np
 import pytest

@@ -24,8 +24,6 @@ from tests.certificates.test_verify import (
     signed,
 )
 
-SYSTEM = ("time", "states", "modes", "switching", "assumptions")
-
 
 @pytest.fixture(scope="module", params=SPECS)
 def pair(request):
@@ -46,16 +44,6 @@ def test_every_change_is_noticed_by_the_id(pair):
         if path != ("id",):
             tampered = changed(document, path, "other")
             assert prove(tampered).fault == "its content does not match its id: it was altered"
-
-
-@pytest.mark.parametrize("pair", ALL, indirect=True)
-@pytest.mark.parametrize("field", SYSTEM)
-def test_every_re_signed_change_of_the_system_is_noticed_beside_its_spec(pair, field):
-    document, spec = pair
-    for path in leaves(document[field], (field,)):
-        for value in mutations(at(document, path)):
-            tampered = resign(changed(document, path, value))
-            assert verify_document(tampered, spec).fault is not None, (path, value)
 
 
 @pytest.mark.parametrize("pair", ALL, indirect=True)

@@ -210,17 +210,6 @@ def check_no_common_quadratic(told):
     need(uniform and {f[0] for f in told["factors"]} <= names and definite(terms), "the sum")
 
 
-def check_parameter_quadratic(told):
-    Q, rate = [form(told[end], n) for end in ("low", "high")], F(told["rate"])
-    steps, ends = {s.mode: s for s in steps_in_contact(False, [])}, rules["fixed_ends"]
-    need(sorted(e for pair in ends for e in {*pair}) == sorted(names), "the modes are not ends")
-    need(flow and rate > 0 and not (required or "couplings" in o), "the rate, contact or axes")
-    for a, b in ends:
-        low, high = ([left(steps[end], q, q, 2 * rate) for q in Q] for end in (a, b))
-        for terms in (*map(own, Q), low[0], high[1], low[1] + high[0]):
-            need(definite(terms), f"it rises between {a} and {b}")
-
-
 sys.tracebacklimit = 0  # What is wrong is said in one line
 with open(sys.argv[1], encoding="utf-8") as file:
     o = json.load(file, parse_float=int)  # Refuses fractions

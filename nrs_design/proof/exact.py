@@ -154,7 +154,7 @@ def lyapunov_decrease(
     rate: Fraction,
     multiply: Product = multiply,
 ) -> list[list[int]]:
-    """Form ``-(A'Q + QA + 2 rate Q)`` for ``A = N / denominator``, times `lyapunov_factor`.
+    """Form ``-(A'Q + QA + 2 rate Q)`` for ``A = N / denominator``, times a positive integer.
 
     Q is symmetric, the denominator positive, the rate in 1/s. Only a search has reason to ask for
     another way to multiply.
@@ -167,14 +167,6 @@ def lyapunov_decrease(
         [-q * (a + b) - p * entry for a, b, entry in zip(*rows, strict=True)]
         for rows in zip(QN, transpose(QN), Q, strict=True)
     ]
-
-
-def lyapunov_factor(denominator: int, rate: Fraction) -> int:
-    """Return the positive integer that `lyapunov_decrease` multiplies with.
-
-    It depends on denominator and rate only, so forms that share these may be added up.
-    """
-    return denominator * (2 * rate * denominator).denominator
 
 
 def stein_decrease(

@@ -153,12 +153,6 @@ LADDER: tuple[Rung, ...] = (
         _in("unstable_value", "search_value"),
     ),
     Rung(
-        "parameter quadratic",
-        Method.PARAMETER_QUADRATIC,
-        lambda f: f.has_values and f.is_continuous and f.has_one_pair,
-        _in("parameter_quadratic", "search_parameter_quadratic"),
-    ),
-    Rung(
         "constants quadratic",
         Method.CONSTANTS_QUADRATIC,
         lambda f: f.has_values,

@@ -19,7 +19,6 @@ class Method(StrEnum):
     MIXTURE = "mixture"
     MODE_POLYNOMIAL = "mode-polynomial"
     MODE_QUADRATIC = "mode-quadratic"
-    PARAMETER_QUADRATIC = "parameter-quadratic"
     CONSTANTS_QUADRATIC = "constants-quadratic"
     PERIOD = "period"
     PERIODIC_QUADRATIC = "periodic-quadratic"

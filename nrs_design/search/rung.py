@@ -112,11 +112,6 @@ class Facts:
         return bool(self.system.switching.fixed_ends)
 
     @property
-    def has_one_pair(self) -> bool:
-        """Whether the constant parameters have two corners, as one parameter has."""
-        return all(len(corners) == 2 for corners in self.system.switching.fixed_ends)
-
-    @property
     def has_values(self) -> bool:
         """Whether the modes at the values of a constant parameter can be looked at."""
         return self.has_constant and self.system.is_uniform and self.leaves_stable

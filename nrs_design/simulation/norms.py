@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.proof.constant import system_at
 from nrs_design.proof.exact import IntegerMatrix
 from nrs_design.proof.lift import monomials
 from nrs_design.proof.switching import Switching
@@ -88,11 +86,6 @@ def scaled_matrices(*matrices: IntegerMatrix) -> list[Array]:
     """Return symmetric matrices in floating point, all divided by their largest entry."""
     largest = max(abs(entry) for M in matrices for row in M for entry in row)
     return [np.array([[entry / largest for entry in row] for row in M]) for M in matrices]
-
-
-def modes_at(system: SwitchedSystem, p: Fraction) -> SwitchedSystem:
-    """Return the modes at one value, from 0 to 1, of a constant parameter, switched arbitrarily."""
-    return replace(system_at(system, (p,)), switching=Switching())
 
 
 def modes_at_corner(system: SwitchedSystem, corner: int) -> SwitchedSystem:

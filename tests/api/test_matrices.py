@@ -174,4 +174,4 @@ def test_a_constant_parameter_beside_modes_of_unequal_size(time):
         budget=2,
     )
     assert decision.verdict in ("proved", "inconclusive")
-    assert "parameter quadratic" not in {attempt.step for attempt in decision.attempts}
+    assert "constants quadratic" not in {attempt.step for attempt in decision.attempts}

@@ -22,6 +22,7 @@ from tests.certificates.attacks import (
     POLYNOMIAL,
     QUADRATIC,
     SHIPPED,
+    UNKNOWN,
     call_it_discrete,
     found,
     named,
@@ -84,6 +85,11 @@ def test_what_ships_holds(path, monkeypatch, capsys):
     kinds = [item["kind"] for item in json.loads(path.read_text())["statements"]]
     assert decide(path, monkeypatch) == 0
     assert capsys.readouterr().out.splitlines() == [f"{kind}: holds" for kind in kinds]
+
+
+def test_of_a_constant_parameter_it_says_that_it_is_not_checked(monkeypatch, capsys):
+    assert decide(UNKNOWN, monkeypatch) == 3
+    assert "constants-quadratic: not checked here (this kind, " in capsys.readouterr().out
 
 
 def test_couplings_of_one_name_have_one_multiplier(judge):

@@ -80,7 +80,7 @@ ALL = [name if name in SMALL else pytest.param(name, marks=pytest.mark.slow) for
 NUMBERS = {
     "block-triangular": {"blocks", "parts"},
     "graph": {"nodes", "denominator_log2", "vanishing", "multipliers"},
-    "parameter-quadratic": {"low", "high", "denominator_log2"},
+    "constants-quadratic": {"functions", "multipliers", "denominator_log2"},
     "saturated-ellipsoid": {"Q", "H", "level"},
     "no-common-quadratic": {"factors"},
     "growing-sequence": {"steps", "doublings", "shares"},
@@ -680,8 +680,8 @@ def test_wrong_kind_of_spec(name):
         [{"kind": "common-quadratic", "Q": {}, "rate": "1", "claim": ""}],
         [{"kind": "no-common-quadratic", "factors": [["m0", []]], "claim": ""}],
         [{"kind": "no-common-quadratic", "factors": [["m9", [[1], [1]]]], "claim": ""}],
-        [{"kind": "parameter-quadratic", "rate": "1", "claim": "", "low": [], "high": [],
-          "denominator_log2": 0}],
+        [{"kind": "constants-quadratic", "rate": "1", "claim": "", "functions": [],
+          "multipliers": [], "denominator_log2": 0}],
     ],
 )  # fmt: skip
 def test_malformed_statements_are_rejections_and_not_crashes(statements):

@@ -124,7 +124,7 @@ def test_constants_are_the_difference_between_refuted_and_proved(tmp_path):
         pytest.param("period", SIX, 3, "inconclusive/unknown", marks=pytest.mark.slow),
         ("polynomial", SIX, 0, "proved/unknown"),
         ("mode-quadratic", DWELL, 0, "proved/unknown"),
-        ("parameter-quadratic", CONSTANT, 0, "proved/unknown"),
+        ("constants-quadratic", CONSTANT, 0, "proved/unknown"),
         ("mixture", PRINT_ERROR, 1, "refuted/impossible"),
     ],
 )
@@ -134,7 +134,7 @@ def test_every_method(tmp_path, method, spec, code, verdict):
 
 
 @pytest.mark.parametrize(
-    ("method", "spec"), [("parameter-quadratic", SIX), ("mixture", DWELL), ("mixture", "discrete")]
+    ("method", "spec"), [("constants-quadratic", SIX), ("mixture", DWELL), ("mixture", "discrete")]
 )
 def test_method_that_does_not_apply_is_wrong_usage(tmp_path, method, spec):
     if spec == "discrete":

@@ -62,8 +62,7 @@ def rows() -> Iterator[tuple[str, str]]:
     for name in specs():
         for command in ("certify-switching",) if name in WITHOUT else OF_SPECS:
             yield name, command
-        # The function that its certificate holds is of a kind that goes.
-        if certificate_of(name).is_file() and name != "unknown-constant":
+        if certificate_of(name).is_file():
             yield name, "verify"
             yield from ((name, f"export {format_}") for format_ in FORMATS)
     yield from (("others", name) for name in OTHERS)
@@ -93,10 +92,7 @@ def answer(name: str, command: str, folder: Path) -> Any:
         # What was not refused says what the file of the format json holds.
         said = {key: done[key] for key in ("exit", "rule", "faults") if key in done}
         return said | {"files": {file.name: kept_of(file) for file in files if file.is_file()}}
-    # One rung of the ladder goes, and this one proves nearly as much.
-    rung = ("--method", "constants-quadratic") if name == "unknown-constant" else ()
-    more = rung if command == "certify-switching" else ()
-    return asked(command, path, *more, folder=folder)
+    return asked(command, path, folder=folder)
 
 
 def asked(*arguments: str | Path, folder: Path) -> dict[str, Any]:

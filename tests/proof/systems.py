@@ -575,7 +575,6 @@ SYSTEMS = {
         bouncing_in_turns(), contact=None, clock=Clock(2, ("push 1", "push 2"))
     ),
     "growing-sequence, in turns": lambda: doubled_in_turns(3),
-    "parameter-quadratic": lambda: oscillator(50, PAIR),
     "constants-quadratic": lambda: companion("0.9", "0.9"),
     "constants-quadratic, continuous": two_springs,
     "growing-sequence, value": lambda: hidden_value(3),

@@ -24,7 +24,6 @@ from nrs_design.proof.evidence import (
     InvariantEllipsoid,
     NoCommonQuadratic,
     OffsetEllipsoid,
-    ParameterQuadratic,
     SaturatedEllipsoid,
 )
 from nrs_design.proof.matrix import RationalMatrix
@@ -791,20 +790,6 @@ def _no_common_quadratic(system: SwitchedSystem, item: NoCommonQuadratic) -> boo
     return len(set(names)) == len(names) and is_definite(total)
 
 
-def _parameter_quadratic(system: SwitchedSystem, item: ParameterQuadratic) -> bool:
-    """Sample the parameter; at each value the decrease is that of a common quadratic."""
-    modes = {mode.name: mode.A.fractions() for mode in system.modes}
-    for p in (Fraction(k, 16) for k in range(17)):
-        Q = combine((1 - p, item.low), (p, item.high))
-        matrices = [
-            combine((1 - p, modes[a]), (p, modes[b])) for a, b in system.switching.fixed_ends
-        ]
-        forms = [decrease(A, Q, item.rate, system.time) for A in matrices]
-        if not all(map(is_definite, [Q, *forms])):
-            return False
-    return is_rate(item.rate, system.time)
-
-
 def weights(shares: Sequence[Fraction]) -> list[Fraction]:
     """Return the weight of every corner of a box, the last parameter turning fastest."""
     found = [Fraction(1)]
@@ -1111,7 +1096,6 @@ _ORACLES = {
     InvariantEllipsoid: _invariant_ellipsoid,
     NoCommonQuadratic: _no_common_quadratic,
     OffsetEllipsoid: _offset_ellipsoid,
-    ParameterQuadratic: _parameter_quadratic,
     SaturatedEllipsoid: _saturated_ellipsoid,
     BlockTriangular: _block_triangular,
 }

@@ -11,6 +11,7 @@ from nrs_design.proof.switching import Stay, Switching
 from nrs_design.search import common_quadratic
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE
 from nrs_design.search.common_quadratic import decide_one_state, search_by_gradient, search_by_lmi
+from nrs_design.search.constants_quadratic import search_constants_quadratic
 from nrs_design.search.family import Family, floats_in_silence
 from nrs_design.search.graphs import (
     search_modes,
@@ -20,7 +21,6 @@ from nrs_design.search.graphs import (
 )
 from nrs_design.search.mixture import search_mixture
 from nrs_design.search.obstruction import search_obstruction
-from nrs_design.search.parameter_quadratic import search_parameter_quadratic
 from nrs_design.search.period import search_period
 from nrs_design.search.unstable_mode import examine_every_mode, examine_suspicious_modes
 from nrs_design.work import Allowance, NotAffordableError
@@ -103,9 +103,9 @@ SHEARS = family([[-1, 10], [0, -1]], [[-1, 0], [10, -1]])
         (search_period, dayawansa_martin(12), "growing-sequence"),
         (search_mixture, SHEARS, "growing-sequence"),
         (
-            search_parameter_quadratic,
+            search_constants_quadratic,
             replace(dayawansa_martin(12), switching=FIXED_ENDS),
-            "parameter-quadratic",
+            "constants-quadratic",
         ),
         (
             search_modes,

@@ -340,7 +340,7 @@ class TestMethods:
             (Method.MIXTURE, dayawansa_martin(12), ("inconclusive", "unknown")),
             (Method.MIXTURE, SHEARS, ("refuted", "impossible")),
             (Method.MODE_QUADRATIC, SLOW, ("proved", "unknown")),
-            (Method.PARAMETER_QUADRATIC, CONSTANT, ("proved", "unknown")),
+            (Method.CONSTANTS_QUADRATIC, CONSTANT, ("proved", "unknown")),
             (Method.VALUE, CONSTANT, ("inconclusive", "unknown")),
             (Method.AUTO, SLOW, ("proved", "impossible")),
             (Method.AUTO, CONSTANT, ("proved", "impossible")),
@@ -361,7 +361,7 @@ class TestMethods:
         bad = replace(
             UNSTABLE,
             switching=CONSTANT.switching
-            if method in (Method.PARAMETER_QUADRATIC, Method.CONSTANTS_QUADRATIC, Method.VALUE)
+            if method in (Method.CONSTANTS_QUADRATIC, Method.VALUE)
             else UNSTABLE.switching,
         )
         assert outcome(bad, method) == ("refuted", "impossible")
@@ -369,7 +369,7 @@ class TestMethods:
     @pytest.mark.parametrize(
         ("method", "system"),
         [
-            (Method.PARAMETER_QUADRATIC, STABLE),
+            (Method.CONSTANTS_QUADRATIC, STABLE),
             (Method.VALUE, STABLE),
             (Method.MODE_POLYNOMIAL, SLOW),
             (Method.MODE_POLYNOMIAL, DISCRETE),

@@ -112,7 +112,7 @@ def test_without_a_common_quadratic_none_is_looked_for_again():
         (ando_shih("0.7"), ["lmi", "mode quadratic", "gradient"]),
         (
             shears(Switching(fixed_ends=(("m0", "m1"),))),
-            ["constant values", "parameter quadratic", "switching at constant values"],
+            ["constant values", "constants quadratic", "switching at constant values"],
         ),
     ],
     ids=["one state", "dwell", "discrete", "constant"],

@@ -8,7 +8,6 @@ from typing import Any
 from nrs_design.certificates.certificate import Certificate
 from nrs_design.errors import DesignError
 from nrs_design.exporters.proof_assistant.flows import flows_theorem
-from nrs_design.exporters.proof_assistant.parameter import parameter_theorem
 from nrs_design.exporters.proof_assistant.places import places_theorem
 from nrs_design.exporters.proof_assistant.sampled import sampled_theorem
 from nrs_design.exporters.proof_assistant.theorem import Theorem
@@ -17,7 +16,7 @@ from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
 
 COVERED = (
-    "lmi, gradient, conewise-quadratic, parameter-quadratic and mode-quadratic; "
+    "lmi, gradient, conewise-quadratic and mode-quadratic; "
     "conewise-mode-quadratic in discrete time; polynomial, conewise-polynomial and "
     "coupled-axes in continuous time"
 )
@@ -70,5 +69,4 @@ def _refused(reason: str) -> DesignError:
 # What is written for a kind of evidence; others are refused.
 _BY_KIND: Mapping[str, Callable[[SwitchedSystem, Any], Theorem]] = {
     "graph": _graph_theorem,
-    "parameter-quadratic": parameter_theorem,
 }

@@ -26,9 +26,6 @@ if TYPE_CHECKING:
     )
     from nrs_design.proof.evidence.no_common_quadratic import NoCommonQuadratic as NoCommonQuadratic
     from nrs_design.proof.evidence.offset_ellipsoid import OffsetEllipsoid as OffsetEllipsoid
-    from nrs_design.proof.evidence.parameter_quadratic import (
-        ParameterQuadratic as ParameterQuadratic,
-    )
     from nrs_design.proof.evidence.saturated_ellipsoid import (
         SaturatedEllipsoid as SaturatedEllipsoid,
     )
@@ -42,7 +39,6 @@ KINDS: Mapping[str, str] = {
     "invariant-ellipsoid": "InvariantEllipsoid",
     "no-common-quadratic": "NoCommonQuadratic",
     "offset-ellipsoid": "OffsetEllipsoid",
-    "parameter-quadratic": "ParameterQuadratic",
     "saturated-ellipsoid": "SaturatedEllipsoid",
 }
 

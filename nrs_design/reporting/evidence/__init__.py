@@ -14,7 +14,6 @@ from nrs_design.reporting.evidence.growth import GrowthPage
 from nrs_design.reporting.evidence.obstruction import ObstructionPage
 from nrs_design.reporting.evidence.offers import offer_of
 from nrs_design.reporting.evidence.page import AbstractPage
-from nrs_design.reporting.evidence.parameter import ParameterPage
 from nrs_design.reporting.evidence.saturation import SaturationPage
 
 _PAGES: Mapping[Shows, type[AbstractPage]] = {
@@ -31,8 +30,6 @@ def page_of(system: SwitchedSystem, evidence: AbstractEvidence) -> AbstractPage:
     offer = offer_of(evidence)
     if offer.blocks:
         return BlocksPage(system, evidence, offer, page_of)
-    if any(form.place is not None for form in offer.forms):
-        return ParameterPage(system, evidence, offer)
     if any(form.corner is not None for form in offer.forms):
         return ConstantsPage(system, evidence, offer)
     return _PAGES[evidence.shows](system, evidence, offer)

@@ -23,8 +23,7 @@ class Form:
     name: str = ""  # of the mode, step or end where it holds; empty: everywhere
     degree: int = 1  # of the monomials; 1 for a quadratic function
     free: bool = False  # in free motion, without the last state (the deflection)
-    place: Fraction | None = None  # of a constant parameter: 0 low end, 1 high end
-    corner: int | None = None  # of several constant parameters
+    corner: int | None = None  # of constant parameters
 
 
 @dataclass(frozen=True)
@@ -80,11 +79,6 @@ def _graph(e: Any) -> Offer:
     return Offer((*touching, *(flying if several else ())), e.denominator_log2, numbers=numbers)
 
 
-def _ends(e: Any) -> Offer:
-    ends = ((e.low, "low end", Fraction(0)), (e.high, "high end", Fraction(1)))
-    return Offer(tuple(Form(Q, name, place=p) for Q, name, p in ends), e.denominator_log2)
-
-
 def _corners(e: Any) -> Offer:
     forms = (Form(P, f"corner {k + 1}", corner=k) for k, P in enumerate(e.functions))
     return Offer(tuple(forms), e.denominator_log2)
@@ -118,6 +112,5 @@ OFFERS: Mapping[str, Callable[[Any], Offer]] = {
     "no-common-quadratic": _traces,
     # Its form is of the state behind a one, and not positive: nothing to draw.
     "offset-ellipsoid": lambda e: Offer(),
-    "parameter-quadratic": _ends,
     "saturated-ellipsoid": _one,
 }

@@ -219,21 +219,7 @@ const check = (() => {
     }))), "the sum over the modes is not positive definite");
     return "no common quadratic function exists";
   }
-  function parameterQuadratic(S, o) {
-    const [low, high] = [o.low, o.high].map((rows) => form(rows, S.n)), [p, q] = ratio(o.rate), ends = S.rules.fixed_ends ?? [];
-    need(ends.length && ends.every((pair) => pair.length === 2) && ends.flatMap((pair) => [...new Set(pair)]).sort().join() === S.names.slice(0, S.count).sort().join(), "the modes are not the ends of a parameter");
-    need(S.flow && p > 0n && !S.rules.resets && !(S.required || S.o.couplings || S.o.clock), "it is about other systems");
-    need(definite(own(low, 1n)) && definite(own(high, 1n)), "Q is not positive definite");
-    for (const pair of ends) {
-      // Over one denominator, and so in the same units, all of their terms are multiplied alike.
-      const [a, b] = pair.map((name) => acting(S, S.names.indexOf(name), [])), over = lcm(a.over, b.over);
-      const units = new Map(range(S.n).map((i) => [`${i}`, [1n, over]]));
-      const falls = (s, Q) => terms({ ...s, facts: [["units", 1n, units, units]] }, Q, Q, [2n * p, q], () => [0n, 1n]);
-      for (const made of [falls(a, low), falls(b, high), [...falls(a, high), ...falls(b, low)]]) need(definite(made), `it rises between ${pair.join(" and ")}`);
-    }
-    return `decay like exp(-alpha t) with alpha = ${o.rate} 1/s at every constant value of the parameter`;
-  }
-  const CHECKS = { graph: [graph, "proved"], "no-common-quadratic": [noCommonQuadratic, ""], "parameter-quadratic": [parameterQuadratic, "proved"] };
+  const CHECKS = { graph: [graph, "proved"], "no-common-quadratic": [noCommonQuadratic, ""] };
   // For every statement of a certificate: whether it holds (null: not checked here), and what it says or why not.
   return (text) => {
     const o = parse(text), shown = new Set();

@@ -357,7 +357,7 @@ BOUNCING = {
     "coupled-axes",
     "periodic-quadratic",
 }
-CONSTANT = {"parameter-quadratic", "constants-quadratic"}
+CONSTANT = {"constants-quadratic"}
 FREE = {"common-quadratic", "common-polynomial"} | CONSTANT | BOUNCING
 SETS = {"common-quadratic", "conewise-quadratic", "coupled-axes", "invariant-ellipsoid"}
 SETS |= {"offset-ellipsoid", "periodic-quadratic"}

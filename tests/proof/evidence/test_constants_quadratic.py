@@ -78,11 +78,23 @@ def test_what_holds_for_parameters_that_vary_is_shown_first():
     assert found.evidence.is_common_quadratic
 
 
-@pytest.mark.parametrize("kbar", [7, 50])
-def test_the_oscillator_of_one_constant_stiffness(kbar):
+@pytest.mark.parametrize("kbar", [7, 50, 1000])
+def test_a_constant_stiffness_is_stable_however_large(kbar):
     """Unstable for a stiffness that jumps, once kbar > 6.98513 (Zelentsovsky 1994)."""
-    found = certify(oscillator(kbar, PAIR), Method.CONSTANTS_QUADRATIC)
+    found = certify(oscillator(kbar, PAIR))
     assert found.verdict is Verdict.PROVED
+    # All eigenvalues have the real part -1/2.
+    assert 0 < found.evidence.rate <= Fraction(1, 2)
+    assert holds(found.system, found.evidence)
+    assert certify(oscillator(kbar)).verdict is Verdict.REFUTED
+
+
+def test_pairs_of_modes_switch_at_one_value():
+    rows = [mode.A.fractions() for mode in oscillator(50).modes]
+    more_damped = [[[0, 1], [A[1][0], Fraction(-11, 10)]] for A in rows]
+    ends = Switching(fixed_ends=(("m0", "m1"), ("m2", "m3")))
+    found = certify(family(*rows, *more_damped, switching=ends))
+    assert found.evidence.kind == "constants-quadratic"
     assert holds(found.system, found.evidence)
 
 

@@ -24,7 +24,6 @@ LONG = frozenset(
         "invariant-ellipsoid",
         "mode-quadratic",
         "offset-ellipsoid",
-        "parameter-quadratic",
         "periodic-quadratic",
         "saturated-ellipsoid",
     )

@@ -256,9 +256,7 @@ def _print(result: Result) -> None:
         say(f"  {statement.claim(system) if wants_details() else short}")
     for attempt in certification.attempts:
         # A bound that was wanted and not found must be visible.
-        sought = attempt.step.startswith(
-            ("bound on ", "constant force", "decay under", "limits of")
-        )
+        sought = attempt.step.startswith(("bound on ", "decay under"))
         if wants_details() or (sought and attempt.outcome != "found"):
             # Steps that were skipped took no time.
             took = f" ({attempt.work:.2g} of work, {attempt.seconds:.2g} s)"

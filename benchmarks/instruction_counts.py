@@ -21,15 +21,10 @@ from nrs_design.exporters.c_names import CNames
 from nrs_design.exporters.formats.c import header_text, source_text
 from nrs_design.exporters.formats.vectors import make_vectors
 from nrs_design.pipeline import run_design
-from nrs_design.robot.exporters import c as robot_c
-from nrs_design.robot.exporters.robot_tree import RobotExport
-from nrs_design.robot.models import build_robot
-from nrs_design.robot.pipeline import run_robot_laws
-from nrs_design.spec import RobotSpec, read_spec
+from nrs_design.spec import read_spec
 
 HERE = Path(__file__).parent
 SPECS = HERE.parent / "specs" / "neuroboscope"
-ROBOT = HERE.parent / "specs" / "robots" / "neuroboscope.nrs.yaml"
 PERIOD = Fraction(1, 500)
 COUNT, FEW, FEWEST = 1000, 100, 20
 
@@ -73,31 +68,11 @@ def _of_spec(file: Path) -> Callable[[], Exported]:
     return make
 
 
-def _of_robot(law: str) -> Callable[[], Exported]:
-    """Return what designs the motion control of the robot, and takes one of its laws."""
-
-    def make() -> Exported:
-        loaded = read_spec(ROBOT)
-        assert isinstance(loaded.spec, RobotSpec)
-        export = RobotExport(loaded, build_robot(loaded.spec), ROBOT.name)
-        laws = run_robot_laws(loaded.spec, export.robot)
-        names = robot_c.names_of(loaded.spec.name, law)
-        texts = robot_c.header_text(export, laws), robot_c.source_text(export, laws)
-        return Exported(laws[law], loaded.spec.name, *texts, names.lower)
-
-    return make
-
-
 # Each law by its name: what makes it, and how many instructions are aimed for.
 LAWS: dict[str, tuple[Callable[[], Exported], int | None]] = {
     "hybrid impedance axis with guards": (_of_spec(HERE / "hybrid.nrs.yaml"), 200),
     "soft-tissue-sampled": (_of_spec(SPECS / "soft-tissue-sampled.nrs.yaml"), None),
     "force-limit-sampled": (_of_spec(SPECS / "force-limit-sampled.nrs.yaml"), None),
-    "robot: base": (_of_robot("base"), None),
-    "robot: PD": (_of_robot("pd"), None),
-    "robot: PD with gravity": (_of_robot("pd_gravity"), 250),
-    "robot: simplified computed torque": (_of_robot("computed_torque"), 1700),
-    "robot: full inverse dynamics": (_of_robot("inverse_dynamics"), 1000),
 }
 
 

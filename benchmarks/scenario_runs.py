@@ -1,37 +1,30 @@
 """A minute of switching in tissue: events against an integrator; and the sampled law against time.
 
 The peer is SciPy's `solve_ivp` as a user would write it: each stay at a relative tolerance of 1e-9,
-contact as an event that ends it. Both are held against the same integrator at 1e-13. MuJoCo moves
-one axis, and three with all links, under the same law in steps of 0.1 ms; law and tissue take the
-same time on either side.
+contact as an event that ends it. Both are held against the same integrator at 1e-13.
 """
 
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 from time import process_time
 
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from benchmarks.measure import Comparison, Finding, Size, least_side_by_side, time_side_by_side
+from benchmarks.measure import Comparison, Finding, Size, least_side_by_side
 from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.controllers.laws import Admittance
 from nrs_design.models.plant import Plant
-from nrs_design.pipeline import Designed, run_design
-from nrs_design.robot.pipeline import run_robot
-from nrs_design.robot.simulation.robot_body import Arm
-from nrs_design.simulation.bodies import SAMPLED, simulate_on_body
+from nrs_design.pipeline import run_design
 from nrs_design.simulation.build_scenario import default_scenario
 from nrs_design.simulation.exact import simulate_exactly
+from nrs_design.simulation.sampled import simulate_sampled
 from nrs_design.simulation.scenario import Array, Control, Profile, Scenario
 from nrs_design.spec import InteractionDesignSpec, read_spec
-from nrs_design.spec.sampling import SamplingSpec
 
 SPEC = Path(__file__).parents[1] / "specs/neuroboscope/soft-tissue-sampled.nrs.yaml"
-AXES_SPEC = SPEC.with_name("soft-tissue-axes.nrs.yaml")
 SECONDS, SWITCHES = 60.0, 1000
 TARGET, REAL_TIME = 20.0, 100.0
 # In rad/s and rad/s: the hand swings so, and the surface is so far away, in rad.
@@ -61,7 +54,7 @@ def run(size: Size) -> tuple[Comparison | Finding, ...]:
     work = f"{length:.0f} s of the switched loop in tissue"
     long = replace(sampled, profile=exact.profile, duration=size.pick(20.0, 20.0, 0.5))
     start = process_time()
-    simulate_on_body(*given, (long,), SAMPLED)
+    simulate_sampled(*given, long)
     seconds = process_time() - start
     share = long.duration / seconds
     return (
@@ -73,39 +66,7 @@ def run(size: Size) -> tuple[Comparison | Finding, ...]:
             share >= REAL_TIME,
             seconds,
         ),
-        *_beside_mujoco(designed, long, size),
     )
-
-
-def _beside_mujoco(designed: Designed, long: Scenario, size: Size) -> tuple[Comparison, ...]:
-    """Compare the mechanics of one axis, and of a robot, with MuJoCo's."""
-    axes_spec = run_design(read_spec(AXES_SPEC))
-    assert axes_spec is not None
-    coupling = axes_spec.spec.coupling
-    assert coupling is not None
-    assert coupling.robot is not None
-    _, _, robot = run_robot(AXES_SPEC.parent / coupling.robot)
-    every = SamplingSpec.model_validate({"period": "2 ms", "delay": "0"})
-    timed = replace(axes_spec, spec=axes_spec.spec.model_copy(update={"sampling": every}))
-    three = replace(default_scenario(timed.spec, timed.plant), duration=size.pick(4.0, 1.0, 0.1))
-    cases = (
-        ("one axis", designed, (long,), None),
-        ("three axes, all links", timed, (three,) * 3, Arm(robot, robot.home)),
-    )
-    found = []
-    for what, one, scenarios, arm in cases:
-        ours, theirs = (
-            partial(simulate_on_body, one.spec, one.plant, one.design, scenarios, engine, arm)
-            for engine in ("sampled", "mujoco")
-        )
-        (both, mine), (runs, _) = time_side_by_side(size.pick(3, 1, 1), theirs, ours)
-        assert isinstance(runs, tuple)
-        apart = max(run.deviation.angle for run in runs)
-        work = f"{scenarios[0].duration:.0f} s, {what}, the law in single precision, 2 ms"
-        note = f"at most {apart:.1e} rad apart"
-        # The run with MuJoCo has ours in it, to compare.
-        found.append(Comparison(work, "MuJoCo, 0.1 ms", both - mine, mine, None, note))
-    return tuple(found)
 
 
 def _scenario(spec: InteractionDesignSpec, plant: Plant, length: float) -> Scenario:

@@ -33,7 +33,6 @@ FMU = (
     b"\x1c\x00\x00\x00documentation/nrs-design.txtnrs-design fmu\n"
 )
 VECTOR_TEST = b'"""nrs-design test of conformance vectors'
-BOUNDS = b'{\n  "schema": "nrs-design/robot-bounds/'
 LOCK = b'{\n  "schema": "nrs-design/lock/'
 PAGE = b'<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta name="generator" content="nrs-design">\n'
 # What stands beside a page.

@@ -1,8 +1,8 @@
 """Whose the files in an output folder are: a spec never overwrites those of another.
 
-Files are named after the ``name:`` of their spec, and a copied spec has the same. Certificates,
-pages and models of robots therefore say where their spec was, relative to themselves. This is no
-part of any claim: it is not checked, and a certificate holds wherever its spec is.
+Files are named after the ``name:`` of their spec, and a copied spec has the same. Certificates and
+pages therefore say where their spec was, relative to themselves. This is no part of any claim: it
+is not checked, and a certificate holds wherever its spec is.
 """
 
 from __future__ import annotations
@@ -15,8 +15,6 @@ from nrs_design.errors import CertificateError, OutputError
 from nrs_design.output import PAGE
 from nrs_design.spec.task_space import file_of
 
-# As exported models of robots write it.
-MARK = "spec file: "
 REMEDY = "give this spec a `name` of its own, choose another place, or remove that file"
 # As exports of designs write it: in the lines of their header, as JSON, as a MAT-file.
 _NAMED = re.compile(
@@ -55,29 +53,11 @@ def check_page(spec: Path, page: Path) -> None:
             _refuse_other(spec, html.unescape(found[1].decode(errors="replace")), page)
 
 
-def check_export(spec: Path, file: Path) -> None:
-    """Refuse to overwrite what was exported for another spec; see `check_owner`.
-
-    What has the name of a spec, but not its place, was exported for a design.
-    """
-    if file.is_file():
-        with file.open("rb") as opened:
-            beginning = opened.read(8192)
-        found = re.search(MARK.encode() + rb'([^\n]{1,4096}?)(?:",?)?\n', beginning)
-        if found:
-            _refuse_other(spec, found[1].decode(errors="replace"), file)
-        elif _NAMED.search(beginning):
-            raise OutputError("was exported for a design", path=file, remedy=REMEDY)
-
-
 def check_name(name: str, file: Path) -> None:
     """Refuse to overwrite what says, as every export does, that it is of a spec of another name."""
     if file.is_file():
         with file.open("rb") as opened:
-            beginning = opened.read(8192)
-        if MARK.encode() in beginning:
-            raise OutputError("was exported for a robot", path=file, remedy=REMEDY)
-        found = _NAMED.search(beginning)
+            found = _NAMED.search(opened.read(8192))
         owner = next(filter(None, found.groups())).decode() if found else name
         if owner != name:
             raise OutputError(f"was exported for the spec {owner}", path=file, remedy=REMEDY)

@@ -77,7 +77,6 @@ def test_words_are_about_one_axis_at_a_time():
         ("1.1667e-4 m/s/rpm", "4.8417e-4 rad/s/rpm", "the axis is prismatic"),
         ("axis: prismatic ", "axis: rotary ", "N*m"),
         ("axis: prismatic ", "axis: turning ", "rotary"),
-        ("contact: losable", "coupling: {axes: 3, inertia: [1 kg, 2 kg]}", "coupling"),
     ],
 )
 def test_quantities_of_the_other_axis_are_refused_with_a_remedy(old, new, what):

@@ -18,16 +18,11 @@ MODULES = sorted(
 API = ("api/", "identification/api/")
 # Folders whose docstrings are still to be shortened, and what is about to go.
 LATER = (
-    *("certificates/brief", "certificates/goals", "certificates/together", "cli/command"),
+    *("certificates/brief", "certificates/goals", "cli/command"),
     *("cli/destinations", "cli/goals", "cli/worst_case"),
     *("exporters/monitor_limits", "exporters/proof_assistant/flows", "exporters/region"),
     *("proof/", "search/", "simulation/", "spec/", "switched/"),
     *("gating/examine", "gating/run", "reporting/evidence/parameter", "reporting/evidence/runs"),
-    *("robot/controllers/step_laws", "robot/controllers/traced_", "robot/design/mobility"),
-    *("robot/design/robot_laws", "robot/exporters/", "robot/models/arm"),
-    *("robot/models/enclosure/", "robot/models/lumped", "robot/models/mjcf", "robot/models/tree"),
-    *("robot/models/urdf", "robot/pipeline", "robot/reporting/figures/robot_bounds"),
-    *("robot/simulation/bodies", "robot/simulation/mujoco_body", "robot/simulation/robot_body"),
     "ros2/export",
 )
 UNDERLINED = re.compile(r"^\w[\w ]*\n-{3,}$", re.MULTILINE)

@@ -30,13 +30,6 @@ REACHED = {
     # A spec of kind robot has a page of its own.
     ("nrs_design.cli.report", "robot", "pipeline"),
     ("nrs_design.cli.report", "robot", "reporting.robot"),
-    # Bounds on what the links of a robot do are computed by its model.
-    ("nrs_design.cli.verify", "robot", "pipeline"),
-    ("nrs_design.gating.examine", "robot", "pipeline"),
-    ("nrs_design.gating.run", "robot", "pipeline"),
-    # What a scenario moves may be all links, or MuJoCo.
-    ("nrs_design.pipeline.scenarios", "robot", "pipeline"),
-    ("nrs_design.simulation.bodies", "robot", "simulation.bodies"),
     # Records and runs, from the library.
     ("nrs_design.api.measured", "identification", "api.library"),
     ("nrs_design.api.study", "identification", "api.library"),
@@ -325,7 +318,7 @@ SHARED = {
     # The library at the door, and the stage behind it.
     *("certify", "verify"),
     # One operation on numbers of other types, one question to another noun.
-    *("add", "multiply", "read_integer", "content_id", "too_stiff"),
+    *("add", "multiply", "read_integer", "too_stiff"),
 }
 
 

@@ -17,7 +17,6 @@ from tests.support import ROOT, SOFT_TISSUE
 
 CORE = sorted(name for name in FILES if [*name.split("."), ""][1] not in WINGS)
 IMPORT_ALL = "import sys, importlib\nfor name in sys.argv[1:]: importlib.import_module(name)"
-AXES = "specs/neuroboscope/soft-tissue-axes.nrs.yaml"
 THESIS_ROBOT = ROOT / "specs" / "robots" / "neuroboscope.nrs.yaml"
 ABSENT = "the wing robot is not installed"
 
@@ -36,7 +35,7 @@ def test_a_wing_that_is_missing_is_named(monkeypatch, name):
         load_wing("robot", "pipeline")
 
 
-@pytest.mark.parametrize("name", ["mujoco", "nrs_design.spec", "nrs_design.robot.pipe"])
+@pytest.mark.parametrize("name", ["scipy", "nrs_design.spec", "nrs_design.robot.pipe"])
 def test_what_else_is_missing_is_no_missing_wing(monkeypatch, name):
     monkeypatch.setattr(nrs_design.wings, "import_module", missing(name))
     with pytest.raises(ModuleNotFoundError, match=name):
@@ -111,22 +110,7 @@ def test_recorded_commands_are_read_by_identification(house, command):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("house", ["robot"], indirect=True)
-@pytest.mark.parametrize(
-    "arguments",
-    [
-        ("report", THESIS_ROBOT),
-        ("verify", ROOT / "reports/soft-tissue-axes.cert.json", AXES, "--bounds"),
-        ("simulate", SOFT_TISSUE, "--engine", "mujoco"),
-        ("gate", AXES, "--no-reports"),
-        ("gate", "--locked", AXES),
-    ],
-    ids=["report", "verify", "simulate", "gate", "gate --locked"],
-)
-def test_what_needs_robots_says_so_without_them(house, arguments):
-    """No run, page or verdict takes for granted what the wing would have checked."""
-    shutil.copytree(ROOT / "specs", house.folder / "specs", dirs_exist_ok=True)
-    shutil.copytree(ROOT / "reports", house.folder / "reports", dirs_exist_ok=True)
-    shutil.copy(ROOT / "nrs.lock", house.folder)
-    done = house.program(*arguments)
+def test_a_report_of_a_robot_says_that_its_wing_is_missing(house):
+    done = house.program("report", THESIS_ROBOT)
     assert done.returncode == 2, done.stdout
     assert ABSENT in " ".join((done.stdout + done.stderr).split())

@@ -17,7 +17,6 @@ from math import lcm
 # M z comes after z, of which n entries are the state, or is its derivative in a flow. Facts are
 # (name, a, b): of each name, all (a z)(b z) add up to nothing positive.
 Step = namedtuple("Step", "mode source target n M flow facts over time")
-ACTS = ("channel", "rounding", "coupling")
 
 
 def need(truth, words, error=ValueError):
@@ -93,30 +92,25 @@ def exponential(A, t):
     return E, bound  # Of a row's error: of the terms left, each is at most half of the one before
 
 
-def acting(k, active):
+def acting(k, rounds):
     mode, facts, M = every[k], [], {i: {**row} for i, row in A[every[k]["name"]].items()}
-    acts = {kind: [f"{kind} {i + 1}" for i, _ in enumerate(o.get(f"{kind}s", []))] for kind in ACTS}
-    for act in (act for kind in active for act in acts[kind]):
-        item = o[f"{act[:8]}s"][int(act[9:]) - 1]
+    for number, item in enumerate(o.get("roundings", []) if rounds else [], 1):
+        act, width = f"rounding {number}", n + len(o.get("channels", []))
         need(len(item["columns"]) == len(item["rows"]) == len(every), "a mode has no column or row")
-        keys = [*M, *acts["channel"], *(acts["rounding"] if act in acts["coupling"] else [])]
-        q = dict(zip(keys, table(item["rows"][k], 1, len(keys))[0,].values(), strict=True))
-        q = {key: x for key, x in q.items() if key in M or key[:8] in active}
+        q = {key: x for key, x in table(item["rows"][k], 1, width)[0,].items() if key in M}
         for i, entry in table(item["columns"][k], n, 1).items():
             M[i][act] = entry[0,]
-        alike = [*dict.fromkeys(c["name"] for c in o.get("couplings", ()))]
-        fact = f"coupling {alike.index(item['name']) + 1}" if act in acts["coupling"] else act
-        facts += [(fact, {act: 1}, {act: 1}), (fact, {key: -x for key, x in q.items()}, q)]
+        facts += [(act, {act: 1}, {act: 1}), (act, {key: -x for key, x in q.items()}, q)]
     for row in [*M.values(), *(v for _, *pair in facts for v in pair)] * (k >= count):
         need(row.pop((n - 1,), 0) == (row is M[n - 1,] and not flow), "free, but pushed")
     return Step(mode["name"], "modes", "modes", n, M, flow, facts, mode["denominator"], 1)
 
 
-def steps_in_contact(lost, active):
+def steps_in_contact(lost, rounds):
     """Yield every step under arbitrary switching, between contact and flight if it is lost."""
     need(uniform and not rules.get("resets"), "resets, or modes of unlike size, are not covered")
     for k in range(len(every) if lost else count):
-        s, last = acting(k, active), (n - 1,)
+        s, last = acting(k, rounds), (n - 1,)
         rows = {i: row for i, row in s.M.items() if i != last}
         if k >= count:
             s = s._replace(n=n - 1, source="free")
@@ -160,23 +154,21 @@ def check_graph(told):
     nodes = [(k, *map(node.get, ("place", "form"))) for k, node in enumerate(told["nodes"])]
     multipliers, added = told.get("multipliers", []), told.get("vanishing", [])
     values = {(m["fact"], m.get("target")): m["value"] for m in multipliers}
-    covered = {fact.split()[0] for fact, _ in values}
     lost = stays is None and "free" in [place for _, place, _ in nodes]
     need("edges" not in told and (d == 1 or (flow and stays is None)), "shape", NotImplementedError)
     need(d >= 1 and rate > 0 and (flow or rate < 1), "the rate is none of decay")
     if stays is None:
-        steps = list(steps_in_contact(lost, [kind for kind in ACTS[1:] if kind in covered]))
-        more = (required and not lost) or ("couplings" in o and "coupling" not in covered)
+        steps = list(steps_in_contact(lost, any(fact[:8] == "rounding" for fact, _ in values)))
+        more = required and not lost
     else:
         steps = list(steps_by_mode({*stays.get("leaving", [])}, rate))
-        more = values or required or "couplings" in o or "fixed_ends" in rules
-    need(not more, "contact, axes, or what is between the ends of a range is not covered")
+        more = values or required or "fixed_ends" in rules
+    need(not more, "contact, or what is between the ends of a range, is not covered")
     sizes, facts = {s.source: s.n for s in steps}, {fact for s in steps for fact, *_ in s.facts}
     wanted = {s.target for s in steps} | ({*sizes} if stays is None else names)
     need({*sizes} == {p for _, p, _ in nodes} >= wanted, "a place has no form, or no step")
-    need(len(nodes) == len(sizes) or not (flow or "coupling" in covered), "there are more forms")
+    need(len(nodes) == len(sizes) or not flow, "there are more forms")
     odd = [m for m in multipliers if m["value"] < 0 or m["fact"] not in facts - {"error"} or d > 1]
-    odd += [m for m in multipliers if "target" in m and m["fact"].startswith("coupling")]
     need(not odd and len(values) == len(multipliers), "a multiplier is odd")
     for _, place, rows in nodes:
         need(definite(own(form(rows, sizes[place], d))), "a form is not positive definite")
@@ -228,8 +220,8 @@ for statement in o["statements"]:
     kind, code, words = statement["kind"], 0, "holds"
     try:
         check = globals().get(f"check_{kind}".replace("-", "_"))
-        known = check and not {"clock", "pulls"} & {*o, *contact}
-        need(known, "this kind, turns or pulls", NotImplementedError)
+        known = check and not {"clock", "pulls", "couplings"} & {*o, *contact}
+        need(known, "this kind, turns, pulls or axes", NotImplementedError)
         check(statement)
         verdict = verdict if kind.startswith("no-") else "proved"
     except NotImplementedError as error:

@@ -166,7 +166,7 @@ class Study:
         ----------
         *scenarios : str
             Names; by default all.
-        engine : {"exact", "sampled", "mujoco"}, optional
+        engine : {"exact", "sampled"}, optional
             By default sampled where the spec has sampling or tissue is not linear, else exact.
         period, delay : float and int, optional
             Of the sampled engine, in s and in samples; by default those of the spec.
@@ -274,9 +274,8 @@ def _runs(
     """Return how scenarios are run; who names a period wants the sampled engine."""
     from nrs_design.pipeline.scenarios import Runs
 
-    if engine not in (None, "exact", "sampled", "mujoco"):
-        remedy = "write exact, sampled or mujoco"
-        raise DesignError(f"there is no engine {engine!r}", remedy=remedy)
+    if engine not in (None, "exact", "sampled"):
+        raise DesignError(f"there is no engine {engine!r}", remedy="write exact or sampled")
     from nrs_design.spec.sampling import LONGEST_DELAY
 
     if any(not isinstance(name, str) for name in scenarios):

@@ -39,8 +39,7 @@ def brief(evidence: AbstractEvidence, system: SwitchedSystem, arm: Fraction | No
             unit = f" {start.unit}".rstrip()
             of = ""
             if size is not None:
-                several = " of all axes (root of the sum of squares)" if system.couplings else ""
-                of = f" with a {start.name}{several} up to {lower(size, DIGITS)}{unit}"
+                of = f" with a {start.name} up to {lower(size, DIGITS)}{unit}"
                 of += start.beside
             return f"although signals saturate, decays from rest{of}{_contact(evidence, system)}"
         case _:
@@ -79,8 +78,6 @@ def _scope(evidence: AbstractEvidence, system: SwitchedSystem) -> str:
     if system.clock is not None:
         rule = f"in rounds of {system.clock.length} steps"
         signals += f", {rule}" if system.clock.is_round else ", deadlines missed as the rule allows"
-    if system.couplings:
-        signals += ", for any number of coupled axes"
     rounded = ", rounding included" if system.roundings and evidence.covers_rounding else ""
     return f" under {signals}{_contact(evidence, system)}{rounded}"
 

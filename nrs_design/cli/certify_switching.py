@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -10,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from nrs_design.cli import exit_codes
-from nrs_design.cli.command import Answer, Together, command
+from nrs_design.cli.command import Answer, command
 from nrs_design.cli.granted import print_granted
 from nrs_design.cli.options import Budget, MaxDegree, Memory, SpecFile
 from nrs_design.cli.printing import (
@@ -28,7 +27,6 @@ from nrs_design.facts.certification import (
     margins_facts,
     radius_facts,
 )
-from nrs_design.proof.text import exact_text
 from nrs_design.search.gradient_settings import Gradient
 from nrs_design.search.method import Method
 
@@ -53,28 +51,7 @@ ShortestDwell = Annotated[
 ]
 
 
-def _together(axes: Sequence[Mapping[str, Any]]) -> Together:
-    """Say what the certificates of the axes of an arm show of all at once; each is read again."""
-    from nrs_design.certificates.together import rate_together
-    from nrs_design.certificates.verify import verify
-    from nrs_design.proof.bounds import at_least, at_most
-
-    files = [axis["certificate"] for axis in axes]
-    checked = [verify(Path(file)) for file in files if file is not None]
-    held = [item.certificate for item in checked if item and item.certificate is not None]
-    rate = rate_together(held) if len(held) == len(axes) else None
-    if rate is None:
-        return None, {"together": None}
-    period = held[0].system.sample_time
-    assert period is not None
-    line = (
-        f"together: PROVED: all {len(axes)} axes, through an arm of the stated mobility, taken on "
-        f"trust: rho {at_most(rate)} per step, alpha {at_least((1 - rate) / period, '1/s')}"
-    )
-    return line, {"together": {"verdict": "proved", "rate": exact_text(rate)}}
-
-
-@command("certify-switching", each_axis=True, together=_together)
+@command("certify-switching", each_axis=True)
 def certify_switching(
     spec: SpecFile,
     out: Annotated[

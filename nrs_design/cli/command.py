@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import wraps
-from typing import Annotated, Any, TypeAlias
+from typing import Annotated, Any
 
 import typer
 
@@ -15,15 +15,11 @@ from nrs_design.cli.exit_codes import worst
 from nrs_design.cli.printing import (
     output,
     print_json,
-    say,
     wants_details,
     wants_json,
     wants_text,
 )
 from nrs_design.errors import NrsDesignError
-
-# A line, if there is one, and facts.
-Together: TypeAlias = tuple[str | None, dict[str, Any]]
 
 VERBOSE = "Print all of it: the whole claim, what it takes for granted, and every step."
 QUIET = "Print nothing but errors, and what --json, --format or --out ask for; see the exit code."
@@ -63,7 +59,6 @@ def command(
     *,
     has_json: bool = True,
     each_axis: bool = False,
-    together: Callable[[Sequence[Mapping[str, Any]]], Together] | None = None,
     passes_on: bool = False,
 ) -> Callable[[Callable[..., Answer]], Callable[..., None]]:
     """Make a command of a function: with --json, -v and -q, and an end that prints its answer.
@@ -76,8 +71,6 @@ def command(
         Whether there is such a document.
     each_axis : bool
         Whether it is run for each axis of a `spec` that holds several.
-    together : callable, optional
-        What is then said of all axes, given the facts of each: a line, and more facts.
     passes_on : bool
         Whether options that it does not know belong to another command, which its last argument is.
     """
@@ -93,11 +86,10 @@ def command(
 
             shown = output(as_json=as_json, quiet=quiet, verbose=verbose)
             with shown, about(AxisType.ROTARY):
-                if each_axis:
-                    answer = _for_each_axis(function, arguments, together)
-                else:
-                    answer = function(**arguments)
-                answer.deliver(name)
+                answered = (
+                    _for_each_axis(function, arguments) if each_axis else function(**arguments)
+                )
+                answered.deliver(name)
 
         signature = inspect.signature(function, eval_str=True)
         keyword = inspect.Parameter.KEYWORD_ONLY
@@ -113,11 +105,7 @@ def command(
     return decorate
 
 
-def _for_each_axis(
-    function: Callable[..., Answer],
-    arguments: dict[str, Any],
-    together: Callable[[Sequence[Mapping[str, Any]]], Together] | None,
-) -> Answer:
+def _for_each_axis(function: Callable[..., Answer], arguments: dict[str, Any]) -> Answer:
     """Answer for each axis of a spec in turn, and end with the worst of the codes."""
     from nrs_design.spec.load import axes_at
 
@@ -136,15 +124,10 @@ def _for_each_axis(
     for axis in axes:
         answer = function(**arguments | {"spec": axis})
         codes.add(answer.code)
-        if wants_json() or together is not None:
+        if wants_json():
             answers[str(axis)] = answer.facts()
-        if not wants_json():
+        else:
             quiet = not (wants_text() or answer.loud)
             with output(as_json=False, quiet=quiet, verbose=wants_details()):
                 answer.show()
-    line, facts = together(tuple(answers.values())) if together else (None, {})
-    return Answer(
-        lambda: {"axes": answers, **facts},
-        lambda: None if line is None else say(line),
-        worst(codes),
-    )
+    return Answer(lambda: {"axes": answers}, code=worst(codes))

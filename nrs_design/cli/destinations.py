@@ -120,8 +120,7 @@ def check_beside(loaded: LoadedSpec, out: Path) -> None:
     from nrs_design.gating.recorded import hash_followed
 
     beside = out.parent.resolve() == loaded.path.parent.resolve()
-    named = loaded.robot is not None or loaded.arm is not None or hash_followed(loaded)
-    if named and not beside:
+    if hash_followed(loaded) and not beside:
         raise OutputError(
             "the spec names files beside itself",
             path=out,

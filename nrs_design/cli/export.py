@@ -14,7 +14,7 @@ from nrs_design.cli.printing import note, progress, say
 from nrs_design.cli.reading import take_spec
 from nrs_design.cli.tables import print_table
 from nrs_design.errors import NrsDesignError, OutputError
-from nrs_design.exporters import ROBOT_FORMATS, Format, format_names, format_of, known_format
+from nrs_design.exporters import Format, format_names, format_of, known_format
 from nrs_design.facts.export import export_facts
 
 if TYPE_CHECKING:
@@ -88,10 +88,7 @@ def _list() -> Answer:
             "needs": item.needs,
             "files": [f"NAME{ending}" for ending in item.files],
         }
-        for name, item in (
-            *((name, format_of(name)) for name in format_names()),
-            *ROBOT_FORMATS.items(),
-        )
+        for name, item in ((name, format_of(name)) for name in format_names())
     ]
     entries.append(ROS2)
     rows = [(entry["name"], entry["purpose"], entry["needs"]) for entry in entries]
@@ -102,10 +99,9 @@ def _list() -> Answer:
 
 
 def _format(name: str) -> Format:
-    group = "robot" if name in ROBOT_FORMATS.keys() - set(format_names()) else name
-    if group in ("robot", "ros2"):
+    if name == "ros2":
         raise NrsDesignError(
-            f"{name} is not a format of this command", remedy=f"use `nrs-design {group} export`"
+            f"{name} is not a format of this command", remedy="use `nrs-design ros2 export`"
         )
     return known_format(name)
 

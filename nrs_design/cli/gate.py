@@ -198,7 +198,7 @@ def _certify(
 ) -> GateOutcome:
     from nrs_design.gating.find_specs import find_specs
     from nrs_design.gating.lock import read_lock_if_any
-    from nrs_design.gating.renew import bounds_of, certificates_of, check_folder, write_lock
+    from nrs_design.gating.renew import certificates_of, check_folder, write_lock
     from nrs_design.gating.run import Files, run_gate
     from nrs_design.output import LOCK, check_place
     from nrs_design.pipeline import Overrides
@@ -208,9 +208,7 @@ def _certify(
     check_place(lock, LOCK)
     known = read_lock_if_any(lock)
     with progress("gate") as step:
-        files = Files(
-            folder=reports, html=html, locked=certificates_of(known, lock), bounds=bounds_of(known)
-        )
+        files = Files(folder=reports, html=html, locked=certificates_of(known, lock))
         outcome = run_gate(specs, files, step, Overrides(*search), jobs)
     return _with_not_examined(write_lock(outcome, lock, prune=prune), paths)
 

@@ -16,7 +16,6 @@ class EngineOption(StrEnum):
 
     EXACT = "exact"
     SAMPLED = "sampled"
-    MUJOCO = "mujoco"
 
 
 Scenarios = Annotated[
@@ -27,9 +26,7 @@ Engine = Annotated[
     EngineOption | None,
     typer.Option(
         help="exact: continuous time, from event to event; sampled: the law that ships, in "
-        "single precision; mujoco: the same law on MuJoCo's mechanics (extra mujoco), and how "
-        "far that is from the sampled engine. Default: sampled where the spec has sampling, "
-        "tissue is not linear, or three axes move."
+        "single precision. Default: sampled where the spec has sampling or tissue is not linear."
     ),
 ]
 Out = Annotated[

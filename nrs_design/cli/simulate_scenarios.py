@@ -82,10 +82,9 @@ def _certified(
 
 
 def _check_places(designed: Designed, wanted: Runs, out: Path) -> None:
-    from nrs_design.simulation.build_scenario import default_names, run_names
+    from nrs_design.pipeline.scenarios import names_of
 
-    spec = designed.spec
-    for name in run_names(spec, tuple(wanted.names or spec.scenarios or default_names(spec))):
+    for name in names_of(designed.spec, wanted):
         _files(designed, out, name).check()
 
 
@@ -195,14 +194,6 @@ def _print(one: Simulated, bounds: tuple[CertifiedBound, ...], rate: CertifiedRa
         say(f"  the law refused {run.refused} samples: an input was beyond its limits")
     if run.saturated:
         say(f"  the motor's command met its limit at {run.saturated} samples")
-    if run.deviation is not None:
-        apart = run.deviation
-        say(
-            "  from the sampled engine, at most: "
-            f"angle {four_digits_up(apart.angle)} {unit('rad')}, "
-            f"velocity {four_digits_up(apart.velocity)} {unit('rad/s')}, "
-            f"torque {four_digits_up(apart.torque)} {unit('N m')}"
-        )
     if run.stopped:
         say(f"  STOPPED: {run.stopped}")
 

@@ -10,7 +10,7 @@ import typer
 
 from nrs_design.cli import exit_codes
 from nrs_design.cli.command import Answer, command
-from nrs_design.cli.printing import is_quiet, progress, say, wants_details
+from nrs_design.cli.printing import is_quiet, say, wants_details
 from nrs_design.cli.reading import take_spec
 from nrs_design.errors import CertificateError, NrsDesignError
 
@@ -21,9 +21,6 @@ if TYPE_CHECKING:
     from nrs_design.certificates.verify import Verification
     from nrs_design.exporters.deployed import DeployedFiles
     from nrs_design.spec import LoadedSpec, Spec
-
-# Work for each of the bounds of a robot.
-BUDGET = 1800.0
 
 
 @command("verify")
@@ -45,14 +42,6 @@ def verify(
             "FMU): they must be what is exported with the certificate.",
         ),
     ] = None,
-    bounds: Annotated[
-        bool,
-        typer.Option(
-            "--bounds",
-            help="Compute again what the links of the robot do to its axes, where the spec names "
-            "one: minutes.",
-        ),
-    ] = False,
 ) -> Answer:
     """Re-check a certificate in exact arithmetic, and that its modes are those of a spec.
 
@@ -65,27 +54,17 @@ def verify(
     answer says first what was compared and what was not. How the files are compiled is not looked
     at: the exported self-test tells whether your compiler and processor compute the law.
 
-    Where the spec names a robot, the bounds on its links are taken on trust from the file beside
-    it, and the answer says so; a file that a pose contradicts is rejected. --bounds computes them
-    again, from the spec of the robot.
-
     Exit code 0: the proof holds. 1: the certificate is rejected, or it holds and refutes, or the
-    deployed files or the bounds of the robot are others. 3: it holds, but decides
-    nothing.
+    deployed files are others. 3: it holds, but decides nothing.
 
     Example: nrs-design verify reports/soft-tissue.cert.json specs/neuroboscope/soft-tissue.nrs.yaml
     """
     _check_arguments(certificate, spec, deployed)
     outcome, loaded = _verify(certificate, spec)
-    robot = None if loaded is None else loaded.robot
-    if bounds and robot is None:
-        raise typer.BadParameter("needs a SPEC that names a robot", param_hint="--bounds")
-    faults = None if robot is None else _bounds_faults(robot, again=bounds)
-    on_trust = None if robot is None or bounds else _file_of(robot)
     checked = outcome.certificate if outcome.fault is None else None
     found = _deployed(deployed, loaded, checked)
     differs = found is not None and bool(found.differences)
-    rejected = checked is None or differs or bool(faults)
+    rejected = checked is None or differs
     verdict = "rejected" if checked is None or rejected else checked.verdict
     brief = is_quiet()
 
@@ -96,15 +75,12 @@ def verify(
         # What was deployed comes first: a proof of other numbers is no good news.
         if deployed is not None and found is not None:
             _print_deployed(deployed, found)
-        _print_faults(faults or [])
-        if not (faults or brief):
-            _print(checked, None if loaded is None else loaded.spec, on_trust)
-        if robot is not None and bounds and not faults:
-            say(f"  bounds of {robot.as_posix()}: computed again, they hold")
+        if not brief:
+            _print(checked, None if loaded is None else loaded.spec)
 
-    given = {"certificate": certificate, "spec": spec, "deployed": deployed, "robot": robot}
+    given = {"certificate": certificate, "spec": spec, "deployed": deployed}
     return Answer(
-        lambda: _facts(outcome, given, found, faults, on_trust),
+        lambda: _facts(outcome, given, found),
         show,
         exit_codes.OF_VERDICT.get(verdict, exit_codes.REFUTED),
         loud=rejected,
@@ -144,8 +120,6 @@ def _facts(
     outcome: Verification,
     given: Mapping[str, Path | None],
     found: DeployedFiles | None,
-    faults: list[str] | None,
-    on_trust: Path | None,
 ) -> dict[str, Any]:
     from nrs_design.facts.verification import verification_facts
 
@@ -154,38 +128,12 @@ def _facts(
     facts = verification_facts(outcome, given["certificate"], given["spec"])
     return {
         **facts,
-        "verdict": "rejected" if differences or faults else facts["verdict"],
+        "verdict": "rejected" if differences else facts["verdict"],
         "deployed": files["deployed"],
         "differences": None if differences is None else list(differences),
         "compared": None if found is None else [file.name for file in found.compared],
         "not_compared": None if found is None else found.left_out,
-        "robot": files["robot"],
-        "bounds_faults": faults,
-        "on_trust": None if on_trust is None else str(on_trust),
     }
-
-
-def _print_faults(faults: list[str]) -> None:
-    if faults:
-        say("REJECTED: the bounds of the robot do not hold", verdict="rejected")
-    for line in faults:
-        say(f"  {line}")
-
-
-def _file_of(robot: Path) -> Path:
-    from nrs_design.spec.robot_bounds import bounds_file
-
-    return bounds_file(robot)
-
-
-def _bounds_faults(robot: Path, *, again: bool) -> list[str]:
-    from nrs_design.wings import load_wing
-
-    robots = load_wing("robot", "pipeline")
-    with progress(f"bounds of {robot.name}", lines=again) as step:
-        if again:
-            return list(robots.check_robot_bounds(robot, BUDGET, step)[1])
-        return list(robots.contradict_robot_bounds(robot, step)[1])
 
 
 _NEXT = {
@@ -229,12 +177,12 @@ def _print_deployed(place: Path, found: DeployedFiles) -> None:
     )
 
 
-def _print(certificate: Certificate, spec: Spec | None, on_trust: Path | None) -> None:
+def _print(certificate: Certificate, spec: Spec | None) -> None:
     from nrs_design.certificates.brief import brief
 
     verdict, where = certificate.verdict, certificate.refuted_in
     refuted = "" if where is None else f" (refuted {where})"
-    say(f"{verdict.upper()}{refuted}{_extent(spec, on_trust)}", verdict=verdict)
+    say(f"{verdict.upper()}{refuted}{_extent(spec)}", verdict=verdict)
     for statement in certificate.statements:
         whole = statement.claim(certificate.system)
         say(f"  {whole if wants_details() else brief(statement, certificate.system)}")
@@ -244,16 +192,11 @@ def _print(certificate: Certificate, spec: Spec | None, on_trust: Path | None) -
         _print_gains(certificate, spec)
 
 
-def _extent(spec: Spec | None, on_trust: Path | None) -> str:
+def _extent(spec: Spec | None) -> str:
     """Say what was checked beside the proof."""
     if spec is None:
         return " for the modes in the file, checked exactly; name a SPEC to compare them with"
-    if on_trust is None:
-        return " for this spec, checked exactly"
-    return (
-        f", on trust in {on_trust.as_posix()}: checked exactly for this spec, if the "
-        "bounds in that file hold; --bounds computes them again"
-    )
+    return " for this spec, checked exactly"
 
 
 def _print_gains(certificate: Certificate, spec: Spec) -> None:

@@ -44,10 +44,10 @@ def worst_case(
 def _show(name: str, case: WorstCase, arm: float | None) -> None:
     from nrs_design.reporting.worst_case import (
         COLUMNS,
+        LEFT_OUT,
         MEANING,
         NO_BOUND,
         UNDECLARED,
-        left_out,
         worst_rows,
     )
 
@@ -55,7 +55,7 @@ def _show(name: str, case: WorstCase, arm: float | None) -> None:
     say(MEANING if case.bounds else f"{MEANING.partition(';')[0]}. {NO_BOUND}")
     if not case.declared:
         say(UNDECLARED)
-    say(f"not in it: {left_out(case.system)}")
+    say(f"not in it: {LEFT_OUT}")
 
 
 def _files(designed: Designed, out: Path, name: str) -> RunFiles:

@@ -51,7 +51,6 @@ RESPONSE_MEANING = (
     "ranges, each of them constant, of the linear loop with the gains that ship: without friction, "
     "rounding and saturation; sampled, with force samples that are all of the same age."
 )
-ONE_AXIS = "Of axes that act on each other, this is one by itself."
 
 
 def computed(proved: Mapping[str, Sequence[str]]) -> Iterator[str]:

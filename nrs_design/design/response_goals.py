@@ -195,8 +195,6 @@ def _why_not(
     touched: Environment | None,
 ) -> str:
     """Say why a response is not computed; nothing where it is."""
-    if spec.coupling is not None:
-        return "this axis moves beside others that act on it"
     if spec.late_at is not None:
         return "commands are late"
     if spec.sampling is not None and key == ACCURACY:

@@ -1,4 +1,4 @@
-"""Designs and robots for other programs; `formats` has one module for each format of a design."""
+"""Designs for other programs; `formats` has one module for each format of a design."""
 
 from __future__ import annotations
 
@@ -8,11 +8,9 @@ from functools import cache
 from importlib import import_module
 from pathlib import Path
 from pkgutil import iter_modules
-from types import MappingProxyType
 from typing import Any
 
 from nrs_design.errors import NrsDesignError
-from nrs_design.output import C_HEADER, C_SOURCE
 
 DESIGN = "a proof of the design"
 SAMPLED = "a proof of the sampled loop, or --unproved"
@@ -74,32 +72,3 @@ def remarks_on(name: str, files: Mapping[str, bytes]) -> tuple[str, ...]:
 
 def _module(name: str) -> Any:
     return import_module(f"{__name__}.formats.{name}")
-
-
-# Of specs of kind robot, by `nrs-design robot export`.
-ROBOT_FORMATS: Mapping[str, Format] = MappingProxyType(
-    {
-        "c": Format(
-            "motion control and dynamics of the robot in C99, in single precision",
-            "a robot spec (robot export), and --unproved: nothing is proved of them",
-            {".h": C_HEADER, ".c": C_SOURCE},
-            executable=True,
-        ),
-        "vectors": Format(
-            "inputs and exact outputs that any implementation of these laws must give",
-            "a robot spec (robot export), and --unproved: nothing is proved of them",
-            {".robot-vectors.json": b'{\n "schema": "nrs-design/robot-vectors/'},
-            executable=True,
-        ),
-        "mjcf": Format(
-            "the robot with its closed loops for MuJoCo",
-            "a robot spec (robot export)",
-            {".mjcf.xml": b"<!-- nrs-design mjcf of "},
-        ),
-        "urdf": Format(
-            "the spanning tree of the robot, without its loops",
-            "a robot spec (robot export)",
-            {".urdf": b'<?xml version="1.0"?>\n<!-- nrs-design urdf of '},
-        ),
-    }
-)

@@ -25,8 +25,6 @@ class MonitorLimits:
     period: Fraction  # Sample time in s
     torque: Fraction  # Largest torque in N m
     command: Fraction | None  # Where the command saturates; None where the spec does not say
-    # Below which the joint speeds of all axes stay together, in rad/s; None without one.
-    speed: Fraction | None
     age: tuple[int, int] | None  # Smallest and largest age of the force sample, in samples
     stays: tuple[tuple[int, int], ...]  # Shortest and longest time in each mode, in samples
     follows: tuple[tuple[bool, ...], ...]  # For each mode, which may follow it
@@ -45,14 +43,12 @@ def monitor_limits(export: Export, law: StepLaw) -> MonitorLimits:
     assert record.sample_time is not None
     period, allowed = Fraction(record.sample_time.exact), spec.switching.of_a_run.transitions
     command = spec.limits.command
-    speed = None if spec.coupling is None else spec.coupling.speed
     region = region_of(export, law)
     sector, (youngest, oldest) = sector_of(spec), record.delay or (0, 0)
     return MonitorLimits(
         period=to_float32(period),
         torque=float32_not_above(spec.limits.torque.not_above),
         command=None if command is None else float32_not_above(command.not_above),
-        speed=None if speed is None else float32_not_above(speed.not_above),
         age=record.delay,
         stays=tuple(_stay(spec, name, period) for name in modes),
         follows=tuple(
@@ -86,8 +82,6 @@ def _left_out(
         said.append(f"The region of a proof in which the command saturates: {region}.")
     if spec.limits.command is None:
         said.append("Saturation: the spec has no `limits: command`.")
-    if spec.coupling is not None and spec.coupling.speed is None:
-        said.append("Speed over all axes: the spec has no `coupling: speed`, so it is near zero.")
     if record.delay is None:
         said.append("Age of the force sample: the spec has no `sampling`.")
     if spec.sampling is not None and spec.sampling.misses is not None:

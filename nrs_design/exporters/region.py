@@ -60,8 +60,6 @@ def region_of(export: Export, law: StepLaw) -> MonitoredRegion | str:
     evidence, system = next(shown, None), certificate.system
     if evidence is None or evidence.quadratic is None or system.sample_time is None:
         return _NONE
-    if system.couplings:
-        return "it is one of all axes together, and a monitor sees one"
     if spec.sampling is None or spec.sampling.jitter is not None:
         return "periods are not of one length, and the speed is not known from the way of one"
     if max(spec.late) > 0:

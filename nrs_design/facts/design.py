@@ -69,15 +69,12 @@ def meanings(spec: InteractionDesignSpec, items: Sequence[ImpedanceAnalysis]) ->
         COST_MEANING,
         LIMIT_MEANING,
         MEANING,
-        ONE_AXIS,
         WEIGHED_MEANING,
         computed,
     )
 
     yield MEANING[0]
     yield LIMIT_MEANING
-    if spec.coupling is not None:
-        yield ONE_AXIS
     yield from computed({item.name: item.proved_titles for item in items})
     yield COST_MEANING
     weights = (getattr(controller, "weights", None) for controller in spec.controllers.values())

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -24,7 +23,6 @@ def run_facts(
         "refused_samples": run.refused,
         "saturated_samples": run.saturated,
         "missed_samples": run.missed,
-        "deviation_from_sampled": None if run.deviation is None else asdict(run.deviation),
         "not_modelled": list(run.left_out),
         "metrics": dict(one.metrics),
         "limits": dict(one.scenario.limits),

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 
 def worst_case_facts(case: WorstCase) -> dict[str, Any]:
     """Return what the adversary found, in SI."""
-    from nrs_design.reporting.worst_case import found_in, left_out
+    from nrs_design.reporting.worst_case import LEFT_OUT, found_in
 
     found = [
         {
@@ -33,6 +33,6 @@ def worst_case_facts(case: WorstCase) -> dict[str, Any]:
             ],
             "disturbances_declared": case.declared,
             "found": found,
-            "not_modelled": [left_out(case.system)],
+            "not_modelled": [LEFT_OUT],
         },
     }

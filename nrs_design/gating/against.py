@@ -154,10 +154,6 @@ def _of_spec(path: Path, now: SpecOutcome) -> Iterator[Change]:
         yield Change((), f"cannot be compared: that of the base cannot be read ({error})", True)
         return
     yield from find_changes(to_data(before.root), to_data(after.root))
-    if before.bounds and after.bounds and before.bounds != after.bounds:
-        yield Change(
-            ("coupling",), "the bounds of its robot, or the model of its arm, are others", True
-        )
     yield from _of_recorded(before, after)
 
 

@@ -22,7 +22,7 @@ from nrs_design.certificates.goals import certified_goals
 from nrs_design.certificates.units import gain_units
 from nrs_design.design.measures import GoalStanding
 from nrs_design.errors import DesignError
-from nrs_design.gating.obligations import Caution, Findings, Obligation, SpecOutcome, Status
+from nrs_design.gating.obligations import Caution, Obligation, SpecOutcome, Status
 from nrs_design.gating.places import Places
 from nrs_design.gating.rules import (
     CERTIFICATE_HOLDS,
@@ -31,7 +31,6 @@ from nrs_design.gating.rules import (
     MODE_STABLE,
     NOT_DOUBTED,
     RESPONSE_GOAL,
-    ROBOT_BOUNDS,
     SCENARIO_LIMIT,
     SPEC,
     STIFFNESS_RANGE,
@@ -48,11 +47,9 @@ from nrs_design.proof.system import SwitchedSystem
 from nrs_design.simulation.peak_metrics import PEAKS, UNITS
 from nrs_design.spec import LoadedSpec, doubt_spec
 from nrs_design.spec.document import Position
-from nrs_design.wings import load_wing
 
 if TYPE_CHECKING:
     from nrs_design.design.analysis import DesignAnalysis
-    from nrs_design.gating.lock import LockedGoal
     from nrs_design.pipeline.scenarios import Simulated
     from nrs_design.search.certification import Certification
 
@@ -292,52 +289,6 @@ class Examiner:
         message = f"simulated: {error.message} (no run, so no limit is met)"
         place = ("scenarios", name)
         return self.obligation(SCENARIO_LIMIT, name, Status.MISSED, message, place)
-
-    def robot_bounds(self, file: Path, faults: Sequence[str]) -> Obligation:
-        """Return NRS111 from what is wrong with the bounds, all of which were computed again."""
-        said = "holds: every bound was computed again"
-        if faults:
-            said = f"claims what does not hold: {'; '.join(faults)}"
-        return self._of_bounds(_met(not faults), f"{file.as_posix()} {said}")
-
-    def undecided_bounds(self, error: DesignError) -> Obligation:
-        """Return NRS111 for bounds that were neither shown nor refuted."""
-        return self._of_bounds(Status.INCONCLUSIVE, error.message)
-
-    def known_bounds(self, locked: LockedGoal | None) -> Findings:
-        """Return NRS111 as it is locked, unless a pose exceeds a bound; and that it is on trust.
-
-        Parameters
-        ----------
-        locked : LockedGoal, optional
-            What the lock file says of its bounds.
-        """
-        pipeline, robot = load_wing("robot", "pipeline"), self.loaded.robot
-        if robot is None:
-            file, faults = pipeline.contradict_mobility(self.loaded.path)
-            again = "nrs-design robot mobility"
-        else:
-            file, faults = pipeline.contradict_robot_bounds(robot)
-            again = "nrs-design robot bounds --check"
-        caution = self.caution(
-            f"taken on trust: the bounds of {file.as_posix()}; the lock file says that a gate "
-            f"computed them again ({again} does)",
-            *self._named_in,
-        )
-        status, message = Status.MISSED, "; ".join(faults)
-        if not faults and locked is not None:
-            status, message = Status(locked.status), locked.message
-        elif not faults:
-            message = "the lock file does not say that the bounds were computed again"
-            message += " (run nrs-design gate)"
-        return (self._of_bounds(status, message),), (caution,)
-
-    def _of_bounds(self, status: Status, message: str) -> Obligation:
-        return self.obligation(ROBOT_BOUNDS, "bounds", status, message, self._named_in)
-
-    @property
-    def _named_in(self) -> tuple[str, str]:
-        return "coupling", "robot" if self.loaded.arm is None else "arm"
 
     def identified(self) -> Iterator[Obligation]:
         """Yield NRS107 for everything whose identification is in doubt."""

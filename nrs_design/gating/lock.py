@@ -28,10 +28,10 @@ from nrs_design.gating.rules import (
     MODE_STABLE,
     NOT_DOUBTED,
     NOT_WEAKER,
+    RETIRED,
     RULES,
     SPEC,
     SWITCHING_STABLE,
-    Rule,
 )
 
 SCHEMA: Literal["nrs-design/lock/2"] = "nrs-design/lock/2"
@@ -92,9 +92,16 @@ class LockedGoal(_Frozen):
 
     @model_validator(mode="after")
     def _check_rule(self) -> LockedGoal:
-        if self.rule not in RULES or RULES[self.rule] in DECIDED_AGAIN:
+        if self.rule not in RETIRED and (
+            self.rule not in RULES or RULES[self.rule] in DECIDED_AGAIN
+        ):
             raise ValueError("this rule is not one that is locked")
         return self
+
+
+def _skip_retired(goals: list[LockedGoal]) -> list[LockedGoal]:
+    """Return the goals of rules that there are: an older release locked others."""
+    return [goal for goal in goals if goal.rule not in RETIRED]
 
 
 class LockedSpec(_Frozen):
@@ -111,12 +118,8 @@ class LockedSpec(_Frozen):
     rate: str | None
     certificate: LockedCertificate | None
     gains: dict[str, dict[str, str]]
-    goals: list[LockedGoal]
+    goals: Annotated[list[LockedGoal], AfterValidator(_skip_retired)]
     recorded: dict[str, Sha256] = Field(default_factory=dict)
-
-    def goal_of(self, rule: Rule) -> LockedGoal | None:
-        """Return the first goal of a rule."""
-        return next((goal for goal in self.goals if goal.rule == rule.id), None)
 
     @model_serializer(mode="wrap")
     def _leave_out_nothing_recorded(self, dump: SerializerFunctionWrapHandler) -> dict[str, Any]:

@@ -12,7 +12,6 @@ from nrs_design.certificates.verify import verify
 from nrs_design.gating.examine import Examiner, certified_rate
 from nrs_design.gating.lock import Lock, LockedGoal, LockedSpec, relative_to_lock
 from nrs_design.gating.obligations import (
-    Findings,
     GateOutcome,
     Obligation,
     SpecOutcome,
@@ -22,7 +21,6 @@ from nrs_design.gating.obligations import (
 from nrs_design.gating.recorded import hash_recorded
 from nrs_design.gating.rules import (
     LOCKED,
-    ROBOT_BOUNDS,
     RULES,
     SCENARIO_LIMIT,
 )
@@ -131,29 +129,27 @@ def _confirmed(
     examiner: Examiner, certificate: Certificate, entry: LockedSpec, place: Path, file: Path
 ) -> SpecOutcome:
     stability = examiner.stability(certificate.system, certificate.statements, "as locked")
-    others, on_trust = _others(examiner, certificate, entry, file)
-    found = (*stability, examiner.certificate(place, None), *others)
-    cautions = (*on_trust, *examiner.limits(certificate), *examiner.cautions(None))
+    found = (
+        *stability,
+        examiner.certificate(place, None),
+        *_others(examiner, certificate, entry, file),
+    )
+    cautions = (*examiner.limits(certificate), *examiner.cautions(None))
     return examiner.outcome(certificate, place, certificate, found, cautions)
 
 
 def _others(
     examiner: Examiner, certificate: Certificate | None, entry: LockedSpec, file: Path
-) -> Findings:
-    """Return the obligations beside stability, and that bounds of a robot are on trust."""
-    loaded, locked = examiner.loaded, entry.goal_of(ROBOT_BOUNDS)
-    named = loaded.robot is not None or loaded.arm is not None
-    bounds, on_trust = examiner.known_bounds(locked) if named else ((), ())
+) -> tuple[Obligation, ...]:
+    """Return the obligations beside stability."""
     agrees = examiner.obligation(LOCKED, "lock", Status.MET, f"as in {file.name}", ("name",))
     goals = (*examiner.certified_goals(certificate), *_goals(examiner, entry))
-    return (*goals, *bounds, *examiner.identified(), agrees), on_trust
+    return (*goals, *examiner.identified(), agrees)
 
 
 def _goals(examiner: Examiner, entry: LockedSpec) -> Iterator[Obligation]:
     """Yield what only a design can decide, as it ended when it was locked."""
     for goal in entry.goals:
-        if goal.rule == ROBOT_BOUNDS.id:
-            continue
         yield examiner.obligation(
             RULES[goal.rule],
             goal.subject,
@@ -166,9 +162,8 @@ def _goals(examiner: Examiner, entry: LockedSpec) -> Iterator[Obligation]:
 def _place(goal: LockedGoal) -> tuple[str, ...]:
     """Return the keys of a locked obligation in the spec."""
     if goal.rule == SCENARIO_LIMIT.id:
-        # A run is named by its scenario, and perhaps its axis: `NAME.theta1: torque`.
-        scenario = goal.subject.partition(":")[0].partition(".")[0]
-        return "scenarios", scenario, "limits"
+        # A run is named by its scenario: `NAME: torque`.
+        return "scenarios", goal.subject.partition(":")[0], "limits"
     return "controllers", goal.subject
 
 
@@ -185,14 +180,13 @@ def _find_difference(certificate: Certificate, entry: LockedSpec, loaded: Loaded
 
 def _inconclusive(examiner: Examiner, entry: LockedSpec, file: Path) -> SpecOutcome:
     message = f"neither a proof nor a refutation is locked in {file.name}"
-    others, on_trust = _others(examiner, None, entry, file)
+    others = _others(examiner, None, entry, file)
     return SpecOutcome(
         path=examiner.loaded.path,
         obligations=(examiner.system(Status.INCONCLUSIVE, message), *others),
         sha256=examiner.loaded.sha256,
         verdict="inconclusive",
         common_quadratic="unknown",
-        cautions=on_trust,
     )
 
 

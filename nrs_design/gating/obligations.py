@@ -73,10 +73,6 @@ _SEVERITY = {
 }
 
 
-# Obligations of a part, and what is doubtful about it.
-Findings = tuple[tuple[Obligation, ...], tuple[Caution, ...]]
-
-
 @dataclass(frozen=True, slots=True)
 class SpecOutcome:
     """Everything that was found about one spec."""

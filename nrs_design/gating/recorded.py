@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 
 from nrs_design.files import open_regular
 from nrs_design.spec import InteractionDesignSpec, LoadedSpec
@@ -47,12 +47,5 @@ def recorded_files(loaded: LoadedSpec) -> tuple[str, ...]:
 
 
 def _names(scenarios: Iterable[ScenarioSpec]) -> tuple[str, ...]:
-    return tuple(sorted({name for one in scenarios for name in _named(one)}))
-
-
-def _named(scenario: ScenarioSpec) -> Iterator[str]:
-    axes = () if scenario.axes is None else ("theta1", "theta2", "theta3")
-    own = [getattr(scenario.axes, axis) for axis in axes]
-    for command in (scenario.command, *(one.command for one in own if one is not None)):
-        if command is not None and command.csv is not None:
-            yield command.csv
+    named = {one.command.csv for one in scenarios if one.command.csv is not None}
+    return tuple(sorted(named))

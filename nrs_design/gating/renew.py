@@ -14,14 +14,12 @@ from nrs_design.gating.lock import (
     DECIDED_AGAIN,
     Lock,
     LockedCertificate,
-    LockedGoal,
     LockedSpec,
     dump_lock,
     read_lock_if_any,
     relative_to_lock,
 )
 from nrs_design.gating.obligations import GateOutcome, SpecOutcome, Status
-from nrs_design.gating.rules import ROBOT_BOUNDS
 from nrs_design.output import LOCK, alone_in, write_output
 from nrs_design.spec.load import is_there
 
@@ -118,13 +116,6 @@ def certificates_of(lock: Lock, file: Path) -> Mapping[Path, Path]:
         for entry in lock.specs
         if entry.certificate is not None
     }
-
-
-def bounds_of(lock: Lock) -> Mapping[str, LockedGoal]:
-    """Return what a gate of this release found of bounds of robots, by the hash of the spec."""
-    found = {e.sha256: e.goal_of(ROBOT_BOUNDS) for e in lock.specs if e.version == __version__}
-    met = Status.MET.value
-    return {hash_: goal for hash_, goal in found.items() if goal and goal.status == met}
 
 
 def check_folder(folder: Path, file: Path) -> None:

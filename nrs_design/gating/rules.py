@@ -237,17 +237,6 @@ NOT_WEAKER = Rule(
     "If it is meant, let somebody who may decide that say so where the change is reviewed: there "
     "is no option for it, because the change itself could set it. Otherwise, take it back.",
 )
-ROBOT_BOUNDS = Rule(
-    "NRS111",
-    "The bounds of the robot hold",
-    "A spec that names a robot is certified with bounds on its links from a file beside the "
-    "robot, which the certificate takes on trust. When their hash is not in the lock file, the "
-    "gate computes every one of them again from the spec of the robot, by interval arithmetic, in "
-    "minutes. Otherwise it tries poses, and a warning says that they are on trust in the lock "
-    "file. The mobility of an arm is computed from its model by every gate that is not --locked.",
-    "Make the file anew with `nrs-design robot bounds ROBOT --write`; never edit it. Of an arm, "
-    "write what `nrs-design robot mobility` shows.",
-)
 RESPONSE_GOAL = Rule(
     "NRS112",
     "The frequency response meets its goal",
@@ -321,7 +310,6 @@ RULES: Mapping[str, Rule] = MappingProxyType(
             CERTIFIED_GOAL,
             SCENARIO_LIMIT,
             NOT_WEAKER,
-            ROBOT_BOUNDS,
             RESPONSE_GOAL,
             ROS_PARAMETERS,
             ROS_AXIS,
@@ -330,6 +318,9 @@ RULES: Mapping[str, Rule] = MappingProxyType(
         )
     }
 )
+
+# Ids of rules that there were; none of them is ever given to another rule.
+RETIRED = frozenset({"NRS111"})
 
 WORDS: Mapping[str, Word] = MappingProxyType(
     {

@@ -12,13 +12,11 @@ from typing import TYPE_CHECKING
 from nrs_design.axis import about
 from nrs_design.certificates.certificate import dump
 from nrs_design.controllers.gains import gains_of
-from nrs_design.errors import DesignError, OutputError, SpecError
+from nrs_design.errors import OutputError, SpecError
 from nrs_design.gating.examine import Examiner
 from nrs_design.gating.judge import judge_margins, judge_scenarios
 from nrs_design.gating.obligations import (
-    Findings,
     GateOutcome,
-    Obligation,
     SpecOutcome,
     failed,
 )
@@ -41,16 +39,10 @@ from nrs_design.progress import Progress, silent
 from nrs_design.spec import LoadedSpec, RobotSpec, read_spec
 from nrs_design.spec.task_space import file_of
 from nrs_design.sweeps.spread import spread
-from nrs_design.wings import load_wing
 
 if TYPE_CHECKING:
     from nrs_design.design.analysis import DesignAnalysis
-    from nrs_design.gating.lock import LockedGoal
     from nrs_design.search.certification import Limits
-
-
-# For each of the bounds of a robot, in s.
-BUDGET = 1800.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -61,9 +53,6 @@ class Files:
     html: bool = True  # Whether reports are asked for
     # Which spec a certificate file is locked for, as real paths.
     locked: Mapping[Path, Path] = field(default_factory=dict)
-    # What a gate of this release locked of the bounds of a robot that it computed again, by the
-    # hash of the spec, which holds theirs.
-    bounds: Mapping[str, LockedGoal] = field(default_factory=dict)
 
     def certificate(self, name: str) -> Path:
         """Return the certificate file of the spec of that name."""
@@ -82,42 +71,6 @@ class Files:
             raise OutputError(f"is locked for {os.path.relpath(owner)}", path=file, remedy=REMEDY)
 
 
-@dataclass(frozen=True, slots=True)
-class Robots:
-    """Robots whose bounds this run has recomputed, once for all specs that name them."""
-
-    # The file of the bounds and what is wrong with them, or the error that kept them undecided, by
-    # the real path of the robot.
-    checked: dict[Path, tuple[Path, tuple[str, ...]] | DesignError] = field(default_factory=dict)
-
-    def bounds(self, loaded: LoadedSpec, examiner: Examiner, progress: Progress) -> Obligation:
-        """Return NRS111 of bounds that are not locked: recompute them.
-
-        Parameters
-        ----------
-        loaded : LoadedSpec
-            The spec that names a robot, or the arm of its axes.
-        examiner : Examiner
-            Of that spec.
-        progress : callable
-            Told the name of each step.
-        """
-        pipeline = load_wing("robot", "pipeline")
-        about, check = loaded.robot, pipeline.check_robot_bounds
-        if about is None:
-            about, check = file_of(loaded.path), pipeline.check_mobility
-        key = Path(os.path.realpath(about))
-        if key not in self.checked:
-            try:
-                self.checked[key] = check(about, BUDGET, progress)
-            except DesignError as error:
-                self.checked[key] = error
-        found = self.checked[key]
-        if isinstance(found, DesignError):
-            return examiner.undecided_bounds(found)
-        return examiner.robot_bounds(*found)
-
-
 def run_gate(
     specs: Sequence[Path],
     files: Files,
@@ -131,10 +84,9 @@ def run_gate(
     """
     read = [_read(path) for path in specs]
     valid = [item for item in read if isinstance(item, LoadedSpec)]
-    task = _Task(files, overrides, _namesakes(valid), _groups(valid))
+    task = _Task(files, overrides, _namesakes(valid), tuple(one.path for one in valid))
     if jobs == 1:
-        robots = Robots()
-        found = {one.path: task.examine(one, robots, progress) for one in valid}
+        found = {one.path: task.examine(one, progress) for one in valid}
     else:
         found = _examined_in_processes(task, jobs, progress)
     return GateOutcome(
@@ -149,9 +101,9 @@ class _Task:
     files: Files
     overrides: Overrides | None
     namesakes: Mapping[Path, Path]  # Another spec of the same name, for those that have one
-    groups: tuple[tuple[Path, ...], ...]  # Specs that one process examines
+    specs: tuple[Path, ...]
 
-    def examine(self, loaded: LoadedSpec, robots: Robots, progress: Progress) -> SpecOutcome:
+    def examine(self, loaded: LoadedSpec, progress: Progress) -> SpecOutcome:
         """Return what is found about a spec, whatever goes wrong with it."""
         namesake, name = self.namesakes.get(loaded.path), loaded.spec.name
         try:
@@ -159,36 +111,23 @@ class _Task:
                 raise _shared_name(loaded, namesake)
             with about(getattr(loaded.spec, "axis", None)):
                 return _examine(
-                    loaded, self.files, lambda s: progress(f"{name}: {s}"), self.overrides, robots
+                    loaded, self.files, lambda s: progress(f"{name}: {s}"), self.overrides
                 )
         except Exception as error:
             # One spec must not keep the others from being examined, whatever goes wrong with it.
             return failed(loaded.path, error, loaded.sha256)
 
-    def examine_group(self, index: int) -> list[SpecOutcome]:
-        """Return what is found about the specs of a group, which are read here."""
-        robots = Robots()
-        read = map(_read, self.groups[index])
-        return [
-            item if isinstance(item, SpecOutcome) else self.examine(item, robots, silent)
-            for item in read
-        ]
-
-
-def _groups(specs: Sequence[LoadedSpec]) -> tuple[tuple[Path, ...], ...]:
-    """Return specs that share a robot, whose bounds are computed once, together; others alone."""
-    shared: defaultdict[Path, list[Path]] = defaultdict(list)
-    for loaded in specs:
-        key = loaded.robot or (file_of(loaded.path) if loaded.arm is not None else loaded.path)
-        shared[Path(os.path.realpath(key))].append(loaded.path)
-    return tuple(map(tuple, shared.values()))
+    def examine_next(self, index: int) -> SpecOutcome:
+        """Return what is found about a spec, which is read here."""
+        read = _read(self.specs[index])
+        return read if isinstance(read, SpecOutcome) else self.examine(read, silent)
 
 
 def _examined_in_processes(task: _Task, jobs: int, progress: Progress) -> dict[Path, SpecOutcome]:
     found: dict[Path, SpecOutcome] = {}
-    for _, outcomes in spread(task.examine_group, range(len(task.groups)), jobs):
-        found |= {outcome.path: outcome for outcome in outcomes}
-        progress(f"{len(found)} of {sum(map(len, task.groups))} specs")
+    for _, outcome in spread(task.examine_next, range(len(task.specs)), jobs):
+        found[outcome.path] = outcome
+        progress(f"{len(found)} of {len(task.specs)} specs")
     return found
 
 
@@ -223,11 +162,7 @@ def _shared_name(loaded: LoadedSpec, namesake: Path) -> SpecError:
 
 
 def _examine(
-    loaded: LoadedSpec,
-    files: Files,
-    progress: Progress,
-    overrides: Overrides | None,
-    robots: Robots,
+    loaded: LoadedSpec, files: Files, progress: Progress, overrides: Overrides | None
 ) -> SpecOutcome:
     if isinstance(loaded.spec, RobotSpec):
         return Examiner.of(loaded).nothing_to_certify()
@@ -251,7 +186,6 @@ def _examine(
         write_output(place, dump(certificate, origin_of(loaded.path, place)), replaces=CERTIFICATE)
         progress("re-check")
         obligations += (examiner.certificate(place, run_verification(place, result).fault),)
-    bounds, on_trust = _bounds(loaded, files, examiner, progress, robots)
     recorded = hash_recorded(loaded)
     simulated = tuple(judge_scenarios(result, examiner, progress))
     analysis, goals = judge_margins(result, examiner, progress)
@@ -267,30 +201,17 @@ def _examine(
         certificate,
         (
             *obligations,
-            *bounds,
             *examiner.certified_goals(certificate),
             *goals,
             *simulated,
             *examiner.identified(),
         ),
-        (*on_trust, *cautions),
+        cautions,
     )
     if result.design is None:
         return replace(outcome, recorded=recorded)
     gains, units = gains_of(result.design), result.design.units
     return replace(outcome, gains=gains, units=units, recorded=recorded)
-
-
-def _bounds(
-    loaded: LoadedSpec, files: Files, examiner: Examiner, progress: Progress, robots: Robots
-) -> Findings:
-    """Return NRS111 of a spec that names a robot, and whether its bounds are on trust."""
-    if loaded.robot is None and loaded.arm is None:
-        return (), ()
-    # The file of an arm is no part of the spec's hash.
-    if loaded.arm is not None or loaded.sha256 not in files.bounds:
-        return (robots.bounds(loaded, examiner, progress),), ()
-    return examiner.known_bounds(files.bounds[loaded.sha256])
 
 
 def _write_page(

@@ -347,10 +347,9 @@ def check_latency_place(loaded: LoadedSpec) -> SamplingSpec:
     sampling, spec = check_delay_place(loaded), check_interaction(loaded)
     if not spec.takes_dead_time:
         raise SpecError(
-            "commands of this loop take effect at once: with two periods or "
-            "coupled axes a latency is not modelled",
+            "commands of this loop take effect at once: with two periods a latency is not modelled",
             path=loaded.path,
-            remedy="write into the spec of one axis with one period",
+            remedy="write into a spec with one period",
         )
     return sampling
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from math import exp, log, sqrt
+from math import exp, log
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -99,11 +99,11 @@ def force_constraint(wanted: float) -> ProofConstraint:
         found = force_slope(system, output, allowance, share)
         if found is None:
             return None
-        share, level = found.share, found.level * sqrt(system.axes or 1)
+        share = found.share
         return ConstraintValue(
-            log(wanted / level),
+            log(wanted / found.level),
             lambda system: -found.change(system),
-            f"force up to {level:.4g}",
+            f"force up to {found.level:.4g}",
         )
 
     return ProofConstraint(

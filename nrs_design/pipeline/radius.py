@@ -77,13 +77,13 @@ def bound_radius(found: Certification, limits: Limits) -> RadiusBounds | None:
     """Bound the growth per step of a system in discrete time, whatever its verdict is.
 
     None in continuous time, for modes of several sizes, and where more acts on the state than
-    switching: contact that may be lost, rounding, other axes, turns.
+    switching: contact that may be lost, rounding, turns.
     """
     system = found.system
     acting = system.contact, system.flights, system.clock, system.saturation
     if system.time is not Time.DISCRETE or not system.is_uniform or any(acting):
         return None
-    if system.roundings or system.couplings:
+    if system.roundings:
         return None
     budget = min(limits.budget, BUDGET)
     bounds = RadiusBounds(None, None, None, None, None)

@@ -18,14 +18,13 @@ def between(
     held: Sequence[Sequence[Sequence[Fraction]]],
     *,
     rounding: bool = False,
-    coupling: bool = False,
 ) -> SwitchedSystem:
     """Return a system of which the saturating one is a mixture while every ``|h x|`` is in limits.
 
     Each mode becomes one for every choice of arguments and rows h, as `Saturation.between` makes
     them. What the arithmetic adds to an argument is replaced with it: an error r that has a share
-    of the argument has the same share of the mixture. All of the state after a step, and all that
-    bounds what other axes do, is affine in each share.
+    of the argument has the same share of the mixture. All of the state after a step is affine in
+    each share.
 
     Parameters
     ----------
@@ -33,17 +32,15 @@ def between(
         With what saturates.
     held : sequence of sequences of rows, each of n numbers
         The h of every signal, in every mode and after them in the free modes.
-    rounding, coupling : bool
-        Whether roundings, and what axes do to each other, are kept, or left out.
+    rounding : bool
+        Whether roundings are kept, or left out.
     """
     saturation = system.saturation
     assert saturation is not None  # who asks has looked
     n, signals = system.order, saturation.signals
     items = system.roundings if rounding else ()
-    coupled = system.couplings if coupling else ()
     modes: list[Mode] = []
     errors: list[tuple[list[RationalMatrix], list[RationalMatrix]]] = [([], []) for _ in items]
-    seen: list[tuple[list[RationalMatrix], list[RationalMatrix]]] = [([], []) for _ in coupled]
     for k, mode in enumerate(system.every_mode):
         columns = [[c for (c,) in signal.columns[k].fractions()] for signal in signals]
         whole = [
@@ -57,14 +54,6 @@ def between(
             for j, (item, (acts, sizes)) in enumerate(zip(items, errors, strict=True)):
                 acts.append(RationalMatrix.from_rows([[row[n + j]] for row in moved]))
                 sizes.append(_cut(item.rows[k], n))
-            for j, (other, (acts, sizes)) in enumerate(zip(coupled, seen, strict=True)):
-                (row,) = other.rows[k].fractions()
-                # Behind the state are disturbances, of which there are none, and roundings.
-                first = n + len(system.channels)
-                row = [*row[:n], *row[first : first + len(items)]]
-                pushes = [[signal.pushes[k].fractions()[0][j]] for signal in signals]
-                acts.append(other.columns[k])
-                sizes.append(RationalMatrix.from_rows(_plus([row], pushes, changes)))
     count = len(modes) // len(system.every_mode) * len(system.modes)
     contact = system.contact
     if contact is not None:
@@ -78,10 +67,6 @@ def between(
         roundings=tuple(
             replace(item, columns=tuple(acts), rows=tuple(sizes))
             for item, (acts, sizes) in zip(items, errors, strict=True)
-        ),
-        couplings=tuple(
-            replace(item, columns=tuple(acts), rows=tuple(sizes))
-            for item, (acts, sizes) in zip(coupled, seen, strict=True)
         ),
         saturation=None,
         enclosures=(),

@@ -1,4 +1,4 @@
-"""What acts on the state (disturbances, rounding, other axes), and the outputs read of it."""
+"""What acts on the state (disturbances, rounding), and the outputs read of it."""
 
 from __future__ import annotations
 
@@ -42,23 +42,4 @@ class Rounding:
     # Shape (1, n + number of channels). The q of every mode, and after them those of the free
     # modes, over the state and all disturbances of the system; in free motion nothing in them
     # stands for the deflection.
-    rows: tuple[RationalMatrix, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Coupling:
-    """What the axes of a robot do to each other: ``x_i' = A_i x_i + B_i w_i`` for the axis i.
-
-    Of any number of axes each is in a mode of its own, and ``sum |w_i|^2 <= sum |q_i z_i|^2`` over
-    all of them, with the B_i and q_i of their modes, where z_i is x_i and, after it, what disturbs
-    the axis and what its arithmetic rounds. In discrete time, that is said of every step. Couplings
-    of one name are bounded together: the sums go over them, too.
-    """
-
-    name: str  # What acts, such as ``inertia of the links``
-    # Shape (n, 1). The B of every mode, and after them those of the free modes.
-    columns: tuple[RationalMatrix, ...]
-    # Shape (1, n + disturbances + roundings). The q in the same order, over the state, all
-    # disturbances and all roundings of the system; in free motion nothing in them stands for the
-    # deflection.
     rows: tuple[RationalMatrix, ...]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from nrs_design.proof.channels import Coupling, Rounding
+from nrs_design.proof.channels import Rounding
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Time
 from nrs_design.proof.saturation import MOST_SIGNALS, CutOff, Start
@@ -24,7 +24,6 @@ def find_contradiction(system: SwitchedSystem) -> str | None:
         or _find_odd_sample_time(system)
         or _find_odd_channel(system)
         or _find_odd_rounding(system)
-        or _find_odd_coupling(system)
         or _find_odd_clock(system)
         or _find_odd_saturation(system)
         or _find_odd_enclosure(system)
@@ -132,14 +131,6 @@ def _find_odd_rounding(system: SwitchedSystem) -> str | None:
     return _find_odd_errors(system, system.roundings, "the rounding of ", widths)
 
 
-def _find_odd_coupling(system: SwitchedSystem) -> str | None:
-    if system.axes is not None and (system.axes < 1 or not system.couplings):
-        return "there is no axis, or axes are counted that do not act on each other"
-    width = system.order + len(system.channels) + len(system.roundings)
-    widths = [width] * len(system.couplings)
-    return _find_odd_errors(system, system.couplings, "the coupling by ", widths)
-
-
 def _find_odd_clock(system: SwitchedSystem) -> str | None:
     if system.clock is None:
         return None
@@ -182,12 +173,11 @@ def _find_odd_saturation(system: SwitchedSystem) -> str | None:
     for signal in signals:
         if signal.limit <= 0:
             return f"the limit of {signal.name} is not positive"
-        parts = (signal.errors, len(system.roundings)), (signal.pushes, len(system.couplings))
-        for rows, width in parts:
-            if rows and len(rows) != len(system.every_mode):
-                return f"{signal.name} has not one row of what acts on it for every mode"
-            if not all(row.is_well_formed and row.shape == (1, width) for row in rows):
-                return f"{signal.name} does not know what the arithmetic rounds, or axes do"
+        rows, width = signal.errors, len(system.roundings)
+        if rows and len(rows) != len(system.every_mode):
+            return f"{signal.name} has not one row of what acts on it for every mode"
+        if not all(row.is_well_formed and row.shape == (1, width) for row in rows):
+            return f"{signal.name} does not know what the arithmetic rounds"
     return _find_odd_start(system, system.saturation.start)
 
 
@@ -215,7 +205,7 @@ def _find_odd_enclosure(system: SwitchedSystem) -> str | None:
 
 def _find_odd_errors(
     system: SwitchedSystem,
-    items: Sequence[Rounding | Coupling | CutOff],
+    items: Sequence[Rounding | CutOff],
     said: str,
     widths: Iterable[int],
 ) -> str | None:
@@ -231,8 +221,7 @@ def _find_odd_errors(
             return f"{said}{item.name} has not one column and row for every mode"
         if any(row.numerators[0][n - 1] for row in item.rows[len(system.modes) :]):
             return f"{said}{item.name} depends on the deflection in free motion"
-    # Couplings of one name are bounded together.
-    names = [item.name for item in items if not isinstance(item, Coupling)]
+    names = [item.name for item in items]
     return f"{said}{names[0]} is said twice" if len(set(names)) < len(names) else None
 
 

@@ -33,8 +33,6 @@ class CutOff:
     # Shape (1, roundings of the system). What these add to its argument, in the same order; none
     # where nothing is said of that.
     errors: tuple[RationalMatrix, ...] = ()
-    # Shape (1, couplings of the system). What it adds to the row of each of them, likewise.
-    pushes: tuple[RationalMatrix, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

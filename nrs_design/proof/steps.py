@@ -1,10 +1,10 @@
 """TRUSTED: the steps of a system, and what each asks of the forms before and after it.
 
 A step leads from one place to another. With z the state before it and, behind the state, what
-disturbs it (d), what its arithmetic rounds (r) and what other axes do (w), the state after it is
-``M z`` (a map), or ``M z`` is its derivative (a flow). What is known besides are *facts*:
+disturbs it (d) and what its arithmetic rounds (r), the state after it is ``M z`` (a map), or
+``M z`` is its derivative (a flow). What is known besides are *facts*:
 
-- an error: ``e^2 <= (q z)^2``, for an entry e of r, or for one of w, summed over all axes;
+- an error: ``e^2 <= (q z)^2``, for an entry e of r;
 - a crossing: ``delta (c z) <= 0``, with delta the last state: contact is lost, or would pull;
 - a product: ``(l z) (r z) >= 0``, as neither factor is negative; the forms below then have
   ``- sum 2 m (l z) (r z)`` as well (see `nrs_design.proof.offset`).
@@ -16,10 +16,7 @@ With F before and G after the step and a multiplier m >= 0 for each fact, positi
 
 says that a map keeps that share of the function, and a flow decreases at half that rate, but for
 the disturbances, for every error within its limit (S-procedure). Multipliers are the same for all
-modes, which keeps the forms concave in the maps. An error of w is not within its limit for each
-axis; but as its multiplier is one for all steps, these terms add up to nothing positive over the
-axes, whatever step each of them takes, and the same follows for the sums of the functions over all
-axes.
+modes, which keeps the forms concave in the maps.
 
 Forms are written in integers. In a map every entry of z is counted in a unit of its own, the least
 in which M, the q and the c are integers. With these units on the diagonal of D, a form F becomes
@@ -34,7 +31,6 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import gcd, isqrt, lcm
 
-from nrs_design.proof.channels import Coupling, Rounding
 from nrs_design.proof.exact import IntegerMatrix, Product, add, congruence, multiply, transpose
 from nrs_design.proof.matrix import RationalMatrix, identity, with_crossing
 from nrs_design.proof.mode import Mode, Time
@@ -45,7 +41,7 @@ from nrs_design.proof.system import SwitchedSystem
 CONTACT, FREE = "modes", "free"
 
 # What facts are called; numbers count from one, in the order of the system.
-ROUNDING, COUPLING, LOST, PULL = "rounding", "coupling", "lost", "pull"
+ROUNDING, LOST, PULL = "rounding", "lost", "pull"
 
 Row = Sequence[int]
 
@@ -57,7 +53,6 @@ class Acting:
     channels: tuple[int, ...] = ()  # Disturbances, by their number in the system
     weights: tuple[Fraction, ...] = ()  # One for each of them
     rounding: bool = False  # What the arithmetic rounds
-    coupling: bool = False  # What other axes do
 
 
 @dataclass(frozen=True, slots=True)
@@ -264,20 +259,14 @@ def _lagging(system: SwitchedSystem, step: Step, *, flows: bool) -> Iterator[Ste
 def _step(system: SwitchedSystem, k: int, mode: Mode, acting: Acting, grain: int) -> Step:
     """Return what the k-th mode does in contact; free modes come after those in contact."""
     n, flows = system.order, system.time is Time.CONTINUOUS
-    rounded = len(system.roundings) if acting.rounding else 0
-    items: list[tuple[str, Rounding | Coupling]]
-    items = [(f"{ROUNDING} {i}", item) for i, item in enumerate(system.roundings[:rounded], 1)]
-    coupled = system.couplings if acting.coupling else ()
-    items += zip(coupling_facts(coupled), coupled, strict=True)
+    items = system.roundings if acting.rounding else ()
     parts = [mode.A, *(system.channels[i].columns[k] for i in acting.channels)]
-    parts += [item.columns[k] for _, item in items]
+    parts += [item.columns[k] for item in items]
     columns = [(column, M.denominator) for M in parts for column in transpose(M.numerators)]
     sizes = []
-    for _, item in items:
-        # Over the state and all disturbances, and that of a coupling over all roundings, too.
-        (entries,), count = item.rows[k].numerators, n + len(system.channels)
+    for item in items:
+        (entries,) = item.rows[k].numerators  # Over the state and all disturbances
         q = [*entries[:n], *(entries[n + i] for i in acting.channels)]
-        q += entries[count : count + rounded] or (0,) * rounded
         sizes.append(([*q, *(0 for _ in columns[len(q) :])], item.rows[k].denominator))
     if flows:
         units, over = [1] * len(columns), lcm(*(d for _, d in columns))
@@ -291,12 +280,11 @@ def _step(system: SwitchedSystem, k: int, mode: Mode, acting: Acting, grain: int
             1,
         )
     errors = []
-    for i, ((name, _), (q, below)) in enumerate(
-        zip(items, sizes, strict=True), len(columns) - len(items)
-    ):
-        if not flows:
-            q, below = [unit * entry // below for unit, entry in zip(units, q, strict=True)], 1
-        errors.append((name, i, q, below))
+    for i, (q, below) in enumerate(sizes):
+        # The units of a map are such that these are integers.
+        left = below if flows else 1
+        q = [unit * entry * left // below for unit, entry in zip(units, q, strict=True)]
+        errors.append((f"{ROUNDING} {i + 1}", len(columns) - len(items) + i, q, left))
     rows = [
         [unit * over * entry // d for entry in column]
         for unit, (column, d) in zip(units, columns, strict=True)
@@ -314,12 +302,6 @@ def _step(system: SwitchedSystem, k: int, mode: Mode, acting: Acting, grain: int
         weights=acting.weights,
         is_flow=flows,
     )
-
-
-def coupling_facts(couplings: Sequence[Coupling]) -> list[str]:
-    """Return what the bound of each is called: couplings of one name have one together."""
-    names = list(dict.fromkeys(item.name for item in couplings))
-    return [f"{COUPLING} {names.index(item.name) + 1}" for item in couplings]
 
 
 def _undeflected(step: Step, k: int) -> Step:

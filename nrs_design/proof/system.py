@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
-from nrs_design.proof.channels import Channel, Coupling, Output, Rounding
+from nrs_design.proof.channels import Channel, Output, Rounding
 from nrs_design.proof.contact import Contact, Flights
 from nrs_design.proof.matrix import RationalMatrix, leading
 from nrs_design.proof.mode import Mode, Time
@@ -35,13 +35,8 @@ class SwitchedSystem:
     outputs: tuple[Output, ...] = ()  # What bounds can be stated for
     # Errors of the arithmetic, in discrete time; a statement says whether it covers them.
     roundings: tuple[Rounding, ...] = ()
-    # What axes like this one do to each other. Without any, every statement is about one axis; with
-    # them, statements of stability and of bounds are about all axes at once.
-    couplings: tuple[Coupling, ...] = ()
     # Which modes take turns, in discrete time; None lets all of them be in force at every step.
     clock: Clock | None = None
-    # How many of them there are at most, where a statement depends on it, as bounds do.
-    axes: int | None = None
     # Signals that are cut off at limits; only statements that say so are about that.
     saturation: Saturation | None = None
     # Which modes are free motion, where it is among them and its loss must be covered.

@@ -23,7 +23,6 @@ if TYPE_CHECKING:
 
     from nrs_design.pipeline.worst_case import WorstCase
     from nrs_design.proof.channels import Output
-    from nrs_design.proof.system import SwitchedSystem
     from nrs_design.simulation.norms import Array
     from nrs_design.simulation.worst_case import WorstRun
 
@@ -41,8 +40,8 @@ UNDECLARED = (
     "with `disturbances` a bound can be certified."
 )
 ABOVE = " (above)"
-_LEFT_OUT = "roundings of the law, jitter, noise without a bound, and the limit of the command"
-_LINKS = ", and what other axes do through the links"
+# Which effects the adversary does not use.
+LEFT_OUT = "roundings of the law, jitter, noise without a bound, and the limit of the command"
 _COMMAND = "velocity command"
 _TURN = 180 / math.pi
 
@@ -100,11 +99,6 @@ def worst_rows(case: WorstCase, lever_arm: float | None) -> list[list[str]]:
             found += ABOVE
         rows.append([item.name, found, unit, limit, bound, ratio])
     return rows
-
-
-def left_out(system: SwitchedSystem) -> str:
-    """Say which effects the adversary does not use."""
-    return _LEFT_OUT + (_LINKS if system.couplings else "")
 
 
 def scale_of(name: str, unit: str, lever_arm: float | None) -> tuple[float, str]:

@@ -79,9 +79,9 @@ def certify(
     simple = system.switching.is_arbitrary and system.is_uniform and system.clock is None
     merged = merge_equal_modes(system) if simple else system
     limits = _limits_for(merged, system, limits)
-    # Lost contact, what the arithmetic rounds and other axes are matters of the whole state.
+    # Lost contact and what the arithmetic rounds are matters of the whole state.
     simple = simple and system.contact is None and system.flights is None
-    simple = simple and not (system.roundings or system.couplings)
+    simple = simple and not system.roundings
     blocks = triangular_blocks(merged) if simple else (tuple(range(system.order)),)
     if len(blocks) == 1:
         result = _climb(merged, method, limits, allowance, progress)
@@ -175,7 +175,7 @@ def _ellipsoids(
     """Yield ellipsoids off the origin, where contact may be lost, before those around it."""
     from nrs_design.search.invariant_ellipsoid import search_ellipsoid
 
-    if system.contact is not None and not system.couplings:
+    if system.contact is not None:
         from nrs_design.search.offset_ellipsoid import search_offset_ellipsoid
 
         own = allowance.part(OFF_THE_ORIGIN)

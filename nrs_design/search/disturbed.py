@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.proof.channels import Channel, Coupling, Output, Rounding
+from nrs_design.proof.channels import Channel, Output
 from nrs_design.proof.contact import Contact
 from nrs_design.proof.mode import Time
 from nrs_design.search.family import Family, to_floats
@@ -29,19 +29,16 @@ class DisturbedProblem:
     """The conditions in coordinates where the state, disturbances and output are about one."""
 
     time: Time  # Continuous or discrete
-    # contact, free: maps of state, c disturbances and r errors: what axes do to each other, then
-    # roundings.
+    # contact, free: maps of state, c disturbances and r errors, which are roundings.
     contact: Array
     free: Array
-    # contact_sizes, free_sizes: how large the errors are at most; of couplings over all axes. That
-    # these depend on the roundings, too, is left to the exact check.
+    # contact_sizes, free_sizes: how large the errors are at most.
     contact_sizes: Array
     free_sizes: Array
     pulls: Array  # Shape (p, n). Forces of environments that could pull.
     rows: Array  # Shape (q, n). The output.
     disturbances: int  # The c
     losable: bool  # Whether contact may be lost
-    couplings: int = 0  # How many of the errors are what axes do to each other
 
     @property
     def order(self) -> int:
@@ -50,7 +47,7 @@ class DisturbedProblem:
 
     @property
     def errors(self) -> int:
-        """How many couplings and roundings there are."""
+        """How many roundings there are."""
         return int(self.contact_sizes.shape[1])
 
     @property
@@ -64,14 +61,13 @@ class DisturbedProblem:
 
     def without_roundings(self) -> DisturbedProblem:
         """Return the conditions of exact arithmetic."""
-        count = self.couplings
-        width = self.order + self.disturbances + count
+        width = self.order + self.disturbances
         return replace(
             self,
             contact=self.contact[:, :, :width],
             free=self.free[:, :, :width],
-            contact_sizes=self.contact_sizes[:, :count],
-            free_sizes=self.free_sizes[:, :count],
+            contact_sizes=self.contact_sizes[:, :0],
+            free_sizes=self.free_sizes[:, :0],
         )
 
     def distinct(self) -> DisturbedProblem:
@@ -199,7 +195,7 @@ def problem_of(
     channels: Sequence[Channel] = (),
     output: Output | None = None,
 ) -> DisturbedProblem:
-    """Join disturbances, couplings, roundings and output, in the coordinates of the family.
+    """Join disturbances, roundings and output, in the coordinates of the family.
 
     Disturbances go up to one. Columns are those of the modes in contact, then of the free ones.
 
@@ -219,7 +215,7 @@ def problem_of(
     maps = np.concatenate([motions.contact, motions.free])
     bounds = np.array([float(channel.bound) for channel in channels])
     columns = [to_floats(c.columns)[:, :, 0] * b for c, b in zip(channels, bounds, strict=True)]
-    errors: tuple[Coupling | Rounding, ...] = (*system.couplings, *system.roundings)
+    errors = system.roundings
     columns += [to_floats(item.columns)[:, :, 0] for item in errors]
     scaled = [np.ldexp(column, -d)[:, :, None] for column in columns]
     maps = np.concatenate([maps, *scaled], axis=2)
@@ -241,7 +237,6 @@ def problem_of(
         rows,
         len(channels),
         system.contact is not None,
-        len(system.couplings),
     )
 
 
@@ -318,7 +313,6 @@ class Rounded:
     Q: tuple[tuple[int, ...], ...]
     log2: int
     multipliers: tuple[int, ...]
-    couplings: tuple[int, ...]
     roundings: tuple[int, ...]
 
 
@@ -350,7 +344,6 @@ def roundings(
     multipliers = in_numerators(multipliers, contact, family.system.time)
     multipliers = np.ldexp(multipliers, -times * int(family.exponents[-1]))
     taus = found.taus * units[: len(found.taus)]
-    count = len(family.system.couplings)
     exponent = int(np.frexp(np.abs(Q).max())[1])
     for bits in BITS:
         rows, log2 = unscale(np.ldexp(Q, -exponent), family.exponents, bits)
@@ -361,6 +354,5 @@ def roundings(
             rows,
             log2,
             numerators(multipliers, log2),
-            numerators(taus[:count], log2),
-            numerators(taus[count:], log2),
+            numerators(taus, log2),
         )

@@ -8,13 +8,7 @@ from fractions import Fraction
 from nrs_design.proof.evidence.fields import Matrix
 from nrs_design.proof.evidence.graph import FormsOnGraph, Multiplier, Node
 from nrs_design.proof.lift import monomials
-from nrs_design.proof.steps import (
-    CONTACT,
-    FREE,
-    ROUNDING,
-    coupling_facts,
-    multiplier_names,
-)
+from nrs_design.proof.steps import CONTACT, FREE, ROUNDING, multiplier_names
 from nrs_design.proof.system import SwitchedSystem
 
 Integers = Sequence[int]
@@ -45,7 +39,6 @@ def one_form(
     *,
     crossings: Integers = (),
     roundings: Integers = (),
-    couplings: Integers = (),
     vanishing: tuple[Matrix, ...] = (),
     lost: bool = False,
 ) -> FormsOnGraph:
@@ -63,7 +56,7 @@ def one_form(
         The alpha in 1/s, or rho per step.
     degree : int
         Of the monomials.
-    crossings, roundings, couplings : sequence of int
+    crossings, roundings : sequence of int
         Multipliers, in the order of the system.
     vanishing : tuple of matrix
         One for each mode, in contact and free.
@@ -73,17 +66,16 @@ def one_form(
     nodes = [Node(CONTACT, Q)]
     if lost:
         nodes.append(Node(FREE, undeflected(Q, system.order, degree)))
-    multipliers = _multipliers(system, crossings, roundings, couplings)
+    multipliers = _multipliers(system, crossings, roundings)
     found = tuple(Multiplier(fact, value) for fact, value in multipliers)
     return FormsOnGraph(tuple(nodes), log2, rate, degree, found, vanishing)
 
 
 def _multipliers(
-    system: SwitchedSystem, crossings: Integers, roundings: Integers, couplings: Integers
+    system: SwitchedSystem, crossings: Integers, roundings: Integers
 ) -> list[tuple[str, int]]:
     names = multiplier_names(system) if crossings else ()
     return [
         *zip(names, crossings, strict=True),
         *((f"{ROUNDING} {k}", value) for k, value in enumerate(roundings, 1)),
-        *zip(dict.fromkeys(coupling_facts(system.couplings)), couplings, strict=False),
     ]

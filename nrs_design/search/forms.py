@@ -20,7 +20,7 @@ from nrs_design.proof.evidence.graph import AnyStep, Multiplier, Node, lifted
 from nrs_design.proof.lift import monomials
 from nrs_design.proof.mode import Time
 from nrs_design.proof.stays import EnclosedStep
-from nrs_design.proof.steps import COUPLING, ROUNDING, Step
+from nrs_design.proof.steps import Step
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.balance import balance, scale_states
 from nrs_design.search.family import NEARLY
@@ -95,8 +95,6 @@ class Drawing:
     graph: FormsOnGraph  # Of its forms only the places count, of its multipliers only the facts
     forms: tuple[int, ...]  # For each node, which form it has: whole, or without the deflection
     coordinates: tuple[FormCoordinates, ...]  # Of each form
-    # Errors whose multipliers are unknowns, by the beginnings of their names.
-    solved: tuple[str, ...] = ()
 
     def like(self, node: int) -> list[int]:
         """Return the nodes with the form of one at its place."""
@@ -129,10 +127,10 @@ class Inequality:
     kept: Indices
     after: int
     left: Indices
-    M: Array  # From the state before it and the errors that are solved for
+    M: Array  # From the state before it
     # Facts with the forms that their multipliers have.
     facts: tuple[tuple[Fact, Array], ...]
-    errors: tuple[Error, ...]  # Those that are not solved for
+    errors: tuple[Error, ...]  # Their multipliers are not solved for
     is_flow: bool
     lasts: float  # Steps, or time in s of an enclosed stay
     is_strict: bool
@@ -162,17 +160,8 @@ class Inequality:
         """Return ``M' Q M`` of a map, ``Q M + M' Q`` of a flow, for one form or several."""
         if not self.is_flow:
             return np.asarray(self.M.T @ Q @ self.M)
-        half = self.padded(Q @ self.M)
+        half = Q @ self.M
         return np.asarray(half + np.swapaxes(half, -1, -2))
-
-    def padded(self, Q: Array) -> Array:
-        """Fill up with zeros for the errors."""
-        rows, columns = Q.shape[-2:]
-        if (rows, columns) == (self.size, self.size):
-            return Q
-        filled = np.zeros((*Q.shape[:-2], self.size, self.size))
-        filled[..., :rows, :columns] = Q
-        return filled
 
 
 @dataclass(frozen=True)
@@ -202,9 +191,6 @@ class FormsProgram:
         self.sizes = [len(one.T) for one in drawing.coordinates]
         self.every, self.scales = _edges(drawing)
         self.edges, self.stands_for = _distinct(self.every)
-        self.bounded = [
-            fact for fact in self.scales if not fact[0].startswith((ROUNDING, COUPLING))
-        ]
         count = len(self.edges)
         # Where forms have few edges each, nearly all of these are needed.
         whole = self.degree > 1 or count <= FEW_EACH * len(self.sizes)
@@ -362,11 +348,10 @@ class FormsProgram:
         for k, n in enumerate(self.sizes):
             whole = np.eye(n)[None]
             kinds.append(ConeKind(0.0, (FormTerm(k, whole, whole),), (), False, 1, n))
-        for fact, k in place.items():
+        for k in place.values():
             kinds.append(ConeKind(0.0, (), ((k, np.ones((1, 1, 1))),), False, 1, 1))
-            if fact in self.bounded:
-                below = -np.ones((1, 1, 1))
-                kinds.append(ConeKind(LARGEST_MULTIPLIER, (), ((k, below),), False, 1, 1))
+            below = -np.ones((1, 1, 1))
+            kinds.append(ConeKind(LARGEST_MULTIPLIER, (), ((k, below),), False, 1, 1))
         groups: dict[object, list[int]] = {}
         for k in active:
             edge = self.edges[k]
@@ -455,7 +440,7 @@ class FormsProgram:
             keeps = -2 * self.degree * float(np.ldexp(rate, self.unit))
         else:
             keeps = 1 / edge.weight(rate, self.degree, self.time)
-        return np.asarray(self._form(edge, solution, N) + keeps * edge.padded(Q))
+        return np.asarray(self._form(edge, solution, N) + keeps * Q)
 
     def edges_at(self, system: SwitchedSystem) -> list[Inequality]:
         """Return the edges for another system of the same shape, in the same units.
@@ -484,21 +469,13 @@ class FormsProgram:
             margins.append(float(np.linalg.eigvalsh(form)[0]) + slack)
         return np.array(margins)
 
-    def _rest(self, edge: Inequality, solution: Solution, N: Array) -> Array:
-        """Return the same for the state alone, with the worst of the errors."""
-        form, n = self._form(edge, solution, N), len(edge.kept)
-        if n == edge.size:
-            return form
-        coupled = form[:n, n:] @ np.linalg.inv(form[n:, n:]) @ form[n:, :n]
-        return np.asarray(form[:n, :n] - coupled)
-
     def own_rate(self, solution: Solution) -> float:
         """Return the rate that a solution shows where every edge is a flow or some steps."""
         rates = []
         for edge, N in zip(self.edges, solution.vanishing, strict=True):
             Q = solution.forms[edge.before][np.ix_(edge.kept, edge.kept)]
             inverse = np.linalg.inv(np.linalg.cholesky(Q))
-            form = inverse @ self._rest(edge, solution, N) @ inverse.T
+            form = inverse @ self._form(edge, solution, N) @ inverse.T
             least = float(np.linalg.eigvalsh(form)[0])
             if edge.is_flow:
                 rates.append(float(np.ldexp(least / (2 * self.degree), -self.unit)))
@@ -525,7 +502,7 @@ class FormsProgram:
         digits : sequence of int
             After the binary point.
         errors : bool
-            Whether errors that were not solved for are covered, at a rate that leaves room.
+            Whether errors are covered, at a rate that leaves room.
         """
         drawing, coordinates = self.drawing, self.drawing.coordinates
         inverses = [np.linalg.inv(one.T) for one in coordinates]
@@ -687,18 +664,17 @@ class _Built:
             row = close(n, 0.0, strict=True)
             add(columns, -images)
             row = close(n, 1.0, strict=False)
-        for fact, column in facts.items():
+        for column in facts.values():
             add(np.array([column]), np.ones((1, 1)))
             row = close(1, 0.0, strict=False)
-            if fact in program.bounded:
-                add(np.array([column]), -np.ones((1, 1)))
-                row = close(1, LARGEST_MULTIPLIER, strict=False)
+            add(np.array([column]), -np.ones((1, 1)))
+            row = close(1, LARGEST_MULTIPLIER, strict=False)
         for k, edge in enumerate(program.edges):
             before, after = (
                 starts[form] + _columns(entries)
                 for form, entries in ((edge.before, edge.kept), (edge.after, edge.left))
             )
-            given = pack(edge.padded(symmetric_basis(len(edge.kept))))
+            given = pack(symmetric_basis(len(edge.kept)))
             changed = -pack(edge.changed(symmetric_basis(len(edge.left))))
             if edge.is_flow:
                 add(before, np.ldexp(changed, program.unit), -given, k)
@@ -765,45 +741,23 @@ class _Moved:
     def states(self) -> int:
         return len(self.kept)
 
-    def sizes(self) -> Iterator[tuple[str, float, float]]:
-        """Yield what the multiplier of each fact has to balance."""
-        for name, i, q in self.floats.errors:
-            size = float(np.linalg.norm(q[: self.states] @ self.S))
-            yield name, float(np.linalg.norm(self.M[:, i])), size
-        for name, _ in self.floats.crossings:
-            yield name, 1.0, float(self.S[-1, -1] ** 2)
-
     def edge(self, scales: Mapping[Fact, float], *, lasts: float) -> Inequality:
         """Return the edge, with the multipliers of the facts that have a scale."""
-        n, found = self.states, self.floats.errors
-        solved = [(self.names[name], i, q) for name, i, q in found if self.names[name] in scales]
-        columns = [*range(n), *(i for _, i, _ in solved)]
-        weights = np.array([1.0] * n + [scales[fact] ** -0.5 for fact, *_ in solved])
-
-        def row(q: Array) -> Array:
-            own = np.concatenate([q[:n] @ self.S, q[n:]])[columns]
-            return np.asarray(own * weights)
-
-        facts = []
-        for k, (fact, _, q) in enumerate(solved, n):
-            form = -scales[fact] * np.outer(row(q), row(q))
-            form[k, k] += 1.0
-            facts.append((fact, form))
+        n, facts = self.states, []
         for name, c in self.floats.crossings:
-            fact, form = self.names[name], np.zeros((len(columns), len(columns)))
-            form[n - 1] = scales[fact] * self.S[-1, -1] * row(c)
+            fact, form = self.names[name], np.zeros((n, n))
+            form[n - 1] = scales[fact] * self.S[-1, -1] * (c[:n] @ self.S)
             facts.append((fact, form + form.T))
         errors = tuple(
             Error(self.names[name], self.M[:, i], q[:n] @ self.S)
-            for name, i, q in found
-            if self.names[name] not in scales
+            for name, i, q in self.floats.errors
         )
         return Inequality(
             self.before,
             self.kept,
             self.after,
             self.left,
-            self.M[:, columns] * weights,
+            self.M[:, :n],
             tuple(facts),
             errors,
             self.step.is_flow,
@@ -846,16 +800,13 @@ def _edges(
         own = inverses[after][np.ix_(left, left)]
         M = np.asarray(own @ np.hstack([floats.M[:, :n] @ S, floats.M[:, n:]]), dtype=float)
         moved.append(_Moved(step, floats, before, kept, after, left, S, M, names[b]))
-    sizes: dict[Fact, tuple[float, float]] = {}
+    sizes: dict[Fact, float] = {}
     for item in moved:
-        for name, pushed, size in item.sizes():
-            if not name.startswith((ROUNDING, COUPLING)) or name.startswith(drawing.solved):
-                fact = item.names[name]
-                known = sizes.get(fact, (0.0, 0.0))
-                sizes[fact] = max(pushed, known[0]), max(size, known[1])
+        for name, _ in item.floats.crossings:
+            fact, size = item.names[name], float(item.S[-1, -1] ** 2)
+            sizes[fact] = max(size, sizes.get(fact, 0.0))
     found = {
-        fact: pushed / size if pushed * size > 0 and isfinite(pushed / size) else 1.0
-        for fact, (pushed, size) in sizes.items()
+        fact: 1 / size if size > 0 and isfinite(1 / size) else 1.0 for fact, size in sizes.items()
     }
     scales = found if scales is None else scales
     for item in moved:
@@ -872,10 +823,7 @@ def _named(drawing: Drawing, listed: Sequence[tuple[int, AnyStep, int]]) -> list
         for name in step.facts:
             targets.setdefault(name, set()).add(first[b])
     return [
-        {
-            name: (name, None if name.startswith(COUPLING) or len(known) == 1 else b)
-            for name, known in targets.items()
-        }
+        {name: (name, None if len(known) == 1 else b) for name, known in targets.items()}
         for b in first
     ]
 

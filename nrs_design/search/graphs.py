@@ -17,7 +17,7 @@ from nrs_design.proof.evidence.graph import Arc, Multiplier, Node
 from nrs_design.proof.lift import monomials
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.spectrum import is_stable
-from nrs_design.proof.steps import CONTACT, COUPLING, FREE, ROUNDING, Stays, coupling_facts
+from nrs_design.proof.steps import CONTACT, FREE, ROUNDING, Stays
 from nrs_design.proof.switching import Clock, Stay
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.balance import balance, own_norm, scale_states
@@ -522,28 +522,6 @@ def _together(
     return (yield from propose(programs, family, family.limit, Rates(share=0.5), covers=covers))
 
 
-def search_coupled_axes(family: Family) -> Candidates[FormsOnGraph]:
-    """Search for a form for all axes that act on each other.
-
-    Where the arithmetic rounds, forms that cover that are tried before others.
-
-    Raises
-    ------
-    NotAffordableError
-        If work or memory do not suffice.
-    """
-    if not np.isfinite(family.limit):
-        return OUT_OF_RANGE
-    lost = family.system.contact is not None
-    ways = [(COUPLING, ROUNDING), (COUPLING,)] if family.system.roundings else [(COUPLING,)]
-    drawings = [draw_together(family, 1, lost=lost, solved=solved) for solved in ways]
-    if not drawings[-1].is_finite:
-        return OUT_OF_RANGE
-    rates = Rates(resolution=2.0**-9, smallest=2.0**-12, bits=(16, 24, 32, 40, 50, 60))
-    programs = [FormsProgram(drawing) for drawing in drawings]
-    return (yield from propose(programs, family, family.limit, rates))
-
-
 def search_polynomial(family: Family, degree: int) -> Candidates[FormsOnGraph]:
     """Search for a polynomial of degree 2d that all modes share.
 
@@ -578,9 +556,7 @@ def lifted_coordinates(d: Exponents, degree: int) -> FormCoordinates:
     return FormCoordinates(d, np.eye(len(d)))
 
 
-def draw_together(
-    family: Family, degree: int, *, lost: bool = False, solved: tuple[str, ...] = ()
-) -> Drawing:
+def draw_together(family: Family, degree: int, *, lost: bool = False) -> Drawing:
     """Draw a node for all modes, and in free motion the same form without the deflection.
 
     Parameters
@@ -591,15 +567,12 @@ def draw_together(
         Of the monomials.
     lost : bool
         Whether contact is lost and made.
-    solved : tuple of str
-        Errors that are solved for.
     """
     system = family.system
     places = [CONTACT, FREE] if lost else [CONTACT]
     facts = list[str]()
     if degree == 1:  # A form of monomials has no multipliers
         facts += [f"{ROUNDING} {k}" for k, _ in enumerate(system.roundings, 1)]
-        facts += dict.fromkeys(coupling_facts(system.couplings))
     graph = FormsOnGraph(
         tuple(Node(place, ()) for place in places),
         0,
@@ -610,7 +583,7 @@ def draw_together(
     own = lifted_coordinates(family.exponents, degree)
     if degree == 1:
         own = FormCoordinates(family.exponents, separating_coordinates(Motions.of(family)))
-    return Drawing(system, graph, (0,) * len(places), (own,), solved)
+    return Drawing(system, graph, (0,) * len(places), (own,))
 
 
 def left_modes(system: SwitchedSystem) -> tuple[str, ...]:

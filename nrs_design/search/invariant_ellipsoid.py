@@ -82,7 +82,7 @@ def search_ellipsoid(
                 (),
                 0,
                 tuple(map(seven_digits, found.shares.tolist())),
-                seven_digits(level * float(np.sqrt(best * (system.axes or 1))) * slack),
+                seven_digits(level * float(np.sqrt(best)) * slack),
             )
             for numbers in roundings(family, found, T, units, size):
                 yield Candidate(
@@ -92,7 +92,6 @@ def search_ellipsoid(
                         denominator_log2=numbers.log2,
                         multipliers=numbers.multipliers,
                         roundings=numbers.roundings,
-                        taus=numbers.couplings,
                     )
                 )
     return None

@@ -38,14 +38,6 @@ LADDER: tuple[Rung, ...] = (
         None,
         lambda f: f.system.is_uniform,
         _in("unstable_mode", "examine_suspicious_modes"),
-        coupled=True,
-    ),
-    Rung(
-        "coupled axes",
-        Method.COUPLED_AXES,
-        lambda f: f.is_coupled and f.may_share_an_ellipsoid,
-        _in("graphs", "search_coupled_axes"),
-        coupled=True,
     ),
     Rung(
         "one state",
@@ -93,7 +85,6 @@ LADDER: tuple[Rung, ...] = (
         None,
         lambda f: f.may_lose_contact and f.is_losable,
         _in("unstable_contact", "examine_free_motion"),
-        coupled=True,
         in_kept_contact=False,
     ),
     *(
@@ -102,7 +93,6 @@ LADDER: tuple[Rung, ...] = (
             Method.PERIOD,
             lambda f: f.is_losable,
             _in("unstable_contact", "search_contact"),
-            coupled=True,
             clocked=clocked,
             in_kept_contact=False,
         )
@@ -145,7 +135,7 @@ LADDER: tuple[Rung, ...] = (
         _in("common_quadratic", "search_by_gradient"),
         only_quadratic=True,
     ),
-    Rung("every mode", None, _always, _in("unstable_mode", "examine_every_mode"), coupled=True),
+    Rung("every mode", None, _always, _in("unstable_mode", "examine_every_mode")),
     Rung(
         "constant values",
         Method.VALUE,
@@ -194,7 +184,6 @@ LADDER: tuple[Rung, ...] = (
         Method.MIXTURE,
         lambda f: f.is_arbitrary and f.is_continuous,
         _in("mixture", "search_mixture"),
-        coupled=True,
     ),
     Rung(
         "polynomial",
@@ -215,7 +204,6 @@ LADDER: tuple[Rung, ...] = (
         Method.PERIOD,
         lambda f: f.system.is_uniform,
         _in("period", "search_period"),
-        coupled=True,
     ),
     Rung(
         "switching at constant values",

@@ -10,7 +10,6 @@ class Method(StrEnum):
     CONEWISE_MODE_QUADRATIC = "conewise-mode-quadratic"
     CONEWISE_POLYNOMIAL = "conewise-polynomial"
     CONEWISE_QUADRATIC = "conewise-quadratic"
-    COUPLED_AXES = "coupled-axes"
     LMI = "lmi"
     GRADIENT = "gradient"
     OBSTRUCTION = "obstruction"

@@ -16,7 +16,6 @@ from numpy.linalg import LinAlgError
 from numpy.typing import NDArray
 
 from nrs_design.proof.mode import Time
-from nrs_design.proof.steps import COUPLING
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.family import Family, floats_in_silence
 from nrs_design.search.forms import DualSolution, FormsProgram, Inequality, Solution
@@ -100,11 +99,10 @@ def rate_slope(
 def _program(system: SwitchedSystem, allowance: Allowance) -> FormsProgram | None:
     """Return the program of one form for all modes; None beyond floating point."""
     family = Family.of(system, allowance)
-    solved = (COUPLING,) if system.couplings else ()
     if not np.isfinite(family.limit):
         return None
     calm = replace(family, matrices=_calmed(family))
-    drawing = draw_together(calm, 1, lost=system.contact is not None, solved=solved)
+    drawing = draw_together(calm, 1, lost=system.contact is not None)
     return FormsProgram(drawing) if drawing.is_finite else None
 
 
@@ -199,7 +197,7 @@ def _per_rate(program: FormsProgram, dual: DualSolution, at: float) -> float:
         edge = program.edges[k]
         if edge.is_flow:
             Q = dual.solution.forms[edge.before][np.ix_(edge.kept, edge.kept)]
-            changed = -2 * float(np.ldexp(1.0, program.unit)) * edge.padded(Q)
+            changed = -2 * float(np.ldexp(1.0, program.unit)) * Q
         else:
             Q = dual.solution.forms[edge.after][np.ix_(edge.left, edge.left)]
             weight = edge.weight(at, 1, program.time)

@@ -76,11 +76,6 @@ class Facts:
         return bool(self.system.roundings)
 
     @property
-    def is_coupled(self) -> bool:
-        """Whether the system says what axes do to each other."""
-        return bool(self.system.couplings)
-
-    @property
     def takes_turns(self) -> bool:
         """Whether its modes take turns."""
         return self.system.clock is not None
@@ -102,7 +97,7 @@ class Facts:
         """Whether signals are words of modes in discrete time, and nothing else acts."""
         system = self.system
         acting = (system.contact, system.flights, system.clock, system.saturation)
-        if any(acting) or system.roundings or system.couplings or self.has_constant:
+        if any(acting) or system.roundings or self.has_constant:
             return False
         return not self.is_continuous and system.is_uniform and len(system.modes) > 1
 
@@ -142,9 +137,6 @@ class Rung:
     # Of a rung that rises in the steps that its forms remember: how many, and what that takes.
     lengths: Callable[[SwitchedSystem], dict[int, Cost]] | None = None
     degree: int = 2  # Of these forms
-    # What it finds of one axis says something about all axes that act on each other; other rungs
-    # are not tried where they do.
-    coupled: bool = False
     clocked: bool = False  # It is for modes that take turns, and for no others
     # What it finds is refuted by growth in kept contact, or is such growth itself.
     in_kept_contact: bool = True
@@ -188,9 +180,7 @@ class Rung:
         facts : Facts
             Of the system.
         """
-        if self.clocked != facts.takes_turns:
-            return False
-        return (self.coupled or not facts.is_coupled) and self.applies(facts)
+        return self.clocked == facts.takes_turns and self.applies(facts)
 
     def steps(self, system: SwitchedSystem, limits: Limits, allowance: Allowance) -> Iterator[Step]:
         """Yield itself, or searches of rising degree and the reason why there is no higher one.

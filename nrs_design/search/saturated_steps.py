@@ -3,8 +3,8 @@
 With ``S = Q^-1`` and ``Y = H S`` the conditions in contact are linear in S and Y where nothing is
 rounded (Hu and Lin 2001), and the largest start gives H. For that H, rounded, the conditions of
 `nrs_design.proof.evidence.saturated_ellipsoid` are linear in Q and all multipliers: those of lost
-contact, of roundings and of what other axes do. Where they have no solution, H is moved to what the
-signals are while nothing is cut off.
+contact and of roundings. Where they have no solution, H is moved to what the signals are while
+nothing is cut off.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from nrs_design.proof.between import between
-from nrs_design.proof.channels import Coupling, Rounding
+from nrs_design.proof.channels import Rounding
 from nrs_design.proof.evidence import SaturatedEllipsoid
 from nrs_design.proof.mode import Time
 from nrs_design.proof.saturation import CutOff
@@ -93,8 +93,7 @@ class _Loop:
     def whole(self, H: Array, *, rounding: bool) -> tuple[Family, Array, DisturbedProblem, Array]:
         """Return the conditions for given rows, with their family, coordinates and units."""
         held = [[[Fraction(float(v)) for v in h] for h in rows] for rows in self.by_mode(H)]
-        coupling = bool(self.system.couplings)
-        loop = between(self.system, held, rounding=rounding, coupling=coupling)
+        loop = between(self.system, held, rounding=rounding)
         family = Family.of(loop)
         T = np.ldexp(self.T, -family.exponents[:, None])
         problem = transformed(problem_of(family, Motions.of(family)), T)
@@ -177,15 +176,14 @@ def _lean(system: SwitchedSystem, kept: list[int]) -> SwitchedSystem:
         contact=contact,
         flights=None,
         roundings=tuple(replace(item, **_parts(item, kept)) for item in system.roundings),
-        couplings=tuple(replace(item, **_parts(item, kept)) for item in system.couplings),
         saturation=replace(system.saturation, signals=signals),
         enclosures=(),
     )
 
 
-def _parts(item: Rounding | Coupling | CutOff, kept: list[int]) -> dict[str, Any]:
+def _parts(item: Rounding | CutOff, kept: list[int]) -> dict[str, Any]:
     """Return what an item has for every mode, for some of them."""
-    parts = {part: getattr(item, part, ()) for part in ("columns", "rows", "errors", "pushes")}
+    parts = {part: getattr(item, part, ()) for part in ("columns", "rows", "errors")}
     return {part: tuple(rows[k] for k in kept) for part, rows in parts.items() if rows}
 
 
@@ -356,5 +354,4 @@ def _rounded(
             level=level,
             multipliers=numbers.multipliers,
             roundings=numbers.roundings,
-            taus=numbers.couplings,
         )

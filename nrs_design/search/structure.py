@@ -21,9 +21,9 @@ def merge_equal_modes(system: SwitchedSystem) -> SwitchedSystem:
     """Keep the first of every set of equal modes; the same system if there are none.
 
     Equal modes may differ in what disturbs them, so disturbances and outputs are left behind; with
-    what the arithmetic or other axes add to them, they are not equal.
+    what the arithmetic adds to them, they are not equal.
     """
-    if system.roundings or system.couplings or system.enclosures:
+    if system.roundings or system.enclosures:
         return system
     first: dict[RationalMatrix, int] = {}
     for index, mode in enumerate(system.modes):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import replace
 from pathlib import Path
 
@@ -19,7 +19,6 @@ from nrs_design.simulation.scenario import Errors, Profile, Scenario, Surface
 from nrs_design.spec import InteractionDesignSpec
 from nrs_design.spec.environment import EnvironmentSpec
 from nrs_design.spec.scenarios import (
-    AXES,
     LONGEST,
     CommandProfileSpec,
     ErrorsSpec,
@@ -30,7 +29,7 @@ from nrs_design.wings import load_wing
 
 Pick = Callable[[Interval], float]
 
-DEFAULT, DEFAULT_AXES = "insertion-and-withdrawal", "all-axes"
+DEFAULT = "insertion-and-withdrawal"
 # Thesis fig. 6.7 and 6.11: in free space to the largest command, down, again in contact, and out.
 _SHAPE = ((0.0, 0.0), (1.0, 1.0), (2.0, 0.25), (3.0, 1.0), (4.0, 0.0), (5.0, -1.0), (6.0, -1.0),
           (7.0, 0.0), (7.5, 0.0))  # fmt: skip
@@ -96,66 +95,7 @@ def check_recordings(spec: InteractionDesignSpec, folder: Path) -> None:
         If one cannot be read, is no profile, or commands more than the limit of the spec.
     """
     for scenario in spec.scenarios.values():
-        commands = [scenario.command]
-        if scenario.axes is not None:
-            commands = [scenario.of_axis(axis).command for axis in AXES]
-        for command in commands:
-            _profile(command, folder, spec.limits.velocity.si)
-
-
-def build_runs(
-    spec: InteractionDesignSpec, plant: Plant, name: str, folder: Path
-) -> tuple[Scenario, ...]:
-    """Return one scenario of a spec or a default one; of three axes ``NAME.theta1`` and so on.
-
-    Parameters
-    ----------
-    spec, plant, folder
-        As `build_scenario` takes them.
-    name : str
-        Of the scenario.
-
-    Raises
-    ------
-    DataError
-        As `build_scenario` does.
-    """
-    written = spec.scenarios.get(name)
-    if written is None:
-        alone = default_scenario(spec, plant)
-        return tuple(replace(alone, name=run) for run in run_names(spec, (name,)))
-    whole = build_scenario(spec, plant, name, written, folder)
-    if written.axes is None:
-        return (whole,)
-    runs = zip(AXES, run_names(spec, (name,)), strict=True)
-    each = (build_scenario(spec, plant, run, written.of_axis(axis), folder) for axis, run in runs)
-    return tuple(
-        replace(one, duration=whole.duration, seed=whole.seed + i) for i, one in enumerate(each)
-    )
-
-
-def default_names(spec: InteractionDesignSpec) -> tuple[str, ...]:
-    """Return the names of the scenarios that a spec without any has."""
-    robot = spec.coupling is not None and spec.coupling.robot is not None
-    return (DEFAULT, DEFAULT_AXES) if robot else (DEFAULT,)
-
-
-def run_names(spec: InteractionDesignSpec, names: Sequence[str]) -> tuple[str, ...]:
-    """Return the names of the runs of some scenarios: three for one that has axes.
-
-    Parameters
-    ----------
-    spec : InteractionDesignSpec
-        With its scenarios, or without.
-    names : sequence of str
-        Of scenarios.
-    """
-    found: list[str] = []
-    for name in names:
-        written = spec.scenarios.get(name)
-        several = name == DEFAULT_AXES if written is None else written.axes is not None
-        found += [f"{name}.{axis}" for axis in AXES] if several else [name]
-    return tuple(found)
+        _profile(scenario.command, folder, spec.limits.velocity.si)
 
 
 def default_scenario(spec: InteractionDesignSpec, plant: Plant) -> Scenario:

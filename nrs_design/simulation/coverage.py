@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from nrs_design.proof.evidence.abstract import AbstractEvidence
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.simulation.build_control import by_logic
-from nrs_design.simulation.run import LEFT_OUT_ON_LINKS, Run
+from nrs_design.simulation.run import Run
 from nrs_design.simulation.scenario import Errors, Scenario
 from nrs_design.spec import InteractionDesignSpec
 
@@ -61,8 +61,6 @@ def undecayed(
         yield "friction, resolutions, noise or jitter go on acting"
     if run.engine != "exact":
         yield "the rounding of angle and reference goes on acting"
-    if system.couplings and not set(LEFT_OUT_ON_LINKS) <= set(run.left_out):
-        yield "one axis runs without links, and the proof is about axes that links couple"
     yield from _sampling(spec, run)
     yield from _differences(spec, system, statement, scenario, run)
 
@@ -88,8 +86,6 @@ def _differences(
     angles = None if spec.disturbances is None else spec.disturbances.largest_angle
     if any(controller.commands != "velocity" for controller in spec.controllers.values()):
         yield "the run is not one of impedance control alone"
-    if run.engine == "mujoco":
-        yield "MuJoCo moves the mechanics, with errors of its own"
     if run.engine != "exact" and (angles is None or not statement.covers_rounding):
         yield "the law is rounded to single precision, and the proof does not take up all of it"
     yield from _irregular_steps(run)

@@ -27,23 +27,7 @@ LEFT_OUT = (
 LEFT_OUT_EXACTLY = (
     "sampling, delay and rounding of the law, and the limit of the motor's command",
 )
-# What three axes on the links of a robot leave out.
-LEFT_OUT_ON_LINKS = (
-    "play and elasticity of gearheads, cables, links and joints, and friction of passive joints",
-    "springs and counter-masses of a balance, and tissue that couples the axes",
-    "gain and time constant of the motors other than the nominal ones",
-)
 ERRORS_LEFT_OUT = "friction, resolutions, noise and jitter of the scenario"
-
-
-@dataclass(frozen=True, slots=True)
-class Deviation:
-    """How far a run is from the same one on the sampled engine, at the samples."""
-
-    # angle, velocity, torque: largest differences in rad, rad/s and N m.
-    angle: float
-    velocity: float
-    torque: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,8 +49,6 @@ class Run:
     stopped: str | None = None  # Why the run ended before its time
     left_out: tuple[str, ...] = LEFT_OUT  # What is not in it
     outer: float | None = None  # Period of filter and admittance in s, which may be another
-    deviation: Deviation | None = None  # From the sampled engine, where another one was asked for
-
     missed: int | None = None  # Samples whose deadline was missed; None where the spec has none
 
     @property

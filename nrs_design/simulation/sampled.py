@@ -8,10 +8,26 @@ from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.controllers.shipped import shipped_law
 from nrs_design.errors import DesignError
 from nrs_design.models.plant import Plant
+from nrs_design.progress import Progress, silent
+from nrs_design.simulation.processor import run_axis
+from nrs_design.simulation.run import MAX_STEPS, Run
 from nrs_design.simulation.sampled_axis import SampledAxis, Turns
 from nrs_design.simulation.scenario import Scenario
 from nrs_design.simulation.step_program import StepProgram
 from nrs_design.spec import InteractionDesignSpec
+
+
+def simulate_sampled(
+    spec: InteractionDesignSpec,
+    plant: Plant,
+    design: ControllerDesign,
+    scenario: Scenario,
+    *,
+    max_steps: int = MAX_STEPS,
+    tell: Progress = silent,
+) -> Run:
+    """Simulate a scenario with the law that ships, at most so many of its samples."""
+    return run_axis(sampled_axis(spec, plant, design, scenario), max_steps, tell)
 
 
 def sampled_axis(

@@ -173,13 +173,11 @@ class SampledAxis:
             if switch.source == source
         ]
 
-    def finish(self, engine: str, inputs: SampleInputs, stopped: str | None) -> Run:
+    def finish(self, inputs: SampleInputs, stopped: str | None) -> Run:
         """Return the run up to now.
 
         Parameters
         ----------
-        engine : str
-            What moved it.
         inputs : SampleInputs
             What it was given.
         stopped : str or None
@@ -187,7 +185,7 @@ class SampledAxis:
         """
         return Run(
             self.scenario.name,
-            engine,
+            "sampled",
             self._response(inputs),
             tuple(self.switches),
             tuple(self.tissue.contacts),
@@ -202,8 +200,8 @@ class SampledAxis:
 
     def sample(
         self, t: float, hand: float, noise: float, age: int, late: float, missed: bool
-    ) -> float:
-        """Run the law once; return its command.
+    ) -> None:
+        """Run the law once, and send its command.
 
         Parameters
         ----------
@@ -228,7 +226,8 @@ class SampledAxis:
         felt = self.buffer[age]
         if missed:
             assert self.misses is not None
-            return self._miss(hand, torque, depths, late, holds=self.misses.command == "hold")
+            self._miss(hand, torque, depths, late, holds=self.misses.command == "hold")
+            return
         if outer:
             self._decide(t, hand, felt, depths)
         seen = {
@@ -253,17 +252,15 @@ class SampledAxis:
             each = zip(self.kept, before, after, strict=True)
             self.states = [new if of_motion == motion else old for of_motion, old, new in each]
         self.turn += 1
-        command = self.command
-        now = (self.theta, self.omega, torque, max(0.0, *depths, 0.0), command)
+        now = (self.theta, self.omega, torque, max(0.0, *depths, 0.0), self.command)
         self.rows.append((mode, *now, *map(float, before)))
         if not self.holds[self.controller]:
             self.commanded += self.T * hand
-        self.sent.append((late, command))
-        return command
+        self.sent.append((late, self.command))
 
     def _miss(
         self, hand: float, torque: float, depths: list[float], late: float, *, holds: bool
-    ) -> float:
+    ) -> None:
         """Send what is sent in the place of a command that was not computed."""
         self.command = self.command if holds else 0.0
         now = (self.theta, self.omega, torque, max(0.0, *depths, 0.0), self.command)
@@ -272,7 +269,6 @@ class SampledAxis:
             self.commanded += self.T * hand
         self.sent.append((late, self.command))
         self.turn += 1
-        return self.command
 
     def _decide(self, t: float, hand: float, felt: float, depths: list[float]) -> None:
         """Let schedule and mode logic choose, by what they see at this sample."""
@@ -323,7 +319,7 @@ class SampledAxis:
         return coming[::-1]
 
     def glide(self, command: float, width: float) -> None:
-        """Let motor and tissue move for a time in s, as if there were no other axis."""
+        """Let motor and tissue move for a time in s."""
         if self.parts == 1:
             self.theta, self.omega = self.motor.after(self.theta, self.omega, command, width)
             return

@@ -118,7 +118,6 @@ def build_conditions(spec: InteractionDesignSpec) -> OperatingConditions:
         largest_command=None if limits.command is None else limits.command.not_above,
         command=spec.command,
         largest_integral=None if spec.anti_windup is None else spec.anti_windup.clamp.not_above,
-        coupling=spec.coupling,
         touched=spec.touched,
         initial_force=wanted.exact if isinstance(wanted, Quantity) else wanted,
         preloads=dict(_preloads(spec)),

@@ -15,7 +15,6 @@ from nrs_design.spec.features import (
     CONSTANT_TISSUE,
     CONTACT_RULES,
     CONTINUOUS,
-    COUPLED,
     DAMPED,
     DAMPED_FORCE,
     DISTURBED,
@@ -28,11 +27,9 @@ from nrs_design.spec.features import (
     IDLE_RESET,
     LAGGING_AT_ONCE,
     LOADED,
-    LOADED_ALONE,
     LOSABLE,
     MEMORY,
     MISSES,
-    MOBILE,
     MODE_LOGIC,
     MOTOR_RANGE,
     NOT_KEPT,
@@ -75,7 +72,7 @@ CHANGING: tuple[tuple[Feature[Spec], ...], ...] = (
 )
 
 COMBINATIONS: tuple[Row[Spec], ...] = (
-    *_beside(HAND, LOSABLE, SAMPLED, DISTURBED, COUPLED, IDLE, LOADED),
+    *_beside(HAND, LOSABLE, SAMPLED, DISTURBED, IDLE, LOADED),
     *_beside(PRELOADED, LOSABLE, DISTURBED),
     *_beside(MEMORY, SAMPLED, IDLE),
     not_together(DAMPED_FORCE),
@@ -88,12 +85,12 @@ COMBINATIONS: tuple[Row[Spec], ...] = (
     *_beside(GIVEN_LOOP, MOTOR_RANGE, LOADED),
     not_together(LOADED, MOTOR_RANGE, PRELOADED),
     not_together(MOTOR_RANGE, OTHERS, CONTINUOUS),
-    not_together(LOADED_ALONE, OTHERS),
-    not_together(LOADED_ALONE, SAMPLED),
-    not_together(COUPLED, OTHERS, CONTINUOUS),
+    not_together(LOADED, OTHERS),
+    # Without this row a sampled loop would be proved with the motor that nothing loads.
+    not_together(LOADED, SAMPLED),
     # No proof that rests on constants knows these, or they hold what is not constant.
-    *_beside(CONSTANT_MOTOR, LOSABLE, COUPLED, TWO_PERIODS),
-    *_beside(CONSTANT_TISSUE, LOSABLE, COUPLED, TWO_PERIODS, AT_ONCE, MEMORY, PRELOADED),
+    *_beside(CONSTANT_MOTOR, LOSABLE, TWO_PERIODS),
+    *_beside(CONSTANT_TISSUE, LOSABLE, TWO_PERIODS, AT_ONCE, MEMORY, PRELOADED),
     not_together(CONSTANT_LAG, TIMED),
     # The sampled loop.
     *_beside(OFFSET, SAMPLED),
@@ -101,21 +98,19 @@ COMBINATIONS: tuple[Row[Spec], ...] = (
     *_beside(SAMPLED_DWELL, SAMPLED),
     *(not_together(DWELL, *features) for features in CHANGING),
     *_beside(TWO_PERIODS, OTHERS, RULES),
-    # The rule for misses decides what may follow what; its proof is of one axis.
-    *_beside(MISSES, TWO_PERIODS, RULES, OTHERS, COUPLED, CONSTANT_MOTOR, CONSTANT_TISSUE),
+    # The rule for misses decides what may follow what.
+    *_beside(MISSES, TWO_PERIODS, RULES, OTHERS, CONSTANT_MOTOR, CONSTANT_TISSUE),
     # A position of zero is a place of the robot, and nothing says where the contact is from there.
     not_together(ZEROED, PLACED),
     # Its command is a velocity, and nothing stands where a reference would.
-    *_beside(STREAMED, OTHERS, SPRUNG, IDLE, COUPLED, TWO_PERIODS, SATURATED),
+    *_beside(STREAMED, OTHERS, SPRUNG, IDLE, TWO_PERIODS, SATURATED),
     not_together(STREAMED, MOTOR_RANGE, CONTINUOUS),
     # Its law makes the torque, and what is touched brakes the joint between two samples.
-    *_beside(TORQUES, COUPLED, TWO_PERIODS, CONTINUOUS),
-    # What the axes of an arm do to each other is derived for one contact that is kept.
-    *_beside(MOBILE, LOSABLE, DISTURBED, CONSTANT_TISSUE),
-    # When a command takes effect within a period is known to the loop of one axis alone.
-    *_beside(TIMED, CONTINUOUS, TWO_PERIODS, COUPLED),
+    *_beside(TORQUES, TWO_PERIODS, CONTINUOUS),
+    # When a command takes effect within a period is known to a loop of one period alone.
+    *_beside(TIMED, CONTINUOUS, TWO_PERIODS),
     # What is about a pivot, or has units of a rotation in its words.
-    *_beside(SLIDING, COUPLED, MODE_LOGIC, TOOL),
+    *_beside(SLIDING, MODE_LOGIC, TOOL),
     not_together(COMMAND, OTHERS, SAMPLED),
     # It would move the position that the spring draws to.
     not_together(COMMAND, SPRUNG, SAMPLED),
@@ -128,7 +123,6 @@ COMBINATIONS: tuple[Row[Spec], ...] = (
     # Modes are not made one by one beside these; free motion is a mode that no rule names.
     *_beside(CONTACT_RULES, IDLE, SAMPLED, OFFSET),
     not_together(CONTACT_RULES, LOSABLE, SPRUNG),
-    not_together(SATURATED, COUPLED, CONTINUOUS),
     not_together(SATURATED, OTHERS, CONTINUOUS),
     *_beside(SATURATED, TWO_PERIODS, GIVEN_LOOP, SPRUNG, IDLE_RESET),
     *_beside(SATURATED, AT_ONCE, TORQUES, MISSES),

@@ -115,8 +115,6 @@ def _of_interaction(
             yield _without(("sampling", "jitter"), other_loop=True)
     for drive in spec.drives:
         yield from _times(said, (drive, "dead_time"))
-    if spec.coupling is not None and spec.coupling.inertia is not None:
-        yield from _inertia(said)
     if spec.contact == "losable":
         yield _with(("contact",), "kept", "losable")
     if spec.sampling is None:
@@ -140,14 +138,6 @@ def _left_out(spec: InteractionDesignSpec) -> Iterator[Concession]:
         # A sensor of which nothing else is said goes whole.
         alone = spec.sensor.model_fields_set == {"filter"}
         yield _without(("sensor",) if alone else ("sensor", "filter"), other_loop=True)
-    if spec.coupling is not None:
-        # In a sampled loop, an axis alone is modelled with a motor that nothing loads.
-        carried = spec.actuator is not None and spec.actuator.load_inertia is not None
-        loaded = spec.sampling is not None and carried
-        beside = (("actuator", "load_inertia"),) if loaded else ()
-        yield _without(("coupling",), beside, other_loop=True)
-        if spec.sampling is not None:
-            yield _without(("sampling",), other_loop=True, in_all=False)
     if spec.sampling is not None and spec.sampling.outer_period is not None:
         yield _without(("sampling", "outer_period"), other_loop=True)
     if spec.sampling is not None and spec.sampling.misses is not None:
@@ -158,11 +148,9 @@ def _with(at: Keys, word: str, asked: str) -> Concession:
     return Concession(at, Way(WITH, lambda _: word, lambda _: word, asked))
 
 
-def _without(
-    at: Keys, beside: tuple[Keys, ...] = (), *, other_loop: bool = False, in_all: bool = True
-) -> Concession:
+def _without(at: Keys, *, other_loop: bool = False, in_all: bool = True) -> Concession:
     form = Way(WITHOUT, lambda _: None, lambda _: "", "")
-    return Concession(at, form, beside=beside, other_loop=other_loop, in_all=in_all)
+    return Concession(at, form, other_loop=other_loop, in_all=in_all)
 
 
 def _identified(said: dict[str, Data], at: Keys) -> tuple[Keys, ...]:
@@ -272,20 +260,6 @@ def _delay(least: int, most: int) -> Iterator[Concession]:
 
 def _samples(count: int) -> str:
     return f"{count} sample{'' if count == 1 else 's'}"
-
-
-def _inertia(said: dict[str, Data]) -> Iterator[Concession]:
-    at: Keys = ("coupling", "inertia")
-    ends = _get(said, at)
-    assert isinstance(ends, tuple)
-    low, high = map(str, ends)
-    if _number(low) < _number(high, low):
-
-        def up(step: int) -> tuple[str, str]:
-            # Links without inertia are none, which is another model.
-            return _ends((low, high, low), (False, True), step + 1)
-
-        yield Concession(at, Way(UP, up, lambda k: up(k)[1], high, PARTS - 1))
 
 
 def _dwell(

@@ -140,7 +140,6 @@ def _interaction(spec: InteractionDesignSpec) -> Iterator[Line]:
         yield from _sampling(spec.sampling)
     for key in (
         "disturbances",
-        "coupling",
         "sensor",
         "monitoring",
         "mode_logic",

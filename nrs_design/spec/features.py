@@ -218,24 +218,6 @@ LOADED = _F(
     "leave load_inertia out",
     _given("actuator.load_inertia"),
 )
-LOADED_ALONE = _F(
-    "a load of the motor of one axis",
-    "actuator.load_inertia",
-    "leave load_inertia out",
-    lambda s: LOADED.find(s) and s.coupling is None,
-)
-COUPLED = _F(
-    "axes that act on each other",
-    "coupling",
-    "leave coupling out",
-    lambda s: s.coupling is not None and s.coupling.mobility is None,
-)
-MOBILE = _F(
-    "a mobility of the arm",
-    "coupling.mobility",
-    "leave coupling out",
-    _given("coupling.mobility"),
-)
 
 HAND = _F(
     "{0.name!r}, a hand with a mass,",

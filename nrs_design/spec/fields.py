@@ -17,7 +17,6 @@ NAME_PATTERN = "^[a-z0-9][a-z0-9._-]{0,63}$"
 LABEL_PATTERN = "^[A-Za-z0-9][A-Za-z0-9._-]{0,63}$"
 HASH_PATTERN = "^[0-9a-f]{64}$"
 MAX_TITLE = 200
-MAX_AXES = 64
 # One environment that is touched, or several at once.
 Contact = str | tuple[str, ...]
 
@@ -115,7 +114,6 @@ AboveOne = Annotated[Fraction, _number(lambda x: x > 1, "above 1")]
 BelowTwo = Annotated[Fraction, _number(lambda x: 0 < x < 2, "between 0 and 2")]
 # Significant digits: a float32 holds no more.
 Digits = Annotated[int, whole(1, 7)]
-AxisCount = Annotated[int, whole(1, MAX_AXES)]
 Name = Annotated[str, _text(NAME_PATTERN, {"type": "string", "pattern": NAME_PATTERN})]
 Label = Annotated[str, _text(LABEL_PATTERN, _LABEL)]
 

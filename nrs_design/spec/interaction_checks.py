@@ -15,14 +15,9 @@ from nrs_design.spec.controllers import ControllerSpec, names_in, touched_in
 from nrs_design.spec.faults import Location
 from nrs_design.spec.features import (
     BLEEDING,
-    CONSTANT_MOTOR,
-    COUPLED,
     HAND,
     IDLE,
-    LOADED,
-    MOBILE,
     SATURATED,
-    TORQUES,
     Touched,
     touched,
 )
@@ -566,53 +561,6 @@ INTERACTION_CHECKS: tuple[Row[Spec], ...] = (
         "write the largest error of a reading, all causes together",
     ),
     *each(_commands, IN_ITS_UNIT),
-    Row(
-        "coupling.axes",
-        lambda s: (
-            s.coupling is not None
-            and s.disturbances is not None
-            and s.coupling.robot is None
-            and s.coupling.axes is None
-        ),
-        "a bound under disturbances depends on the number of axes, which is not given",
-        "add `axes: 3`, or remove disturbances",
-    ),
-    Row(
-        "coupling",
-        lambda s: COUPLED.find(s) and not LOADED.find(s),
-        "axes act on each other against the inertia of the drives, which is not given",
-        "add `load_inertia: 1.213 kg*m^2` to actuator, or remove coupling",
-    ),
-    Row(
-        "coupling.mobility",
-        lambda s: MOBILE.find(s) and not TORQUES.find(s),
-        "a mobility is of an arm that takes torques",
-        "describe the axis by torque_interface, or remove mobility",
-    ),
-    Row(
-        "coupling.mobility",
-        lambda s: MOBILE.find(s) and s.contact != "kept",
-        "what the axes of an arm do to each other is derived for contact that is kept",
-        "add `contact: kept`, or remove coupling",
-    ),
-    Row(
-        "{0[0]}.{0[1]}",
-        lambda s: (s.late_at,) if MOBILE.find(s) and s.late_at is not None else None,
-        "with a mobility of the arm, commands take effect at their sample",
-        "leave {0[1]} out, or remove coupling",
-    ),
-    Row(
-        "{0[0]}.{0[1]}.varies",
-        lambda s: (at,) if MOBILE.find(s) and (at := CONSTANT_MOTOR.find(s)) else None,
-        "with a mobility of the arm, what has a range may change at every sample",
-        "leave varies out, or remove coupling",
-    ),
-    Row(
-        "torque_interface.inertia",
-        lambda s: MOBILE.find(s) and s.torque_interface and not s.torque_interface.inertia.fixed,
-        "how the inertia changes is said twice: by its range, and by the mobility",
-        "give one value, or remove coupling",
-    ),
     # Switching and runs.
     *LOGIC_CHECKS,
     *SCENARIO_CHECKS,

@@ -11,7 +11,6 @@ from nrs_design.spec.faults import Location
 from nrs_design.spec.features import (
     COMMAND,
     CONTINUOUS,
-    COUPLED,
     DISTURBED,
     LOSABLE,
     MEMORY,
@@ -148,12 +147,6 @@ INTERACTION_DOUBTS: tuple[Row[Spec], ...] = (
         "beside missed deadlines, the decay of the undisturbed loop is proved, and no bound under "
         "disturbances",
         "bounds of the loop without misses are listed; or remove disturbances",
-    ),
-    Row(
-        "coupling",
-        lambda s: TWO_PERIODS.find(s) and COUPLED.find(s),
-        "beside an outer_period, nothing is proved of axes that act on each other",
-        "what is proved without the one or the other is listed; or remove outer_period or coupling",
     ),
     Row(
         "disturbances.command",

@@ -20,7 +20,6 @@ from nrs_design.spec.controllers import (
     contact_name,
     touched_in,
 )
-from nrs_design.spec.coupling import CouplingSpec
 from nrs_design.spec.environment import EnvironmentSpec
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import Digits, Label, Name, Title
@@ -122,10 +121,6 @@ class AbstractInteractionSpec(SpecModel):
     )
     disturbances: DisturbancesSpec | None = optional(
         "what acts on the loop from outside; its effect on force and velocity is bounded"
-    )
-    coupling: CouplingSpec | None = optional(
-        "what the axes do to each other through their links, for a proof about all "
-        "axes at once; without it they are taken not to act on each other"
     )
     sensor: SensorSpec | None = optional(
         "the force signal: its filter is a part of the loop, its errors bound the "
@@ -267,8 +262,7 @@ class AbstractInteractionSpec(SpecModel):
     @property
     def takes_dead_time(self) -> bool:
         """Whether a proof can be about commands that take effect later than at once."""
-        alone = self.coupling is None
-        return alone and self.sampling is not None and self.sampling.round == 1
+        return self.sampling is not None and self.sampling.round == 1
 
     @property
     def late_times(self) -> dict[tuple[str, str], Times]:
@@ -303,9 +297,7 @@ class AbstractInteractionSpec(SpecModel):
 
     @property
     def has_ranges(self) -> bool:
-        """Whether the actuator, a touched environment or the links have a range."""
-        if self.coupling is not None:
-            return True
+        """Whether the actuator or a touched environment has a range."""
         if any(not item.fixed for item in self.motor_ranges.values()):
             return True
         return any(not self.environments[name].fixed for name in self.touched)

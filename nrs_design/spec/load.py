@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import os
 from dataclasses import dataclass, field
 from functools import cache
@@ -14,7 +13,6 @@ from pydantic import TypeAdapter, ValidationError
 
 from nrs_design.axis import about
 from nrs_design.errors import Fault, SpecError
-from nrs_design.files import open_regular
 from nrs_design.proof.text import quoted
 from nrs_design.spec.document import (
     Data,
@@ -42,7 +40,6 @@ from nrs_design.spec.task_space import (
 )
 
 if TYPE_CHECKING:
-    from nrs_design.spec.arm import ArmSpec
     from nrs_design.spec.interaction import InteractionDesignSpec
     from nrs_design.spec.robot import RobotSpec
     from nrs_design.spec.switched_system import SwitchedSystemSpec
@@ -57,33 +54,16 @@ class LoadedSpec:
     """A spec together with the file that it came from."""
 
     path: Path  # The file, as it was named
-    # Hash of what the file says, in hexadecimal; see `hash_meaning`. Where it names a robot, the
-    # bounds of that are counted in, or the model of its arm.
-    sha256: str
+    sha256: str  # Hash of what the file says, in hexadecimal; see `hash_meaning`
     text: str  # The file's text
     spec: Spec  # What it says
     # The text as a tree, for positions; parsed once more where it is not given.
     parsed: Node | None = field(default=None, repr=False, compare=False)
-    # Id of the bounds of the robot, or hash of the model of the arm, that it names; else empty.
-    bounds: str = ""
 
     @property
     def root(self) -> Node:
         """The text as a tree, in which everything has its line and column."""
         return self.parsed or parse_document(self.text, self.path)
-
-    @property
-    def robot(self) -> Path | None:
-        """The file of the robot whose bounds it names; None if it names none."""
-        coupling = self.spec.coupling if self.spec.kind == "interaction-design" else None
-        named = None if coupling is None else coupling.robot
-        return None if named is None else self.path.parent / named
-
-    @property
-    def arm(self) -> ArmSpec | None:
-        """The arm whose mobility it relies on; None if it names none."""
-        coupling = self.spec.coupling if self.spec.kind == "interaction-design" else None
-        return None if coupling is None else coupling.arm
 
     def place(self, *at: str | int) -> Position:
         """Line and column of a key or an item, or of what holds it if it is not written out."""
@@ -142,37 +122,7 @@ def respecified(loaded: LoadedSpec, root: Node) -> LoadedSpec:
 def _loaded(file: Path, text: str, root: Node, syntax: tuple[Fault, ...]) -> LoadedSpec:
     spec = _validate(root, syntax, file)
     sha256 = hash_meaning(to_data(root))
-    used = ""
-    if spec.kind == "interaction-design" and spec.coupling is not None and spec.coupling.robot:
-        from nrs_design.spec.robot_bounds import read_robot_bounds
-
-        at = place_of(root, ("coupling", "robot"), at_key=True)
-        bounds = read_robot_bounds(file, spec.coupling.robot, at)
-        spec = spec.model_copy(update={"coupling": spec.coupling.bounded(bounds)})
-        # What is said of the robot is a part of what the spec says.
-        used = bounds.id
-        sha256 = hash_meaning({"spec": sha256, "bounds": used})
-    if spec.kind == "interaction-design" and spec.coupling is not None and spec.coupling.arm:
-        used = _hash_of_arm(file, spec.coupling.arm.model, root)
-        sha256 = hash_meaning({"spec": sha256, "arm": used})
-    return LoadedSpec(path=file, sha256=sha256, text=text, spec=spec, parsed=root, bounds=used)
-
-
-def _hash_of_arm(spec: Path, model: str, root: Node) -> str:
-    """Return the SHA-256 of the file of an arm, which is a part of what a spec says."""
-    file = spec.parent / model
-    try:
-        with open_regular(file) as opened:
-            return hashlib.sha256(opened.read()).hexdigest()
-    except OSError:
-        at = place_of(root, ("coupling", "arm", "model"), at_key=True)
-        raise SpecError(
-            f"there is no model {quoted(model)} relative to this file",
-            path=spec,
-            line=at.line,
-            column=at.column,
-            remedy="name the file of the arm, such as arm.urdf",
-        ) from None
+    return LoadedSpec(path=file, sha256=sha256, text=text, spec=spec, parsed=root)
 
 
 def is_there(path: Path) -> bool:

@@ -11,7 +11,6 @@ if TYPE_CHECKING:
     from nrs_design.axis import AxisType
     from nrs_design.models.contact.law import AbstractNonlinearLaw
     from nrs_design.spec.controllers import IdleStatesSpec, Offset
-    from nrs_design.spec.coupling import CouplingSpec
     from nrs_design.spec.sampling import SamplingSpec
     from nrs_design.spec.switching import SwitchingSpec
 
@@ -41,7 +40,6 @@ class OperatingConditions:
     largest_command: Fraction | None  # Limit of the motor command in its unit, rounded down
     command: str  # Unit of the motor command
     largest_integral: Fraction | None  # Where the integral of the force error is cut off, in rad
-    coupling: CouplingSpec | None  # What axes do to each other
     touched: frozenset[str]  # The environments that some controller touches
     initial_force: Fraction | Literal["largest"] | None  # Goal about saturation, in N m
     preloads: Mapping[str, Preload]  # Of the environments that are touched

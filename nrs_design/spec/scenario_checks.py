@@ -10,65 +10,45 @@ from nrs_design.spec.check import Row, each
 from nrs_design.spec.faults import Location
 from nrs_design.spec.interaction_parts import AbstractInteractionSpec as Spec
 from nrs_design.spec.references import NO_SUCH, Reference
-from nrs_design.spec.scenarios import AXES, ScenarioSpec, SurfaceSpec
+from nrs_design.spec.scenarios import ScenarioSpec, SurfaceSpec
 
 
-def _axis_of_another(spec: Spec) -> tuple[str, str] | None:
-    """Return a scenario that is called as one axis of another, ``NAME.theta1``."""
-    for name in spec.scenarios:
-        whole, _, axis = name.rpartition(".")
-        if axis in AXES and whole in spec.scenarios and spec.scenarios[whole].axes is not None:
-            return name, whole
-    return None
-
-
-def _of_three_axes(spec: Spec) -> Iterator[tuple[Location, ScenarioSpec]]:
+def _runs(spec: Spec) -> Iterator[tuple[Location, ScenarioSpec]]:
     for name, scenario in spec.scenarios.items():
-        if scenario.axes is not None:
-            yield ("scenarios", name), scenario
-
-
-def _axes(spec: Spec) -> Iterator[tuple[Location, ScenarioSpec]]:
-    """Yield what each axis does by itself."""
-    for name, scenario in spec.scenarios.items():
-        if scenario.axes is None:
-            yield ("scenarios", name), scenario
-        else:
-            for axis in AXES:
-                yield ("scenarios", name, "axes", axis), scenario.of_axis(axis)
+        yield ("scenarios", name), scenario
 
 
 def _names(spec: Spec) -> Iterator[tuple[Location, Reference]]:
     """Yield the environments and controllers that scenarios name."""
-    for at, axis in _axes(spec):
-        for i, surface in enumerate(axis.surfaces):
+    for at, run in _runs(spec):
+        for i, surface in enumerate(run.surfaces):
             at_surface = (*at, "surfaces", i)
             of_surface = {("environment",): surface.environment} | {
                 ("beside", j): name for j, name in enumerate(surface.beside)
             }
             for key, name in of_surface.items():
                 yield (*at_surface, *key), Reference("environment", name, spec.environments)
-        if axis.control is None:
+        if run.control is None:
             continue
-        for place, name in axis.control.named.items():
+        for place, name in run.control.named.items():
             yield (*at, "control", *place), Reference("controller", name, spec.controllers)
-        for name in axis.control.contact or ():
+        for name in run.control.contact or ():
             place = (*at, "control", "contact", name)
             yield place, Reference("environment", name, spec.environments)
 
 
 @dataclass(frozen=True, slots=True)
 class _Surface:
-    """One surface that an axis meets."""
+    """One surface that a run meets."""
 
     spec: Spec
-    axis: ScenarioSpec
+    run: ScenarioSpec
     it: SurfaceSpec
 
     @property
     def start(self) -> float:
         """Angle of the axis at first, in rad."""
-        return 0.0 if self.axis.start is None else self.axis.start.si
+        return 0.0 if self.run.start is None else self.run.start.si
 
     @property
     def depth(self) -> float:
@@ -84,9 +64,9 @@ class _Surface:
 
 
 def _surfaces(spec: Spec) -> Iterator[tuple[Location, _Surface]]:
-    for at, axis in _axes(spec):
-        for i, surface in enumerate(axis.surfaces):
-            yield (*at, "surfaces", i), _Surface(spec, axis, surface)
+    for at, run in _runs(spec):
+        for i, surface in enumerate(run.surfaces):
+            yield (*at, "surfaces", i), _Surface(spec, run, surface)
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,9 +84,9 @@ class _Velocity:
 
 def _velocities(spec: Spec) -> Iterator[tuple[Location, _Velocity]]:
     limit = spec.limits.velocity
-    for at, axis in _axes(spec):
+    for at, run in _runs(spec):
         written: dict[Location, float] = {}
-        command = axis.command
+        command = run.command
         if command.constant is not None:
             written["constant",] = command.constant.si
         for i, (_, quantity) in enumerate(command.points or ()):
@@ -121,36 +101,12 @@ def _velocities(spec: Spec) -> Iterator[tuple[Location, _Velocity]]:
 def _logic_of_runs(spec: Spec) -> Iterator[tuple[Location, bool]]:
     """Yield runs that the mode logic controls, with whether there is one."""
     there = spec.mode_logic is not None
-    for at, axis in _axes(spec):
-        if axis.control is not None and axis.control.logic is not None:
+    for at, run in _runs(spec):
+        if run.control is not None and run.control.logic is not None:
             yield (*at, "control", "logic"), there
 
 
 SCENARIO_CHECKS: tuple[Row[Spec], ...] = (
-    Row(
-        "scenarios.{0}",
-        _axis_of_another,
-        "{0!r} is the name of a run of {1!r}",
-        "give it another name",
-    ),
-    Row(
-        "scenarios.{0}.axes",
-        lambda s: (
-            (s.coupling is None or s.coupling.robot is None)
-            and next((name for name, run in s.scenarios.items() if run.axes is not None), None)
-        ),
-        "three axes move on the links of a robot, and the spec names none",
-        "add `coupling: {{robot: arm.nrs.yaml}}`, or remove axes",
-    ),
-    *each(
-        _of_three_axes,
-        Row[ScenarioSpec](
-            "start",
-            lambda run: run.start is not None,
-            "three axes begin in a pose",
-            "write axes: {{pose: ...}}",
-        ),
-    ),
     *each(_names, NO_SUCH),
     *each(
         _surfaces,

@@ -22,7 +22,6 @@ from nrs_design.spec.quantity_fields import (
     Bandwidth,
     Command,
     Duration,
-    Length,
     SignedAngle,
     SignedAngularVelocity,
     Torque,
@@ -31,8 +30,6 @@ from nrs_design.spec.quantity_fields import (
 )
 
 MAX_POINTS, MAX_SURFACES, LONGEST = 1000, 16, 3600
-# Of a robot, as its joints are called.
-AXES = ("theta1", "theta2", "theta3")
 LARGEST_SEED = 2**32 - 1
 
 Points = tuple[tuple[Quantity, Quantity], ...]
@@ -231,35 +228,6 @@ class ErrorsSpec(SpecModel):
     )
 
 
-class PoseSpec(SpecModel):
-    """Where the robot stands: two angles of the endoscope, and its depth."""
-
-    phi: SignedAngle = Field(description="about x, in rad")
-    psi: SignedAngle = Field(description="about y, in rad")
-    d: Length = Field(description="depth in m")
-
-
-class AxisSpec(SpecModel):
-    """What one axis has for itself; what is left out is as the scenario says."""
-
-    command: CommandProfileSpec | None = optional("as above")
-    surfaces: Surfaces | None = optional("as above; [] for nothing")
-    control: ControlSpec | None = optional("as above")
-    wanted_torque: Torque | None = optional("as above, in N*m")
-
-
-class AxesSpec(SpecModel):
-    """Three axes at once, on the links of the robot that `coupling` names."""
-
-    pose: PoseSpec | None = optional(
-        "{phi: 0 deg, psi: 0 deg, d: 200 mm}, where the robot rests at first, and "
-        "from where every axis counts its angle; default: the middle of the robot's workspace"
-    )
-    theta1: AxisSpec | None = optional("what the left axis has for itself")
-    theta2: AxisSpec | None = optional("what the right axis has for itself")
-    theta3: AxisSpec | None = optional("what the middle axis has for itself")
-
-
 class ScenarioLimitsSpec(SpecModel):
     """What the gate wants a simulated run to keep; what is left out is not looked at."""
 
@@ -311,10 +279,6 @@ class ScenarioSpec(SpecModel):
         "{torque: 0.3 N*m, deflection: 1 deg}; without it, the gate does not simulate it"
     )
     seed: Seed = Field(default=0, description="of noise, jitter and varying delay")
-    axes: AxesSpec | None = optional(
-        "three axes at once, for a spec with `coupling: {robot: ...}`: {} for all "
-        "alike, or what each has for itself. Default: one axis alone"
-    )
 
     def _too_long(self) -> tuple[str, str] | None:
         """Return the key of a length that is not simulated, and the length."""
@@ -337,18 +301,6 @@ class ScenarioSpec(SpecModel):
             f"write a duration above zero, up to {LONGEST} s",
         ),
     )
-
-    def of_axis(self, name: str) -> ScenarioSpec:
-        """Return the scenario of one axis of several.
-
-        Parameters
-        ----------
-        name : str
-            One of `AXES`.
-        """
-        own = getattr(self.axes, name, None)
-        changes = {} if own is None else {k: v for k, v in own if v is not None}
-        return self.model_copy(update={**changes, "axes": None})
 
     @property
     def length(self) -> Quantity | None:

@@ -33,16 +33,15 @@ _AT_LEAST = frozenset(
     {"decay_rate", "delay", "initial_force", "longest_dwell_time", "at_most", "consecutive"}
 )
 _LIMITS = "limits"
-# Parts whose numbers must be borne: disturbances, errors of signals, the age of a sample, what the
-# axes do to each other. Of the sensor, those below it are parts of the loop.
-_BORNE = frozenset({"disturbances", "coupling", "sampling"})
+# Parts whose numbers must be borne: disturbances, errors of signals, the age of a sample. Of the
+# sensor, those below it are parts of the loop.
+_BORNE = frozenset({"disturbances", "sampling"})
 _ERRORS = frozenset({"signals", "errors"})
 # Of two words, the one that asks for more; what stands there unless it is said, in two of them.
 _STRONGER = {
     "contact": "losable",
     "switching": "arbitrary",
     "varies": "true",
-    "gravity_compensated": "at-rest",
 }
 _UNSAID = frozenset({"contact", "varies"})
 # Lists that say what may occur; whatever is left out is not shown.
@@ -52,11 +51,7 @@ _ABOUT_VALUES = _BESIDE | {
     *("doubts", "accept_doubt", "range_covers", "range_id", "linearized_about"),
 }
 # Ranges that stand alone, as lists of their ends.
-_RANGES = frozenset(
-    {"range", "band", "delay", "latency", "dead_time", "preload", "inertia", "mobility"}
-)
-# Parts of which every entry is one.
-_OF_RANGES = frozenset({"joints"})
+_RANGES = frozenset({"range", "band", "delay", "latency", "dead_time", "preload"})
 
 Place = tuple[str | int, ...]
 
@@ -112,7 +107,6 @@ def _changes(before: Data, after: Data, at: Place) -> Iterator[Change]:
     key = next((part for part in reversed(at) if isinstance(part, str)), "")
     if before == after:
         return
-    key = key if _OF_RANGES.isdisjoint(_keys(at[:-1])) else "range"
     was, now = _range_of(before, key), _range_of(after, key)
     two_values = isinstance(before, str) and isinstance(after, str) and not _is_touched(at)
     if was is not None and now is not None and not two_values:

@@ -40,10 +40,7 @@ if TYPE_CHECKING:
     from nrs_design.controllers.controller_design import ControllerDesign
     from nrs_design.models.plant import Plant
     from nrs_design.spec import InteractionDesignSpec, Spec, SwitchedSystemSpec
-    from nrs_design.spec.coupling import CouplingSpec
     from nrs_design.spec.operating import OperatingConditions
-    from nrs_design.switched.coupled import AxesCoupling
-    from nrs_design.switched.mobility import Mobility
     from nrs_design.switched.shared_state import SharedState
 
 __all__ = ["GIVEN_MATRICES", "assemble", "assemble_from_text", "assemble_matrices"]
@@ -170,17 +167,14 @@ def assemble(
         raise AssemblyError(f"there is no system at the points {points!r} of the ranges")
     scale = Fraction(0) if points == NOMINAL else scale
     plant = plant.scaled(scale, conditions.touched)
-    coupling = _coupling_of(conditions.coupling, plant, scale)
     if conditions.sampling is not None:
         from nrs_design.switched.sampled_loop import close_sampled_loop
 
         sampling = conditions.sampling
-        system = close_sampled_loop(
-            conditions, sampling, plant, design, coupling, points=bool(points)
-        )
+        system = close_sampled_loop(conditions, sampling, plant, design, points=bool(points))
     else:
         state = state_of(conditions, plant, design)
-        system = _assemble_continuous(conditions, plant, state, coupling)
+        system = _assemble_continuous(conditions, plant, state)
     (drive,) = spec.drives
     constants = tuple(
         constants_of(
@@ -228,10 +222,7 @@ def _on_axis(system: SwitchedSystem, axis: AxisType) -> SwitchedSystem:
 
 
 def _assemble_continuous(
-    conditions: OperatingConditions,
-    plant: Plant,
-    state: SharedState,
-    coupling: AxesCoupling | Mobility | None,
+    conditions: OperatingConditions, plant: Plant, state: SharedState
 ) -> SwitchedSystem:
     from nrs_design.switched.close_loop import close_loop
 
@@ -241,12 +232,6 @@ def _assemble_continuous(
 
         check_memory(state.environments)
         system = with_command(system, state, conditions.disturbances, conditions.torque)
-    if coupling is not None:
-        from nrs_design.switched.coupled import AxesCoupling, couple_axes
-
-        # A spec with a mobility is sampled.
-        assert isinstance(coupling, AxesCoupling)
-        system = couple_axes(system, coupling)
     if conditions.initial_force is not None:
         from nrs_design.switched.saturation import with_saturation
 
@@ -278,21 +263,6 @@ def state_of(
     loop = plant.motion_loop(design.motion.Kp, design.motion.Kd)
     idle, offset = conditions.idle, conditions.offset
     return shared_state(plant, loop, design, idle=idle, offset=offset)
-
-
-def _coupling_of(
-    coupling: CouplingSpec | None, plant: Plant, scale: Fraction
-) -> AxesCoupling | Mobility | None:
-    """Return what the links do to each axis, with its ranges scaled; None if that is not said."""
-    if coupling is not None and coupling.mobility is not None:
-        from nrs_design.switched.mobility import Mobility
-
-        return Mobility(*coupling.mobility, coupling.source).scaled(scale)
-    if coupling is None or plant.load_inertia is None:
-        return None
-    from nrs_design.switched.coupled import AxesCoupling
-
-    return AxesCoupling.of(coupling, plant.load_inertia).scaled(scale)
 
 
 def _check_scale(scale: Fraction) -> None:

@@ -41,12 +41,10 @@ from nrs_design.proof.matrix import multiply as multiply_matrices
 from nrs_design.spec import InteractionDesignSpec
 from nrs_design.spec.sampling import SamplingSpec
 from nrs_design.switched.command_timing import CommandTiming
-from nrs_design.switched.coupled import AxesCoupling
 from nrs_design.switched.held_drive import HeldDrive
 from nrs_design.switched.held_motor import hold
 from nrs_design.switched.joint import Joint
 from nrs_design.switched.modes import ForceShare, position_mode, velocity_mode
-from nrs_design.switched.sampled_coupled import slowed_motor
 from nrs_design.switched.sampled_frame import Frame, Turn
 
 Polynomial = tuple[Fraction, ...]
@@ -349,8 +347,6 @@ def axis_of(
 ) -> AbstractAxis | None:
     """Return the axis of a spec, at its nominal motor and at every corner of its ranges.
 
-    Of several axes that act on each other it is one by itself.
-
     Parameters
     ----------
     spec : InteractionDesignSpec
@@ -376,8 +372,6 @@ def axis_of(
         return ContinuousAxis(tuple(_places(ranges, (0, 0))), realize(loop), joint, low_pass)
     if sampling.outer < sampling.period.exact:
         return None
-    if spec.coupling is not None and plant.load_inertia is not None:
-        ranges = slowed_motor(ranges, AxesCoupling.of(spec.coupling, plant.load_inertia))
     places = tuple(_places(ranges, sampling.delay, spec.late))
     return ProcessorAxis(places, motion, sampling, low_pass, spec.takes, plant.drive)
 

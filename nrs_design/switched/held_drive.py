@@ -166,21 +166,6 @@ class HeldDrive(HeldMotor):
         ]
         return combine((ZERO, given.first), *terms)
 
-    def slip(self, given: Commands, values: Mapping[str, Fraction]) -> LinearForm:
-        """Return the acceleration under the first command of a joint that takes torques.
-
-        Of another drive it is nothing: the axes do not act on it in any model here.
-        """
-        if self.drive.takes is not Takes.TORQUE:
-            return []
-        named = dict(zip(LOAD, self.load, strict=True))
-        J, B, k, b = (
-            values.get(named.get(symbol, symbol), self.numbers[symbol].nominal)
-            for symbol in ("J", "B", *LOAD)
-        )
-        forms = ((ONE, given.first), (-B - b, given.omega), (-k, given.place))
-        return combine(*((factor / J, form) for factor, form in forms))
-
     def _row(self, result: str) -> int:
         """Return the row of a result among the entries: that of a velocity that jumps is last."""
         if result == WAY:

@@ -93,10 +93,6 @@ class HeldMotor(ABC):
         """Return the motor while it touches something: by default, that does not act on it."""
         return self
 
-    def slip(self, given: Commands, values: Mapping[str, Fraction]) -> LinearForm:
-        """Return the difference between the speed and its steady state under the first command."""
-        return combine((ONE, given.omega), (-values["Km"], given.first))
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MotorAtOnce(HeldMotor):

@@ -192,12 +192,11 @@ class Frame:
         values: Mapping[str, Fraction],
         turn: Turn = Turn.BOTH,
     ) -> list[LinearForm]:
-        """Return the map of one period, below it the size of each rounding, command and slip.
+        """Return the map of one period, below it the size of each rounding, and the command.
 
         The first rows lead from the states, the `INPUTS` and the `roundings` to the next states;
-        a rounding error is at most the size that its row below gives. The last two rows are the
-        command before it is cut off, and the slip: the difference between the speed and its steady
-        state under the command, or the acceleration of a joint that takes torques.
+        a rounding error is at most the size that its row below gives. The last row is the command
+        before it is cut off.
 
         Parameters
         ----------
@@ -233,7 +232,6 @@ class Frame:
             delta,
             *made.sizes,
             made.drive,
-            _slip(made, self.motor, values),
         ]
 
     def _counted(self, u: LinearForm, delta: LinearForm) -> Iterator[LinearForm]:
@@ -366,17 +364,6 @@ def _place(
     if ALONE in made.after:
         return [combine((ONE, made.after[ALONE]), (-ONE, delta))], delta
     return _around(made.after)[0], delta
-
-
-def _slip(made: _Sample, motor: HeldMotor, values: Mapping[str, Fraction]) -> LinearForm:
-    if motor.drive is not None:
-        return motor.slip(made.given, values)
-    return _slip_of_a_motor(made, motor, values.get("Km", ZERO))
-
-
-@lru_cache(maxsize=64)
-def _slip_of_a_motor(made: _Sample, motor: HeldMotor, Km: Fraction) -> LinearForm:
-    return motor.slip(made.given, {"Km": Km})
 
 
 def _places(states: Collection[str]) -> list[str]:

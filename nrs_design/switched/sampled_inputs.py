@@ -19,7 +19,7 @@ from nrs_design.switched.sampled_frame import INPUTS, Frame
 
 @dataclass(frozen=True, slots=True)
 class SampledMode:
-    """One mode: what moves its states and bounds its roundings, its command, and the slip.
+    """One mode: what moves its states and bounds its roundings, and its command.
 
     Of two periods, it says whether it is in force where a round begins.
     """
@@ -28,7 +28,6 @@ class SampledMode:
     moves: tuple[LinearForm, ...]
     sizes: tuple[LinearForm, ...]
     command: LinearForm  # Before it is cut off
-    slip: LinearForm
     point: str  # What it is a corner of, with others: of them all, one map is attained
     begins: bool = True
 
@@ -51,9 +50,9 @@ class SampledMode:
         begins : bool
             As for the class.
         """
-        *rows, command, slip = rows
+        *rows, command = rows
         mode = Mode(name, RationalMatrix.from_rows([row[:n] for row in rows[:n]]))
-        return cls(mode, tuple(rows[:n]), tuple(rows[n:]), command, slip, point, begins)
+        return cls(mode, tuple(rows[:n]), tuple(rows[n:]), command, point, begins)
 
     def column(self, i: int) -> RationalMatrix:
         """Return what the i-th of inputs and, after them, roundings does to the states."""

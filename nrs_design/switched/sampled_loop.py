@@ -18,7 +18,7 @@ from nrs_design.models.contact.environment import Environment
 from nrs_design.models.interval import Interval
 from nrs_design.models.linear_form import LinearForm, coordinates
 from nrs_design.models.plant import Plant
-from nrs_design.proof.channels import Coupling, Output
+from nrs_design.proof.channels import Output
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Clock
@@ -31,7 +31,6 @@ from nrs_design.spec.sampling import SamplingSpec
 from nrs_design.switched.assumptions import at_once_texts
 from nrs_design.switched.command_timing import CommandTiming, timing_of
 from nrs_design.switched.constraints import assemble_switching, leaving_impedance, zeroing
-from nrs_design.switched.coupled import AxesCoupling, among_axes
 from nrs_design.switched.free_motion import (
     could_pull,
     flights_among,
@@ -42,12 +41,10 @@ from nrs_design.switched.free_motion import (
 from nrs_design.switched.held_drive import HeldDrive
 from nrs_design.switched.held_motor import HeldMotor, hold
 from nrs_design.switched.misses import MISS, clock_of
-from nrs_design.switched.mobility import Mobility
 from nrs_design.switched.motor_command import motor_command
 from nrs_design.switched.parameter_box import Box
 from nrs_design.switched.sampled_assumptions import Loss, assume_sampled
-from nrs_design.switched.sampled_coupled import couplings_of, slowed_motor
-from nrs_design.switched.sampled_frame import CUT_OFF, INPUTS, Frame, Turn
+from nrs_design.switched.sampled_frame import Frame, Turn
 from nrs_design.switched.sampled_inputs import (
     SampledMode,
     anything_of,
@@ -63,7 +60,6 @@ def close_sampled_loop(
     sampling: SamplingSpec,
     plant: Plant,
     design: ControllerDesign,
-    coupling: AxesCoupling | Mobility | None = None,
     *,
     points: bool = False,
 ) -> SwitchedSystem:
@@ -85,8 +81,6 @@ def close_sampled_loop(
         Actuator and environments.
     design : ControllerDesign
         Gains that ship.
-    coupling : AxesCoupling or Mobility, optional
-        What the links do to each axis.
     points : bool
         Whether only what is attained at the ends of all ranges is in force, instead of what
         encloses all that is between.
@@ -94,20 +88,16 @@ def close_sampled_loop(
     Raises
     ------
     AssemblyError
-        If the modes do not share one state, single precision loses a coefficient, or a period is
-        too long for what the links do.
+        If the modes do not share one state, or single precision loses a coefficient.
     """
     _check_periods(sampling)
     period, method = sampling.outer, sampling.admittance
     laws = {c.name: c.law.discretize(period, method) for c in design.controllers}
     ranges = plant.actuator_ranges
-    links = coupling if isinstance(coupling, AxesCoupling) else None
-    arm = coupling if isinstance(coupling, Mobility) else None
-    slowed = ranges if links is None else slowed_motor(ranges, links)
     timing = timing_of(sampling, conditions.late)
-    motor = hold(slowed, timing)
+    motor = hold(ranges, timing)
     if plant.drive is not None:
-        motor = HeldDrive.of(plant.drive if arm is None else arm.mean(plant.drive), timing)
+        motor = HeldDrive.of(plant.drive, timing)
     frame = _frame(conditions.idle, sampling, design, tuple(laws.values()), motor, timing)
     environments = plant.among(design.contacts)
     loss = _loss_of_contact(conditions.contact, environments, design)
@@ -138,24 +128,12 @@ def close_sampled_loop(
         if motor.drive is not None and motor.drive.speed is not None:
             # It jumps after the sample, and the force of what is damped with it.
             outputs = () if pulls else outputs[:1]
-    driven = None
-    if coupling is None:
-        driven = motor_command(conditions.largest_command, conditions.command, frame, channels)
+    driven = motor_command(conditions.largest_command, conditions.command, frame, channels)
     texts: tuple[str, ...] = (
         *assume_sampled(conditions, sampling, ranges, frame, laws, design, loss, environments),
         *at_once_texts(environments),
         *(() if driven is None else (driven.text,)),
     )
-    couplings: tuple[Coupling, ...] = ()
-    if links is not None:
-        texts = among_axes(texts, links, sampled=True, disturbed=bool(channels))
-        couplings = tuple(
-            couplings_of(frame, links, ranges, channels, every, losable=losable is not None)
-        )
-    elif arm is not None:
-        assert plant.drive is not None
-        texts = arm.among(texts)
-        couplings = tuple(arm.couplings(frame, plant.drive, environments, every))
     resets: Iterable[tuple[str, str, RationalMatrix]] = ()
     if conditions.idle is not None and conditions.idle.reset:
         map_ = zeroing(frame.states, ("reference [rad]", "vm [rad/s]"))
@@ -172,27 +150,12 @@ def close_sampled_loop(
         channels=channels,
         outputs=(*outputs, *(() if driven is None else (driven.output,))),
         roundings=tuple(roundings_of(frame, channels, every)),
-        couplings=couplings,
         clock=_clock(sampling, begins),
-        axes=None if links is None or not channels else links.count,
         flights=flights,
         enclosures=tuple(_enclosures(every)),
     )
     if conditions.initial_force is not None and not points:
-        acted: Iterable[Coupling] = ()
-        if links is not None:
-            acted = couplings_of(
-                frame,
-                links,
-                ranges,
-                channels,
-                every,
-                losable=losable is not None,
-                entries=(len(frame.states) + INPUTS.index(CUT_OFF),),
-            )
-        system = with_sampled_saturation(
-            system, conditions, frame, every, environments, tuple(acted)
-        )
+        system = with_sampled_saturation(system, conditions, frame, every, environments)
     return system
 
 

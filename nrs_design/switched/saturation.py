@@ -18,7 +18,6 @@ from nrs_design.models.contact.environment import Environment
 from nrs_design.models.linear_form import LinearForm, combine, coordinates, zero
 from nrs_design.models.motion_loop import JointMotionLoop, Realization
 from nrs_design.proof.bounds import rounded_up
-from nrs_design.proof.channels import Coupling
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode
 from nrs_design.proof.saturation import CutOff, Saturation, Start
@@ -115,7 +114,6 @@ def with_sampled_saturation(
     frame: Frame,
     motions: Sequence[SampledMode],
     environments: Sequence[Environment],
-    acted: Sequence[Coupling] = (),
 ) -> SwitchedSystem:
     """Let a statement be about motions in which the command of the motor saturates, sampled.
 
@@ -131,8 +129,6 @@ def with_sampled_saturation(
         All modes, those of free motion last.
     environments : sequence of Environment
         All contacts.
-    acted : sequence of Coupling
-        What axes do to each other, with what is cut off from the command in the place of the state.
     """
     assert conditions.largest_command is not None  # `combinations` asks for it.
     n, wide = len(frame.states), len(frame.states) + len(INPUTS)
@@ -146,10 +142,6 @@ def with_sampled_saturation(
         errors=tuple(RationalMatrix.from_rows([motion.command[wide:]]) for motion in motions)
         if system.roundings
         else (),
-        pushes=tuple(
-            RationalMatrix.from_rows([[item.rows[k].fractions()[0][0] for item in acted]])
-            for k in range(len(motions) if acted else 0)
-        ),
     )
     signals = (signal, *_clamped(conditions, frame, motions, rounded=bool(system.roundings)))
     placed = any(law.law.commands == "position" for law in frame.laws)

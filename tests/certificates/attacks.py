@@ -13,7 +13,7 @@ from tests.support import ROOT
 UNKNOWN = ROOT / "reports" / "unknown-constant.cert.json"
 SHIPPED = sorted({*(ROOT / "reports").glob("*.cert.json")} - {UNKNOWN})
 QUADRATIC, POLYNOMIAL = "commuting", "dayawansa-martin-6"
-SAMPLED, AXES, CONTACT = "soft-tissue-sampled", "soft-tissue-axes", "soft-tissue"
+SAMPLED, CONTACT = "soft-tissue-sampled", "soft-tissue"
 RULED, DWELL, RESETS = "failing-controller", "geromel-colaneri", "force-limit-offset"
 POLYNOMIALS = ("degree", "vanishing")  # Fields of theirs alone
 Document = dict[str, Any]
@@ -156,10 +156,6 @@ def double_multipliers(document):
     first(document)["multipliers"] *= 2
 
 
-def aim_coupling(document):
-    first(document)["multipliers"][0]["target"] = 0
-
-
 def drop_column(document):
     document["roundings"][0]["columns"].pop()
 
@@ -264,14 +260,6 @@ ELSEWHERE: dict[str, tuple[Change, ...]] = {
         spoil_factor,
     ),
     CONTACT: (jump, grow_in_flight, push_in_flight, require_contact, coarsen, claim_a_little_more),
-    AXES: (
-        multiplier("coupling 1", lambda m: 0),
-        multiplier("coupling 2", lambda m: -m),
-        drop_multipliers,
-        double_multipliers,
-        aim_coupling,
-        claim_a_little_more,
-    ),
     RULED: (stay_for_good, stay_longer, swap_forms, claim_a_little_more, leave_by_no_switch),
     DWELL: (switch_sooner, swap_forms, coarsen),
     RESETS: (stretch_reset, reset_nobody, swap_forms),
@@ -281,8 +269,10 @@ LARGE: dict[str, tuple[Change, ...]] = {
     SAMPLED: (
         multiplier("lost", lambda m: 0),
         multiplier("rounding 1", lambda m: 0),
+        multiplier("rounding 2", lambda m: -m),
         multiplier("rounding 3", lambda m: m * 10**6),
         drop_multipliers,
+        double_multipliers,
         drop_column,
         drop_mode,
         drop_free_mode,
@@ -306,8 +296,7 @@ DEAR_ATTACKS: list[tuple[str, Change]] = [
 BOTH = (
     "conewise-polynomial",
     "conewise-quadratic, discrete",
-    "coupled-axes, steps",
-    "coupled-axes, kept in steps",
+    "conewise-quadratic",
     "mode-quadratic, one way",
     "mode-quadratic, rectangular",
     "mode-quadratic, steps",

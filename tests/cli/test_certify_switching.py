@@ -11,7 +11,7 @@ import pytest
 
 from nrs_design.proof.bounds import rounded_down, rounded_up
 from nrs_design.spec import read_spec
-from tests.pipeline.test_subsets import HEAVY
+from tests.pipeline.test_blocked import LATE
 from tests.support import (
     COMMUTING,
     HARD,
@@ -473,27 +473,27 @@ def test_tissue_and_tool_touched_at_once(tmp_path):
 
 @pytest.mark.slow
 def test_an_open_verdict_says_which_lines_block_it(tmp_path):
-    """Axes, samples and a disturbance: `check` takes them, and nobody has to ask."""
-    path = tmp_path / "heavy.nrs.yaml"
-    path.write_text(HEAVY, encoding="utf-8")
+    """Old samples and a disturbance: `check` takes them, and nobody has to ask."""
+    path = tmp_path / "late.nrs.yaml"
+    path.write_text(LATE, encoding="utf-8")
     run("check", path, "-v", cwd=tmp_path, code=0)
     said = run("certify-switching", path, "-v", cwd=tmp_path, code=3).stdout
-    assert said.startswith("soft: INCONCLUSIVE")
+    assert said.startswith("soft-tissue: INCONCLUSIVE")
     _, listed = said.split("  proved with any one of these changes; ")
-    assert "heavy.nrs.yaml:14: coupling.inertia: up to 1." in listed
-    assert "heavy.nrs.yaml:14: without coupling, without actuator.load_inertia" in listed
-    assert "bounds under disturbances were not looked for" in listed
+    assert "late.nrs.yaml:56: sampling.delay: with 2 samples" in listed
+    assert "late.nrs.yaml:44: without controllers.withdrawal" in listed
+    assert "bounds under disturbances were not looked for" in " ".join(listed.split())
     told = document_of("certify-switching", path, cwd=tmp_path)
-    inertia, links, sampling = told["blocked_by"]
-    (line,) = inertia["lines"]
-    assert line["place"].endswith("heavy.nrs.yaml:14:12")
-    assert line["asked"] == "1.5 kg*m^2"
-    assert line["write"] == f"inertia: [0 kg*m^2, {line['proved_up_to']}]"
-    assert links["assumptions_besides"] == ["The axes of the robot do not act on each other."]
-    assert len(sampling["assumptions_besides"]) == 9
+    delay, alone = told["blocked_by"][:2]
+    (line,) = delay["lines"]
+    assert line["place"].endswith("late.nrs.yaml:56:26")
+    assert line["asked"] == "4 samples"
+    assert line["write"] == "delay: 2"
+    assert "The law uses a force sample that is 2 samples old." in delay["assumptions_besides"]
+    assert alone["lines"][0]["line"] == "controllers.withdrawal"
     assert told["lines_work"] < 30
     # What is advised is proved by the command.
-    path.write_text(HEAVY.replace("inertia: [0 kg*m^2, 1.5 kg*m^2]", line["write"]))
+    path.write_text(LATE.replace("delay: 4", line["write"]))
     assert run("certify-switching", path, "--no-optimize-rate", "-v", cwd=tmp_path, code=0).stdout
 
 

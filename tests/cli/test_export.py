@@ -10,7 +10,7 @@ import pytest
 from nrs_design.certificates.certificate import content_id, dump
 from nrs_design.certificates.verify import verify
 from nrs_design.cli import main
-from nrs_design.exporters import ROBOT_FORMATS, format_names, format_of
+from nrs_design.exporters import format_names, format_of
 from nrs_design.exporters.record import ExportRecord
 from nrs_design.pipeline import run_certification
 from nrs_design.spec import read_spec
@@ -131,10 +131,10 @@ def test_outputs_that_cannot_be(export, capsys):
 def test_list(export, capsys):
     assert export("--list") == 0
     text = capsys.readouterr().out
-    assert all(name in text for name in [*format_names(), *ROBOT_FORMATS, "ros2"])
+    assert all(name in text for name in [*format_names(), "ros2"])
     assert export("--list", "--json") == 0
     formats = json.loads(capsys.readouterr().out)["formats"]
-    assert [entry["name"] for entry in formats] == [*format_names(), *ROBOT_FORMATS, "ros2"]
+    assert [entry["name"] for entry in formats] == [*format_names(), "ros2"]
     assert ["NAME.export.json"] in [entry["files"] for entry in formats]
     assert export() == 2
     assert "--list" in capsys.readouterr().err

@@ -1,15 +1,12 @@
 """`nrs-design simulate`, as a user types it."""
 
-import shutil
-import sys
-
 import numpy as np
 import pytest
 
 from nrs_design.reporting.figures.simulated import draw_simulated
 from nrs_design.reporting.images import to_png
 from tests.simulation.interactions import IMPEDANCE, PLACED, SAMPLED, simulated, text_of
-from tests.support import ROOT, document_of, run
+from tests.support import document_of, run
 
 RUN = (
     "command: {points: [[0 s, 0 deg/s], [0.5 s, 8 deg/s], [1 s, -8 deg/s]]}, "
@@ -220,7 +217,7 @@ STILL = "command: {constant: 1 deg/s}, duration: %s, surfaces: [{environment: so
         (STILL % ("1 s", "-1 deg"), "rests inside 'soft' at the start"),
         (STILL % ("1 s", "1 deg, side: below"), "rests inside 'soft' at the start"),
         (STILL % ("1 s", "1 deg, beside: [hard]"), "there is no environment 'hard'"),
-        (STILL % ("1 s", "1 deg") + ", axes: {}", "the spec names none"),
+        (STILL % ("1 s", "1 deg") + ", axes: {}", "unknown key `scenarios.run.axes`"),
         ("command: {csv: ../hand.csv}", "is not a file below the spec's folder"),
     ],
 )
@@ -237,134 +234,6 @@ def test_a_chattering_logic_is_counted(spec, tmp_path):
     assert "stays below 10 ms (chatter)" in run("simulate", path, "-v", cwd=tmp_path, code=0).stdout
     document = document_of("simulate", path, cwd=tmp_path)
     assert document["runs"][0]["metrics"]["chatter"] > 20
-
-
-@pytest.mark.slow
-def test_mujoco_says_how_far_it_is_from_the_sampled_engine(spec, tmp_path):
-    pytest.importorskip("mujoco", reason="MuJoCo is not installed")
-    path = spec(more=SAMPLED)
-    document = document_of("simulate", path, "--engine", "mujoco", cwd=tmp_path)
-    (one,) = document["runs"]
-    assert one["engine"] == "mujoco"
-    apart = one["deviation_from_sampled"]
-    assert 0 < apart["angle"] < 2e-5
-    assert 0 < apart["velocity"] < 1e-3
-    usual = document_of("simulate", path, cwd=tmp_path)["runs"][0]
-    assert usual["deviation_from_sampled"] is None
-    assert one["metrics"]["peak_torque"] == pytest.approx(
-        usual["metrics"]["peak_torque"], abs=43 * apart["angle"]
-    )
-    stopped = run(
-        "simulate", path, "--engine", "mujoco", "--max-steps", "9", "-v", cwd=tmp_path, code=3
-    )
-    assert "from the sampled engine, at most: angle" in stopped.stdout
-    assert "STOPPED: 9 samples" in stopped.stdout
-    assert not (tmp_path / "MUJOCO_LOG.TXT").exists()
-
-
-def test_without_mujoco_it_is_said_what_to_install(spec, tmp_path, monkeypatch):
-    monkeypatch.setitem(sys.modules, "mujoco", None)
-    result = run("simulate", spec(), "--engine", "mujoco", cwd=tmp_path, code=2)
-    assert "needs MuJoCo, which cannot be loaded" in result.stderr
-    assert "pip install 'nrs-design[mujoco]'" in result.stderr
-    run("simulate", spec(), "--engine", "sampled", cwd=tmp_path, code=0)
-
-
-@pytest.fixture
-def three(tmp_path):
-    """A scenario of three axes beside a copy of the robot."""
-    for suffix in ("nrs.yaml", "bounds.json"):
-        shutil.copy(ROOT / f"specs/robots/neuroboscope.{suffix}", tmp_path)
-
-    def write(scenario):
-        text = text_of(scenario=scenario, more="coupling: {robot: neuroboscope.nrs.yaml}\n")
-        path = tmp_path / "three.nrs.yaml"
-        path.write_text(text.replace("0.0351 s}", "0.0351 s, load_inertia: 1.213 kg*m^2}"))
-        return path
-
-    return write
-
-
-SHORT = "command: {constant: 8 deg/s}, duration: 0.1 s, axes: "
-OWN = (
-    "{theta1: {command: {constant: -4 deg/s}, surfaces: [{environment: soft, at: -0.05 deg, "
-    "side: below}]}, theta3: {command: {constant: 0 deg/s}, control: {fixed: withdrawal}}}"
-)
-
-
-def test_a_run_of_three_axes_that_stops_is_said_of_each(three, tmp_path):
-    stopped = run("simulate", three(SHORT + OWN), "--max-steps", "7", cwd=tmp_path, code=3)
-    assert stopped.stdout.count("STOPPED: 7 samples") == 3
-    for axis in ("theta1", "theta2", "theta3"):
-        assert f"run.{axis}" in stopped.stdout
-
-
-@pytest.mark.slow
-def test_three_axes(three, tmp_path):
-    """Each has its own command, tissue and controller; files are named by scenario and axis."""
-    document = document_of("simulate", three(SHORT + OWN), "--out", "runs", cwd=tmp_path, code=0)
-    left, *_ = document["runs"]
-    assert [one["scenario"] for one in document["runs"]] == [f"run.theta{i}" for i in (1, 2, 3)]
-    assert {one["engine"] for one in document["runs"]} == {"sampled"}
-    assert any("couples the axes" in line for line in left["not_modelled"])
-    assert [len(one["contacts"]) for one in document["runs"]] == [1, 0, 0]
-    names = {path.name for path in (tmp_path / "runs").iterdir()}
-    assert names == {
-        f"small.run.theta{i}.{suffix}" for i in (1, 2, 3) for suffix in ("csv", "svg", "png")
-    }
-    tables = [
-        np.genfromtxt(tmp_path / f"runs/small.run.theta{i}.csv", delimiter=",", names=True)
-        for i in (1, 2, 3)
-    ]
-    assert tables[0]["angle_rad"][-1] < -0.001
-    assert tables[1]["angle_rad"][-1] > 0.005
-    # Commanded to stand still, and moved by the links.
-    assert 1e-6 < np.abs(tables[2]["angle_rad"]).max() < 1e-3
-
-
-@pytest.mark.parametrize(
-    ("scenario", "message"),
-    [
-        (
-            SHORT + "{}}, run.theta2: {command: {constant: 0 deg/s}, duration: 1 s",
-            "is the name of a run of 'run'",
-        ),
-        (SHORT + "{theta4: {}}", "theta4"),
-        (SHORT + "{theta1: {surfaces: [{environment: soft, at: -1 deg}]}}", "rests inside 'soft'"),
-        (SHORT + "{theta1: {control: {fixed: none}}}", "there is no controller 'none'"),
-        (SHORT + "{theta2: {command: {constant: 9 deg/s}}}", "beyond the limit of '8 deg/s'"),
-        (SHORT + "{}, start: 1 deg", "three axes begin in a pose"),
-        (SHORT + "{pose: {phi: 0 deg, psi: 0 deg, d: 600 mm}}", "is not reachable"),
-    ],
-)
-def test_bad_axes(three, tmp_path, scenario, message):
-    result = run("simulate", three(scenario), cwd=tmp_path, code=2)
-    assert result.stdout == ""
-    assert message in result.stderr
-
-
-def test_three_axes_have_no_exact_engine(three, tmp_path):
-    result = run("simulate", three(SHORT + "{}"), "--engine", "exact", cwd=tmp_path, code=2)
-    assert "use --engine sampled or mujoco" in result.stderr
-
-
-@pytest.mark.slow
-def test_the_shipped_spec_of_three_axes(tmp_path):
-    """Without scenarios it has two of its own: one axis alone, and all of them alike."""
-    pytest.importorskip("mujoco", reason="MuJoCo is not installed")
-    axes = ROOT / "specs/neuroboscope/soft-tissue-axes.nrs.yaml"
-    # Into the tissue; not all of the 7.5 s.
-    given = ("--scenario", "all-axes", "--engine", "mujoco", "--max-steps", "1200")
-    document = document_of("simulate", axes, *given, cwd=tmp_path)
-    assert [one["scenario"] for one in document["runs"]] == [
-        f"all-axes.theta{i}" for i in (1, 2, 3)
-    ]
-    for one in document["runs"]:
-        assert one["steps"] == 1200
-        assert one["deviation_from_sampled"]["angle"] < 1e-5
-        assert 0.1 < one["metrics"]["peak_torque"] < 0.3
-    (one,) = document_of("simulate", axes, "--engine", "exact", cwd=tmp_path)["runs"]
-    assert one["scenario"] == "insertion-and-withdrawal"
 
 
 def test_a_bound_far_away_is_named_not_drawn():

@@ -39,7 +39,9 @@ def words_of(text):
 
 def test_pages_are_short_one_by_one_and_together():
     lengths = {page: words_of(text_of(page)) for page in [*pages(), "CHANGELOG.md"]}
-    assert {page: n for page, n in lengths.items() if n > 900 and page != "README.md"} == {}
+    # A changelog says what went, and what to do instead.
+    most = dict.fromkeys(lengths.keys() - {"README.md"}, 900) | {"CHANGELOG.md": 1_200}
+    assert {page: lengths[page] for page, n in most.items() if lengths[page] > n} == {}
     assert sum(lengths.values()) <= 30_600
 
 

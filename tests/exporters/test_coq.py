@@ -31,7 +31,6 @@ SHAPES = [
     "commuting",
     "dayawansa-martin-6",
     "soft-tissue",
-    "soft-tissue-axes",
     "force-limit-sampled",
     "force-limit-offset",
     "failing-controller",

@@ -21,8 +21,7 @@ from nrs_design.exporters.formats.monitor import (
 from nrs_design.exporters.monitor_limits import monitor_limits
 from nrs_design.exporters.program import Program
 from nrs_design.identification.running import bounds_of_spec, judge_run, read_run
-from nrs_design.spec import parse_spec
-from tests.exporters.monitored import TEXT, spec_with
+from tests.exporters.monitored import spec_with
 from tests.exporters.programs import (
     CORTEX,
     LAWS,
@@ -53,8 +52,6 @@ class Input(ctypes.Structure):
         ("angle", ctypes.c_float),
         ("torque", ctypes.c_float),
         ("command", ctypes.c_float),
-        # Of a loop whose axes act on each other; the others do not look there.
-        ("speed", ctypes.c_float),
     ]
 
 
@@ -196,38 +193,6 @@ def test_one_sample_at_a_time(monitor):
         assert watching.step() == kind
     watching.begin()
     assert watching.step() == "NONE"
-
-
-def test_the_speed_of_all_axes(monitor):
-    """14 deg/s are 0.24434609... rad/s: one that is called above it is."""
-    coupling = "coupling: {inertia: [0.003 kg*m^2, 0.3 kg*m^2], coriolis: 1 N*m*s/rad, speed: %s}\n"
-    text = TEXT.replace("time_constant: 0.0351 s\n", LOADED)
-    spec = parse_spec(text + coupling % "14 deg/s")
-    watching = monitor(spec)
-    assert float(watching.limits.speed) == pytest.approx(14 * np.pi / 180)
-    for speed, kind in (
-        (0.0, "NONE"),
-        (0.24434606, "NONE"),
-        (0.2443462, "SPEED"),
-        (-0.25, "SPEED"),
-        (float("nan"), "SPEED"),
-        (float("inf"), "SPEED"),
-    ):
-        watching.begin()
-        assert watching.step(speed=speed) == kind
-        assert watching.step() == kind
-    assert "root of the sum of" in " ".join(watching.sources["x_monitor.h"].split())
-    slower = monitor(parse_spec(text + coupling % "7 deg/s"))
-    assert slower.step(speed=0.2) == "SPEED"
-    assert monitor(spec_with()).step(speed=1e9) == "NONE"
-
-
-def test_axes_without_a_speed_are_said_not_to_be_monitored(monitor):
-    text = TEXT.replace("time_constant: 0.0351 s\n", LOADED)
-    spec = parse_spec(text + "coupling: {inertia: [0.003 kg*m^2, 0.3 kg*m^2]}\n")
-    watching = monitor(spec)
-    assert [words for words in watching.limits.left_out if "coupling: speed" in words]
-    assert watching.step(speed=1e9) == "NONE"
 
 
 def test_what_is_left_out_is_said(sampled_export):

@@ -14,7 +14,6 @@ from nrs_design.exporters.formats.monitor import render, told_kinds
 from nrs_design.exporters.monitor_limits import monitor_limits
 from nrs_design.exporters.program import program_of
 from nrs_design.exporters.region import ROOM, MonitoredRegion, region_of
-from nrs_design.proof.channels import Coupling
 from nrs_design.proof.evidence import SaturatedEllipsoid
 from nrs_design.simulation.step_program import StepProgram
 from nrs_design.spec import read_spec
@@ -170,12 +169,10 @@ def test_the_numbers_are_on_the_safe_side(export):
 
 
 def test_what_is_not_monitored_is_said(tmp_path, export):
-    """Without a region of the proof, with late or uneven samples, and on coupled axes."""
+    """Without a region of the proof, and with late or uneven samples."""
     law, system = program_of(export).law, export.certificate.system
     late = replace(export, spec=changed(export.spec, latency="0.4 ms"))
     uneven = replace(export, spec=changed(export.spec, jitter="0.1 ms"))
-    coupling = Coupling("c", (), ())
-    coupled = replace(export.certificate, system=replace(system, couplings=(coupling,)))
     alone = replace(export.certificate, statements=export.certificate.statements[:1])
     unknown = replace(export.certificate, system=replace(system, states=("x", *system.states[1:])))
     for other, said in (
@@ -183,7 +180,6 @@ def test_what_is_not_monitored_is_said(tmp_path, export):
         (replace(export, certificate=alone), "has no `initial_force`"),
         (late, "commands take effect late"),
         (uneven, "periods are not of one length"),
-        (replace(export, certificate=coupled), "a monitor sees one"),
         (replace(export, certificate=unknown), "counts from a rest"),
     ):
         assert said in region_of(other, law)

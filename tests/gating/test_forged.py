@@ -1,7 +1,6 @@
 """Every field of every side file, forged: rejected, or in a list of what no verdict shows."""
 
 import json
-import shutil
 
 import pytest
 
@@ -9,19 +8,9 @@ from nrs_design.certificates.certificate import content_id as certificate_id
 from nrs_design.errors import NrsDesignError
 from nrs_design.gating.lock import read_lock
 from nrs_design.gating.locked import run_locked
-from nrs_design.spec import read_spec
-from nrs_design.spec.robot_bounds import content_id
-from nrs_design.switched.coupled import AxesCoupling
 from tests.certificates.test_verify import at, changed, leaves
-from tests.spec.test_robot_bounds import COUPLING, LOADED, write
 from tests.support import ROOT, run
 
-# Of the bounds: the words of who computed them. Nothing says or uses them but `robot bounds`.
-UNUSED_OF_BOUNDS = {
-    ("package", "name"),
-    ("package", "version"),
-    *(("found", key, name) for key in ("heaviest", "lightest") for name in ("phi_deg", "boxes")),
-}
 # Without a spec, also what only a spec tells, and how states are called; none of it is printed.
 UNTOLD_WITHOUT_SPEC = {"spec", "coordinates", "gains", "assumptions", "package", "origin"} | {
     "states",
@@ -51,56 +40,6 @@ def _is_number(text):
         return float(text) != 0
     except ValueError:
         return False
-
-
-@pytest.fixture
-def axes(tmp_path):
-    robot = tmp_path / "robots/arm.nrs.yaml"
-    robot.parent.mkdir()
-    shutil.copy(ROOT / "specs/robots/neuroboscope.nrs.yaml", robot)
-    (tmp_path / "axes.nrs.yaml").write_text(f"{LOADED}{COUPLING}contact: kept\n")
-    write(robot, {}, package={"name": "nrs-design", "version": "1"})
-    file = robot.with_name("arm.bounds.json")
-    document = json.loads(file.read_text())
-    for key in ("heaviest", "lightest"):
-        document["found"][key] |= {"phi_deg": "1", "boxes": 3}
-    file.write_text(json.dumps(document | {"id": content_id(document)}))
-    return tmp_path
-
-
-def test_every_field_of_bounds(axes):
-    """Signed anew it makes the spec another one; what is accepted is said, or never is."""
-    file = axes / "robots/arm.bounds.json"
-    document = json.loads(file.read_text())
-    before = read_spec(axes / "axes.nrs.yaml")
-    said = AxesCoupling.of(before.spec.coupling, 1)
-    silent = set()
-    for path in leaves(document):
-        for value in spoiled(at(document, path)):
-            forged = changed(document, path, value)
-            if path != ("id",):
-                forged |= {"id": content_id(forged)}
-            file.write_text(json.dumps(forged))
-            try:
-                after = read_spec(axes / "axes.nrs.yaml")
-            except NrsDesignError:
-                continue
-            # No certificate and no lock of before holds: their hash is another.
-            assert after.sha256 != before.sha256, path
-            # The texts differ by the hash of the file, which is in them, and by what it says.
-            now = AxesCoupling.of(after.spec.coupling, 1)
-            assert now.source != said.source, path
-            numbers = (now.lightest, now.heaviest, now.coriolis, now.gravity_gradient, now.poses)
-            if numbers == (
-                said.lightest,
-                said.heaviest,
-                said.coriolis,
-                said.gravity_gradient,
-                said.poses,
-            ):
-                silent.add(path)
-    of_found = {path for path in silent if path[0] == "found" and path[-1] == "value"}
-    assert silent - of_found == UNUSED_OF_BOUNDS
 
 
 @pytest.mark.slow

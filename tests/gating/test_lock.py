@@ -4,6 +4,7 @@ import pytest
 
 from nrs_design.errors import CertificateError
 from nrs_design.gating.lock import MAX_BYTES, MAX_SPECS, Lock, dump_lock, read_lock
+from nrs_design.gating.rules import RETIRED, RULES
 
 
 @pytest.mark.slow
@@ -45,6 +46,21 @@ def document(*entries, **changes):
 def test_the_sample_itself_is_a_lock(tmp_path):
     (tmp_path / "nrs.lock").write_text(document(ENTRY))
     assert read_lock(tmp_path / "nrs.lock").specs[0].path == "a.nrs.yaml"
+
+
+@pytest.mark.parametrize("status", ["met", "missed"])
+def test_goals_of_retired_rules_are_skipped(tmp_path, status):
+    """An older release locked them; a gate of today renews the entry without them."""
+    (retired,) = RETIRED
+    old = {"rule": retired, "subject": "bounds", "status": status, "message": "as it was"}
+    (tmp_path / "nrs.lock").write_text(document({**ENTRY, "goals": [old, GOAL, old]}))
+    lock = read_lock(tmp_path / "nrs.lock")
+    assert [goal.rule for goal in lock.specs[0].goals] == ["NRS103"]
+    assert retired not in dump_lock(lock)
+
+
+def test_no_retired_id_is_given_again():
+    assert RETIRED.isdisjoint(RULES)
 
 
 @pytest.mark.parametrize("certificate", [None, ENTRY["certificate"]])

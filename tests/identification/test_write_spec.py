@@ -23,7 +23,7 @@ from nrs_design.spec.changes import spec_changes
 from nrs_design.spec.environment import KelvinBoltzmannSpec
 from tests.identification import motors, signals, synthetic
 from tests.identification.support import MOTOR, quick, record, sinusoids, slow
-from tests.support import COMMUTING, ROBOT, ROOT, SOFT_TISSUE
+from tests.support import COMMUTING, ROBOT, SOFT_TISSUE
 
 SAMPLED = ROBOT / "soft-tissue-sampled.nrs.yaml"
 
@@ -266,13 +266,21 @@ def test_a_latency_in_seconds():
     ("spec", "delay", "error", "message"),
     [
         (SOFT_TISSUE, signals.DELAY, SpecError, "has no sampling"),
-        (ROOT / "docs/examples/everything-at-once.nrs.yaml", signals.DELAY, SpecError, "at once"),
         (SAMPLED, 30.0, DataError, "10 periods"),
     ],
 )
 def test_what_is_no_latency(spec, delay, error, message):
     with pytest.raises(error, match=message) as caught:
         merge_latency(read_spec(spec), delayed(delay))
+    assert caught.value.remedy
+
+
+def test_no_latency_is_written_beside_two_periods(tmp_path):
+    path = tmp_path / "two.nrs.yaml"
+    two = "sampling: {period: 2 ms, outer_period: 4 ms, delay: 0}\n"
+    path.write_text(SOFT_TISSUE.read_text() + two)
+    with pytest.raises(SpecError, match="at once") as caught:
+        merge_latency(read_spec(path), delayed(signals.DELAY))
     assert caught.value.remedy
 
 

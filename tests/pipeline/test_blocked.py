@@ -13,7 +13,6 @@ from nrs_design.search.certification import Limits
 from nrs_design.spec import read_spec
 from nrs_design.spec.edits import changed
 from nrs_design.spec.load import respecified
-from tests.pipeline.test_subsets import HEAVY
 from tests.support import COMMUTING, PRINT_ERROR, ROOT, SOFT_TISSUE
 
 EXACT = "stiffness: {nominal: 747.1461 N/m, range: [720.56 N/m, 768.17 N/m]}\n    lever_arm: 0.24 m"
@@ -40,6 +39,8 @@ def hand() -> str:
     return text.replace("range: [4 N*m*s/rad", "range: [1.5 N*m*s/rad")
 
 
+# The same, of one age that is too much; with what disturbs besides.
+LATE = late().replace("[0, 5]", "4") + "disturbances: {command: 8 deg/s}\n"
 # Geromel and Colaneri 2006: proved from 2.7508 s on, and up to 2.7077 s a signal grows.
 PAIR = """\
 kind: switched-system
@@ -150,21 +151,16 @@ def test_a_range_of_the_hand(tmp_path):
 
 
 @pytest.mark.slow
-def test_what_axes_do_to_each_other(tmp_path):
-    found = blocked(tmp_path, HEAVY, 20)
-    inertia, links, sampling = found.proved
-    (line,) = inertia.lines
-    assert (line.line, line.word) == ("coupling.inertia", "up to")
-    assert 1 < Fraction(line.proved.split(" ")[0]) < Fraction(3, 2)
-    # What takes more for granted comes after what asks for less, and says so.
-    assert links.lines[0].left_out == ("actuator.load_inertia",)
-    assert "The axes of the robot do not act on each other." in links.needs
-    assert any(text.startswith("Continuous time") for text in sampling.needs)
-    head, *rest = blocked_lines(found, Path("a.nrs.yaml"))
+def test_another_loop_takes_other_things_for_granted(tmp_path):
+    found = blocked(tmp_path, LATE, 20)
+    delay, *_ = found.proved
+    (line,) = delay.lines
+    assert (line.line, line.word, line.proved) == ("sampling.delay", "with", "2 samples")
+    assert "The law uses a force sample that is 2 samples old." in delay.needs
+    head, first, *_ = blocked_lines(found, Path("a.nrs.yaml"))
     assert head.endswith("bounds under disturbances were not looked for")
-    assert rest[1].endswith("takes 1 thing more for granted (--json)")
-    text = HEAVY.replace("1.5 kg*m^2", line.proved)
-    assert verdict(tmp_path, text, 4) is Verdict.PROVED
+    assert f"takes {len(delay.needs)} things more for granted (--json)" in first
+    assert verdict(tmp_path, LATE.replace("delay: 4", line.write), 8) is Verdict.PROVED
 
 
 @pytest.mark.slow

@@ -106,8 +106,6 @@ def shape_of(evidence: AbstractEvidence | None) -> str | None:
         return f"memory-{degree}"
     if evidence.stays is not None:
         return f"mode-{degree}"
-    if evidence.covers_coupling:
-        return "coupled-axes"
     if any(node.place[-1].isdecimal() for node in evidence.nodes):
         return f"periodic-{degree}"
     if len(evidence.edges) > 1:

@@ -10,7 +10,7 @@ from random import Random
 from nrs_design.controllers.laws import Admittance
 from nrs_design.models.contact import KelvinVoigt
 from nrs_design.models.motion_loop import Realization
-from nrs_design.proof.channels import Channel, Coupling, Output, Rounding
+from nrs_design.proof.channels import Channel, Output, Rounding
 from nrs_design.proof.contact import Contact, Flights
 from nrs_design.proof.evidence import AbstractEvidence
 from nrs_design.proof.matrix import RationalMatrix
@@ -335,18 +335,14 @@ def pushed_away_in_steps() -> SwitchedSystem:
     return replace(system, saturation=Saturation((signal,), start), sample_time=Fraction(1, 10))
 
 
-def saturating_in_steps(*, axes: bool = False) -> SwitchedSystem:
+def saturating_in_steps() -> SwitchedSystem:
     """A mass that bounces in steps, of which ``v+ = 11/10 v + sat(-3/10 v)``, cut off at 1/2.
 
-    What makes the push is rounded. With other axes, these push by a part of what it does.
+    What makes the push is rounded.
     """
     system = bouncing_in_steps()
     column, row, share = matrix([[1], [0]]), matrix([["-3/10", 0]]), Fraction(1, 1000)
     rounding = Rounding("s", (column,) * 3, (matrix([[3 * share / 10, 0]]),) * 3)
-    part = Fraction(1, 16)
-    seen = (matrix([[-3 * part / 10, 0, part]]),) * 3
-    coupling = (Coupling("c", (column,) * 3, seen),) if axes else ()
-    pushes = (matrix([[part]]),) * 3 if axes else ()
     signal = CutOff(
         name="s",
         unit="N",
@@ -354,15 +350,9 @@ def saturating_in_steps(*, axes: bool = False) -> SwitchedSystem:
         columns=(column,) * 3,
         rows=(row,) * 3,
         errors=(matrix([[1]]),) * 3,
-        pushes=pushes,
     )
     start = Start("force", "N", tuple(matrix([[0], [Fraction(1, k)]]) for k in (1, 2)))
-    return replace(
-        system,
-        roundings=(rounding,),
-        couplings=coupling,
-        saturation=Saturation((signal,), start),
-    )
+    return replace(system, roundings=(rounding,), saturation=Saturation((signal,), start))
 
 
 def bouncing_in_steps(damping: Entry = 0) -> SwitchedSystem:
@@ -481,32 +471,6 @@ def crowded(time: Time) -> SwitchedSystem:
     )
 
 
-def leaning(system: SwitchedSystem, *shares: Entry) -> SwitchedSystem:
-    """Masses that bounce, and speed each other up by a share of what each would do by itself.
-
-    A second share is that of the speeds. In free motion, as in contact. What pushes a mass, its
-    links share with the others; there are three of them then.
-    """
-    free = () if system.contact is None else system.contact.free
-    every = [mode.A.fractions()[0] for mode in (*system.modes, *free)]
-    if system.time is Time.DISCRETE:
-        every = [[speed - 1, *others] for speed, *others in every]
-    for channel in system.channels:
-        pushed_ = (column.fractions()[0][0] for column in channel.columns)
-        every = [[*row, push] for row, push in zip(every, pushed_, strict=True)]
-    column, sizes = matrix([[1], [0]]), [Fraction(share) for share in shares]
-    rows = [tuple(matrix([[sizes[0] * entry for entry in row]]) for row in every)]
-    quiet = [0] * len(system.channels)
-    rows += [(matrix([[share, 0, *quiet]]),) * len(every) for share in sizes[1:]]
-    names = ("acceleration", "speed")
-    couplings = (
-        Coupling(name, (column,) * len(every), part)
-        for name, part in zip(names, rows, strict=False)
-    )
-    axes = 3 if system.channels else None
-    return replace(system, couplings=tuple(couplings), axes=axes)
-
-
 SYSTEMS = {
     "mode-polynomial": lossy_network,
     "common-quadratic": lambda: dayawansa_martin(5),
@@ -518,22 +482,11 @@ SYSTEMS = {
     "conewise-quadratic, pulling": lambda: bouncing(1),
     "conewise-quadratic, discrete": bouncing_in_steps,
     "conewise-quadratic, pulling in steps": lambda: bouncing_in_steps(1),
-    "coupled-axes": lambda: leaning(bouncing(), "1/8"),
-    "coupled-axes, kept": lambda: leaning(replace(bouncing(), contact=None), "1/8", "1/8"),
-    "coupled-axes, pulling": lambda: leaning(bouncing(1), "1/8"),
-    "coupled-axes, steps": lambda: leaning(bouncing_in_steps(), "1/8", "1/100"),
-    "coupled-axes, kept in steps": lambda: leaning(
-        replace(bouncing_in_steps(), contact=None), "1/8"
-    ),
-    "coupled-axes, pulling in steps": lambda: leaning(bouncing_in_steps(1), "1/16"),
     "invariant-ellipsoid": lambda: pushed(bouncing()),
     "invariant-ellipsoid, kept": lambda: pushed(replace(bouncing(), contact=None)),
     "invariant-ellipsoid, pulling": lambda: pushed(bouncing(1)),
     "invariant-ellipsoid, discrete": lambda: pushed(bouncing_in_steps()),
     "invariant-ellipsoid, pulling in steps": lambda: pushed(bouncing_in_steps(1)),
-    "invariant-ellipsoid, axes": lambda: leaning(pushed(bouncing()), "1/8"),
-    "invariant-ellipsoid, pulling axes": lambda: leaning(pushed(bouncing(1)), "1/16"),
-    "invariant-ellipsoid, axes in steps": lambda: leaning(pushed(bouncing_in_steps()), "1/8"),
     "offset-ellipsoid": lambda: pushed(bouncing()),
     "offset-ellipsoid, pulling": lambda: pushed(bouncing(1)),
     "offset-ellipsoid, in steps": lambda: pushed(bouncing_in_steps()),
@@ -546,7 +499,6 @@ SYSTEMS = {
     "saturated-ellipsoid, scalar": pushed_away,
     "saturated-ellipsoid, scalar in steps": pushed_away_in_steps,
     "saturated-ellipsoid, in steps": saturating_in_steps,
-    "saturated-ellipsoid, axes in steps": lambda: saturating_in_steps(axes=True),
     "growing-sequence, mode": lambda: family([[0, 1], [-1, 0]]),
     "growing-sequence, free": drifting,
     "growing-sequence, contact": juggling,

@@ -1,6 +1,5 @@
 """The modes between which a sampled loop is: by hand, and against motions with cut-off signals."""
 
-from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
@@ -8,9 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from nrs_design.proof.between import between
-from nrs_design.proof.channels import Channel
 from nrs_design.simulation.saturation import saturated_rates
-from tests.proof.systems import matrix, pushed_away_in_steps, saturating_in_steps
+from tests.proof.systems import pushed_away_in_steps, saturating_in_steps
 
 HELD = [[Fraction(-1, 8), Fraction(1, 16)]]
 
@@ -38,24 +36,6 @@ def test_what_is_rounded_goes_with_the_argument():
         [Fraction(1, 10), 1],
     ]
     assert between(system, [HELD] * 3).roundings == ()
-
-
-def test_what_other_axes_see_of_a_signal_changes_with_it():
-    """They see 1/16 of s, and of its rounding; a disturbance before that is left out."""
-    system = saturating_in_steps(axes=True)
-    loop = between(system, [HELD] * 3, rounding=True, coupling=True)
-    (coupling,) = loop.couplings
-    whole, replaced = (row.fractions()[0] for row in coupling.rows[:2])
-    assert whole == [Fraction(-3, 160), 0, Fraction(1, 16)]
-    assert replaced == [Fraction(-1, 128), Fraction(1, 256), 0]
-    (c,) = system.couplings
-    wide = [[*row.fractions()[0][:2], Fraction(5), row.fractions()[0][2]] for row in c.rows]
-    pushed = replace(
-        system,
-        channels=(Channel("d", "N", Fraction(1), (matrix([[1], [0]]),) * 3),),
-        couplings=(replace(c, rows=tuple(matrix([row]) for row in wide)),),
-    )
-    assert between(pushed, [HELD] * 3, rounding=True, coupling=True).couplings == loop.couplings
 
 
 @given(st.floats(-3, 3), st.floats(-3, 3), st.floats(-0.12, 0.12), st.floats(-0.12, 0.12))

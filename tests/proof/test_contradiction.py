@@ -4,7 +4,7 @@ from itertools import pairwise
 
 import pytest
 
-from nrs_design.proof.channels import Channel, Coupling, Output, Rounding
+from nrs_design.proof.channels import Channel, Output, Rounding
 from nrs_design.proof.contact import Contact, Flights
 from nrs_design.proof.contradiction import find_contradiction
 from nrs_design.proof.matrix import RationalMatrix
@@ -285,61 +285,6 @@ def test_roundings_need_steps_of_one_size_and_names():
     unequal = family([["1/2"]], [["1/2", 0], [0, "1/2"]], time=Time.DISCRETE)
     found = find_contradiction(replace(unequal, roundings=(first,)))
     assert found == "the rounding of F is of modes that are not of one size"
-    assert find_contradiction(unequal) is None
-
-
-LEANS = bouncing()
-
-LEANING = Coupling("links", (COLUMN,) * 3, (matrix([[1, 2]]), matrix([[3, 4]]), matrix([[5, 0]])))
-
-SIZE, COUNT = (
-    f"the coupling by links {what}"
-    for what in ("does not have the size of the state", "has not one column and row for every mode")
-)
-
-
-@pytest.mark.parametrize(
-    ("changes", "reason"),
-    [
-        ({}, None),
-        ({"columns": (COLUMN, COLUMN, ONE)}, SIZE),
-        ({"rows": (*LEANING.rows[:2], matrix([[7, 0, 8]]))}, SIZE),
-        ({"rows": (*LEANING.rows[:2], RationalMatrix(((7, 0),), 0))}, SIZE),
-        ({"columns": (COLUMN,) * 2}, COUNT),
-        ({"rows": (*LEANING.rows, LEANING.rows[2])}, COUNT),
-        (
-            {"rows": (*LEANING.rows[:2], matrix([[7, 1]]))},
-            "the coupling by links depends on the deflection in free motion",
-        ),
-    ],
-)
-def test_couplings_that_make_sense_and_others(changes, reason):
-    changed, other = replace(LEANING, **changes), replace(LEANING, name="other")
-    for couplings in ((changed,), (other, changed)):
-        assert find_contradiction(replace(LEANS, couplings=couplings)) == reason
-
-
-def test_couplings_need_one_size_and_names():
-    # Couplings of one name are bounded together.
-    assert find_contradiction(replace(LEANS, couplings=(LEANING, LEANING))) is None
-    first = Coupling("links", (matrix([[1]]),), (ONE,))
-    in_time = replace(family([[-1]]), couplings=(first,))
-    assert find_contradiction(in_time) is None
-    assert find_contradiction(replace(in_time, time=Time.DISCRETE)) is None
-    for axes in (1, 3):
-        assert find_contradiction(replace(in_time, axes=axes)) is None
-    for odd in (replace(in_time, axes=0), replace(family([[-1]]), axes=3)):
-        assert find_contradiction(odd).startswith("there is no axis, or axes are counted")
-    channel = Channel("d", "", Fraction(1), (ONE,))
-    assert find_contradiction(replace(in_time, channels=(channel,))).endswith("of the state")
-    wide = replace(first, rows=(matrix([[1, 2]]),))
-    assert find_contradiction(replace(in_time, channels=(channel,), couplings=(wide,))) is None
-    in_steps = replace(in_time, time=Time.DISCRETE, roundings=(Rounding("r", (ONE,), (ONE,)),))
-    assert find_contradiction(in_steps).endswith("of the state")
-    assert find_contradiction(replace(in_steps, couplings=(wide,))) is None
-    unequal = family([[-1]], [[-1, 0], [0, -1]])
-    found = find_contradiction(replace(unequal, couplings=(first,)))
-    assert found == "the coupling by links is of modes that are not of one size"
     assert find_contradiction(unequal) is None
 
 

@@ -75,20 +75,19 @@ def test_every_signal_fits_the_system(part, entries, oddity):
 
 
 def test_what_acts_on_a_signal_has_its_size():
-    system = saturating_in_steps(axes=True)
+    system = saturating_in_steps()
     (signal,) = system.saturation.signals
     row = matrix([[1]])
-    for part in ("errors", "pushes"):
-        for rows, said in (
-            ((row,) * 2, "one row of what acts on it for every mode"),
-            ((row,) * 4, "one row of what acts on it for every mode"),
-            ((row, row, matrix([[1, 1]])), "does not know what the arithmetic rounds"),
-            ((row, row, RAGGED), "does not know what the arithmetic rounds"),
-            ((), None),
-        ):
-            odd = replace(system.saturation, signals=(replace(signal, **{part: rows}),))
-            found = oddity_of(system, odd)
-            assert found == said if said is None else said in found
+    for rows, said in (
+        ((row,) * 2, "one row of what acts on it for every mode"),
+        ((row,) * 4, "one row of what acts on it for every mode"),
+        ((row, row, matrix([[1, 1]])), "does not know what the arithmetic rounds"),
+        ((row, row, RAGGED), "does not know what the arithmetic rounds"),
+        ((), None),
+    ):
+        odd = replace(system.saturation, signals=(replace(signal, errors=rows),))
+        found = oddity_of(system, odd)
+        assert found == said if said is None else said in found
 
 
 def test_a_limit_may_be_any_positive_number():

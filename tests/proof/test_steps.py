@@ -2,13 +2,12 @@
 
 from dataclasses import replace
 from fractions import Fraction
-from itertools import product
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from nrs_design.proof.channels import Channel, Coupling, Output, Rounding
+from nrs_design.proof.channels import Channel, Output, Rounding
 from nrs_design.proof.contact import Contact
 from nrs_design.proof.contradiction import find_contradiction
 from nrs_design.proof.evidence import InvariantEllipsoid
@@ -251,6 +250,23 @@ def test_every_form_by_hand(keeps, acting, roundings):
             assert is_in_other_units(form, true)
 
 
+@pytest.mark.parametrize("acting", [(), (2, 0)])
+def test_errors_of_a_flow_by_hand(acting):
+    """No system with these makes sense, as nothing is rounded in between; the form is right."""
+    system = replace(three_states(contact=False), time=Time.CONTINUOUS)
+    assert "there are no steps" in find_contradiction(system)
+    weights, quarters = WEIGHTS[: len(acting)], combine((Fraction(1, 4), Q3))
+    known = {"rounding 1": Fraction(4, 4), "rounding 2": Fraction(9, 4)}
+    keeps = Fraction(5, 7)
+    wanted = [
+        inequality(move, quarters, quarters, keeps, known.get, weights)
+        for move in moves(system, lost=False, channels=acting, rounding=True)
+    ]
+    found = forms_of_steps(system, Acting(acting, weights, True), (Q3, 2), keeps, (), (4, 9))
+    for (_, form), true in zip(found, wanted, strict=True):
+        assert is_positive_multiple(form, true)
+
+
 def test_names_of_multipliers():
     """One for lost contact, and three for every force; in flows one for each force and mode."""
     assert multiplier_names(replace(bouncing_in_steps(), contact=None)) == ()
@@ -272,27 +288,3 @@ def test_a_map_and_a_flow_by_hand():
     flow = flow_step("", "m0", "a", A).form(F, F, keeps)
     wanted = combine((-1, half), (-1, transpose(half)), (-keeps, F))
     assert is_positive_multiple(flow, wanted)
-
-
-def test_what_is_rounded_acts_on_other_axes():
-    """``x+ = x/2 + r + w`` with ``|r| <= |x|/8``, over all axes ``|w| <= q |r|``: 3/4 if q is 1."""
-
-    def among(q: int) -> SwitchedSystem:
-        coupling = Coupling("c", (matrix([[1]]),), (matrix([[0, q]]),))
-        return replace(rounded("1/2", "1/8"), couplings=(coupling,))
-
-    def coupled(rate, tau, rho):
-        numbers = {"couplings": (tau,), "roundings": (rho,)}
-        return one_form(among(1), ((64,),), 6, Fraction(rate), **numbers)
-
-    proof = coupled("0.7501", 6 * 64, 12 * 64)
-    assert proof.find_fault(among(1)) is None
-    assert agrees(among(1), proof)
-    # Where nobody sees what an axis rounds, its own 5/8 are left.
-    alone = coupled("0.6251", 1 << 20, 5 * 64)
-    assert alone.find_fault(among(0)) is None
-    for i, j in product(range(24), range(16)):
-        fast = coupled("0.7499", 1 << i, 1 << j)
-        assert fast.find_fault(among(1)) is not None
-    # The same two numbers are a proof at that rate where w is not there.
-    assert replace(alone, rate=Fraction("0.7499")).find_fault(among(0)) is None

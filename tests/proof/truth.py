@@ -169,12 +169,12 @@ def _saturated_steps(system: SwitchedSystem, item: SaturatedEllipsoid) -> bool:
     if system.switching.resets or not 0 < item.rate < 1 or item.level <= 0:
         return False
     rounded = len(system.roundings) if item.roundings else 0
-    numbers = [item.multipliers, item.roundings, item.taus]
-    counts = [0 if contact is None else 1, rounded, len(system.couplings)]
+    numbers = [item.multipliers, item.roundings]
+    counts = [0 if contact is None else 1, rounded]
     if [*map(len, numbers)] != counts or any(v < 0 for part in numbers for v in part):
         return False
     signals, every = what.signals, (*system.modes, *(contact.free if contact else ()))
-    modes, columns, rows, seen = [], [[] for _ in system.roundings], [], []
+    modes, columns, rows = [], [[] for _ in system.roundings], []
     if len(item.H) not in (len(signals), len(signals) * len(every)):
         return False
     for k, mode in enumerate(every):
@@ -183,8 +183,6 @@ def _saturated_steps(system: SwitchedSystem, item: SaturatedEllipsoid) -> bool:
             [*row, *(r.columns[k].fractions()[i][0] for r in system.roundings[:rounded])]
             for i, row in enumerate(mode.A.fractions())
         ]
-        pushed = [c.rows[k].fractions()[0] for c in system.couplings]
-        own = [[*row[:n], *row[n + len(system.channels) :][:rounded]] for row in pushed]
 
         def given(replaced, k=k, held=held):
             found = []
@@ -199,17 +197,14 @@ def _saturated_steps(system: SwitchedSystem, item: SaturatedEllipsoid) -> bool:
 
         for mask in range(2 ** len(signals)):
             replaced = [i for i in range(len(signals)) if mask >> i & 1]
-            B, q = wide, own
+            B = wide
             for signal, new, old in zip(signals, given(replaced), given(()), strict=True):
                 more = [[a - b for a, b in zip(new, old, strict=True)]]
                 B = combine((1, B), (1, times(signal.columns[k].fractions(), more)))
-                acts = [[entry] for entry in signal.pushes[k].fractions()[0]] if q else []
-                q = combine((1, q), (1, times(acts, more))) if q else q
             modes.append(Mode(f"{mode.name} {mask}", RationalMatrix.from_rows([r[:n] for r in B])))
             for j, found in enumerate(columns[:rounded]):
                 found.append(RationalMatrix.from_rows([[row[n + j]] for row in B]))
             rows.append(k)
-            seen.append(q)
     first = len(modes) // len(every) * len(system.modes)
     cut = [
         replace(
@@ -219,20 +214,11 @@ def _saturated_steps(system: SwitchedSystem, item: SaturatedEllipsoid) -> bool:
         )
         for j, r in enumerate(system.roundings[:rounded])
     ]
-    coupled = [
-        replace(
-            c,
-            columns=tuple(c.columns[k] for k in rows),
-            rows=tuple(RationalMatrix.from_rows([q[j]]) for q in seen),
-        )
-        for j, c in enumerate(system.couplings)
-    ]
     loop = replace(
         system,
         modes=tuple(modes[:first]),
         contact=None if contact is None else replace(contact, free=tuple(modes[first:])),
         roundings=tuple(cut),
-        couplings=tuple(coupled),
         channels=(),
         saturation=None,
     )
@@ -240,8 +226,7 @@ def _saturated_steps(system: SwitchedSystem, item: SaturatedEllipsoid) -> bool:
     Q = [[v * unit for v in row] for row in item.Q]
     known = {"lost": item.multipliers[0] * unit} if item.multipliers else {}
     known |= {f"rounding {i}": v * unit for i, v in enumerate(item.roundings, 1)}
-    known |= {f"coupling {i}": v * unit for i, v in enumerate(item.taus, 1)}
-    steps = moves(loop, lost=contact is not None, rounding=bool(rounded), coupling=True)
+    steps = moves(loop, lost=contact is not None, rounding=bool(rounded))
     forms = [inequality(m, Q, Q, item.rate**2, known.__getitem__) for m in steps]
     if not is_definite(Q) or not all(map(is_definite, forms)):
         return False
@@ -260,7 +245,7 @@ def _saturated_ellipsoid(system: SwitchedSystem, item: SaturatedEllipsoid) -> bo
     what, contact = system.saturation, system.contact
     if what is not None and system.time is Time.DISCRETE:
         return _saturated_steps(system, item)
-    if what is None or system.couplings:
+    if what is None:
         return False
     if system.switching.resets or item.rate <= 0 or item.level <= 0:
         return False
@@ -314,7 +299,7 @@ def _graph(system: SwitchedSystem, item: FormsOnGraph) -> bool:
         return False
     if item.stays is not None:
         ruled = _mode_quadratic if item.degree == 1 else _mode_polynomials_decrease
-        return system.clock is None and not system.couplings and ruled(system, item)
+        return system.clock is None and ruled(system, item)
     lost = any(node.place.startswith("free") for node in item.nodes)
     if lost and system.contact is None:
         return False
@@ -322,17 +307,10 @@ def _graph(system: SwitchedSystem, item: FormsOnGraph) -> bool:
         return _polynomials(system, item, lost=lost)
     if not all(is_definite(node.form) for node in item.nodes):
         return False
-    facts = {m.fact for m in item.multipliers}
-    rounding, coupling = (
-        any(f.startswith(kind) for f in facts) for kind in ("rounding", "coupling")
-    )
-    if system.couplings and not coupling:
-        return False
+    rounding = any(m.fact.startswith("rounding") for m in item.multipliers)
     turns = [None] if system.clock is None else list(range(system.clock.length))
     steps = [
-        move
-        for turn in turns
-        for move in moves(system, turn=turn, lost=lost, rounding=rounding, coupling=coupling)
+        move for turn in turns for move in moves(system, turn=turn, lost=lost, rounding=rounding)
     ]
     taken: set[tuple[int, int, int]] = set()
     for k, a, b in edges_at(item, steps):
@@ -409,7 +387,6 @@ def moves(
     turn: int | None = None,
     channels: Sequence[int] = (),
     rounding: bool = False,
-    coupling: bool = False,
 ) -> Iterator[Move]:
     """Yield maps (or flows) of the state, what acts and the errors, and what is known of them."""
     contact, n, flows = (
@@ -420,17 +397,14 @@ def moves(
     at = "" if turn is None else f" {turn}"
     to = at if turn is None else f" {(turn + 1) % system.clock.length}"
     pulls = () if contact is None else contact.pulls
-    rounded = len(system.roundings) * rounding
-    errors = [(f"rounding {i}", r) for i, r in enumerate(system.roundings[:rounded], 1)]
-    errors += [(f"coupling {i}", c) for i, c in enumerate(system.couplings, 1) if coupling]
+    errors = [(f"rounding {i}", r) for i, r in enumerate(system.roundings, 1) if rounding]
     width = n + len(channels) + len(errors)
 
     def padded(row: Sequence[Fraction]) -> list[Fraction]:
         return [*row, *[Fraction(0)] * (width - len(row))]
 
     def size(row: list[Fraction]) -> list[Fraction]:
-        own = row[n + len(system.channels) :][:rounded] or [Fraction(0)] * rounded
-        return padded([*row[:n], *(row[n + i] for i in channels), *own])
+        return padded([*row[:n], *(row[n + i] for i in channels)])
 
     free = () if contact is None else contact.free
     for k, mode in enumerate((*system.modes, *free)):
@@ -564,10 +538,6 @@ def _invariant_ellipsoid(system: SwitchedSystem, item: InvariantEllipsoid) -> bo
         return False
     if item.level <= 0 or min(item.shares) <= 0 or (discrete and a >= 1):
         return False
-    if len(item.taus) != len(system.couplings) or min(item.taus, default=0) < 0:
-        return False
-    if system.couplings and system.axes is None:
-        return False
     if item.roundings and len(item.roundings) != len(system.roundings):
         return False
     scale = Fraction(1, 2**item.denominator_log2)
@@ -575,7 +545,6 @@ def _invariant_ellipsoid(system: SwitchedSystem, item: InvariantEllipsoid) -> bo
     acting = {
         "channels": [system.channels.index(channel) for channel in named],
         "rounding": bool(item.roundings),
-        "coupling": bool(item.taus),
     }
     steps = list(moves(system, lost=True, **acting))
     crossings = dict.fromkeys(fact for move in steps for fact, _ in move.crossings)
@@ -583,7 +552,6 @@ def _invariant_ellipsoid(system: SwitchedSystem, item: InvariantEllipsoid) -> bo
         return False
     known = dict(zip(crossings, item.multipliers, strict=True))
     known |= {f"rounding {i}": entry for i, entry in enumerate(item.roundings, 1)}
-    known |= {f"coupling {i}": entry for i, entry in enumerate(item.taus, 1)}
     if min(known.values(), default=0) < 0:
         return False
     weights = [share / c.bound**2 for share, c in zip(item.shares, named, strict=True)]
@@ -595,18 +563,18 @@ def _invariant_ellipsoid(system: SwitchedSystem, item: InvariantEllipsoid) -> bo
     for q in output.rows:
         row = q.fractions()[0]
         outer = [[x * y for y in row] for x in row]
-        forms.append(combine((item.level**2 / (system.axes or 1), Q), (-1, outer)))
+        forms.append(combine((item.level**2, Q), (-1, outer)))
     return all(map(is_definite, forms))
 
 
 def _offset_ellipsoid(system: SwitchedSystem, item: OffsetEllipsoid) -> bool:
     named = [c for name in item.channels for c in system.channels if c.name == name]
     discrete, n = system.time is Time.DISCRETE, system.order
-    if not named or len(named) < len(item.channels) or item.taus:
+    if not named or len(named) < len(item.channels):
         return False
     if item.output not in {output.name for output in system.outputs}:
         return False
-    if system.contact is None or system.couplings or len(item.Q) != n + 1:
+    if system.contact is None or len(item.Q) != n + 1:
         return False
     if len(item.shares) != 1 or item.shares[0] <= 0 or (discrete and item.shares[0] >= 1):
         return False

@@ -156,17 +156,11 @@ def test_proved_report_says_what_is_not_covered(report):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("name", "covered"),
-    [
-        ("soft-tissue-axes", "Coupling between the axes"),
-        ("soft-tissue-sampled", "What the processor rounds"),
-    ],
-)
-def test_what_is_proved_is_not_listed_as_left_out(report, name, covered):
-    result = run_certification(read_spec(ROOT / f"specs/neuroboscope/{name}.nrs.yaml"))
-    assert covered not in words(build_report(result))
-    assert "Coupling between the axes" in words(report("proved"))
+def test_what_is_proved_is_not_listed_as_left_out():
+    result = run_certification(read_spec(ROOT / "specs/neuroboscope/soft-tissue-sampled.nrs.yaml"))
+    text = words(build_report(result))
+    assert "What the processor rounds" not in text
+    assert "Coupling between the axes" in text
 
 
 def test_refuted_report_shows_the_witness_and_no_bound(report):

@@ -353,7 +353,7 @@ class TestMethods:
         "method",
         sorted(
             set(Method)
-            - {Method.MODE_POLYNOMIAL, Method.COUPLED_AXES, Method.PERIODIC_QUADRATIC}
+            - {Method.MODE_POLYNOMIAL, Method.PERIODIC_QUADRATIC}
             - {method for method in Method if method.startswith(("conewise", "memory"))}
         ),
     )

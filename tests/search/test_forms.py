@@ -17,7 +17,6 @@ from nrs_design.search.graphs import (
     draw_turns,
     search_conewise_modes,
     search_conewise_polynomial,
-    search_coupled_axes,
     search_modes,
     search_periodic_quadratic,
     search_polynomial,
@@ -31,7 +30,6 @@ from tests.proof.systems import (
     bouncing_in_turns,
     dayawansa_martin,
     geromel_colaneri,
-    leaning,
     two_ways,
 )
 from tests.search.support import found
@@ -44,11 +42,6 @@ DRAWN = [
         search_periodic_quadratic,
         bouncing_in_turns(1, rounded=True),
         lambda f: next(draw_turns(f, f.system.clock)),
-    ),
-    (
-        search_coupled_axes,
-        leaning(bouncing(), "1/8"),
-        lambda f: draw_together(f, 1, lost=True, solved=("coupling",)),
     ),
     (search_together, bouncing(), lambda f: draw_together(f, 1, lost=True)),
     (search_modes, geromel_colaneri(3), lambda f: next(draw_each_mode(f, 1))),
@@ -118,11 +111,6 @@ def test_forms_that_are_nearly_zero_are_no_solution():
     ("search", "system", "draw"),
     [
         (search_together, bouncing_in_steps(), lambda f: draw_together(f, 1, lost=True)),
-        (
-            search_coupled_axes,
-            leaning(bouncing_in_steps(), "1/8"),
-            lambda f: draw_together(f, 1, lost=True, solved=("coupling",)),
-        ),
         (search_preconditioned, dayawansa_martin(3), lambda f: draw_together(f, 1)),
     ],
 )

@@ -1,21 +1,16 @@
 """Graphs that searches draw: what they decide, and where they apply."""
 
-from fractions import Fraction
-
 import numpy as np
 import pytest
 from scipy.linalg import expm
 
 from nrs_design.certificates.certificate import Verdict
-from nrs_design.errors import DesignError
 from nrs_design.reporting.evidence.norms import largest_norm
 from nrs_design.reporting.evidence.offers import offer_of
 from nrs_design.search import graphs
-from nrs_design.search.candidates import NO_MARGIN
 from nrs_design.search.certify import Limits, certify
 from nrs_design.search.graphs import (
     search_conewise_modes,
-    search_coupled_axes,
     search_periodic_quadratic,
     search_together,
 )
@@ -30,8 +25,6 @@ from tests.proof.systems import (
     bouncing_in_turns,
     dayawansa_martin,
     doubled_in_turns,
-    family,
-    leaning,
 )
 from tests.search.support import found, outcome, thesis_robot
 
@@ -150,79 +143,6 @@ def test_runs_through_contact_and_flight_never_leave_the_bound():
         # Moved along the ray, as a run goes on for ever.
         x = after / norm(after)[:, None]
     assert np.median(bounced) >= 1
-
-
-def coupled_rate(system):
-    evidence = found(search_coupled_axes, system)
-    assert shape_of(evidence) == "coupled-axes"
-    return float(evidence.rate)
-
-
-def test_two_equal_axes_that_are_pushed_by_their_acceleration():
-    """``x' = A x + b w``, ``|w| <= c |a x|``: an H-infinity norm, which Q attains for one mode.
-
-    ``v' = -2 v + w`` alone with ``|w| <= 2 c |v|`` decays at ``2 - 2 c``, and delta at 1.
-    """
-    system = family([[-2, 0], [0, -1]])
-    for c in ("0", "1/4", "2/5"):
-        expected = min(1, 2 - 2 * float(Fraction(c)))
-        assert coupled_rate(leaning(system, c)) == pytest.approx(expected, rel=5e-3)
-
-
-def test_more_coupling_takes_of_the_rate():
-    rates = [coupled_rate(leaning(bouncing(), share)) for share in ("0", "1/8", "1/4")]
-    assert rates[0] > rates[1] > rates[2] > 0
-
-
-def test_what_cannot_be_is_not_found():
-    evidence, words = outcome(search_coupled_axes, leaning(bouncing(), 2))
-    assert (evidence, words) == (None, NO_MARGIN)
-
-
-@pytest.mark.parametrize("damping", [0, 1])
-def test_any_rate_is_that_of_the_function(damping):
-    system = leaning(bouncing(damping), "1/8")
-    evidence = found(search_coupled_axes, system, optimize_rate=False)
-    best = coupled_rate(system)
-    assert 0 < float(evidence.rate) <= best * 1.01
-
-
-def test_numbers_of_any_size():
-    """Speeds in units of a millionth: columns and rows differ by the square."""
-    system = leaning(family([[-2, -(10**6)], ["1/1000000", 0]]), "1/8")
-    plain = leaning(family([[-2, -1], [1, 0]]), "1/8")
-    assert coupled_rate(system) == pytest.approx(coupled_rate(plain), rel=1e-2)
-
-
-def test_modes_beyond_floating_point_have_no_candidate():
-    huge = leaning(family([[-(10**400), 0], [0, -1]]), "1/8")
-    evidence, words = outcome(search_coupled_axes, huge)
-    assert evidence is None
-    assert "beyond the range" in words
-
-
-def test_only_rungs_that_know_of_other_axes_are_tried():
-    result = certify(leaning(bouncing(), 2), limits=Limits(optimize_rate=False))
-    tried = {attempt.step for attempt in result.attempts}
-    assert "coupled axes" in tried
-    assert not any("conewise" in step or "lmi" in step for step in tried)
-
-
-def test_it_can_be_asked_for_where_axes_act_on_each_other():
-    system = leaning(bouncing(), "1/8")
-    assert shape_of(certify(system, Method.COUPLED_AXES).evidence) == "coupled-axes"
-    for other, method in ((bouncing(), Method.COUPLED_AXES), (system, Method.LMI)):
-        with pytest.raises(DesignError, match="does not apply"):
-            certify(other, method)
-
-
-def test_equal_modes_and_blocks_are_left_as_they_are():
-    """What other axes add may differ between equal modes; here the modes are diagonal, too."""
-    system = leaning(family([[-2, 0], [0, -1]], [[-2, 0], [0, -1]]), "1/4")
-    result = certify(system)
-    assert shape_of(result.evidence) == "coupled-axes"
-    assert len(result.system.modes) == 2
-    assert np.isfinite(float(result.evidence.rate))
 
 
 def test_a_stable_mode_of_one_stay_need_not_decrease_on_the_way():

@@ -1,11 +1,15 @@
 """Equal modes and triangular blocks."""
 
+from dataclasses import replace
+
 from hypothesis import given
 from hypothesis import strategies as st
 
+from nrs_design.proof.channels import Rounding
 from nrs_design.proof.evidence.block_triangular import is_block_triangular, is_partition
+from nrs_design.proof.mode import Time
 from nrs_design.search.structure import merge_equal_modes, triangular_blocks
-from tests.proof.systems import dayawansa_martin, degenerate_dual, family
+from tests.proof.systems import dayawansa_martin, degenerate_dual, family, matrix
 
 PATTERNS = st.integers(1, 5).flatmap(
     lambda n: st.lists(
@@ -49,3 +53,13 @@ def test_the_first_of_equal_modes_stays():
     A, B = [[-1, 0], [0, -2]], [[-2, 1], [0, -1]]
     merged = merge_equal_modes(family(A, B, A, [["-1.0", 0], [0, "-4/2"]]))
     assert [mode.name for mode in merged.modes] == ["m0", "m1"]
+
+
+def test_equal_modes_that_round_unlike_are_not_merged():
+    """What the arithmetic adds may differ between them."""
+    A = [["1/2", 0], [0, "1/4"]]
+    columns, rows = (matrix([[1], [0]]),) * 2, (matrix([[1, 0]]), matrix([[2, 0]]))
+    system = family(A, A, time=Time.DISCRETE)
+    assert len(merge_equal_modes(system).modes) == 1
+    rounded = replace(system, roundings=(Rounding("r", columns, rows),))
+    assert merge_equal_modes(rounded) == rounded

@@ -1,13 +1,11 @@
 """Interactions to be simulated, small and quick to design."""
 
-from dataclasses import replace
 from pathlib import Path
 
 from nrs_design.design.design import design_controllers
-from nrs_design.simulation.bodies import simulate_on_body
 from nrs_design.simulation.build_scenario import build_scenario, default_scenario
 from nrs_design.simulation.exact import simulate_exactly
-from nrs_design.simulation.sampled import sampled_axis
+from nrs_design.simulation.sampled import simulate_sampled
 from nrs_design.spec import parse_spec
 from nrs_design.spec.build_plant import build_plant
 from nrs_design.spec.sampling import SamplingSpec
@@ -61,25 +59,4 @@ def simulated(text, engine="exact", sampling=None, **options):
     )
     if engine == "exact":
         return simulate_exactly(spec, plant, design, scenario, **options)
-    (run,) = simulate_on_body(spec, plant, design, (scenario,), engine, **options)
-    return run
-
-
-def axes_of(text, count=1):
-    """Return the plant, and so many axes at rest, of the only scenario of a spec at 2 ms.
-
-    The command of each is another: in turn that of the spec, half of it, and its opposite.
-    """
-    spec = parse_spec(text)
-    given = SamplingSpec.model_validate({"period": "2 ms", "delay": "0"})
-    spec = spec.model_copy(update={"sampling": given})
-    plant = build_plant(spec)
-    design = design_controllers(spec, plant)
-    scenario = build_scenario(spec, plant, "run", spec.scenarios["run"], Path())
-    axes = []
-    for share in (1.0, 0.5, -1.0)[:count]:
-        pieces = scenario.profile.pieces
-        scaled = tuple(replace(p, value=share * p.value, slope=share * p.slope) for p in pieces)
-        profile = replace(scenario.profile, pieces=scaled)
-        axes.append(sampled_axis(spec, plant, design, replace(scenario, profile=profile)))
-    return plant, tuple(axes)
+    return simulate_sampled(spec, plant, design, scenario, **options)

@@ -11,9 +11,9 @@ from nrs_design.pipeline import run_certification
 from nrs_design.pipeline.certified_runs import hold_bounds, hold_rate
 from nrs_design.pipeline.scenarios import Runs, run_scenarios
 from nrs_design.search.certification import Limits
-from nrs_design.simulation.bodies import simulate_on_body
 from nrs_design.simulation.coverage import uncovered
 from nrs_design.simulation.exact import simulate_exactly
+from nrs_design.simulation.sampled import simulate_sampled
 from nrs_design.simulation.scenario import Control, Errors, Profile
 from nrs_design.spec import parse_spec, read_spec
 from nrs_design.spec.sampling import DisturbancesSpec
@@ -88,8 +88,7 @@ def test_no_run_of_the_law_that_ships_leaves_its_bound(sampled, velocities, stay
     times = np.repeat(stay * np.arange(len(velocities) + 1), 2)[1:-1]
     profile = Profile.through(times, np.radians(np.repeat(velocities, 2)))
     scenario = replace(usual.scenario, profile=profile, duration=stay * len(velocities))
-    given = designed.spec, designed.plant, designed.design, (scenario,)
-    (run,) = simulate_on_body(*given, "sampled")
+    run = simulate_sampled(designed.spec, designed.plant, designed.design, scenario)
     found = bounds(sampled, replace(usual, scenario=scenario, run=run))
     assert not found["force"].uncovered
     assert np.abs(run.response["torque"]).max() <= found["force"].level
@@ -134,13 +133,10 @@ def test_what_a_proof_does_not_take_up_is_said(certified, change, said):
     assert all(word in reason for word, reason in zip(said, reasons, strict=True))
 
 
-@pytest.mark.parametrize("engine", ["sampled", "mujoco"])
-def test_another_engine_than_that_of_the_proof(certified, engine):
-    if engine == "mujoco":
-        pytest.importorskip("mujoco", reason="MuJoCo is not installed")
-    (one,) = run_scenarios(certified.designed, Runs(engine=engine))
+def test_another_engine_than_that_of_the_proof(certified):
+    (one,) = run_scenarios(certified.designed, Runs(engine="sampled"))
     for bound in bounds(certified, one).values():
-        assert any(f"not about the {engine} loop" in reason for reason in bound.uncovered)
+        assert any("not about the sampled loop" in reason for reason in bound.uncovered)
 
 
 def test_contact_that_a_proof_takes_for_kept(certified):

@@ -95,8 +95,6 @@ CHANGES = {
         "actuator": {"time_constant": {"nominal": "0.0351 s", "range": ["0.035 s", "0.036 s"]}}
     },
     f.LOADED: {"actuator": LOAD},
-    f.LOADED_ALONE: {"actuator": LOAD},
-    f.COUPLED: {"actuator": LOAD, "coupling": {"inertia": ["0 kg*m^2", "0.1 kg*m^2"], "axes": 3}},
     f.HAND: tissue("hand", damping="7 N*m*s/rad", mass="0.1 kg*m^2"),
     f.RESTLESS: tissue("maxwell", damping="10 N*m*s/rad"),
     f.MEMORY: tissue("maxwell", damping="10 N*m*s/rad"),
@@ -174,8 +172,6 @@ CHANGES = {
         }
     },
     f.TORQUES: TAKES_TORQUES,
-    f.MOBILE: TAKES_TORQUES
-    | {"coupling": {"mobility": ["0.8", "1.2"]}, "sampling": {"period": "2 ms", "delay": 0}},
     f.CONSTANT_TISSUE: {
         "environments": {"soft": {"stiffness": CONSTANT | {"nominal": "43 N*m/rad"}}}
     },

@@ -13,7 +13,6 @@ from nrs_design.spec.document import parse_document, to_data
 from nrs_design.spec.edits import changed
 from nrs_design.spec.load import respecified
 from nrs_design.spec.weaker import find_changes
-from tests.pipeline.test_subsets import HEAVY
 from tests.support import ROOT, SOFT_TISSUE
 
 TEXT = SOFT_TISSUE.read_text(encoding="utf-8")
@@ -34,10 +33,6 @@ PARTS_OF = {
     "disturbances": "\ndisturbances: {command: 8 deg/s}\n",
     "sensor": "\nsensor: {filter: {cutoff: 30 Hz}}\n",
     "sensor.filter": "\nsensor: {bias: 5 N*mm, filter: {cutoff: 30 Hz}}\n",
-    "coupling": (
-        "actuator:\n",
-        "coupling: {inertia: [0 kg*m^2, 0.6 kg*m^2]}\nactuator:\n  load_inertia: 1.213 kg*m^2\n",
-    ),
     "actuator.time_constant.range": (
         "time_constant: 0.0351 s",
         "time_constant: {nominal: 0.0351 s, range: [0.034 s, 0.036 s]}",
@@ -136,15 +131,6 @@ def test_a_range_of_times_keeps_its_shortest():
     assert (form.reach(PARTS // 2), form.asked) == ("0.65 ms", "1 ms")
     one = TEXT + "\nsampling: {period: 2 ms, delay: 0, latency: 1 ms}\n"
     assert "sampling.latency" not in lines_of(loaded(one))
-
-
-def test_links_lose_their_load_with_them():
-    lines = lines_of(loaded(HEAVY))
-    assert lines["coupling"].beside == (("actuator", "load_inertia"),)
-    inertia = lines["coupling.inertia"].least
-    # Never without any inertia, which is another model.
-    assert inertia.says(0) == ("0 kg*m^2", "0.023 kg*m^2")
-    assert inertia.says(inertia.size) == ("0 kg*m^2", "1.5 kg*m^2")
 
 
 def test_a_dwell_time_begins_where_every_mode_has_decayed():

@@ -109,15 +109,6 @@ def test_bounds_are_not_proved_beside_two_periods_or_misses():
         assert "no bound" in str(doubt)
 
 
-def test_axes_that_act_on_each_other_are_not_proved_beside_two_periods():
-    loaded = IMPEDANCE.replace("0.0351 s\n", "0.0351 s\n  load_inertia: 1 kg*m^2\n")
-    axes = f"{loaded}\ncoupling: {{inertia: [0 kg*m^2, 0.1 kg*m^2]}}\nsampling: {{period: 2 ms"
-    assert [d.at for d in doubts(f"{axes}, delay: 0}}\n")] == [("environments", "hand")]
-    _, doubt = doubts(f"{axes}, delay: 0, outer_period: 4 ms}}\n")
-    assert doubt.at == ("coupling",)
-    assert "nothing is proved of axes that act on each other" in str(doubt)
-
-
 def test_what_is_valid_and_not_proved_in_continuous_time():
     """`certify-switching` stops at these; that `check` calls them valid is not all that it says."""
     lost = f"{FORCE}\ncontact: losable\n"

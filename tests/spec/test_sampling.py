@@ -76,7 +76,7 @@ def test_ranges_of_the_actuator_are_for_impedance_controllers_with_and_without_s
 
 def test_a_load_of_the_motor_is_for_continuous_time():
     assert parse_spec(LOADED).actuator.load_inertia.exact == 1
-    with pytest.raises(SpecError, match="a load of the motor of one axis beside a sampled loop"):
+    with pytest.raises(SpecError, match="a load of the motor beside a sampled loop"):
         sampled("{period: 2 ms, delay: 0}", LOADED)
     with pytest.raises(SpecError, match="load_inertia"):
         parse_spec(LOADED.replace("1 kg*m^2", "0 kg*m^2"))

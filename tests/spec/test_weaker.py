@@ -18,7 +18,6 @@ actuator:
   gain: {nominal: 4.8e-4 rad/s/rpm, range: [4.7e-4 rad/s/rpm, 4.9e-4 rad/s/rpm]}
   time_constant: 0.0351 s
 limits: {velocity: 8 deg/s, torque: 0.3 N*m}
-coupling: {inertia: [0.9 kg*m^2, 1.3 kg*m^2], speed: 14 deg/s, gravity_compensated: at-rest}
 sensor: {bias: 0.1 N*m, filter: {order: 2, cutoff: 30 Hz}}
 environments:
   soft:
@@ -61,8 +60,6 @@ switching:
 ARM = """\
 kind: task-space
 name: c
-common:
-  coupling: {mobility: [0.8, 1.2], arm: {model: a.urdf, tip: tip, joints: {q1: [-6 deg, 6 deg]}}}
 misses: {mode: miss, at_most: 2, of: 10}
 """
 WEAKER = {
@@ -103,9 +100,6 @@ WEAKER = {
     "law of what is touched": ("model: hunt-crossley", "model: elastic"),
     "preload": ("[0.1 m, 0.3 m]", "[0.2 m, 0.21 m]"),
     "lever arm": ("0.24 m", "0.1 m"),
-    "inertia of the links": ("[0.9 kg*m^2, 1.3 kg*m^2]", "[1 kg*m^2, 1 kg*m^2]"),
-    "speed of the links": ("speed: 14 deg/s", "speed: 1 deg/s"),
-    "gravity": ("at-rest", "everywhere"),
     "bias": ("bias: 0.1 N*m", "bias: 0.01 N*m"),
     "noise": ("noise: 0.1 N*m", "noise: 0.01 N*m"),
     "age": ("age: 2 ms", "age: 1 ms"),
@@ -245,7 +239,6 @@ def test_every_number_of_what_must_be_borne_is_weaker_in_one_direction():
     """A part that a spec may have, and that nobody has thought of here, is not passed over."""
     parts = {
         ("disturbances",): "DisturbancesSpec",
-        ("coupling",): "CouplingSpec",
         ("sensor",): "SensorSpec",
         ("sampling",): "SamplingSpec",
         ("goals",): "GoalsSpec",
@@ -308,11 +301,6 @@ def test_every_part_that_a_shipped_spec_loses_is_weaker_or_beside_the_proof():
 @pytest.mark.parametrize(
     ("old", "new", "weaker"),
     [
-        ("[0.8, 1.2]", "[0.9, 1.2]", True),
-        ("[0.8, 1.2]", "[0.7, 1.2]", False),
-        ("[-6 deg, 6 deg]", "[-4 deg, 6 deg]", True),
-        ("[-6 deg, 6 deg]", "[-6 deg, 0.1 rad]", True),
-        ("[-6 deg, 6 deg]", "[-7 deg, 6 deg]", False),
         ("at_most: 2", "at_most: 1", True),
         ("at_most: 2", "at_most: 3", False),
         ("of: 10", "of: 11", True),
@@ -320,7 +308,7 @@ def test_every_part_that_a_shipped_spec_loses_is_weaker_or_beside_the_proof():
         ("misses: {mode: miss, at_most: 2, of: 10}\n", "", False),
     ],
 )
-def test_what_an_arm_may_do_and_how_often_steps_are_missed(old, new, weaker):
+def test_how_often_steps_are_missed(old, new, weaker):
     assert old in ARM
     before, after = (to_data(parse_document(t)) for t in (ARM, ARM.replace(old, new)))
     (change,) = find_changes(before, after)

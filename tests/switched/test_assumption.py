@@ -97,9 +97,9 @@ def test_an_assumption_is_its_sentence():
 
 
 def test_a_copy_keeps_id_and_bound():
-    copy = pickle.loads(pickle.dumps(say("links.axes", "at night", drive=2)))
-    assert (copy.id, copy.kind.id, copy.bound) == ("links.axes", "links", "at night")
-    assert "with a drive of 2 kg*m^2" in copy
+    copy = pickle.loads(pickle.dumps(say("load.inertia", "at night", inertia=2)))
+    assert (copy.id, copy.kind.id, copy.bound) == ("load.inertia", "load", "at night")
+    assert "against an inertia of 2." in copy
 
 
 def test_what_disturbances_bound_is_not_said_to_be_left_out():

@@ -232,7 +232,7 @@ def test_single_precision_never_leaves_the_roundings(laws, motion, order):
         if "reference" in exact:
             x["e [rad]"] -= exact["angle"]
         state = [*map(x.get, frame.states), exact.get("velocity_command", Fraction(0))]
-        rows = frame.rows(laws[mode], 1, values)[:-2]
+        rows = frame.rows(laws[mode], 1, values)[:-1]
         after = [sum(c * v for c, v in zip(row, state, strict=False)) for row in rows]
         angles = exact.keys() & {"angle", "reference", "offset"}
         largest = 2 * max((abs(exact[k]) for k in angles), default=Fraction(0))

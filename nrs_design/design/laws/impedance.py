@@ -75,7 +75,7 @@ class ImpedanceAnalysis(AbstractControllerAnalysis):
     band: PassiveBand | None = None
     # The same for the law that is sampled, for every age of the force sample; empty where it is not
     # computed: without sampling, with two periods, a spring, a filter, late commands, or ranges of
-    # the motor, and beside other axes.
+    # the motor.
     sampled: tuple[SampledBand, ...] = ()
     # Of everything that it touches, in m; None if there is none, or not the same for all.
     lever_arm: float | None = None
@@ -256,7 +256,7 @@ def _sampled_bands(
     if sampling.misses is not None:
         return ()
     fixed = task.plant.actuator_ranges.fixed and task.spec.late_at is None
-    if not fixed or task.spec.coupling is not None:
+    if not fixed:
         return ()
     law = controller.law.discretize(sampling.period.exact, sampling.admittance)
     oldest = sampling.delay[1] + 1

@@ -40,7 +40,6 @@ KINDS = {
     "PULL": "The torque pulls, which no tissue does",
     "FAST": "The joint is faster than its readings are known for",
     "REGION": "The state may be outside of where motions decay although the command saturates",
-    "SPEED": "The axes together are faster than their coupling is known for",
 }
 
 
@@ -107,12 +106,6 @@ def _words(program: Program, limits: MonitorLimits) -> Iterator[str]:
         "to do then is for the caller to say. It commands nothing and is no part of the proof: "
         "silence says nothing of what is not monitored, or happens between samples."
     )
-    if limits.speed is not None:
-        yield (
-            "The axes act on each other, and how much is known below a speed only. It is that of "
-            "all axes together, the root of the sum of the squares of their joint speeds, which "
-            "the caller knows: one monitor sees one axis. It is judged as it is read."
-        )
     if limits.region is not None:
         yield (
             "The region: from the states in an ellipsoid, motions are proved to decay although the "
@@ -132,7 +125,6 @@ def told_kinds(limits: MonitorLimits) -> dict[str, str]:
     """Return what may be left, and what that means, in the order of their numbers."""
     sector = limits.sector
     told = {
-        "SPEED": limits.speed is not None,
         # Within the region, the command may meet its limit.
         "SATURATION": limits.region is None,
         "REGION": limits.region is not None,
@@ -157,8 +149,6 @@ def _limits(names: CNames, limits: MonitorLimits) -> Iterator[tuple[str, int | F
     yield f"{up}_TORQUE", limits.torque, f"{unit('N*m')}, from the spec"
     if limits.command is not None and limits.region is None:
         yield f"{up}_COMMAND", limits.command, "from the spec"
-    if limits.speed is not None:
-        yield f"{up}_SPEED", limits.speed, f"{unit('rad/s')}, over all axes, from the spec"
     if limits.age is not None:
         least, most = limits.age
         yield f"{up}_YOUNGEST", least, "samples, from the spec"

@@ -17,8 +17,8 @@ from nrs_design.proof.system import SwitchedSystem
 
 COVERED = (
     "lmi, gradient, conewise-quadratic and mode-quadratic; "
-    "conewise-mode-quadratic in discrete time; polynomial, conewise-polynomial and "
-    "coupled-axes in continuous time"
+    "conewise-mode-quadratic in discrete time; polynomial and conewise-polynomial in continuous "
+    "time"
 )
 
 
@@ -54,8 +54,6 @@ def _find_uncovered(system: SwitchedSystem, evidence: FormsOnGraph) -> str | Non
         return "some of its modes must be left, in continuous time" if left else None
     if evidence.degree > 1:
         return "its forms are polynomials in discrete time"
-    if evidence.covers_coupling:
-        return "its axes act on each other in discrete time"
     return None
 
 

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cached_property
 from itertools import repeat
-from math import lcm
 
 from nrs_design.exporters.proof_assistant.text import (
     Definitions,
@@ -22,7 +20,7 @@ from nrs_design.proof.evidence.graph import FormsOnGraph
 from nrs_design.proof.exact import IntegerMatrix, add
 from nrs_design.proof.lift import monomials
 from nrs_design.proof.mode import Mode
-from nrs_design.proof.steps import COUPLING, FREE, Step
+from nrs_design.proof.steps import FREE, Step
 from nrs_design.proof.system import SwitchedSystem
 
 LIBRARY = ("forms", "polynomials", "continuous")
@@ -46,50 +44,27 @@ class FlowStatement:
         n = self.system.order
         return deflection_first(n) if self.lost else list(range(n))
 
-    @cached_property
-    def acting(self) -> int:
-        """How many inputs other axes have."""
-        return len(self.system.couplings) if self.evidence.covers_coupling else 0
-
-    def basis(self, states: int, inputs: int = 0) -> str:
+    def basis(self, states: int) -> str:
         """Return the monomials of the first states, each as the list of its variables."""
         place = {state: k for k, state in enumerate(self.order)}
         terms = [
             sorted(i for state, power in enumerate(term) for i in repeat(place[state], power))
             for term in monomials(states, self.evidence.degree)
         ]
-        terms += [[self.system.order + k] for k in range(inputs)]
         return f"{listed(listed(map(str, term)) for term in terms)}%nat"
 
-    def flow(self, k: int, mode: Mode, definitions: Definitions) -> str:
-        """Return the text of a mode.
+    def flow(self, mode: Mode, definitions: Definitions) -> str:
+        """Return the text of a mode; the library lets inputs act on it, of which there are none.
 
         Parameters
         ----------
-        k : int
-            Its number; modes of free motion come after those in contact.
         mode : Mode
             The mode.
         definitions : Definitions
             Where its rows are defined.
         """
-        couplings = self.system.couplings[: self.acting]
-        parts = [(mode.A.numerators, mode.A.denominator)]
-        parts += [(item.columns[k].numerators, item.columns[k].denominator) for item in couplings]
-        over = lcm(*(below for _, below in parts))
-        columns = [
-            [row[j] * (over // below) for row in rows]
-            for rows, below in parts
-            for j in (self.order if len(rows[0]) > 1 else [0])
-        ]
-        rows = [definitions.row([column[i] for column in columns]) for i in self.order]
-        limits = [item.rows[k] for item in couplings]
-        below = lcm(*(q.denominator for q in limits))
-        given = [
-            definitions.row([q.numerators[0][j] * (below // q.denominator) for j in self.order])
-            for q in limits
-        ]
-        return f"Flow {listed(rows)} {over} {listed(given)} {below}"
+        rows = [definitions.row([mode.A.numerators[i][j] for j in self.order]) for i in self.order]
+        return f"Flow {listed(rows)} {mode.A.denominator} [] 1"
 
     def witnesses(self) -> Iterator[tuple[str, IntegerMatrix, int]]:
         """Yield for every flow where it begins, its inequality, and the factor that it has."""
@@ -102,9 +77,7 @@ class FlowStatement:
             if evidence.degree > 1:
                 form = add(form, next(added))
             keeps = 2 * evidence.degree * evidence.rate
-            below = [error[-1] ** 2 for error in step.errors]
-            factor = lcm((keeps * step.over).as_integer_ratio()[1] * step.over, *below)
-            yield step.source, form, factor
+            yield step.source, form, (keeps * step.over).denominator * step.over
 
 
 def flows_theorem(system: SwitchedSystem, evidence: FormsOnGraph) -> Theorem:
@@ -124,17 +97,14 @@ def flows_theorem(system: SwitchedSystem, evidence: FormsOnGraph) -> Theorem:
     rate, factor = evidence.rate, factor_of(evidence.nodes[0].form)
     shape = f"{system.order} {evidence.degree} {rate.numerator} {rate.denominator} basis form"
     cut = f"{str(flows.lost).lower()}\n    {modes}\n    {others}"
-    claim, sound, last = f"decays {shape}", "decays_sound", "checked eq_refl"
-    if flows.acting:
-        claim, sound, last = f"all_axes_decay {shape} multipliers", "all_axes_sound", "checked"
     rest = "_ " * 15
     return Theorem(
         LIBRARY,
         definitions.texts,
         f"flows_fall {shape} multipliers {factor} {cut}\n"
         f"    all_terms free_terms {gives} {free_gives}",
-        f"{claim} {cut}\n  /\\ is_definite basis form {factor}",
-        f"conj ({sound} {rest}{last}) (definite_sound {rest}checked)",
+        f"decays {shape} {cut}\n  /\\ is_definite basis form {factor}",
+        f"conj (decays_sound {rest}checked eq_refl) (definite_sound {rest}checked)",
         tuple(system.states[i] for i in flows.order),
     )
 
@@ -144,21 +114,20 @@ def _define_modes(flows: FlowStatement, definitions: Definitions) -> tuple[str, 
     system = flows.system
     free = system.free if flows.lost else ()
     names = identifiers(mode.name for mode in (*system.modes, *free))
-    for k, mode in enumerate((*system.modes, *free)):
-        definitions.define(names[mode.name], flows.flow(k, mode, definitions), mode.name)
+    for mode in (*system.modes, *free):
+        definitions.define(names[mode.name], flows.flow(mode, definitions), mode.name)
     touching, flying = (listed(names[mode.name] for mode in part) for part in (system.modes, free))
     return touching, flying
 
 
 def _define_form(flows: FlowStatement, definitions: Definitions) -> None:
-    """Define the form with its monomials, and the multipliers of what other axes do."""
-    n, given = flows.system.order, {item.fact: item.value for item in flows.evidence.multipliers}
-    multipliers = (str(given.get(f"{COUPLING} {k}", 0)) for k in range(1, flows.acting + 1))
+    """Define the form with its monomials, and multipliers of inputs, of which there are none."""
+    n = flows.system.order
     definitions.define("basis", flows.basis(n))
     definitions.define("form", symmetric(flows.evidence.nodes[0].form))
-    definitions.define("multipliers", f"{listed(multipliers)} : list Z")
-    definitions.define("all_terms", flows.basis(n, flows.acting))
-    terms = flows.basis(n - 1, flows.acting) if flows.lost else "[]"
+    definitions.define("multipliers", "[] : list Z")
+    definitions.define("all_terms", flows.basis(n))
+    terms = flows.basis(n - 1) if flows.lost else "[]"
     definitions.define("free_terms", f"{terms} : list mono")
 
 

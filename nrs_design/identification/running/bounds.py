@@ -141,10 +141,6 @@ def _late(spec: InteractionDesignSpec) -> str:
 
 
 def _unseen(spec: InteractionDesignSpec) -> Iterator[Unseen]:
-    if spec.coupling is not None:
-        speed = spec.coupling.speed
-        allowed = "near zero" if speed is None else f"below {speed.text}"
-        yield Unseen("speed of all axes", "a log is of one axis", allowed)
     for name in spec.touched:
         if (preload := spec.environments[name].preload_range) is not None:
             why = "a log does not say where its surface is"

@@ -28,10 +28,6 @@ GROWN_THROUGHOUT = (
     "No corner of an enclosure need be attained: the growth is that of all maps between its "
     "corners."
 )
-GROWN_ALONE = (
-    "This growth is that of one axis on which the others do not act, which is within what is said "
-    "of them."
-)
 # The same in a few words, beside a verdict that leaves the loss of contact open.
 IN_KEPT_CONTACT = "in kept contact"
 AT_ANY_DEFLECTION = "where contact is lost and made at any deflection"
@@ -109,11 +105,6 @@ class AbstractEvidence(ABC):
 
         Ask `covers_loss` of evidence of instability, which may be that of free motion alone.
         """
-        return False
-
-    @property
-    def covers_coupling(self) -> bool:
-        """Whether it holds for all axes at once, where the system says what they do."""
         return False
 
     @property
@@ -213,8 +204,6 @@ class AbstractEvidence(ABC):
             said.append(GROWN_WITHOUT_ROUNDING)
         if system.enclosures and self.shows is Shows.INSTABILITY:
             said.append(GROWN_THROUGHOUT)
-        if system.couplings and self.shows is Shows.INSTABILITY:
-            said.append(GROWN_ALONE)
         return " ".join(said)
 
     def _said_of_contact(self, system: SwitchedSystem) -> Iterator[str]:
@@ -319,8 +308,6 @@ class AbstractEvidence(ABC):
         loses = system.contact is not None and system.contact.required
         if loses and self.shows.is_good and not self.covers_lost_contact:
             return f"evidence of kind {self.kind} does not cover the loss of contact"
-        if system.couplings and self.shows.is_good and not self.covers_coupling:
-            return f"evidence of kind {self.kind} does not cover what axes do to each other"
         if system.clock is not None and not self.covers_clock:
             return f"evidence of kind {self.kind} does not know that modes take turns"
         return self.find_misfit(system)

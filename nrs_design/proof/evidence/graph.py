@@ -40,10 +40,6 @@ in contact leads to contact by (N, c), or to free motion by N with the fact ``de
 step of a free mode stays free by N, or lands between 0 and ``c y``; F_b is convex there, so both
 ends suffice. For d > 1 it need not be convex.
 
-*Axes that act on each other.* Each axis is at a place of its own, with ``sum |e_i|^2 <= sum |q_i
-z_i|^2`` over all axes only. The multiplier of a coupling is one for all steps, so its terms add up
-over the axes to at most zero, whatever situation each is in, and the sum of their forms falls.
-
 *Turns.* A step of a round leads from ``modes k`` to ``modes k+1``, and from the last to the first.
 A mode need not be stable by itself.
 
@@ -81,7 +77,6 @@ from nrs_design.proof.matrix import leading
 from nrs_design.proof.mode import Time
 from nrs_design.proof.steps import (
     CONTACT,
-    COUPLING,
     FREE,
     ROUNDING,
     Acting,
@@ -160,11 +155,6 @@ class FormsOnGraph(AbstractFunction):
     def covers_rounding(self) -> bool:
         """Whether it has multipliers for it."""
         return any(item.fact.startswith(ROUNDING) for item in self.multipliers)
-
-    @property
-    def covers_coupling(self) -> bool:
-        """Whether it has multipliers for it."""
-        return any(item.fact.startswith(COUPLING) for item in self.multipliers)
 
     @property
     def covers_lost_contact(self) -> bool:
@@ -295,8 +285,6 @@ class FormsOnGraph(AbstractFunction):
         chosen = any(edge.target is not None for edge in self.edges)
         if chosen and not alone and (lost or self.covers_rounding):
             return "edges lead to all nodes of a place where contact is lost or arithmetic rounds"
-        if system.couplings and self.covers_coupling and not (alone and system.clock is None):
-            return "axes that act on each other have one form at each place, and no turns"
         if self.stays is not None:
             if self.multipliers:
                 return "a form of each mode has no multipliers"
@@ -330,10 +318,6 @@ class FormsOnGraph(AbstractFunction):
     def _find_odd_multiplier(self, system: SwitchedSystem) -> str | None:
         if any(item.value < 0 for item in self.multipliers):
             return "a multiplier is negative"
-        if any(
-            item.fact.startswith(COUPLING) and item.target is not None for item in self.multipliers
-        ):
-            return "the multiplier of what axes do to each other is one for all"
         facts = {fact for step in self._steps(system) for fact in step.facts}
         keys = [(item.fact, item.target) for item in self.multipliers]
         nodes = range(len(self.nodes))
@@ -351,7 +335,7 @@ class FormsOnGraph(AbstractFunction):
         """Return every step of the system; the certificate has none of its own."""
         if self.stays is not None:
             return steps_by_mode(system, self.stays, self.rate, self.degree)
-        acting = Acting(rounding=self.covers_rounding, coupling=self.covers_coupling)
+        acting = Acting(rounding=self.covers_rounding)
         rate = Fraction(1) if self.degree > 1 else self.rate
         return steps_together(system, acting, rate, self.covers_lost_contact)
 

@@ -16,11 +16,9 @@ from nrs_design.proof.matrix import RationalMatrix, bordered, leading
 from nrs_design.proof.mode import Time
 from nrs_design.proof.steps import (
     CONTACT,
-    COUPLING,
     FREE,
     ROUNDING,
     Acting,
-    coupling_facts,
     grain_of,
     multiplier_names,
     steps_of,
@@ -50,17 +48,11 @@ class InvariantEllipsoid(AbstractEvidence):
     with the multipliers of `nrs_design.proof.evidence.conewise_quadratic`; the disturbances then
     take part in where the deflection goes.
 
-    Where axes act on each other, by w with ``sum |w_k|^2 <= sum |q_k (x, d)|^2``, all of this is
-    about V as a sum over N axes, each with disturbances of its own. The forms have w as further
-    entries and ``sum tau_k (w_k^2 - (q_k (x, d))^2)`` as further terms with one tau_k >= 0 for all
-    motions, which add up to nothing positive over the axes. So V comes down to N, and
-    ``[[Q, q'], [q, level^2/N]] > 0`` gives ``z^2 < level^2 V/N`` on every axis.
     """
 
     kind: ClassVar[str] = "invariant-ellipsoid"
     covers_mixtures: ClassVar[bool] = True
     covers_lost_contact: ClassVar[bool] = True
-    covers_coupling: ClassVar[bool] = True
     surface: ClassVar[str] = ""  # What its claim says of the surface that may be lost
 
     channels: tuple[str, ...]  # Names of the disturbances that act at once
@@ -73,7 +65,6 @@ class InvariantEllipsoid(AbstractEvidence):
     multipliers: tuple[int, ...] = ()
     # Over the denominator of Q: one for each rounding of the system, if they are covered.
     roundings: tuple[int, ...] = ()
-    taus: tuple[int, ...] = ()  # Over the denominator of Q: one for each coupling of the system
 
     @property
     def shows(self) -> Shows:
@@ -111,19 +102,11 @@ class InvariantEllipsoid(AbstractEvidence):
         for numbers, count, each, one in (
             (self.multipliers, crossings, "condition that needs it", "a multiplier"),
             (self.roundings, rounded, "rounding", "the multiplier of a rounding"),
-            (
-                self.taus,
-                len(set(coupling_facts(system.couplings))),
-                "coupling",
-                "the multiplier of a coupling",
-            ),
         ):
             if len(numbers) != count:
                 return f"there is not one multiplier for each {each}"
             if any(number < 0 for number in numbers):
                 return f"{one} is negative"
-        if system.couplings and system.axes is None:
-            return "the system does not say how many axes are disturbed"
         return None
 
     def find_unsayable(self, system: SwitchedSystem) -> str | None:
@@ -143,21 +126,19 @@ class InvariantEllipsoid(AbstractEvidence):
         Q = RationalMatrix(self.Q, 2**self.denominator_log2).fractions()
         motions = self._motions(system)
         yield from ((f"the ellipsoid can be left {where}", form) for where, form in motions)
-        failure, corner = f"{self.output} can be beyond the level", self.level**2
+        failure = f"{self.output} can be beyond the level"
         for q in self.bound(system).output.rows:
-            form = bordered(Q, q.fractions()[0], corner / (system.axes or 1))
-            yield failure, form.numerators
+            yield failure, bordered(Q, q.fractions()[0], self.level**2).numerators
 
     def _motions(self, system: SwitchedSystem) -> Forms:
         """Yield the condition of every step, with where it is."""
         bound = self.bound(system)
         weights = tuple(a / c.bound**2 for a, c in zip(self.shares, bound.channels, strict=True))
         channels = tuple(system.channels.index(channel) for channel in bound.channels)
-        acting = Acting(channels, weights, bool(self.roundings), bool(self.taus))
+        acting = Acting(channels, weights, bool(self.roundings))
         keeps = bound.share if system.time is Time.CONTINUOUS else 1 - bound.share
         known = dict(zip(multiplier_names(system), self.multipliers, strict=True))
         known |= {f"{ROUNDING} {k}": m for k, m in enumerate(self.roundings, 1)}
-        known |= {f"{COUPLING} {k}": m for k, m in enumerate(self.taus, 1)}
         inner = leading(self.Q)
         for step in steps_of(system, acting, grain_of(keeps), lost=True):
             before = self.Q if step.source == CONTACT else inner
@@ -182,16 +163,9 @@ class InvariantEllipsoid(AbstractEvidence):
         lost = f", contact lost and made again at any time{self.surface}" if system.contact else ""
         sizes = [f"|{c.name}| <= {rounded_down(c.bound, c.unit)}" for c in named]
         steps = " at a step" if system.time is Time.DISCRETE else ""
-        among = ""
-        if system.couplings:
-            names = ", ".join(dict.fromkeys(item.name for item in system.couplings))
-            among = (
-                f", on each of at most {system.axes} axes that act on each other within the stated "
-                f"bounds ({names}), every axis disturbed and switched by itself"
-            )
         return (
             f"While {', '.join(sizes)} and nothing else disturbs, switching arbitrarily"
-            f"{lost}{among}: from rest, |{output.name}|{steps} never exceeds "
+            f"{lost}: from rest, |{output.name}|{steps} never exceeds "
             f"{rounded_up(self.level, output.unit)}; from any state, it comes below every larger "
             f"value and stays there.{self._beside_limit(output, named)}"
         )

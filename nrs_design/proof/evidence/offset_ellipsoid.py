@@ -34,15 +34,14 @@ class OffsetEllipsoid(InvariantEllipsoid):
     """
 
     kind: ClassVar[str] = "offset-ellipsoid"
-    covers_coupling: ClassVar[bool] = False
     surface: ClassVar[str] = " (the surface stays in its place, or follows the axis)"
 
     def find_misfit(self, system: SwitchedSystem) -> str | None:
         """Check names, shapes, rest, and the signs of share, level and multipliers."""
         if (unknown := self.find_unsayable(system)) is not None:
             return unknown
-        if system.contact is None or system.couplings or self.taus:
-            return "it is about one axis that may lose contact"
+        if system.contact is None:
+            return "it is about an axis that may lose contact"
         if (odd := find_odd_form(self.Q, self.denominator_log2, system.order + 1)) is not None:
             return odd
         if not is_symmetric(self.Q):

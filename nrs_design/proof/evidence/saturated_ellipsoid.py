@@ -17,11 +17,9 @@ from nrs_design.proof.mode import Time
 from nrs_design.proof.saturation import Saturation
 from nrs_design.proof.steps import (
     CONTACT,
-    COUPLING,
     FREE,
     ROUNDING,
     Acting,
-    coupling_facts,
     grain_of,
     multiplier_names,
     steps_of,
@@ -50,15 +48,13 @@ class SaturatedEllipsoid(AbstractEvidence):
     and the set ``V <= 1`` lies where the rows keep their limits: ``[[Q, h'], [h, limit^2]] > 0``.
     In discrete time the matrices are the modes of `nrs_design.proof.between`, and V is left with a
     share rho^2 in every step of them, as `nrs_design.proof.steps` says, with one multiplier for
-    each fact: where contact is lost, for roundings and for what other axes do. In the last case V
-    is the sum over all axes, each of which is then within its own limits.
+    each fact: where contact is lost, and for roundings.
     All are linear in the matrices: convex combinations of modes are covered.
     """
 
     kind: ClassVar[str] = "saturated-ellipsoid"
     covers_mixtures: ClassVar[bool] = True
     covers_lost_contact: ClassVar[bool] = True
-    covers_coupling: ClassVar[bool] = True
 
     Q: Matrix  # Shape (n, n). Numerators of the symmetric matrix.
     denominator_log2: int  # Q is these numerators over two to this power
@@ -69,11 +65,10 @@ class SaturatedEllipsoid(AbstractEvidence):
     H_denominator_log2: int  # H is these numerators over two to this power
     # Motions that begin at the start of the system, at this size at most, begin in ``V <= 1``.
     level: Fraction
-    # In discrete time, all over the denominator of Q: in the order of `multiplier_names`; one for
-    # each rounding of the system, if they are covered; and one for each coupling.
+    # In discrete time, all over the denominator of Q: in the order of `multiplier_names`; and one
+    # for each rounding of the system, if they are covered.
     multipliers: tuple[int, ...] = ()
     roundings: tuple[int, ...] = ()
-    taus: tuple[int, ...] = ()
 
     @property
     def covers_rounding(self) -> bool:
@@ -125,25 +120,23 @@ class SaturatedEllipsoid(AbstractEvidence):
         """Check what is there in discrete time only: the rate, and the multipliers."""
         assert system.saturation is not None
         if system.time is Time.CONTINUOUS:
-            if system.couplings or self.multipliers or self.roundings or self.taus:
-                return "in continuous time it has no multipliers, and is of one axis"
+            if self.multipliers or self.roundings:
+                return "in continuous time it has no multipliers"
             return None
         if self.rate >= 1:
             return "the rate is not one of exponential decay"
         rounded = len(system.roundings) if self.roundings else 0
-        axes = len(set(coupling_facts(system.couplings)))
         for numbers, count, each in (
             (self.multipliers, len(multiplier_names(system)), "condition that needs it"),
             (self.roundings, rounded, "rounding"),
-            (self.taus, axes, "coupling"),
         ):
             if len(numbers) != count:
                 return f"there is not one multiplier for each {each}"
             if any(number < 0 for number in numbers):
                 return f"the multiplier of a {each} is negative"
         for signal in system.saturation.signals:
-            if (rounded and not signal.errors) or (axes and not signal.pushes):
-                return f"{signal.name} does not say what the arithmetic rounds, or axes do"
+            if rounded and not signal.errors:
+                return f"{signal.name} does not say what the arithmetic rounds"
         return None
 
     def forms(self, system: SwitchedSystem) -> Forms:
@@ -181,13 +174,10 @@ class SaturatedEllipsoid(AbstractEvidence):
                 yield f"V does not decrease at the claimed rate {where}", form
 
     def _steps(self, system: SwitchedSystem) -> Forms:
-        acting = Acting(rounding=bool(self.roundings), coupling=bool(self.taus))
-        whole = between(
-            system, self._held(system), rounding=acting.rounding, coupling=acting.coupling
-        )
+        acting = Acting(rounding=bool(self.roundings))
+        whole = between(system, self._held(system), rounding=acting.rounding)
         known = dict(zip(multiplier_names(system), self.multipliers, strict=True))
         known |= {f"{ROUNDING} {k}": m for k, m in enumerate(self.roundings, 1)}
-        known |= {f"{COUPLING} {k}": m for k, m in enumerate(self.taus, 1)}
         inner, keeps = leading(self.Q), self.rate**2
         for step in steps_of(whole, acting, grain_of(keeps), lost=True):
             before = self.Q if step.source == CONTACT else inner
@@ -220,11 +210,6 @@ class SaturatedEllipsoid(AbstractEvidence):
         decay = "|w(t)| <= exp(-alpha t) |w(0)|"
         if system.time is Time.DISCRETE:
             decay = "|w(m)| <= rho^m |w(0)| after m steps"
-        of_all, sized, among = "", f"a {start.name} up to", ""
-        if system.couplings:
-            of_all = ", with the sum of the w' Q w of all axes in the place of w' Q w"
-            sized = f"{start.name}s of all axes, the root of whose sum of squares is up to"
-            among = ", every axis switched by itself and on others within the stated bounds"
         seconds = ""
         if system.time is Time.DISCRETE and system.sample_time is not None:
             seconds = f" {in_seconds(self.rate, system.sample_time)}"
@@ -232,9 +217,9 @@ class SaturatedEllipsoid(AbstractEvidence):
             f"Although signals saturate, each at the stated limit or beyond it ({', '.join(limits)}"
             f"): every motion that begins in the ellipsoid w' Q w <= 1 stays in it, and "
             f"{decay} with {rate_words(self.rate, system.time)} in the norm "
-            f"|w| = sqrt(w' Q w), where w holds {states} switching arbitrarily{lost}{among}, with "
-            f"no disturbance{of_all}. In particular: every motion that begins at rest with {sized} "
-            f"{rounded_down(self.level, start.unit)}{start.beside}, and all else zero.{seconds}"
+            f"|w| = sqrt(w' Q w), where w holds {states} switching arbitrarily{lost}, with no "
+            f"disturbance. In particular: every motion that begins at rest with a {start.name} up "
+            f"to {rounded_down(self.level, start.unit)}{start.beside}, and all else zero.{seconds}"
         )
 
     def find_unsayable(self, system: SwitchedSystem) -> str | None:

@@ -40,7 +40,7 @@ def free_sentence(
     Parameters
     ----------
     system : SwitchedSystem
-        With its contact, the turns of its modes, and what axes do to each other.
+        With its contact and the turns of its modes.
     rate : Fraction
         The alpha in 1/s, or rho per step.
     degree : int
@@ -55,15 +55,9 @@ def free_sentence(
         Whether that in free motion is that in contact without the deflection.
     """
     continuous = system.time is Time.CONTINUOUS
-    x = "w" if lost or system.couplings else "x"
+    x = "w" if lost else "x"
     modes = f"the {len(system.modes)} modes" if len(system.modes) > 1 else "its one mode"
     parts = []
-    if system.couplings:
-        names = ", ".join(dict.fromkeys(item.name for item in system.couplings))
-        parts.append(
-            f"for any number of axes that act on each other within the stated bounds ({names}), "
-            "which are taken on trust, each by itself in any of its modes,"
-        )
     clock = system.clock
     if clock is not None and clock.is_round:
         parts.append(f"in rounds of {clock.length} steps,")
@@ -98,22 +92,16 @@ def _norm(
     system: SwitchedSystem, x: str, degree: int, count: int, *, lost: bool, alike: bool
 ) -> str:
     """Say in which norm the bound is."""
-    own = "w_i" if system.couplings else x
     of = [] if system.clock is None else [f"of {_turn(system.clock)}"]
     of += [] if alike else ["of contact or of free motion"]
     which = f" with the Q {' and '.join(of)}" if of else ""
     parts = []
     if lost:
-        whose = " of an axis" if system.couplings else ""
         parts.append(
-            f"{own} holds the states{whose} other than the deflection, and the deflection where "
-            "it is positive"
+            f"{x} holds the states other than the deflection, and the deflection where it is "
+            "positive"
         )
-    elif system.couplings:
-        parts.append("w_i is the state of an axis")
-    if system.couplings:
-        parts.append(f"|w|^2 = sum of w_i' Q w_i over the axes{which}")
-    elif degree > 1:
+    if degree > 1:
         form = f"positive definite form{'s' * (count > 1)} of degree {2 * degree} in {x}"
         which = "" if system.clock is None else f", that of {_turn(system.clock)}"
         said = f"the largest of some {form}" if count > 1 else f"a {form}"

@@ -21,10 +21,8 @@ from nrs_design.reporting.evidence.offers import Form
 from nrs_design.reporting.evidence.page import AbstractPage
 from nrs_design.reporting.evidence.rates import rate_blocks
 from nrs_design.reporting.evidence.runs import (
-    ONE_AXIS,
     Greedy,
     bounded_run,
-    extremes,
     ruled_run,
     slowest_in_a_round,
     trials_per_step,
@@ -59,10 +57,9 @@ class FunctionsPage(AbstractPage):
             text += f" of each {_turn(self.system.clock)}"
         elif len(self._touching) > 1:
             text += " of each mode"
-        elif not self._lost and not self.system.couplings:
+        elif not self._lost:
             text = f"common {text}"
-        text += " for contact and free motion" * self._lost
-        return text + " for all axes at once" * bool(self.system.couplings)
+        return text + " for contact and free motion" * self._lost
 
     def meaning(self) -> tuple[str, ...]:
         """Say what decreases, what the bound means and rests on, and how it was decided."""
@@ -82,23 +79,19 @@ class FunctionsPage(AbstractPage):
 
     def sections(self, *, first: bool = True) -> tuple[Section, ...]:
         """Show the forms of the certificate, and how every mode decreases a common one."""
-        system, numbers = self.system, self.offer.numbers
+        system = self.system
         blocks: list[Block] = [Paragraph(self._text())]
         if self._form.degree > 1:
             blocks.append(_size(self.offer.forms, system.order))
         else:
             blocks += matrix_blocks(self._touching, system.states)
-        if numbers:
-            names = dict.fromkeys(item.name for item in system.couplings)
-            rows = tuple((name, number(float(n))) for name, n in zip(names, numbers, strict=True))
-            blocks.append(Table("Multipliers", ("How axes act on each other", "tau"), rows))
-        if len(self.offer.forms) == 1 and not system.couplings:
+        if len(self.offer.forms) == 1:
             blocks += rate_blocks(system, self._form, self._rate, lost=self._lost)
         return (Section(EVIDENCE, tuple(blocks)),)
 
     def quadratic(self) -> tuple[Array, float] | None:
-        """Return the matrix of a single quadratic function of one axis, scaled, and its rate."""
-        if len(self.offer.forms) > 1 or self._form.degree > 1 or self.system.couplings:
+        """Return the matrix of a single quadratic function, scaled, and its rate."""
+        if len(self.offer.forms) > 1 or self._form.degree > 1:
             return None
         return scaled_matrices(self._form.Q)[0], float(self._rate)
 
@@ -111,8 +104,6 @@ class FunctionsPage(AbstractPage):
             norms = step_norms(forms, system)
             greedy = Greedy(system, system, norms, slowest_in_a_round(system, norms), rate)
             return bounded_run(greedy, "in the norm of its step")
-        if system.couplings:
-            system = extremes(system)
         quadratic, single = self._form.degree == 1, len(forms) == 1
         label = "in the norm of Q" if quadratic else f"in V^(1/{2 * self._form.degree})"
         norm = largest_norm(forms, system.order)
@@ -131,7 +122,6 @@ class FunctionsPage(AbstractPage):
         return bounded_run(
             Greedy(system, hardest, norm, initial, rate),
             label if single else "(largest norm)",
-            ONE_AXIS if self.system.couplings else "",
             levels=(1.0,) if quadratic else _NESTED,
         )
 

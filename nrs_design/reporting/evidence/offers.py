@@ -12,7 +12,7 @@ from typing import Any
 
 from nrs_design.proof.evidence import AbstractEvidence
 from nrs_design.proof.evidence.fields import Matrix
-from nrs_design.proof.steps import CONTACT, COUPLING, FREE
+from nrs_design.proof.steps import CONTACT, FREE
 
 
 @dataclass(frozen=True)
@@ -62,8 +62,6 @@ def _one(e: Any) -> Offer:
 
 def _graph(e: Any) -> Offer:
     """Return the forms: one of several at a place by name, free motion where it is none of them."""
-    taus = (item for item in e.multipliers if item.fact.startswith(COUPLING))
-    numbers = tuple(Fraction(item.value, 2**e.denominator_log2) for item in taus)
     if e.stays is not None:
         forms = tuple(Form(Q, place, e.degree) for place, Q in e.nodes)
         return Offer(forms, e.denominator_log2, leaving=e.stays.leaving)
@@ -76,7 +74,7 @@ def _graph(e: Any) -> Offer:
         free = place.startswith(FREE)
         (flying if free else touching).append(Form(Q, name, e.degree, free))
     several = any(edge.source is not None for edge in e.edges)
-    return Offer((*touching, *(flying if several else ())), e.denominator_log2, numbers=numbers)
+    return Offer((*touching, *(flying if several else ())), e.denominator_log2)
 
 
 def _corners(e: Any) -> Offer:

@@ -5,14 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import product
 from sys import float_info
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.mode import Mode, Time
+from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.reporting.document import Block, Illustration, Section
 from nrs_design.reporting.evidence.offers import Form
@@ -47,8 +45,6 @@ _RULED_MODES = 24
 _RULED_STEPS = 1500
 # States in contact that a run of rounds may begin at.
 _DIRECTIONS = 200
-# Of more couplings, not every combination of ends is a mode of the run.
-_MOST_COMBINED = 3
 
 _NOT_WORST = "It is a bad run, not the worst one."
 GREEDY = (
@@ -68,10 +64,6 @@ _ROUNDS = (
     f"that contact allows, after which the norm of that step is largest. {_NOT_WORST}"
 )
 _HOLDS = "The dashed line is the bound of the certificate, which holds for every switching signal"
-ONE_AXIS = (
-    "The run is that of a single axis, with the inertia of its links (and what else acts within "
-    "the bounds) jumping between the ends at will, which is one of the cases that are covered."
-)
 _SLOPE = (
     "The dashed line has the proved rate. The certificate says that every run that keeps the rules "
     "stays below such a line, up to one constant factor; so this run may lie above the line for a "
@@ -247,33 +239,6 @@ def unbounded_run(system: SwitchedSystem) -> Section:
         said = f"{RULED} {_UNPROVED}{some_modes(system, hardest)}"
         run = Illustration("run", _BAD, said, figure)
     return simulated(run, *phase_plane(hardest, response, None))
-
-
-def extremes(system: SwitchedSystem) -> SwitchedSystem:
-    """Return one axis by itself, with all that acts on it at one end or the other.
-
-    Parameters
-    ----------
-    system : SwitchedSystem
-        With couplings; of many, all are at the same end.
-    """
-    modes, free = list[Mode](), list[Mode]()
-    count, contact = len(system.couplings), system.contact
-    every = (*system.modes, *(() if contact is None else contact.free))
-    combined = product((-1, 1), repeat=count)
-    ends = list(combined) if count <= _MOST_COMBINED else [(-1,) * count, (1,) * count]
-    for k, mode in enumerate(every):
-        for signs in ends:
-            A = mode.A.fractions()
-            for sign, item in zip(signs, system.couplings, strict=True):
-                q = item.rows[k].fractions()[0][: system.order]
-                for row, (entry,) in zip(A, item.columns[k].fractions(), strict=True):
-                    row[:] = [a + sign * entry * b for a, b in zip(row, q, strict=True)]
-            label = "/".join((mode.name, *("high" if sign > 0 else "low" for sign in signs)))
-            part = modes if k < len(system.modes) else free
-            part.append(Mode(label, RationalMatrix.from_rows(A)))
-    lost = None if contact is None else replace(contact, free=tuple(free))
-    return replace(system, modes=tuple(modes), contact=lost, couplings=())
 
 
 def euclidean(system: SwitchedSystem) -> dict[str, Array]:

@@ -9,7 +9,6 @@ from nrs_design.proof.evidence import AbstractEvidence
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.reporting.formatting import shortened
-from nrs_design.spec.robot_bounds import ON_TRUST
 
 # Modes that a sentence names.
 NAMED = 8
@@ -28,12 +27,6 @@ _MISSES = (
     "that of the state to which a period in time, or a missed one, leads. The claim is about every "
     "sample."
 )
-_ALL_AXES = (
-    "The function is the sum of w' Q w over all axes, with the same Q for each. Every axis may be "
-    "under a controller of its own, in contact or not, at any time: for each way in which axes act "
-    "on each other there is one multiplier for all modes. How the inertia depends on the pose, and "
-    "how fast it changes, does not matter."
-)
 _IN_THE_AIR = (
     "In free motion the deflection is left out of the function. So it measures motion, force and "
     "penetration, and not how far the axis has moved away from the surface: once it has come to "
@@ -42,13 +35,6 @@ _IN_THE_AIR = (
 _MOVED_REST = (
     "A force reference or a velocity command that pushes into the environment: they move the point "
     "of rest, and the bound is about the point of rest without them."
-)
-_BEYOND = "Poses and speeds in which the links act more on each other than the bounds say."
-_DECLARED = "The bounds are declared by the spec, and nothing here shows them."
-_OF_ROBOT = (
-    "The bounds are taken on trust from the file of bounds of the robot, over all poses of a "
-    "workspace; `nrs-design gate` and `nrs-design verify --bounds` compute them again from its "
-    "spec. That the robot stays in there, and below the speed, is taken for granted."
 )
 
 
@@ -179,23 +165,18 @@ def function(system: SwitchedSystem, *, lost: bool, each: bool) -> Iterator[str]
         yield _ROUNDS if system.clock.is_round else _MISSES
     elif lost and each:
         yield "Each mode has a function; the largest of them decreases in every step."
-    if system.couplings:
-        yield _ALL_AXES
     if lost:
         yield _IN_THE_AIR
 
 
 def function_limits(system: SwitchedSystem, *, lost: bool) -> Iterator[str]:
     """Say what a proof with functions leaves open; `lost`: they cover the loss of contact."""
-    if lost or system.clock is not None or system.couplings:
+    if lost or system.clock is not None:
         yield _MOVED_REST
     if system.clock is not None and not system.clock.is_round:
         yield "More missed deadlines than the rule allows, or others than it says."
     elif system.clock is not None:
         yield "Two loops whose periods drift against each other: they meet at every round."
-    if system.couplings:
-        on_trust = any(ON_TRUST in text for text in system.assumptions)
-        yield f"{_BEYOND} {_OF_ROBOT if on_trust else _DECLARED}"
 
 
 NO_FORECAST = (

@@ -17,7 +17,6 @@ from nrs_design.design.measures import (
     LIMIT_MEANING,
     MARGINS,
     MEANING,
-    ONE_AXIS,
     PASSIVITY_NOT_COMPUTED,
     SENSITIVITY_PEAK,
     Measure,
@@ -150,8 +149,7 @@ def impedance_section(designed: Designed, items: tuple[ImpedanceAnalysis, ...]) 
         [list(column) for column in zip(*(values for _, values in rows), strict=True)],
     )
     spec = designed.spec
-    axes = [ONE_AXIS] if spec.coupling is not None else []
-    said = (MEANING[0], LIMIT_MEANING, *axes, MEANING[-1], COST_MEANING)
+    said = (MEANING[0], LIMIT_MEANING, MEANING[-1], COST_MEANING)
     paragraphs = [Paragraph(" ".join(said))]
     if any(item.band for item in items):
         paragraphs.append(Paragraph(_PASSIVE))

@@ -123,7 +123,7 @@ def _not_covered_by_design(result: Result) -> tuple[str, ...]:
             else (_OTHER_TIMES, *(_ROUNDED,) * exact)
         ),
         *(() if covers else (_KEPT,)),
-        *(() if evidence is not None and evidence.covers_coupling else (_ALONE,)),
+        _ALONE,
         _IN_A_REGION if regional else _UNSATURATED if driven else _SATURATED,
         *_NOT_COVERED_BY_A_DESIGN,
         _BOUNDED if _bounds(certification) else _UNBOUNDED,

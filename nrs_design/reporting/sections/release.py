@@ -55,7 +55,6 @@ _NO_DEFLECTION = (
     "stretch of its spring."
 )
 _ONE_MODE = "Rules forbid to switch at any time, so one mode holds throughout."
-_ONE_AXIS = "It is that of one axis on which the others do not act."
 _LINEAR = "Nothing is cut off at a limit in it, whatever saturates on the robot."
 _UNPROVED = "Stability is not proved: that this run comes to rest is no sign of it."
 _BOUND = (
@@ -113,7 +112,6 @@ def _said(result: Result, system: SwitchedSystem, outputs: Outputs) -> str:
         (_MISSES, system.clock is not None and not system.clock.is_round),
         (_ONE_MODE, not system.switching.is_arbitrary),
         (_ANYWHERE, bool(outputs.free)),
-        (_ONE_AXIS, bool(system.couplings)),
         (_NO_DEFLECTION, outputs.deflection is None),
         (_LINEAR, True),
         (_UNPROVED, result.certification.verdict is not Verdict.PROVED),

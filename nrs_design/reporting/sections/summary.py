@@ -91,8 +91,6 @@ def _proved(result: Result, evidence: AbstractEvidence) -> str:
         "every motion dies out" + (", for all values in the declared ranges" if ranged else ""),
         _rate(system, evidence),
     ]
-    if system.couplings and evidence.covers_coupling:
-        parts.insert(1, "for axes that act on each other within the stated bounds, taken on trust")
     if system.roundings:
         parts.append(
             "with what the processor rounds"

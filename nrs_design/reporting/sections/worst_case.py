@@ -10,10 +10,10 @@ from nrs_design.reporting.document import Illustration, Paragraph, Section, Tabl
 from nrs_design.reporting.sections.places import linked
 from nrs_design.reporting.worst_case import (
     COLUMNS,
+    LEFT_OUT,
     MEANING,
     NO_BOUND,
     draw_worst,
-    left_out,
     worst_rows,
 )
 from nrs_design.simulation.run import common_lever_arm
@@ -43,10 +43,7 @@ def worst_case_section(result: Result) -> Section | None:
     return Section(
         "Worst case found",
         (
-            Paragraph(
-                f"{meaning} Not in it: {left_out(case.system)}. Floating point, no part of the "
-                "proof."
-            ),
+            Paragraph(f"{meaning} Not in it: {LEFT_OUT}. Floating point, no part of the proof."),
             Table("Worst found, limit and bound", COLUMNS, rows),
             Illustration(
                 "worst-case", "The worst run found", _CAPTION, draw_worst(case, case.runs[0], arm)

@@ -98,6 +98,7 @@ const check = (() => {
     need(!o.contact || (every.length > count && S.uniform && n > 1), "contact is lost, but nothing is free");
     need(S.A.slice(count).every(({ N, d }) => N.every((row, i) => row[n - 1] === (i === n - 1 && !S.flow ? d : 0n))), "free, but the deflection acts");
     known(!contact.pulls, "an environment that could pull");
+    known(!o.couplings, "axes that act on each other");
     return S;
   }
   // What mode k does to the state, and to what is active beside it.
@@ -105,15 +106,15 @@ const check = (() => {
     const { o, n } = S, s = step(S.names[k], "modes", "modes", S.A[k], S.flow, 1);
     need(s.n === n, "modes are of unlike sizes");
     for (const act of active) {
-      const [kind, number] = act.split(" "), item = o[`${kind}s`][number - 1], column = table(item.columns[k], n, 1), alike = [...new Set(o[`${kind}s`].map((c) => c.name))], fact = kind === "coupling" ? `coupling ${alike.indexOf(item.name) + 1}` : act;
+      const [kind, number] = act.split(" "), item = o[`${kind}s`][number - 1], column = table(item.columns[k], n, 1);
       s.M.forEach((row, i) => row.set(act, [column.N[i][0], column.d]));
-      s.facts.push([fact, 1n, one(act), one(act)]);
+      s.facts.push([act, 1n, one(act), one(act)]);
       need(item.columns.length === S.A.length && item.rows.length === S.A.length, "a mode has no column or row");
-      const keys = [...range(n).map(String), ...S.named("channel"), ...(kind === "coupling" ? S.named("rounding") : [])];
+      const keys = [...range(n).map(String), ...S.named("channel")];
       const all = [...vector(table(item.rows[k], 1, keys.length)).values()].map((x, j) => [keys[j], x]);
       need(k < S.count || !all[n - 1][1][0], "free, but the deflection acts");
       const q = new Map(all.filter(([key], j) => j < n || active.includes(key)));
-      s.facts.push([fact, -1n, q, q]);
+      s.facts.push([act, -1n, q, q]);
     }
     return s;
   }
@@ -181,17 +182,17 @@ const check = (() => {
     const { stays, degree = 1n, multipliers = [], nodes } = o, d = Number(degree), rate = ratio(o.rate), added = [...(o.vanishing ?? [])];
     known(!("edges" in o), "edges to some nodes");
     need(d >= 1 && rate[0] > 0n && (S.flow || rate[0] < rate[1]), "the rate is none of decay");
-    const has = (kind) => multipliers.some(({ fact }) => fact.startsWith(kind)), coupled = has("coupling"), { couplings, clock } = S.o;
-    const lost = !stays && nodes.some(({ place }) => place.startsWith("free")), active = ["rounding", "coupling"].filter(has).flatMap(S.named);
+    const rounds = multipliers.some(({ fact }) => fact.startsWith("rounding")), { clock } = S.o;
+    const lost = !stays && nodes.some(({ place }) => place.startsWith("free")), active = rounds ? S.named("rounding") : [];
     const steps = stays ? stepsByMode(S, stays.leaving ?? [], rate) : stepsInContact(S, lost, active);
     const sizes = Object.fromEntries(steps.map((s) => [s.source, s.n])), places = new Set(nodes.map(({ place }) => place));
     need(places.size === Object.keys(sizes).length && [...steps.flatMap((s) => [s.source, s.target]), ...(stays ? S.names.slice(0, S.count) : [])].every((place) => places.has(place)), "a place has no form, or no step");
-    need(nodes.length === places.size || !(S.flow || coupled), "there are more forms than places");
-    const whole = stays ? !(S.required || couplings || clock || S.rules.fixed_ends || multipliers.length || (S.flow && d > 1)) : !S.rules.resets && (lost || !S.required) && (coupled ? !clock : !couplings);
-    need(whole && (d === 1 || !(multipliers.length || (lost && !S.flow))), "contact, turns, axes, resets or what is between the ends of a range is not covered");
+    need(nodes.length === places.size || !S.flow, "there are more forms than places");
+    const whole = stays ? !(S.required || clock || S.rules.fixed_ends || multipliers.length || (S.flow && d > 1)) : !S.rules.resets && (lost || !S.required);
+    need(whole && (d === 1 || !(multipliers.length || (lost && !S.flow))), "contact, turns, resets or what is between the ends of a range is not covered");
     const facts = new Set(steps.flatMap((s) => s.facts.map(([fact]) => fact))), values = new Map();
     for (const { fact, value, target = null } of multipliers) {
-      need(facts.has(fact) && fact !== "error" && value >= 0n && !values.has(`${fact}/${target}`) && (target === null || !fact.startsWith("coupling")), "a multiplier is odd");
+      need(facts.has(fact) && fact !== "error" && value >= 0n && !values.has(`${fact}/${target}`), "a multiplier is odd");
       values.set(`${fact}/${target}`, value);
     }
     for (const node of nodes) need(definite(own(form(node.form, sizes[node.place], d), 1n)), `a form at ${node.place} is not positive definite`);
@@ -207,7 +208,7 @@ const check = (() => {
     });
     need(!added.length, "more forms vanish than there are steps");
     const shown = S.flow ? `exp(-alpha t) with alpha = ${o.rate} 1/s` : `rho^t with rho = ${o.rate} per step`;
-    return `decay like ${shown}${lost ? ", through loss of contact" : ""}${has("rounding") ? ", with rounding" : ""}${coupled ? ", of all axes" : ""}`;
+    return `decay like ${shown}${lost ? ", through loss of contact" : ""}${rounds ? ", with rounding" : ""}`;
   }
   function noCommonQuadratic(S, { factors }) {
     need(S.uniform && factors.every(([name, L]) => S.names.indexOf(name) in S.o.modes && L.length === S.n), "the factors are not those of modes");

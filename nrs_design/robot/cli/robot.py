@@ -6,13 +6,10 @@ import typer
 
 from nrs_design.cli.groups import CommandGroup
 from nrs_design.robot.cli.balance import balance
-from nrs_design.robot.cli.bounds import bounds
 from nrs_design.robot.cli.check import check
 from nrs_design.robot.cli.correction import correction
 from nrs_design.robot.cli.dynamics import dynamics
-from nrs_design.robot.cli.export import export
 from nrs_design.robot.cli.kinematics import kinematics
-from nrs_design.robot.cli.mobility import mobility
 from nrs_design.robot.cli.track import track
 
 robot = typer.Typer(
@@ -23,7 +20,7 @@ robot = typer.Typer(
     epilog="The page of a robot: nrs-design report SPEC.",
 )
 # A new capability of the robot adds its command here.
-COMMANDS = (check, kinematics, dynamics, correction, balance, bounds, mobility, track, export)
+COMMANDS = (check, kinematics, dynamics, correction, balance, track)
 for one in COMMANDS:
     robot.command(one.__name__)(one)
 

@@ -1,6 +1,5 @@
 """The robot: geometry, kinematics, dynamics, simplified dynamics and balance (thesis 3 and 4)."""
 
-from nrs_design.robot.models.arm import ArmMobility
 from nrs_design.robot.models.balance import (
     Balance,
     balanced_robot,
@@ -31,16 +30,6 @@ from nrs_design.robot.models.dynamics import (
     mass_matrix,
     potential_energy,
 )
-from nrs_design.robot.models.enclosure.bounds import (
-    Space,
-    bound_text,
-    bounds_document,
-    compute_bounds,
-    confirm_bounds,
-    contradict_bounds,
-    space_of,
-)
-from nrs_design.robot.models.enclosure.enclose import Enclosed, values_at
 from nrs_design.robot.models.geometry import is_reachable, posture, reach, reach_margin
 from nrs_design.robot.models.kinematics import (
     JointMotion,
@@ -54,7 +43,6 @@ from nrs_design.robot.models.kinematics import (
     orientation_jacobian,
     singularity_margins,
 )
-from nrs_design.robot.models.mjcf import LEAST, robot_model
 from nrs_design.robot.models.robot import Leg, Robot, TaskLimits, Workspace, build_robot
 from nrs_design.robot.models.shares import TorqueShares, torque_shares
 from nrs_design.robot.models.simplified import (
@@ -63,14 +51,6 @@ from nrs_design.robot.models.simplified import (
     simplified_torque,
 )
 from nrs_design.robot.models.soundness import examine_inertia
-from nrs_design.robot.models.tree import (
-    DRIVEN,
-    Link,
-    attribute_text,
-    joint_names,
-    links_of,
-    tree_angles,
-)
 from nrs_design.robot.models.workspace import (
     JointPeaks,
     WorkspaceSurvey,
@@ -84,36 +64,24 @@ from nrs_design.robot.models.workspace import (
 
 __all__ = [
     "DEPTH_SINES",
-    "DRIVEN",
-    "LEAST",
     "TABLE_3_5",
-    "ArmMobility",
     "Balance",
     "Correction",
-    "Enclosed",
     "JointMotion",
     "JointPeaks",
     "Leg",
-    "Link",
     "Robot",
     "SeparateCorrection",
     "SimplifiedDynamics",
     "Sine",
     "SingularityMargins",
-    "Space",
     "TaskLimits",
     "TiltTable",
     "TorqueShares",
     "Workspace",
     "WorkspaceSurvey",
-    "attribute_text",
     "balanced_robot",
-    "bound_text",
-    "bounds_document",
     "build_robot",
-    "compute_bounds",
-    "confirm_bounds",
-    "contradict_bounds",
     "coriolis_matrix",
     "correct_separately",
     "correction_coefficients",
@@ -128,9 +96,7 @@ __all__ = [
     "is_reachable",
     "jacobian",
     "joint_motion",
-    "joint_names",
     "joint_peaks",
-    "links_of",
     "mass_and_bias",
     "mass_matrix",
     "orientation",
@@ -142,11 +108,9 @@ __all__ = [
     "reach_margin",
     "reachable_poses",
     "residual_torque",
-    "robot_model",
     "simplified_dynamics",
     "simplified_torque",
     "singularity_margins",
-    "space_of",
     "spring_torque",
     "survey_workspace",
     "thesis_grid",
@@ -155,7 +119,5 @@ __all__ = [
     "tilt_tables",
     "to_csv",
     "torque_shares",
-    "tree_angles",
-    "values_at",
     "workspace_grid",
 ]

@@ -210,7 +210,6 @@ def test_a_strange_mode(tmp_path):
 @pytest.mark.parametrize(
     ("spec", "name", "allowed"),
     [
-        ("soft-tissue-axes", "speed of all axes", "below 14 deg/s"),
         ("concha", "preload of concha", "0.1 rad to 0.3 rad"),
     ],
 )

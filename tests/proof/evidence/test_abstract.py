@@ -32,7 +32,6 @@ from tests.proof.systems import (
     bouncing_in_steps,
     family,
     genuine,
-    leaning,
     matrix,
     pushed_away,
 )
@@ -220,24 +219,6 @@ def test_where_contact_may_be_lost_its_loss_must_be_covered(what, is_refused):
     assert SaidOfAllContact(what=what).find_fault(losable) is None
 
 
-ALONE = (
-    "This growth is that of one axis on which the others do not act, which is within what is said "
-    "of them."
-)
-
-
-@pytest.mark.parametrize("what", Shows)
-def test_what_is_good_must_cover_other_axes_and_what_grows_says_that_it_is_one(what):
-    system = leaning(replace(bouncing(), contact=None), "1/8")
-    fault, claim = Said(what=what).find_fault(system), Said(what=what).claim(system)
-    if what.is_good:
-        assert "does not cover what axes do to each other" in fault
-    else:
-        assert fault is None
-    assert claim == (f"It is so. {ALONE}" if what is Shows.INSTABILITY else "It is so.")
-    assert Said(what=what).find_fault(replace(system, couplings=())) is None
-
-
 def test_who_does_not_know_of_turns_shows_nothing_where_modes_take_them():
     in_turns = replace(
         family([[Fraction(1, 2)]], [[Fraction(1, 3)]], time=Time.DISCRETE), clock=Clock(2, ("m0",))
@@ -354,12 +335,11 @@ BOUNCING = {
     "conewise-mode-quadratic",
     "conewise-polynomial",
     "conewise-quadratic",
-    "coupled-axes",
     "periodic-quadratic",
 }
 CONSTANT = {"constants-quadratic"}
 FREE = {"common-quadratic", "common-polynomial"} | CONSTANT | BOUNCING
-SETS = {"common-quadratic", "conewise-quadratic", "coupled-axes", "invariant-ellipsoid"}
+SETS = {"common-quadratic", "conewise-quadratic", "invariant-ellipsoid"}
 SETS |= {"offset-ellipsoid", "periodic-quadratic"}
 RULED = {"mode-quadratic", "mode-polynomial"}
 GRAPHS = {"common-quadratic", "common-polynomial"} | BOUNCING | RULED
@@ -369,14 +349,13 @@ FACTS = {
     "attains_rate": FREE | RULED,
     "bounds_at_once": FREE,
     "covers_clock": GRAPHS - RULED | {"growing-sequence"},
-    "covers_coupling": {"coupled-axes", "invariant-ellipsoid", "saturated-ellipsoid"},
     "covers_lost_contact": BOUNCING
     | {"invariant-ellipsoid", "no-common-quadratic", "saturated-ellipsoid"}
     | {"offset-ellipsoid"},
     "covers_mixtures": SETS
     | BOUNCING
     | {"common-polynomial", "block-triangular", "saturated-ellipsoid"},
-    "is_common_quadratic": {"common-quadratic", "conewise-quadratic", "coupled-axes"},
+    "is_common_quadratic": {"common-quadratic", "conewise-quadratic"},
     # The blocks of the example have polynomials.
     "keeps_bound_in_mixtures": SETS | CONSTANT | {"conewise-mode-quadratic"} | RULED,
     "names_unstable_mode": {"growing-sequence"},

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from nrs_design.proof.channels import Coupling, Rounding
+from nrs_design.proof.channels import Rounding
 from nrs_design.proof.contact import Contact
 from nrs_design.proof.evidence import Shows, read_evidence
 from nrs_design.proof.evidence import graph as graph_module
@@ -50,7 +50,6 @@ from tests.proof.systems import (
     family,
     genuine,
     geromel_colaneri,
-    leaning,
     losable,
     matrix,
     must_leave,
@@ -83,10 +82,10 @@ Q2, Q2_STEPS = ((4, 2), (2, 6)), ((40, 20), (20, 60))
 SLOW, SLOW98 = Fraction(99, 100), Fraction(98, 100)
 
 
-def conewise(system, Q, rate, crossings=(), roundings=(), couplings=(), log2=0) -> FormsOnGraph:
+def conewise(system, Q, rate, crossings=(), roundings=(), log2=0) -> FormsOnGraph:
     """One form for contact and free motion, if contact is lost."""
     lost = system.contact is not None
-    numbers = {"crossings": crossings, "roundings": roundings, "couplings": couplings}
+    numbers = {"crossings": crossings, "roundings": roundings}
     return one_form(system, Q, log2, Fraction(rate), **numbers, lost=lost)
 
 
@@ -177,7 +176,6 @@ class TestCommon:
         for system, evidence in (
             (COMMUTING, common_quadratic(I2, 0, HALF)),
             (bouncing(), BOUNCE),
-            genuine("coupled-axes"),
             genuine("common-polynomial"),
         ):
             assert evidence.find_fault(system) is None
@@ -568,107 +566,6 @@ class TestAgainstTheDefinition:
             N = ((0, 0, shift), (0, -2 * shift, 0), (shift, 0, 0))
             evidence = common_polynomial(2, rows, 0, (N,) * len(modes), rate)
         assert (evidence.find_fault(system) is None) == holds(system, evidence)
-
-
-class TestAxes:
-    """Axes that act on each other: facts that hold only summed over all of them."""
-
-    @pytest.mark.parametrize(
-        ("system", "size", "rate", "tau", "limit"),
-        [
-            (family([[-1]]), "1/2", "1/4", 3, "1/2"),
-            (family([[-1]]), "9/10", "1/20", 1, "1/10"),
-            (family([["1/2"]], time=STEPS), "1/4", "0.7501", 3, "0.7499"),
-            (family([["1/2"]], time=STEPS), "1/2", None, None, "0.9999"),
-        ],
-    )
-    def test_one_state_is_proved_up_to_its_rate(self, system, size, rate, tau, limit):
-        """Of ``x' = -x + w`` and ``x+ = x/2 + w``: ``|w| <= c |x|`` over all axes takes c away.
-
-        By hand: ``2 (1 - alpha) tau - c^2 tau^2 - 1 > 0`` for some tau iff ``1 - alpha > c``.
-        """
-        coupling = Coupling("c", (matrix([[1]]),), (matrix([[size]]),))
-        system = replace(system, couplings=(coupling,))
-        if rate is not None:
-            assert conewise(system, ((1,),), rate, couplings=(tau,)).find_fault(system) is None
-        for numerator in range(200):
-            item = conewise(system, ((16,),), limit, couplings=(numerator,), log2=4)
-            assert "in mode m0" in item.find_fault(system)
-
-    @pytest.mark.parametrize(
-        ("modes", "sizes", "rates", "taus"),
-        [
-            (family([[-1]], [[-1]]), (10, "1/20"), ("1/4", "1/4"), (200 * 1024, 1024 // 128)),
-            (
-                family([["1/2"]], [["1/2"]], time=STEPS),
-                (2, "1/100"),
-                ("9/10", "99/100"),
-                (40 * 1024, 1024 // 200),
-            ),
-        ],
-    )
-    def test_one_tau_for_every_mode(self, modes, sizes, rates, taus):
-        """Each mode has a tau of its own, and two axes that take turns in the modes grow.
-
-        One axis is pushed by a little of tenfold (twofold) the state of the other, then the other
-        way round.
-        """
-        columns = tuple(matrix([[size]]) for size in sizes)
-        pair = replace(modes, couplings=(Coupling("c", columns, columns[::-1]),))
-        (own,) = pair.couplings
-        for k, tau in enumerate(taus):
-            part = replace(own, columns=own.columns[k : k + 1], rows=own.rows[k : k + 1])
-            alone = replace(pair, modes=(pair.modes[k],), couplings=(part,))
-            item = conewise(alone, ((1024,),), rates[0], couplings=(tau,), log2=10)
-            assert item.find_fault(alone) is None
-        for power in range(24):
-            item = conewise(pair, ((1024,),), rates[1], couplings=(1 << power,), log2=10)
-            assert item.find_fault(pair) is not None
-        of_one = (Multiplier("coupling 1", taus[0], 0),)
-        assert "one for all" in replace(item, multipliers=of_one).find_fault(pair)
-
-    @pytest.mark.parametrize(
-        "example",
-        ["coupled-axes", "coupled-axes, kept", "coupled-axes, pulling", "coupled-axes, steps",
-         "coupled-axes, kept in steps", "coupled-axes, pulling in steps"],
-    )  # fmt: skip
-    def test_axes_that_lean_on_each_other_are_proved(self, example):
-        system, evidence = genuine(example)
-        assert evidence.find_fault(system) is None
-        assert agrees(system, evidence)
-        claim = evidence.claim(system)
-        assert "For any number of axes that act on each other within the stated bounds" in claim
-        assert ("Where free motion ends is not claimed" in claim) == (system.contact is not None)
-        # A larger bound, in any motion, is refused; so are other numbers for it.
-        part = system.couplings[0]
-        for k in range(len(part.rows)):
-            larger = matrix([[100 * entry for entry in part.rows[k].fractions()[0]]])
-            rows = (*part.rows[:k], larger, *part.rows[k + 1 :])
-            wild = replace(system, couplings=(replace(part, rows=rows), *system.couplings[1:]))
-            assert evidence.find_fault(wild)
-        for value in (0, -1):
-            first = next(m for m in evidence.multipliers if m.fact == "coupling 1")
-            changed = tuple(
-                Multiplier(m.fact, value, m.target) if m is first else m
-                for m in evidence.multipliers
-            )
-            assert replace(evidence, multipliers=changed).find_fault(system) is not None
-        assert "no fact" in evidence.find_fault(replace(system, couplings=()))
-
-    def test_other_functions_do_not_cover_what_axes_do(self):
-        system = leaning(bouncing(), "1/8")
-        ruled = by_mode(Q2, Q2, rate="1/5")
-        for item in (BOUNCE, common_quadratic(Q2, 0, Fraction(1, 5)), ruled):
-            assert item.find_fault(bouncing()) is None
-            assert "does not cover what axes do to each other" in item.find_fault(system)
-
-    def test_turns_and_several_forms_at_a_place_are_refused(self):
-        system, evidence = genuine("coupled-axes, steps")
-        twice = replace(evidence, nodes=(*evidence.nodes, *evidence.nodes))
-        assert "one form at each place" in twice.find_misfit(system)
-        turns = replace(system, clock=Clock(2, ("m0",)))
-        nodes = tuple(Node(f"{p} {k}", Q) for k in (0, 1) for p, Q in evidence.nodes)
-        assert "no turns" in replace(evidence, nodes=nodes).find_misfit(turns)
 
 
 # x doubles, then loses a quarter three times: 2 (3/4)^3 = 0.84375, so 0.9584 a step.
@@ -1186,26 +1083,26 @@ def three_states(time: Time, *, pulled: bool = True, disturbed: bool = True) -> 
     )
     columns = tuple(map(matrix, (*COLUMNS3, COLUMNS3[0])))
     rows = tuple(matrix([row]) for row in SIZES3)
-    wide = tuple(matrix([[*row, *["3/7"] * last]]) for row in (*SIZES3[1::-1], *SIZES3[:1:-1]))
+    others = tuple(matrix([row]) for row in (*SIZES3[1::-1], *SIZES3[:1:-1]))
+    errors = Rounding("r", columns, rows), Rounding("s", columns[::-1], others)
     pulls = (matrix([["1/2", "-1/3", 2]]), matrix([["1/5", 4, "3/2"]]))
     return replace(
         family(*CONTACT3, time=time),
         contact=Contact(tuple(free), pulls if pulled else ()),
-        roundings=(Rounding("r", columns, rows),) * (disturbed and last),
-        couplings=(Coupling("w", columns[::-1], wide),) if disturbed else (),
+        roundings=errors if disturbed and last else (),
     )
 
 
 MULTIPLIERS3 = {
-    Time.CONTINUOUS: ("pull 1 f", "pull 2 f", "pull 1 g", "pull 2 g", "coupling 1"),
+    Time.CONTINUOUS: ("pull 1 f", "pull 2 f", "pull 1 g", "pull 2 g"),
     STEPS: ("lost", *(f"{p}" for k in (1, 2) for p in (f"pull {k}", f"pull {k} lost",
-            f"lost pull {k}")), "rounding 1", "coupling 1"),
+            f"lost pull {k}")), "rounding 1", "rounding 2"),
 }  # fmt: skip
 
 
 @pytest.mark.parametrize("shape", [Time.CONTINUOUS, STEPS, "each"])
 def test_every_form_by_hand(shape):
-    """Lost contact with what lags, what is rounded, and other axes; or a form for each mode."""
+    """Lost contact with what lags, and what is rounded; or a form for each mode."""
     if shape == "each":
         system = three_states(STEPS, pulled=False, disturbed=False)
         flying = ("f", ((4, 1), (1, 3))), ("g", ((5, -2), (-2, 6)))
@@ -1218,9 +1115,8 @@ def test_every_form_by_hand(shape):
         numbers = tuple(Multiplier(fact, value) for fact, value in facts)
         evidence = FormsOnGraph(nodes, 0, Fraction(2, 7), multipliers=numbers)
     assert evidence.find_misfit(system) is None
-    disturbed = shape != "each"
-    acting = {"rounding": disturbed and bool(system.roundings), "coupling": disturbed}
-    steps = [move for move in moves(system, lost=True, **acting) if move.strict]
+    rounding = bool(system.roundings)
+    steps = [move for move in moves(system, lost=True, rounding=rounding) if move.strict]
     wanted = [
         (steps[k].where, edge_form(evidence, steps[k], a, b))
         for k, a, b in edges_at(evidence, steps)
@@ -1476,102 +1372,6 @@ class TestAttacks:
         assert evidence.find_fault(disturbed(100)) is not None
 
 
-# The rate of a mass that a coupling speeds up to 2 1/s in contact, or in flight, or by which V
-# rises while the environment lags: damping, and the couplings of contact and of free motion.
-BARRED = {
-    "in mode m0": (0, 4, 0),
-    "in free motion, mode free": (0, 0, 4),
-    "while the environment lags, mode free": (1, 0, "7/4"),
-}
-
-
-class TestAxesWithinTheirBounds:
-    """What couplings allow is barred, and raises no form that is proved."""
-
-    @pytest.mark.parametrize("where", BARRED)
-    def test_each_condition_bars_what_is_false(self, where):
-        damping, touching, flying = BARRED[where]
-        single = bouncing(damping)
-        column, sizes = matrix([[1], [0]]), (matrix([[touching, 0]]), matrix([[flying, 0]]))
-        part = Coupling("c", (column,) * 2, sizes)
-        system = replace(single, modes=single.modes[:1], couplings=(part,))
-        unit, found = 64, set()
-        whole = tuple(tuple(unit * entry for entry in row) for row in Q2)
-        count = len(system.contact.pulls)
-        for tau, m in product(range(1, 1024, 24), (0, 1, 4, 16, 64, 256)[: 1 + 5 * (count > 0)]):
-            item = conewise(system, whole, "1/100", (m,) * count, (), (tau,), 6)
-            places = broken(system, item)
-            assert where in places
-            found.add(frozenset(places))
-        # With some multipliers nothing else is broken.
-        assert frozenset({where}) in found
-        # An axis by itself grows, with all that the bound allows against it: in contact without a
-        # spiral, in flight at once, and V just below the surface, on the way out without force.
-        if where == "in mode m0":
-            assert touching > 2
-            assert (touching - 2) ** 2 >= 4
-        elif "free motion" in where:
-            assert flying > 2
-        else:
-            v, delta, w = Fraction(-1), Fraction(1, 1000), -Fraction(flying)
-            assert v + delta < 0
-            assert (8 * v + 4 * delta) * (-2 * v + w) + (4 * v + 12 * delta) * v > 0
-
-    @pytest.mark.parametrize("motion", range(3))
-    @pytest.mark.parametrize("column", [[[1], [0]], [[0], [1]]])
-    def test_a_wild_push_in_any_motion_is_refused(self, motion, column):
-        """In either mode, and in free motion; on the speed, or on the way contact is lost by."""
-        system, item = genuine("coupled-axes, steps")
-        first = system.couplings[0]
-        rows, columns = list(first.rows), list(first.columns)
-        rows[motion], columns[motion] = matrix([[4, 0]]), matrix(column)
-        part = replace(first, rows=tuple(rows), columns=tuple(columns))
-        wild = replace(system, couplings=(part, *system.couplings[1:]))
-        (own,) = (m for m in item.multipliers if m.fact == "coupling 1")
-        others = tuple(m for m in item.multipliers if m is not own)
-        for tau in (0, 1, 100, 10**4, 10**6, 10**8, own.value):
-            numbers = (*others, own._replace(value=tau))
-            assert replace(item, multipliers=numbers).find_fault(wild) is not None
-
-    @pytest.mark.parametrize(
-        "example",
-        ["coupled-axes", "coupled-axes, kept", "coupled-axes, pulling", "coupled-axes, steps",
-         "coupled-axes, kept in steps", "coupled-axes, pulling in steps"],
-    )  # fmt: skip
-    def test_no_motion_of_three_axes_within_the_bounds_raises_the_sum(self, example):
-        """At random states, each axis in a mode of its own, with all that the bounds allow."""
-        system, item = genuine(example)
-        Q, flows = item.nodes[0].form, system.time is Time.CONTINUOUS
-        for seed in range(20):
-            before = after = Fraction(0)
-            for x, moved, kept in pushed_axes(system, Random(seed)):
-                if flows:
-                    forces = [dot(row[:kept], x[:kept]) for row in Q[:kept]]
-                    before += dot(forces, x[:kept])
-                    after += 2 * dot(forces, moved[:kept])
-                else:
-                    value = _value if system.contact else _square
-                    before, after = before + value(Q, x), after + value(Q, moved)
-            assert after <= (-2 * item.rate if flows else item.rate**2) * before
-
-
-def pushed_axes(system: SwitchedSystem, random: Random):
-    """Yield of three axes the state, what becomes of it under random pushes, and what V sees."""
-    axes = [situation(system, random) for _ in range(3)]
-    pushes = []
-    for part in system.couplings:
-        square = sum(dot(part.rows[k].fractions()[0], x) ** 2 for k, _, x, _ in axes)
-        direction = [random.gauss(0, 1) for _ in range(3)]
-        size = float(square) ** 0.5 * (1 - 1e-9) / sum(e**2 for e in direction) ** 0.5
-        pushes.append([Fraction(size * entry) for entry in direction])
-    for i, (k, A, x, kept) in enumerate(axes):
-        moves = [dot(row, x) for row in A]
-        for part, push in zip(system.couplings, pushes, strict=True):
-            column = part.columns[k].fractions()
-            moves = [a + push[i] * b for a, (b,) in zip(moves, column, strict=True)]
-        yield x, moves, kept
-
-
 def situation(system: SwitchedSystem, random: Random):
     """Return a mode, its matrix, a state that it can be in, and how many entries V has of it."""
     n, contact = system.order, system.contact
@@ -1593,6 +1393,35 @@ def dot(left, right):
 
 def _square(Q: Rows, x: list[Fraction]) -> Fraction:
     return dot(x, [dot(row, x) for row in Q])
+
+
+class TestErrorsWithinTheirBounds:
+    """What arithmetic rounds raises no form that is proved."""
+
+    @pytest.mark.parametrize("damping", [None, 0, 1])
+    def test_no_step_within_the_bounds_raises_a_form(self, damping):
+        """At random states in contact, in flight and while what is touched lags; None: kept."""
+        system = bouncing_in_steps(damping or 0)
+        if damping is None:
+            system = replace(system, contact=None)
+        count = len(system.every_mode)
+        columns = (matrix([["1/2"], ["1/4"]]),) * count
+        sizes = [[["1/100", "1/50"]]] * 2 + [[["1/100", 0]]]
+        rounding = Rounding("F", columns, tuple(map(matrix, sizes[:count])))
+        system = replace(system, roundings=(rounding,))
+        found = certify(system, limits=Limits(optimize_rate=False))
+        item = next(one for one in found.statements if one.shows is Shows.STABILITY)
+        assert item.covers_rounding
+        assert item.covers_lost_contact is (damping is not None)
+        Q, value = item.nodes[0].form, _square if damping is None else _value
+        for seed in range(60):
+            random = Random(seed)
+            k, A, x, _ = situation(system, random)
+            error = random.choice((-1, 1)) * dot(rounding.rows[k].fractions()[0], x)
+            moves = [dot(row, x) for row in A]
+            column = rounding.columns[k].fractions()
+            moved = [a + error * b for a, (b,) in zip(moves, column, strict=True)]
+            assert value(Q, moved) <= item.rate**2 * value(Q, x)
 
 
 class TestRulesOfStays:

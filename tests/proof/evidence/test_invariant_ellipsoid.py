@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from nrs_design.proof.channels import Channel, Coupling, Output, Rounding
+from nrs_design.proof.channels import Channel, Output, Rounding
 from nrs_design.proof.contact import Contact
 from nrs_design.proof.contradiction import find_contradiction
 from nrs_design.proof.evidence import InvariantEllipsoid, Shows
@@ -23,7 +23,6 @@ from tests.proof.systems import (
     bouncing,
     bouncing_in_steps,
     family,
-    genuine,
     matrix,
     pushed,
 )
@@ -527,58 +526,3 @@ def test_rounding_is_covered_where_there_are_multipliers_for_it():
     assert replace(STEPS, roundings=(1,)).covers_rounding
     covered = replace(STEPS, roundings=(1,))
     assert type(covered).from_fields(covered.to_fields(), pushed(bouncing_in_steps())) == covered
-
-
-def three_leaning(axes: int | None = 3) -> SwitchedSystem:
-    """``x' = -x + d + w`` on each axis, ``|d| <= 1`` and ``sum w^2 <= sum x^2 / 4``."""
-    one = matrix([[1]])
-    return replace(
-        family([[-1]]),
-        channels=(Channel("d", "", Fraction(1), (one,)),),
-        outputs=(Output("z", "", (one,)),),
-        couplings=(Coupling("c", (one,), (matrix([["1/2", 0]]),)),),
-        axes=axes,
-    )
-
-
-def of_level(level: str) -> InvariantEllipsoid:
-    """By hand: Q just below 1/4 with a share of 1/2 and tau = 2 Q, as ``Q < a (1 - a)``."""
-    Q, half = 10**6 // 4 - 100, (Fraction(1, 2),)
-    scale = 2**20 / 10**6
-    Q = int(Q * scale)
-    return InvariantEllipsoid(("d",), "z", ((Q,),), 20, half, Fraction(level), (), (), (2 * Q,))
-
-
-def test_a_bound_for_axes_counts_them():
-    """Two axes rest at 1, and all that they and the third have may push that one: to 2.387."""
-    reach = (2 + 2.5**0.5) / 1.5
-    assert reach == pytest.approx(1 + (reach**2 + 2) ** 0.5 / 2)
-    assert reach > 2.01
-    # What would be a bound for one axis is none for each of three.
-    assert of_level("2.01").find_fault(three_leaning(1)) is None
-    assert "can be beyond the level" in of_level("2.01").find_fault(three_leaning(3))
-    assert of_level("3.47").find_fault(three_leaning(3)) is None
-    assert "each of at most 3 axes" in of_level("3.47").claim(three_leaning(3))
-
-
-def test_what_axes_do_must_be_counted_in():
-    item = of_level("3.47")
-    assert "how many axes" in item.find_fault(three_leaning(None))
-    assert "one multiplier for each coupling" in replace(item, taus=()).find_fault(three_leaning())
-    negative = replace(item, taus=(-1,)).find_fault(three_leaning())
-    assert negative == "the multiplier of a coupling is negative"
-    for tau in (0, 1, 10**3, 10**9):
-        assert "can be left" in replace(item, taus=(tau,)).find_fault(three_leaning())
-    assert InvariantEllipsoid.from_fields(item.to_fields(), three_leaning()) == item
-
-
-AXES = ("invariant-ellipsoid, axes", "invariant-ellipsoid, pulling axes")
-
-
-@pytest.mark.parametrize("example", [*AXES, "invariant-ellipsoid, axes in steps"])
-def test_bounds_for_axes_that_lean_on_each_other(example):
-    system, item = genuine(example)
-    assert item.find_fault(system) is None
-    assert agrees(system, item)
-    assert holds(system, item)
-    assert not holds(system, replace(item, taus=tuple(100 * tau for tau in item.taus)))

@@ -7,7 +7,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nrs_design.proof.channels import Coupling
 from nrs_design.proof.evidence import SaturatedEllipsoid, Shows, read_evidence
 from nrs_design.proof.evidence.fields import MAX_INTEGER_BITS
 from nrs_design.proof.mode import Time
@@ -226,13 +225,6 @@ UNEVEN = replace(
             "place does not have the size of the state",
         ),
         (UNEVEN, "not of one size"),
-        (
-            replace(
-                pushed_away(),
-                couplings=(Coupling("c", (matrix([[1]]),), (matrix([[1]]),)),),
-            ),
-            "is of one axis",
-        ),
     ],
 )
 def test_another_system_is_refused(system, fault):
@@ -346,7 +338,6 @@ def test_no_region_in_steps_is_larger_than_that_of_the_motions(h, q, rate, level
         (replace(STEPS, level=Fraction(8, 5)), "does not hold the stated place"),
         (replace(STEPS, multipliers=(1,)), "one multiplier for each condition"),
         (replace(STEPS, roundings=(1,)), "one multiplier for each rounding"),
-        (replace(STEPS, taus=(1,)), "one multiplier for each coupling"),
     ],
 )
 def test_other_numbers_in_steps_are_refused(evidence, fault):
@@ -354,23 +345,20 @@ def test_other_numbers_in_steps_are_refused(evidence, fault):
 
 
 def test_multipliers_are_of_steps():
-    for part in ("multipliers", "roundings", "taus"):
+    for part in ("multipliers", "roundings"):
         assert "has no multipliers" in replace(HELD, **{part: (1,)}).find_fault(pushed_away())
 
 
-def test_rounding_and_other_axes_are_asked_for():
-    system, evidence = genuine("saturated-ellipsoid, axes in steps")
+def test_rounding_is_asked_for():
+    system, evidence = genuine("saturated-ellipsoid, in steps")
     assert evidence.covers_rounding
-    assert "on others within the stated bounds" in evidence.claim(system)
-    assert "root of whose sum of squares" in evidence.claim(system)
     assert "single-precision arithmetic rounds in the law is included" in evidence.claim(system)
-    negative = replace(evidence, taus=tuple(-tau - 1 for tau in evidence.taus))
-    assert "multiplier of a coupling is negative" in negative.find_fault(system)
+    negative = replace(evidence, roundings=tuple(-tau - 1 for tau in evidence.roundings))
+    assert "multiplier of a rounding is negative" in negative.find_fault(system)
     (signal,) = system.saturation.signals
-    for part in ("errors", "pushes"):
-        silent = replace(system.saturation, signals=(replace(signal, **{part: ()}),))
-        fault = "does not say what the arithmetic rounds"
-        assert fault in evidence.find_fault(replace(system, saturation=silent))
+    silent = replace(system.saturation, signals=(replace(signal, errors=()),))
+    fault = "does not say what the arithmetic rounds"
+    assert fault in evidence.find_fault(replace(system, saturation=silent))
     # Without its roundings it is about exact arithmetic, and need not know of them.
     plain, exact = replace(evidence, roundings=()), replace(signal, errors=())
     known = replace(system, saturation=replace(system.saturation, signals=(exact,)))

@@ -16,7 +16,6 @@ from tests.proof.systems import (
     bouncing_in_steps,
     bouncing_in_turns,
     family,
-    leaning,
     matrix,
     resets_between,
 )
@@ -76,9 +75,6 @@ def test_each_form_of_a_norm_is_named():
     other = replace(one, nodes=(one.nodes[0], Node(one.nodes[1].place, ((30,),))))
     assert other.find_fault(system) is None
     assert "|w| = sqrt(w' Q w) with the Q of contact or of free motion." in other.claim(system)
-    axes = leaning(bouncing(), "1/8")
-    said = free_sentence(axes, HALF, 1, 1, lost=True, once=True, alike=False)
-    assert "over the axes with the Q of contact or of free motion." in said
     turns = bouncing_in_turns()
     said = free_sentence(turns, HALF, 1, 1, lost=True, once=True, alike=False)
     assert "with the Q of the step of its round and of contact or of free motion." in said
@@ -86,17 +82,6 @@ def test_each_form_of_a_norm_is_named():
     assert "a positive definite form of degree 4 in x, that of the step of its round." in fourth
     several = free_sentence(system, HALF, 2, 3, lost=False, once=True)
     assert "|x|^4 is the largest of some positive definite forms of degree 4 in x." in several
-
-
-def test_axes_are_added_up():
-    system = leaning(replace(bouncing(), contact=None), "1/8")
-    said = free_sentence(system, HALF, 1, 1, lost=False, once=True)
-    assert "(acceleration), which are taken on trust, each by itself in any of its modes" in said
-    assert said.endswith(
-        "where w_i is the state of an axis, and |w|^2 = sum of w_i' Q w_i over the axes."
-    )
-    lost = free_sentence(leaning(bouncing(), "1/8"), HALF, 1, 1, lost=True, once=True)
-    assert "w_i holds the states of an axis other than the deflection" in lost
 
 
 def test_a_constant_in_front_is_said():

@@ -20,7 +20,6 @@ LONG = frozenset(
     (
         "conewise-mode-quadratic",
         "conewise-polynomial",
-        "coupled-axes",
         "invariant-ellipsoid",
         "mode-quadratic",
         "offset-ellipsoid",

@@ -1,1 +1,0 @@
-"""Robots for other programs: one module for each format."""

@@ -36,8 +36,8 @@ ALIKE = Fraction(1, 2**22)
 SEVERITY = ("proved", "inconclusive", "refuted")
 # What the controller needs besides, which no design knows.
 BESIDE = (
-    "joints, command_interfaces, state_interfaces, chainable_command_interfaces, kinematics, "
-    "ft_sensor.name, frames, gravity_compensation"
+    "joints (at least six: fewer couple the axes), command_interfaces, state_interfaces, "
+    "chainable_command_interfaces, kinematics, ft_sensor.name, frames, gravity_compensation"
 )
 
 

@@ -6,7 +6,7 @@ Names, types and bounds are those of the parameters that it declares
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass
 from difflib import get_close_matches
 from fractions import Fraction
@@ -119,6 +119,7 @@ def read_law(node: RosNode, others: Collection[str] = ()) -> AdmittanceLaw:
         found, wrong = _read(node, name, parameter)
         values[name] = found
         faults += wrong
+    faults += _too_few_joints(node)
     if faults:
         raise SpecError.of(faults, None)
     mass, ratio, stiffness, selected = (
@@ -144,6 +145,24 @@ def read_law(node: RosNode, others: Collection[str] = ()) -> AdmittanceLaw:
         values,
         _force_from(node, others),
     )
+
+
+def _too_few_joints(node: RosNode) -> Iterator[Fault]:
+    """Yield a fault where the joints cannot move the six axes one by one.
+
+    The controller computes all six, selected or not, and takes the pseudoinverse of the Jacobian:
+    with fewer joints than axes, that couples them, and no proof of one axis by itself holds.
+    """
+    name = "joints"
+    listed = texts(node.values[name]) if name in node.values else None
+    if listed is not None and len(listed) < len(AXES):
+        many = f"{len(listed)} joint" + "s" * (len(listed) != 1)
+        yield node.fault(
+            name,
+            f"{many} cannot move six axes one by one: the pseudoinverse of the Jacobian couples "
+            "them, and every axis is proved by itself",
+            "name at least six joints; fewer are not covered by any proof here",
+        )
 
 
 def _force_from(node: RosNode, others: Collection[str]) -> str | None:

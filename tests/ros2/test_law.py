@@ -42,6 +42,8 @@ def test_defaults(tmp_path):
         ("      stiffness: [200.0, 200.0, 200.0, 10.0, 10.0, 10.0]\n", "", "is missing"),
         ("filter_coefficient: 0.5", "filter_coefficient: [0.5, 0.5]", "expected one value"),
         ("damping_ratio: [2.8,", "damping_ratio: [{a: 1},", "something else"),
+        # Five joints for six axes: the loop grows by 1.0058 a period where each axis is stable.
+        ("wrist_2, wrist_3]", "wrist_2]", "5 joints cannot move six axes"),
     ],
 )
 def test_what_keeps_the_controller_from_starting(tmp_path, old, new, message):

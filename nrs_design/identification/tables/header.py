@@ -104,10 +104,13 @@ def _find(
     lines: Sequence[str], mapped: Collection[str], path: Path, example: str
 ) -> tuple[int, str | None]:
     """Return the line with the most names that are known, or the one above the first numbers."""
+    # Rows of numbers say what separates the cells; a name may hold blanks.
+    separators = [s for text in lines if text and (s := _separator_of(text)) != ""][:1]
     scores = [
         (sum(_is_known(name, mapped) for name in _cells(text, separator)), -at, -rank)
         for at, text in enumerate(lines)
         for rank, separator in enumerate(SEPARATORS)
+        if separator in (separators or SEPARATORS)
     ]
     best, at, rank = max(scores, default=(0, 0, 0))
     if best >= 2:
@@ -176,6 +179,9 @@ def _is_known(name: str, mapped: Collection[str]) -> bool:
 def _cells(text: str, separator: str | None) -> list[str]:
     """Split a line; one that hides its names behind a comment sign is a header all the same."""
     text = text.removeprefix("#").strip(" ")
+    # The first name of a bag begins with this sign.
+    if not text.startswith("%time"):
+        text = text.removeprefix("%").lstrip(" ")
     if '"' in text and separator is not None:
         try:
             return [cell.strip() for cell in next(csv.reader([text], delimiter=separator))]

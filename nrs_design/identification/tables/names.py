@@ -179,8 +179,9 @@ def read_name(text: str) -> Name | None:
 
 
 def _symbol(word: str, unit: str) -> Name | None:
-    """Return what a letter stands for by its unit."""
-    names = (Name(q, read_unit(unit, q), loose=True) for q in _SYMBOLS.get(word, ()))
+    """Return what a letter stands for by its unit; the time of any clock is a time."""
+    quantities = ("time",) if word.endswith(" time") else _SYMBOLS.get(word, ())
+    names = (Name(q, read_unit(unit, q), loose=True) for q in quantities)
     return next((name for name in names if name.known), None)
 
 

@@ -73,6 +73,13 @@ STYLES = {
     "a byte order mark": (MARKED, []),
     "foreign names above units": (FOREIGN, FROM_FOREIGN),
     "an indenter": (SMALL, FROM_SMALL),
+    **{
+        f"{name}, with blanks, above commas": (
+            f"{name} [ms], Deflection [mm], Force [N]\n" + rows(",", ".", (1e3, 1e3, 1)),
+            [],
+        )
+        for name in ("% Time", "%Back-end Time")
+    },
 }
 
 

@@ -9,6 +9,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
+from nrs_design.axis import COMMAND_UNITS
 from nrs_design.proof.text import quoted
 from nrs_design.spec.check import Row, each, exactly_one
 from nrs_design.spec.faults import Location
@@ -62,18 +63,22 @@ class AboutCommands:
     command: str
     it: Quantity
 
-    def other_unit(self) -> tuple[str, str] | None:
-        """Return what is written, and its unit, if that is not the motor's."""
-        held = command_unit(self.it.dimension)
-        return None if held == self.command else (quoted(self.it.text), held)
+    def other_unit(self) -> tuple[str, str, str] | None:
+        """Return what is written, its unit, and what to do, if that is not the motor's."""
+        held, advice = command_unit(self.it.dimension), f"write it in {self.command}"
+        if {held, self.command} <= set(COMMAND_UNITS):
+            advice += (
+                f"; a spec of kind interaction-design may say `command: {held}` in its actuator, "
+                f"and then writes all that is about commands in {held}"
+            )
+        return None if held == self.command else (quoted(self.it.text), held, advice)
 
 
 IN_ITS_UNIT = Row[AboutCommands](
     "",
     AboutCommands.other_unit,
     "{0} is about commands in {1}, and the motor takes {s.command}",
-    "write it in {s.command}; a spec of kind interaction-design may say `command: {1}` in its "
-    "actuator, and then writes all that is about commands in {1}",
+    "{2}",
 )
 
 

@@ -123,15 +123,14 @@ UNITS = {
 
 
 def command_unit(dimension: tuple[int, ...]) -> str:
-    """Return the unit of commands in a dimension that holds one; a torque is one itself."""
+    """Return the unit of commands in a dimension that holds one, or is that of one."""
     powers = zip(BASE_UNITS, dimension, strict=True)
-    return next(
-        (unit for unit, power in powers if unit in COMMAND_UNITS and power), _effort(dimension)
+    held = next((unit for unit, power in powers if unit in COMMAND_UNITS and power), None)
+    return held or next(
+        unit
+        for unit in ("N*m", "N", "rad/s", "m/s", "rad", "m")
+        if parse_unit(unit).dimension == dimension
     )
-
-
-def _effort(dimension: tuple[int, ...]) -> str:
-    return "N" if dimension == UNITS["N"].dimension else "N*m"
 
 
 @functools.lru_cache(maxsize=256)

@@ -165,3 +165,21 @@ def test_a_delay_counts_samples_of_the_force():
     text = TEXT + OUTER.replace("delay: 0", "delay: [0, 3]")
     assert read(text).sampling.oldest == Fraction(3, 10_000)
     assert read(text, (", outer_period: 0.1 ms", "")).sampling.oldest == Fraction(3, 500)
+
+
+@pytest.mark.parametrize(
+    ("drive", "written", "unit"),
+    [
+        ("velocity_interface: {time_constant: 0.02 s}", "0.02 rad/s", "rad/s"),
+        ("position_interface: {time_constant: 0.02 s}", "1 mrad", "rad"),
+    ],
+)
+def test_friction_is_in_the_unit_of_the_command(drive, written, unit):
+    """Of each drive, whatever it takes; the rpm of a driver are no velocity."""
+    start = TEXT.index("actuator:")
+    text = TEXT[:start] + drive + TEXT[TEXT.index("\nlimits:") :]
+    more = "sampling: {period: 2 ms, delay: 0}\ncontact: kept\ndisturbances: {friction: %s}\n"
+    spec = parse_spec(f"{text}\n{more % written}")
+    assert spec.disturbances.bounds()["friction"][1] == unit == spec.command
+    with pytest.raises(SpecError, match=f"and the motor takes {unit}"):
+        parse_spec(f"{text}\n{more % '2 rpm'}")

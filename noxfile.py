@@ -32,9 +32,10 @@ SOURCES = ("nrs_design", "tests", "benchmarks", "docs", "noxfile.py")
 
 @nox.session
 def lint(session: nox.Session) -> None:
-    session.install("ruff", *CONSTRAINTS)
+    session.install("ruff", "vulture", *CONSTRAINTS)
     session.run("ruff", "check", *SOURCES)
     session.run("ruff", "format", "--check", *SOURCES)
+    session.run("vulture")
 
 
 @nox.session

@@ -29,12 +29,10 @@ class ForceLoop:
     poles: tuple[complex, ...]  # Closed-loop poles, rad/s, rightmost first
     damping_ratio: float  # Of the dominant pair
     natural_frequency: float  # Of the dominant pair, rad/s
-    # Steady force error over the commanded force, ``1/(1 + Kp k G(0))``, of the law without offset.
-    steady_state_ratio: float
 
 
 def force_loop_response(motion: TransferFunction, stiffness: float, gain: float) -> ForceLoop:
-    """Close the force loop ``Kp k G(s)`` (thesis 6.33) and report its poles and steady-state error.
+    """Close the force loop ``Kp k G(s)`` (thesis 6.33) and return its poles.
 
     G leads from commanded to actual position, k is in N m/rad, Kp in rad/(N m). An unstable loop is
     a `DesignError`.
@@ -55,7 +53,6 @@ def force_loop_response(motion: TransferFunction, stiffness: float, gain: float)
         poles=tuple(complex(p) for p in roots),
         damping_ratio=zeta,
         natural_frequency=wn,
-        steady_state_ratio=1 / (1 + gain * stiffness * static_gain(motion)),
     )
 
 

@@ -20,13 +20,13 @@ from nrs_design.errors import ClockError, NrsDesignError
 from nrs_design.printable import printable
 from nrs_design.wings import load_wing, wing_of
 
-# Each command is in the module of its name, here or in its wing; the help keeps groups and order.
+# Each command is in the module of its name, here or in its wing. The help keeps groups and order:
+# that of the work.
 GROUPS = {
-    "Start": ("init", "check", "explain", "schema"),
+    "Start": ("init", "identify", "check", "explain", "schema"),
     "Design": ("optimize", "tune", "mode-logic", "simulate"),
     "Prove": ("certify-switching", "verify", "sweep", "compare-methods", "check-lyapunov"),
-    "Ship": ("report", "gate", "export", "diff"),
-    "Measure": ("identify", "audit"),
+    "Ship": ("report", "gate", "export", "diff", "audit"),
     "Robot": ("robot", "ros2", "reproduce"),
 }
 COMMANDS = tuple(name for names in GROUPS.values() for name in names)

@@ -42,11 +42,7 @@ class CertifiedGains:
 
         A `DesignError` if the goals are not reached.
         """
-        from nrs_design.certificates.goals import certified_goals
-        from nrs_design.pipeline import run_analysis
-        from nrs_design.pipeline.certified_optimum import run_certified_optimum, steering_goals
-
-        if not steering_goals(designed, analysis):
+        if not _is_steered(designed, analysis):
             if out is not None:
                 raise OutputError(
                     "only gains that were chosen by a goal of the proof are written",
@@ -55,6 +51,11 @@ class CertifiedGains:
                     "--out out",
                 )
             return None
+
+        from nrs_design.certificates.goals import certified_goals
+        from nrs_design.pipeline import run_analysis
+        from nrs_design.pipeline.certified_optimum import run_certified_optimum
+
         name = None if out is None else name_for(designed.loaded, out)
         with progress(f"gains with their proof for {designed.spec.name}") as step:
             found = run_certified_optimum(designed, analysis, step, name)
@@ -192,3 +193,13 @@ def write_certified(result: Result, out: Path) -> Path:
     write_outputs([(out, result.loaded.text, b""), (path, content, CERTIFICATE)])
     note(f"spec written to {out}, certificate to {path}")
     return path
+
+
+def _is_steered(designed: Designed, analysis: DesignAnalysis) -> bool:
+    """Tell whether a goal chooses gains; only then is the search for them loaded."""
+    if designed.spec.goals is None:
+        return False
+
+    from nrs_design.pipeline.certified_optimum import steering_goals
+
+    return bool(steering_goals(designed, analysis))

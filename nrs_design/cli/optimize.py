@@ -55,7 +55,6 @@ def optimize(
     """
     from nrs_design.cli.certified_gains import CertifiedGains
     from nrs_design.pipeline import run_analysis, run_interaction
-    from nrs_design.pipeline.cost_bounds import run_cost_bounds
 
     loaded = take_spec(spec)
     with progress(f"designing {loaded.spec.name}") as step:
@@ -67,7 +66,11 @@ def optimize(
     if certified is not None:
         designed, analysis = certified.designed, certified.analysis
 
-    bounds = run_cost_bounds(chosen, analysis) if global_optimum else {}
+    bounds: dict[str, CostBound | str] = {}
+    if global_optimum:
+        from nrs_design.pipeline.cost_bounds import run_cost_bounds
+
+        bounds = run_cost_bounds(chosen, analysis)
 
     def facts() -> dict[str, Any]:
         return {

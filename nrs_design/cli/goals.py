@@ -68,21 +68,9 @@ def design_answer(
 ) -> Answer:
     """Return the answer of a command that shows a design: with goals and with what is doubtful.
 
-    Parameters
-    ----------
-    designed, analysis
-        The spec, and what its design achieves.
-    items : iterable of AbstractControllerAnalysis
-        The controllers that the command is about; its exit code is 1 if one misses a goal, and 3
-        if one has a goal that is not judged.
-    facts, show : callable
-        Return the content of the JSON document; print the text.
-    proved : bool
-        Whether all goals are proved that need a proof of the design; else the exit code is 1, too.
-    judged : bool
-        Whether `show` says what is proved of the goals of a certificate.
-    marked : bool
-        Whether it marks what is unusual.
+    The exit code is 1 if an item misses a goal, or one that needs a proof is not `proved`.
+    `judged`, `marked`: `show` says what is proved of the goals of a certificate, and marks what is
+    unusual.
     """
     from nrs_design.spec import doubt_spec
 

@@ -24,16 +24,8 @@ def between(
     Each mode becomes one for every choice of arguments and rows h, as `Saturation.between` makes
     them. What the arithmetic adds to an argument is replaced with it: an error r that has a share
     of the argument has the same share of the mixture. All of the state after a step is affine in
-    each share.
-
-    Parameters
-    ----------
-    system : SwitchedSystem
-        With what saturates.
-    held : sequence of sequences of rows, each of n numbers
-        The h of every signal, in every mode and after them in the free modes.
-    rounding : bool
-        Whether roundings are kept, or left out.
+    each share. `held` are the h of every signal, in every mode and after them in the free modes;
+    roundings are kept on demand.
     """
     saturation = system.saturation
     assert saturation is not None  # who asks has looked

@@ -154,7 +154,7 @@ def lyapunov_decrease(
     rate: Fraction,
     multiply: Product = multiply,
 ) -> list[list[int]]:
-    """Form ``-(A'Q + QA + 2 rate Q)`` for ``A = N / denominator``, times a positive integer.
+    """Form ``-(A'Q + QA + 2 rate Q)`` for ``A = N / denominator``, times `lyapunov_factor`.
 
     Q is symmetric, the denominator positive, the rate in 1/s. Only a search has reason to ask for
     another way to multiply.

@@ -58,19 +58,7 @@ class SwitchedSystem:
         switching: Switching,
         enclosures: tuple[tuple[str, ...], ...] | None = None,
     ) -> SwitchedSystem:
-        """Return other modes for the same signals; what acts on these ones is left behind.
-
-        Parameters
-        ----------
-        modes : tuple of Mode
-            In the place of these.
-        states : tuple of str
-            Their states.
-        switching : Switching
-            Their rules.
-        enclosures : tuple of tuple of str, optional
-            Their sets; by default those of these modes, by the same names.
-        """
+        """Return other modes for the same signals; what acts on these ones is left behind."""
         return SwitchedSystem(
             name=self.name,
             time=self.time,

@@ -197,18 +197,8 @@ def problem_of(
 ) -> DisturbedProblem:
     """Join disturbances, roundings and output, in the coordinates of the family.
 
-    Disturbances go up to one. Columns are those of the modes in contact, then of the free ones.
-
-    Parameters
-    ----------
-    family : Family
-        Of the system.
-    motions : Motions
-        Its motions.
-    channels : sequence of Channel
-        The disturbances that act; none for stability.
-    output : Output, optional
-        What is to be bounded.
+    Disturbances go up to one; without any, it is about stability. Columns are those of the modes in
+    contact, then of the free ones.
     """
     system, d = family.system, family.exponents
     n, count = len(d), len(system.modes)
@@ -243,17 +233,7 @@ def problem_of(
 def transformed(
     problem: DisturbedProblem, T: Array, size: float = 1.0, level: float = 1.0
 ) -> DisturbedProblem:
-    """Return the problem in coordinates ``x = size T z``, with outputs divided by a level.
-
-    Parameters
-    ----------
-    problem : DisturbedProblem
-        In the coordinates of a family.
-    T : ndarray, shape (n, n)
-        Invertible.
-    size, level : float
-        Of the state and of the outputs.
-    """
+    """Return the problem in coordinates ``x = size T z``, with outputs divided by a level."""
     n, inverse = problem.order, np.linalg.inv(T)
 
     def moved(maps: Array) -> Array:
@@ -279,11 +259,6 @@ def balanced(problem: DisturbedProblem) -> tuple[DisturbedProblem, Array]:
     """Return the problem with every error in units of its own, and what a tau is in them.
 
     In them, what an error does to the state and what the state does to it are of like size.
-
-    Parameters
-    ----------
-    problem : DisturbedProblem
-        In coordinates of like size.
     """
     start = problem.order + problem.disturbances
     columns = np.concatenate([problem.contact, problem.free])[:, :, start:]
@@ -321,20 +296,7 @@ def roundings(
 ) -> Iterator[Rounded]:
     """Yield roundings of a solution in coordinates ``x = size T z`` of the family.
 
-    The scale of Q is kept: a set may be ``V <= 1``.
-
-    Parameters
-    ----------
-    family : Family
-        Of the system.
-    found : DisturbedSolution
-        In these coordinates.
-    T : ndarray, shape (n, n)
-        Invertible.
-    units : ndarray
-        As `balanced` gives them.
-    size : float
-        Of the state.
+    The scale of Q is kept: a set may be ``V <= 1``. The units are as `balanced` gives them.
     """
     inverse = np.linalg.inv(T) / size
     Q = inverse.T @ found.Q @ inverse

@@ -15,17 +15,7 @@ Integers = Sequence[int]
 
 
 def undeflected(Q: Matrix, order: int, degree: int = 1) -> Matrix:
-    """Return a form where the last state is zero: the block of the monomials without it.
-
-    Parameters
-    ----------
-    Q : tuple of tuple of int
-        The form.
-    order : int
-        Number of states.
-    degree : int
-        Of the monomials.
-    """
+    """Return a form where the last state is zero: the block of the monomials without it."""
     kept = [k for k, term in enumerate(monomials(order, degree)) if not term[-1]]
     return tuple(tuple(Q[i][j] for j in kept) for i in kept)
 
@@ -44,24 +34,8 @@ def one_form(
 ) -> FormsOnGraph:
     """Draw one form for all modes, and in free motion the same without the deflection.
 
-    Parameters
-    ----------
-    system : SwitchedSystem
-        That the graph is about.
-    Q : tuple of tuple of int
-        The form in contact.
-    log2 : int
-        Q and all multipliers are over two to this power.
-    rate : Fraction
-        The alpha in 1/s, or rho per step.
-    degree : int
-        Of the monomials.
-    crossings, roundings : sequence of int
-        Multipliers, in the order of the system.
-    vanishing : tuple of matrix
-        One for each mode, in contact and free.
-    lost : bool
-        Whether contact is lost and made.
+    Form and multipliers, in the order of the system, are over ``2^log2``; the rate is alpha in 1/s,
+    or rho per step. There is one vanishing matrix for each mode, in contact and free.
     """
     nodes = [Node(CONTACT, Q)]
     if lost:

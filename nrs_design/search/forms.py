@@ -138,14 +138,7 @@ class Inequality:
     def weight(self, rate: float, degree: int, time: Time) -> float:
         """Return what the form after a map counts, if that before it counts one.
 
-        Parameters
-        ----------
-        rate : float
-            The alpha in 1/s, or rho per step.
-        degree : int
-            Of the monomials.
-        time : Time
-            Continuous or discrete.
+        The rate is alpha in 1/s, or rho per step; the degree is that of the monomials.
         """
         if time is Time.CONTINUOUS:
             return exp(2 * rate * self.lasts)
@@ -261,11 +254,6 @@ class FormsProgram:
 
         Of many edges of quadratic forms, only those are kept to which the last solution left a
         margin well below that of the others.
-
-        Raises
-        ------
-        NotAffordableError
-            If work or memory do not suffice.
         """
         while True:
             solution = self._solve_for(self.active, rate, allowance)
@@ -312,20 +300,7 @@ class FormsProgram:
         return None if x is None else self._read(x, rate)
 
     def solve_dual(self, rate: float, allowance: Allowance) -> DualSolution | None:
-        """Solve at a rate, for the dual variables as well; None without a margin.
-
-        Parameters
-        ----------
-        rate : float
-            The alpha in 1/s, or rho per step.
-        allowance : Allowance
-            Work and memory.
-
-        Raises
-        ------
-        NotAffordableError
-            If work or memory do not suffice.
-        """
+        """Solve at a rate, for the dual variables as well; None without a margin."""
         if self.solve(rate, allowance) is None:
             return None
         active = self.active  # Enough of the edges, as the solution has found
@@ -424,16 +399,7 @@ class FormsProgram:
     def decrease(self, edge: Inequality, solution: Solution, N: Array, rate: float) -> Array:
         """Return what must be positive of an edge, its own or that of a like drawing.
 
-        Parameters
-        ----------
-        edge : Inequality
-            With the facts of the program, at their scales.
-        solution : Solution
-            Forms and multipliers.
-        N : ndarray
-            The form that vanishes.
-        rate : float
-            The alpha in 1/s, or rho per step.
+        N is the form that vanishes; the rate is in 1/s, or per step.
         """
         Q = solution.forms[edge.before][np.ix_(edge.kept, edge.kept)]
         if edge.is_flow:
@@ -443,13 +409,7 @@ class FormsProgram:
         return np.asarray(self._form(edge, solution, N) + keeps * Q)
 
     def edges_at(self, system: SwitchedSystem) -> list[Inequality]:
-        """Return the edges for another system of the same shape, in the same units.
-
-        Parameters
-        ----------
-        system : SwitchedSystem
-            With other numbers in its modes.
-        """
+        """Return the edges for another system of the same shape, in the same units."""
         every, _ = _edges(replace(self.drawing, system=system), self.scales)
         first = [self.stands_for.index(k) for k in range(len(self.edges))]
         return [every[k] for k in first]
@@ -493,16 +453,8 @@ class FormsProgram:
     ) -> Iterator[FormsOnGraph]:
         """Yield roundings of all forms to integers over one denominator.
 
-        Parameters
-        ----------
-        solution : Solution
-            For which the claim holds in floating point.
-        claim : Fraction
-            The rate.
-        digits : sequence of int
-            After the binary point.
-        errors : bool
-            Whether errors are covered, at a rate that leaves room.
+        The claimed rate holds for the solution in floating point. `errors`: errors that were not
+        solved for are covered, at a rate that leaves room.
         """
         drawing, coordinates = self.drawing, self.drawing.coordinates
         inverses = [np.linalg.inv(one.T) for one in coordinates]

@@ -108,23 +108,8 @@ def propose(
 ) -> Candidates[FormsOnGraph]:
     """Solve for any rate; then, if asked to, for the largest, which is proposed first.
 
-    Parameters
-    ----------
-    programs : sequence of FormsProgram
-        For the same graph; the last one is asked for rates, each of them for forms.
-    family : Family
-        Of its system.
-    limit : float
-        The rate that no form can beat.
-    rates : Rates
-        How the largest rate is looked for.
-    covers : int
-        So many of them, the first ones, leave room for errors that they do not solve for.
-
-    Raises
-    ------
-    NotAffordableError
-        If work or memory do not suffice.
+    Of programs for the same graph, the last one is asked for rates, each of them for forms; the
+    first `covers` leave room for errors that they do not solve for. No form can beat the limit.
     """
     time, allowance, asked = family.system.time, family.allowance, programs[-1]
     first, best = asked.solve(rate_at(0.0, limit, time), allowance), 0.0
@@ -202,13 +187,7 @@ def _propose_dear(
 
 
 def search_conewise_modes(family: Family) -> Candidates[FormsOnGraph]:
-    """Search for a form for each mode, in contact and in free motion.
-
-    Raises
-    ------
-    NotAffordableError
-        If work or memory do not suffice.
-    """
+    """Search for a form for each mode, in contact and in free motion."""
     if not np.isfinite(family.limit):
         return OUT_OF_RANGE
     # What is left of the budget is for simpler functions in kept contact.
@@ -252,11 +231,6 @@ def search_periodic_quadratic(family: Family) -> Candidates[FormsOnGraph]:
 
     Where the arithmetic rounds, forms that cover that are tried before others, unless there are
     too many conditions to check.
-
-    Raises
-    ------
-    NotAffordableError
-        If work or memory do not suffice.
     """
     system, clock = family.system, family.system.clock
     if clock is None:
@@ -384,19 +358,9 @@ def _free(system: SwitchedSystem) -> tuple[Mode, ...]:
 
 
 def search_modes(family: Family, degree: int = 1) -> Candidates[FormsOnGraph]:
-    """Search for a form for each mode, under its rules of switching.
+    """Search for a form of degree 2d for each mode, under its rules of switching.
 
-    Parameters
-    ----------
-    family : Family
-        The modes, of any sizes, and their switching.
-    degree : int
-        Half the degree of the forms; beyond 1 for discrete time.
-
-    Raises
-    ------
-    NotAffordableError
-        If work or memory do not suffice for another solution.
+    Modes may be of any sizes; d is beyond 1 in discrete time only.
     """
     system, allowance = family.system, family.allowance
     cost, what = functions_cost(system, degree)
@@ -425,11 +389,6 @@ def limit_of_cycles(family: Family) -> float:
     """Return the rate that no form can beat: that of the worst cycle found, under rules.
 
     Without rules, that of the modes that need never be left is near enough.
-
-    Parameters
-    ----------
-    family : Family
-        The modes and their switching.
     """
     system = family.system
     if not system.is_uniform or system.switching.is_arbitrary or system.switching.fixed_ends:
@@ -480,11 +439,6 @@ def search_together(family: Family) -> Candidates[FormsOnGraph]:
     """Search for a form for all modes, in contact and free.
 
     Where the arithmetic rounds, forms that cover that are tried before others.
-
-    Raises
-    ------
-    NotAffordableError
-        If work or memory do not suffice.
     """
     lost, rounds = family.system.contact is not None, bool(family.system.roundings)
     return (yield from _together(family, rounds + lost, rounds, lost=lost))
@@ -523,26 +477,14 @@ def _together(
 
 
 def search_polynomial(family: Family, degree: int) -> Candidates[FormsOnGraph]:
-    """Search for a polynomial of degree 2d that all modes share.
-
-    Raises
-    ------
-    NotAffordableError
-        If work or memory do not suffice.
-    """
+    """Search for a polynomial of degree 2d that all modes share."""
     family.allowance.require(*family_cost(family.system, degree))
     program = FormsProgram(draw_together(family, degree))
     return (yield from propose([program], family, family.limit, POLYNOMIAL))
 
 
 def search_conewise_polynomial(family: Family, degree: int) -> Candidates[FormsOnGraph]:
-    """Search for a polynomial of degree 2d for contact and free motion.
-
-    Raises
-    ------
-    NotAffordableError
-        If work or memory do not suffice.
-    """
+    """Search for a polynomial of degree 2d for contact and free motion."""
     family.allowance.require(*conewise_cost(family.system, degree))
     program = FormsProgram(draw_together(family, degree, lost=True))
     return (yield from propose([program], family, family.limit, POLYNOMIAL))
@@ -559,14 +501,7 @@ def lifted_coordinates(d: Exponents, degree: int) -> FormCoordinates:
 def draw_together(family: Family, degree: int, *, lost: bool = False) -> Drawing:
     """Draw a node for all modes, and in free motion the same form without the deflection.
 
-    Parameters
-    ----------
-    family : Family
-        The modes.
-    degree : int
-        Of the monomials.
-    lost : bool
-        Whether contact is lost and made.
+    `lost`: contact is lost and made; `solved`: errors that are solved for.
     """
     system = family.system
     places = [CONTACT, FREE] if lost else [CONTACT]
@@ -587,13 +522,7 @@ def draw_together(family: Family, degree: int, *, lost: bool = False) -> Drawing
 
 
 def left_modes(system: SwitchedSystem) -> tuple[str, ...]:
-    """Return the modes of which every stay is shown.
-
-    Parameters
-    ----------
-    system : SwitchedSystem
-        With its rules of switching.
-    """
+    """Return the modes of which every stay is shown."""
     stays = system.stays()
     return tuple(m.name for m in system.modes if _is_left(system, m, stays[m.name]))
 

@@ -142,24 +142,12 @@ class Rung:
     in_kept_contact: bool = True
 
     def is_idle(self, known: frozenset[Shows]) -> bool:
-        """Tell whether it can find nothing more.
-
-        Parameters
-        ----------
-        known : frozenset of Shows
-            What has been shown.
-        """
+        """Tell whether it can find nothing more."""
         without_quadratic = self.only_quadratic and Shows.NO_COMMON_QUADRATIC in known
         return without_quadratic or (self.in_kept_contact and Shows.INSTABILITY_IN_CONTACT in known)
 
     def count_first(self, system: SwitchedSystem) -> int:
-        """Return how many steps are made before the rungs below: of the first degrees, the quick.
-
-        Parameters
-        ----------
-        system : SwitchedSystem
-            The modes.
-        """
+        """Return how many steps are made before the rungs below: of the quick first degrees."""
         if self.lengths is not None:
             return sum(cost.work <= self.first for cost in self.lengths(system).values())
         if self.cost is None or self.first == inf:
@@ -173,13 +161,7 @@ class Rung:
         return asked and self.can_decide(facts)
 
     def can_decide(self, facts: Facts) -> bool:
-        """Tell whether it can decide a system.
-
-        Parameters
-        ----------
-        facts : Facts
-            Of the system.
-        """
+        """Tell whether it can decide a system."""
         return self.clocked == facts.takes_turns and self.applies(facts)
 
     def steps(self, system: SwitchedSystem, limits: Limits, allowance: Allowance) -> Iterator[Step]:
@@ -187,15 +169,6 @@ class Rung:
 
         Degrees rise while they are predicted to fit into what is left of the budget, so how far
         they rise does not depend on the machine. In one state, all forms of a degree are alike.
-
-        Parameters
-        ----------
-        system : SwitchedSystem
-            The modes.
-        limits : Limits
-            With the highest degree.
-        allowance : Allowance
-            What is left of the budget.
         """
         if self.lengths is not None:
             if limits.max_degree is not None and self.degree > limits.max_degree:

@@ -40,26 +40,10 @@ _AWAY = 1.0
 def build_scenario(
     spec: InteractionDesignSpec, plant: Plant, name: str, scenario: ScenarioSpec, folder: Path
 ) -> Scenario:
-    """Convert a scenario to SI.
+    """Convert a scenario to SI; files that it names are relative to the folder of the spec.
 
-    Parameters
-    ----------
-    spec : InteractionDesignSpec
-        With its limits, environments and mode logic.
-    plant : Plant
-        Of that spec.
-    name : str
-        Of the scenario.
-    scenario : ScenarioSpec
-        As written.
-    folder : Path
-        Of the spec, for files that it names.
-
-    Raises
-    ------
-    DataError
-        If a file of commands cannot be read, is longer than is simulated, or commands more than
-        the limit of the spec.
+    A `DataError` if a file of commands cannot be read, is longer than is simulated, or commands
+    more than the limit of the spec.
     """
     profile, length = _profile(scenario.command, folder, spec.limits.velocity.si)
     length = length if scenario.length is None else scenario.length.si
@@ -80,34 +64,16 @@ def build_scenario(
 
 
 def check_recordings(spec: InteractionDesignSpec, folder: Path) -> None:
-    """Read every file of commands that a spec names.
+    """Read every file of commands that a spec names, relative to its folder.
 
-    Parameters
-    ----------
-    spec : InteractionDesignSpec
-        With its scenarios.
-    folder : Path
-        Of the spec.
-
-    Raises
-    ------
-    DataError
-        If one cannot be read, is no profile, or commands more than the limit of the spec.
+    A `DataError` if one cannot be read, is no profile, or commands more than the limit of the spec.
     """
     for scenario in spec.scenarios.values():
         _profile(scenario.command, folder, spec.limits.velocity.si)
 
 
 def default_scenario(spec: InteractionDesignSpec, plant: Plant) -> Scenario:
-    """Return a run into the first environment that is touched, and out again (thesis fig. 6.7).
-
-    Parameters
-    ----------
-    spec : InteractionDesignSpec
-        Without scenarios.
-    plant : Plant
-        Of that spec.
-    """
+    """Return a run into the first environment that is touched, and out again (thesis fig. 6.7)."""
     largest = spec.limits.velocity.si
     times, shares = np.array(_SHAPE).T
     touched = [name for name in spec.environments if name in spec.touched]
@@ -189,16 +155,7 @@ def drawn_laws(
 ) -> dict[str, tuple[AbstractContactLaw, Element | None]]:
     """Return the laws of environments, with every parameter picked from its range.
 
-    Parameters
-    ----------
-    spec : InteractionDesignSpec
-        With these environments.
-    plant : Plant
-        Of that spec.
-    names : collection of str
-        Of the environments.
-    pick : callable
-        Takes a range and returns a number within; asked in the order of the parameters.
+    `pick` takes a range and returns a number within; it is asked in the order of the parameters.
     """
     return {name: _law(spec.environments[name], plant.environment(name), pick) for name in names}
 

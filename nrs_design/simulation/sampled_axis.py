@@ -82,22 +82,10 @@ class SampleInputs:
         misses: DeadlinesSpec | None,
         count: int,
     ) -> SampleInputs:
-        """Draw it from the seed of the scenario.
+        """Draw what N samples are given from the seed of the scenario.
 
-        Parameters
-        ----------
-        scenario : Scenario
-            With its errors.
-        period : float
-            In s.
-        delay : tuple of (int, int)
-            Smallest and largest age.
-        late : tuple of (float, float)
-            Shortest and longest time from a sample to its command, in s.
-        misses : DeadlinesSpec or None
-            The rule for misses: where it allows one, every second sample or so is missed.
-        count : int
-            Number of samples N.
+        `delay` holds the smallest and largest age; `late`, the times from a sample to its command,
+        in s. Where a rule allows misses, every second sample or so is missed.
         """
         rng = np.random.default_rng(scenario.seed)
         shifted = scenario.errors.jitter * period * rng.random(count)
@@ -174,15 +162,7 @@ class SampledAxis:
         ]
 
     def finish(self, inputs: SampleInputs, stopped: str | None) -> Run:
-        """Return the run up to now.
-
-        Parameters
-        ----------
-        inputs : SampleInputs
-            What it was given.
-        stopped : str or None
-            Why it ends before its time.
-        """
+        """Return the run up to now; `stopped` says why it ends before its time."""
         return Run(
             self.scenario.name,
             "sampled",
@@ -201,20 +181,10 @@ class SampledAxis:
     def sample(
         self, t: float, hand: float, noise: float, age: int, late: float, missed: bool
     ) -> None:
-        """Run the law once, and send its command.
+        """Run the law once; return its command, which takes effect `late` s after the sample.
 
-        Parameters
-        ----------
-        t : float
-            In s.
-        hand, noise : float
-            Commanded velocity in rad/s, and error of the measured torque in N m.
-        age : int
-            Of the force sample.
-        late : float
-            After how long its command takes effect, in s.
-        missed : bool
-            Whether its deadline is missed: the law is not run, and the command is held or zero.
+        The hand is in rad/s, the noise of the torque in N m; `age` is that of the force sample.
+        Where the deadline is missed, the law is not run, and the command is held or zero.
         """
         tissue, errors = self.tissue, self.scenario.errors
         torque = tissue.torque(self.theta, self.omega)

@@ -60,28 +60,10 @@ def assemble_from_text(
 ) -> SwitchedSystem:
     """Assemble the switched system of a spec from the gains that a certificate quotes.
 
-    This is the way of a re-check, where gains are a stranger's text: they are read, and held
-    against the spec. Who has the design in hand calls `assemble`.
-
-    Parameters
-    ----------
-    spec : Spec
-        Either kind.
-    gains : mapping
-        As `nrs_design.controllers.gains.gains_of` gives them; empty for given matrices.
-    scale : Fraction
-        Not negative: every declared range is stretched by it about its nominal value. 0 leaves the
-        nominal values only.
-    plant : Plant, optional
-        Built from this very spec, where it is in hand; by default it is built here.
-    points : str
-        As for `assemble`.
-
-    Raises
-    ------
-    AssemblyError, CertificateError
-        If gains do not fit the spec, if a stiffness does not stay positive, or if the rules of
-        switching make too many switches.
+    This is the way of a re-check, where gains are a stranger's text, named as in `gains_of`: they
+    are read, and held against the spec. Who has the design in hand calls `assemble`, whose errors
+    these are, beside a `CertificateError` for gains that do not fit the spec. Every declared range
+    is stretched by the scale about its nominal value; 0 leaves the nominal values only.
     """
     if spec.kind == "switched-system":
         if gains:
@@ -101,10 +83,7 @@ def assemble_from_text(
 def assemble_matrices(spec: SwitchedSystemSpec, scale: Fraction = DECLARED) -> SwitchedSystem:
     """Return the system of a spec of given matrices, one mode for each corner of its boxes.
 
-    Raises
-    ------
-    AssemblyError
-        If the scale is negative, or the rules of switching make too many switches.
+    An `AssemblyError` if the scale is negative, or the rules of switching make too many switches.
     """
     _check_scale(scale)
     parameters = read_parameters(spec, scale)
@@ -139,25 +118,9 @@ def assemble(
 ) -> SwitchedSystem:
     """Return the closed loop of an interaction design, one mode for each corner of its boxes.
 
-    Parameters
-    ----------
-    spec : InteractionDesignSpec
-        With the name and the rules of switching.
-    plant : Plant
-        As `nrs_design.spec.build_plant.build_plant` makes it of this spec.
-    design : ControllerDesign
-        The gains that ship.
-    scale : Fraction
-        Not negative: every declared range is stretched by it about its nominal value.
-    points : str
-        One of `POINTS`, of a sampled loop: what is attained there, instead of what encloses all
-        ranges. What grows there refutes the spec, and a proof there is none of the spec.
-
-    Raises
-    ------
-    AssemblyError
-        If there are no such points, a stiffness does not stay positive, or the rules of switching
-        make too many switches.
+    Every declared range is stretched by the scale, not negative, about its nominal value. An
+    `AssemblyError` if a stiffness or a gain does not stay positive, or if the rules of switching
+    make too many switches.
     """
     from nrs_design.spec.build_plant import build_conditions
 
@@ -244,20 +207,7 @@ def state_of(
     plant: Plant,
     design: ControllerDesign,
 ) -> SharedState:
-    """Return the state that the modes of an interaction design share in continuous time.
-
-    Parameters
-    ----------
-    conditions : OperatingConditions
-        With what idle states do, and the offset of force controllers.
-    plant, design
-        As for `assemble`.
-
-    Raises
-    ------
-    AssemblyError
-        If they share none.
-    """
+    """Return the state that the modes of an interaction design share in continuous time."""
     from nrs_design.switched.shared_state import shared_state
 
     loop = plant.motion_loop(design.motion.Kp, design.motion.Kd)

@@ -39,13 +39,7 @@ class ConstantParameter:
         return 1 if self.contact is None else 2
 
     def is_at(self, mode: Sequence[str]) -> str | None:
-        """Return at which corner a mode is, None if the parameter is not in it.
-
-        Parameters
-        ----------
-        mode : sequence of str
-            Its name, then its labels: those of contact and corners.
-        """
+        """Return at which corner a mode is, by its name and labels; None if it is not in it."""
         if self.contact is not None and self.contact not in mode[1:2]:
             return None
         said = set(mode[self.first_label :])
@@ -55,19 +49,10 @@ class ConstantParameter:
 def constant_lateness(
     name: str, late: tuple[Fraction, Fraction], period: Fraction
 ) -> ConstantParameter:
-    """Return the time from a sample to its command as a constant parameter.
+    """Return the time from a sample to its command, in s, as a constant parameter.
 
     It is within one period, so one command takes effect in each, and a mode is at an end of what is
     left of the period then: the longer it is, the earlier the command.
-
-    Parameters
-    ----------
-    name : str
-        The key of a spec.
-    late : tuple of Fraction
-        Its ends in s.
-    period : Fraction
-        In s.
     """
     symbol = f"h{late[0] // period}"
     said = FixedParameter(name, *late, "s", enclosed=True)
@@ -77,21 +62,10 @@ def constant_lateness(
 def constants_of(
     plant: Plant, touched: Collection[str], drive: str, *, sampled: bool, points: bool = False
 ) -> Iterator[ConstantParameter]:
-    """Yield the constant parameters of a plant.
+    """Yield the constant parameters of a plant; `drive` is the part of the spec that the motor is.
 
-    Parameters
-    ----------
-    plant : Plant
-        With its ranges.
-    touched : collection of str
-        Environments that count.
-    drive : str
-        Which part of the spec the motor is.
-    sampled : bool
-        Whether the loop is sampled: its numbers enclose those of a constant time constant, so their
-        corners are none of its values.
-    points : bool
-        Whether there are modes at its ends instead.
+    Numbers of a sampled loop enclose those of a constant time constant, so their corners are none
+    of its values.
     """
     if plant.drive is not None and sampled:
         yield from _enclosed(_of_drive(plant.drive, drive))
@@ -158,19 +132,8 @@ def constant_sets(
 ) -> Iterator[tuple[str, ...]]:
     """Yield, for each mode, what it is at the corners of the constant parameters.
 
-    A mode that a parameter is not in is the same at both of its ends.
-
-    Parameters
-    ----------
-    names : iterable of str
-        Of all modes, with their labels.
-    parameters : sequence of ConstantParameter
-        In the order in which corners turn, the last one fastest.
-
-    Raises
-    ------
-    InternalError
-        If a corner has no mode.
+    A mode that a parameter is not in is the same at both of its ends. The last parameter turns
+    fastest.
     """
     if not parameters:
         return
@@ -202,19 +165,9 @@ def constant_sets(
 def with_constants(
     system: SwitchedSystem, parameters: Sequence[ConstantParameter]
 ) -> SwitchedSystem:
-    """Return the system with parameters that do not change.
+    """Return the system, with a mode for each corner, with parameters that do not change.
 
-    Parameters
-    ----------
-    system : SwitchedSystem
-        With a mode for each corner of them.
-    parameters : sequence of ConstantParameter
-        That have a range.
-
-    Raises
-    ------
-    AssemblyError
-        If they have too many corners.
+    An `AssemblyError` if they have too many corners.
     """
     if not parameters:
         return system

@@ -85,17 +85,7 @@ class AbstractAxis(ABC):
 
     @abstractmethod
     def cut(self, law: CompliantLaw, contact: AbstractLinearLaw, place: Place) -> CutLoop:
-        """Return the loop of a controller.
-
-        Parameters
-        ----------
-        law : CompliantLaw
-            With its gains.
-        contact : AbstractLinearLaw
-            At fixed parameters.
-        place : Place
-            One of the `places`.
-        """
+        """Return the loop of a controller at fixed parameters of the contact and a place."""
 
     @abstractmethod
     def modes(
@@ -104,11 +94,6 @@ class AbstractAxis(ABC):
         """Return the mode without the force in the law, and the one that is proved.
 
         They differ by one column times one row; sampled, they are steps.
-
-        Parameters
-        ----------
-        law, contact, place
-            As for `cut`.
         """
 
     @abstractmethod
@@ -117,17 +102,9 @@ class AbstractAxis(ABC):
     ) -> tuple[CutLoop, CutLoop, CutLoop]:
         """Return the loops of three admittances, at (2, 2), (3, 2) and (2, 3) in two coordinates.
 
-        They are Mt and Bt, and the polynomials are times Mt; sampled, they are a and b. All
-        polynomials are affine in both.
-
-        Parameters
-        ----------
-        contact, place
-            As for `cut`.
-        spring : Fraction
-            Kt in N m/rad; zero is none.
-        inert : bool
-            Sampled: whether the law has inertia; else there is no a.
+        They are Mt and Bt, and the polynomials are times Mt; sampled, they are a and b, and without
+        inertia there is no a. All polynomials are affine in both. The spring Kt is in N m/rad; zero
+        is none.
         """
 
 
@@ -137,18 +114,9 @@ COORDINATES = ((Fraction(2), Fraction(2)), (Fraction(3), Fraction(2)), (Fraction
 
 @dataclass(frozen=True, slots=True)
 class ContinuousAxis(AbstractAxis):
-    """An axis whose law is never sampled.
+    """An axis whose law is never sampled; the nominal place is the first one.
 
-    Parameters
-    ----------
-    places : tuple of Place
-        The nominal one first.
-    realization : Realization
-        Of the motion loop.
-    joint : Joint or None
-        The motor in its physical state, where it has ranges or a load.
-    low_pass : LowPass or None
-        Through which the law gets the force.
+    `joint` is the motor in its physical state, where it has ranges or a load.
     """
 
     realization: Realization
@@ -167,13 +135,7 @@ class ContinuousAxis(AbstractAxis):
         return self.joint.at({"Km": motor.gain, "tau": motor.time_constant})
 
     def cut(self, law: CompliantLaw, contact: AbstractLinearLaw, place: Place) -> CutLoop:
-        """Return the loop of a controller.
-
-        Parameters
-        ----------
-        law, contact, place
-            As in `AbstractAxis.cut`.
-        """
+        """Return the loop of a controller."""
         return CutLoop(
             *(
                 characteristic(self.rows(law, contact, place, cut))
@@ -184,13 +146,7 @@ class ContinuousAxis(AbstractAxis):
     def modes(
         self, law: CompliantLaw, contact: AbstractLinearLaw, place: Place
     ) -> tuple[Sequence[LinearForm], Sequence[LinearForm]]:
-        """Return the mode without the force in the law, and the one that is proved.
-
-        Parameters
-        ----------
-        law, contact, place
-            As in `AbstractAxis.cut`.
-        """
+        """Return the mode without the force in the law, and the one that is proved."""
         opened, closed = (self.rows(law, contact, place, cut) for cut in (_OPENED, _CLOSED))
         return opened, closed
 
@@ -199,12 +155,7 @@ class ContinuousAxis(AbstractAxis):
     ) -> list[LinearForm]:
         """Return a mode, of the states of this controller and contact alone.
 
-        Parameters
-        ----------
-        law, contact, place
-            As in `AbstractAxis.cut`.
-        cut : ForceShare
-            How much of the force acts.
+        `cut` is how much of the force acts.
         """
         if law.commands == "position":
             return position_mode(self.realization, law, contact, cut=cut)
@@ -213,13 +164,7 @@ class ContinuousAxis(AbstractAxis):
     def admittances(
         self, contact: AbstractLinearLaw, spring: Fraction, place: Place, *, inert: bool
     ) -> tuple[CutLoop, CutLoop, CutLoop]:
-        """Return the loops of three admittances; without inertia is a limit of the same.
-
-        Parameters
-        ----------
-        contact, spring, place, inert
-            As in `AbstractAxis.admittances`.
-        """
+        """Return the loops of three admittances; without inertia is a limit of the same."""
         first, second, third = (
             _times(Mt, self.cut(Admittance(Mt, Bt, spring), contact, place))
             for Mt, Bt in COORDINATES
@@ -231,20 +176,8 @@ class ContinuousAxis(AbstractAxis):
 class ProcessorAxis(AbstractAxis):
     """An axis whose law a processor computes.
 
-    Parameters
-    ----------
-    places : tuple of Place
-        The nominal motor at the youngest force sample first.
-    motion : ProportionalDerivative
-        The motion controller.
-    sampling : SamplingSpec
-        The processor.
-    low_pass : LowPass or None
-        Through which the law gets the force.
-    takes : Takes or None
-        What the robot takes, if that is not the commands of a motor.
-    drive : Drive or None
-        What moves its joint, if that is no motor.
+    The first place is the nominal motor at the youngest force sample. `takes` and `drive` are there
+    where the robot takes no commands of a motor, and no motor moves its joint.
     """
 
     motion: ProportionalDerivative
@@ -259,25 +192,13 @@ class ProcessorAxis(AbstractAxis):
         return self.sampling.outer
 
     def cut(self, law: CompliantLaw, contact: AbstractLinearLaw, place: Place) -> CutLoop:
-        """Return the loop of a controller.
-
-        Parameters
-        ----------
-        law, contact, place
-            As in `AbstractAxis.cut`.
-        """
+        """Return the loop of a controller."""
         return self._cut(self._held(law), contact, place)
 
     def modes(
         self, law: CompliantLaw, contact: AbstractLinearLaw, place: Place
     ) -> tuple[Sequence[LinearForm], Sequence[LinearForm]]:
-        """Return the step without the force in the law, and the one that is proved.
-
-        Parameters
-        ----------
-        law, contact, place
-            As in `AbstractAxis.cut`.
-        """
+        """Return the step without the force in the law, and the one that is proved."""
         return self._modes(self._held(law), contact, place)
 
     def _held(self, law: CompliantLaw) -> DiscreteLaw:
@@ -286,13 +207,7 @@ class ProcessorAxis(AbstractAxis):
     def admittances(
         self, contact: AbstractLinearLaw, spring: Fraction, place: Place, *, inert: bool
     ) -> tuple[CutLoop, CutLoop, CutLoop]:
-        """Return the loops of three admittances.
-
-        Parameters
-        ----------
-        contact, spring, place, inert
-            As in `AbstractAxis.admittances`.
-        """
+        """Return the loops of three admittances."""
         T = to_float32(self.sampling.outer)
         first, second, third = (
             self._cut(Admittance.discrete(a if inert else None, b, T, spring), contact, place)
@@ -347,22 +262,8 @@ def axis_of(
 ) -> AbstractAxis | None:
     """Return the axis of a spec, at its nominal motor and at every corner of its ranges.
 
-    Parameters
-    ----------
-    spec : InteractionDesignSpec
-        With the processor, if there is one.
-    plant : Plant
-        That it describes.
-    motion : ProportionalDerivative
-        The motion controller.
-    sensor : Sensor
-        With the filter of the force.
-
-    Returns
-    -------
-    AbstractAxis or None
-        None where the force is sampled more often than the motion loop: it then enters a round at
-        several samples, and there is no one place to cut.
+    None where the force is sampled more often than the motion loop: it then enters a round at
+    several samples, and there is no one place to cut.
     """
     sampling, low_pass = spec.sampling, sensor.filter
     ranges = plant.actuator_ranges
@@ -396,13 +297,7 @@ def _places(
 
 
 def characteristic(rows: Sequence[LinearForm]) -> Polynomial:
-    """Return ``det(s I - A)`` exactly, highest power first.
-
-    Parameters
-    ----------
-    rows : sequence of LinearForm
-        Square.
-    """
+    """Return ``det(s I - A)`` exactly, highest power first."""
     from flint import fmpz_mat
 
     A = RationalMatrix.from_rows(rows)
@@ -423,12 +318,7 @@ def _times(factor: Fraction, loop: CutLoop) -> CutLoop:
 def on_the_axis(polynomial: Sequence[Fraction], period: Fraction) -> Polynomial:
     """Put ``z = (1 + w T/2)/(1 - w T/2)`` in, times ``(1 - w T/2)^n``.
 
-    Parameters
-    ----------
-    polynomial : sequence of Fraction
-        In z, of degree n, highest power first.
-    period : Fraction
-        The T.
+    The polynomial is in z, of degree n, highest power first; T is the period.
     """
     half = period / 2
     total, power = [polynomial[0]], [ONE]

@@ -108,15 +108,7 @@ class Box:
             yield "/".join([name, *labels]), self._at(ends, at)
 
     def points(self, name: str, attained: Collection[str]) -> Iterator[str]:
-        """Yield, for the corners in their order, the names of what they are corners of.
-
-        Parameters
-        ----------
-        name : str
-            Of the mode.
-        attained : collection of str
-            Symbols whose ends are values of the loop. Those of the others only enclose it.
-        """
+        """Yield, for the corners in their order, the names of what they are corners of."""
         symbols = [*self.ranges]
         ends = {symbol: dict(interval.ends) for symbol, interval in self.ranges.items()}
         for at in self._points(ends, self._hull_labels()):

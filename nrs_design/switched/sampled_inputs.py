@@ -35,21 +35,7 @@ class SampledMode:
     def of(
         cls, name: str, rows: Sequence[LinearForm], n: int, point: str, *, begins: bool = True
     ) -> SampledMode:
-        """Take apart the rows of a frame.
-
-        Parameters
-        ----------
-        name : str
-            Of the mode.
-        rows : sequence of LinearForm
-            As `Frame.rows` gives them.
-        n : int
-            Number of states.
-        point : str
-            As for the class.
-        begins : bool
-            As for the class.
-        """
+        """Take apart the rows that `Frame.rows` gives, of n states."""
         *rows, command = rows
         mode = Mode(name, RationalMatrix.from_rows([row[:n] for row in rows[:n]]))
         return cls(mode, tuple(rows[:n]), tuple(rows[n:]), command, point, begins)
@@ -67,16 +53,8 @@ def channels_of(
 ) -> Iterator[Channel]:
     """Yield the disturbances of the spec, and the errors of its sensor, with their columns.
 
-    Parameters
-    ----------
-    disturbances : mapping or None
-        What is declared to disturb, and how much.
-    largest_angle : Fraction or None
-        Of what the law holds as single-precision numbers, in rad.
-    off : Fraction
-        How far the force signal may be off for long, in N m.
-    motions : sequence of SampledMode
-        All modes, those of free motion last.
+    `largest_angle`, in rad, is of what the law holds as single-precision numbers; `off`, in N m, is
+    how far the force signal may be off for long. Motions of free motion are the last ones.
     """
     if disturbances is None:
         return
@@ -96,17 +74,7 @@ def channels_of(
 def roundings_of(
     frame: Frame, channels: Sequence[Channel], motions: Sequence[SampledMode]
 ) -> Iterator[Rounding]:
-    """Yield what the arithmetic adds, with rows over the states and the declared disturbances.
-
-    Parameters
-    ----------
-    frame : Frame
-        Of all modes.
-    channels : sequence of Channel
-        The disturbances.
-    motions : sequence of SampledMode
-        All modes, those of free motion last.
-    """
+    """Yield what the arithmetic adds, with rows over the states and the declared disturbances."""
     kept = known_entries(frame, channels)
     for j, name in enumerate(frame.roundings):
         rows = _rows_over(kept, (motion.sizes[j] for motion in motions))
@@ -124,15 +92,7 @@ def _rows_over(kept: Sequence[int], forms: Iterable[LinearForm]) -> Iterator[Rat
 
 
 def known_entries(frame: Frame, channels: Sequence[Channel]) -> list[int]:
-    """Return where the states and the declared disturbances are in a form of a frame.
-
-    Parameters
-    ----------
-    frame : Frame
-        Of all modes.
-    channels : sequence of Channel
-        The disturbances.
-    """
+    """Return where the states and the declared disturbances are in a form of a frame."""
     n, named = len(frame.states), [channel.name for channel in channels]
     return [*range(n), *(n + i for i, name in enumerate(INPUTS) if name in named)]
 
@@ -140,12 +100,7 @@ def known_entries(frame: Frame, channels: Sequence[Channel]) -> list[int]:
 def anything_of(environments: Iterable[Environment], *, lost: bool) -> dict[str, Interval]:
     """Return where stiffness and damping are of any of some environments, or of nothing.
 
-    Parameters
-    ----------
-    environments : iterable of Environment
-        At least one.
-    lost : bool
-        Whether nothing may be touched.
+    `lost`: nothing may be touched, too.
     """
     each = [(e.stiffness, damping_of(e)) for e in environments]
     zero = Fraction(0)

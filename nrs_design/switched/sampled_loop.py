@@ -70,25 +70,6 @@ def close_sampled_loop(
     itself, so it is a convex combination of the corners in the whole box. E and s are
     transcendental: both are enclosed, and so they have ranges even where gain and time constant are
     known.
-
-    Parameters
-    ----------
-    conditions : OperatingConditions
-        With the name, the rules of switching and what is said of contact.
-    sampling : SamplingSpec
-        Its processor.
-    plant : Plant
-        Actuator and environments.
-    design : ControllerDesign
-        Gains that ship.
-    points : bool
-        Whether only what is attained at the ends of all ranges is in force, instead of what
-        encloses all that is between.
-
-    Raises
-    ------
-    AssemblyError
-        If the modes do not share one state, or single precision loses a coefficient.
     """
     _check_periods(sampling)
     period, method = sampling.outer, sampling.admittance
@@ -286,17 +267,7 @@ class _Loop:
     def touching(
         self, environment: Environment, environments: Iterable[Environment], *, forced: bool
     ) -> Iterator[tuple[str, _Loop, Box]]:
-        """Yield the loop in contact with every motor, a label, and where stiffness and damping are.
-
-        Parameters
-        ----------
-        environment : Environment
-            That is touched.
-        environments : iterable of Environment
-            All that may be touched.
-        forced : bool
-            Whether the law takes the force of the sample.
-        """
+        """Yield the loop in contact with every motor, a label, and stiffness and damping."""
         own = {"k": environment.stiffness, "b": damping_of(environment)}
         for label, loop in self.moved():
             motor = loop.frame.motor
@@ -350,15 +321,7 @@ class _Loop:
     def missed(
         self, law: DiscreteLaw, environments: Iterable[Environment]
     ) -> Iterator[SampledMode]:
-        """Yield the motions of a period whose deadline is missed, in all contacts or in none.
-
-        Parameters
-        ----------
-        law : DiscreteLaw
-            Of any controller: nothing of it is computed.
-        environments : iterable of Environment
-            What may be touched; none for free motion.
-        """
+        """Yield the motions of a period whose deadline is missed, in all contacts or in none."""
         turn, remembers = self.frame.turns[-1], self.frame.longest_delay > 0
         contacts = tuple(environments)
         for environment in contacts:

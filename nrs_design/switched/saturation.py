@@ -57,16 +57,7 @@ def with_saturation(
 ) -> SwitchedSystem:
     """Let a statement be about motions in which velocity command and motor command saturate.
 
-    Parameters
-    ----------
-    system : SwitchedSystem
-        The loop in which nothing does.
-    conditions : OperatingConditions
-        With its limits and the goal, as `nrs_design.spec.combinations` checks.
-    actuator : Actuator
-        The nominal motor.
-    state : SharedState
-        Of its modes.
+    The motor is the nominal one; limits and goal are as `nrs_design.spec.combinations` checks.
     """
     assert conditions.largest_command is not None  # `combinations` asks for it.
     motion, low_pass = state.motion, state.low_pass
@@ -117,18 +108,8 @@ def with_sampled_saturation(
 ) -> SwitchedSystem:
     """Let a statement be about motions in which the command of the motor saturates, sampled.
 
-    Parameters
-    ----------
-    system : SwitchedSystem
-        The loop in which nothing does.
-    conditions : OperatingConditions
-        With the limit and the goal, as `nrs_design.spec.combinations` checks.
-    frame : Frame
-        Of all modes.
-    motions : sequence of SampledMode
-        All modes, those of free motion last.
-    environments : sequence of Environment
-        All contacts.
+    Motions of free motion are the last ones; limit and goal are as `nrs_design.spec.combinations`
+    checks.
     """
     assert conditions.largest_command is not None  # `combinations` asks for it.
     n, wide = len(frame.states), len(frame.states) + len(INPUTS)

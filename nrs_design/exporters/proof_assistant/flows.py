@@ -54,15 +54,7 @@ class FlowStatement:
         return f"{listed(listed(map(str, term)) for term in terms)}%nat"
 
     def flow(self, mode: Mode, definitions: Definitions) -> str:
-        """Return the text of a mode; the library lets inputs act on it, of which there are none.
-
-        Parameters
-        ----------
-        mode : Mode
-            The mode.
-        definitions : Definitions
-            Where its rows are defined.
-        """
+        """Return the text of the k-th mode; modes of free motion come after those in contact."""
         rows = [definitions.row([mode.A.numerators[i][j] for j in self.order]) for i in self.order]
         return f"Flow {listed(rows)} {mode.A.denominator} [] 1"
 
@@ -81,15 +73,7 @@ class FlowStatement:
 
 
 def flows_theorem(system: SwitchedSystem, evidence: FormsOnGraph) -> Theorem:
-    """Return the theorem of a certificate in continuous time.
-
-    Parameters
-    ----------
-    system : SwitchedSystem
-        With one form for all its modes, and no force that would pull.
-    evidence : FormsOnGraph
-        That holds for it.
-    """
+    """Return the theorem of a certificate in continuous time, with one form for all modes."""
     flows, definitions = FlowStatement(system, evidence), Definitions()
     modes, others = _define_modes(flows, definitions)
     _define_form(flows, definitions)

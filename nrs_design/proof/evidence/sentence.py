@@ -37,22 +37,9 @@ def free_sentence(
 ) -> str:
     """State a bound on every solution under arbitrary switching.
 
-    Parameters
-    ----------
-    system : SwitchedSystem
-        With its contact and the turns of its modes.
-    rate : Fraction
-        The alpha in 1/s, or rho per step.
-    degree : int
-        Half the degree of the forms.
-    count : int
-        How many of them there are at one place, at most.
-    lost : bool
-        Whether contact is lost and made.
-    once : bool
-        Whether the largest of the forms at a place bounds the state, without a factor in front.
-    alike : bool
-        Whether that in free motion is that in contact without the deflection.
+    The rate is alpha in 1/s, or rho per step; `degree` is half that of the forms, `count` how many
+    there are at one place, at most. `once`: the largest of them bounds the state, without a factor
+    in front; `alike`: that in free motion is that in contact without the deflection.
     """
     continuous = system.time is Time.CONTINUOUS
     x = "w" if lost else "x"

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from fractions import Fraction
+from functools import reduce
 from typing import Any
 
 from nrs_design.proof.exact import IntegerMatrix
@@ -38,6 +39,22 @@ def balls(A: RationalMatrix) -> Any:
     from flint import arb_mat
 
     return arb_mat(_fmpq_matrix(A))
+
+
+def all_between(matrices: Iterable[Any]) -> Any:
+    """Return balls that contain all combinations of matrices of balls."""
+    from flint import arb_mat
+
+    first, *others = matrices
+    if not others:
+        return first
+    rows, columns = range(first.nrows()), range(first.ncols())
+    return arb_mat(
+        [
+            [reduce(lambda a, b: a.union(b), (M[i, j] for M in (first, *others))) for j in columns]
+            for i in rows
+        ]
+    )
 
 
 def exponential(A: RationalMatrix, begin: Fraction, end: Fraction) -> Any:

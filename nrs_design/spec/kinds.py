@@ -204,7 +204,6 @@ ANGLE = QuantityKind(
     rational=False,
     sliding=_sliding("a position", ("m",), "20 mm", "rad"),
 )
-JOINT_POSITION = QuantityKind("a joint position", ("rad", "m"), "10 deg", rational=False)
 PHASE = QuantityKind("a phase", ("rad",), "30 deg", rational=False)
 DEFLECTION = QuantityKind(
     "a deflection",

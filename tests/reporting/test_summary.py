@@ -122,12 +122,12 @@ def test_lights_of_a_design(report):
         (
             "decay_rate: 0.5 1/s, max_sensitivity_peak: 50",
             "good",
-            "all 2 met (floating point); proved: decay_rate",
+            "all 2 met; proved: decay_rate",
         ),
         (
             "decay_rate: 300 1/s, max_sensitivity_peak: 50",
             "doubtful",
-            "all 2 met (floating point); NOT proved: decay_rate",
+            "all 2 met; NOT proved: decay_rate",
         ),
         (
             "decay_rate: 0.5 1/s, max_sensitivity_peak: 1.01",

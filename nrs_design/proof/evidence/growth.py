@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from fractions import Fraction
-from functools import reduce
 from typing import Any
 
 from nrs_design.proof.contact import Flights
-from nrs_design.proof.enclosure import balls, eigenvector, exponential, precision
+from nrs_design.proof.enclosure import all_between, balls, eigenvector, exponential, precision
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
@@ -40,22 +39,6 @@ def attained(system: SwitchedSystem, mode: str) -> Any:
     """
     modes = {mode.name: mode.A for mode in system.every_mode}
     return all_between(balls(modes[name]) for name in system.enclosure_of(mode))
-
-
-def all_between(matrices: Iterable[Any]) -> Any:
-    """TRUSTED: return balls that contain all combinations of matrices of balls."""
-    from flint import arb_mat
-
-    first, *others = matrices
-    if not others:
-        return first
-    rows, columns = range(first.nrows()), range(first.ncols())
-    return arb_mat(
-        [
-            [reduce(lambda a, b: a.union(b), (M[i, j] for M in (first, *others))) for j in columns]
-            for i in rows
-        ]
-    )
 
 
 def grows_throughout(matrices: Iterable[RationalMatrix]) -> bool:

@@ -63,8 +63,8 @@ def command(
 ) -> Callable[[Callable[..., Answer]], Callable[..., None]]:
     """Make a command of a function: with --json, -v and -q, and an end that prints its answer.
 
-    `each_axis`: it is run for each axis of a `spec` that holds several; `together` then says more,
-    given the facts of each. `passes_on`: options that it does not know belong to its last argument.
+    `each_axis`: it is run for each axis of a `spec` that holds several. `passes_on`: options that
+    it does not know belong to its last argument.
     """
     options = {"verbose": Verbose, "quiet": Quiet}
     options |= {"as_json": Json} if has_json else {}

@@ -501,7 +501,7 @@ def lifted_coordinates(d: Exponents, degree: int) -> FormCoordinates:
 def draw_together(family: Family, degree: int, *, lost: bool = False) -> Drawing:
     """Draw a node for all modes, and in free motion the same form without the deflection.
 
-    `lost`: contact is lost and made; `solved`: errors that are solved for.
+    `lost`: contact is lost and made.
     """
     system = family.system
     places = [CONTACT, FREE] if lost else [CONTACT]

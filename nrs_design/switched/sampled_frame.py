@@ -192,15 +192,13 @@ class Frame:
         values: Mapping[str, Fraction],
         turn: Turn = Turn.BOTH,
     ) -> list[LinearForm]:
-        """Return the map of one period, below it the size of each rounding, command and slip.
+        """Return the map of one period, below it the size of each rounding, and the command.
 
         The first rows lead from the states, the `INPUTS` and the `roundings` to the next states; a
-        rounding error is at most the size that its row below gives. The last two rows are the
-        command before it is cut off, and the slip: the difference between the speed and its steady
-        state under the command, or the acceleration of a joint that takes torques. `delay` is the
-        age of the force sample; `values` are the numbers of the motor, as its box names them, and
-        in contact the stiffness ``k`` and the damping ``b`` that the force sample shows. What
-        `turn` does not compute holds what it had.
+        rounding error is at most the size that its row below gives. The last row is the command
+        before it is cut off. `delay` is the age of the force sample; `values` are the numbers of
+        the motor, as its box names them, and in contact the stiffness ``k`` and the damping ``b``
+        that the force sample shows. What `turn` does not compute holds what it had.
         """
         contact = values.get("k", ZERO), values.get("b", ZERO)
         # An older sample is a state, whatever is touched now.

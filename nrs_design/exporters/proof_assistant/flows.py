@@ -54,7 +54,7 @@ class FlowStatement:
         return f"{listed(listed(map(str, term)) for term in terms)}%nat"
 
     def flow(self, mode: Mode, definitions: Definitions) -> str:
-        """Return the text of the k-th mode; modes of free motion come after those in contact."""
+        """Return the text of a mode; the library lets inputs act on it, of which there are none."""
         rows = [definitions.row([mode.A.numerators[i][j] for j in self.order]) for i in self.order]
         return f"Flow {listed(rows)} {mode.A.denominator} [] 1"
 

@@ -5,7 +5,7 @@ import pytest
 from nrs_design.certificates.certificate import dump
 from nrs_design.errors import OutputError
 from nrs_design.output import PAGE
-from nrs_design.ownership import check_certificate, check_export, check_name, check_owner, origin_of
+from nrs_design.ownership import check_certificate, check_name, check_owner, origin_of
 from nrs_design.pipeline import run_certification
 from nrs_design.spec import read_spec
 from tests.support import COMMUTING
@@ -110,18 +110,6 @@ def test_the_export_of_a_spec_of_another_name_stays(tmp_path, text):
 def test_a_file_that_names_no_spec_is_anyone_s(tmp_path):
     (tmp_path / "x").write_text("/* nrs-design C header\n */")
     check_name("mine", tmp_path / "x")
-
-
-def test_a_robot_and_a_design_of_one_name_keep_apart(tmp_path):
-    """Both have a C header of that name, and one of them may be proved."""
-    file, named = tmp_path / "x.h", f" * spec: mine, sha256 {'0' * 64}\n"
-    file.write_text(named)
-    with pytest.raises(OutputError, match="for a design"):
-        check_export(tmp_path / "mine.nrs.yaml", file)
-    file.write_text(named + " * spec file: mine.nrs.yaml\n")
-    check_export(tmp_path / "mine.nrs.yaml", file)
-    with pytest.raises(OutputError, match="for a robot"):
-        check_name("mine", file)
 
 
 def test_a_folder_is_no_certificate_of_another(folder):

@@ -223,9 +223,18 @@ ANGULAR_ACCELERATION = QuantityKind(
     rational=False,
     sliding=_sliding("an acceleration", ("m/s^2",), "2 m/s^2", "rad/s^2"),
 )
-# What a drive takes: the unit of its driver, which is never converted, or a torque, a velocity or
-# a position.
 COMMAND = QuantityKind(
+    "a command of the motor",
+    (*COMMAND_UNITS, "N*m"),
+    "276.575 rpm",
+    {
+        "rad/s": "the driver's command has a unit of its own that is never converted: write "
+        f"{written_as(COMMAND_UNITS)}"
+    },
+    sliding=QuantityKind("a command of the motor", (*COMMAND_UNITS, "N"), "276.575 rpm"),
+)
+# What any drive takes: a motor, or an interface to velocities or positions.
+DRIVE_COMMAND = QuantityKind(
     "a command of the drive",
     (*COMMAND_UNITS, "N*m", "rad/s", "rad"),
     "276.575 rpm",

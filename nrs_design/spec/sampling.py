@@ -18,7 +18,7 @@ from nrs_design.spec.provenance import IdentifiedSpec
 from nrs_design.spec.quantity_fields import (
     Angle,
     AngularVelocity,
-    Command,
+    DriveCommand,
     Duration,
     TimeRange,
     Torque,
@@ -174,7 +174,7 @@ class DisturbancesSpec(SpecModel):
     command: AngularVelocity | None = optional(
         "largest velocity command in rad/s, however it changes"
     )
-    friction: Command | None = optional(
+    friction: DriveCommand | None = optional(
         "largest Coulomb friction of the motor, as the command that it takes, in the "
         "unit of the commands, such as rpm"
     )

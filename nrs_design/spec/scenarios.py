@@ -20,7 +20,7 @@ from nrs_design.spec.quantity_fields import (
     Angle,
     AngularVelocity,
     Bandwidth,
-    Command,
+    DriveCommand,
     Duration,
     SignedAngle,
     SignedAngularVelocity,
@@ -217,7 +217,7 @@ class ControlSpec(SpecModel):
 class ErrorsSpec(SpecModel):
     """What acts on the sampled loop and its sensors; what is left out is zero."""
 
-    friction: Command | None = optional(
+    friction: DriveCommand | None = optional(
         "Coulomb friction of the motor, as the command that it takes, such as rpm"
     )
     encoder_step: Angle | None = optional("resolution of the measured joint angle in rad")

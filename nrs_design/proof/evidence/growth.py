@@ -51,9 +51,7 @@ def grows_throughout(matrices: Iterable[RationalMatrix]) -> bool:
         n = power.nrows()
         for _ in range(MAX_DOUBLINGS + 1):
             trace = sum((power[i, i] for i in range(n)), start=0 * power[0, 0])
-            if not trace.is_finite():
-                return False
-            if abs(trace) > n:
+            if trace.is_finite() and abs(trace) > n:
                 return True
             power = power * power
     return False

@@ -1,23 +1,18 @@
 from __future__ import annotations
 
-from fractions import Fraction
-
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nrs_design.proof.switching import Switching
 from nrs_design.simulation.norms import (
     diagonal_exponents,
     level_curve,
-    modes_at,
     polynomial_norm,
     quadratic_norm,
     scaled_form,
     scaled_matrices,
 )
-from tests.simulation.systems import system
 
 
 def test_quadratic_norm_of_known_vectors():
@@ -56,11 +51,3 @@ def test_level_curve_of_a_thin_ellipse():
     assert norm(points) == pytest.approx(2.0)
     steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
     assert steps.max() < 0.02 * np.abs(points).max()
-
-
-def test_modes_at_a_value_of_the_parameter():
-    ends = Switching(fixed_ends=(("m0", "m1"),))
-    family = system([[-1]], [[-3]], switching=ends)
-    middle = modes_at(family, Fraction(1, 4))
-    assert middle.modes[0].A.fractions() == [[Fraction(-3, 2)]]
-    assert middle.switching.is_arbitrary

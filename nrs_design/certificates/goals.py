@@ -38,8 +38,8 @@ def _has_free_gains(spec: Spec) -> bool:
     """Tell whether a spec leaves gains to choose."""
     if spec.kind != "interaction-design":
         return False
-    bounded = (c for c in spec.controllers.values() if c.type == "impedance")
-    return bool(spec.design.free) or any(not (c.Mt.fixed and c.Bt.fixed) for c in bounded)
+    gains = (gain for c in spec.controllers.values() for gain in c.gains().values())
+    return bool(spec.design.free) or any(not gain.fixed for gain in gains)
 
 
 def _goals(spec: Spec, certificate: Certificate | None) -> Iterator[CertifiedGoal]:

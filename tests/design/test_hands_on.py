@@ -30,7 +30,7 @@ def by_grid(k, b, Mt, Bt, m=0):
 
 
 def held_by(hand):
-    corner = ContactCorner("hand", "hand", hand, PLACE, True, True)
+    corner = ContactCorner("hand", "hand", hand, PLACE, True)
     return Requirement(axis_with(MOTION), (corner,), bandwidth=BAND)
 
 
@@ -114,7 +114,7 @@ def test_admittances_of_table_7_1_and_a_hand_that_changes_its_grip(tmp_path, mas
 @pytest.mark.slow
 def test_a_hand_that_lets_go_is_proved(tmp_path):
     result = run("certify-switching", HANDS_ON, "--out", "ours.json", cwd=tmp_path, code=0)
-    assert "contact lost and made again at any time" in result.stdout
+    assert "contact may be lost" in result.stdout
 
 
 def test_a_spring_in_the_admittance(tmp_path):

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING
 
 from nrs_design.certificates.units import gain_units
 from nrs_design.errors import DesignError
-from nrs_design.pipeline import run_analysis, run_certification
+from nrs_design.pipeline.certification import run_certification
+from nrs_design.pipeline.design import run_analysis
 from nrs_design.progress import Progress, silent
 from nrs_design.proof.evidence.fields import rate_text
 from nrs_design.proof.mode import Time
@@ -21,7 +22,7 @@ from nrs_design.spec.document import Data, to_data
 
 if TYPE_CHECKING:
     from nrs_design.certificates.certificate import Certificate
-    from nrs_design.pipeline import Designed
+    from nrs_design.pipeline.design import Designed
 
 CERTIFICATE_SUFFIX = ".json"
 # What is longer is a sentence, not a value.

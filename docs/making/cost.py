@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from nrs_design import pipeline
 from nrs_design.design.impedance import stabilizes
 from nrs_design.design.impedance_optimum import (
     ImpedanceProblem,
     impedance_cost,
     optimize_impedance,
 )
+from nrs_design.pipeline.design import run_analysis, run_design
 from nrs_design.spec import read_spec
 
 if TYPE_CHECKING:
@@ -34,9 +34,9 @@ def problem_of(spec: Path, controller: str) -> ImpedanceProblem:
     controller : str
         An impedance controller of it.
     """
-    designed = pipeline.run_design(read_spec(spec))
+    designed = run_design(read_spec(spec))
     assert designed is not None
-    (found,) = [one for one in pipeline.run_analysis(designed).impedance if one.name == controller]
+    (found,) = [one for one in run_analysis(designed).impedance if one.name == controller]
     return found.problem
 
 

@@ -9,7 +9,6 @@ from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from nrs_design import pipeline
 from nrs_design.api.paper import form_of, latex_of, latex_of_gains
 from nrs_design.api.result import AbstractResult, Figures, drawings_of, evidence_drawings
 from nrs_design.certificates.certificate import dump
@@ -17,6 +16,8 @@ from nrs_design.errors import DesignError, OutputError, SpecError
 from nrs_design.facts.certification import certification_facts
 from nrs_design.output import CERTIFICATE, PAGE, check_html, write_output
 from nrs_design.ownership import check_certificate, origin_of
+from nrs_design.pipeline.certification import Result
+from nrs_design.pipeline.design import run_analysis
 from nrs_design.proof.text import counted
 from nrs_design.search.certification import Attempt
 from nrs_design.spec import LoadedSpec, read_spec
@@ -35,11 +36,11 @@ class Decision(AbstractResult):
 
     Parameters
     ----------
-    result : nrs_design.pipeline.Result
+    result : nrs_design.pipeline.certification.Result
         The spec with its design, its exact modes, every attempt and the certificate.
     """
 
-    result: pipeline.Result
+    result: Result
 
     @property
     def verdict(self) -> str:
@@ -217,7 +218,7 @@ class Decision(AbstractResult):
         analysis = None
         if self.result.designed is not None:
             try:
-                analysis = pipeline.run_analysis(self.result.designed)
+                analysis = run_analysis(self.result.designed)
             except DesignError:
                 # Where a nominal loop has no margins, the page has none.
                 analysis = None

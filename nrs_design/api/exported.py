@@ -16,7 +16,7 @@ from nrs_design.exporters import known_format
 from nrs_design.exporters.write import check_places, places, write_export
 from nrs_design.facts.export import export_facts
 from nrs_design.ownership import check_certificate
-from nrs_design.pipeline import placed
+from nrs_design.pipeline.design import placed
 
 if TYPE_CHECKING:
     from nrs_design.certificates.certificate import Certificate

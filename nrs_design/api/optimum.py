@@ -8,11 +8,11 @@ from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from nrs_design import pipeline
 from nrs_design.api.paper import latex_of_gains
 from nrs_design.api.result import AbstractResult, Figures, illustrated
 from nrs_design.facts.design import finite, optimum_facts
 from nrs_design.facts.spec import spec_facts
+from nrs_design.pipeline.design import Designed, run_analysis
 from nrs_design.spec import doubt_spec
 
 if TYPE_CHECKING:
@@ -25,11 +25,11 @@ class Optimum(AbstractResult):
 
     Parameters
     ----------
-    designed : nrs_design.pipeline.Designed
+    designed : nrs_design.pipeline.design.Designed
         The spec with its plant and gains.
     """
 
-    designed: pipeline.Designed
+    designed: Designed
 
     @property
     def gains(self) -> dict[str, dict[str, float]]:
@@ -52,7 +52,7 @@ class Optimum(AbstractResult):
 
     @cached_property
     def _analysis(self) -> DesignAnalysis:
-        return pipeline.run_analysis(self.designed)
+        return run_analysis(self.designed)
 
     @property
     def margins(self) -> dict[str, dict[str, float]]:

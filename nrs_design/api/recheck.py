@@ -7,11 +7,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from nrs_design import pipeline
 from nrs_design.api.result import AbstractResult, Figures, evidence_drawings
 from nrs_design.axis import axis_with
 from nrs_design.certificates.prove import Verification
 from nrs_design.facts.verification import verification_facts
+from nrs_design.pipeline.certification import recorded_certification
 
 if TYPE_CHECKING:
     from nrs_design.certificates.certificate import Certificate
@@ -70,7 +70,7 @@ class Recheck(AbstractResult):
         kept = self._valid()
         if kept is None:
             return []
-        return evidence_drawings(pipeline.recorded_certification(kept, self.file))
+        return evidence_drawings(recorded_certification(kept, self.file))
 
     def _headline(self) -> str:
         where = "" if self.spec is None else f" for {self.spec.name}"

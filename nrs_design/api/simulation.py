@@ -6,12 +6,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, overload
 
-from nrs_design import pipeline
 from nrs_design.api.result import AbstractResult, Figures
 from nrs_design.axis import unit
 from nrs_design.errors import DesignError
 from nrs_design.facts.simulation import run_facts
 from nrs_design.facts.spec import spec_facts
+from nrs_design.pipeline.design import Designed
 
 if TYPE_CHECKING:
     import numpy as np
@@ -40,7 +40,7 @@ class ScenarioRun(AbstractResult):
 
     Parameters
     ----------
-    designed : nrs_design.pipeline.Designed
+    designed : nrs_design.pipeline.design.Designed
         The spec and its gains.
     simulated : nrs_design.pipeline.scenarios.Simulated
         The run.
@@ -48,7 +48,7 @@ class ScenarioRun(AbstractResult):
         What is certified beside it.
     """
 
-    designed: pipeline.Designed
+    designed: Designed
     simulated: Simulated
     bounds: tuple[CertifiedBound, ...] = ()
     rate: CertifiedRate | None = None
@@ -152,18 +152,18 @@ class Simulation(AbstractResult):
 
     Parameters
     ----------
-    designed : nrs_design.pipeline.Designed
+    designed : nrs_design.pipeline.design.Designed
         The spec and its gains.
     runs : tuple of ScenarioRun
         One for each scenario, and for each axis where one moves several.
     """
 
-    designed: pipeline.Designed
+    designed: Designed
     runs: tuple[ScenarioRun, ...]
 
     @classmethod
     def of(
-        cls, designed: pipeline.Designed, found: Sequence[Simulated], proof: Certificate | None
+        cls, designed: Designed, found: Sequence[Simulated], proof: Certificate | None
     ) -> Simulation:
         """Return the runs, beside what is certified.
 

@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from nrs_design import pipeline
 from nrs_design.api.audit import Audit
 from nrs_design.api.decision import Decision
 from nrs_design.api.exported import Exported
@@ -15,6 +14,13 @@ from nrs_design.api.optimum import Optimum
 from nrs_design.api.simulation import Simulation
 from nrs_design.api.worst import WorstFound
 from nrs_design.errors import DesignError
+from nrs_design.pipeline.certification import (
+    Overrides,
+    read_valid_certificate,
+    run_certification,
+    search_limits,
+)
+from nrs_design.pipeline.design import Designed, placed, run_design, run_interaction
 from nrs_design.search.certification import Limits
 from nrs_design.search.gradient_settings import Gradient
 from nrs_design.search.method import Method
@@ -53,7 +59,7 @@ class Study:
         DesignError
             If a requirement cannot be met within its bounds.
         """
-        designed = pipeline.run_design(self.loaded)
+        designed = run_design(self.loaded)
         return None if designed is None else designed.design
 
     def optimize(self) -> Optimum:
@@ -71,7 +77,7 @@ class Study:
         >>> round(optimum.gains["insertion"]["Bt"], 4), optimum.units["insertion"]["Bt"]
         (2.15, 'N*m*s/rad')
         """
-        return Optimum(pipeline.run_interaction(self.loaded, "has nothing to optimize"))
+        return Optimum(run_interaction(self.loaded, "has nothing to optimize"))
 
     def report(self, file: str | Path | None = None) -> str:
         """Certify, and return the report as one HTML page; write it if a file is named."""
@@ -123,7 +129,7 @@ class Study:
         from nrs_design.exporters.state_space import design_state_spaces
 
         lacks = "has no actuator and no controllers"
-        return design_state_spaces(pipeline.run_interaction(self.loaded, lacks))
+        return design_state_spaces(run_interaction(self.loaded, lacks))
 
     def certify(
         self,
@@ -149,7 +155,7 @@ class Study:
             If the clock stopped the search, long after its budget of work should have.
         """
         limits = _limits(self.loaded.spec, budget, max_degree, gradient)
-        result = pipeline.run_certification(self.loaded, method=_method(method), limits=limits)
+        result = run_certification(self.loaded, method=_method(method), limits=limits)
         return Decision(result)
 
     def simulate(
@@ -197,7 +203,7 @@ class Study:
 
         wanted = _runs(scenarios, engine, period, delay)
         designed = self._interaction()
-        with pipeline.placed(self.loaded):
+        with placed(self.loaded):
             proof = self._proof(designed, certificate)
             return Simulation.of(designed, tuple(run_scenarios(designed, wanted)), proof)
 
@@ -229,7 +235,7 @@ class Study:
         from nrs_design.pipeline.worst_case import run_worst_case
 
         designed = self._interaction()
-        with pipeline.placed(self.loaded):
+        with placed(self.loaded):
             proof = self._proof(designed, certificate)
             case = run_worst_case(designed, proof)
         return WorstFound(designed, case)
@@ -252,20 +258,18 @@ class Study:
         from nrs_design.exporters.export import export_design
 
         file = None if certificate is None else Path(certificate)
-        with pipeline.placed(self.loaded):
+        with placed(self.loaded):
             return Exported(self.loaded, export_design(self.loaded, file))
 
-    def _interaction(self) -> pipeline.Designed:
+    def _interaction(self) -> Designed:
         """Design what interacts; refuse another kind of spec."""
-        return pipeline.run_interaction(self.loaded, "describes no interaction")
+        return run_interaction(self.loaded, "describes no interaction")
 
-    def _proof(
-        self, designed: pipeline.Designed, certificate: str | Path | None
-    ) -> Certificate | None:
+    def _proof(self, designed: Designed, certificate: str | Path | None) -> Certificate | None:
         """Return what a file proves of this spec, checked; None without a file."""
         if certificate is None:
             return None
-        return pipeline.read_valid_certificate(Path(certificate), self.loaded, designed)
+        return read_valid_certificate(Path(certificate), self.loaded, designed)
 
 
 def _runs(
@@ -323,5 +327,5 @@ def _limits(
         raise DesignError(f"the budget is {budget}", remedy="give units of work above zero")
     if max_degree is not None and not 2 <= max_degree <= HIGHEST_DEGREE:
         raise DesignError(f"max_degree is {max_degree}", remedy=f"give 2 to {HIGHEST_DEGREE}")
-    limits = pipeline.search_limits(spec, pipeline.Overrides(max_degree, budget))
+    limits = search_limits(spec, Overrides(max_degree, budget))
     return replace(limits, gradient=gradient or Gradient())

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from nrs_design import pipeline
 from nrs_design.api.result import AbstractResult, Figures
 from nrs_design.facts.spec import spec_facts
 from nrs_design.facts.worst_case import worst_case_facts
+from nrs_design.pipeline.design import Designed
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -25,13 +25,13 @@ class WorstFound(AbstractResult):
 
     Parameters
     ----------
-    designed : nrs_design.pipeline.Designed
+    designed : nrs_design.pipeline.design.Designed
         The spec and its gains.
     case : nrs_design.pipeline.worst_case.WorstCase
         His runs.
     """
 
-    designed: pipeline.Designed
+    designed: Designed
     case: WorstCase
 
     @property

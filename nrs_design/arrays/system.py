@@ -16,8 +16,7 @@ from nrs_design.arrays.exact import is_state_space, read_number, read_rows, time
 from nrs_design.errors import SpecError
 from nrs_design.proof.text import exact_text
 from nrs_design.spec import LoadedSpec, SwitchedSystemSpec
-from nrs_design.spec.document import parse_document
-from nrs_design.spec.meaning import hash_meaning
+from nrs_design.spec.document import hash_meaning, parse_document
 from nrs_design.spec.places import file_faults
 
 Document = dict[str, Any]

@@ -16,8 +16,9 @@ from nrs_design.proof.bounds import lower_float
 if TYPE_CHECKING:
     from nrs_design.certificates.certified_goal import CertifiedGoal
     from nrs_design.design.analysis import DesignAnalysis
-    from nrs_design.pipeline import Designed, Result
+    from nrs_design.pipeline.certification import Result
     from nrs_design.pipeline.certified_optimum import CertifiedOptimum
+    from nrs_design.pipeline.design import Designed
     from nrs_design.spec import LoadedSpec
 
 ENDING = ".nrs.yaml"
@@ -53,8 +54,8 @@ class CertifiedGains:
             return None
 
         from nrs_design.certificates.goals import certified_goals
-        from nrs_design.pipeline import run_analysis
         from nrs_design.pipeline.certified_optimum import run_certified_optimum
+        from nrs_design.pipeline.design import run_analysis
 
         name = None if out is None else name_for(designed.loaded, out)
         with progress(f"gains with their proof for {designed.spec.name}") as step:

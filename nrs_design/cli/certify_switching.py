@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from nrs_design.cli import exit_codes
-from nrs_design.cli.command import Answer, command
+from nrs_design.cli.command import Answer, command, take_spec
 from nrs_design.cli.granted import print_granted
 from nrs_design.cli.options import Budget, MaxDegree, Memory, SpecFile
 from nrs_design.cli.printing import (
@@ -20,7 +20,6 @@ from nrs_design.cli.printing import (
     wants_json,
     wants_text,
 )
-from nrs_design.cli.reading import take_spec
 from nrs_design.facts.certification import (
     blocked_facts,
     certification_facts,
@@ -31,7 +30,7 @@ from nrs_design.search.gradient_settings import Gradient
 from nrs_design.search.method import Method
 
 if TYPE_CHECKING:
-    from nrs_design.pipeline import Result
+    from nrs_design.pipeline.certification import Result
     from nrs_design.pipeline.radius import RadiusBounds
     from nrs_design.pipeline.subsets import Subset
     from nrs_design.search.certification import Certification
@@ -82,7 +81,12 @@ def certify_switching(
     """
     from nrs_design.output import CERTIFICATE, check_place
     from nrs_design.ownership import check_certificate
-    from nrs_design.pipeline import Overrides, find_relief, run_certification, search_limits
+    from nrs_design.pipeline.certification import (
+        Overrides,
+        find_relief,
+        run_certification,
+        search_limits,
+    )
     from nrs_design.pipeline.margins import run_proof_margins
     from nrs_design.pipeline.subsets import find_subsets
 

@@ -8,10 +8,9 @@ from typing import Annotated, Any
 import typer
 
 from nrs_design.cli import exit_codes
-from nrs_design.cli.command import Answer, command
+from nrs_design.cli.command import Answer, command, take_spec
 from nrs_design.cli.errors import error_summary, print_error
 from nrs_design.cli.printing import note, say, wants_details, wants_json, wants_text
-from nrs_design.cli.reading import take_spec
 from nrs_design.cli.tables import print_table
 from nrs_design.errors import NrsDesignError
 from nrs_design.proof.text import counted

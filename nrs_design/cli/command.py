@@ -6,7 +6,8 @@ import inspect
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import wraps
-from typing import Annotated, Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -20,6 +21,9 @@ from nrs_design.cli.printing import (
     wants_text,
 )
 from nrs_design.errors import NrsDesignError
+
+if TYPE_CHECKING:
+    from nrs_design.spec import LoadedSpec
 
 VERBOSE = "Print all of it: the whole claim, what it takes for granted, and every step."
 QUIET = "Print nothing but errors, and what --json, --format or --out ask for; see the exit code."
@@ -95,6 +99,16 @@ def command(
         return run
 
     return decorate
+
+
+def take_spec(path: Path) -> LoadedSpec:
+    """Read a spec, and say everything until the end of the command about its axis."""
+    from nrs_design.axis import take
+    from nrs_design.spec import read_spec
+
+    loaded = read_spec(path)
+    take(getattr(loaded.spec, "axis", None))
+    return loaded
 
 
 def _for_each_axis(function: Callable[..., Answer], arguments: dict[str, Any]) -> Answer:

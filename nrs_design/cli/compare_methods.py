@@ -9,11 +9,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from nrs_design.cli import exit_codes
-from nrs_design.cli.command import Answer, command
+from nrs_design.cli.command import Answer, command, take_spec
 from nrs_design.cli.gradient_options import MaxUpdates, Radius, Relaxation, Seed, StartMode
 from nrs_design.cli.options import Budget, Memory, SpecFile
 from nrs_design.cli.printing import note, progress, say
-from nrs_design.cli.reading import take_spec
 from nrs_design.cli.tables import print_table
 from nrs_design.facts.spec import spec_facts
 from nrs_design.search.gradient_settings import Gradient
@@ -50,7 +49,7 @@ def compare_methods(
     Example: nrs-design compare-methods specs/neuroboscope/soft-tissue.nrs.yaml
     """
     from nrs_design.output import PNG, check_place
-    from nrs_design.pipeline import Overrides, run_comparison, search_limits
+    from nrs_design.pipeline.certification import Overrides, run_comparison, search_limits
 
     if figure is not None:
         check_place(figure, PNG)

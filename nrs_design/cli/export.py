@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from nrs_design.cli import exit_codes
-from nrs_design.cli.command import Answer, command
+from nrs_design.cli.command import Answer, command, take_spec
 from nrs_design.cli.printing import note, progress, say
-from nrs_design.cli.reading import take_spec
 from nrs_design.cli.tables import print_table
 from nrs_design.errors import NrsDesignError, OutputError
 from nrs_design.exporters import Format, format_names, format_of, known_format
@@ -141,7 +140,7 @@ def _export_design(
     from nrs_design.exporters.export import export_design, export_proof
     from nrs_design.exporters.write import check_places, places, write_export
     from nrs_design.ownership import check_certificate
-    from nrs_design.pipeline import placed
+    from nrs_design.pipeline.design import placed
 
     loaded, chosen = take_spec(spec), format_of(format_)
     name = loaded.spec.name

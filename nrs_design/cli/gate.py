@@ -201,7 +201,7 @@ def _certify(
     from nrs_design.gating.renew import certificates_of, check_folder, write_lock
     from nrs_design.gating.run import Files, run_gate
     from nrs_design.output import LOCK, check_place
-    from nrs_design.pipeline import Overrides
+    from nrs_design.pipeline.certification import Overrides
 
     specs = find_specs(paths)
     check_folder(reports, lock)

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
         AbstractControllerAnalysis,
         DesignAnalysis,
     )
-    from nrs_design.pipeline import Designed
+    from nrs_design.pipeline.design import Designed
     from nrs_design.spec import InteractionDesignSpec
 
 

@@ -8,7 +8,7 @@ from nrs_design.cli.printing import detail, say, wants_details
 from nrs_design.proof.text import counted
 
 if TYPE_CHECKING:
-    from nrs_design.pipeline import Result
+    from nrs_design.pipeline.certification import Result
 
 
 def print_granted(result: Result) -> None:

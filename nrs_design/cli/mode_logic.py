@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from nrs_design.cli.command import Answer, command
+from nrs_design.cli.command import Answer, command, take_spec
 from nrs_design.cli.options import SpecFile
 from nrs_design.cli.printing import say
-from nrs_design.cli.reading import take_spec
 from nrs_design.cli.tables import print_table
 from nrs_design.facts.spec import spec_facts
 
@@ -41,7 +40,7 @@ def _show(declared: InteractionDesignSpec) -> None:
 
 
 def _with_logic(loaded: LoadedSpec) -> InteractionDesignSpec:
-    from nrs_design.pipeline import wrong_kind
+    from nrs_design.pipeline.design import wrong_kind
 
     spec = loaded.spec
     if spec.kind != "interaction-design" or spec.mode_logic is None:

@@ -8,14 +8,13 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from nrs_design.axis import unit
-from nrs_design.cli.command import Answer, command
+from nrs_design.cli.command import Answer, command, take_spec
 from nrs_design.cli.goals import (
     design_answer,
     print_responses,
 )
 from nrs_design.cli.options import SpecFile
 from nrs_design.cli.printing import detail, note, progress, say, wants_details
-from nrs_design.cli.reading import take_spec
 from nrs_design.cli.tables import print_table
 from nrs_design.facts.design import meanings, optimum_facts
 
@@ -54,7 +53,7 @@ def optimize(
     Example: nrs-design optimize specs/neuroboscope/soft-tissue.nrs.yaml
     """
     from nrs_design.cli.certified_gains import CertifiedGains
-    from nrs_design.pipeline import run_analysis, run_interaction
+    from nrs_design.pipeline.design import run_analysis, run_interaction
 
     loaded = take_spec(spec)
     with progress(f"designing {loaded.spec.name}") as step:

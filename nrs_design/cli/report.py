@@ -10,10 +10,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from nrs_design.cli import exit_codes
-from nrs_design.cli.command import Answer, command
+from nrs_design.cli.command import Answer, command, take_spec
 from nrs_design.cli.options import Budget, Date, MaxDegree, Memory, SpecFile
 from nrs_design.cli.printing import note, progress, say
-from nrs_design.cli.reading import take_spec
 from nrs_design.errors import DesignError, OutputError
 from nrs_design.facts.spec import spec_facts
 from nrs_design.progress import Progress
@@ -23,7 +22,7 @@ if TYPE_CHECKING:
 
     from nrs_design.certificates.certificate import Certificate
     from nrs_design.design.analysis import DesignAnalysis
-    from nrs_design.pipeline import Overrides, Result
+    from nrs_design.pipeline.certification import Overrides, Result
     from nrs_design.reporting import Report
     from nrs_design.spec import LoadedSpec
 
@@ -87,7 +86,7 @@ def report(
 
     Example: nrs-design report specs/neuroboscope/soft-tissue.nrs.yaml
     """
-    from nrs_design.pipeline import Overrides
+    from nrs_design.pipeline.certification import Overrides
 
     loaded, day = take_spec(spec), date.date() if date else None
     file_format = _format_of(file_format, out)
@@ -184,8 +183,13 @@ def _build(
     loaded: LoadedSpec, asked: _Asked, overrides: Overrides, step: Progress
 ) -> tuple[Result, Report]:
     """Certify, look for all that is asked for, and lay out the page."""
-    from nrs_design.pipeline import run_certification, run_comparison, run_recorded, search_limits
     from nrs_design.pipeline.blocked import find_blocked
+    from nrs_design.pipeline.certification import (
+        run_certification,
+        run_comparison,
+        run_recorded,
+        search_limits,
+    )
     from nrs_design.pipeline.margins import run_proof_margins
     from nrs_design.pipeline.subsets import find_subsets
     from nrs_design.reporting import build_report
@@ -230,7 +234,7 @@ def _report_robot(
 ) -> Answer:
     """Report a robot, with the exit code of `robot check`."""
     from nrs_design.ownership import check_page
-    from nrs_design.pipeline import placed
+    from nrs_design.pipeline.design import placed
     from nrs_design.wings import load_wing
 
     spec = loaded.path
@@ -246,7 +250,7 @@ def _report_robot(
 
 def _analysis(result: Result) -> DesignAnalysis | None:
     """Return what the design achieves, or nothing where a nominal loop has no margins."""
-    from nrs_design.pipeline import run_analysis
+    from nrs_design.pipeline.design import run_analysis
 
     if result.designed is None:
         return None

@@ -8,10 +8,9 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from nrs_design.cli.command import Answer, command
+from nrs_design.cli.command import Answer, command, take_spec
 from nrs_design.cli.options import SpecFile
 from nrs_design.cli.printing import progress
-from nrs_design.cli.reading import take_spec
 from nrs_design.cli.simulate_options import (
     Bound,
     BoundsOf,
@@ -29,7 +28,7 @@ from nrs_design.progress import Progress
 
 if TYPE_CHECKING:
     from nrs_design.certificates.certificate import Certificate
-    from nrs_design.pipeline import Designed
+    from nrs_design.pipeline.design import Designed
 
 
 @command("simulate")
@@ -57,7 +56,7 @@ def simulate(
     """
     from nrs_design.cli.simulate_scenarios import simulate_scenarios
     from nrs_design.cli.worst_case import worst_case
-    from nrs_design.pipeline import run_interaction
+    from nrs_design.pipeline.design import run_interaction
     from nrs_design.pipeline.scenarios import Runs
 
     timed = any(value is not None for value in (period, delay, outer_period))
@@ -83,7 +82,7 @@ def _proof(
     designed: Designed, file: Path | None, step: Progress, *, bound: bool
 ) -> Certificate | None:
     """Return the certificate whose bounds are shown, if there is one."""
-    from nrs_design.pipeline import read_valid_certificate, run_certification
+    from nrs_design.pipeline.certification import read_valid_certificate, run_certification
 
     if file is not None:
         return read_valid_certificate(file, designed.loaded, designed)

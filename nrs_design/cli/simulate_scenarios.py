@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 
     from nrs_design.certificates.certificate import Certificate
     from nrs_design.output import Output
-    from nrs_design.pipeline import Designed
     from nrs_design.pipeline.certified_runs import CertifiedBound, CertifiedRate
+    from nrs_design.pipeline.design import Designed
     from nrs_design.pipeline.scenarios import Runs, Simulated
     from nrs_design.simulation.run import Run
 

@@ -6,11 +6,10 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from nrs_design.axis import current, unit
-from nrs_design.cli.command import Answer, command
+from nrs_design.cli.command import Answer, command, take_spec
 from nrs_design.cli.goals import design_answer
 from nrs_design.cli.options import SpecFile
 from nrs_design.cli.printing import progress, say
-from nrs_design.cli.reading import take_spec
 from nrs_design.cli.tables import print_table
 from nrs_design.facts.design import motion_summary
 from nrs_design.facts.goals import goals_summary
@@ -62,7 +61,7 @@ def tune(spec: SpecFile) -> Answer:
     Example: nrs-design tune specs/neuroboscope/force-limit.nrs.yaml
     """
     from nrs_design.errors import DesignError
-    from nrs_design.pipeline import run_analysis, run_interaction
+    from nrs_design.pipeline.design import run_analysis, run_interaction
 
     loaded = take_spec(spec)
     with progress(f"tuning {loaded.spec.name}"):

@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from nrs_design.cli import exit_codes
-from nrs_design.cli.command import Answer, command
+from nrs_design.cli.command import Answer, command, take_spec
 from nrs_design.cli.printing import is_quiet, say, wants_details
-from nrs_design.cli.reading import take_spec
 from nrs_design.errors import CertificateError, NrsDesignError
 
 if TYPE_CHECKING:
@@ -149,7 +148,7 @@ def _deployed(
     if deployed is None or loaded is None or checked is None:
         return None
     from nrs_design.exporters.deployed import compare_deployed
-    from nrs_design.pipeline import wrong_kind
+    from nrs_design.pipeline.design import wrong_kind
     from nrs_design.spec import InteractionDesignSpec
 
     if not isinstance(loaded.spec, InteractionDesignSpec):

@@ -16,7 +16,7 @@ from nrs_design.progress import Progress
 if TYPE_CHECKING:
     from nrs_design.certificates.certificate import Certificate
     from nrs_design.output import Output
-    from nrs_design.pipeline import Designed
+    from nrs_design.pipeline.design import Designed
     from nrs_design.pipeline.worst_case import WorstCase
 
 

@@ -12,13 +12,8 @@ from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.errors import DesignError
 from nrs_design.exporters.build import build_record, build_unproved, find_mismatch
 from nrs_design.exporters.record import ExportRecord
-from nrs_design.pipeline import (
-    Designed,
-    interaction_of,
-    run_certification,
-    run_design,
-    run_recorded,
-)
+from nrs_design.pipeline.certification import run_certification, run_recorded
+from nrs_design.pipeline.design import Designed, interaction_of, run_design
 from nrs_design.progress import Progress, silent
 from nrs_design.proof.text import exact_text
 from nrs_design.spec import InteractionDesignSpec, LoadedSpec

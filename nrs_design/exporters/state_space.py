@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from nrs_design.pipeline import Designed
-from nrs_design.pipeline.design import run_linear_parts
+from nrs_design.pipeline.design import Designed, run_linear_parts
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.system import SwitchedSystem
 

@@ -14,8 +14,8 @@ if TYPE_CHECKING:
     from fractions import Fraction
 
     from nrs_design.certificates.certificate import Certificate
-    from nrs_design.pipeline import Result
     from nrs_design.pipeline.blocked import Blocked
+    from nrs_design.pipeline.certification import Result
     from nrs_design.pipeline.margins import ProofMargins
     from nrs_design.pipeline.radius import RadiusBounds
     from nrs_design.search.certification import Certification

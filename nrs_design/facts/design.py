@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from nrs_design.design.cost_bound import CostBound
     from nrs_design.design.measures import Measure
     from nrs_design.design.sampled_passivity import SampledBand
-    from nrs_design.pipeline import Designed
+    from nrs_design.pipeline.design import Designed
     from nrs_design.spec import InteractionDesignSpec
 
 

@@ -23,7 +23,7 @@ from nrs_design.gating.recorded import hash_followed
 from nrs_design.output import PAGE_NOTE, write_output
 
 if TYPE_CHECKING:
-    from nrs_design.pipeline import Result
+    from nrs_design.pipeline.certification import Result
     from nrs_design.search.certification import Limits
 
 # Those that compute, draw or write something of a page.

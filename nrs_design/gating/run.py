@@ -26,14 +26,14 @@ from nrs_design.gating.places import Places
 from nrs_design.gating.recorded import hash_recorded
 from nrs_design.output import CERTIFICATE, PAGE, check_place, write_output
 from nrs_design.ownership import REMEDY, check_owner, origin_of
-from nrs_design.pipeline import (
+from nrs_design.pipeline.blocked import Blocked, blocked_lines, find_blocked
+from nrs_design.pipeline.certification import (
     Overrides,
     Result,
     run_certification,
     run_verification,
     search_limits,
 )
-from nrs_design.pipeline.blocked import Blocked, blocked_lines, find_blocked
 from nrs_design.pipeline.subsets import Subset, find_subsets
 from nrs_design.progress import Progress, silent
 from nrs_design.spec import LoadedSpec, RobotSpec, read_spec

@@ -12,7 +12,7 @@ from nrs_design.proof.mode import Time
 from nrs_design.spec import RobotSpec
 
 if TYPE_CHECKING:
-    from nrs_design.pipeline import Result
+    from nrs_design.pipeline.certification import Result
 
 
 def next_steps(

@@ -33,8 +33,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from nrs_design.design.analysis import DesignAnalysis
-    from nrs_design.pipeline import Result
     from nrs_design.pipeline.blocked import Blocked
+    from nrs_design.pipeline.certification import Result
     from nrs_design.pipeline.margins import ProofMargins
     from nrs_design.pipeline.subsets import Subset
     from nrs_design.search.method_run import MethodRun

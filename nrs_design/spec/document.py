@@ -7,6 +7,8 @@ file is refused early. No scalar is ever turned into a float: decimals stay as w
 from __future__ import annotations
 
 import bisect
+import hashlib
+import json
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -184,6 +186,17 @@ def to_data(node: Node) -> Data:
     if isinstance(node, Sequence):
         return tuple(to_data(item) for item in node.items)
     return {key: to_data(value) for key, value in node.entries.items()}
+
+
+def hash_meaning(said: object) -> str:
+    """Return the SHA-256 of what a document says, as `to_data` or JSON has it, in hexadecimal.
+
+    Two documents share it exactly if they have the same keys in the same order and the same texts:
+    comments, line ends, quotes and layout do not count. A spec is read from these texts and from
+    nothing else. Order counts because modes are numbered in the order of the controllers.
+    """
+    canonical = json.dumps(said, separators=(",", ":"), ensure_ascii=True)
+    return hashlib.sha256(canonical.encode()).hexdigest()
 
 
 class _Places:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from nrs_design.spec.check import find_faults, not_together
 from nrs_design.spec.combinations import CHANGING
-from nrs_design.spec.dwell import DwellObstacle
 from nrs_design.spec.interaction_checks import INTERACTION_CHECKS
 from nrs_design.spec.interaction_doubts import INTERACTION_DOUBTS
 from nrs_design.spec.interaction_parts import AbstractInteractionSpec
+from nrs_design.spec.switching import DwellObstacle
 
 
 class InteractionDesignSpec(AbstractInteractionSpec):

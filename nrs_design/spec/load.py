@@ -20,6 +20,7 @@ from nrs_design.spec.document import (
     Node,
     Position,
     Scalar,
+    hash_meaning,
     parse_document,
     parse_with_faults,
     read_source,
@@ -27,7 +28,6 @@ from nrs_design.spec.document import (
 )
 from nrs_design.spec.faults import MAX_LISTED, did_you_mean
 from nrs_design.spec.instead import as_read
-from nrs_design.spec.meaning import hash_meaning
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.places import faults_between, file_faults, place_of
 from nrs_design.spec.task_space import (

@@ -11,7 +11,6 @@ from pydantic import Field
 
 from nrs_design.spec.certification import CertificationSpec
 from nrs_design.spec.check import Row, each
-from nrs_design.spec.dwell import DwellObstacle, find_changing_parameter
 from nrs_design.spec.faults import Location, did_you_mean
 from nrs_design.spec.fields import Label, Name, Title
 from nrs_design.spec.misses import MissesSpec
@@ -21,6 +20,7 @@ from nrs_design.spec.references import NO_SUCH, Reference
 from nrs_design.spec.switching import (
     MAX_DIMENSION,
     MAX_TRANSITIONS,
+    DwellObstacle,
     DwellTime,
     ResetSpec,
     SwitchingRule,
@@ -129,7 +129,15 @@ class SwitchedSystemSpec(SpecModel):
 
     def find_dwell_obstacle(self) -> DwellObstacle | None:
         """Say why no dwell time can be claimed for this spec, or None."""
-        return find_changing_parameter(self.parameters)
+        # A proof with a dwell time rests on one constant matrix from each switch to the next.
+        for name, parameter in self.parameters.items():
+            if not parameter.fixed:
+                return DwellObstacle(
+                    f"a dwell time and the range of parameter {name!r} exclude each other: the "
+                    "proof with a dwell time holds for constant matrices only",
+                    "give the parameter its nominal value only",
+                )
+        return None
 
 
 @dataclass(frozen=True, slots=True)

@@ -55,6 +55,14 @@ class DwellTime:
     unit: str  # Which of the two it is
 
 
+@dataclass(frozen=True, slots=True)
+class DwellObstacle:
+    """Why a spec and a dwell time exclude each other, and what to change in the spec."""
+
+    message: str
+    remedy: str
+
+
 # One for all modes, or by their names; those left out have none.
 DwellTimes = DwellTime | dict[str, DwellTime]
 

@@ -17,8 +17,7 @@ from typing import Any
 from nrs_design.files import open_regular, read_json_text, unique_keys
 from nrs_design.output import write_output
 from nrs_design.printable import json_text
-from nrs_design.spec.document import Data
-from nrs_design.spec.meaning import hash_meaning
+from nrs_design.spec.document import Data, hash_meaning
 
 SCHEMA = "nrs-design/point/1"
 # Larger than any answer, in bytes.

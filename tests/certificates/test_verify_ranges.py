@@ -9,7 +9,7 @@ import pytest
 from nrs_design.certificates.certificate import content_id, dump
 from nrs_design.certificates.verify import verify_document
 from nrs_design.exporters.build import build_record
-from nrs_design.pipeline import run_certification
+from nrs_design.pipeline.certification import run_certification
 from nrs_design.search.certify import Limits
 from nrs_design.spec import read_spec
 

@@ -102,6 +102,15 @@ def test_verify_beside_a_spec_loads_no_heavy_library(tmp_path):
     assert not heavy & set(facts["modules"])
 
 
+def test_a_design_without_a_proof_loads_no_part_of_one(tmp_path):
+    result, facts = loaded_by(tmp_path, "optimize", SOFT_TISSUE)
+    assert result.returncode == 0
+    ours = [name.split(".")[1:2] for name in facts["modules"] if name.startswith("nrs_design")]
+    assert ["certificates"] not in ours
+    assert ["search"] not in ours
+    assert len(ours) <= 190, ours
+
+
 def test_imports_wait_for_no_collection_of_garbage(tmp_path):
     program = (
         "import gc, sys\n"

@@ -2,7 +2,7 @@
 
 import pytest
 
-from nrs_design.pipeline import run_analysis, run_design
+from nrs_design.pipeline.design import run_analysis, run_design
 from nrs_design.spec import read_spec
 from tests.support import FORCE_LIMIT, SOFT_TISSUE
 

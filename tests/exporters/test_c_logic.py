@@ -13,7 +13,7 @@ from nrs_design.exporters.formats.c import header_text, source_text
 from nrs_design.exporters.formats.vectors import make_vectors, vectors_text
 from nrs_design.exporters.logic_cases import COUNT, logic_document
 from nrs_design.exporters.self_test import program_macro, self_test
-from nrs_design.pipeline import run_design
+from nrs_design.pipeline.design import run_design
 from nrs_design.spec import read_spec
 from tests.exporters.programs import STRICT, built, check_with_misra, compiler, emulated, run
 from tests.support import ROOT

@@ -5,7 +5,7 @@ import pytest
 from nrs_design import reporting
 from nrs_design.gating import pages
 from nrs_design.gating.run import Files, run_gate
-from nrs_design.pipeline import Overrides
+from nrs_design.pipeline.certification import Overrides
 from tests.support import write_spec
 
 STABLE = [[[-1, 0], [0, -2]], [[-2, 0], [0, -1]]]

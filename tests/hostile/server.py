@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np  # noqa: F401
 import scipy.linalg  # noqa: F401
 
-from nrs_design import pipeline  # noqa: F401
+import nrs_design.pipeline.certification  # noqa: F401
 from nrs_design.cli import main
 from nrs_design.cli.app import make_app
 

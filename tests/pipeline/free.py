@@ -3,8 +3,7 @@
 from dataclasses import replace
 from pathlib import Path
 
-from nrs_design.pipeline import run_interaction
-from nrs_design.pipeline.design import Designed
+from nrs_design.pipeline.design import Designed, run_interaction
 from nrs_design.spec.document import parse_document
 from nrs_design.spec.load import read_spec, respecified
 from tests.support import ROOT

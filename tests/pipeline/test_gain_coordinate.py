@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nrs_design.pipeline import run_design, run_interaction
+from nrs_design.pipeline.design import run_design, run_interaction
 from nrs_design.pipeline.gain_coordinate import GainCoordinate, bounded_gain, freed_gains
 from nrs_design.pipeline.written_gains import with_gains
 from nrs_design.spec import read_spec

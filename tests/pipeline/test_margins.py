@@ -8,8 +8,8 @@ import pytest
 from nrs_design.certificates.certificate import Verdict
 from nrs_design.errors import AssemblyError, DesignError
 from nrs_design.facts.certification import margins_facts
-from nrs_design.pipeline import margins, run_certification
-from nrs_design.pipeline.certification import assemble_spec
+from nrs_design.pipeline import margins
+from nrs_design.pipeline.certification import assemble_spec, run_certification
 from nrs_design.pipeline.design import run_design
 from nrs_design.pipeline.margins import run_proof_margins
 from nrs_design.reporting.margins import margin_lines

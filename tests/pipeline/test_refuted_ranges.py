@@ -15,8 +15,8 @@ from scipy.linalg import expm
 from nrs_design.certificates.certificate import Certificate, content_id, to_document
 from nrs_design.certificates.prove import prove
 from nrs_design.certificates.verify import verify_document
-from nrs_design.pipeline import run_certification, run_design
-from nrs_design.pipeline.certification import assemble_spec, gains_text
+from nrs_design.pipeline.certification import assemble_spec, gains_text, run_certification
+from nrs_design.pipeline.design import run_design
 from nrs_design.proof.evidence.growing_sequence import staying
 from nrs_design.search.certification import Limits
 from nrs_design.search.certify import ENCLOSURE

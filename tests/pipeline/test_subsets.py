@@ -3,7 +3,7 @@
 import pytest
 
 from nrs_design.certificates.certificate import Verdict, dump
-from nrs_design.pipeline import run_certification, run_verification
+from nrs_design.pipeline.certification import run_certification, run_verification
 from nrs_design.pipeline.subsets import Subset, find_subsets, subset_lines
 from nrs_design.search.certification import Limits
 from nrs_design.spec import read_spec

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from nrs_design.certificates.certificate import CommonQuadraticStatus, Verdict
 from nrs_design.errors import ClockError, DesignError, InternalError
-from nrs_design.pipeline import run_certification
+from nrs_design.pipeline.certification import run_certification
 from nrs_design.proof.evidence import BlockTriangular, FormsOnGraph, Shows
 from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Switching

@@ -13,9 +13,8 @@ from hypothesis import strategies as st
 import nrs_design.spec
 from nrs_design.errors import SpecError
 from nrs_design.spec import SwitchedSystemSpec, load_spec, parse_spec, read_spec
-from nrs_design.spec.document import Node, parse_document, to_data
+from nrs_design.spec.document import Node, hash_meaning, parse_document, to_data
 from nrs_design.spec.load import SPEC_KINDS, model_of
-from nrs_design.spec.meaning import hash_meaning
 from tests.support import COMMUTING
 
 from .samples import FORCE, IMPEDANCE, SWITCHED, assert_inside, assert_refused, refusal

@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nrs_design.pipeline import run_certification, run_design
-from nrs_design.pipeline.certification import assemble_spec
+from nrs_design.pipeline.certification import assemble_spec, run_certification
+from nrs_design.pipeline.design import run_design
 from nrs_design.spec import read_spec
 from tests.support import ROOT, run
 

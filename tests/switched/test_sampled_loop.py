@@ -10,8 +10,8 @@ from scipy.linalg import expm
 
 from nrs_design.certificates.bounds import bound_on
 from nrs_design.certificates.certificate import Verdict
-from nrs_design.pipeline import run_design
 from nrs_design.pipeline.certification import assemble_spec
+from nrs_design.pipeline.design import run_design
 from nrs_design.proof.contradiction import find_contradiction
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem

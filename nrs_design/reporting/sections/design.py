@@ -25,7 +25,7 @@ from nrs_design.spec import InteractionDesignSpec
 if TYPE_CHECKING:
     from nrs_design.design.analysis import DesignAnalysis, ForceAnalysis
     from nrs_design.design.root_locus import PdDesign
-    from nrs_design.pipeline import Designed
+    from nrs_design.pipeline.design import Designed
 
 _NOMINAL = (
     "Design values in floating point, for contact at the nominal stiffness, in continuous time; no "

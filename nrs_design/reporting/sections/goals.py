@@ -25,7 +25,8 @@ from nrs_design.spec.goals import OF_THE_CERTIFICATE
 
 if TYPE_CHECKING:
     from nrs_design.design.analysis import DesignAnalysis
-    from nrs_design.pipeline import Designed, Result
+    from nrs_design.pipeline.certification import Result
+    from nrs_design.pipeline.design import Designed
     from nrs_design.spec import Spec
 
 _CERTIFIED = ("Goal", "Wanted", "What the certificate shows", "Result")

@@ -28,7 +28,7 @@ from nrs_design.spec import InteractionDesignSpec, RobotSpec
 from nrs_design.spec.provenance import COVERS, MOTOR_COVERS
 
 if TYPE_CHECKING:
-    from nrs_design.pipeline import Result
+    from nrs_design.pipeline.certification import Result
     from nrs_design.search.certification import Certification
 
 # Labels and values.

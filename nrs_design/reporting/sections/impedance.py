@@ -45,7 +45,7 @@ if TYPE_CHECKING:
     from nrs_design.design.passivity import PassiveBand
     from nrs_design.design.sampled_passivity import SampledBand
     from nrs_design.design.transfer import FloatArray
-    from nrs_design.pipeline import Designed
+    from nrs_design.pipeline.design import Designed
 
 # More controllers than these make a table too wide for a page, or a figure too full.
 _COLUMNS = 4

@@ -21,7 +21,7 @@ from nrs_design.spec import InteractionDesignSpec
 
 if TYPE_CHECKING:
     from nrs_design.design.analysis import DesignAnalysis
-    from nrs_design.pipeline import Result
+    from nrs_design.pipeline.certification import Result
 
 TESTS = "What to test on the robot"
 # Digits that are read at a glance.

@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from matplotlib.transforms import BboxBase
 
     from nrs_design.design.analysis import ImpedanceAnalysis
-    from nrs_design.pipeline import Designed
+    from nrs_design.pipeline.design import Designed
     from nrs_design.spec import LoadedSpec
 
 # More maps are nearly alike.

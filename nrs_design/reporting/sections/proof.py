@@ -16,7 +16,7 @@ from nrs_design.reporting.sections.titles import MEANT
 from nrs_design.spec import InteractionDesignSpec
 
 if TYPE_CHECKING:
-    from nrs_design.pipeline import Result
+    from nrs_design.pipeline.certification import Result
     from nrs_design.search.certification import Certification
 
 _CONTINUOUS = "Sampling, delay and quantization of the controller: the proof is in continuous time."

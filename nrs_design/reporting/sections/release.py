@@ -22,7 +22,7 @@ from nrs_design.simulation.greedy import all_modes
 from nrs_design.simulation.release import certified, simulate_release
 
 if TYPE_CHECKING:
-    from nrs_design.pipeline import Result
+    from nrs_design.pipeline.certification import Result
     from nrs_design.proof.system import SwitchedSystem
     from nrs_design.search.certification import Certification
     from nrs_design.simulation.norms import Array

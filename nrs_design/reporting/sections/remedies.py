@@ -5,16 +5,16 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from nrs_design.pipeline import find_relief
 from nrs_design.pipeline.blocked import blocked_lines
+from nrs_design.pipeline.certification import find_relief
 from nrs_design.pipeline.subsets import PARTS_TITLE, subset_lines
 from nrs_design.reporting.document import Block, Bullets, Section, Sentence
 from nrs_design.reporting.margins import margin_lines
 from nrs_design.reporting.next_steps import next_steps
 
 if TYPE_CHECKING:
-    from nrs_design.pipeline import Result
     from nrs_design.pipeline.blocked import Blocked
+    from nrs_design.pipeline.certification import Result
     from nrs_design.pipeline.margins import ProofMargins
     from nrs_design.pipeline.subsets import Subset
 

@@ -32,7 +32,7 @@ from nrs_design.spec import InteractionDesignSpec, doubt_spec
 
 if TYPE_CHECKING:
     from nrs_design.design.analysis import DesignAnalysis
-    from nrs_design.pipeline import Result
+    from nrs_design.pipeline.certification import Result
 
 _PROOF = {
     Verdict.PROVED: (State.GOOD, "proved; exact arithmetic decided, and a second library agreed"),

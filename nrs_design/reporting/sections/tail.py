@@ -12,7 +12,7 @@ from nrs_design.reporting.sections.titles import ASSUMPTIONS, RECHECK, RUNGS, SP
 from nrs_design.spec import InteractionDesignSpec
 
 if TYPE_CHECKING:
-    from nrs_design.pipeline import Result
+    from nrs_design.pipeline.certification import Result
     from nrs_design.search.certification import Certification
     from nrs_design.spec import LoadedSpec
 

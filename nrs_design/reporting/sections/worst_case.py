@@ -19,7 +19,8 @@ from nrs_design.reporting.worst_case import (
 from nrs_design.simulation.run import common_lever_arm
 
 if TYPE_CHECKING:
-    from nrs_design.pipeline import Designed, Result
+    from nrs_design.pipeline.certification import Result
+    from nrs_design.pipeline.design import Designed
 
 _CAPTION = (
     "The worst run that was found for the force. Contact, controller and command change between "

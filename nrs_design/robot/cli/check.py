@@ -24,7 +24,7 @@ def check(spec: SpecFile) -> Answer:
 
     Example: nrs-design robot check specs/robots/neuroboscope.nrs.yaml
     """
-    from nrs_design.pipeline import placed
+    from nrs_design.pipeline.design import placed
     from nrs_design.robot.models import examine_inertia, survey_workspace
     from nrs_design.robot.pipeline import run_robot
 

@@ -17,7 +17,7 @@ from nrs_design.ros2.cli.options import Lag, read_lag
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from nrs_design.pipeline import Designed
+    from nrs_design.pipeline.design import Designed
     from nrs_design.ros2.export import RosExport
     from nrs_design.spec import LoadedSpec
 
@@ -56,7 +56,8 @@ def export(
 
     Example: nrs-design ros2 export mine.nrs.yaml --axis ry --lag '5..20 ms'
     """
-    from nrs_design.pipeline import placed, run_interaction, search_limits
+    from nrs_design.pipeline.certification import search_limits
+    from nrs_design.pipeline.design import placed, run_interaction
     from nrs_design.ros2.export import SEVERITY, export_controllers
 
     axes = _axes_of(spec, axis)

@@ -202,6 +202,25 @@ def check_no_common_quadratic(told):
     need(uniform and {f[0] for f in told["factors"]} <= names and definite(terms), "the sum")
 
 
+def check_constants_quadratic(told):
+    """Where y = A x, 2 (x'F + y'G) (y - A x) is zero; with it V falls for every x and y."""
+    P, rate, sets = [form(Q, n) for Q in told["functions"]], F(told["rate"]), rules["fixed_ends"]
+    need(uniform and not (required or rules.get("resets")), "contact, or resets, are not covered")
+    need(sorted(k for ends in sets for k in {*ends}) == sorted(names), "the modes are not ends")
+    need(rate > 0 and (flow or rate < 1), "the rate is none of decay")
+    need(all(definite(own(Q)) for Q in P), "a form is not positive definite")
+    for ends, pair in zip(sets, told["multipliers"], strict=True):
+        (first, second), y = (form(M, n) for M in pair), {(j,): {(n + j,): 1} for j in range(n)}
+        for name, Q in zip(ends, P, strict=True):
+            terms = own(Q, -2 * rate if flow else rate**2)
+            for i, row in Q.items():
+                rises = [(row, y[i]), (y[i], row)] if flow else [(y[i], combined(row, y))]
+                zero = {**y[i], **{j: -x for j, x in A[name][i].items()}}
+                times = {**{j: first[j][i] for j in y}, **combined({j: second[j][i] for j in y}, y)}
+                terms += [(-1, *v) for v in rises] + [(1, zero, times), (1, times, zero)]
+            need(definite(terms), f"it rises in mode {name}")
+
+
 sys.tracebacklimit = 0  # What is wrong is said in one line
 with open(sys.argv[1], encoding="utf-8") as file:
     o = json.load(file, parse_float=int)  # Refuses fractions

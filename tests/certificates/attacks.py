@@ -9,12 +9,11 @@ from nrs_design.certificates.certificate import Certificate, to_document
 from tests.proof.systems import genuine
 from tests.support import ROOT
 
-# One holds a function of a constant parameter, which no other checker knows.
-UNKNOWN = ROOT / "reports" / "unknown-constant.cert.json"
-SHIPPED = sorted({*(ROOT / "reports").glob("*.cert.json")} - {UNKNOWN})
+SHIPPED = sorted((ROOT / "reports").glob("*.cert.json"))
 QUADRATIC, POLYNOMIAL = "commuting", "dayawansa-martin-6"
 SAMPLED, CONTACT = "soft-tissue-sampled", "soft-tissue"
 RULED, DWELL, RESETS = "failing-controller", "geromel-colaneri", "force-limit-offset"
+CONSTANT = "unknown-constant"  # It holds functions of a constant parameter, which no page knows
 POLYNOMIALS = ("degree", "vanishing")  # Fields of theirs alone
 Document = dict[str, Any]
 
@@ -212,6 +211,39 @@ def swap_forms(document):
     a["form"], b["form"] = b["form"], a["form"]
 
 
+def swap_functions(document):
+    first(document)["functions"].reverse()
+
+
+def turn_over(document):
+    """Modes that grow, and functions that do so faster: they fall below zero."""
+    for mode in document["modes"]:
+        mode.update(numerators=[[5, 0], [0, 5]], denominator=1)
+    P, F, G = ([[scale, 0], [0, scale]] for scale in (-10, -10, 1))
+    first(document).update(functions=[P, P], multipliers=[[F, G]])
+
+
+def drop_multipliers_of_a_mode(document):
+    first(document)["multipliers"].pop()
+
+
+def add_unpaired(document):
+    """An unstable mode at no corner."""
+    alone = {**document["modes"][0], "name": "alone"}
+    document["modes"].append({**alone, "numerators": [[5, 0], [0, 5]]})
+
+
+def reset_at_corners(document):
+    a, b = document["switching"]["fixed_ends"][0]
+    reset = {"source": a, "target": b, "numerators": [[9, 0], [0, 9]], "denominator": 1}
+    document["switching"]["resets"] = [reset]
+
+
+def lose_contact(document):
+    free = {"name": "air", "numerators": [[-1, 0], [1, 0]], "denominator": 1}
+    document["contact"] = {"free": [free], "required": True}
+
+
 def follow_nobody(document):
     """One unstable mode, which is said to be left: there is no switch, and so no step."""
     states, document["modes"] = len(document["states"]), document["modes"][:1]
@@ -263,6 +295,18 @@ ELSEWHERE: dict[str, tuple[Change, ...]] = {
     RULED: (stay_for_good, stay_longer, swap_forms, claim_a_little_more, leave_by_no_switch),
     DWELL: (switch_sooner, swap_forms, coarsen),
     RESETS: (stretch_reset, reset_nobody, swap_forms),
+    CONSTANT: (
+        swap_functions,
+        turn_over,
+        drop_multipliers_of_a_mode,
+        add_unpaired,
+        reset_at_corners,
+        lose_contact,
+        call_it_discrete,
+        claim_nothing,
+        claim_more,
+        claim_a_little_more,
+    ),
 }
 # These have more modes, and are dear.
 LARGE: dict[str, tuple[Change, ...]] = {

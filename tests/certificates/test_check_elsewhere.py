@@ -20,7 +20,6 @@ from tests.certificates.attacks import (
     POLYNOMIAL,
     QUADRATIC,
     SHIPPED,
-    UNKNOWN,
     call_it_discrete,
     found,
     named,
@@ -83,11 +82,6 @@ def test_what_ships_holds(path, monkeypatch, capsys):
     kinds = [item["kind"] for item in json.loads(path.read_text())["statements"]]
     assert decide(path, monkeypatch) == 0
     assert capsys.readouterr().out.splitlines() == [f"{kind}: holds" for kind in kinds]
-
-
-def test_of_a_constant_parameter_it_says_that_it_is_not_checked(monkeypatch, capsys):
-    assert decide(UNKNOWN, monkeypatch) == 3
-    assert "constants-quadratic: not checked here (this kind, " in capsys.readouterr().out
 
 
 def test_it_runs_as_typed():
@@ -154,6 +148,25 @@ def test_discrete_time(judge, rate):
         "statements": [{**statement, "denominator_log2": 0}],
     }
     assert judge(document) == (0 if Fraction(rate) > Fraction(1, 2) else 1)
+
+
+@pytest.mark.parametrize(
+    ("time", "A", "rate", "code"),
+    [
+        ("discrete", [2, 1], "16/25", 0),
+        ("discrete", [2, 1], "63/100", 1),
+        ("continuous", [-4, -2], "1/21", 0),
+        ("continuous", [-4, -2], "1/20", 1),
+    ],
+)
+def test_a_constant_parameter_by_hand(judge, time, A, rate, code):
+    """One state, P = 3 and 5, F = 1, G = 4: definite for rho^2 > 2/5, or alpha < 1/20."""
+    modes = [{"name": k, "numerators": [[a]], "denominator": 4} for k, a in zip("ab", A, strict=1)]
+    statement = {"kind": "constants-quadratic", "denominator_log2": 0, "rate": rate}
+    statement |= {"functions": [[[3]], [[5]]], "multipliers": [[[[1]], [[4]]]]}
+    document = {**shipped(QUADRATIC), "time": time, "states": ["x"], "modes": modes}
+    document |= {"switching": {"fixed_ends": [["a", "b"]]}, "statements": [statement]}
+    assert judge(document) == code
 
 
 @pytest.mark.parametrize(("dwell", "code"), [("2761/1000", 0), ("68/25", 1)])

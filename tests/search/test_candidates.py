@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 from fractions import Fraction
-from functools import partial
 
 import numpy as np
 import pytest
@@ -11,10 +10,8 @@ from nrs_design.proof.switching import Stay, Switching
 from nrs_design.search import common_quadratic
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE
 from nrs_design.search.common_quadratic import decide_one_state, search_by_gradient, search_by_lmi
-from nrs_design.search.constants_quadratic import search_constants_quadratic
 from nrs_design.search.family import Family, floats_in_silence
 from nrs_design.search.graphs import (
-    search_modes,
     search_polynomial,
     search_preconditioned,
     search_raw,
@@ -24,7 +21,6 @@ from nrs_design.search.obstruction import search_obstruction
 from nrs_design.search.period import search_period
 from nrs_design.search.unstable_mode import examine_every_mode, examine_suspicious_modes
 from nrs_design.work import Allowance, NotAffordableError
-from tests.proof.graphs import shape_of
 from tests.search.support import outcome
 from tests.support import dayawansa_martin, family, holds
 
@@ -61,25 +57,6 @@ def test_modes_that_must_be_left_are_not_called_stable():
     assert words.startswith("1 modes tested exactly, all stable; 1 not tested")
 
 
-@pytest.mark.parametrize("optimize_rate", [True, False])
-def test_lmi_finds_evidence(optimize_rate):
-    evidence, words = outcome(search_by_lmi, GOOD, optimize_rate=optimize_rate)
-    assert words.startswith("found")
-    assert holds(GOOD, evidence)
-
-
-def test_optimizing_gives_the_faster_rate():
-    plain, best = (outcome(search_by_lmi, GOOD, optimize_rate=o)[0].rate for o in (False, True))
-    assert best >= plain
-
-
-@pytest.mark.slow
-def test_gradient_finds_evidence():
-    evidence, words = outcome(search_by_gradient, GOOD)
-    assert "updates" in words
-    assert holds(GOOD, evidence)
-
-
 @pytest.mark.parametrize("search", [search_raw, search_preconditioned])
 def test_other_coordinates_find_evidence_too(search):
     stretched = family(*([[-1, x], [y, -1]] for x, y in ((1000, 0), (500, "1/9999"))))
@@ -89,36 +66,6 @@ def test_other_coordinates_find_evidence_too(search):
         assert holds(system, evidence)
     evidence, words = outcome(search, dayawansa_martin(6))
     assert (evidence, words) == (None, NO_MARGIN)
-
-
-FIXED_ENDS = Switching(fixed_ends=(("m0", "m1"),))
-SHEARS = family([[-1, 10], [0, -1]], [[-1, 0], [10, -1]])
-
-
-@pytest.mark.parametrize(
-    ("search", "system", "kind"),
-    [
-        (search_obstruction, dayawansa_martin(6), "no-common-quadratic"),
-        (partial(search_polynomial, degree=2), dayawansa_martin(6), "common-polynomial"),
-        (search_period, dayawansa_martin(12), "growing-sequence"),
-        (search_mixture, SHEARS, "growing-sequence"),
-        (
-            search_constants_quadratic,
-            replace(dayawansa_martin(12), switching=FIXED_ENDS),
-            "constants-quadratic",
-        ),
-        (
-            search_modes,
-            replace(dayawansa_martin(12), switching=Switching(dwell_time=Fraction(10))),
-            "mode-quadratic",
-        ),
-    ],
-)
-def test_every_other_rung_finds_its_kind(search, system, kind):
-    evidence, _ = outcome(search, system)
-    assert shape_of(evidence) == kind
-    assert evidence.find_fault(system) is None
-    assert holds(system, evidence)
 
 
 @pytest.mark.parametrize(

@@ -14,7 +14,6 @@ from hypothesis import strategies as st
 
 from nrs_design.certificates.certificate import CommonQuadraticStatus, Verdict
 from nrs_design.errors import ClockError, DesignError, InternalError
-from nrs_design.pipeline.certification import run_certification
 from nrs_design.proof.evidence import BlockTriangular, FormsOnGraph, Shows
 from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Switching
@@ -26,9 +25,8 @@ from nrs_design.search.certification import Limits
 from nrs_design.search.certify import certify, first_accepted
 from nrs_design.search.gradient import GradientResult
 from nrs_design.search.method import Method
-from nrs_design.spec import read_spec
 from tests.proof.graphs import common_quadratic, shape_of
-from tests.support import ROOT, dayawansa_martin, family, holds
+from tests.support import dayawansa_martin, family, holds
 
 ROTATION = [[0, 1], [-1, 0]]
 SINGULAR = [["-0.36", "-0.48"], ["-0.48", "-0.64"]]
@@ -132,7 +130,7 @@ class TestNearTheThreshold:
         assert outcome(dayawansa_martin(a), limits=ANY_RATE) == ("proved", "exists")
 
     @pytest.mark.slow
-    @pytest.mark.parametrize("a", ["5.8285", *map(slow, ("5.829", "5.83", "6", "8")), "10"])
+    @pytest.mark.parametrize("a", ["5.8285", "10"])
     def test_no_quadratic_function_above(self, a):
         assert outcome(dayawansa_martin(a)) == ("proved", "impossible")
         for method in (Method.LMI, Method.GRADIENT):
@@ -147,11 +145,6 @@ class TestNearTheThreshold:
     def test_never_wrong_just_below_it(self, a):
         limits = Limits(max_degree=12)
         assert settle(dayawansa_martin(a), limits=limits).verdict is not Verdict.REFUTED
-
-    def test_best_rate_is_safe_and_close(self):
-        """With A + alpha I in place of A, a = 5 stays quadratic up to alpha about 0.10557."""
-        rate = settle(STABLE).evidence.rate
-        assert Fraction("0.105") < rate < Fraction("0.1056")
 
 
 class TestModes:
@@ -186,25 +179,6 @@ class TestModes:
         assert settle(family([[tiny, 1], [-1, tiny]])).verdict is Verdict.REFUTED
         assert settle(family([[1 + tiny]], time=Time.DISCRETE)).verdict is Verdict.REFUTED
         assert settle(family([[1 - tiny]], time=Time.DISCRETE)).verdict is not Verdict.REFUTED
-
-    @pytest.mark.parametrize("optimize_rate", [True, False])
-    @pytest.mark.parametrize(
-        ("A", "time", "verdict"),
-        [
-            (-1, Time.CONTINUOUS, Verdict.PROVED),
-            (0, Time.CONTINUOUS, Verdict.REFUTED),
-            (1, Time.CONTINUOUS, Verdict.REFUTED),
-            ("-1e-9", Time.CONTINUOUS, Verdict.PROVED),
-            (0, Time.DISCRETE, Verdict.PROVED),
-            ("1/2", Time.DISCRETE, Verdict.PROVED),
-            ("-1/2", Time.DISCRETE, Verdict.PROVED),
-            (1, Time.DISCRETE, Verdict.REFUTED),
-            (-1, Time.DISCRETE, Verdict.REFUTED),
-        ],
-    )
-    def test_one_state_one_mode(self, A, time, verdict, optimize_rate):
-        limits = Limits(optimize_rate=optimize_rate)
-        assert settle(family([[A]], time=time), limits=limits).verdict is verdict
 
     @pytest.mark.parametrize("optimize_rate", [True, False])
     @pytest.mark.parametrize("A", [[[0, 0], [0, 0]], [[0, 1], [0, 0]], [["1/2", 5], [0, "-1/2"]]])
@@ -293,19 +267,6 @@ class TestScales:
 
 
 class TestMethods:
-    @pytest.mark.slow
-    def test_gradient_proves_the_robot(self):
-        loaded = read_spec(ROOT / "specs" / "neuroboscope" / "soft-tissue.nrs.yaml")
-        result = run_certification(loaded, method=Method.GRADIENT)
-        assert result.certification.verdict is Verdict.PROVED
-        assert result.certification.method == "gradient"
-
-    @pytest.mark.slow
-    def test_gradient_gives_up(self):
-        result = settle(NOT_QUADRATIC, Method.GRADIENT)
-        assert result.verdict is Verdict.INCONCLUSIVE
-        assert any("not converged" in attempt.outcome for attempt in result.attempts)
-
     def test_a_method_that_does_not_apply_is_refused(self):
         with pytest.raises(DesignError, match="mixture does not apply") as caught:
             certify(family([["1/2"]], time=Time.DISCRETE), Method.MIXTURE)
@@ -415,7 +376,7 @@ class TestMethods:
         assert "budget" in result.attempts[-1].outcome
         assert len(result.attempts) < 3
 
-    @pytest.mark.parametrize("budget", [0.05, 0.2, 0.4])
+    @pytest.mark.parametrize("budget", [0.05, 0.2])
     def test_no_clock_changes_what_a_budget_that_cuts_the_search_short_finds(
         self, monkeypatch, budget
     ):

@@ -45,32 +45,6 @@ def test_few_bits_are_enough_for_a_good_candidate():
     assert holds(SYSTEM, evidence)
 
 
-def test_denominator_gives_back_the_candidate():
-    evidence = rounded(SYSTEM, GOOD * 1e200)
-    Q = np.array(evidence.nodes[0].form, dtype=float)
-    np.testing.assert_allclose(Q[0, 0] / Q[1, 1], 0.2, rtol=0.2)
-    assert evidence.denominator_log2 >= 0
-
-
-@pytest.mark.parametrize("exponents", [(0, 3), (5, -5), (-40, 17)])
-def test_scaling_is_undone_exactly(exponents):
-    """In scaled coordinates the modes are 2^-d A 2^d; the evidence is for A itself."""
-    d = np.array(exponents)
-    powers = [Fraction(2) ** e for e in exponents]
-    stretched = family(
-        *(
-            [
-                [powers[i] * e / powers[j] for j, e in enumerate(row)]
-                for i, row in enumerate(m.A.fractions())
-            ]
-            for m in SYSTEM.modes
-        )
-    )
-    evidence = rounded(stretched, GOOD, exponents=d)
-    assert evidence is not None
-    assert holds(stretched, evidence)
-
-
 @pytest.mark.parametrize(
     "Q",
     [

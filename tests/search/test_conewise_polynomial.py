@@ -3,22 +3,19 @@
 The rates were found by an independent program, and proved in exact arithmetic there.
 """
 
-from dataclasses import replace
 from itertools import pairwise
 
 import pytest
 
 from nrs_design.certificates.certificate import Verdict
-from nrs_design.proof.contact import Contact
-from nrs_design.proof.mode import Mode
 from nrs_design.search.certify import certify
 from nrs_design.search.graphs import search_conewise_polynomial
 from nrs_design.search.ladder import applicable_methods
 from nrs_design.search.method import Method
 from nrs_design.search.polynomial import conewise_cost, family_cost
 from tests.proof.graphs import shape_of
-from tests.proof.systems import bouncing, bouncing_in_steps, dayawansa_martin, matrix
-from tests.search.support import found, outcome, thesis_robot
+from tests.proof.systems import bouncing, bouncing_in_steps, dayawansa_martin
+from tests.search.support import found, thesis_robot
 
 BOTH = ("2.15", "1.04")
 STIFF = thesis_robot(("43", "62"), BOTH, "0.01")
@@ -52,14 +49,6 @@ def test_where_it_applies():
     for system in (bouncing_in_steps(), bouncing(1), dayawansa_martin(6)):
         assert Method.CONEWISE_POLYNOMIAL not in applicable_methods(system)
     assert Method.CONEWISE_POLYNOMIAL in applicable_methods(bouncing())
-
-
-def test_free_motion_that_does_not_slow_down_is_not_found():
-    system, free = bouncing(), Mode("free", matrix([[0, 0], [1, 0]]))
-    sliding = replace(system, assumptions=(), contact=Contact((free,)))
-    evidence, why = outcome(search_conewise_polynomial, sliding, degree=2)
-    assert evidence is None
-    assert why
 
 
 def test_predictions_grow_with_degree_and_exceed_those_without_flight():

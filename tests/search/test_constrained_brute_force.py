@@ -3,6 +3,7 @@
 The oracle knows the rules by their definition, and nothing of graphs, automata or forms.
 """
 
+from dataclasses import replace
 from fractions import Fraction
 from itertools import groupby, pairwise, product
 
@@ -12,15 +13,14 @@ from scipy.linalg import expm
 
 from nrs_design.certificates.certificate import Verdict
 from nrs_design.pipeline.radius import bound_radius
-from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.switching import Stay, Switching
-from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.certification import Limits
 from nrs_design.search.certify import certify
 from nrs_design.spec.misses import MissesSpec
 from nrs_design.switched.misses import modes_with_misses
 from tests.proof.systems import family
+from tests.search.test_pieces import timed
 
 LIMITS = Limits(max_degree=4, budget=3.0, optimize_rate=False)
 LONGEST, FEW = 7, 12
@@ -81,14 +81,7 @@ class Misses:
         groups = {name: (Mode(name, of[0].A),) for name, of in groups.items()}
         rule = MissesSpec(mode="miss", at_most=self.most, of=self.of)
         each, rules = modes_with_misses(groups, rule)
-        return SwitchedSystem(
-            name="late",
-            time=Time.DISCRETE,
-            states=first.states,
-            modes=each,
-            assumptions=(),
-            switching=rules,
-        )
+        return replace(first, modes=each, switching=rules)
 
     def lets_repeat(self, word):
         long = word * (self.of + 1)
@@ -144,7 +137,7 @@ def assert_grows(evidence, rule, matrices, least):
     assert growth(word, matrices) >= least
 
 
-@pytest.mark.parametrize("part", range(20))
+@pytest.mark.parametrize("part", range(6))
 def test_no_verdict_is_wrong(part):
     verdicts = [check(seed) for seed in range(part * FEW, (part + 1) * FEW)]
     assert verdicts.count(Verdict.INCONCLUSIVE) <= 2
@@ -165,25 +158,7 @@ def check_timed(seed):
     modes = rng.integers(-30, 25, (2, size, size)) / 10
     stays = rng.integers(2, 20, 2) / 10
     width = float(rng.choice([0, 0.1, 0.3]))
-    switching = Switching(
-        stays=tuple(
-            (name, Stay(Fraction(str(t)), Fraction(str(t)) * (1 + Fraction(str(width)))))
-            for name, t in zip("ab", stays, strict=True)
-        )
-    )
-    each = tuple(
-        Mode(name, RationalMatrix.from_rows([[Fraction(str(v)) for v in row] for row in A]))
-        for name, A in zip("ab", modes, strict=True)
-    )
-    states = tuple(f"x{k}" for k in range(size))
-    system = SwitchedSystem(
-        name="timed",
-        time=Time.CONTINUOUS,
-        states=states,
-        modes=each,
-        assumptions=(),
-        switching=switching,
-    )
+    system = timed((str(width),) * 2, modes.astype(str), stays.astype(str))
     known = 0.0
     for length in (1, 1, 1, 2, 2, 3):
         whole = np.eye(size)

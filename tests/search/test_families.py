@@ -18,8 +18,12 @@ from nrs_design.search.certify import certify
 from nrs_design.search.method import Method
 from tests.support import family, holds, thinned
 
-FEW, MANY = 30, 400
-SEEDS = [pytest.param(seed, marks=[] if seed < FEW else [pytest.mark.slow]) for seed in range(MANY)]
+FEW, MORE, MANY = 30, 60, 400
+SEEDS = [
+    *range(FEW),
+    *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(FEW, MORE)),
+    *(pytest.param(seed, marks=pytest.mark.nightly) for seed in range(MORE, MANY)),
+]
 # The question is the one about quadratic functions: no higher degree is needed for its answer.
 LIMITS = Limits(max_degree=2, optimize_rate=False)
 DECIDED = {CommonQuadraticStatus.EXISTS, CommonQuadraticStatus.IMPOSSIBLE}
@@ -112,7 +116,7 @@ def test_a_pair_of_order_30():
 
 
 @pytest.mark.parametrize("factor", ["100000", "1/100000"])
-@pytest.mark.parametrize("seed", SEEDS[:6] + SEEDS[FEW : FEW + 40])
+@pytest.mark.parametrize("seed", SEEDS[:6] + SEEDS[FEW : FEW + 6])
 def test_unit_of_time_changes_nothing(seed, factor):
     modes = draw(seed)
     assert decide(times(modes, Fraction(factor))) is decide(modes)

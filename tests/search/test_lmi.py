@@ -23,12 +23,16 @@ def exists_by_cvxpy(matrices):
     return float(t.value)
 
 
-@pytest.mark.parametrize("seed", thinned(range(30), 12))
-def test_existence_agrees_with_cvxpy(seed):
+def drawn(seed):
     generator = np.random.default_rng(seed)
     n, m = generator.integers(2, 7), generator.integers(2, 6)
     shift = generator.uniform(0.5, 2.5) * np.sqrt(n)
-    matrices = generator.standard_normal((m, n, n)) - shift * np.eye(n)
+    return generator.standard_normal((m, n, n)) - shift * np.eye(n)
+
+
+@pytest.mark.parametrize("seed", thinned(range(30), 12))
+def test_existence_agrees_with_cvxpy(seed):
+    matrices = drawn(seed)
     margin = exists_by_cvxpy(matrices)
     found = find_common_quadratic(matrices, Time.CONTINUOUS, 0.0)
     if margin > 1e-4:
@@ -40,13 +44,9 @@ def test_existence_agrees_with_cvxpy(seed):
 
 def test_both_answers_occur():
     """The comparison above says something only if its families are of both sorts."""
-    answers = set()
-    for seed in range(30):
-        generator = np.random.default_rng(seed)
-        n, m = generator.integers(2, 7), generator.integers(2, 6)
-        shift = generator.uniform(0.5, 2.5) * np.sqrt(n)
-        matrices = generator.standard_normal((m, n, n)) - shift * np.eye(n)
-        answers.add(find_common_quadratic(matrices, Time.CONTINUOUS, 0.0) is None)
+    answers = {
+        find_common_quadratic(drawn(seed), Time.CONTINUOUS, 0.0) is None for seed in range(30)
+    }
     assert answers == {True, False}
 
 

@@ -7,11 +7,10 @@ import numpy as np
 import pytest
 
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.switching import Reset, Stay, Switching
-from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.certify import certify
 from nrs_design.search.pieces import PIECES, enough_pieces
+from tests.proof.systems import family
 
 A = [["0.13", "1.22"], ["-1.13", "-0.56"]]
 B = [["-0.77", "-1.5"], ["0.96", "1.31"]]
@@ -19,24 +18,11 @@ B = [["-0.77", "-1.5"], ["0.96", "1.31"]]
 
 def timed(widths, matrices=(A, B), stays=("1.7", "1.1"), resets=()):
     """Two modes in turn, each with a stay of a length that is known but for a share of it."""
-    modes = tuple(
-        Mode(name, RationalMatrix.from_rows([[Fraction(x) for x in row] for row in rows]))
-        for name, rows in zip("ab", matrices, strict=True)
-    )
     each = tuple(
         (name, Stay(Fraction(stay), Fraction(stay) * (1 + Fraction(width))))
         for name, stay, width in zip("ab", stays, widths, strict=True)
     )
-    states = tuple(f"x{i}" for i in range(len(matrices[0])))
-    switching = Switching(resets=resets, stays=each)
-    return SwitchedSystem(
-        name="timed",
-        time=Time.CONTINUOUS,
-        states=states,
-        modes=modes,
-        assumptions=(),
-        switching=switching,
-    )
+    return family(*matrices, names="ab", switching=Switching(resets=resets, stays=each))
 
 
 SMALLER = (Reset("a", "b", RationalMatrix(((9, 1), (0, 8)), 10)),)

@@ -32,7 +32,7 @@ def loop(Mt: str, delay: int, k: float) -> SwitchedSystem:
     return thesis_robot(("20", f"{k:.4g}"), ("2.15", "1.04"), Mt, sampling=sampling, contact="kept")
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 @pytest.mark.parametrize(("Mt", "delay", "proved", "refuted"), MAP)
 def test_the_map_is_reached_on_both_sides(Mt, delay, proved, refuted):
     method = Method.POLYNOMIAL if delay < 2 else Method.MODE_QUADRATIC

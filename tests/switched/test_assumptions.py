@@ -96,15 +96,6 @@ def test_power_law_decays_about_any_rest_however_far_and_fast(proved):
     assert worst <= 1e-9
 
 
-def test_words_of_a_preload(proved):
-    texts = " ".join(proved.certification.system.assumptions)
-    assert (
-        "concha is a Hunt-Crossley law whose deflection stays between 0.1 rad and 0.3 rad" in texts
-    )
-    assert "a rest anywhere from its surface to 0.3 rad, at which the commands hold every" in texts
-    assert "Contact is not lost" in texts
-
-
 @pytest.mark.parametrize(("scale", "covered"), [("1/2", False), ("1", True), ("11/10", True)])
 def test_ranges_scaled_below_one_do_not_cover_the_law(scale, covered):
     loaded = read_spec(CONCHA)

@@ -10,11 +10,10 @@ from scipy.integrate import solve_ivp
 
 from nrs_design.design.design import design_controllers
 from nrs_design.search.certify import certify
-from nrs_design.spec import parse_spec, read_spec
+from nrs_design.spec import parse_spec
 from nrs_design.spec.build_plant import build_plant
 from nrs_design.switched.assemble import assemble
 from tests.simulation.interactions import FORCE, INSERTION, POSITION, text_of
-from tests.support import ROOT
 from tests.switched.support import assembled
 
 PI = "{type: pi-force, environment: soft, proportional_gain: 0.02 rad/(N*m), "
@@ -99,34 +98,20 @@ def stiffness_of(text):
     return rational(Fraction(text).numerator, Fraction(text).denominator)
 
 
-def test_the_known_answer_has_a_common_quadratic_function():
-    """Kp 0.02, Ki 0.5, decay 20 1/s: position and PI force control, switched at will."""
-    found = certify(assembled(text_of(BOTH, more=IDLE)))
-    assert str(found.verdict) == "proved"
-    assert str(found.common_quadratic) == "exists"
-
-
-def test_an_integral_that_is_held_is_refuted():
-    """Without decay the position mode keeps it for ever."""
-    found = certify(assembled(text_of(BOTH, more="idle_states: {decay: 0 1/s}")))
-    assert str(found.verdict) == "refuted"
-
-
-def test_beside_impedance_control_it_is_proved():
-    found = certify(assembled(text_of({"insertion": INSERTION, **BOTH}, more=IDLE)))
-    assert str(found.verdict) == "proved"
+@pytest.mark.parametrize(
+    ("controllers", "decay", "verdict"),
+    [
+        # Without decay the position mode keeps the integral for ever.
+        (BOTH, 0, "refuted"),
+        ({"insertion": INSERTION, **BOTH}, 20, "proved"),
+    ],
+)
+def test_what_becomes_of_the_integral_decides(controllers, decay, verdict):
+    system = assembled(text_of(controllers, more=f"idle_states: {{decay: {decay} 1/s}}"))
+    assert str(certify(system).verdict) == verdict
 
 
 def test_alone_nothing_is_idle():
     system = assembled(text_of({"force": PI}))
     assert system.states == ("xp1", "xp2", "integral [rad]")
     assert str(certify(system).verdict) == "proved"
-
-
-def test_the_statement_says_what_becomes_of_the_integral():
-    spec = read_spec(ROOT / "specs/neuroboscope/force-limit-pi.nrs.yaml").spec
-    plant = build_plant(spec)
-    system = assemble(spec, plant, design_controllers(spec, plant))
-    (text,) = [text for text in system.assumptions if "the integral of the force error" in text]
-    assert "decays at 20 1/s, and stays in the command" in text
-    assert not any("integrate their velocity" in text for text in system.assumptions)

@@ -12,7 +12,6 @@ from scipy.linalg import expm
 from nrs_design.controllers.laws import LAWS, Admittance
 from nrs_design.controllers.step_law import StepFrame
 from nrs_design.errors import AssemblyError
-from nrs_design.models.actuator import Actuator, ActuatorRanges
 from nrs_design.models.drive import (
     Takes,
     lagging_drive,
@@ -24,7 +23,7 @@ from nrs_design.models.interval import Interval
 from nrs_design.models.motion_loop import MotionLoop
 from nrs_design.switched.command_timing import CommandTiming
 from nrs_design.switched.held_drive import HeldDrive
-from nrs_design.switched.held_motor import WAY, Commands, hold
+from nrs_design.switched.held_motor import WAY, Commands
 from nrs_design.switched.parameter_box import Box, around
 from nrs_design.switched.sampled_frame import Frame
 
@@ -132,18 +131,6 @@ def test_a_drive_that_is_known_is_enclosed_to_one_number_in_doubles(name):
     for entry in held.entries.values():
         (value,) = entry.corners.values()
         assert entry.off <= abs(value) * F(1, 2**60)
-
-
-def test_a_lag_is_the_motor_of_the_same_time_constant():
-    """A velocity that follows by 1/(tau s + 1) is a motor of gain one."""
-    tau = F(7, 200)
-    motor = hold(ActuatorRanges.point(Actuator(F(1), tau)), CommandTiming(T))
-    held = HeldDrive.of(velocity_drive(MotionLoop((F(1),), (tau, F(1)))), CommandTiming(T))
-    given = Commands(([F(1), F(0), F(0)],), [F(0), F(1), F(0)], [F(0), F(0), F(1)])
-    middle = {"Km": F(1)} | {s: i.middle for s, i in motor.box.ranges.items()}
-    for name in ("omega [rad/s]", WAY):
-        one, other = motor.result(name, given, middle), held.result(name, given, {})
-        np.testing.assert_allclose(np.array(one, float), np.array(other, float), atol=1e-15)
 
 
 def test_a_simplex_holds_its_box():

@@ -1,6 +1,5 @@
 """A motor under commands that take effect within a period: formulas, enclosures, known answers."""
 
-from dataclasses import replace
 from decimal import Decimal, localcontext
 from fractions import Fraction
 from itertools import pairwise
@@ -9,14 +8,13 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from scipy.linalg import expm
 
 from nrs_design.controllers.laws import Admittance
 from nrs_design.controllers.step_law import StepFrame
 from nrs_design.models.actuator import Actuator, ActuatorRanges
 from nrs_design.models.interval import Interval
 from nrs_design.switched.command_timing import CommandTiming
-from nrs_design.switched.held_motor import WAY, Commands, MotorAtOnce, MotorInTime, hold
+from nrs_design.switched.held_motor import MotorAtOnce, MotorInTime, hold
 from nrs_design.switched.sampled_frame import Frame
 
 F = Fraction
@@ -24,11 +22,6 @@ T = F(1, 500)
 RANGES = ActuatorRanges(
     Interval(F(1, 2), F(2, 5), F(3, 5)), Interval(F(7, 200), F(3, 100), F(1, 25)), "rpm"
 )
-
-
-def given_of(changes):
-    unit = [[F(int(i == j)) for j in range(2 + changes)] for i in range(2 + changes)]
-    return Commands((unit[0],), unit[0], unit[1], tuple(unit[2:]))
 
 
 def true_rest(span, time, tau):
@@ -55,43 +48,6 @@ def test_every_motor_at_every_time_is_enclosed(at, when, start, known):
         room = (times.high - times.low) ** 2 / tau.low
         room += times.high**2 * (1 / tau.low - 1 / tau.high)
         assert span.rest.high <= room + F(1, 10**12)
-
-
-def by_exponentials(Km, tau, pieces):
-    """Return what speed and way become: of the speed, and of each command for its time."""
-    A = np.array([[-1 / tau, 0.0], [1.0, 0.0]])
-    total, columns = np.eye(2), []
-    for length in pieces:
-        step = expm(np.block([[A, np.array([[Km / tau], [0.0]])], [np.zeros((1, 3))]]) * length)
-        columns = [step[:2, :2] @ c for c in columns] + [step[:2, 2]]
-        total = step[:2, :2] @ total
-    return total[:, 0], columns
-
-
-@pytest.mark.parametrize("tau", [0.03, 0.04])
-@pytest.mark.parametrize("lefts", [(), (0.0005,), (0.0015, 0.0003)])
-def test_the_motion_is_that_of_the_split_period(tau, lefts):
-    """Each piece by the exponential of its own time."""
-    Km, period = 0.5, float(T)
-    timing = CommandTiming(T, F(0), F(len(lefts)) * T * F(3, 4))
-    motor = MotorInTime.of(RANGES, timing)
-    spans = (motor.spans[0], *motor.spans[-len(lefts) :]) if lefts else motor.spans[:1]
-    motor = replace(motor, spans=spans)
-    values = {"Km": F(Km), "g": F(1 / tau)}
-    for span, time in zip(spans, (period, *lefts), strict=True):
-        way = tau * (1 - np.exp(-time / tau))
-        chord = span.low + span.slope * (F(time) - span.time.low)
-        values |= dict(zip(span.symbols, (F(time), F(way) - chord), strict=True))
-    given = given_of(len(lefts))
-    speed, way = (
-        [float(v) for v in motor.result(name, given, values)] for name in ("omega [rad/s]", WAY)
-    )
-    ends = [period, *lefts, 0.0]
-    free, columns = by_exponentials(Km, tau, [a - b for a, b in pairwise(ends)])
-    # A change lasts to the end of the period, the first command for all of it.
-    sums = np.cumsum(columns[::-1], axis=0)[::-1]
-    np.testing.assert_allclose(speed, [free[0], *(c[0] for c in sums)], rtol=1e-10, atol=1e-15)
-    np.testing.assert_allclose(way, [free[1], *(c[1] for c in sums)], rtol=1e-10, atol=1e-15)
 
 
 def test_whole_periods_are_those_of_a_command_at_once():

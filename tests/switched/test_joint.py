@@ -74,21 +74,3 @@ def test_a_load_alone_makes_physical_states_and_no_corners():
     # In flight there is no force.
     assert all(row[-1] == 0 for row in system.contact.free[0].A.fractions())
     assert system.modes[0].A.fractions()[1][-1] == -Fraction("41.5") / Fraction("1.213")
-
-
-def test_without_ranges_and_load_both_states_have_one_spectrum():
-    """The physical state and the canonical one are coordinates of one loop."""
-    heavy = thesis_robot(SOFT, INSERTION, "0.01", load="1e30")
-    plain = thesis_robot(SOFT, INSERTION, "0.01")
-    for one, other in zip(heavy.modes, plain.modes, strict=True):
-        for power in range(1, 5):
-            traces = [_trace(mode.A.fractions(), power) for mode in (one, other)]
-            assert float(traces[0]) == pytest.approx(float(traces[1]), rel=1e-9)
-
-
-def _trace(A, power):
-    M = A
-    for _ in range(power - 1):
-        M = [[sum(a * b for a, b in zip(row, c, strict=True)) for c in zip(*A, strict=True)]
-             for row in M]  # fmt: skip
-    return sum(M[i][i] for i in range(len(M)))

@@ -3,7 +3,6 @@
 from fractions import Fraction
 from itertools import product
 
-import numpy as np
 import pytest
 
 from nrs_design.search.certify import certify
@@ -62,31 +61,3 @@ def test_one_state_decides_by_hand(most, of, stable):
     if stable:
         exact = (0.5 ** (of - most) * 2.5**most) ** (1 / of)
         assert exact <= float(found.evidence.proved_rate(found.system)) <= exact * 1.01
-
-
-def largest_growth(hit, miss, most, of, longest=8):
-    """Return the largest spectral radius per step of the words that may repeat for ever."""
-    found = 0.0
-    for n in range(1, longest + 1):
-        for word in product((0, 1), repeat=n):
-            long = word * (of // n + 2)
-            if any(sum(long[i : i + of]) > most for i in range(len(long) - of + 1)):
-                continue
-            product_of = np.eye(len(hit))
-            for missed in word:
-                product_of = (miss if missed else hit) @ product_of
-            found = max(found, np.abs(np.linalg.eigvals(product_of)).max() ** (1 / n))
-    return found
-
-
-@pytest.mark.parametrize("seed", range(12))
-def test_no_verdict_is_against_a_word(seed):
-    rng = np.random.default_rng(seed)
-    hit, miss = rng.normal(size=(2, 2, 2))
-    hit *= rng.uniform(0.4, 0.9) / np.abs(np.linalg.eigvals(hit)).max()
-    miss *= rng.uniform(0.9, 1.5) / np.abs(np.linalg.eigvals(miss)).max()
-    hit, miss = (np.round(M, 3) for M in (hit, miss))
-    most, of = [(1, 2), (1, 3), (2, 4), (2, 3)][seed % 4]
-    growth = largest_growth(hit, miss, most, of)
-    verdict = certify(system(hit, miss, most, of)).verdict
-    assert verdict == ("refuted" if growth > 1 else "proved")

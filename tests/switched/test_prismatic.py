@@ -5,8 +5,6 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from nrs_design.pipeline.certification import assemble_spec, run_certification
 from nrs_design.pipeline.design import run_design
@@ -81,19 +79,6 @@ def test_the_modes_are_those_of_the_pivot_up_to_units(tmp_path, L, near):
             np.testing.assert_allclose(found, wanted, rtol=near, atol=1e-9)
         else:
             assert carried == [[*row] for row in B]
-
-
-@given(
-    st.fractions(1, 4, max_denominator=64),
-    st.fractions(20, 80, max_denominator=100),
-    st.sampled_from([Fraction(1, 8), Fraction(1, 2), Fraction(2)]),
-)
-def test_whatever_the_design(tmp_path_factory, Bt, k, L):
-    turns, slides = map(assembled, both(tmp_path_factory.mktemp("one"), L, Bt=str(Bt), k=str(k)))
-    scale = [float(of_state(text, L)) for text in slides.states]
-    for one, other in zip(turns.modes[:2], slides.modes[:2], strict=True):
-        carried = np.array(one.A.floats()) * np.outer(scale, 1 / np.array(scale))
-        np.testing.assert_allclose(other.A.floats(), carried, rtol=1e-12, atol=1e-15)
 
 
 def test_verdict_and_rate_are_the_same(tmp_path):

@@ -3,10 +3,6 @@
 import numpy as np
 import pytest
 
-from nrs_design.controllers.laws import IntegralForce, PositionControl
-from nrs_design.errors import SpecError
-from nrs_design.spec import parse_spec
-from nrs_design.switched.sampled_law import list_law
 from tests.simulation.interactions import FORCE, INSERTION, POSITION, simulated, text_of
 from tests.switched.support import assembled
 
@@ -52,23 +48,6 @@ def test_a_period_is_that_of_processor_and_motor(controller):
         # a is rounded from the gains that ship, Mt and Bt.
         after = A @ [x[name] for name in names]
         assert after == pytest.approx([wanted[name] for name in names], rel=2e-6, abs=1e-6)
-
-
-def test_how_often_each_term_is_rounded():
-    """By hand, from the order of the operations: a sample is rounded as it is read."""
-    kinds = ((PositionControl, ()), (IntegralForce, ("Kf", "Ki_T")))
-    counts = list_law(0, kinds).counts
-    # Kp F: read, lack, product, sum with w, sum with X, difference from the angle.
-    assert counts["pi-force"]["error"] == {"e": 1, "w": 3, "Kp F": 6}
-    # Ki_T F: read, lack, product, sum; the product of the integral with one is exact.
-    assert counts["pi-force"]["next_integral"] == {"w kept": 1, "Ki_T F": 4}
-    assert counts["position"]["next_integral"] == {"g w": 1}
-    assert counts["position"]["error"] == {"e": 1}
-
-
-def test_loss_of_contact_is_refused():
-    with pytest.raises(SpecError, match="whose integral bleeds, and a sampled loop: not modelled"):
-        parse_spec(text_of(BOTH, more=SAMPLED.replace("kept", "losable")))
 
 
 def test_the_run_in_single_precision_leaves_no_error():

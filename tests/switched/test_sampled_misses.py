@@ -19,7 +19,6 @@ from nrs_design.switched.command_timing import CommandTiming
 from nrs_design.switched.held_motor import hold
 from nrs_design.switched.misses import clock_of
 from nrs_design.switched.sampled_frame import Frame, Turn
-from tests.support import SOFT_TISSUE
 from tests.switched.test_sampled_loop import system_of
 
 T, TAU, KM = 0.002, 0.0351, 4.8417e-4
@@ -97,25 +96,6 @@ def test_maps_are_those_of_a_simulation_with_missed_updates(missed, late):
     if "u held" in names:
         assert found["u held"] == pytest.approx(last, **NEAR)
     assert ("u held" in names) is (missed is Turn.HELD and not late)
-
-
-@pytest.mark.parametrize("missed", [Turn.HELD, Turn.ZEROED])
-def test_all_missed_is_a_motor_under_one_command(missed):
-    frame = frame_of(missed, 1)
-    names = [name.split(" [")[0] for name in frame.states]
-    n, count = len(names), 25
-    rows = np.array(frame.rows(frame.laws[0], 0, corner(frame, 43, 0), missed), dtype=float)
-    whole = np.linalg.matrix_power(rows[:n, :n], count)
-    x = np.random.default_rng(2).normal(size=n)
-    at, after = dict(zip(names, x, strict=True)), dict(zip(names, whole @ x, strict=True))
-    command, long = at.get("u held", 0.0), expm([[-count * T / TAU]])[0, 0]
-    omega = long * at["omega"] + KM * (1 - long) * command
-    moved = TAU * (1 - long) * (at["omega"] - KM * command) + KM * command * count * T
-    assert after["omega"] == pytest.approx(omega, **NEAR)
-    assert after["delta"] == pytest.approx(at["delta"] + moved, **NEAR)
-    assert after["e"] == pytest.approx(at["e"] - moved, **NEAR)
-    for kept in ("e before", "vm"):
-        assert after[kept] == at[kept]
 
 
 def loop(path, misses, *changes):
@@ -205,16 +185,3 @@ def test_rules_that_are_none(tmp_path, rule, said):
     with pytest.raises(NrsDesignError) as caught:
         loop(tmp_path, rule)
     assert said in str(caught.value)
-
-
-@pytest.mark.parametrize(
-    ("change", "said"),
-    [("switching: arbitrary", "switching: {transitions: [[insertion, withdrawal]]}")],
-)
-def test_what_misses_are_not_modelled_beside(tmp_path, change, said):
-    assert change in SOFT_TISSUE.read_text(encoding="utf-8")
-    with pytest.raises(NrsDesignError, match="missed deadlines beside"):
-        loop(tmp_path, "{consecutive: 1, command: hold}", (change, said))
-    outer = "{period: 2 ms, outer_period: 4 ms, delay: 0, misses: {consecutive: 1, command: hold}}"
-    with pytest.raises(NrsDesignError, match="missed deadlines beside an outer_period"):
-        system_of(tmp_path, outer)

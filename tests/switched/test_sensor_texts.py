@@ -37,15 +37,18 @@ def test_bounds_on_disturbances_take_them_up():
     assert "It is the force error of the statements that name one" in errors
 
 
-def test_the_filter_runs_with_the_outer_loop(tmp_path):
-    path = tmp_path / "sensed.nrs.yaml"
-    more = (
-        "sampling: {period: 2 ms, outer_period: 0.5 ms, delay: 0}\n"
-        "contact: kept\nsensor: {filter: {cutoff: 60 Hz}}\n"
-    )
-    path.write_text(SOFT_TISSUE.read_text(encoding="utf-8") + more, encoding="utf-8")
+def sensed(folder, more):
+    """Design and assemble soft tissue, in contact that is kept, with what is sampled and sensed."""
+    path = folder / "sensed.nrs.yaml"
+    text = f"{SOFT_TISSUE.read_text(encoding='utf-8')}contact: kept\n{more}"
+    path.write_text(text, encoding="utf-8")
     designed = run_design(read_spec(path))
-    system = assemble(designed.spec, designed.plant, designed.design)
+    return designed, assemble(designed.spec, designed.plant, designed.design)
+
+
+def test_the_filter_runs_with_the_outer_loop(tmp_path):
+    sampling = "sampling: {period: 2 ms, outer_period: 0.5 ms, delay: 0}\n"
+    designed, system = sensed(tmp_path, f"{sampling}sensor: {{filter: {{cutoff: 60 Hz}}}}\n")
     step = designed.design.sensor.filter.discretize(Fraction(1, 2000))
     (text,) = (text for text in system.assumptions if "through one lag" in text)
     assert f"p = {exact_decimal(step.p)} and" in text
@@ -54,14 +57,11 @@ def test_the_filter_runs_with_the_outer_loop(tmp_path):
 
 
 def test_the_sampled_loop_takes_the_errors_for_its_force_error(tmp_path):
-    path = tmp_path / "sensed.nrs.yaml"
-    more = (
+    _, system = sensed(
+        tmp_path,
         "sampling: {period: 2 ms, delay: 0}\ndisturbances: {encoder_step: 1e-5 rad}\n"
-        "contact: kept\nsensor: {bias: 5e-3 N*m, filter: {cutoff: 60 Hz}}\n"
+        "sensor: {bias: 5e-3 N*m, filter: {cutoff: 60 Hz}}\n",
     )
-    path.write_text(SOFT_TISSUE.read_text(encoding="utf-8") + more, encoding="utf-8")
-    designed = run_design(read_spec(path))
-    system = assemble(designed.spec, designed.plant, designed.design)
     assert system.states[4] == "filtered 1 before [N*m]"
     bounds = {channel.name: channel.bound for channel in system.channels}
     assert bounds["force error"] == Fraction("0.005")

@@ -114,15 +114,6 @@ def test_decay_is_the_single_precision_number_that_the_robot_holds():
     assert "decay at 0.100000001490116119384765625 1/s" in " ".join(system.assumptions)
 
 
-def test_what_is_taken_for_granted_about_switches_between_kinds():
-    texts = " ".join(mixed().assumptions)
-    # The position mode is free motion, and has a command of its own.
-    assert "Contact is not lost: free motion is not one of the modes" not in texts
-    assert "Contact is not lost while an impedance controller is active" in texts
-    assert "The commanded position is that at which the contact carries no force" in texts
-    assert "A controller that leaves this kick out is not covered" in texts
-
-
 def test_a_spring_acts_on_the_reference_that_others_leave_idle(tmp_path):
     text = MIXED.read_text(encoding="utf-8")
     sprung = text.replace("    Bt:", "    Kt: 0.5 N*m/rad\n    Bt:", 1)

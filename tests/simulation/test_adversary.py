@@ -6,13 +6,12 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.mode import Mode, Time
+from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Reset, Stay, Switching
-from nrs_design.proof.system import SwitchedSystem
 from nrs_design.simulation.adversary import held_signals, improve, settled_signals
 from nrs_design.simulation.game import Aim, Game, Signals, play
 from nrs_design.simulation.rules import Rules
+from tests.proof.systems import family, matrix
 
 STEPS, RUNS = 7, 400
 A = np.array([[[0.7, 0.5], [-0.6, 0.6]], [[0.9, -0.4], [0.5, 0.4]], [[0.5, 0.1], [0.3, 0.8]]])
@@ -20,17 +19,7 @@ B = np.array([[[0.3], [0.1]], [[-0.1], [0.4]], [[0.2], [-0.3]]])
 ROW = np.array([1.0, -0.5])
 
 
-def matrix(rows):
-    return RationalMatrix.from_rows([[Fraction(str(x)) for x in row] for row in rows])
-
-
-SYSTEM = SwitchedSystem(
-    name="three",
-    time=Time.DISCRETE,
-    states=("x", "y"),
-    modes=tuple(Mode(name, matrix(M.tolist())) for name, M in zip("abc", A, strict=True)),
-    assumptions=(),
-)
+SYSTEM = family(*A.astype(str), time=Time.DISCRETE, names="abc")
 RULES = {
     "free": Switching(),
     "dwell": Switching(Fraction(2)),
@@ -180,13 +169,7 @@ def test_contact_is_lost_where_nothing_pushes():
     """A mass that is thrown: in contact it is pulled back, in flight it goes on as it was."""
     touch = np.array([[[0.9, -0.5, 1.0], [0.1, 1.0, 0.0]]])
     fly = np.array([[[1.0, 0.0, 0.0], [0.1, 1.0, 0.0]]])
-    system = SwitchedSystem(
-        name="one",
-        time=Time.DISCRETE,
-        states=("v", "delta"),
-        modes=(Mode("a", matrix([[1, 0], [0, 1]])),),
-        assumptions=(),
-    )
+    system = family([[1, 0], [0, 1]], time=Time.DISCRETE)
     game = Game(touch, fly, np.zeros((0, 2)), Rules.of(system, 1.0))
     assert game.flies(np.array([[1.0, 0.0], [1.0, 0.1], [1.0, -0.1]])).tolist() == [
         True,

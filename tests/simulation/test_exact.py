@@ -31,7 +31,6 @@ def test_free_motion_is_the_step_response_of_the_motion_loop():
     response = simulated(text_of(scenario=FREE)).response
     s = np.roots([TAU, 1 + KD * KM, KP * KM])
     v = np.radians(4)
-    # v G(s)/s^2 in partial fractions: double pole at zero, and the two of G.
     # v G(s)/s^2 in partial fractions: G is 1 at zero, and has a zero at -Kp/Kd and poles p, q.
     wanted = v * response.t
     for p, q in (s, s[::-1]):

@@ -7,19 +7,11 @@ from itertools import groupby, pairwise
 import numpy as np
 import pytest
 
-from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.switching import Stay, Switching
-from nrs_design.proof.system import SwitchedSystem
 from nrs_design.simulation.rules import Rules, fitting_step
+from tests.proof.systems import family
 
-MODES = tuple(
-    Mode(name, RationalMatrix.from_rows([[Fraction(-k)]]))
-    for k, name in enumerate(("a", "b", "c"), start=1)
-)
-FREE = SwitchedSystem(
-    name="three", time=Time.CONTINUOUS, states=("x",), modes=MODES, assumptions=()
-)
+FREE = family([[-1]], [[-2]], [[-3]], names="abc")
 RING = (("a", "b"), ("b", "c"), ("c", "a"))
 RULED = replace(
     FREE,

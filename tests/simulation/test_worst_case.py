@@ -14,35 +14,25 @@ from nrs_design.pipeline.design import run_design
 from nrs_design.pipeline.scenarios import run_scenarios
 from nrs_design.pipeline.worst_case import run_worst_case
 from nrs_design.proof.channels import Channel, Output
-from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.switching import ARBITRARY, Clock, Stay, Switching
-from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.certification import Limits
 from nrs_design.simulation.exact import simulate_exactly
 from nrs_design.simulation.scenario import Control, Profile, Scenario, Surface
 from nrs_design.simulation.worst_case import worst_runs
 from nrs_design.spec import parse_spec
 from nrs_design.spec.load import LoadedSpec
+from tests.proof.systems import family, matrix
 from tests.simulation.interactions import text_of
-
-
-def matrix(rows):
-    return RationalMatrix.from_rows([[Fraction(x) for x in row] for row in rows])
 
 
 def oscillator(*stiffness, damping="1", switching=ARBITRARY):
     """Return ``x'' + c x' + k x = d`` with |d| <= 1, and x as what is watched."""
-    modes = tuple(Mode(f"k-{k}", matrix([[0, 1], [f"-{k}", f"-{damping}"]])) for k in stiffness)
-    column = matrix([[0], [1]])
-    return SwitchedSystem(
-        name="oscillator",
-        time=Time.CONTINUOUS,
-        states=("x", "v"),
-        modes=modes,
-        assumptions=(),
-        switching=switching,
-        channels=(Channel("push", "N", Fraction(1), (column,) * len(modes)),),
+    rows = ([[0, 1], [f"-{k}", f"-{damping}"]] for k in stiffness)
+    columns = (matrix([[0], [1]]),) * len(stiffness)
+    return replace(
+        family(*rows, switching=switching, names=[f"k-{k}" for k in stiffness]),
+        channels=(Channel("push", "N", Fraction(1), columns),),
         outputs=(Output("x", "m", (matrix([[1, 0]]),)),),
     )
 
@@ -148,13 +138,9 @@ def test_two_times_that_are_far_apart():
 
 def test_modes_that_take_turns():
     """Of a round of two steps, the push acts in the second one alone: 1 + 1/4 + 1/16 + ..."""
-    half = matrix([["1/2"]])
-    system = SwitchedSystem(
-        name="turns",
-        time=Time.DISCRETE,
-        states=("x",),
-        modes=(Mode("first", half), Mode("low", matrix([["1/4"]])), Mode("high", half)),
-        assumptions=(),
+    half, names = [["1/2"]], ("first", "low", "high")
+    system = replace(
+        family(half, [["1/4"]], half, time=Time.DISCRETE, names=names),
         channels=(Channel("push", "", Fraction(1), tuple(matrix([[b]]) for b in (0, 1, 1))),),
         outputs=(Output("x", "", (matrix([[1]]),)),),
         clock=Clock(2, ("first",)),

@@ -99,6 +99,13 @@ def assert_refused(text: str, said: str, at: str | None = None) -> None:
     assert at is None or (error.line, error.column) == place_of(text, at)
 
 
+def assert_among_faults(text: str, said: str, at: str) -> None:
+    """Check what one of the faults says, and that one is in a line with a piece of text."""
+    faults, lines = refusal(text).faults, text.splitlines()
+    assert any(said in f"{fault.message}; {fault.remedy}" for fault in faults), faults
+    assert any(at in lines[(fault.line or 0) - 1] for fault in faults), faults
+
+
 def assert_inside(error: SpecError, text: str) -> None:
     """Check that the position of an error is one of the text's."""
     assert error.line is not None

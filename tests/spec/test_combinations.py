@@ -11,14 +11,13 @@ from nrs_design.axis import AxisType
 from nrs_design.errors import AssemblyError, SpecError
 from nrs_design.pipeline.certification import assemble_spec
 from nrs_design.pipeline.design import run_design
-from nrs_design.spec import LoadedSpec, doubt_spec, parse_spec, read_spec
+from nrs_design.spec import doubt_spec, parse_spec, read_spec
 from nrs_design.spec import features as f
 from nrs_design.spec.check import Row
 from nrs_design.spec.combinations import CHANGING, COMBINATIONS
 from nrs_design.spec.interaction_doubts import INTERACTION_DOUBTS
 from nrs_design.spec.load import SPEC_KINDS, model_of
 from nrs_design.spec.model import SpecModel
-from tests.support import ROBOT
 
 IMPEDANCE = {
     "type": "impedance",
@@ -232,14 +231,6 @@ def test_what_is_not_modelled_together_is_refused(row):
         assert fault.line > 1
         assert fault.remedy
         assert "{" not in fault.message
-
-
-def test_a_sampled_loop_never_leaves_a_load_out():
-    """Without its refusal, this spec is proved at the rate of the motor that carries nothing."""
-    spec = ROBOT / "soft-tissue-sampled.nrs.yaml"
-    text = spec.read_text().replace("actuator:\n", "actuator:\n  load_inertia: 1.213 kg*m^2\n")
-    with pytest.raises(SpecError, match="load"):
-        run_design(LoadedSpec(path=spec, sha256="", text=text, spec=parse_spec(text)))
 
 
 @pytest.mark.parametrize("features", CHANGING, ids=lambda items: items[0].phrase)

@@ -1,23 +1,12 @@
-from nrs_design.spec.describe import Line, describe
+from nrs_design.spec.describe import describe
 
-from .samples import FORCE, IMPEDANCE, SWITCHED, interaction, spoiled, switched
+from .samples import FORCE, IMPEDANCE, interaction, spoiled, switched
 
 
 def test_the_largest_command_is_shown_where_it_is_given() -> None:
     assert not any(name == "limits.command" for name, *_ in describe(interaction(IMPEDANCE)))
     text = spoiled(IMPEDANCE, "bandwidth: 2 Hz", "bandwidth: 2 Hz, command: 4000 rpm")
     assert ("limits.command", "4000 rpm", "4000", "rpm") in describe(interaction(text))
-
-
-def test_desired_impedance_of_the_thesis() -> None:
-    # Thesis 6.2 and 6.3.2.1: 2.1486 and half of it, 1.0743 N*m*s/rad.
-    name = "controllers.insertion.desired_impedance"
-    unit = "N*m*s/rad"
-    assert Line(name, "torque/velocity", "2.14859", unit) in describe(interaction(IMPEDANCE))
-    half = spoiled(IMPEDANCE, "    Mt:", "    desired_impedance_ratio: 0.5\n    Mt:")
-    assert Line(name, "0.5 * torque/velocity", "1.0743", unit) in describe(interaction(half))
-    given = spoiled(IMPEDANCE, "    Mt:", "    desired_impedance: 3 kg*m^2/s\n    Mt:")
-    assert Line(name, "3 kg*m^2/s", "3", unit) in describe(interaction(given))
 
 
 def test_force_controllers() -> None:
@@ -70,12 +59,3 @@ resets:
     assert ("modes[1]", "b", "1 x 1, m, r", "") in rows
     assert ("resets[0]", "a to b", "1 x 2", "") in rows
     assert ("resets[1]", "b to a", "2 x 1", "") in rows
-
-
-def test_dwell_times() -> None:
-    rows = describe(switched(spoiled(SWITCHED, "arbitrary", "{dwell_time: 500 ms}")))
-    assert ("switching.dwell_time", "500 ms", "0.5", "s") in rows
-    discrete = spoiled(SWITCHED, "continuous", "discrete")
-    rows = describe(switched(spoiled(discrete, "arbitrary", "{dwell_time: 3 steps}")))
-    assert ("switching.dwell_time", "3 steps", "3", "steps") in rows
-    assert ("switching", "arbitrary", "", "") in describe(switched(SWITCHED))

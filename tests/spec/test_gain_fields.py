@@ -4,13 +4,12 @@ import pytest
 from jsonschema import Draft7Validator
 from ruamel.yaml import YAML
 
-from nrs_design.spec import ImpedanceControllerSpec, describe
+from nrs_design.spec import ImpedanceControllerSpec
 from nrs_design.spec.schema import json_schema
 
 from .samples import IMPEDANCE, assert_refused, interaction, refusal, spoiled
 
 BT = "{min: 0.1 N*m*s/rad, max: 20 N*m*s/rad}"
-MT = "Mt: 0.01 kg*m^2"
 
 
 def insertion(text: str) -> ImpedanceControllerSpec:
@@ -22,15 +21,6 @@ def insertion(text: str) -> ImpedanceControllerSpec:
 def test_nominal_alone_is_a_fixed_gain() -> None:
     gain = insertion(spoiled(IMPEDANCE, BT, "{nominal: 2 N*m*s/rad}")).Bt
     assert (gain.min.exact, gain.max.exact, gain.fixed) == (2, 2, True)
-
-
-def test_listing() -> None:
-    text = spoiled(IMPEDANCE, MT, "Mt: {nominal: 8000 g*cm^2}")
-    rows = {row.name: row for row in describe.describe(interaction(text))}
-    name = "controllers.insertion"
-    assert rows[f"{name}.Mt"].written == "8000 g*cm^2"
-    assert rows[f"{name}.Mt"].value == "0.0008"
-    assert rows[f"{name}.Bt"][2:] == ("[0.1, 20]", "N*m*s/rad")
 
 
 RANGE = "[2 N*m*s/rad, 3 N*m*s/rad]"
@@ -64,6 +54,10 @@ GAINS = [
     (f"{{min: 1 N*m*s/rad, max: 9 N*m*s/rad, range: {RANGE}}}", False),
     ("{min: 1 N*m*s/rad}", False),
     ("{nominal: 2 N*m*s/rad, max: 3 N*m*s/rad}", False),
+    # A spring is given.
+    ("2 N*m*s/rad\n    Kt: 0.5 N*m/rad", True),
+    ("2 N*m*s/rad\n    Kt: {nominal: 0.5 N*m/rad}", True),
+    ("2 N*m*s/rad\n    Kt: {min: 0.2 N*m/rad, max: 1 N*m/rad}", False),
 ]
 
 
@@ -78,24 +72,13 @@ def test_schema_and_reader_agree(gain: str, fits: bool) -> None:
         refusal(text)
 
 
-SPRINGS = [
-    ("0.5 N*m/rad", True),
-    ("{nominal: 0.5 N*m/rad}", True),
-    ("{min: 0.2 N*m/rad, max: 1 N*m/rad}", False),
-]
-
-
-@pytest.mark.parametrize(("gain", "fits"), SPRINGS)
-def test_a_spring_is_given(gain: str, fits: bool) -> None:
-    text = spoiled(IMPEDANCE, BT, f"2 N*m*s/rad\n    Kt: {gain}")
-    data = YAML(typ="safe", pure=True).load(text)
-    assert Draft7Validator(json_schema()).is_valid(data) is fits
-    if fits:
-        interaction(text)
-    else:
-        assert "chooses Mt and Bt only" in refusal(text).message
-
-
-@pytest.mark.parametrize(("gain", "said"), [("0 N*m/rad", "positive"), ("0.5 N*m", "per radian")])
+@pytest.mark.parametrize(
+    ("gain", "said"),
+    [
+        ("0 N*m/rad", "positive"),
+        ("0.5 N*m", "per radian"),
+        ("{min: 0.2 N*m/rad, max: 1 N*m/rad}", "chooses Mt and Bt only"),
+    ],
+)
 def test_refuses_a_spring(gain: str, said: str) -> None:
     assert_refused(spoiled(IMPEDANCE, BT, f"2 N*m*s/rad\n    Kt: {gain}"), said)

@@ -4,7 +4,6 @@ from fractions import Fraction
 
 import pytest
 
-from nrs_design.spec.describe import describe
 from tests.spec.samples import FORCE, IMPEDANCE, interaction, place_of, refusal, spoiled
 
 ALL = (
@@ -31,64 +30,40 @@ def test_goals_are_read_with_their_units():
     assert len(dict(goals.given())) == 6
 
 
-def test_check_shows_goals_and_those_of_a_controller():
-    text = own("goals: {max_sensitivity_peak: 3}")
-    rows = {row.name: row for row in describe(interaction(with_goals(ALL, sample=text)))}
-    assert rows["goals.min_delay_margin"].written == "5 ms"
-    assert (rows["goals.min_delay_margin"].value, rows["goals.min_delay_margin"].unit) == (
-        "0.005",
-        "s",
-    )
-    assert rows["controllers.insertion.goals.max_sensitivity_peak"].written == "3"
+FELT = "transparency: {max_impedance: 3 N*m*s/rad, band: BAND}"
 
 
 @pytest.mark.parametrize(
-    ("text", "piece", "message"),
+    ("goal", "message"),
     [
-        ("goals: {max_sensitivity_peak: 1}", "1}", "above 1"),
-        ("goals: {min_gain_margin: 0.5}", "0.5}", "above 1"),
-        ("goals: {min_disk_margin: 2}", "2}", "between 0 and 2"),
-        ("goals: {min_phase_margin: 30}", "30}", "no unit"),
-        ("goals: {min_phase_margin: 180 deg}", "180", "out of reach"),
-        ("goals: {min_phase_margin: -5 deg}", "-5", "positive"),
-        ("goals: {min_delay_margin: 5 deg}", "5 deg", "duration"),
-        ("goals: {max_impedance_error: 0.1}", "0.1}", "above 1"),
-        ("goals: {max_ms: 2}", "max_ms", "unknown key"),
-        ("goals: {max_force_error: 0.1}", "max_force_error", "for force controllers"),
-        ("goals: {}", "goals", "no goal"),
-        ("goals: {peak_torque: 0.3}", "0.3}", "no unit"),
-        ("goals: {decay_rate: 0 1/s}", "0 1/s", "positive"),
-        ("goals: {transparency: {max_impedance: 3, band: [0 Hz, 1 Hz]}}", "3,", "no unit"),
-        (
-            "goals: {transparency: {max_impedance: -3 N*m*s/rad, band: [0 Hz, 1 Hz]}}",
-            "-3",
-            "positive",
-        ),
-        (
-            "goals: {transparency: {max_impedance: 3 N*m*s/rad, band: [1 Hz, 0.5 Hz]}}",
-            "[1 Hz",
-            "not above its start",
-        ),
-        ("goals: {transparency: {max_impedance: 3 N*m*s/rad, band: [0 Hz, 1]}}", "1]", "no unit"),
-        (
-            "goals: {transparency: {max_impedance: 3 N*m*s/rad, band: 1 Hz}}",
-            "1 Hz",
-            "two frequencies",
-        ),
-        ("goals: {accuracy: {max_error: 1, band: [0 Hz, 1 Hz]}}", "1,", "between 0 and 1"),
-        (
-            "goals: {accuracy: {max_error: 0.1, band: [0 Hz, 1 Hz], environment: hard}}",
-            "hard",
-            "no environment 'hard'",
-        ),
+        ("max_sensitivity_peak: 1", "above 1"),
+        ("min_gain_margin: 0.5", "above 1"),
+        ("min_disk_margin: 2", "between 0 and 2"),
+        ("min_phase_margin: 30", "no unit"),
+        ("min_phase_margin: 180 deg", "out of reach"),
+        ("min_phase_margin: -5 deg", "positive"),
+        ("min_delay_margin: 5 deg", "duration"),
+        ("max_impedance_error: 0.1", "above 1"),
+        ("max_ms: 2", "unknown key"),
+        ("max_force_error: 0.1", "for force controllers"),
+        ("", "no goal"),
+        ("peak_torque: 0.3", "no unit"),
+        ("decay_rate: 0 1/s", "positive"),
+        ("transparency: {max_impedance: 3, band: [0 Hz, 1 Hz]}", "no unit"),
+        ("transparency: {max_impedance: -3 N*m*s/rad, band: [0 Hz, 1 Hz]}", "positive"),
+        (FELT.replace("BAND", "[1 Hz, 0.5 Hz]"), "not above its start"),
+        (FELT.replace("BAND", "[0 Hz, 1]"), "no unit"),
+        (FELT.replace("BAND", "1 Hz"), "two frequencies"),
+        ("accuracy: {max_error: 1, band: [0 Hz, 1 Hz]}", "between 0 and 1"),
+        ("accuracy: {max_error: 0.1, band: [0 Hz, 1 Hz], environment: hard}", "no environment"),
     ],
 )
-def test_a_wrong_goal_is_refused_at_its_place(text, piece, message):
+def test_a_wrong_goal_is_refused_at_its_place(goal, message):
+    text = f"goals: {{{goal}}}"
     for spoiled_text in (with_goals(f"{text}\n"), own(text)):
         error = refusal(spoiled_text)
         assert message in error.message
-        line, _ = place_of(spoiled_text, text)
-        assert error.line == line
+        assert error.line == place_of(spoiled_text, text)[0]
 
 
 def test_a_goal_of_the_impedance_is_refused_for_force_control():
@@ -124,8 +99,6 @@ def test_a_torque_is_wanted_only_where_something_causes_one():
         with_goals("goals: {peak_torque: 0.3 N*m}\ndisturbances: {command: 8 deg/s}\n")
     )
     assert float(spec.goals.peak_torque.exact) == 0.3
-    rows = {row.name: row for row in describe(spec)}
-    assert rows["goals.peak_torque"].written == "0.3 N*m"
 
 
 def test_a_delay_is_wanted_only_of_a_sampled_loop():
@@ -143,13 +116,10 @@ RESPONSES = """goals:
 """
 
 
-def test_goals_for_frequency_responses_are_read_and_shown():
+def test_goals_for_frequency_responses_are_read():
     spec = interaction(with_goals(RESPONSES))
     assert spec.goals.transparency.limit == 3
     assert spec.goals.accuracy.limit == Fraction(1, 10)
-    rows = {row.name: row for row in describe(spec)}
-    assert rows["goals.transparency.max_impedance"].written == "3 N*m*s/rad"
-    assert rows["goals.accuracy.band[0]"].written == "1 rad/s"
 
 
 def test_they_are_for_impedance_controllers():

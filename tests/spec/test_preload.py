@@ -7,14 +7,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nrs_design.errors import SpecError
 from nrs_design.models.contact import HuntCrossley
 from nrs_design.models.interval import Interval
-from nrs_design.spec import parse_spec
 from nrs_design.spec.build_plant import build_plant
 from nrs_design.spec.environment import HuntCrossleySpec
 from nrs_design.spec.preload import ExponentSpec, power_box
-from tests.support import ROOT
 
 from .samples import IMPEDANCE, interaction, refusal, spoiled
 
@@ -131,16 +128,3 @@ def test_degrees_cancel():
 )
 def test_what_makes_no_sense_is_refused(old, new, message):
     assert message in str(refusal(spoiled(TEXT, old, new)))
-
-
-def test_a_loaded_motor_in_ranges_has_no_rest_under_a_preload():
-    """Its error at rest is F tau/(J Km Kp), which moves with gain and time constant."""
-    text = (ROOT / "specs/neuroboscope/concha.nrs.yaml").read_text(encoding="utf-8")
-    loaded = text.replace("s\nmotion_loop", "s\n  load_inertia: 1.213 kg*m^2\nmotion_loop")
-    assert parse_spec(loaded).actuator.load_inertia is not None
-    gain = "gain: {nominal: 4.8417e-4 rad/s/rpm, range: [4.4e-4 rad/s/rpm, 5.2e-4 rad/s/rpm]}"
-    ranged = text.replace("gain: 4.8417e-4 rad/s/rpm", gain)
-    assert not parse_spec(ranged).actuator.gain.fixed
-    with pytest.raises(SpecError, match="load of the motor beside a range of the gain") as caught:
-        parse_spec(loaded.replace("gain: 4.8417e-4 rad/s/rpm", gain))
-    assert "load_inertia" in str(caught.value)

@@ -13,13 +13,6 @@ from nrs_design.spec.quantity import QuantityKind, is_less, parse_quantity
 from .samples import message_of
 
 
-def test_desired_impedance_of_the_thesis() -> None:
-    # Thesis 6.2: 0.3 N*m over 8 deg/s is 2.1486 N*m*s/rad.
-    torque = parse_quantity("0.3 N*m", kinds.TORQUE)
-    velocity = parse_quantity("8 deg/s", kinds.ANGULAR_VELOCITY)
-    assert torque.si / velocity.si == pytest.approx(2.14859, rel=1e-5)
-
-
 def test_keeps_what_was_written() -> None:
     quantity = parse_quantity("4.8417e-4 rad/s/rpm", kinds.ACTUATOR_GAIN)
     assert quantity.text == "4.8417e-4 rad/s/rpm"

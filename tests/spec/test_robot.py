@@ -1,7 +1,5 @@
 """Robot specs: what they hold, and what is refused."""
 
-from fractions import Fraction
-
 import pytest
 
 from nrs_design.robot.models import build_robot
@@ -23,34 +21,6 @@ def robot_spec(text: str = TEXT) -> RobotSpec:
     spec = parse_spec(text)
     assert isinstance(spec, RobotSpec)
     return spec
-
-
-def test_table_of_inertial_parameters() -> None:
-    # Thesis table 3.1, in g and mm.
-    legs = robot_spec().legs
-    table = {
-        "left": ((73.3, 75.6), (115.8, 107.4), (111.3, 65.6)),
-        "right": ((74.3, 75.8), (116.1, 107.2), (112.1, 75.4)),
-        "middle": ((159.7, 44.82), (93.6, 111.5), (361.9, 114.2)),
-    }
-    for name, links in table.items():
-        leg = getattr(legs, name)
-        lengths = [length.value for length in (leg.l0, leg.l1, leg.l2, leg.l3)]
-        assert lengths == [200, 135, 195, 200]
-        for link, (mass, center) in zip((leg.crank, leg.coupler, leg.arm), links, strict=True):
-            assert link.mass.value == Fraction(str(mass))
-            assert link.center_of_mass[0].value == Fraction(str(center))
-    assert robot_spec().platform.mass.value == Fraction("797.2")
-
-
-def test_drive_is_that_of_the_thesis() -> None:
-    # Thesis 4.1; the gradient with the right resistance.
-    drive = robot_spec().drive
-    assert drive.gearhead_ratio * drive.capstan_ratio == 905
-    assert drive.rotor_inertia.si == 14.81e-7
-    assert drive.coulomb_friction.si == 276.575
-    assert drive.speed_torque_gradient.si == pytest.approx(2.7044e5)
-    assert drive.time_constant.exact == Fraction("0.0351")
 
 
 def test_tensor_instead_of_rod() -> None:

@@ -6,7 +6,6 @@ import pytest
 
 from nrs_design.errors import SpecError
 from nrs_design.spec import InteractionDesignSpec, parse_spec
-from nrs_design.spec.describe import describe
 from tests.support import SOFT_TISSUE
 
 TEXT = SOFT_TISSUE.read_text(encoding="utf-8")
@@ -61,33 +60,12 @@ RANGED = TEXT.replace(
 )
 
 
-LOADED = TEXT.replace(
-    "time_constant: 0.0351 s", "time_constant: 0.0351 s\n  load_inertia: 1 kg*m^2"
-)
-
-
 def test_ranges_of_the_actuator_are_for_impedance_controllers_with_and_without_samples():
     for spec in (sampled("{period: 2 ms, delay: 0}", RANGED), parse_spec(RANGED)):
         assert [end.exact for end in spec.actuator.time_constant.range] == [
             Fraction("0.034"),
             Fraction("0.036"),
         ]
-
-
-def test_a_load_of_the_motor_is_for_continuous_time():
-    assert parse_spec(LOADED).actuator.load_inertia.exact == 1
-    with pytest.raises(SpecError, match="a load of the motor beside a sampled loop"):
-        sampled("{period: 2 ms, delay: 0}", LOADED)
-    with pytest.raises(SpecError, match="load_inertia"):
-        parse_spec(LOADED.replace("1 kg*m^2", "0 kg*m^2"))
-
-
-def test_check_lists_what_the_processor_does():
-    rows = {row[0]: row for row in describe(sampled("{period: 2 ms, delay: [0, 2]}", RANGED))}
-    assert rows["sampling.period"][1] == "2 ms"
-    assert rows["sampling.delay"][1] == "[0, 2]"
-    assert rows["contact"][1] == "not said: the claim tells"
-    assert rows["actuator.time_constant.range"][1] == "[0.034 s, 0.036 s]"
 
 
 @pytest.mark.parametrize(

@@ -3,22 +3,10 @@
 import pytest
 
 from nrs_design.errors import SpecError
-from nrs_design.spec import load_spec, parse_spec
-from nrs_design.spec.describe import describe
+from nrs_design.spec import parse_spec
 from tests.simulation.interactions import PLACED, text_of
-from tests.support import ROOT
 
 RUN = "command: {constant: 4 deg/s}, duration: 1 s"
-
-
-def test_the_example_says_all_that_it_says():
-    spec = load_spec(ROOT / "docs/examples/scenarios.nrs.yaml")
-    first = spec.scenarios["profile-of-the-thesis"]
-    assert first.length.text == "7 s"
-    assert first.command.points[1][1].text == "8 deg/s"
-    assert first.control.sign.withdrawal == "withdrawal"
-    lines = {line.name: line for line in describe(spec)}
-    assert lines["scenarios.shaken.surfaces[0].parameters"].written == "highest"
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ from nrs_design.errors import SpecError
 from nrs_design.spec import parse_spec
 from nrs_design.spec.describe import describe
 from nrs_design.spec.schema import json_schema
-from tests.support import FORCE_LIMIT, ROBOT, SOFT_TISSUE
+from tests.support import FORCE_LIMIT, SOFT_TISSUE
 
 TEXT = SOFT_TISSUE.read_text(encoding="utf-8")
 TOOL = "{mass: 0.797 kg, center_of_mass: {x: 0 m, y: -1 mm, z: 0.2 m}}"
@@ -78,13 +78,6 @@ def test_a_goal_for_the_creep_needs_a_sensor() -> None:
     read("goals: {max_creep: 1 deg/s}\nsensor: {bias: 1e-3 N*m}\n")
     ranged = TOOL.replace("-1 mm", "{nominal: 0 mm, range: [-1 mm, 1 mm]}")
     read(f"goals: {{max_creep: 1 deg/s}}\nsensor: {{tool: {ranged}}}\n")
-
-
-def test_a_filter_is_for_impedance_controllers() -> None:
-    force = (ROBOT / "force-limit.nrs.yaml").read_text(encoding="utf-8")
-    with pytest.raises(SpecError, match="a filter of the force beside 'position'"):
-        read("sensor: {filter: {cutoff: 30 Hz}}\n", force)
-    read("sensor: {bias: 1e-3 N*m}\n", force)
 
 
 def test_a_resolution_stands_in_one_place() -> None:

@@ -15,10 +15,8 @@ from itertools import pairwise
 import numpy as np
 from scipy.linalg import expm
 
-from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.mode import Mode, Time
-from nrs_design.proof.switching import Reset, Stay, Switching
-from nrs_design.proof.system import SwitchedSystem
+from nrs_design.proof.switching import Stay, Switching
+from tests.proof.systems import family, resets_between
 
 
 def exact(rows):
@@ -61,20 +59,10 @@ def timed(plant, K, period, delay=None):
     else:
         turns = (("period/1", flow, sample), ("period/2", flow, sample))
     names = [name for name, _, _ in turns]
-    return SwitchedSystem(
-        name="loop",
-        time=Time.CONTINUOUS,
-        states=tuple(f"x{k + 1}" for k in range(order)),
-        modes=tuple(Mode(name, RationalMatrix.from_rows(rows)) for name, rows, _ in turns),
-        assumptions=(),
-        switching=Switching(
-            resets=tuple(
-                Reset(name, other, RationalMatrix.from_rows(rows))
-                for (name, _, rows), other in zip(turns, reversed(names), strict=True)
-            ),
-            stays=tuple(zip(names, stays, strict=True)),
-        ),
-    )
+    ends = zip(turns, reversed(names), strict=True)
+    resets = resets_between(*((name, other, rows) for (name, _, rows), other in ends))
+    rules = Switching(resets=resets, stays=tuple(zip(names, stays, strict=True)))
+    return family(*(rows for _, rows, _ in turns), names=names, switching=rules)
 
 
 def parts(A, B, h, d):

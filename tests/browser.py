@@ -64,7 +64,6 @@ def severe(browser: Any) -> list[Any]:
 
 
 def faults_of(browser: Any, axe: str) -> list[Any]:
-    """Serious faults of the page that is open."""
     browser.execute_script(axe)
     found = browser.execute_async_script(
         "axe.run().then(r => arguments[0](r.violations.map("

@@ -31,7 +31,6 @@ def known_costs() -> dict[str, float]:
 
 
 def name_of(item: pytest.Item) -> str:
-    """Return the name of a test in pytest, on any machine."""
     return item.nodeid.replace(f"{item.config.rootpath}/", "")
 
 
@@ -41,7 +40,6 @@ def seconds_of(item: pytest.Item) -> float:
 
 
 def mark_by_cost(items: Sequence[pytest.Item]) -> None:
-    """Mark the tests that were measured as dear."""
     for item in items:
         if seconds_of(item) > NIGHTLY and not item.nodeid.startswith(IN_CI):
             item.add_marker(pytest.mark.nightly)

@@ -25,7 +25,6 @@ RELEASED = Path(__file__).with_name("stable.txt")
 
 
 def promises() -> list[str]:
-    """Return what there is now, in order."""
     exits = {k: v for k, v in vars(exit_codes).items() if k.isupper() and isinstance(v, int)}
     schemas = {
         "spec": json_schema(),

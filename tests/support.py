@@ -53,7 +53,6 @@ def skip_for_want_of(what: str) -> NoReturn:
 
 
 def program_named(name: str) -> str:
-    """Return the path of a program, or skip the test that needs it."""
     return shutil.which(name) or skip_for_want_of(name)
 
 
@@ -91,7 +90,6 @@ def dayawansa_martin(a: Entry, scale: Entry = 1) -> SwitchedSystem:
 def write_spec(
     path: Path, *matrices: Sequence[Sequence[Entry]], time: str = "continuous"
 ) -> LoadedSpec:
-    """Write and read a switched-system spec."""
     lines = ["kind: switched-system", "name: given", f"time: {time}", "modes:"]
     for i, rows in enumerate(matrices):
         text = ", ".join("[" + ", ".join(f'"{Fraction(e)}"' for e in row) + "]" for row in rows)
@@ -126,7 +124,6 @@ def run(
 
 
 def document_of(*arguments: str | Path | int, cwd: Path, code: int | None = None) -> Any:
-    """Return the document that a command prints with ``--json``."""
     return json.loads(run(*arguments, "--json", cwd=cwd, code=code).stdout)
 
 

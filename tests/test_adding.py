@@ -80,7 +80,6 @@ def held(node: ast.AST) -> bool:
 
 
 def told(node: ast.AST, names: frozenset[str]) -> set[str]:
-    """The names, and the classes, that an expression holds."""
     said = {p.value for p in ast.walk(node) if isinstance(p, ast.Constant)}
     parts = {getattr(p, "id", getattr(p, "attr", None)) for p in ast.walk(node)}
     return {part for part in said | parts if isinstance(part, str)} & names

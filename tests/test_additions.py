@@ -54,7 +54,6 @@ def insert(file: Path, before: str, text: str) -> None:
 
 
 def add_law(package: Path) -> None:
-    """Add a control law: its file, and what a spec says of it."""
     shutil.copy(ADDITIONS / "lag_force.py", package / "controllers" / "laws")
     spec = package / "spec" / "controllers.py"
     model = (ADDITIONS / "lag_force_spec.txt").read_text(encoding="utf-8")
@@ -63,7 +62,6 @@ def add_law(package: Path) -> None:
 
 
 def add_environment(package: Path) -> None:
-    """Add a law of contact: its file, and what a spec says of it."""
     shutil.copy(ADDITIONS / "rubber.py", package / "models" / "contact")
     spec = package / "spec" / "environment.py"
     model = (ADDITIONS / "rubber_spec.txt").read_text(encoding="utf-8")
@@ -94,14 +92,12 @@ def changed(old: Path, new: Path) -> int:
 
 
 def copy_with(folder: Path, add: Callable[[Path], None]) -> Path:
-    """Return a folder with a copy of the package that something is added to."""
     shutil.copytree(PACKAGE, folder / PACKAGE.name, ignore=shutil.ignore_patterns("__pycache__"))
     add(folder / PACKAGE.name)
     return folder
 
 
 def run_all(copy: Path, folder: Path, commands: tuple[tuple[str, ...], ...]) -> None:
-    """Run commands of a copy of the package; each ends well."""
     for command in commands:
         done = subprocess.run(
             [sys.executable, "-m", PACKAGE.name, *command],
@@ -115,7 +111,6 @@ def run_all(copy: Path, folder: Path, commands: tuple[tuple[str, ...], ...]) -> 
 
 
 def write_specs(folder: Path, text: str) -> None:
-    """Write a spec in continuous and in sampled time."""
     for name, more in (("continuous", ""), ("sampled", SAMPLED)):
         named = text.replace("name: small", f"name: {name}") + more
         (folder / f"{name}.nrs.yaml").write_text(named, encoding="utf-8")

@@ -41,7 +41,6 @@ def public(module):
 
 
 def everything():
-    """All that is public, with its full name."""
     for name in MODULES:
         for what, thing in public(importlib.import_module(name)):
             yield f"{name}.{what}", thing
@@ -75,7 +74,6 @@ def test_sections_are_underlined_to_their_length():
 
 
 def described(thing):
-    """Return the names in the section on parameters."""
     match = re.search(
         r"^Parameters\n-+\n(.*?)(?=^\w[\w ]*\n-+$|\Z)",
         inspect.getdoc(thing) or "",
@@ -86,7 +84,6 @@ def described(thing):
 
 
 def parameters(thing):
-    """Return the names of parameters, or None for a class that is no dataclass."""
     if inspect.isclass(thing):
         fields = getattr(thing, "__dataclass_fields__", None)
         return None if fields is None else set(fields)

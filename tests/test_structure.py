@@ -283,7 +283,6 @@ VERBS = {
 
 
 def as_one(name: str) -> str:
-    """The modules of the pipeline count as one."""
     return "nrs_design.pipeline" if floor(name) == "pipeline" else name
 
 

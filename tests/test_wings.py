@@ -48,7 +48,6 @@ def test_whose_a_command_is():
 
 @pytest.fixture(scope="module", params=WINGS)
 def house(request, tmp_path_factory):
-    """A copy of the package without one of its wings."""
     folder = tmp_path_factory.mktemp(request.param)
     left_out = shutil.ignore_patterns("__pycache__")
     shutil.copytree(PACKAGE, folder / "nrs_design", ignore=left_out)

@@ -10,8 +10,6 @@ from nrs_design.work import Allowance, Cost, Fuse, NotAffordableError
 
 
 class Clock:
-    """A clock that a test sets."""
-
     def __init__(self):
         self.now = 100.0
 

@@ -19,7 +19,6 @@ DATA = ROOT / "specs/data"
 
 @pytest.fixture(scope="module")
 def results(tmp_path_factory):
-    """One of each kind."""
     folder = tmp_path_factory.mktemp("results")
     soft, study = nrs.load(SOFT_TISSUE), nrs.load(ROOT / "docs/examples/scenarios.nrs.yaml")
     decision = soft.certify()

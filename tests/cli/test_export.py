@@ -36,7 +36,6 @@ def export(monkeypatch, tmp_path):
 
 @pytest.fixture(scope="module")
 def certificate():
-    """Text of a certificate of the design."""
     return dump(run_certification(read_spec(SPEC)).certificate)
 
 
@@ -163,7 +162,6 @@ SLOW = SPECS.parent / "docs/examples/slow-processor.nrs.yaml"
 
 
 def sampled_text():
-    """Insertion alone, every 2 ms: proved in a moment."""
     head, _, _ = SPEC.read_text().partition("  withdrawal:")
     sampling = "switching: arbitrary\nsampling: {period: 2 ms, delay: 0}\n"
     return head.replace("name: soft-tissue", "name: every-2-ms") + sampling
@@ -183,7 +181,6 @@ def sampled_certificate(tmp_path_factory):
 
 @pytest.fixture
 def sampled(export, sampled_certificate):
-    """A spec and its certificate, in the folder where the command is typed."""
     Path("mine.json").write_text(sampled_certificate)
     return sampled_spec(), "mine.json"
 
@@ -207,7 +204,6 @@ def test_programs_with_a_proof_of_the_sampled_loop(export, capsys):
 
 @pytest.mark.parametrize("name", ["c", "json", "mat", "vectors", "fmu"])
 def test_the_export_of_another_spec_is_not_overwritten(export, capsys, sampled, name):
-    """Whatever its name: it says inside whose it is."""
     spec, certificate = sampled
     options = ("--certificate", certificate, "--format", name, "--out", "out")
     assert export(spec, *options) == 0

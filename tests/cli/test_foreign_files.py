@@ -5,19 +5,13 @@ import io
 import matplotlib.pyplot as plt
 import pytest
 
+from tests.gating.conftest import STABLE
 from tests.support import COMMUTING, ROOT, ends_soon, run
 
 HOLDER = ROOT / "specs/robots/neuroboscope.nrs.yaml"
 ACTUATOR = sorted((ROOT / "specs/data").glob("actuator-?hz.csv"))
 RUNS = ROOT / "docs/examples/scenarios.nrs.yaml"
 SAMPLED = ROOT / "specs/neuroboscope/soft-tissue-sampled.nrs.yaml"
-STABLE = """\
-kind: switched-system
-name: small
-time: continuous
-modes: [{name: a, A: [[-1, 1], [-1, -1]]}]
-switching: arbitrary
-"""
 PAGE = b"<!DOCTYPE html>\n<html lang='en'>\n<title>mine</title>\n"
 slow = pytest.mark.slow
 COMMANDS = {
@@ -44,7 +38,6 @@ BEFORE = {
 
 
 def figure(suffix):
-    """A figure that matplotlib draws for somebody else."""
     drawn, axes = plt.subplots(figsize=(1, 1))
     axes.plot([0, 1])
     buffer = io.BytesIO()
@@ -54,7 +47,6 @@ def figure(suffix):
 
 
 def foreign(path):
-    """What another program may have written under that name."""
     if path.suffix in (".svg", ".png"):
         return figure(path.suffix[1:])
     known = {

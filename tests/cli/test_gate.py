@@ -7,19 +7,10 @@ from pathlib import Path
 import pytest
 
 from nrs_design.cli import main
-from tests.support import typed
+from tests.gating.conftest import STABLE
+from tests.support import PRINT_ERROR, ROOT, typed
 from tests.terminal import run_on_terminal
 
-ROOT = Path(__file__).parents[2]
-PRINT_ERROR = ROOT / "docs/examples/thesis-print-error.nrs.yaml"
-STABLE = """\
-kind: switched-system
-name: stable
-time: continuous
-modes:
-  - {name: a, A: [[-1, 1], [-1, -1]]}
-switching: arbitrary
-"""
 BROKEN = STABLE.replace("A: [[-1, 1], [-1, -1]]", "A: [[-1, 1]]")
 
 
@@ -108,7 +99,7 @@ def test_documents_go_to_stdout_and_the_sum_to_stderr(gate, capsys, format_, fai
     assert failures(texts[0]) == 3
     assert gate("specs", "--no-reports", "--format", format_) == 0
     out, err = capsys.readouterr()
-    assert "1 spec: 1 proved; 3 obligations, all fulfilled\n" in err
+    assert "1 spec: 1 proved; 4 obligations, all fulfilled\n" in err
     assert "all fulfilled" not in out
     assert gate("specs", "--no-reports", "--format", format_, "--out", "ci/gate.out", "-q") == 0
     assert capsys.readouterr() == ("", "")
@@ -116,7 +107,6 @@ def test_documents_go_to_stdout_and_the_sum_to_stderr(gate, capsys, format_, fai
 
 
 def test_a_document_replaces_documents_only(gate, capsys):
-    """Not the lock that the same run writes, and of other files nothing either."""
     assert gate("specs", "--no-reports") == 0
     before = Path("nrs.lock").read_bytes()
     Path("record.csv").write_text("time,force")

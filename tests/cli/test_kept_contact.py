@@ -7,24 +7,15 @@ import pytest
 import nrs_design as nrs
 from nrs_design.pipeline.certification import run_certification
 from nrs_design.spec import read_spec
+from tests.simulation.interactions import WITHDRAWAL, text_of
 from tests.support import document_of, run
 
 # In kept contact it grows; with contact that may be lost, all 300 of these runs decay.
-PULLING = """\
-kind: interaction-design
-name: pulling
-actuator: {gain: 4.8417e-4 rad/s/rpm, time_constant: 0.0351 s}
-motion_loop: {damping_ratio: 0.707, settling_time: 0.1404 s, derivative_gain: 2060 rpm*s/rad,
-  zero: 56.9706 1/s}
-limits: {velocity: 8 deg/s, torque: 0.3 N*m, bandwidth: 2 Hz}
-environments:
-  tissue: {model: elastic, stiffness: 58 N*m/rad}
-controllers:
-  withdrawal: {type: impedance, environment: tissue, Mt: 0.01 kg*m^2, Bt: 1.04 N*m*s/rad}
-switching: arbitrary
-contact: losable
-sampling: {period: 2 ms, delay: 2}
-"""
+PULLING = text_of(
+    {"withdrawal": WITHDRAWAL.replace("soft", "tissue")},
+    {"tissue": "{model: elastic, stiffness: 58 N*m/rad}"},
+    more="contact: losable\nsampling: {period: 2 ms, delay: 2}\n",
+).replace("name: small", "name: pulling")
 KEPT = "in kept contact"
 
 

@@ -4,6 +4,7 @@ import re
 
 import pytest
 
+from tests.simulation.interactions import text_of
 from tests.support import FORCE_LIMIT, ROOT, SOFT_TISSUE, document_of, run
 
 
@@ -12,17 +13,10 @@ def write(tmp_path, text):
     return "written.nrs.yaml"
 
 
-LOADED = """
-kind: interaction-design
-name: loaded
-actuator: {gain: 4.8417e-4 rad/s/rpm, time_constant: 0.0351 s, load_inertia: 0.3 kg*m^2}
-motion_loop: {damping_ratio: 0.707, settling_time: 0.1404 s, derivative_gain: 2060 rpm*s/rad,
-  zero: 56.9706 1/s}
-limits: {velocity: 8 deg/s, torque: 0.3 N*m, bandwidth: 2 Hz}
-environments: {soft: {model: elastic, stiffness: 300 N*m/rad}}
-controllers: {a: {type: impedance, environment: soft, Mt: MASS, Bt: DAMPING}}
-switching: arbitrary
-"""
+LOADED = text_of(
+    {"a": "{type: impedance, environment: soft, Mt: MASS, Bt: DAMPING}"},
+    {"soft": "{model: elastic, stiffness: 300 N*m/rad}"},
+).replace("time_constant: 0.0351 s", "time_constant: 0.0351 s, load_inertia: 0.3 kg*m^2")
 GAINS = (("MASS", "0.01 kg*m^2"), ("DAMPING", "2.15 N*m*s/rad"))
 
 

@@ -22,8 +22,6 @@ from nrs_design.cli.printing import (
 
 
 class Terminal(io.StringIO):
-    """Text as a person would see it."""
-
     def isatty(self):
         return True
 
@@ -104,8 +102,6 @@ def test_what_json_and_quiet_silence(capsys, as_json, quiet, out, err):
 
 
 class Log(io.StringIO):
-    """Text in a file, and whether anything was written yet."""
-
     def __init__(self):
         super().__init__()
         self.written = Event()

@@ -1,5 +1,3 @@
-from __future__ import annotations
-
 import json
 from pathlib import Path
 
@@ -8,20 +6,10 @@ from typer.testing import CliRunner
 
 from nrs_design.cli.app import make_app
 from nrs_design.errors import OutputError
+from tests.reporting.conftest import KINDS
+from tests.support import COMMUTING, PRINT_ERROR, ROOT
 
-ROOT = Path(__file__).parents[2]
-COMMUTING = str(ROOT / "specs/examples/commuting.nrs.yaml")
-PRINT_ERROR = str(ROOT / "docs/examples/thesis-print-error.nrs.yaml")
-# Geromel and Colaneri (2006), between what is known to be unstable and what can be proved.
-INCONCLUSIVE = """\
-kind: switched-system
-name: short-dwell
-time: continuous
-modes:
-  - {name: a, A: [[0, 1], [-10, -1]]}
-  - {name: b, A: [[0, 1], ["-1/10", "-1/2"]]}
-switching: {dwell_time: 2.72 s}
-"""
+COMMUTING, PRINT_ERROR = map(str, (COMMUTING, PRINT_ERROR))
 
 
 def run(*arguments: str):
@@ -45,8 +33,6 @@ def test_default_is_a_page_in_reports(tmp_path, monkeypatch):
         (("--out", "page.png"), "--format png takes a folder"),
         (("--format", "png", "--out", "page.png"), "takes a folder"),
         (("--format", "png", "--out", "page.html"), "takes a folder"),
-        (("--out", "page.pdf"), "not the name of a page in HTML"),
-        (("--out", "page"), "not the name of a page in HTML"),
     ],
 )
 def test_a_file_ends_as_its_format(tmp_path, monkeypatch, out, said):
@@ -94,7 +80,7 @@ def test_refuted_still_gets_its_report(tmp_path):
 
 def test_inconclusive_exits_with_three(tmp_path):
     spec = tmp_path / "short-dwell.nrs.yaml"
-    spec.write_text(INCONCLUSIVE)
+    spec.write_text(f"kind: switched-system\nname: short-dwell\n{KINDS['inconclusive']}")
     done = run(str(spec), "--out", str(tmp_path / "r.html"), "-q", "--max-degree", "4")
     assert done.exit_code == 3
     assert done.stderr == ""

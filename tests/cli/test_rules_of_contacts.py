@@ -4,38 +4,22 @@ import json
 
 import pytest
 
+from tests.simulation.interactions import text_of
 from tests.support import run
 
 # The agile controller makes the tool unstable, and is left there in time.
-TEXT = """kind: interaction-design
-name: tissue-or-tool
-actuator: {gain: 4.8417e-4 rad/s/rpm, time_constant: 0.0351 s}
-motion_loop:
-  damping_ratio: 0.707
-  settling_time: 0.1404 s
-  derivative_gain: 2060 rpm*s/rad
-  zero: 56.9706 1/s
-limits: {velocity: 8 deg/s, torque: 0.3 N*m, bandwidth: 2 Hz}
-environments:
-  tissue: {model: elastic, stiffness: 43.0356 N*m/rad}
-  tool: {model: elastic, stiffness: 104.7 N*m/rad}
-controllers:
-  agile:
-    type: impedance
-    environment: tissue
-    contacts: [tissue, tool]
-    Mt: 0.03 kg*m^2
-    Bt: 1.04 N*m*s/rad
-  careful:
-    type: impedance
-    environment: tool
-    contacts: [tissue, tool]
-    Mt: 0.03 kg*m^2
-    Bt: 4 N*m*s/rad
-design: {significant_digits: 3}
-contact: kept
-switching: RULES
-"""
+LAW = "{type: impedance, environment: %s, contacts: [tissue, tool], Mt: 0.03 kg*m^2, "
+TEXT = text_of(
+    {
+        "agile": LAW % "tissue" + "Bt: 1.04 N*m*s/rad}",
+        "careful": LAW % "tool" + "Bt: 4 N*m*s/rad}",
+    },
+    {
+        "tissue": "{model: elastic, stiffness: 43.0356 N*m/rad}",
+        "tool": "{model: elastic, stiffness: 104.7 N*m/rad}",
+    },
+    more="design: {significant_digits: 3}\ncontact: kept\n",
+).replace("arbitrary", "RULES")
 
 
 @pytest.mark.slow

@@ -78,7 +78,6 @@ def test_what_an_engine_leaves_out_is_said(spec, tmp_path):
 
 
 def test_controllers_in_force_and_age_of_the_force_are_said(spec, tmp_path):
-    """A run shows no more than these."""
     path = spec(scenario=None, more="sampling: {period: 2 ms, delay: [0, 1]}\n")
     told = run("simulate", path, "-v", cwd=tmp_path).stdout
     assert "in force: insertion, withdrawal; a sample every 0.002 s" in told

@@ -44,7 +44,6 @@ def test_a_table_of_every_combination(tmp_path, spec):
 
 
 def test_what_a_point_says_is_what_the_command_says(tmp_path, spec):
-    """The document of a point is that of the command on a spec with that value."""
     swept = document_of("sweep", spec, "--set", TWO, "certify-switching", cwd=tmp_path, code=1)
     assert [point["values"] for point in swept["points"]] == [["700 N/m"], ["2000 N/m"]]
     text = (tmp_path / spec).read_text(encoding="utf-8")
@@ -271,7 +270,6 @@ def test_a_table_as_csv(tmp_path, spec):
 
 
 def test_every_command_of_the_table_is_run(tmp_path):
-    """Each takes a spec, and has --json."""
     from nrs_design.cli.sweep_point import program_of
 
     for words in map(str.split, SWEPT):
@@ -284,7 +282,6 @@ def test_every_command_of_the_table_is_run(tmp_path):
 
 
 def test_an_exit_code_is_that_of_what_is_shown(tmp_path, spec):
-    """A refuted point does not end well because a file says so."""
     asked = "--set", f"{STIFFNESS}=2000 N/m", "certify-switching"
     run("sweep", spec, *asked, cwd=tmp_path, code=1)
     (file,) = (path for path in kept(tmp_path / "mine.sweep") if "cert" not in path.name)

@@ -177,7 +177,6 @@ CHECK = ("verify", "x/x.cert.json", "x.nrs.yaml", "--deployed")
 
 
 def test_deployed_files_are_those_of_the_certificate(deployed):
-    """Each by itself, all of a folder, and with one bit changed."""
     for name in ("x.h", "x_test.c", "x.fmu"):
         first = run(*CHECK, f"x/{name}", cwd=deployed, code=0).stdout.splitlines()[0]
         assert first.startswith(f"deployed: x/{name}: as exported with the certificate, byte for")

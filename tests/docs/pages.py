@@ -35,7 +35,6 @@ def python_of(page: str) -> list[str]:
 
 
 def commands_of(page: str) -> list[str]:
-    """Return the arguments of every command line that a page shows."""
     return [line.replace("\\\n", " ") for line in COMMAND.findall(text_of(page))]
 
 

@@ -38,7 +38,6 @@ def test_accessibility_and_width(site, axe, browser, page, scheme):
 
 
 def found(browser, words):
-    """Type words into the search, and return the pages that it lists."""
     browser.execute_script(
         "const field = document.getElementById('mkdocs-search-query'); field.value = arguments[0];"
         "document.getElementById('mkdocs-search-results').replaceChildren();"

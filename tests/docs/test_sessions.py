@@ -41,7 +41,6 @@ def checkout(tmp_path: Path) -> Path:
 
 
 def environment(folder: Path) -> dict[str, str]:
-    """With a program ``nrs-design`` that is this one."""
     program = folder / "bin" / "nrs-design"
     program.parent.mkdir()
     program.write_text(f'#!/bin/sh\nexec "{sys.executable}" -m nrs_design "$@"\n')
@@ -88,7 +87,6 @@ def program() -> Any:
 
 
 def unknown_options(line: str) -> list[str]:
-    """Return words of a command line that no command or option is called."""
     words = shlex.split(re.split(r" [|>] |  +#", line)[0])
     command = program()
     while words and hasattr(command, "commands") and not words[0].startswith("-"):

@@ -11,7 +11,6 @@ CONTINUOUS = ROOT / "specs/neuroboscope/soft-tissue.nrs.yaml"
 
 @pytest.fixture(scope="session")
 def continuous():
-    """Insertion and withdrawal in continuous time."""
     return read_spec(CONTINUOUS)
 
 

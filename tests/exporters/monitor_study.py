@@ -34,13 +34,11 @@ VISCOUS = "    model: kelvin-voigt\n    damping: {nominal: 0.1 N*s/m, range: [0 
 def monitored(
     surface="fixed", torque_noise="2 N*mm", contact="losable", more="", text=TEXT + SAMPLING
 ):
-    """Return a spec whose readings are known."""
     said = MONITORED.format(surface=surface, torque_noise=torque_noise, contact=contact)
     return parse_spec(text + said + more)
 
 
 def sources(export, spec):
-    """Return the files of a law and its monitor."""
     names = CNames("x")
     program = Program(export.record, LAW, names)
     limits = monitor_limits(replace(export, spec=spec), LAW)

@@ -18,7 +18,11 @@ from nrs_design.controllers.operations import StepLaw
 from nrs_design.controllers.sensor import LowPass
 from nrs_design.controllers.step_law import StepFrame, StepLimits, build_law
 from nrs_design.exporters import rendered
+from nrs_design.exporters.c_names import CNames
 from nrs_design.exporters.export import Export
+from nrs_design.exporters.formats.c import header_text, source_text
+from nrs_design.exporters.header import header_lines
+from nrs_design.exporters.self_test import program_macro, self_test
 from tests.support import program_named
 
 PERIOD = Fraction(1, 500)
@@ -35,7 +39,6 @@ SEMIHOSTING = ("-semihosting-config", "enable=on,target=native")
 
 
 def frame(low_pass=None, limits=None) -> StepFrame:
-    """Return what all laws here have in common."""
     return StepFrame(MOTION.Kp, MOTION.over(PERIOD), low_pass, limits or StepLimits())
 
 
@@ -82,29 +85,45 @@ LAWS = {
 
 
 def write_formats(folder: Path, export: Export, formats: Iterable[str]) -> Path:
-    """Write all files of some formats of an export into a folder, which comes back."""
     for name in formats:
         for ending, content in rendered(name, export).items():
             (folder / f"{export.record.spec.name}{ending}").write_bytes(content)
     return folder
 
 
+def write_law(folder: Path, record, law: StepLaw, vectors) -> tuple[Path, Path, str]:
+    """Write a law and its self-test; both sources come back, and the flag that brings a `main`."""
+    names = CNames(record.spec.name)
+    texts = self_test(law, vectors.columns, vectors.rows, names, header_lines(record))
+    texts[".h"] = header_text(record, law, names).encode()
+    texts[".c"] = source_text(record, law, names).encode()
+    for ending, content in texts.items():
+        (folder / f"{names.spec}{ending}").write_bytes(content)
+    source, test = (folder / f"{names.spec}{ending}" for ending in (".c", "_test.c"))
+    return source, test, f"-D{program_macro(names)}"
+
+
 def compiler(name="gcc"):
-    """Return a program that builds, runs or examines exported C."""
     return program_named(name)
 
 
 def run(*command: str | Path) -> subprocess.CompletedProcess[str]:
-    """Run a program; its output comes back, whatever its exit code."""
     return subprocess.run(
         [*map(str, command)], capture_output=True, text=True, check=False, stdin=subprocess.DEVNULL
     )
 
 
 def built(*command: str | Path) -> None:
-    """Run a compiler that must not complain."""
     done = run(*command)
     assert (done.returncode, done.stderr) == (0, "")
+
+
+def check_that_it_calls_nothing(folder: Path, source: Path, names: list[str]) -> None:
+    """No heap, no libm, and on the processor no arithmetic of doubles by library."""
+    for gcc, nm, flags in (("gcc", "nm", ()), ("arm-none-eabi-gcc", "arm-none-eabi-nm", CORTEX)):
+        built(compiler(gcc), *flags, *STRICT, "-O2", "-c", source, "-o", folder / "o")
+        symbols = run(compiler(nm), "-g", folder / "o").stdout.splitlines()
+        assert [line.split()[-2:] for line in symbols if line] == [["T", name] for name in names]
 
 
 def emulated(folder: Path, law: Path, *others: str | Path, counted: bool = False) -> str:

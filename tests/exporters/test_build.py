@@ -82,7 +82,6 @@ def test_idle_states_are_exported_as_they_are_proved():
 
 
 def test_a_proof_without_rounding_says_so(sampled_export):
-    """The same design at the same samples, by evidence that leaves rounding out."""
     certificate, design = sampled_export.certificate, sampled_export.design
     assert certificate.evidence.covers_rounding
     assert not [text for text in sampled_export.record.outside if "Rounding" in text]

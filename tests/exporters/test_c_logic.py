@@ -9,13 +9,20 @@ import pytest
 from nrs_design.controllers.shipped import shipped_law
 from nrs_design.exporters.build import build_unproved
 from nrs_design.exporters.c_names import CNames, literal
-from nrs_design.exporters.formats.c import header_text, source_text
+from nrs_design.exporters.formats.c import header_text
 from nrs_design.exporters.formats.vectors import make_vectors, vectors_text
 from nrs_design.exporters.logic_cases import COUNT, logic_document
-from nrs_design.exporters.self_test import program_macro, self_test
 from nrs_design.pipeline.design import run_design
 from nrs_design.spec import read_spec
-from tests.exporters.programs import STRICT, built, check_with_misra, compiler, emulated, run
+from tests.exporters.programs import (
+    STRICT,
+    built,
+    check_with_misra,
+    compiler,
+    emulated,
+    run,
+    write_law,
+)
 from tests.support import ROOT
 
 PERIOD = Fraction(1, 500)
@@ -31,10 +38,8 @@ def shipped(request):
 
 @pytest.mark.slow
 def test_cppcheck_with_misra_is_content(tmp_path, shipped):
-    record, law, names = shipped
-    (tmp_path / f"{names.spec}.h").write_text(header_text(record, law, names))
-    (tmp_path / "law.c").write_text(source_text(record, law, names))
-    check_with_misra(tmp_path / "law.c")
+    record, law, _ = shipped
+    check_with_misra(write_law(tmp_path, record, law, make_vectors(law, 1))[0])
 
 
 @pytest.mark.parametrize(
@@ -49,23 +54,18 @@ def test_the_self_test_runs_the_logic_too(tmp_path, shipped, old, new):
     """After the law, which is right: every slip in the logic is one of its own cases."""
     record, law, names = shipped
     vectors = make_vectors(law, 20)
-    files = self_test(law, vectors.columns, vectors.rows, names, ())
-    source = source_text(record, law, names)
-    assert old in source
-    (tmp_path / f"{names.spec}.h").write_text(header_text(record, law, names))
-    (tmp_path / "law.c").write_text(source.replace(old, new) if old else source)
-    for ending, content in files.items():
-        (tmp_path / f"{names.spec}{ending}").write_bytes(content)
-    flag = f"-D{program_macro(names)}"
-    sources = (tmp_path / "law.c", tmp_path / f"{names.spec}_test.c")
-    built(compiler(), *STRICT, flag, *sources, "-o", tmp_path / "program")
+    source, test, flag = write_law(tmp_path, record, law, vectors)
+    text = source.read_text()
+    assert old in text
+    source.write_text(text.replace(old, new) if old else text)
+    built(compiler(), *STRICT, flag, source, test, "-o", tmp_path / "program")
     said = run(tmp_path / "program").stdout
     if old:
         (index,) = map(int, re.findall(r"case (\d+) differs", said))
         assert index >= len(vectors.rows)
     else:
         assert said == f"{names.spec}: all {len(vectors.rows) + COUNT} cases are the same\n"
-        assert emulated(tmp_path, sources[0], flag, sources[1]) == f"0: {said}"
+        assert emulated(tmp_path, source, flag, test) == f"0: {said}"
 
 
 def test_every_number_of_the_logic_is_in_the_header(shipped):

@@ -18,7 +18,6 @@ def body(law):
 
 
 def of(*operations, coefficients=(HALF,), **others):
-    """Return a law of one input whose last operation is its output."""
     last = operations[-1].name
     return StepLaw((), (X,), (), coefficients, operations, {"o": last}, {}, {"o": "rad"}, **others)
 

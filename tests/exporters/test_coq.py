@@ -264,7 +264,6 @@ def test_coq_refuses_a_better_rate(name, tmp_path):
 @pytest.mark.nightly
 @pytest.mark.parametrize("name", ["soft-tissue", "failing-controller", "force-limit-sampled"])
 def test_coq_refuses_numbers_that_are_altered(name, tmp_path):
-    """A form of another sign, and a mode that is another."""
     certificate = certificate_of(name)
     text = text_of(certificate)
     begin = re.compile(r"(Definition form := |Node |Place .*\n +)\[\((?=\d)")
@@ -282,7 +281,6 @@ def test_coq_refuses_numbers_that_are_altered(name, tmp_path):
 
 @pytest.mark.nightly
 def test_coq_refuses_an_altered_witness(tmp_path):
-    """One digit of the middle of each."""
     text = text_of(certificate_of("dayawansa-martin-6"))
     for witness in re.finditer(r"^Definition witness.*?\.\n", text, re.MULTILINE | re.DOTALL):
         digits = list(re.finditer(r"\(h([0-9A-F]) ", witness[0]))

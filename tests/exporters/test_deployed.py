@@ -20,7 +20,6 @@ UP = "NRS_SOFT_TISSUE"
 
 @pytest.fixture(scope="module")
 def exported(sampled_export, tmp_path_factory):
-    """The folder as it was exported, with every format that a processor runs."""
     return write_formats(tmp_path_factory.mktemp("exported"), sampled_export, EXECUTABLE)
 
 
@@ -31,8 +30,6 @@ def texts():
 
 @pytest.fixture(autouse=True)
 def _made_once(texts, monkeypatch):
-    """What is exported with a certificate is the same for every change."""
-
     def made(name, export):
         key = name, export.certificate.id
         if key not in texts:

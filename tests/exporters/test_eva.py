@@ -118,7 +118,6 @@ int main(void)
 
 @pytest.mark.parametrize("surface", ["", "fixed", "free"])
 def test_no_input_makes_a_monitor_undefined(tmp_path, sampled_export, surface):
-    """Without a test of the stiffness, and with it."""
     frama = frama_c()
     if surface:
         numbers = {"torque_noise": "2 N*mm", "angle_noise": "0.005 deg", "speed": "1 rad/s"}

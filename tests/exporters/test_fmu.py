@@ -32,8 +32,6 @@ def program(law, export):
 
 @pytest.fixture(scope="module")
 def model(sampled_export, tmp_path_factory):
-    """Compile, describe and unpack the model of a law once."""
-
     @cache
     def of(law):
         folder = tmp_path_factory.mktemp("fmu")
@@ -47,7 +45,6 @@ def model(sampled_export, tmp_path_factory):
 
 @pytest.fixture
 def opened(model):
-    """Open the model of a law as an importer does; it is closed at the end."""
     slaves = []
 
     def of(law):

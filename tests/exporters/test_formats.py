@@ -28,7 +28,6 @@ def proved(request, design):
 
 
 def exported(name, design, proved):
-    """The export of a design, proved or not, as the format takes it."""
     if not format_of(name).executable or proved.record.sample_time is not None:
         return proved
     return export_design(design, execution=Execution(Fraction(2, 1000), unproved=True))

@@ -99,7 +99,6 @@ def test_no_date_is_written(export):
 
 
 def octave_lines(which=0):
-    """A program of the page, as it is printed there."""
     page = (ROOT / "docs/exports.md").read_text()
     return re.findall("```octave\n(.*?)```", page, re.DOTALL)[which].replace("-sampled.mat", ".mat")
 
@@ -151,7 +150,6 @@ def test_octave_closes_the_loops_from_the_parts(name, tmp_path):
 
 
 def test_octave_sees_another_controller(continuous_export, tmp_path):
-    """A gain that is off by a thousandth."""
     spoiled = FEEDBACK.replace("k = at(K, s);", "k = at(K, s)*1.001;")
     lines = run_octave(continuous_export, tmp_path, spoiled)
     assert all(line.endswith(" velocity N*m 0 1") for line in lines)

@@ -1,32 +1,18 @@
 """The monitor in C reports first what `audit` finds in the log of the same run."""
 
-import ctypes
-from functools import cache
-
 import numpy as np
 import pytest
 
-from nrs_design.exporters.c_names import CNames
-from nrs_design.exporters.compiled import shared_library
-from nrs_design.exporters.export import Export
-from nrs_design.exporters.formats.c import header_text as law_header
 from nrs_design.exporters.formats.c import render as render_c
-from nrs_design.exporters.formats.monitor import (
-    KINDS,
-    header_text,
-    render,
-    source_text,
-    told_kinds,
-)
-from nrs_design.exporters.monitor_limits import monitor_limits
-from nrs_design.exporters.program import Program
+from nrs_design.exporters.formats.monitor import KINDS, render
 from nrs_design.identification.running import bounds_of_spec, judge_run, read_run
-from tests.exporters.monitored import spec_with
+from tests.exporters.monitor_study import sources
+from tests.exporters.monitored import Monitor, spec_with
 from tests.exporters.programs import (
-    CORTEX,
     LAWS,
     STRICT,
     built,
+    check_that_it_calls_nothing,
     check_with_misra,
     compiler,
     emulated,
@@ -34,7 +20,6 @@ from tests.exporters.programs import (
 )
 from tests.identification import runs
 
-LOADED = "time_constant: 0.0351 s\n  load_inertia: 1 kg*m^2\n"
 LAW = LAWS["inertia"]
 # Of the checks of `audit`, what the monitor calls them.
 SAME = {
@@ -44,60 +29,8 @@ SAME = {
 }
 
 
-class Input(ctypes.Structure):
-    _fields_ = [
-        ("mode", ctypes.c_uint32),
-        ("step", ctypes.c_float),
-        ("age", ctypes.c_uint32),
-        ("angle", ctypes.c_float),
-        ("torque", ctypes.c_float),
-        ("command", ctypes.c_float),
-    ]
-
-
-@cache
-def compiled(sources):
-    """Compile names and texts of files; most monitors differ in what they watch only."""
-    seen = "#pragma GCC visibility push(default)\n"
-    return shared_library(compiler("cc"), {name: seen + text for name, text in sources})
-
-
-class Monitor:
-    """The compiled monitor of a spec."""
-
-    def __init__(self, folder, sampled_export, spec):
-        record = sampled_export.record
-        export = Export("proved", record, None, spec=spec)
-        names = CNames("x")
-        program = Program(sampled_export.record, LAW, names)
-        limits = monitor_limits(export, LAW)
-        self.sources = {
-            "x.h": law_header(sampled_export.record, LAW, names),
-            "x_monitor.h": header_text(program, limits),
-            "x_monitor.c": source_text(program, limits),
-        }
-        self.limits = limits
-        # One that is loaded must not be written over.
-        file = folder / f"monitor-{len([*folder.iterdir()])}.so"
-        file.write_bytes(compiled(tuple(self.sources.items())))
-        library = ctypes.CDLL(str(file))
-        self._init, self._step = library.nrs_x_monitor_init, library.nrs_x_monitor_step
-        self._init.argtypes = [ctypes.c_void_p, ctypes.c_float]
-        self._step.restype = ctypes.c_uint32
-        # More than it needs.
-        self._memory = (ctypes.c_uint32 * 64)()
-        self.begin()
-
-    def begin(self, jitter=1e-4):
-        self._init(self._memory, jitter)
-
-    def step(self, **given):
-        usual = {"mode": 0, "step": 0.002, "age": 0, "angle": 0.0, "torque": 0.0, "command": 0.0}
-        found = self._step(ctypes.byref(Input(**(usual | given))), self._memory)
-        return list(told_kinds(self.limits))[found]
-
+class Watching(Monitor):
     def watch(self, log):
-        """Return what was left first in a log, and when."""
         steps = np.diff(log.time, prepend=log.time[0] - log.step)
         modes = [LAW.modes.index(log.labels[k]) for k in log.modes]
         columns = (log.columns[name] for name in ("angle", "torque", "command"))
@@ -111,7 +44,7 @@ class Monitor:
 
 @pytest.fixture
 def monitor(tmp_path, sampled_export):
-    return lambda spec: Monitor(tmp_path, sampled_export, spec)
+    return lambda spec: Watching(tmp_path, sources(sampled_export, spec))
 
 
 def log_of(folder, data):
@@ -213,15 +146,11 @@ def test_what_is_left_out_is_said(sampled_export):
         assert (f"_LEFT_{kind} " in words) == (not unknown)
 
 
-def test_it_compiles_for_the_processor_and_links_to_nothing(tmp_path, sampled_export, monitor):
-    for name, text in monitor(spec_with()).sources.items():
+def test_it_compiles_for_the_processor_and_links_to_nothing(tmp_path, sampled_export):
+    for name, text in sources(sampled_export, spec_with()).items():
         (tmp_path / name).write_text(text)
-    own = ["T nrs_x_monitor_init", "T nrs_x_monitor_step"]
-    for gcc, nm, flags in (("gcc", "nm", ()), ("arm-none-eabi-gcc", "arm-none-eabi-nm", CORTEX)):
-        files = (tmp_path / "x_monitor.c", "-o", tmp_path / "o")
-        built(compiler(gcc), *flags, *STRICT, "-O2", "-c", *files)
-        symbols = run(compiler(nm), "-g", tmp_path / "o").stdout.splitlines()
-        assert [line.split(maxsplit=1)[-1] for line in symbols] == own
+    own = ["nrs_x_monitor_init", "nrs_x_monitor_step"]
+    check_that_it_calls_nothing(tmp_path, tmp_path / "x_monitor.c", own)
 
 
 # The torque is beyond its limit from sample 1000 on; what is told, and when.
@@ -250,21 +179,21 @@ int main(void)
 
 
 @pytest.mark.slow
-def test_on_an_emulated_processor_it_tells_the_same(tmp_path, monitor):
-    for name, text in (monitor(spec_with()).sources | {"main.c": PRESS}).items():
+def test_on_an_emulated_processor_it_tells_the_same(tmp_path, sampled_export):
+    for name, text in (sources(sampled_export, spec_with()) | {"main.c": PRESS}).items():
         (tmp_path / name).write_text(text)
-    sources = (tmp_path / "x_monitor.c", tmp_path / "main.c")
-    built(compiler(), *STRICT, "-O2", *sources, "-o", tmp_path / "here")
+    files = (tmp_path / "x_monitor.c", tmp_path / "main.c")
+    built(compiler(), *STRICT, "-O2", *files, "-o", tmp_path / "here")
     here = run(tmp_path / "here").stdout
-    assert emulated(tmp_path, *sources) == f"0: {here}"
+    assert emulated(tmp_path, *files) == f"0: {here}"
     kind, sample = here.split(" at ")
     assert int(kind) == [*KINDS].index("FORCE")
     assert 1000 <= int(sample) < 1400
 
 
 @pytest.mark.slow
-def test_cppcheck_with_misra_is_content(tmp_path, monitor):
-    for name, text in monitor(spec_with("{dwell_time: 2 s}")).sources.items():
+def test_cppcheck_with_misra_is_content(tmp_path, sampled_export):
+    for name, text in sources(sampled_export, spec_with("{dwell_time: 2 s}")).items():
         (tmp_path / name).write_text(text)
     check_with_misra(tmp_path / "x_monitor.c")
 

@@ -11,7 +11,6 @@ LAW = LAWS["inertia"]
 
 
 def test_what_is_monitored_is_what_the_spec_says(sampled_export):
-    """Thesis 6.3.1: 0.3 N m."""
     stays = spec_with("{dwell_time: 2.501 s, longest_dwell_time: 5.001 s}")
     limits = monitor_limits(replace(sampled_export, spec=stays), LAW)
     assert limits.stays == ((1251, 2500), (1251, 2500))

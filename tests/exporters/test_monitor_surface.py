@@ -1,6 +1,5 @@
 """The monitor tells no stiffness inside its range, and every one outside that its header names."""
 
-import ctypes
 from fractions import Fraction
 from itertools import product
 
@@ -10,7 +9,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from nrs_design.controllers.sector import Sector, sector_of
-from nrs_design.exporters.compiled import shared_library
 from nrs_design.exporters.sector_numbers import FACTORS, sector_words
 from nrs_design.identification.running import bounds_of_spec, read_run
 from nrs_design.identification.running.sector import judge_sector
@@ -23,6 +21,7 @@ from tests.exporters.monitor_study import (
     sources,
     study,
 )
+from tests.exporters.monitored import Monitor
 from tests.exporters.programs import CORTEX, STRICT, built, check_with_misra, compiler, emulated
 from tests.identification import runs
 
@@ -41,46 +40,21 @@ CASES = {
 }
 
 
-class Monitor:
-    """A compiled monitor, fed by readings alone."""
-
-    def __init__(self, folder, export, spec):
-        seen = "#pragma GCC visibility push(default)\n"
-        texts = {name: seen + text for name, text in sources(export, spec).items()}
-        file = folder / f"monitor-{len([*folder.iterdir()])}.so"
-        file.write_bytes(shared_library(compiler("cc"), texts))
-        library = ctypes.CDLL(str(file))
-        self._init, self._step = library.nrs_x_monitor_init, library.nrs_x_monitor_step
-        self._init.argtypes = [ctypes.c_void_p, ctypes.c_float]
-        self._step.restype = ctypes.c_uint32
-        self._memory = (ctypes.c_uint32 * 64)()
-        header = texts["x_monitor.h"].splitlines()
-        told = [line.split() for line in header if line.startswith("#define NRS_X_LEFT_")]
-        self.kinds = {int(words[2][:-1]): words[1].removeprefix("NRS_X_LEFT_") for words in told}
-        self.begin()
+class Reader(Monitor):
+    """A monitor that is fed by readings alone."""
 
     @property
     def judged(self):
         """What it counted: behind five words and the flags stands `touched`, then `judged`."""
-        return self._memory[6], self._memory[7]
+        return self.memory[6], self.memory[7]
 
-    def begin(self):
-        self._init(self._memory, 1e-4)
-
-    def read(self, angle, torque, age=0, step=0.002):
-        class Input(ctypes.Structure):
-            _fields_ = [
-                *(("mode", ctypes.c_uint32), ("step", ctypes.c_float), ("age", ctypes.c_uint32)),
-                *((name, ctypes.c_float) for name in ("angle", "torque", "command")),
-            ]
-
-        seen = Input(0, step, age, float(angle), float(torque), 0.0)
-        return self.kinds[self._step(ctypes.byref(seen), self._memory)]
+    def read(self, angle, torque, age=0):
+        return self.step(angle=float(angle), torque=float(torque), age=age)
 
 
 @pytest.fixture
 def monitor(tmp_path, sampled_export):
-    return lambda spec: Monitor(tmp_path, sampled_export, spec)
+    return lambda spec: Reader(tmp_path, sources(sampled_export, spec))
 
 
 def runs_of(folder, export, case, count, seed):
@@ -130,7 +104,6 @@ def test_less_than_the_need_is_not_always_enough(tmp_path, sampled_export):
 
 
 def hidden(spec, factor, torque, gap):
-    """Return readings of a light and a deep sample, with noise that hides a violation."""
     sector = sector_of(spec)
     e, a = float(sector.torque_noise), float(sector.angle_noise)
     k = factor * float(sector.high if factor > 1 else sector.low)

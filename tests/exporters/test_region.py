@@ -7,7 +7,6 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from nrs_design.exporters.compiled import shared_library
 from nrs_design.exporters.export import Execution, export_design
 from nrs_design.exporters.formats.c import render as render_c
 from nrs_design.exporters.formats.monitor import render, told_kinds
@@ -18,6 +17,7 @@ from nrs_design.proof.evidence import SaturatedEllipsoid
 from nrs_design.simulation.step_program import StepProgram
 from nrs_design.spec import read_spec
 from nrs_design.spec.sampling import SamplingSpec
+from tests.exporters.monitored import Input, Monitor
 from tests.exporters.programs import STRICT, built, compiler
 from tests.switched.test_sampled_saturation import IMPEDANCE, KM, TAU
 
@@ -47,47 +47,24 @@ class Law(ctypes.Structure):
     _fields_ = [(name, ctypes.c_float) for name in LAW]
 
 
-class Input(ctypes.Structure):
-    _fields_ = [
-        ("mode", ctypes.c_uint32),
-        ("step", ctypes.c_float),
-        ("age", ctypes.c_uint32),
-        ("angle", ctypes.c_float),
-        ("torque", ctypes.c_float),
-        ("command", ctypes.c_float),
-        ("law", Law),
-    ]
+class Inputs(ctypes.Structure):
+    _fields_ = [*Input._fields_, ("law", Law)]
 
 
-class Monitor:
+class Watching(Monitor):
+    reads = Inputs
+
     def __init__(self, folder, export):
-        program = program_of(export)
-        self.law, self.kinds = program.law, list(told_kinds(monitor_limits(export, program.law)))
-        own = {**render_c(export), **render(export)}
-        name = program.names.spec
+        program, own = program_of(export), {**render_c(export), **render(export)}
+        self.law, name = program.law, program.names.spec
         sources = {f"{name}{ending}": text.decode() for ending, text in own.items()}
-        seen = "#pragma GCC visibility push(default)\n"
-        code = {key: seen + text for key, text in sources.items()}
         for key, text in sources.items():
             (folder / key).write_text(text)
         built(compiler(), *STRICT, "-c", folder / f"{name}_monitor.c", "-o", folder / "m.o")
-        file = folder / "monitor.so"
-        file.write_bytes(shared_library(compiler("cc"), code))
-        library, lower = ctypes.CDLL(str(file)), program.names.lower
-        self._init = getattr(library, f"{lower}_monitor_init")
-        self._init.argtypes = [ctypes.c_void_p, ctypes.c_float]
-        self._step = getattr(library, f"{lower}_monitor_step")
-        self._step.restype = ctypes.c_uint32
-        self._memory = (ctypes.c_uint32 * 64)()
-
-    def begin(self):
-        self._init(self._memory, 1e-4)
-
-    def step(self, **given):
-        return self.kinds[self._step(ctypes.byref(Input(step=0.002, **given)), self._memory)]
+        super().__init__(folder, sources)
 
 
-def runs(monitor, delta, rng, samples=80):
+def runs(monitor, delta, samples=80):
     """Yield what the monitor says along a run from rest at a deflection, and the state."""
     program, law = StepProgram(monitor.law), monitor.law
     names = [value.name for value in law.states]
@@ -130,10 +107,10 @@ def test_silence_means_inside(tmp_path, export):
     system = export.certificate.system
     evidence = next(s for s in export.certificate.statements if isinstance(s, SaturatedEllipsoid))
     Q = np.ldexp(np.array(evidence.Q, dtype=float), -evidence.denominator_log2)
-    monitor, rng = Monitor(tmp_path, export), np.random.default_rng(3)
+    monitor = Watching(tmp_path, export)
     told = silent = 0
     for force in (*np.linspace(0.05, 0.5, 6), *np.linspace(0.6, 3.0, 6)):
-        for k, (said, state) in enumerate(runs(monitor, force / STIFFNESS, rng)):
+        for k, (said, state) in enumerate(runs(monitor, force / STIFFNESS)):
             w = np.array([state[name] for name in system.states])
             V = float(w @ Q @ w)
             if said == "SATURATION":

@@ -2,12 +2,8 @@
 
 import pytest
 
-from nrs_design.exporters.c_names import CNames
-from nrs_design.exporters.formats.c import header_text, source_text
 from nrs_design.exporters.formats.vectors import make_vectors
-from nrs_design.exporters.header import header_lines
-from nrs_design.exporters.self_test import program_macro, self_test
-from tests.exporters.programs import LAWS, STRICT, built, compiler, emulated, run
+from tests.exporters.programs import LAWS, STRICT, built, compiler, emulated, run, write_law
 
 # What a robot does before it moves: the exit code says which case is the first to differ.
 MAIN = """#include "soft-tissue_test.h"
@@ -17,17 +13,11 @@ int main(void) { return (int)nrs_soft_tissue_self_test() + 1; }
 
 def written(folder, export, wrong=None):
     """Write a law with 60 cases, and another result in some of them."""
-    record, names, law = export.record, CNames(export.record.spec.name), LAWS["limits"]
-    vectors = make_vectors(law, 60)
+    vectors = make_vectors(LAWS["limits"], 60)
     for row, column in wrong or []:
         vectors.rows[row, vectors.columns.index(column)] ^= 1
-    files = self_test(law, vectors.columns, vectors.rows, names, header_lines(record))
-    for ending, content in files.items():
-        (folder / f"{names.spec}{ending}").write_bytes(content)
-    (folder / f"{names.spec}.h").write_text(header_text(record, law, names))
-    (folder / f"{names.spec}.c").write_text(source_text(record, law, names))
     (folder / "main.c").write_text(MAIN)
-    return [folder / "main.c", *(folder / f"{names.spec}{end}" for end in (".c", "_test.c"))]
+    return folder / "main.c", *write_law(folder, export.record, LAWS["limits"], vectors)
 
 
 @pytest.mark.parametrize(
@@ -40,20 +30,19 @@ def written(folder, export, wrong=None):
     ],
 )
 def test_the_first_case_that_differs(tmp_path, sampled_export, wrong, first):
-    sources = written(tmp_path, sampled_export, wrong)
+    *sources, _ = written(tmp_path, sampled_export, wrong)
     built(compiler(), *STRICT, "-O1", *sources, "-o", tmp_path / "program")
     assert run(tmp_path / "program").returncode == first + 1
 
 
 @pytest.mark.parametrize("wrong", [[], [(17, "command"), (30, "valid")]])
 def test_on_an_emulated_processor(tmp_path, sampled_export, wrong):
-    main, *others = written(tmp_path, sampled_export, wrong)
+    main, *others, _ = written(tmp_path, sampled_export, wrong)
     assert emulated(tmp_path, main, *others) == f"{18 if wrong else 0}: "
 
 
 def test_the_program_around_it(tmp_path, sampled_export):
-    sources = written(tmp_path, sampled_export, [(17, "valid")])[1:]
-    flag = f"-D{program_macro(CNames('soft-tissue'))}"
-    built(compiler(), *STRICT, flag, *sources, "-o", tmp_path / "program")
+    _, *files = written(tmp_path, sampled_export, [(17, "valid")])
+    built(compiler(), *STRICT, *files, "-o", tmp_path / "program")
     done = run(tmp_path / "program")
     assert (done.returncode, done.stdout) == (1, "case 17 differs\n")

@@ -10,7 +10,6 @@ from tests.exporters.programs import LAWS
 
 
 def commanded(law, mode, **inputs):
-    """Return the command after ten samples from rest, with constant inputs."""
     given = {value.name: np.float32([inputs.get(value.name, 0)]) for value in law.values}
     for _ in range(10):
         result = step(law, np.array([law.modes.index(mode)], np.uint32), given)

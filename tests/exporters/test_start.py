@@ -32,7 +32,6 @@ def pressed_in(program, states, samples):
 
 
 def begun(one, angle):
-    """Return the states that `init` makes."""
     return {state.name: angle if state.starts_at_angle else 0.0 for state in one.states}
 
 

@@ -81,7 +81,6 @@ def test_cases_saturate_and_do_not():
 
 
 def test_an_invalid_step_keeps_the_bits_of_the_state():
-    """Also those of what is not a number."""
     law = LAWS["inertia"]
     given = {v.name: np.array([0, 0, 0], np.float32) for v in law.values}
     given["velocity"] = np.array([0x7F800001, 0xFFC12345, 0], np.uint32).view(np.float32)
@@ -146,6 +145,5 @@ def test_any_implementation_in_python_can_be_tested(tmp_path, sampled_export, mo
 
 
 def pytest_in(folder, chosen):
-    """Run exported tests as a user does, beside nothing of this project."""
     command = ("-m", "pytest", "-q", "-p", "no:cacheprovider", "-k", chosen)
     return run(sys.executable, *command, "--rootdir", folder, folder).stdout

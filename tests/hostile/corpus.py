@@ -18,7 +18,6 @@ DECEPTIVE = "::error::\u202e\x1b[31m\x9b\u2028\u200b"
 
 
 def modes(*matrices: list[list[object]]) -> str:
-    """Write a spec of given matrices."""
     written = (
         f"- {{name: m{k}, A: {json.dumps([[str(entry) for entry in row] for row in A])}}}\n"
         for k, A in enumerate(matrices)
@@ -27,7 +26,6 @@ def modes(*matrices: list[list[object]]) -> str:
 
 
 def coprime(n: int, digits: int) -> list[list[object]]:
-    """Return entries over denominators that have nothing in common."""
     first = 10 ** (digits - 1) + 1
     return [
         [f"{-1 if i == j else 1}/{first + 2 * (i * n + j)}" for j in range(n)] for i in range(n)
@@ -35,7 +33,6 @@ def coprime(n: int, digits: int) -> list[list[object]]:
 
 
 def dense(n: int, digits: int, stable: bool = False) -> list[list[object]]:
-    """Return a full matrix of long decimals over one denominator."""
     whole = n if stable else 0
 
     def entry(i: int, j: int) -> str:
@@ -202,7 +199,6 @@ def deep_cells(depth: int) -> bytes:
 
 
 def packed(**entries: bytes) -> bytes:
-    """Write a zip archive."""
     file = io.BytesIO()
     with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as archive:
         for name, content in entries.items():

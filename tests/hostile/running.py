@@ -20,8 +20,6 @@ PATIENCE = 120
 
 @dataclass(frozen=True)
 class Run:
-    """What came of a command."""
-
     code: int
     text: str
     seconds: float
@@ -67,7 +65,6 @@ def run(folder: Path, *arguments: str) -> Run:
 
 
 def tree(folder: Path) -> dict[str, str]:
-    """Everything that a command in ``folder/work`` must not touch."""
     found = {}
     for path in sorted(folder.rglob("*")):
         if path.relative_to(folder).parts[0] not in ("work", "scratch"):

@@ -35,7 +35,6 @@ RECORD = "time_s,deflection_m,force_N\n" + "".join(
 
 
 def mutated(content: bytes, chance: random.Random) -> bytes:
-    """Cut, double, move, replace or flip some pieces."""
     for _ in range(chance.randint(1, 4)):
         a, b = sorted(chance.choices(range(len(content) + 1), k=2))
         b = min(b, a + chance.choice((0, 1, 8, 200)))

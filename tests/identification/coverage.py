@@ -53,13 +53,11 @@ UNDETERMINED: Mapping[str, Tissue] = {"nose": Tissue(synthetic.NOSE, slow, 0.016
 
 
 def touching(tissue: Tissue, seed: int) -> TissueRecord:
-    """Return a record in contact throughout, in the coordinates of a robot."""
     data = record(tissue.law, tissue.motion(seed), tissue.noise, seed)
     return _moved(data)
 
 
 def coarse(tissue: Tissue, seed: int) -> TissueRecord:
-    """Return one whose deflection is rounded as by the encoders of the samples."""
     motion = tissue.motion(seed)
     step = synthetic.COUNT if tissue.motion is quick else 1e-4
     moved = motion.deflection + step * np.random.default_rng([seed, 2]).uniform()
@@ -68,7 +66,6 @@ def coarse(tissue: Tissue, seed: int) -> TissueRecord:
 
 
 def colored(tissue: Tissue, seed: int) -> TissueRecord:
-    """Return one whose noise has a memory of ten samples."""
     data = record(tissue.law, tissue.motion(seed), 0.0, seed)
     white = np.random.default_rng(seed).standard_normal(len(data.force))
     error = lfilter([np.sqrt(1 - 0.81)], [1, -0.9], white)
@@ -83,7 +80,6 @@ def airy(tissue: Tissue, seed: int, drift: float = 0.0) -> TissueRecord:
 
 
 def drifting(tissue: Tissue, seed: int) -> TissueRecord:
-    """Return a record with air whose tare moves."""
     return airy(tissue, seed, DRIFT)
 
 
@@ -97,8 +93,6 @@ AUTO, GIVEN = Preparation(), Preparation(contact="given")
 
 @dataclass(frozen=True)
 class Option:
-    """A kind of record, and what is asked for."""
-
     make: Callable[[Tissue, int], TissueRecord]
     preparation: Preparation = AUTO
 
@@ -155,7 +149,6 @@ def _held(tissue: Tissue, option: Option, seed: int) -> Iterator[tuple[str, bool
 
 
 def main() -> None:
-    """Print one line for each cell."""
     for option in OPTIONS:
         for tissue in TISSUES:
             found = rates(tissue, option)

@@ -19,7 +19,6 @@ def time():
 
 
 def command(kind, seed=0):
-    """Commands in units of the amplitude."""
     t, random = time(), np.random.default_rng([seed, 2])
     if kind == "step":
         return np.where(t > 0.5, 1.0, 0.0)
@@ -86,7 +85,6 @@ def follow(seed):
 
 
 def record(kind, seed=0, *, noise=None, is_angle=True, **options):
-    """Return a record with white noise on its output."""
     u = follow(seed) if kind == "closed loop" else AMPLITUDE * command(kind, seed)
     angle, velocity, sent = simulate(u, **options)
     noise = (3e-4 if is_angle else 0.01) if noise is None else noise

@@ -54,12 +54,10 @@ def sinusoids(
 
 
 def wobble(seed: int, count: int = 60) -> Motion:
-    """Random motion over uneven steps."""
     generator = np.random.default_rng(seed)
     time = np.concatenate([[0.0], np.cumsum(generator.uniform(0.01, 0.3, count - 1))])
     return Motion(time, np.concatenate([[0.0], np.cumsum(generator.normal(size=count - 1))]))
 
 
 def holds(estimates, values):
-    """Tell which intervals hold the true values."""
     return [e.covers(v) for e, v in zip(estimates, values, strict=True)]

@@ -94,7 +94,6 @@ def actuator_record(
 
 
 def _stick_slip(command: Array, step: float, fine: int = 20) -> Array:
-    """Simulate angle over a command that is held between samples, from rest."""
     decay = math.exp(-step / fine / TIME_CONSTANT)
     travel = TIME_CONSTANT * (1 - decay)
     h = step / fine
@@ -118,7 +117,6 @@ def _stick_slip(command: Array, step: float, fine: int = 20) -> Array:
 
 
 def samples() -> Iterator[tuple[str, str]]:
-    """Yield name and text of every committed sample."""
     for name, fits in (("soft", SOFT), ("stiff", STIFF)):
         for i, (k, rmse) in enumerate(fits, start=1):
             seed = 100 * len(name) + i
@@ -143,7 +141,6 @@ def _tissue_text(data: tuple[Motion, Array], names: str, digits: tuple[int, int]
 
 
 def _response_text(seed: int) -> str:
-    """Write a ready response: 1 % noise in magnitude and 0.5 deg in phase."""
     generator = np.random.default_rng(seed)
     hertz = np.array([0.1, 0.2, 0.5, 1, 2, 3, 4, 5, 7, 10, 15, 20, 30])
     G = GAIN / (1 + 2j * np.pi * hertz * TIME_CONSTANT)
@@ -163,7 +160,6 @@ def _text(header: str, columns: Sequence[Array], digits: Sequence[int]) -> str:
 
 
 def write_samples(folder: Path) -> None:
-    """Write all samples into a folder."""
     for name, text in samples():
         write_output(folder / name, text)
 

@@ -16,7 +16,6 @@ from tests.identification.support import holds, quick, record, slow
 
 
 def off_grid(seed):
-    """Presses whose rests are anywhere between two counts of the encoder."""
     motion = quick(seed)
     shift = synthetic.COUNT * np.random.default_rng([seed, 2]).uniform()
     return Motion(motion.time, motion.deflection + shift)

@@ -29,8 +29,6 @@ MOTION = MotionLoop(
 
 @dataclass(frozen=True)
 class Known:
-    """A system and the truth about it."""
-
     system: SwitchedSystem
     common_quadratic: str
     stable: bool
@@ -39,7 +37,6 @@ class Known:
 
 
 def names(*groups: str) -> list[str]:
-    """Return the entries of some groups, of all by default."""
     entries = read_groups()
     return [name for group in groups or entries for name in entries[group]]
 

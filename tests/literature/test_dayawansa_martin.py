@@ -14,7 +14,6 @@ from .known import given, known, settle
 
 
 def pair(a: str):
-    """Return the pair for a fraction."""
     numerator, _, denominator = a.partition("/")
     inverse = f"{denominator or 1}/{numerator}"
     return given("pair", [[["-1", "-1"], ["1", "-1"]], [["-1", f"-{a}"], [inverse, "-1"]]])

@@ -131,7 +131,6 @@ KNOWN = {
 
 
 def growth_of(matrices, word):
-    """Return the growth per step of a word, in floating point."""
     product = np.eye(len(matrices[0]))
     for letter in word:
         product = np.array([[float(F(e)) for e in row] for row in matrices[int(letter)]]) @ product

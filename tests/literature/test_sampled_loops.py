@@ -38,7 +38,6 @@ def decide(loop, period, delay=None, **limits):
 
 
 def radius(loop, *timings):
-    """Return the spectral radius along periods with their delays."""
     (A, B), K = loop
     A, B, K = map(floats, (A, B, K))
     product = np.eye(len(A) + len(K))
@@ -48,7 +47,6 @@ def radius(loop, *timings):
 
 
 def border(loop, of, low, high):
-    """Return where a constant timing becomes unstable."""
     return brentq(lambda t: radius(loop, of(t)) - 1, low, high, xtol=1e-12)
 
 

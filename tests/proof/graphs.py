@@ -53,7 +53,6 @@ def in_turns(
     crossings: Sequence[Sequence[int]] = (),
     roundings: Sequence[Sequence[int]] = (),
 ) -> FormsOnGraph:
-    """One form for each step of a round, with the multipliers of each step."""
     lost, count = system.contact is not None, len(forms)
     nodes, multipliers = [], []
     for k, Q in enumerate(forms):
@@ -98,7 +97,6 @@ def conewise_modes(
 
 
 def shape_of(evidence: AbstractEvidence | None) -> str | None:
-    """Name the shape of a graph, and otherwise the kind."""
     if not isinstance(evidence, FormsOnGraph):
         return None if evidence is None else evidence.kind
     degree = "quadratic" if evidence.degree == 1 else "polynomial"

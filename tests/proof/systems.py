@@ -261,7 +261,6 @@ def juggling() -> SwitchedSystem:
 
 
 def juggling_among_modes() -> SwitchedSystem:
-    """The same, with free motion among the modes."""
     system = juggling()
     assert system.contact is not None
     flights = Flights(("m0",), ("free",))
@@ -280,7 +279,6 @@ def juggling_in_turns() -> SwitchedSystem:
 
 
 def drifting() -> SwitchedSystem:
-    """A mass that grows faster in the air."""
     free = Mode("free", matrix([[1, 0], [1, 0]]))
     return replace(family([[-2, -1], [1, 0]]), contact=Contact((free,), required=True))
 
@@ -356,7 +354,6 @@ def saturating_in_steps() -> SwitchedSystem:
 
 
 def bouncing_in_steps(damping: Entry = 0) -> SwitchedSystem:
-    """The same in steps of a tenth of a second by Euler's method."""
     b = Fraction(damping)
     contact = [[[(8 - b) / 10, Fraction(-k, 10)], ["1/10", 1]] for k in (1, 2)]
     pulls = tuple(matrix([[b, k]]) for k in (1, 2)) if b else ()
@@ -366,7 +363,6 @@ def bouncing_in_steps(damping: Entry = 0) -> SwitchedSystem:
 
 
 def losable(contact: Rows, free: Rows, time: Time, *pulls: Rows) -> SwitchedSystem:
-    """One mode in contact and one free."""
     rows = tuple(matrix(q) for q in pulls)
     return replace(family(contact, time=time), contact=Contact((Mode("f", matrix(free)),), rows))
 

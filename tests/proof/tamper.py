@@ -11,7 +11,6 @@ WRONG_TYPES: tuple[Any, ...] = (None, True, 1.5, "1e3", "nan", "-1", [], {}, [[]
 
 
 def mutations(fields: dict[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
-    """Yield changed copies, each with words for what was changed."""
     for path, value in _nodes(fields):
         for words, changed in _changes(value):
             yield f"{'.'.join(map(str, path))}: {words}", _with(fields, path, changed)

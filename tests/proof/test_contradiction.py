@@ -93,7 +93,6 @@ def test_a_time_of_a_step_needs_steps():
 
 
 def free(*matrices, names=("f0", "f1", "f2")):
-    """Contact that is lost into modes of these names."""
     return Contact(tuple(Mode(name, matrix(A)) for name, A in zip(names, matrices, strict=False)))
 
 

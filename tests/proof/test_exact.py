@@ -150,8 +150,6 @@ class TestPositiveDefinite:
 
 
 class TestLimits:
-    """What is decided is bounded by work, so that no decision takes minutes."""
-
     @pytest.mark.parametrize(("n", "bits"), [(10, 10**5), (100, 100)])
     def test_the_largest_form(self, n, bits):
         M = [[2 ** (bits - 1) * (i == j == n // 2) for j in range(n)] for i in range(n)]

@@ -16,7 +16,6 @@ ON_FLINT = {"enclosure.py", "least_cost.py", "second_opinion.py"}
 
 
 def imports(node):
-    """Yield the full names that a piece of code imports."""
     for item in ast.walk(node):
         if isinstance(item, ast.Import):
             yield from (alias.name for alias in item.names)
@@ -26,7 +25,6 @@ def imports(node):
 
 
 def outside_functions(node):
-    """Yield the statements that run when a module is loaded."""
     for item in ast.iter_child_nodes(node):
         if isinstance(item, ast.FunctionDef):
             continue

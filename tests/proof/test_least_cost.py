@@ -21,7 +21,6 @@ SOME = [frequency(w, complex(0.5, -4 / w), 0.3, drawn=0.25) for w in (1.0, 2.0, 
 
 
 def cost(frequencies, weights, Mt, Bt):
-    """The cost in floating point."""
     total = 0.0
     for f in frequencies:
         y = Bt + 1j * (Mt * float(f.omega) - float(f.drawn))

@@ -71,7 +71,6 @@ def is_in_other_units(form, wanted: Rows) -> bool:
 
 
 def is_definite(M: Rows, *, strictly: bool = True) -> bool:
-    """Gaussian elimination in fractions; singular matrices by all their principal minors."""
     M = [list(row) for row in M]
     if any(len(row) != len(M) for row in M) or transpose(M) != M:
         return False
@@ -484,7 +483,6 @@ def inequality(
 
 
 def _without(M: Rows, k: int) -> Rows:
-    """Leave out a column."""
     return [[*row[:k], *row[k + 1 :]] for row in M]
 
 
@@ -723,7 +721,6 @@ def _derivative(p: Polynomial, A: Rows) -> Polynomial:
 
 
 def compose(monomial: tuple[int, ...], A: Rows) -> Polynomial:
-    """A monomial of ``A x``."""
     return _substitute({monomial: Fraction(1)}, A)
 
 
@@ -801,7 +798,6 @@ def edges_of(system: SwitchedSystem) -> list[tuple[str, str, Rows]]:
 
 
 def bounds_of(system: SwitchedSystem, mode: str) -> tuple[Fraction, Fraction | None]:
-    """Shortest and longest stay."""
     for name, stay in system.switching.stays:
         if name == mode:
             return stay.shortest, stay.longest

@@ -153,7 +153,6 @@ def cases(names: Iterable[str]) -> list[Any]:
 
 
 def report_of(path: Path) -> Report:
-    """Take a spec all the way to its report."""
     loaded = read_spec(path)
     # No case needs more, and the one without a verdict would try them all.
     result = run_certification(loaded, limits=Limits(max_degree=6))
@@ -162,7 +161,6 @@ def report_of(path: Path) -> Report:
 
 @pytest.fixture(scope="session")
 def report(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Report]:
-    """Give the report of a case by its name, each made once."""
     folder = tmp_path_factory.mktemp("specs")
     texts = {"discrete": DISCRETE, "marginal": MARGINAL} | {
         name: f"kind: switched-system\nname: {name}\n{text}" for name, text in KINDS.items()
@@ -187,7 +185,6 @@ def report(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Report]:
 
 @pytest.fixture(scope="session")
 def page(report: Callable[[str], Report]) -> Callable[[str], str]:
-    """Give the page of a case by its name, each rendered once."""
     made: dict[str, str] = {}
 
     def get(name: str) -> str:

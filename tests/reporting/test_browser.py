@@ -37,7 +37,6 @@ pytestmark = pytest.mark.browser
 
 
 def slow(case):
-    """Leave a case to the slow tests."""
     return pytest.param(case, marks=pytest.mark.slow)
 
 
@@ -48,7 +47,6 @@ def open_page(browser, text, folder, width, scheme="light"):
 
 
 def unfold(browser):
-    """Open all that is folded, as a reader would."""
     script = "document.querySelectorAll('details').forEach(fold => { fold.open = true; })"
     browser.execute_script(script)
 
@@ -364,7 +362,6 @@ def printed_texts(pdf):
 
 
 def letters_of(table):
-    """Return the letters of a font by the numbers of its glyphs."""
     ranges = re.findall(r"^<(\w+)> <(\w+)> <(\w+)>$", table, re.MULTILINE)
     ranges += [
         (glyph, glyph, one) for glyph, one in re.findall(r"^<(\w+)> <(\w+)>$", table, re.MULTILINE)

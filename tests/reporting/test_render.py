@@ -17,7 +17,6 @@ from tests.support import COMMUTING, SOFT_TISSUE
 
 
 def slow(case):
-    """Leave a case to the slow tests."""
     return pytest.param(case, marks=pytest.mark.slow)
 
 

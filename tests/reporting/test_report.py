@@ -64,7 +64,6 @@ FIGURES = {
 
 
 def words(report):
-    """All text of a report in one string."""
     parts = [report.claim, *report.remarks, *(f"{label}: {value}" for label, value in report.facts)]
     for section in report.sections:
         parts.append(section.title)
@@ -87,12 +86,10 @@ def words(report):
 
 
 def lines(illustration):
-    """Labelled curves of the first axes."""
     return {line.get_label(): line for line in illustration.figure.axes[0].get_lines()}
 
 
 def table_of(report, title):
-    """Return the first table of a section."""
     section = next(part for part in report.sections if part.title == title)
     return next(block for block in section.blocks if isinstance(block, Table))
 

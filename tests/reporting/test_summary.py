@@ -158,7 +158,6 @@ def soft_tissue():
 
 
 def asking(result, path, goals):
-    """Return a result as that of a spec which asks for goals in addition."""
     text = result.loaded.path.read_text(encoding="utf-8")
     path.write_text(f"{text}goals: {{{goals}}}\n", encoding="utf-8")
     loaded = read_spec(path)

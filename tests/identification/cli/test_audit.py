@@ -15,7 +15,6 @@ LIMIT = ("--command-limit", "3000")
 
 @pytest.fixture(scope="module")
 def proof(tmp_path_factory):
-    """The spec with its certificate, made anew."""
     folder = tmp_path_factory.mktemp("proof")
     spec = folder / "soft-tissue.nrs.yaml"
     shutil.copy(SOFT_TISSUE, spec)

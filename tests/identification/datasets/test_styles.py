@@ -105,7 +105,6 @@ def test_micro_sign_of_windows(tmp_path):
 
 
 def test_rows_of_separators_above_the_names(tmp_path):
-    """As a sheet that is saved as text has them."""
     text = "Machine 7,,\n,,\nZeit,Weg,Kraft\n" + rows(",")
     (tmp_path / "a.csv").write_text(text)
     mapping = ["time_s=Zeit", "deflection_m=Weg", "force_N=Kraft"]

@@ -48,7 +48,6 @@ def test_the_first_violation_has_its_time(tmp_path):
 
 
 def varying(k_of_angle):
-    """A run whose stiffness depends on the angle."""
     t, angle, _, command, mode = runs.run()
     return t, angle, k_of_angle(angle) * angle, command, mode
 
@@ -165,7 +164,6 @@ def test_opposite_signs_are_named(tmp_path):
 
 
 def test_a_linear_log(tmp_path):
-    """The lever arm of the spec, 0.24 m."""
     t, angle, torque, *_ = runs.run()
     rows = "\n".join(
         f"{a:.4f},{b:.8f},{c:.6f}" for a, b, c in zip(t, angle * 0.24, torque / 0.24, strict=True)
@@ -332,7 +330,6 @@ def test_without_modes_the_ranges_of_all_controllers_are_shown(tmp_path):
 
 @pytest.mark.parametrize(("period", "said"), [(0.002, False), (0.0019, True), (0.001, False)])
 def test_steps_that_are_not_those_of_the_loop_are_said(tmp_path, period, said):
-    """The log has steps of 2 ms."""
     jitter = check(judged(log(tmp_path), replace(SAMPLED, period=period)), "jitter")
     assert ("no whole number of periods" in jitter.measured) is said
     assert f"sampled every {period:g} s" in jitter.allowed

@@ -19,7 +19,6 @@ def measured(motion, force, noise, seed):
 
 
 def test_stress_relaxation():
-    """Ramp and hold."""
     motion = Motion(TIME, 0.005 * np.clip((TIME - 2) / 0.5, 0, 1))
     fit = fit_record(KelvinBoltzmann, measured(motion, LAW.simulate(motion), 0.01, 1))
     assert all(holds(fit.estimates, LAW.values))

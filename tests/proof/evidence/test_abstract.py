@@ -38,7 +38,6 @@ from tests.proof.systems import (
 
 
 def twice(system):
-    """Return a system with every mode once more, under another name."""
     again = tuple(replace(mode, name=f"{mode.name} again") for mode in system.modes)
     return replace(system, modes=(*system.modes, *again))
 

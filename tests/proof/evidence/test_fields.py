@@ -278,7 +278,6 @@ def test_a_rule_for_misses_is_read_as_it_was_written():
     ],
 )
 def test_malformed_turns(clock, reason):
-    """Of a round, or of a rule for misses."""
     fields = system_fields(doubled_in_turns(3))
     assert fields["clock"] == {"length": 3, "first": ["m0"]}
     with pytest.raises((TypeError, ValueError), match=reason):

@@ -83,7 +83,6 @@ SLOW, SLOW98 = Fraction(99, 100), Fraction(98, 100)
 
 
 def conewise(system, Q, rate, crossings=(), roundings=(), log2=0) -> FormsOnGraph:
-    """One form for contact and free motion, if contact is lost."""
     lost = system.contact is not None
     numbers = {"crossings": crossings, "roundings": roundings}
     return one_form(system, Q, log2, Fraction(rate), **numbers, lost=lost)
@@ -111,8 +110,6 @@ def with_form(evidence: FormsOnGraph, k: int, form) -> FormsOnGraph:
 
 
 class TestCommon:
-    """One form for all modes."""
-
     def fault(self, system, Q, rate):
         return common_quadratic(Q, 0, Fraction(rate)).find_fault(system)
 
@@ -184,8 +181,6 @@ class TestCommon:
 
 
 class TestPolynomials:
-    """Forms on monomials."""
-
     @pytest.mark.parametrize("example", ["common-polynomial", "mode-polynomial"])
     def test_forms_that_vanish(self, example):
         system, evidence = genuine(example)
@@ -357,8 +352,6 @@ def _value(Q: Rows, x: list[Fraction]) -> Fraction:
 
 
 class TestLostContact:
-    """Contact and free motion as places."""
-
     @pytest.mark.parametrize(
         ("system", "evidence"),
         [
@@ -575,8 +568,6 @@ def four(*values: int, rate: Entry = "0.977") -> tuple[SwitchedSystem, FormsOnGr
 
 
 class TestTurns:
-    """A form for each step of a round."""
-
     def test_known_answer_of_one_state(self):
         """V before the doubling is to V after it as 4 to rho^2, and then as 9/16 to rho^2."""
         system, evidence = four(64, 15, 25, 42)
@@ -632,8 +623,6 @@ class TestTurns:
 
 
 class TestStays:
-    """Modes as places."""
-
     def by_modes(self, system):
         return certify(system, Method.MODE_QUADRATIC)
 
@@ -962,8 +951,6 @@ PLAIN = {"nodes": [{"place": "modes", "form": [[1]]}], "denominator_log2": 0, "r
 
 
 class TestFields:
-    """What a certificate file holds."""
-
     def test_only_what_is_not_usual_is_written(self):
         evidence = common_quadratic(I2, 0, HALF)
         fields = evidence.to_fields()
@@ -1271,8 +1258,6 @@ class TestRefused:
 
 
 class TestAttacks:
-    """Forged numbers for families that grow, or do not decay."""
-
     # Contact and flight are stable, each for itself, and bouncing grows. Found by a random search.
     TOUCHING, FLYING = [[2, -1, 2], [5, -3, 4], [1, -3, 0]], [[-1, 6], [0, -2]]
 
@@ -1281,7 +1266,6 @@ class TestAttacks:
         return losable(self.TOUCHING, free, Time.CONTINUOUS)
 
     def alone(self, A) -> FormsOnGraph:
-        """Return what the search finds for one mode, of degree 4."""
         found = accepted(search_polynomial, family(A), degree=2, optimize_rate=False)
         assert isinstance(found, FormsOnGraph)
         assert found.degree == 2
@@ -1396,8 +1380,6 @@ def _square(Q: Rows, x: list[Fraction]) -> Fraction:
 
 
 class TestErrorsWithinTheirBounds:
-    """What arithmetic rounds raises no form that is proved."""
-
     @pytest.mark.parametrize("damping", [None, 0, 1])
     def test_no_step_within_the_bounds_raises_a_form(self, damping):
         """At random states in contact, in flight and while what is touched lags; None: kept."""

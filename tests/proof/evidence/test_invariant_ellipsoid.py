@@ -69,7 +69,6 @@ def test_a_pushed_mass_is_bounded(system, evidence):
 
 
 def scalar(A: Entry, B: Entry, bound: Entry = 1, time: Time = Time.CONTINUOUS) -> SwitchedSystem:
-    """One state, moved by one disturbance."""
     return replace(
         family([[A]], time=time),
         channels=(Channel("d", "", Fraction(bound), (matrix([[B]]),)),),
@@ -224,7 +223,6 @@ def _largest(system: SwitchedSystem, Q: Rows) -> Fraction:
 
 
 def _moved(system: SwitchedSystem, x: list[Fraction], d: int) -> list[Fraction]:
-    """Return the state after a step."""
     touches = x[-1] > 0
     mode = system.modes[0] if touches else system.contact.free[0]
     B = system.channels[0].columns[0 if touches else 1].fractions()

@@ -53,7 +53,6 @@ def supposed(system):
 
 @pytest.mark.parametrize("time", Time)
 def test_forms_are_those_of_the_definition(time):
-    """With several of everything."""
     system = crowded(time)
     item = supposed(system)
     assert item.find_unfit(system) is None

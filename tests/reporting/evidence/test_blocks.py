@@ -23,7 +23,6 @@ BLOCKS = ((0,), (1,))
 
 
 def table(page):
-    """The table of the blocks, by their numbers."""
     found = next(b for s in page.sections() for b in s.blocks if isinstance(b, Table))
     return {row[0]: row[1:] for row in found.rows}
 

@@ -17,7 +17,6 @@ from tests.support import ROOT
 
 @pytest.fixture
 def short(monkeypatch):
-    """Leave only the quick rows of the specimens in the table."""
     monkeypatch.setattr(table, "TOPICS", (specimens,))
 
 
@@ -74,7 +73,6 @@ def test_a_drift_exits_1_and_is_named():
 
 
 def test_a_page_is_named_as_one(tmp_path):
-    """Before the seconds of work."""
     done = run("--html", str(tmp_path / "table.txt"))
     assert "is not the name of a page in HTML" in str(done.exception)
     assert list(tmp_path.iterdir()) == []

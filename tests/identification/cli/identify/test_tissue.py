@@ -68,7 +68,6 @@ VOIGT = ("    model: elastic\n", "    model: kelvin-voigt\n    damping: 30 N*s/m
 
 
 def damped_csv(folder, b=30.0):
-    """Presses on 400 N/m and 30 N s/m."""
     law = KelvinVoigt(400.0, b) if b else Elastic(400.0)
     return press_csv(folder, record(law, quick(1), 0.02, 1))
 

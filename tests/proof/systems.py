@@ -428,19 +428,19 @@ def pushed(system: SwitchedSystem, push: Entry = "1/4") -> SwitchedSystem:
     )
 
 
-def crowded(time: Time) -> SwitchedSystem:
+def crowded(time: Time, *, lost: bool = True, pulled: bool = True) -> SwitchedSystem:
     """Several of everything that an axis which may lose contact can have, of any numbers.
 
     No two numbers have a reason to be equal: what is mistaken for something else shows.
     """
-    rng = Random(5)
+    rng, count = Random(5), 4 if lost else 2
 
     def drawn(n: int, m: int) -> RationalMatrix:
         numbers = [Fraction(k, d) for k in (-7, -4, -1, 1, 2, 5) for d in (1, 2, 3)]
         return matrix([[rng.choice(numbers) for _ in range(m)] for _ in range(n)])
 
     def each(n: int, m: int) -> tuple[RationalMatrix, ...]:
-        return tuple(drawn(n, m) for _ in range(4))
+        return tuple(drawn(n, m) for _ in range(4))[:count]
 
     free, corner = [drawn(3, 2).fractions() for _ in range(2)], int(time is Time.DISCRETE)
     flights = ([[*row, k == 2 and corner] for k, row in enumerate(rows)] for rows in free)
@@ -448,16 +448,15 @@ def crowded(time: Time) -> SwitchedSystem:
     # In free motion, what is rounded is nothing of the deflection.
     sizes = [[drawn(1, 6).fractions()[0] for _ in range(4)] for _ in ("u", "v")]
     rows = [
-        tuple(matrix([[*q[:2], q[2] * (k < 2), *q[3:]]]) for k, q in enumerate(own))
+        tuple(matrix([[*q[:2], q[2] * (k < 2), *q[3:]]]) for k, q in enumerate(own[:count]))
         for own in sizes
     ]
     roundings = (Rounding(name, each(3, 1), own) for name, own in zip("uv", rows, strict=True))
+    motions = tuple(Mode(f"f{k}", matrix(A)) for k, A in enumerate(flights))
+    pulls = (drawn(1, 3), drawn(1, 3))
     return replace(
         family(drawn(3, 3).fractions(), drawn(3, 3).fractions(), time=time),
-        contact=Contact(
-            tuple(Mode(f"f{k}", matrix(A)) for k, A in enumerate(flights)),
-            (drawn(1, 3), drawn(1, 3)),
-        ),
+        contact=Contact(motions, pulls if pulled else ()) if lost else None,
         channels=tuple(Channel(name, "N", Fraction(size), each(3, 1)) for name, size in bounds),
         outputs=(
             Output("speed", "m/s", (drawn(1, 3),)),

@@ -8,11 +8,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from nrs_design.proof.channels import Channel, Output, Rounding
-from nrs_design.proof.contact import Contact
 from nrs_design.proof.contradiction import find_contradiction
 from nrs_design.proof.evidence import InvariantEllipsoid
 from nrs_design.proof.evidence.abstract import NOT_ROUNDED, ROUNDED
-from nrs_design.proof.mode import Mode, Time
+from nrs_design.proof.mode import Time
 from nrs_design.proof.second_opinion import agrees
 from nrs_design.proof.steps import (
     Acting,
@@ -22,7 +21,7 @@ from nrs_design.proof.steps import (
 )
 from nrs_design.proof.system import SwitchedSystem
 from tests.proof.graphs import common_quadratic, forms_of_steps, one_form
-from tests.proof.systems import Entry, bouncing, bouncing_in_steps, family, matrix
+from tests.proof.systems import Entry, bouncing, bouncing_in_steps, crowded, family, matrix
 from tests.proof.truth import (
     combine,
     holds,
@@ -168,63 +167,8 @@ def test_against_the_definition(contact, errors, Q, multiplier, tau):
     assert (candidate.find_fault(system) is None) == holds(system, candidate)
 
 
-# Of three states, the last of which is the deflection, three disturbances and two errors; for two
-# modes in contact and one in free motion. Denominators differ, and nothing is symmetric but Q.
 Q3 = ((9, 2, -1), (2, 7, 3), (-1, 3, 8))
-MAPS3 = (
-    [["-1/2", "1/3", "2/3"], [1, "-1/5", "-3/7"], ["1/4", "2/3", "-1/9"]],
-    [["-1/11", "2/3", "1/8"], ["-1/5", -2, 1], ["5/4", "1/6", "1/3"]],
-    [["-1/3", "1/2", 0], ["1/7", "-2/5", 0], ["3/4", "-1/6", 1]],
-    [["1/8", "-1/2", 0], ["2/7", "1/5", 0], ["-1/4", "5/6", 1]],
-)
-PUSHES3 = tuple(
-    [[[row[k]] for row in rows] for k in range(4)]
-    for rows in (
-        (["1/2", "3/2", "1/9", 2], ["-1/3", "1/7", 3, 1], ["2/5", 2, "-1/4", "1/6"]),
-        ([2, "1/3", "2/3", "-1/5"], ["1/4", -2, "-1/8", 1], [-1, "1/5", 1, "1/2"]),
-        ([-1, "1/6", "3/8", 1], ["1/2", 5, -1, "1/3"], ["1/5", "-3/4", "7/4", -2]),
-    )
-)
-ERRORS3 = tuple(
-    [[[row[k]] for row in rows] for k in range(4)]
-    for rows in (
-        ([1, "1/5", "-1/7", 3], [0, 2, "1/2", "1/4"], ["1/2", 0, 1, -1]),
-        (["1/3", 1, 0, "2/7"], [1, "-3/4", "2/9", 1], [-1, "1/6", "5/2", "1/2"]),
-    )
-)
-SIZES3 = (
-    [
-        [["1/2", 1, "1/5", 3, "-1/4", "1/3"]],
-        [[2, "-1/3", 1, "1/7", 2, -1]],
-        [[1, "1/6", 0, 5, 1, "2/3"]],
-        [["1/4", 2, 0, "1/5", -1, 1]],
-    ],
-    [
-        [["-1/9", 2, 1, "1/2", 1, 4]],
-        [["1/8", 1, -2, 1, "3/5", 2]],
-        [["3/2", -1, 0, "1/3", -2, 1]],
-        [[1, "1/7", 0, 2, "1/2", "-1/3"]],
-    ],
-)
 WEIGHTS = (Fraction(2, 3), Fraction(3, 5))
-
-
-def three_states(*, contact: bool) -> SwitchedSystem:
-    count, names = 4 if contact else 2, "abc"
-    free = (Mode("f", matrix(MAPS3[2])), Mode("g", matrix(MAPS3[3])))
-    landing = Contact(free) if contact else None
-    return replace(
-        family(*MAPS3[:2], time=Time.DISCRETE),
-        contact=landing,
-        channels=tuple(
-            Channel(name, "N", ONE, tuple(matrix(b) for b in columns[:count]))
-            for name, columns in zip(names, PUSHES3, strict=True)
-        ),
-        roundings=tuple(
-            Rounding(name, tuple(map(matrix, columns[:count])), tuple(map(matrix, rows[:count])))
-            for name, columns, rows in zip(names, ERRORS3, SIZES3, strict=False)
-        ),
-    )
 
 
 @pytest.mark.parametrize("acting", [(), (1,), (2, 0)])
@@ -235,7 +179,7 @@ def test_every_form_by_hand(keeps, acting, roundings):
     known = {"lost": Fraction(5, 4)}
     known |= {f"rounding {i}": Fraction(tau, 4) for i, tau in enumerate(roundings, 1)}
     for contact in (True, False):
-        system = three_states(contact=contact)
+        system = crowded(Time.DISCRETE, lost=contact, pulled=False)
         assert find_contradiction(system) is None
         wanted = [
             (move.where, inequality(move, quarters, quarters, keeps, known.get, weights))
@@ -253,7 +197,7 @@ def test_every_form_by_hand(keeps, acting, roundings):
 @pytest.mark.parametrize("acting", [(), (2, 0)])
 def test_errors_of_a_flow_by_hand(acting):
     """No system with these makes sense, as nothing is rounded in between; the form is right."""
-    system = replace(three_states(contact=False), time=Time.CONTINUOUS)
+    system = replace(crowded(Time.DISCRETE, lost=False), time=Time.CONTINUOUS)
     assert "there are no steps" in find_contradiction(system)
     weights, quarters = WEIGHTS[: len(acting)], combine((Fraction(1, 4), Q3))
     known = {"rounding 1": Fraction(4, 4), "rounding 2": Fraction(9, 4)}

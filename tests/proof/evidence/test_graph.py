@@ -45,6 +45,7 @@ from tests.proof.systems import (
     bouncing,
     bouncing_in_steps,
     bouncing_in_turns,
+    crowded,
     dayawansa_martin,
     doubled_in_turns,
     family,
@@ -1048,40 +1049,11 @@ def test_bouncing_in_turns_rounds():
     assert none.covers_rounding
 
 
-# Of three states, with denominators that differ, and nothing symmetric but the forms.
-CONTACT3 = (
-    [["-1/2", "1/3", "2/3"], [1, "-1/5", "-3/7"], ["1/4", "2/3", "-1/9"]],
-    [["-1/11", "2/3", "1/8"], ["-1/5", -2, 1], ["5/4", "1/6", "1/3"]],
-)
-FREE3 = (
-    [["-1/3", "1/2"], ["1/7", "-2/5"], ["3/4", "-1/6"]],
-    [["1/8", "-1/2"], ["2/7", "1/5"], ["-1/4", "5/6"]],
-)
-COLUMNS3 = ([["1/2"], ["-1/3"], ["2/5"]], [[2], ["1/4"], [-1]], [[-1], ["1/2"], ["1/5"]])
-SIZES3 = ["1/2", 1, "1/5"], ["-1/9", 2, 1], ["3/2", -1, 0], [1, "1/7", 0]
 FORMS3 = ((9, 2, -1), (2, 7, 3), (-1, 3, 8)), ((6, 1, 2), (1, 5, -2), (2, -2, 7))
 
 
-def three_states(time: Time, *, pulled: bool = True, disturbed: bool = True) -> SwitchedSystem:
-    last = int(time is STEPS)
-    free = (
-        Mode(name, matrix([[*row, last * (i == 2)] for i, row in enumerate(rows)]))
-        for name, rows in zip("fg", FREE3, strict=True)
-    )
-    columns = tuple(map(matrix, (*COLUMNS3, COLUMNS3[0])))
-    rows = tuple(matrix([row]) for row in SIZES3)
-    others = tuple(matrix([row]) for row in (*SIZES3[1::-1], *SIZES3[:1:-1]))
-    errors = Rounding("r", columns, rows), Rounding("s", columns[::-1], others)
-    pulls = (matrix([["1/2", "-1/3", 2]]), matrix([["1/5", 4, "3/2"]]))
-    return replace(
-        family(*CONTACT3, time=time),
-        contact=Contact(tuple(free), pulls if pulled else ()),
-        roundings=errors if disturbed and last else (),
-    )
-
-
 MULTIPLIERS3 = {
-    Time.CONTINUOUS: ("pull 1 f", "pull 2 f", "pull 1 g", "pull 2 g"),
+    Time.CONTINUOUS: ("pull 1 f0", "pull 2 f0", "pull 1 f1", "pull 2 f1"),
     STEPS: ("lost", *(f"{p}" for k in (1, 2) for p in (f"pull {k}", f"pull {k} lost",
             f"lost pull {k}")), "rounding 1", "rounding 2"),
 }  # fmt: skip
@@ -1091,12 +1063,12 @@ MULTIPLIERS3 = {
 def test_every_form_by_hand(shape):
     """Lost contact with what lags, and what is rounded; or a form for each mode."""
     if shape == "each":
-        system = three_states(STEPS, pulled=False, disturbed=False)
-        flying = ("f", ((4, 1), (1, 3))), ("g", ((5, -2), (-2, 6)))
+        system = replace(crowded(STEPS, pulled=False), roundings=())
+        flying = ("f0", ((4, 1), (1, 3))), ("f1", ((5, -2), (-2, 6)))
         named = tuple(zip(("m0", "m1"), FORMS3, strict=True))
         evidence = conewise_modes(named, flying, 0, Fraction(6, 7), (5, 3))
     else:
-        system, lost = three_states(shape), FORMS3[0]
+        system, lost = crowded(shape), FORMS3[0]
         facts = zip(MULTIPLIERS3[shape], (3, 5, 7, 11, 13, 17, 19, 23, 29), strict=False)
         nodes = Node("modes", lost), Node("free", tuple(row[:2] for row in lost[:2]))
         numbers = tuple(Multiplier(fact, value) for fact, value in facts)

@@ -22,6 +22,7 @@ from tests.proof.systems import (
     Rows,
     bouncing,
     bouncing_in_steps,
+    crowded,
     family,
     matrix,
     pushed,
@@ -324,49 +325,17 @@ def test_against_the_definition(contact, free, columns, Q, multiplier, share, le
 
 # Of three states, with denominators that differ, and nothing symmetric but Q.
 Q3 = ((9, 2, -1), (2, 7, 3), (-1, 3, 8))
-CONTACT3 = [["-1/2", "1/3", "2/3"], [1, "-1/5", "-3/7"], ["1/4", "2/3", "-1/9"]]
-FREE3 = [["-1/3", "1/2", 0], ["1/7", "-2/5", 0], ["3/4", "-1/6", 0]]
-OTHER3 = [["-1/11", "2/3", 0], ["-1/5", "-2", 0], ["5/4", "1/6", 0]]
-# For every mode, and after them for the free ones, the columns of both disturbances.
-PUSH3 = [[["1/2"], ["-1/3"], ["2/5"]], [["3/2"], ["1/7"], [2]], [["1/9"], [3], ["-1/4"]]]
-PUSH3 += [[[-1], ["1/2"], ["1/5"]]]
-GUST3 = [[[2], ["1/4"], [-1]], [["1/3"], [-2], ["1/5"]], [["2/3"], ["-1/8"], [1]]]
-GUST3 += [[["1/6"], [5], ["-3/4"]]]
-SHARES3, BOUNDS3, LEVEL = (
-    (Fraction(2, 7), Fraction(1, 5)),
-    (Fraction(3, 5), Fraction(7, 4)),
-    Fraction(4, 9),
-)
-WEIGHTS3 = [share / bound**2 for share, bound in zip(SHARES3, BOUNDS3, strict=True)]
-EVIDENCE3 = InvariantEllipsoid(("push", "gust"), "force", Q3, 3, SHARES3, LEVEL, ())
-ROWS3 = (["1/2", -1, "2/3"], [3, "1/4", 1])
-
-
-def three_states(time: Time, free: tuple[Rows, ...], pulls: tuple[Rows, ...]) -> SwitchedSystem:
-    motions = tuple(Mode(f"f{k}", matrix(rows)) for k, rows in enumerate(free))
-    count = 2 + len(free)
-    push, gust = (tuple(matrix(b) for b in columns[:count]) for columns in (PUSH3, GUST3))
-    return replace(
-        family(CONTACT3, OTHER3, time=time),
-        contact=Contact(motions, tuple(matrix([q]) for q in pulls)) if free else None,
-        # In another order than the evidence has them, and one that it does not name.
-        channels=(
-            Channel("idle", "N", Fraction(1), push),
-            Channel("gust", "N", BOUNDS3[1], gust),
-            Channel("push", "N", BOUNDS3[0], push),
-        ),
-        outputs=(Output("force", "N", tuple(matrix([q]) for q in ROWS3)),),
-    )
+SHARES3, LEVEL = (Fraction(2, 7), Fraction(1, 5)), Fraction(4, 9)
+# One of three disturbances is not named, and the others are in another order.
+EVIDENCE3 = InvariantEllipsoid(("jerk", "push"), "force", Q3, 3, SHARES3, LEVEL, ())
+WEIGHTS3 = [SHARES3[0] / Fraction(5, 2) ** 2, SHARES3[1] * 9]
 
 
 @pytest.mark.parametrize("lost", [False, True])
 def test_every_form_by_hand(lost):
     """In kept contact, and while contact comes and goes and the environment lags."""
-    free, pulls, weights = (), (), ()
-    if lost:
-        free, weights = (FREE3, OTHER3), (3, 5, 7, 11)
-        pulls = (["1/2", "-1/3", 2], ["1/5", 4, "3/2"])
-    system = three_states(Time.CONTINUOUS, free, pulls)
+    system = crowded(Time.CONTINUOUS, lost=lost)
+    weights = (3, 5, 7, 11) if lost else ()
     evidence = replace(EVIDENCE3, multipliers=weights)
     assert evidence.find_misfit(system) is None
     eighths = combine((Fraction(1, 8), Q3))
@@ -374,11 +343,11 @@ def test_every_form_by_hand(lost):
     known = {fact: Fraction(m, 8) for fact, m in zip(facts, weights, strict=False)}
     wanted = [
         inequality(move, eighths, eighths, sum(SHARES3), known.__getitem__, WEIGHTS3)
-        for move in moves(system, lost=True, channels=(2, 1))
+        for move in moves(system, lost=True, channels=(2, 0))
         if move.strict
     ]
-    for q in ROWS3:
-        row = [Fraction(x) for x in q]
+    for output in system.outputs[1].rows:
+        (row,) = output.fractions()
         rows = [[*above, x] for above, x in zip(eighths, row, strict=True)]
         wanted.append([*rows, [*row, LEVEL**2]])
     first, *forms = (form for _, form in evidence.forms(system))
@@ -391,23 +360,16 @@ def test_every_form_by_hand(lost):
     ("multipliers", "roundings"), [((), ()), ((), (4, 9)), ((5,), ()), ((5,), (4, 9))]
 )
 def test_forms_in_steps_are_those_of_its_numbers(multipliers, roundings):
-    landing = [[*row[:2], int(k == 2)] for k, row in enumerate(FREE3)]
-    system = three_states(Time.DISCRETE, (landing,) if multipliers else (), ())
-    count = len(system.channels[0].columns)
-    errors = (
-        Rounding(name, (matrix(column),) * count, (matrix([[1, "1/2", 0, 1, 2, 3]]),) * count)
-        for name, column in zip("ab", PUSH3, strict=False)
-    )
-    system = replace(system, roundings=tuple(errors))
+    system = crowded(Time.DISCRETE, lost=bool(multipliers), pulled=False)
     evidence = replace(EVIDENCE3, multipliers=multipliers, roundings=roundings)
     assert evidence.find_misfit(system) is None
     assert find_contradiction(system) is None
-    acting = Acting((2, 1), tuple(WEIGHTS3), bool(roundings))
+    acting = Acting((2, 0), tuple(WEIGHTS3), bool(roundings))
     steps = forms_of_steps(system, acting, (Q3, 3), 1 - sum(SHARES3), multipliers, roundings)
     wanted = [(f"the ellipsoid can be left {where}", form) for where, form in steps]
     _, *forms = evidence.forms(system)
     assert forms[: len(wanted)] == wanted
-    assert len(forms) == len(wanted) + len(ROWS3)
+    assert len(forms) == len(wanted) + len(system.outputs[1].rows)
 
 
 @pytest.mark.parametrize(
@@ -455,7 +417,7 @@ def test_the_limits_of_every_number_in_steps(changes, fault):
 )
 def test_shares_of_two_disturbances(shares, time, fits):
     both = replace(EVIDENCE3, shares=tuple(Fraction(share) for share in shares))
-    assert (both.find_misfit(three_states(time, (), ())) is None) is fits
+    assert (both.find_misfit(crowded(time, lost=False)) is None) is fits
 
 
 @pytest.mark.parametrize(

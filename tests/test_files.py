@@ -26,9 +26,6 @@ def test_a_pipe_is_refused_and_not_waited_for(tmp_path):
     os.mkfifo(tmp_path / "pipe")
     with pytest.raises(OSError, match="not a regular file"):
         open_regular(tmp_path / "pipe")
-
-
-def test_a_device_is_refused():
     with pytest.raises(OSError, match="not a regular file"):
         open_regular(os.devnull)
 

@@ -49,13 +49,8 @@ def test_figures_are_the_same_beside_hostile_settings(tmp_path):
 # Commands that draw, or need python-control, with what they need.
 DRAWING = {
     "report": (SOFT_TISSUE, "--budget", 1, "--out", "x.html"),
-    "optimize": (SOFT_TISSUE,),
     "tune": (SOFT_TISSUE, "--json"),
-    "gate": (COMMUTING, "--reports", "r"),
-    "diff": (COMMUTING, COMMUTING, "--report", "x.html"),
     "compare-methods": (COMMUTING, "--figure", "x.svg"),
-    "export": (SOFT_TISSUE, "--out", "e"),
-    "simulate": (ROOT / "docs/examples/scenarios.nrs.yaml", "--out", "s"),
     "identify tissue": (ROOT / "specs/data/nose-1.csv", "--report", "x.html"),
     "robot kinematics": (ROOT / "specs/robots/neuroboscope.nrs.yaml", "--figures", "f"),
 }

@@ -32,14 +32,6 @@ def test_facts_are_those_of_the_command():
     assert found["gains"]["insertion"]["Bt"] == pytest.approx(2.15)
 
 
-def test_its_figures_have_names():
-    optimum = nrs.load(SOFT_TISSUE).optimize()
-    assert optimum.plot("sensitivity").axes
-    with pytest.raises(DesignError, match="no figure 'x'") as caught:
-        optimum.plot("x")
-    assert "displayed-impedance" in str(caught.value.remedy)
-
-
 def test_matrices_have_nothing_to_optimize():
     with pytest.raises(DesignError, match="has nothing to optimize"):
         nrs.load(COMMUTING).optimize()

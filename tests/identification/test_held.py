@@ -37,8 +37,8 @@ def test_against_fine_steps(lags, system, delay):
     assert found == pytest.approx(np.interp(TIME, FINE, angle), abs=1e-4)
 
 
-@pytest.mark.parametrize(("damping", "columns"), [(0.4, 2), (2.0, 2)])
-def test_free_motion_has_two_states(damping, columns):
+@pytest.mark.parametrize("damping", [0.4, 2.0])
+def test_free_motion_has_two_states(damping):
     lags = Lags.second_order(30.0, damping)
-    assert lags.free(TIME, angle=False).shape == (300, columns)
-    assert lags.free(TIME, angle=True).shape == (300, columns + 1)
+    assert lags.free(TIME, angle=False).shape == (300, 2)
+    assert lags.free(TIME, angle=True).shape == (300, 3)

@@ -262,19 +262,6 @@ def test_a_latency_in_seconds():
     assert [source.file for source in written.provenance] == ["pair.csv"]
 
 
-@pytest.mark.parametrize(
-    ("spec", "delay", "error", "message"),
-    [
-        (SOFT_TISSUE, signals.DELAY, SpecError, "has no sampling"),
-        (SAMPLED, 30.0, DataError, "10 periods"),
-    ],
-)
-def test_what_is_no_latency(spec, delay, error, message):
-    with pytest.raises(error, match=message) as caught:
-        merge_latency(read_spec(spec), delayed(delay))
-    assert caught.value.remedy
-
-
 def test_no_latency_is_written_beside_two_periods(tmp_path):
     path = tmp_path / "two.nrs.yaml"
     two = "sampling: {period: 2 ms, outer_period: 4 ms, delay: 0}\n"
@@ -285,16 +272,18 @@ def test_no_latency_is_written_beside_two_periods(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("spec", "delay", "error", "message"),
+    ("merge", "spec", "delay", "error", "message"),
     [
-        (SOFT_TISSUE, signals.DELAY, SpecError, "has no sampling"),
-        (COMMUTING, signals.DELAY, SpecError, "no place"),
-        (SAMPLED, 30.0, DataError, "31 periods"),
+        (merge_delay, SOFT_TISSUE, signals.DELAY, SpecError, "has no sampling"),
+        (merge_delay, COMMUTING, signals.DELAY, SpecError, "no place"),
+        (merge_delay, SAMPLED, 30.0, DataError, "31 periods"),
+        (merge_latency, SOFT_TISSUE, signals.DELAY, SpecError, "has no sampling"),
+        (merge_latency, SAMPLED, 30.0, DataError, "10 periods"),
     ],
 )
-def test_what_is_no_age_of_the_force(spec, delay, error, message):
+def test_what_is_no_age_of_the_force_and_no_latency(merge, spec, delay, error, message):
     with pytest.raises(error, match=message) as caught:
-        merge_delay(read_spec(spec), delayed(delay))
+        merge(read_spec(spec), delayed(delay))
     assert caught.value.remedy
 
 

@@ -12,9 +12,9 @@ from nrs_design.pipeline.certification import run_certification
 from nrs_design.pipeline.design import run_analysis
 from nrs_design.reporting import Report, build_report, render_html
 from nrs_design.search.certification import Limits
-from nrs_design.spec import read_spec
+from nrs_design.spec import LoadedSpec, read_spec
+from tests.support import ROOT, SOFT_TISSUE
 
-ROOT = Path(__file__).parents[2]
 HOSTILE = """<script>alert(1)</script> & "it's" {{ 7*7 }} $x_1$ <b>bold</b>"""
 
 # Geromel and Colaneri (2006): proved from 2.751 s on, unstable up to 2.707 s.
@@ -159,6 +159,15 @@ def report_of(path: Path) -> Report:
     return build_report(result, run_analysis(result.designed) if result.designed else None)
 
 
+def recorded(folder: Path, data: str, more: str) -> LoadedSpec:
+    """Read the soft tissue with a record of some data behind its stiffness."""
+    source = f"{{file: a.csv, sha256: {64 * 'a'}, data: {data}}}"
+    told = f"    lever_arm: 0.24 m\n    provenance: [{source}]\n{more}"
+    text = SOFT_TISSUE.read_text(encoding="utf-8").replace("    lever_arm: 0.24 m\n", told)
+    (folder / "a.nrs.yaml").write_text(text, encoding="utf-8")
+    return read_spec(folder / "a.nrs.yaml")
+
+
 @pytest.fixture(scope="session")
 def report(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Report]:
     folder = tmp_path_factory.mktemp("specs")
@@ -166,7 +175,7 @@ def report(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Report]:
         name: f"kind: switched-system\nname: {name}\n{text}" for name, text in KINDS.items()
     }
     paths = {
-        "proved": ROOT / "specs/neuroboscope/soft-tissue.nrs.yaml",
+        "proved": SOFT_TISSUE,
         "force": ROOT / "specs/neuroboscope/force-limit.nrs.yaml",
         "refuted": ROOT / "docs/examples/thesis-print-error.nrs.yaml",
     }

@@ -6,6 +6,7 @@ from nrs_design.pipeline.certification import run_certification
 from nrs_design.reporting.register import register_of
 from nrs_design.spec import read_spec
 from nrs_design.switched.assumption import Standing, say
+from tests.reporting.conftest import recorded
 from tests.support import SOFT_TISSUE
 
 AXES = "The axes of the robot do not act on each other."
@@ -34,13 +35,7 @@ def test_what_a_certificate_alone_does_not_tell_is_said():
     ],
 )
 def test_only_measured_records_without_doubt_count_as_a_test(tmp_path, data, doubts, standing):
-    source = f"{{file: a.csv, sha256: {64 * 'a'}, data: {data}}}"
-    text = SOFT_TISSUE.read_text(encoding="utf-8").replace(
-        "    lever_arm: 0.24 m\n", f"    lever_arm: 0.24 m\n    provenance: [{source}]\n{doubts}"
-    )
-    path = tmp_path / "a.nrs.yaml"
-    path.write_text(text, encoding="utf-8")
-    spec = read_spec(path).spec
+    spec = recorded(tmp_path, data, doubts).spec
     statements = run_certification(read_spec(SOFT_TISSUE)).certification.system.assumptions
     found = {entry.kind.id: entry.standing for entry in register_of(statements, spec)}
     assert found["tissue"] is standing

@@ -1,5 +1,3 @@
-from __future__ import annotations
-
 from fractions import Fraction
 
 import numpy as np
@@ -17,49 +15,32 @@ from nrs_design.search.method import Method
 from nrs_design.simulation.switched import SwitchedRun
 from nrs_design.spec import read_spec
 from tests.reporting.conftest import ROOT, cases, report_of
-from tests.support import SOFT_TISSUE
+from tests.simulation.interactions import INSERTION, text_of
+from tests.support import COMMUTING, SOFT_TISSUE, family, write_spec
 
+# By their names, in order.
 FIGURES = {
-    "proved": [
-        "root-locus",
-        "displayed-impedance",
-        "sensitivity",
-        "cost-insertion",
-        "cost-withdrawal",
-        "delay-borne",
-        "eigenvalues",
-        "quadratic",
-        "mode-rates",
-        "run",
-        "release",
-    ],
-    "force": [
-        "root-locus",
-        "force-locus-force",
-        "eigenvalues",
-        "quadratic",
-        "mode-rates",
-        "run",
-        "phase-plane",
-        "release",
-    ],
-    "refuted": ["eigenvalues", "run"],
-    "inconclusive": ["eigenvalues", "run", "phase-plane"],
-    "polynomial": ["eigenvalues", "mode-rates", "run", "phase-plane"],
-    "dwell": ["eigenvalues", "quadratics", "run", "phase-plane"],
-    "steps": ["eigenvalues", "quadratics", "run", "phase-plane"],
-    "resets": ["eigenvalues", "quadratics", "run"],
-    "parameter": ["eigenvalues", "quadratics", "run", "phase-plane"],
-    "value": ["eigenvalues", "run", "phase-plane"],
-    "blocks": ["eigenvalues", "blocks", "run"],
-    "blocks-refuted": ["eigenvalues", "blocks", "run", "one-period"],
-    "unequal": ["eigenvalues", "run", "phase-plane"],
-    "period": ["eigenvalues", "run", "one-period", "phase-plane"],
-    "dwell-refuted": ["eigenvalues", "run", "one-period", "phase-plane"],
-    "word": ["eigenvalues", "run", "one-period", "phase-plane"],
-    "mixture": ["eigenvalues", "mixture", "run", "phase-plane"],
-    "discrete": ["eigenvalues", "quadratic", "mode-rates", "run", "phase-plane"],
-    "marginal": ["eigenvalues", "run", "phase-plane"],
+    "proved": "root-locus displayed-impedance sensitivity cost-insertion cost-withdrawal "
+    "delay-borne eigenvalues quadratic mode-rates run release",
+    "force": "root-locus force-locus-force eigenvalues quadratic mode-rates run "
+    "phase-plane release",
+    "refuted": "eigenvalues run",
+    "inconclusive": "eigenvalues run phase-plane",
+    "polynomial": "eigenvalues mode-rates run phase-plane",
+    "dwell": "eigenvalues quadratics run phase-plane",
+    "steps": "eigenvalues quadratics run phase-plane",
+    "resets": "eigenvalues quadratics run",
+    "parameter": "eigenvalues quadratics run phase-plane",
+    "value": "eigenvalues run phase-plane",
+    "blocks": "eigenvalues blocks run",
+    "blocks-refuted": "eigenvalues blocks run one-period",
+    "unequal": "eigenvalues run phase-plane",
+    "period": "eigenvalues run one-period phase-plane",
+    "dwell-refuted": "eigenvalues run one-period phase-plane",
+    "word": "eigenvalues run one-period phase-plane",
+    "mixture": "eigenvalues mixture run phase-plane",
+    "discrete": "eigenvalues quadratic mode-rates run phase-plane",
+    "marginal": "eigenvalues run phase-plane",
 }
 
 
@@ -100,7 +81,7 @@ def figure(report, name):
 
 @pytest.mark.parametrize("case", cases(FIGURES))
 def test_every_case_has_its_figures_in_order(report, case):
-    assert [item.name for item in report(case).illustrations] == FIGURES[case]
+    assert [item.name for item in report(case).illustrations] == FIGURES[case].split()
 
 
 @pytest.mark.parametrize("case", cases(FIGURES))
@@ -242,13 +223,8 @@ def test_unstable_force_loop_is_reported_without_margins(tmp_path):
 
 @pytest.mark.slow
 def test_many_modes_are_shortened(tmp_path):
-    modes = "\n".join(f"  - {{name: m{i}, A: [[-{i + 1}, 1], [-1, -2]]}}" for i in range(40))
-    path = tmp_path / "many.nrs.yaml"
-    path.write_text(
-        f"kind: switched-system\nname: many\ntime: continuous\nmodes:\n{modes}\n"
-        "switching: arbitrary\n"
-    )
-    many = build_report(run_certification(read_spec(path)))
+    loaded = write_spec(tmp_path / "many.nrs.yaml", *([[-i, 1], [-1, -2]] for i in range(1, 41)))
+    many = build_report(run_certification(loaded))
     assert "The 40 modes, the 24 slowest of them" in words(many)
     assert "24 with the least slack" in words(many)
 
@@ -403,48 +379,16 @@ def test_obstruction_weights_sum_to_one(report):
 
 def test_declared_rules_that_a_proof_does_not_need_are_named(tmp_path):
     path = tmp_path / "c.nrs.yaml"
-    path.write_text(
-        "kind: switched-system\nname: c\ntime: continuous\nmodes:\n"
-        "  - {name: a, A: [[-1, 1], [-1, -1]]}\n  - {name: b, A: [[-2, 3], [-3, -2]]}\n"
-        "switching: {dwell_time: 1 s}\n"
-    )
+    path.write_text(COMMUTING.read_text().replace("arbitrary", "{dwell_time: 1 s}"))
     text = words(build_report(run_certification(read_spec(path))))
     assert "The proof does not need the declared rules of switching" in text
     assert "The run switches freely, which is more than the spec allows." in text
 
 
-MANY = """\
-kind: interaction-design
-name: many
-actuator: {gain: 4.8417e-4 rad/s/rpm, time_constant: 0.0351 s}
-motion_loop:
-  damping_ratio: 0.707
-  settling_time: 0.1404 s
-  derivative_gain: 2060 rpm*s/rad
-  zero: 56.9706 1/s
-limits: {velocity: 8 deg/s, torque: 0.3 N*m, bandwidth: 2 Hz}
-environments:
-  silicone-soft-phantom: {model: elastic, stiffness: 747.1461 N/m, lever_arm: 0.24 m}
-  nasal-concha: {model: elastic, stiffness: 500 N/m, lever_arm: 0.24 m}
-controllers:
-"""
-
-
-def robot_with(count, folder):
-    """Report on so many controllers, of which the first two are alike, each with two modes."""
-    path = folder / "many.nrs.yaml"
-    lines = [
-        f"  insertion-{i}: {{type: impedance, environment: nasal-concha, "
-        "contacts: [silicone-soft-phantom, nasal-concha], "
-        f"Mt: 0.01 kg*m^2, Bt: {2 + max(i, 1) / 10} N*m*s/rad}}"
-        for i in range(count)
-    ]
-    path.write_text(MANY + "\n".join([*lines, "switching: arbitrary", ""]))
-    return report_of(path)
-
-
 def test_curves_that_coincide_are_told_apart(tmp_path):
-    (axes,) = figure(robot_with(2, tmp_path), "displayed-impedance").figure.axes
+    names = ("insertion-0", "insertion-1")
+    (tmp_path / "alike.nrs.yaml").write_text(text_of(dict.fromkeys(names, INSERTION)))
+    (axes,) = figure(report_of(tmp_path / "alike.nrs.yaml"), "displayed-impedance").figure.axes
     curves = {line.get_label(): line for line in axes.get_lines()}
     first, second = (curves[f"insertion-{i}, displayed"] for i in (0, 1))
     assert (first.get_ydata() == second.get_ydata()).all()
@@ -455,16 +399,9 @@ def test_curves_that_coincide_are_told_apart(tmp_path):
     assert [label for label in curves if label.endswith("desired")] == ["desired"]
 
 
-def test_modes_without_a_row_of_their_own_are_named_together(tmp_path):
+def test_modes_without_a_row_of_their_own_are_named_together():
     """A cycle through 30 modes, of which none is stable alone."""
-    system = "".join(f"  - {{name: m{i}, A: [[{-1 - i}, 1], [-1, {-1 - i}]]}}\n" for i in range(30))
-    path = tmp_path / "cycle.nrs.yaml"
-    path.write_text(
-        "kind: switched-system\nname: cycle\ntime: continuous\nmodes:\n"
-        + system
-        + "switching: arbitrary\n"
-    )
-    loaded = run_certification(read_spec(path)).certification.system
+    loaded = family(*([[-1 - i, 1], [-1, -1 - i]] for i in range(30)))
     count = len(loaded.modes)
     response = SwitchedRun(np.arange(count + 1.0), np.ones((count + 1, 2)), np.arange(count))
     drawn = draw_run(response, np.ones(count + 1), None, loaded, "norm [1]")

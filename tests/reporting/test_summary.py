@@ -16,7 +16,7 @@ from nrs_design.reporting.sections.summary import lights_of, summary_of
 from nrs_design.spec import read_spec
 from tests.proof.graphs import common_quadratic
 from tests.proof.systems import bouncing, pushed
-from tests.reporting.conftest import cases
+from tests.reporting.conftest import cases, recorded
 from tests.support import ROOT, SOFT_TISSUE
 
 
@@ -28,9 +28,6 @@ from tests.support import ROOT, SOFT_TISSUE
         ("dwell", "every switching that the spec declares, and no other"),
         ("dwell", "up to one constant factor"),
         ("parameter", "with k in its range constant"),
-        pytest.param(
-            "resets", "every switching that the spec declares, and no other", marks=pytest.mark.slow
-        ),
         ("discrete", "per step"),
         ("refuted", "Refuted: no guarantee of stability is possible under arbitrary switching"),
         ("inconclusive", "this report makes no statement about stability"),
@@ -182,15 +179,5 @@ def test_goals_of_margins_that_do_not_exist_are_not_met(soft_tissue, tmp_path):
     ],
 )
 def test_the_light_of_data(tmp_path, data, more, state):
-    source = f"{{file: a.csv, sha256: {64 * 'a'}, data: {data}}}"
-    text = SOFT_TISSUE.read_text(encoding="utf-8").replace(
-        "    lever_arm: 0.24 m\n", f"    lever_arm: 0.24 m\n    provenance: [{source}]\n{more}"
-    )
-    path = tmp_path / "a.nrs.yaml"
-    path.write_text(text, encoding="utf-8")
-    result = run_certification(read_spec(path))
-    assert lights_state(result) == state
-
-
-def lights_state(result):
-    return next(str(light.state) for light in lights_of(result, None) if light.name == "Data")
+    lights = lights_of(run_certification(recorded(tmp_path, data, more)), None)
+    assert [str(light.state) for light in lights if light.name == "Data"] == [state]

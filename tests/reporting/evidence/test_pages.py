@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ast
 import re
 
 import pytest
@@ -10,7 +9,7 @@ import pytest
 from nrs_design.proof import evidence as proof
 from nrs_design.reporting.document import Illustration
 from nrs_design.reporting.evidence import offers, page_of
-from tests.package import FILES, PACKAGE, nodes_of
+from tests.package import PACKAGE
 from tests.proof.systems import SYSTEMS, genuine
 
 NAMES = frozenset(proof.KINDS.values())
@@ -70,84 +69,6 @@ def test_every_page_speaks_in_sentences_and_draws_a_run(example):
     assert all(text.endswith(".") for text in sentences)
     assert all(section.blocks for section in page.sections())
     assert any(isinstance(block, Illustration) for block in page.run().blocks)
-
-
-def aliases(files):
-    """Names of kinds, and of all that is assigned from them: unions and tuples of kinds."""
-    assigned = [
-        node
-        for nodes in files
-        for node in nodes
-        if isinstance(node, ast.Assign | ast.AnnAssign)
-        and isinstance(node.value, ast.Tuple | ast.BinOp)
-    ]
-    known, before = set(NAMES), 0
-    while len(known) > before:
-        before = len(known)
-        for node in assigned:
-            if mentions(node.value, known):
-                targets = node.targets if isinstance(node, ast.Assign) else [node.target]
-                known |= {t.id for t in targets if isinstance(t, ast.Name)}
-    return known
-
-
-def mentions(node, known):
-    names = (getattr(part, "id", getattr(part, "attr", None)) for part in ast.walk(node))
-    return any(name in known for name in names)
-
-
-def questions(nodes, known):
-    """Yield the lines that ask of what kind some evidence is, other than by a look into a table."""
-    for node in nodes:
-        match node:
-            case ast.Call(func=ast.Name("isinstance" | "issubclass"), args=[_, kind]):
-                asks = mentions(kind, known)
-            case ast.MatchClass(cls=kind):
-                asks = mentions(kind, known)
-            case ast.Compare(ops=[ast.Is() | ast.IsNot() | ast.Eq() | ast.NotEq()]):
-                sides = [node.left, *node.comparators]
-                typed = any(isinstance(s, ast.Call) and mentions(s.func, {"type"}) for s in sides)
-                told = any(isinstance(s, ast.Attribute) and s.attr == "kind" for s in sides)
-                asks = (typed and any(mentions(side, known) for side in sides)) or (
-                    told and any(isinstance(s, ast.Constant) and s.value in TEXTS for s in sides)
-                )
-            case _:
-                asks = False
-        if asks:
-            yield node.lineno
-
-
-@pytest.mark.parametrize(
-    ("text", "count"),
-    [
-        ("isinstance(e, FormsOnGraph)", 1),
-        ("isinstance(e, evidence.FormsOnGraph)", 1),
-        ("isinstance(e, FormsOnGraph | BlockTriangular)", 1),
-        ("RULED = (FormsOnGraph, BlockTriangular)\nisinstance(e, RULED)", 1),
-        ("Ruled = FormsOnGraph | BlockTriangular\nMORE = (Ruled, int)\nisinstance(e, MORE)", 1),
-        ("type(e) is GrowingSequence", 1),
-        ("e.kind == 'block-triangular'", 1),
-        ("match e:\n  case GrowingSequence(steps=name): pass", 1),
-        ("type(e) in PARTS", 0),
-        ("KINDS[type(e)]", 0),
-        ("isinstance(e, AbstractEvidence)", 0),
-        ("kind.kind == fields['kind']", 0),
-        ("block.kind == 'table'", 0),
-    ],
-)
-def test_questions_about_kinds_are_recognized(text, count):
-    nodes = tuple(ast.walk(ast.parse(text)))
-    assert len(list(questions(nodes, aliases([nodes])))) == count
-
-
-def test_no_code_asks_for_the_kind_of_evidence():
-    known = aliases(map(nodes_of, FILES.values()))
-    asked = [
-        f"{name}:{line}"
-        for name, path in FILES.items()
-        for line in questions(nodes_of(path), known)
-    ]
-    assert asked == []
 
 
 def test_the_modes_of_a_sampled_loop_are_not_said_to_be_the_corners_of_its_ranges():

@@ -166,13 +166,9 @@ def test_another_unit_or_sign_is_no_success(tmp_path, scales, said):
 @pytest.mark.parametrize(
     ("option", "message"),
     [
-        (("--set", "zero=3 N"), "zero: "),
-        (("--set", "tare=3 m"), "tare: "),
         (("--set", "start=99"), "lie between start and end"),
         (("--set", "skip_cycles=9"), "9 cycles are to be set apart"),
         (("--covers", "tolerance"), "needs several records"),
-        (("--preload", "1 mm..2 mm", "--model", "elastic"), "the same at every preload"),
-        (("--preload", "1 mm..2 m"), "not within the deflections"),
         (("--environment", "soft"), "name a spec by --write, too"),
         (("--preload", "1 N"), "--preload: "),
     ],

@@ -68,8 +68,14 @@ def constants_of(
     of its values.
     """
     if plant.drive is not None and sampled:
-        yield from _enclosed(_of_drive(plant.drive, drive))
-        yield from _enclosed(_of_tissue(plant, touched))
+        tissue = tuple(_of_tissue(plant, touched))
+        if tissue and plant.drive.loaded and len(touched) > 1:
+            raise AssemblyError(
+                f"{tissue[0].said.name} is constant, but within a period the drive may go from one "
+                "contact to another, and their ends are not told apart",
+                remedy="leave out `varies: false` of what is touched, or touch one environment",
+            )
+        yield from _enclosed((*_of_drive(plant.drive, drive), *tissue))
         return
     ranges = plant.actuator_ranges
     if ranges.gain.is_constant:

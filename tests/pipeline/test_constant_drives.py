@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from nrs_design.errors import SpecError
+from nrs_design.errors import AssemblyError, SpecError
 from nrs_design.pipeline.certification import assemble_spec, run_certification
 from nrs_design.pipeline.design import run_design
 from nrs_design.spec import parse_spec, read_spec
@@ -55,6 +55,16 @@ def read(tmp_path, text):
     path = tmp_path / "one.nrs.yaml"
     path.write_text(text, encoding="utf-8")
     return read_spec(path)
+
+
+def test_constants_of_two_contacts_of_one_drive_are_refused(tmp_path):
+    """Within a period it may go from one to the other: what is called one end would be both."""
+    text = TORQUES.replace(
+        "45 N*m/rad]}}",
+        "45 N*m/rad], varies: false}}\n  firm: {model: elastic, stiffness: 9 N*m/rad}",
+    ).replace("    type:", "    contacts: [tissue, firm]\n    type:")
+    with pytest.raises(AssemblyError, match=r"environments.tissue.stiffness is constant, but"):
+        run_certification(read(tmp_path, text))
 
 
 def test_an_inertia_that_stays_is_proved(tmp_path):

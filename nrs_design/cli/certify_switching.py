@@ -32,7 +32,6 @@ from nrs_design.search.method import Method
 if TYPE_CHECKING:
     from nrs_design.pipeline.certification import Result
     from nrs_design.pipeline.radius import RadiusBounds
-    from nrs_design.pipeline.subsets import Subset
     from nrs_design.search.certification import Certification
 
 
@@ -88,7 +87,6 @@ def certify_switching(
         search_limits,
     )
     from nrs_design.pipeline.margins import run_proof_margins
-    from nrs_design.pipeline.subsets import find_subsets
 
     loaded = take_spec(spec)
     path = out or Path("reports") / f"{loaded.spec.name}.cert.json"
@@ -119,10 +117,8 @@ def certify_switching(
 
         with progress(f"why {loaded.spec.name} is not proved", lines=True) as step:
             blocked = find_blocked(result, limits, step)
-    what = "margins" if any(asked.values()) else "what else is proved"
-    with progress(f"{what} of {loaded.spec.name}", lines=True) as step:
+    with progress(f"margins of {loaded.spec.name}", lines=True) as step:
         margins = run_proof_margins(result, limits, step, **asked)
-        parts = find_subsets(result, limits, step)
     growth = None
     if result.certification.system.time == "discrete":
         from nrs_design.pipeline.radius import bound_radius
@@ -139,7 +135,6 @@ def certify_switching(
             | radius_facts(growth)
             | margins_facts(margins)
             | more
-            | _parts_facts(parts)
             | ({} if blocked is None else blocked_facts(blocked, loaded.path))
         )
 
@@ -155,7 +150,6 @@ def certify_switching(
 
             for line in margin_lines(margins, loaded):
                 say(f"  {line}")
-        _print_parts(parts)
         if blocked is not None:
             from nrs_design.pipeline.blocked import blocked_lines
 
@@ -207,23 +201,6 @@ def _next_steps(result: Result, **asked: bool) -> tuple[str, ...]:
     from nrs_design.reporting.next_steps import next_steps
 
     return next_steps(result, **asked, spec=result.loaded.path)
-
-
-def _parts_facts(parts: tuple[Subset, ...] | None) -> dict[str, Any]:
-    if parts is None:
-        return {}
-    found = [{"left_out": p.left_out, "claim": p.claim or None, "needs": p.needs} for p in parts]
-    return {"subsets": found}
-
-
-def _print_parts(parts: tuple[Subset, ...] | None) -> None:
-    if parts is None:
-        return
-    from nrs_design.pipeline.subsets import PARTS_TITLE, subset_lines
-
-    say(f"  {PARTS_TITLE}:")
-    for line in subset_lines(parts):
-        say(f"  {line}")
 
 
 def _print(result: Result) -> None:

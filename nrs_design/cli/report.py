@@ -191,7 +191,6 @@ def _build(
         search_limits,
     )
     from nrs_design.pipeline.margins import run_proof_margins
-    from nrs_design.pipeline.subsets import find_subsets
     from nrs_design.reporting import build_report
 
     limits = search_limits(loaded.spec, overrides)
@@ -202,7 +201,6 @@ def _build(
     margins = run_proof_margins(
         result, limits, step, margin=asked.margin, shortest_dwell=asked.shortest_dwell
     )
-    subsets = find_subsets(result, limits, step)
     blocked = find_blocked(result, limits, step)
     step("figures")
     runs = run_comparison(loaded, limits, progress=step)[1] if asked.compare_methods else ()
@@ -211,7 +209,6 @@ def _build(
         _analysis(result),
         comparison=runs,
         margins=margins,
-        subsets=subsets,
         blocked=blocked,
         times=asked.times,
         date=asked.date,

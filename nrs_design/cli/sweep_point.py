@@ -35,9 +35,7 @@ if TYPE_CHECKING:
 CERTIFYING = {"certify-switching": "--out"}
 # What no two runs have in common; what is said of other specs, which no certificate here shows; and
 # advice about the file, which is not what the point is about.
-LEFT_OUT = frozenset(
-    {"seconds", "certificate", "files", "path", "blocked_by", "subsets", "next_steps", "rho"}
-)
+LEFT_OUT = frozenset({"seconds", "certificate", "files", "path", "blocked_by", "next_steps", "rho"})
 
 
 @dataclass(frozen=True, slots=True)

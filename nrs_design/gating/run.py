@@ -34,7 +34,6 @@ from nrs_design.pipeline.certification import (
     run_verification,
     search_limits,
 )
-from nrs_design.pipeline.subsets import Subset, find_subsets
 from nrs_design.progress import Progress, silent
 from nrs_design.spec import LoadedSpec, RobotSpec, read_spec
 from nrs_design.spec.task_space import file_of
@@ -176,7 +175,6 @@ def _examine(
     result = run_certification(loaded, limits=limits, progress=progress)
     certification, certificate = result.certification, result.certificate
     examiner = Examiner.of(loaded)
-    subsets = find_subsets(result, limits, progress)
     blocked = find_blocked(result, limits, progress)
     tried = [f"{a.step}: {a.outcome}" for a in certification.attempts]
     searched = "; ".join((*tried, *(blocked_lines(blocked, loaded.path) if blocked else ())))
@@ -194,7 +192,7 @@ def _examine(
     if files.html:
         progress("report")
         page = files.report(loaded.spec.name)
-        _write_page(result, page, limits, analysis, subsets, blocked)
+        _write_page(result, page, limits, analysis, blocked)
     outcome = examiner.outcome(
         certification,
         file,
@@ -219,7 +217,6 @@ def _write_page(
     page: Path,
     limits: Limits,
     analysis: DesignAnalysis | None,
-    subsets: tuple[Subset, ...] | None,
     blocked: Blocked | None,
 ) -> None:
     """Draw the page of a spec, unless the one that is there is just this."""
@@ -230,6 +227,6 @@ def _write_page(
     # Drawing costs seconds to import; a run without reports must not pay for it.
     from nrs_design.reporting import build_report, render_html
 
-    html = render_html(build_report(result, analysis, subsets=subsets, blocked=blocked), origin)
+    html = render_html(build_report(result, analysis, blocked=blocked), origin)
     write_output(page, html, replaces=PAGE)
     note_page(page, made)

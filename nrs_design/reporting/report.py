@@ -36,7 +36,6 @@ if TYPE_CHECKING:
     from nrs_design.pipeline.blocked import Blocked
     from nrs_design.pipeline.certification import Result
     from nrs_design.pipeline.margins import ProofMargins
-    from nrs_design.pipeline.subsets import Subset
     from nrs_design.search.method_run import MethodRun
 
 # The run under the worst signal that was found, beside its proved bound.
@@ -49,7 +48,6 @@ def build_report(
     *,
     comparison: Sequence[MethodRun] = (),
     margins: ProofMargins | None = None,
-    subsets: tuple[Subset, ...] | None = None,
     blocked: Blocked | None = None,
     times: bool = False,
     date: datetime.date | None = None,
@@ -62,7 +60,7 @@ def build_report(
     with about(getattr(result.loaded.spec, "axis", None)):
         spec, certification, designed = result.loaded.spec, result.certification, result.designed
         system = certification.system
-        first = (tests_section(result), remedies_section(result, margins, subsets, blocked))
+        first = (tests_section(result), remedies_section(result, margins, blocked))
         others = (
             proof_section(result),
             *(design_sections(designed, analysis) if designed else ()),

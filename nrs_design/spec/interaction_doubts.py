@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import partial
+from math import isclose, sqrt
 
 from nrs_design.proof.bounds import rounded_up
 from nrs_design.spec.check import Feature, Row, each, not_together
@@ -26,6 +27,8 @@ from nrs_design.spec.quantity import is_less
 
 # Beyond a force that a motion begins with, in limits of the torque, another unit was likely meant.
 _HARDEST = 10
+# So near given gains are to the loop that is asked for: less is rounding.
+_NEAR = 0.05
 
 
 def _identified(spec: Spec) -> Iterator[tuple[Location, tuple[str, IdentifiedSpec]]]:
@@ -78,6 +81,31 @@ def _left(spec: Spec) -> tuple[str, str] | None:
     if command is None or not is_less(command, spec.limits.velocity):
         return None
     return command.text, spec.limits.velocity.text
+
+
+def _other_loop(spec: Spec) -> tuple[str, str, str, str] | None:
+    """Return what the PD is asked for, damping ratio and settling time, and what given gains do."""
+    loop, motor = spec.motion_loop, spec.actuator
+    if loop is None or motor is None or loop.derivative_gain is None or loop.zero is None:
+        return None
+    tau, Kd = motor.time_constant.nominal.si, motor.gain.nominal.si * loop.derivative_gain.si
+    ratio, settling = (1 + Kd) / (2 * sqrt(tau * Kd * loop.zero.si)), 8 * tau / (1 + Kd)
+    wanted = float(loop.damping_ratio), loop.settling_time.si
+    if all(isclose(*pair, rel_tol=_NEAR) for pair in zip(wanted, (ratio, settling), strict=True)):
+        return None
+    asked = f"{wanted[0]:.6g}", loop.settling_time.text
+    return (*asked, f"{ratio:.3g}", f"{settling:.4g} s")
+
+
+def _unbounded(part: Feature[Spec], what: str) -> Row[Spec]:
+    """Return the row of what lets decay be proved, and no bound."""
+    return Row(
+        "disturbances",
+        lambda s: part.find(s) and DISTURBED.find(s),
+        f"beside {what}, the decay of the undisturbed loop is proved, and no bound under "
+        "disturbances",
+        "remove disturbances, or expect no bound",
+    )
 
 
 def _unproved(*features: Feature[Spec]) -> Row[Spec]:
@@ -134,19 +162,14 @@ INTERACTION_DOUBTS: tuple[Row[Spec], ...] = (
         "what is shown is that motions from there decay, not that the torque is within its limit; "
         "write `largest` for as much as is found",
     ),
+    _unbounded(TWO_PERIODS, "an outer_period"),
+    _unbounded(MISSES, "missed deadlines"),
     Row(
-        "disturbances",
-        lambda s: TWO_PERIODS.find(s) and DISTURBED.find(s),
-        "beside an outer_period, the decay of the undisturbed loop is proved, and no bound under "
-        "disturbances",
-        "bounds of the loop without outer_period are listed; or remove disturbances",
-    ),
-    Row(
-        "disturbances",
-        lambda s: MISSES.find(s) and DISTURBED.find(s),
-        "beside missed deadlines, the decay of the undisturbed loop is proved, and no bound under "
-        "disturbances",
-        "bounds of the loop without misses are listed; or remove disturbances",
+        "motion_loop",
+        _other_loop,
+        "motion_loop asks for a damping ratio of {0} and a settling time of {1}, but with the "
+        "derivative_gain and zero that are given the loop that ships has {2} and {3}",
+        "write those, or leave out derivative_gain and zero",
     ),
     Row(
         "disturbances.command",

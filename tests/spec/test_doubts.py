@@ -78,6 +78,15 @@ def test_bounds_for_smaller_commands_than_the_limit_lets_through():
             assert f"up to {command}, and limits.velocity lets them be 8 deg/s" in str(found[-1])
 
 
+def test_a_loop_that_given_gains_do_not_make():
+    """With 2060 rpm*s/rad and 56.9706 1/s the loop of the thesis has 0.707 and 140.6 ms."""
+    given = "\n  derivative_gain: 2060 rpm*s/rad\n  zero: 56.9706 1/s"
+    for ratio, count in (("0.707", 1), ("0.68", 1), ("0.2", 2)):
+        found = doubts(spoiled(IMPEDANCE, "damping_ratio: 0.707", f"damping_ratio: {ratio}{given}"))
+        assert len(found) == count
+    assert "the loop that ships has 0.707 and 0.1406 s" in str(found[-1])
+
+
 def test_the_largest_gain_of_a_range_counts():
     text = IMPEDANCE.replace(
         "gain: 4.8417e-4 rad/s/rpm",

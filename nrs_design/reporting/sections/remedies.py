@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 from nrs_design.pipeline.blocked import blocked_lines
 from nrs_design.pipeline.certification import find_relief
-from nrs_design.pipeline.subsets import PARTS_TITLE, subset_lines
 from nrs_design.reporting.document import Block, Bullets, Section, Sentence
 from nrs_design.reporting.margins import margin_lines
 from nrs_design.reporting.next_steps import next_steps
@@ -16,7 +15,6 @@ if TYPE_CHECKING:
     from nrs_design.pipeline.blocked import Blocked
     from nrs_design.pipeline.certification import Result
     from nrs_design.pipeline.margins import ProofMargins
-    from nrs_design.pipeline.subsets import Subset
 
 REMEDIES = "What would help"
 MARGINS = "Margins of the proof"
@@ -30,16 +28,12 @@ _DESIGN = (
 def remedies_section(
     result: Result,
     margins: ProofMargins | None,
-    subsets: tuple[Subset, ...] | None = None,
     blocked: Blocked | None = None,
 ) -> Section | None:
     """Report the margins of the proof and the next steps; None without either."""
     blocks: list[Block] = []
     if relief := find_relief(result):
         blocks.append(Bullets("Gains that would hold", relief))
-    if subsets is not None:
-        parts = tuple(f"{line[0].upper()}{line[1:]}" for line in subset_lines(subsets))
-        blocks.append(Bullets(PARTS_TITLE, parts))
     if blocked is not None:
         why = blocked_lines(blocked, Path(result.loaded.path.name))
         blocks.append(Bullets("Why it is not proved", why))

@@ -1,15 +1,14 @@
-"""What is proved of a spec where not all of it is."""
+"""What is proved of a spec that has many parts at once."""
 
 import pytest
 
 from nrs_design.certificates.certificate import Verdict, dump
 from nrs_design.pipeline.certification import run_certification, run_verification
-from nrs_design.pipeline.subsets import Subset, find_subsets, subset_lines
 from nrs_design.search.certification import Limits
 from nrs_design.spec import read_spec
 from tests.proof.graphs import shape_of
 from tests.search.support import TEXT
-from tests.support import ROOT, SOFT_TISSUE
+from tests.support import ROOT
 
 TURNS = (
     TEXT.replace("GAIN, time_constant: TAU", "4.8417e-4 rad/s/rpm, time_constant: 0.0351 s")
@@ -22,8 +21,8 @@ TURNS = (
 
 
 @pytest.mark.slow
-def test_bounds_beside_two_periods_are_those_of_a_common_one(tmp_path):
-    """Decay is proved for both periods; that no bound is looked for is said, with what holds."""
+def test_beside_two_periods_no_bound_is_stated(tmp_path):
+    """Decay is proved for both periods; that no bound is looked for is said."""
     path = tmp_path / "turns.nrs.yaml"
     path.write_text(TURNS)
     result = run_certification(read_spec(path), limits=Limits(optimize_rate=False))
@@ -36,28 +35,9 @@ def test_bounds_beside_two_periods_are_those_of_a_common_one(tmp_path):
         "two periods or misses deadlines, decay is proved, and no bound" in outcome
         for outcome in missing
     )
-    decay, bounds = find_subsets(result)
-    assert decay.left_out == ("the disturbances",)
-    assert bounds.left_out == ("the outer_period",)
-    assert "from rest, |force| at a step never exceeds" in bounds.claim
-    assert any(text.startswith("The law runs every 0.002 s") for text in bounds.needs)
     file = tmp_path / "turns.cert.json"
     file.write_text(dump(result.certificate))
     assert run_verification(file, result).fault is None
-
-
-def test_what_two_periods_leave_unproved_is_said_in_plain_words():
-    """A list of parts alone reads as if all of them together were proved."""
-    decay = Subset(("the disturbances",), "Every solution decays.")
-    _, none = subset_lines((decay, Subset(("the outer_period",), "")))
-    said = "not proved without the outer_period either: no bound under the disturbances was found"
-    assert none == said
-    _, other = subset_lines((decay, Subset(("the outer_period",), "The force stays below 1 N*m.")))
-    assert other.startswith("proved of another loop, without the outer_period: The force")
-
-
-def test_no_list_is_made_where_nobody_asked():
-    assert find_subsets(run_certification(read_spec(SOFT_TISSUE))) is None
 
 
 @pytest.mark.slow
@@ -66,7 +46,6 @@ def test_everything_at_once_is_one_certificate(tmp_path):
     loaded = read_spec(ROOT / "docs/examples/everything-at-once.nrs.yaml")
     result = run_certification(loaded, limits=Limits(optimize_rate=False, budget=600.0))
     assert result.certification.verdict is Verdict.PROVED
-    assert find_subsets(result) is None
     system = result.certification.system
     stable, force, velocity = result.certification.statements
     assert shape_of(stable) == "conewise-quadratic"

@@ -35,7 +35,6 @@ def name_of(item: pytest.Item) -> str:
 
 
 def seconds_of(item: pytest.Item) -> float:
-    """Return the measured seconds of a test, 0 where it is cheap or new."""
     return known_costs().get(name_of(item), 0.0)
 
 

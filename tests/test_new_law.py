@@ -5,14 +5,13 @@ from typing import Literal
 
 import numpy as np
 
-from nrs_design.models.contact import Elastic, HuntCrossley
+from nrs_design.models.contact import HuntCrossley
 from nrs_design.pipeline.certification import run_certification
 from nrs_design.pipeline.design import run_design
 from nrs_design.pipeline.scenarios import Runs, run_scenarios
 from nrs_design.spec import read_spec
-from nrs_design.spec.build_plant import build_plant
-from nrs_design.spec.environment import ElasticSpec, HuntCrossleySpec
-from tests.support import ROBOT, SOFT_TISSUE
+from nrs_design.spec.environment import HuntCrossleySpec
+from tests.support import ROBOT
 
 
 @dataclass(frozen=True)
@@ -26,25 +25,11 @@ class Stiffening(HuntCrossley):
         return 3 * super().push(deflection, velocity)
 
 
-@dataclass(frozen=True)
-class Springy(Elastic):
-    """A linear law of another name."""
-
-    name = "springy"
-
-
 class StiffeningSpec(HuntCrossleySpec):
     """A law within a preload, as a spec writes it."""
 
     nonlinear = Stiffening
     model: Literal["stiffening"]
-
-
-class SpringySpec(ElasticSpec):
-    """A linear law, as a spec writes it."""
-
-    law = Springy
-    model: Literal["springy"]
 
 
 def written(file, model):
@@ -76,8 +61,3 @@ def test_a_law_keeps_its_words_from_spec_to_run():
     assert type(surface.law) is Stiffening
     torque = [np.abs(one.run.response["torque"]).max() for one in (own, other)]
     assert torque[0] > 1.2 * torque[1] > 0
-
-
-def test_a_linear_law_is_itself():
-    (environment,) = build_plant(written(SOFT_TISSUE, SpringySpec).spec).environments
-    assert (environment.law, environment.nonlinear) == (Springy, None)

@@ -17,7 +17,6 @@ SESSIONS = SESSION.findall(README)
 
 @pytest.fixture(scope="module")
 def checkout(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Copy what the commands read to a place where they may write."""
     folder = tmp_path_factory.mktemp("checkout")
     for name in ("specs", "docs", "reports"):
         pages = shutil.ignore_patterns("*.html", "*.png")

@@ -24,7 +24,6 @@ def test_save_and_verify(tmp_path):
 
 
 def test_a_decision_is_told_in_a_line():
-    """As the prompt of Python shows it."""
     assert repr(nrs.certify(pair(6), name="pair")) == "<Decision pair: PROVED>"
 
 

@@ -90,7 +90,6 @@ def test_a_run_is_judged_against_its_spec(tmp_path):
 
 
 def test_what_left_its_bounds_first_is_named(tmp_path):
-    """A torque far above the limit of 0.3 N m."""
     log = tmp_path / "run.csv"
     rows = "\n".join(f"{i / 500},0,{5 * (i > 50)},0,insertion" for i in range(100))
     log.write_text(f"time_s,angle_rad,torque_Nm,velocity_rad_s,mode\n{rows}\n")

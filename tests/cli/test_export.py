@@ -22,7 +22,6 @@ SPEC = SPECS / "neuroboscope/soft-tissue.nrs.yaml"
 
 @pytest.fixture
 def export(monkeypatch, tmp_path):
-    """Type ``nrs-design export`` in an empty folder; the exit code comes back."""
     monkeypatch.chdir(tmp_path)
 
     def run(*arguments):

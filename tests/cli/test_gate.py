@@ -16,7 +16,6 @@ BROKEN = STABLE.replace("A: [[-1, 1], [-1, -1]]", "A: [[-1, 1]]")
 
 @pytest.fixture
 def gate(monkeypatch, tmp_path):
-    """Type ``nrs-design gate`` in an empty folder that has one good spec; the exit code is back."""
     monkeypatch.chdir(tmp_path)
     Path("specs").mkdir()
     Path("specs/stable.nrs.yaml").write_text(STABLE)

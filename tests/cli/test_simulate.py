@@ -134,7 +134,6 @@ def test_wrong_usage(spec, tmp_path, given, arguments, message):
 
 
 def test_an_outer_period_as_an_option_is_that_of_the_spec(spec, tmp_path):
-    """And it is refused where it is not modelled."""
     written = spec(more="sampling: {period: 2 ms, outer_period: 1 ms, delay: 1}\n")
 
     def metrics(path, *options):

@@ -72,7 +72,6 @@ def test_a_run_goes_on_from_what_is_kept(tmp_path, spec):
 
 
 def interrupted(tmp_path, command, how):
-    """Run a command as typed, and end it by a signal when a few answers are kept."""
     process = subprocess.Popen(
         [sys.executable, "-m", "nrs_design", *command],
         cwd=tmp_path,
@@ -118,7 +117,6 @@ def certified(tmp_path, spec, value="700"):
 
 
 def rewritten(entry, change):
-    """Write an answer that somebody made: whole, with the id of what it says."""
     from nrs_design.sweeps.store import Kept
 
     document = json.loads(entry.read_text(encoding="utf-8"))
@@ -134,7 +132,6 @@ def answer_and_certificate(tmp_path):
 
 
 def faster(document):
-    """Claim twice the rate, with the form that shows the true one."""
     rate = Fraction(document["statements"][0]["rate"])
     document["statements"][0]["rate"] = str(2 * rate)
     return document

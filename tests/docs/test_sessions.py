@@ -22,6 +22,8 @@ from tests.test_readme import assert_same
 
 # The README has a test of its own, in process.
 SESSIONS = [page for page in pages() if session_of(page) and page != "README.md"]
+# Searches for gains, of which one takes as long as ten other pages.
+NIGHTLY = ("docs/design/gains-with-proof.md", "docs/design/task-space.md")
 WRITTEN = {
     "docs/tutorial.md": {"arm.cert.json", "arm.html", "nrs.lock", "arm.c", "arm.h"},
     "docs/ci/README.md": {"mine.cert.json", "nrs.lock"},
@@ -54,7 +56,9 @@ def environment(folder: Path) -> dict[str, str]:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("page", SESSIONS)
+@pytest.mark.parametrize(
+    "page", [pytest.param(p, marks=[pytest.mark.nightly] * (p in NIGHTLY)) for p in SESSIONS]
+)
 def test_a_session_prints_what_is_shown(page: str, checkout: Path, tmp_path: Path) -> None:
     settings = environment(tmp_path)
     folder = tmp_path / "empty" if page in ANYWHERE else checkout

@@ -57,7 +57,6 @@ def text_of(certificate):
 
 
 def told(text, folder):
-    """What Coq says of a file: exit code, output, and processor time in s."""
     (folder / "statement.v").write_text(text)
     before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
     done = subprocess.run(
@@ -243,7 +242,6 @@ def test_coq_accepts_one_function_for_each_mode(tmp_path):
 
 
 def better(certificate):
-    """A certificate of a rate that the exact check refuses, and not by much."""
     evidence, system = certificate.evidence, certificate.system
     share = Fraction(1, 4096)
     rate = evidence.rate

@@ -259,7 +259,6 @@ def test_a_surface_that_moves_in_the_air(monitor, surface, kind):
 @pytest.mark.parametrize("surface", ["fixed", "free", "touched"])
 @pytest.mark.parametrize("factor", [0.5, 1.0, 1.2, 2.0])
 def test_audit_tells_the_same_of_a_log(monitor, tmp_path, surface, factor):
-    """The same row is the first one, or none."""
     spec = monitored(surface, text=TEXT + "sampling: {period: 2 ms, delay: 0}\n")
     watching, random = monitor(spec), np.random.default_rng(3)
     t = 0.002 * np.arange(2500)
@@ -358,7 +357,6 @@ int main(void)
 def test_with_all_other_checks_it_takes_less_than_two_hundred_instructions(
     tmp_path, sampled_export
 ):
-    """Age, period, rules of modes, contact, command and speed, on the dearest sample."""
     text = TEXT.replace("bandwidth: 2 Hz", "bandwidth: 2 Hz\n  command: 3000 rpm")
     text = text.replace("switching: arbitrary", "switching: {dwell_time: 60 ms}")
     text = text.replace("range: [720.56 N/m, 768.17 N/m]", "range: [747.1461 N/m, 747.1461 N/m]")

@@ -55,7 +55,6 @@ def test_json_is_the_dump_of_the_record(record):
 
 
 def test_every_record_keeps_the_published_schema(record, sampled_export, continuous):
-    """With and without an offset, a sample time and a proof of it."""
     schema = json.loads(record_schema_text())
     Draft202012Validator.check_schema(schema)
     offset = export_design(read_spec(SPECS / "neuroboscope/force-limit-offset.nrs.yaml"))

@@ -32,7 +32,6 @@ def exported(folder, text):
 
 @pytest.fixture(scope="module")
 def export(tmp_path_factory):
-    """Insertion alone, with one age, so that the proof is short."""
     head, _, tail = IMPEDANCE.partition("  withdrawal:")
     text = head + "contact: losable" + tail.partition("contact: losable")[2]
     # Torques of the region are beyond the limit of the example.
@@ -146,7 +145,6 @@ def test_the_numbers_are_on_the_safe_side(export):
 
 
 def test_what_is_not_monitored_is_said(tmp_path, export):
-    """Without a region of the proof, and with late or uneven samples."""
     law, system = program_of(export).law, export.certificate.system
     late = replace(export, spec=changed(export.spec, latency="0.4 ms"))
     uneven = replace(export, spec=changed(export.spec, jitter="0.1 ms"))

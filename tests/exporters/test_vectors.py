@@ -109,7 +109,6 @@ def test_json_and_csv_hold_the_same():
 
 @pytest.mark.slow
 def test_exported_tests_pass_as_they_are(tmp_path, sampled_export):
-    """Pytest finds the C beside them, compiles and runs it."""
     compiler("cc")
     exported(tmp_path, sampled_export)
     assert "3 passed, 1 skipped" in pytest_in(tmp_path, "test")
@@ -120,7 +119,6 @@ def test_exported_tests_pass_as_they_are(tmp_path, sampled_export):
 
 @pytest.mark.slow
 def test_any_implementation_in_python_can_be_tested(tmp_path, sampled_export, monkeypatch):
-    """One in doubles, each operation rounded once; and one that is off by a bit."""
     exported(tmp_path, sampled_export)
     header = tmp_path / f"{sampled_export.record.spec.name}.h"
     own = f"NRS_{sampled_export.record.spec.name.replace('-', '_').upper()}_"

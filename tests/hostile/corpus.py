@@ -105,7 +105,6 @@ def fake(**fields: object) -> str:
 
 
 def own_modes(*matrices: list[list[int]]) -> dict[str, object]:
-    """Return the fields of a system whose modes are these."""
     return {
         "time": "continuous",
         "states": [f"x{i}" for i in range(len(matrices[0]))],

@@ -53,7 +53,6 @@ def mutated(content: bytes, chance: random.Random) -> bytes:
 
 
 def survives(read: Callable[[Path], object], path: Path, contents: Iterable[bytes]) -> None:
-    """Read every content; any other error than one of ours comes out."""
     for content in contents:
         path.write_bytes(content)
         with suppress(NrsDesignError):

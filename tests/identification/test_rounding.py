@@ -33,7 +33,6 @@ def test_the_step_of_a_ramp_is_not_the_step_of_its_sensor():
 
 @pytest.mark.parametrize("step", [3e-4, 1.2e-4, 2.1e-5, 1.3e-5])
 def test_the_step_of_the_sensor_under_a_ramp(step):
-    """Slower and faster than a step from sample to sample."""
     assert resolution(step * np.round(RAMPS / step)) == pytest.approx(step)
 
 

@@ -167,7 +167,12 @@ def test_both_ends_meet_at_the_published_growth(name):
         assert lower - 10.0**-digits < radius < upper + 10.0**-digits
 
 
-@pytest.mark.parametrize("name", KNOWN)
+# Beside others of their kind, each takes as long as all of those together.
+DEAR = ("G96 long", "GP13 0.9", "M20 3.1", "M20 thesis")
+STUDIED = [pytest.param(n, marks=[pytest.mark.nightly] if n in DEAR else []) for n in KNOWN]
+
+
+@pytest.mark.parametrize("name", STUDIED)
 def test_either_side_of_it_is_decided(name):
     matrices, printed, word = KNOWN[name]
     radius = float(printed) if printed else growth_of(matrices, word) if word else 1.0118

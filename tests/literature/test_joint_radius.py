@@ -65,7 +65,9 @@ def test_both_ends_of_the_growth_per_step(name):
     assert ends.lower < ends.upper < degree_four * 1.0005
 
 
-@pytest.mark.parametrize("name", FAMILIES)
+@pytest.mark.parametrize(
+    "name", [pytest.param("path-complete", marks=pytest.mark.nightly), *[*FAMILIES][1:]]
+)
 def test_either_side_of_it_is_decided(name):
     """Divided by a little less it grows, by what degree 4 shows (and a little) it decays."""
     radius, digits, _, degree_four = KNOWN[name]

@@ -28,6 +28,7 @@ __all__ = [
     "in_turns",
     "mode_quadratic",
     "one_form",
+    "scalars",
     "shape_of",
 ]
 
@@ -80,6 +81,11 @@ def mode_quadratic(
 ) -> FormsOnGraph:
     nodes = tuple(Node(name, Q) for name, Q in functions)
     return FormsOnGraph(nodes, log2, rate, stays=Stays(leaving, pieces))
+
+
+def scalars(*values: int, rate: Fraction | str = Fraction(1, 2), **stays: object) -> FormsOnGraph:
+    named = tuple((f"m{i}", ((value,),)) for i, value in enumerate(values))
+    return mode_quadratic(named, 0, Fraction(rate), **stays)
 
 
 def conewise_modes(

@@ -428,6 +428,15 @@ def pushed(system: SwitchedSystem, push: Entry = "1/4") -> SwitchedSystem:
     )
 
 
+def left_within(*stays: tuple, **rules: object) -> Switching:
+    """Rules with a shortest and a longest stay for the first modes."""
+    named = (
+        (f"m{k}", Stay(Fraction(first), None if last is None else Fraction(last)))
+        for k, (first, last) in enumerate(stays)
+    )
+    return Switching(stays=tuple(named), **rules)
+
+
 def crowded(time: Time, *, lost: bool = True, pulled: bool = True) -> SwitchedSystem:
     """Several of everything that an axis which may lose contact can have, of any numbers.
 

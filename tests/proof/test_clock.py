@@ -16,7 +16,6 @@ from nrs_design.proof.mode import Time
 from nrs_design.proof.steps import CONTACT
 from nrs_design.proof.switching import Clock
 from nrs_design.proof.system import SwitchedSystem
-from tests.proof.graphs import common_quadratic
 from tests.proof.systems import bouncing_in_turns, doubled_in_turns, family, matrix, pushed
 
 ROUND = Clock(3, ("a", "b"))
@@ -113,14 +112,6 @@ def test_a_signal_out_of_turn_refutes_nothing():
     assert "not its turn" in alone.find_fault(doubled_in_turns(3))
     late = GrowingSequence((("m0", Fraction(1)), ("m1", Fraction(3))), 6)
     assert "growth" in late.find_fault(doubled_in_turns(4))
-
-
-def test_kinds_that_know_no_turns_show_nothing():
-    """The first mode is not stable, but is never in force twice in a row."""
-    system = doubled_in_turns(4)
-    assert staying("m0").find_fault(replace(system, clock=None)) is None
-    assert "not its turn" in staying("m0").find_fault(system)
-    assert "every place" in common_quadratic(((1,),), 0, Fraction(1, 2)).find_fault(system)
 
 
 # At most one of any three missed: what may follow after none, after one, and after a step more.

@@ -32,24 +32,15 @@ def cost(frequencies, weights, Mt, Bt):
 
 def test_by_hand():
     """With F = 1, no mass and all weight on L, L = Bt/(1 + Bt) is least at the end."""
-    found = least_cost(
-        [frequency(1, 1 + 0j, 1)],
-        (Fraction(0), ONE),
-        (Fraction(0), Fraction(0)),
-        (ONE, Fraction(3)),
-        enough=Fraction("0.499"),
-        most=100,
-    )
-    assert found.below == Fraction("0.499")
+    box = (Fraction(0), Fraction(0)), (ONE, Fraction(3))
+
+    def found(enough, most):
+        given = [frequency(1, 1 + 0j, 1)]
+        return least_cost(given, (Fraction(0), ONE), *box, enough=Fraction(enough), most=most)
+
+    assert found("0.499", 100).below == Fraction("0.499")
     # A better bound than the least value is not found, however long the search.
-    beyond = least_cost(
-        [frequency(1, 1 + 0j, 1)],
-        (Fraction(0), ONE),
-        (Fraction(0), Fraction(0)),
-        (ONE, Fraction(3)),
-        enough=Fraction("0.501"),
-        most=101,
-    )
+    beyond = found("0.501", 101)
     assert Fraction("0.499") < beyond.below <= HALF
     assert beyond.boxes == 101
 

@@ -46,32 +46,6 @@ def test_up_to_four_signals_of_different_names_make_sense():
 # Two states, two modes in contact and a free one; a column that has a length but is none.
 LOST = saturating().saturation
 RAGGED = RationalMatrix(((1,), (1, 1)))
-SIZE = "s2 does not have the size of the state"
-EVERY = "s2 has not one column and row for every mode"
-
-
-@pytest.mark.parametrize(
-    ("part", "entries", "oddity"),
-    [
-        ("columns", (matrix([[1], [0]]),) * 2 + (matrix([[1]]),), SIZE),
-        ("columns", (matrix([[1], [0]]),) * 2 + (RAGGED,), SIZE),
-        ("rows", (matrix([[-1, 0, 1]]),) * 2 + (matrix([[-1, 0]]),), SIZE),
-        ("rows", (matrix([[-1, 0, 1]]),) * 2, EVERY),
-        ("columns", (matrix([[1], [0]]),) * 2, EVERY),
-        ("columns", (matrix([[1], [0]]),) * 4, EVERY),
-        ("limit", Fraction(0), "the limit of s2 is not positive"),
-        ("limit", Fraction(-1, 2), "the limit of s2 is not positive"),
-        (
-            "rows",
-            (matrix([[-1, 0, 1]]),) * 2 + (matrix([[-1, 1, 1]]),),
-            "s2 depends on the deflection in free motion",
-        ),
-    ],
-)
-def test_every_signal_fits_the_system(part, entries, oddity):
-    first, second = LOST.signals
-    odd = replace(LOST, signals=(first, replace(second, **{part: entries})))
-    assert oddity_of(saturating(), odd) == oddity
 
 
 def test_what_acts_on_a_signal_has_its_size():
@@ -88,21 +62,6 @@ def test_what_acts_on_a_signal_has_its_size():
         odd = replace(system.saturation, signals=(replace(signal, errors=rows),))
         found = oddity_of(system, odd)
         assert found == said if said is None else said in found
-
-
-def test_a_limit_may_be_any_positive_number():
-    first, second = LOST.signals
-    short = replace(second, limit=Fraction(1, 1000))
-    assert oddity_of(saturating(), replace(LOST, signals=(first, short))) is None
-
-
-@pytest.mark.parametrize(
-    "states",
-    [(), (matrix([[0], [1]]), matrix([[1]])), (matrix([[0], [1]]), RAGGED)],
-)
-def test_every_motion_begins_in_a_state(states):
-    odd = replace(LOST, start=replace(LOST.start, states=states))
-    assert oddity_of(saturating(), odd) == "force does not have the size of the state"
 
 
 def test_a_motion_may_begin_anywhere_where_contact_is_kept():

@@ -22,8 +22,8 @@ from nrs_design.proof.stays import (
 )
 from nrs_design.proof.steps import Stays
 from nrs_design.proof.switching import Edge, Stay, Switching
-from tests.proof.graphs import mode_quadratic
-from tests.proof.systems import family, resets_between
+from tests.proof.graphs import mode_quadratic, scalars
+from tests.proof.systems import family, left_within, resets_between
 
 A = RationalMatrix.from_rows([[Fraction(1, 2), 3], [-1, Fraction(2, 7)]])
 HALF, IN_STEPS = Fraction(1, 2), {"time": Time.DISCRETE}
@@ -32,20 +32,6 @@ NOT_THOSE = "the modes that must be left are not those of the system"
 PIECES = "the stays are enclosed in too few or too many pieces"
 SWITCHES = "there are too many switches to check"
 RESETS = resets_between(("m0", "m1", [[1, 0], [0, 1]]), ("m1", "m0", [[1, 0], [0, 1]]))
-
-
-def scalars(*values: int, rate: Fraction = HALF, **stays: object):
-    named = tuple((f"m{i}", ((value,),)) for i, value in enumerate(values))
-    return mode_quadratic(named, 0, rate, **stays)
-
-
-def left_within(*stays: tuple, **rules: object) -> Switching:
-    """Rules with a shortest and a longest stay for the first modes."""
-    named = (
-        (f"m{k}", Stay(Fraction(first), None if last is None else Fraction(last)))
-        for k, (first, last) in enumerate(stays)
-    )
-    return Switching(stays=tuple(named), **rules)
 
 
 def odd(system, leaving=(), pieces=1, bits=1):

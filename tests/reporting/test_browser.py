@@ -30,8 +30,12 @@ from tests.certificates.attacks import (
 from tests.reporting.conftest import KINDS
 
 CASES = ["proved", "dwell"]
-MORE = ["force", "refuted", "discrete", *(name for name in KINDS if name not in CASES)]
-ALL = [*CASES, *(pytest.param(name, marks=pytest.mark.slow) for name in MORE)]
+MORE = [pytest.param(name, marks=pytest.mark.slow) for name in ("force", "refuted", "discrete")]
+ALL = [
+    *CASES,
+    *MORE,
+    *(pytest.param(k, marks=pytest.mark.nightly) for k in KINDS if k not in CASES),
+]
 
 pytestmark = pytest.mark.browser
 
@@ -244,15 +248,12 @@ def test_without_a_certificate_there_is_nothing_to_check(page):
 
 
 def renamed(text):
-    """Give a page the id of the numbers that it holds."""
     numbers = html.unescape(re.search(r'<pre id="numbers" hidden>(.*)</pre>', text)[1])
     identity = hashlib.sha256(numbers.encode()).hexdigest()
     return re.sub(r"(Certificate id</dt><dd><a [^>]*>)[0-9a-f]{64}", rf"\g<1>{identity}", text)
 
 
 def in_numbers(pattern, replacement):
-    """Change the numbers of a page alone."""
-
     def changed(text):
         head, rest = text.split('<pre id="numbers" hidden>')
         numbers, tail = rest.split("</pre>", 1)
@@ -400,7 +401,6 @@ def test_no_serious_fault_of_accessibility(axe, browser, page, tmp_path, case, s
 
 @pytest.fixture(scope="module")
 def reproduced(axe):
-    """The pages of `reproduce`: the figures, and the numbers with a link to them."""
     return {
         "figures": gallery_page(draw_counterparts()),
         "numbers": render_page(reproduce(), "figures.html"),

@@ -57,7 +57,6 @@ def test_commands_end_with_them(tmp_path, command, count):
 
 
 def test_commands_can_be_typed_as_they_stand(tmp_path):
-    """With the spec as it was named, and nothing behind it."""
     wide = run_certification(read_spec(ROOT / "docs/examples/wide-range.nrs.yaml"))
     steps = next_steps(wide, spec=Path("my specs/a.nrs.yaml"))
     assert steps[0].endswith("certify-switching 'my specs/a.nrs.yaml' --margin")

@@ -26,7 +26,6 @@ def test_stress_relaxation():
 
 
 def test_creep():
-    """The force is held, and the tissue gives way."""
     force = 2.0 * np.clip((TIME - 2) / 0.5, 0, 1)
     rate, d, damper = LAW.k1 / LAW.b, 0.0, [0.0]
     for i in range(1, len(TIME)):

@@ -3,7 +3,6 @@
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
-from importlib import import_module
 
 import numpy as np
 import pytest
@@ -428,12 +427,6 @@ def test_a_rate_of_decay_is_positive_and_in_steps_below_one(rate, continuous, di
 )
 def test_as_many_rows_and_columns_as_asked_for(M, square):
     assert is_square(M, 2) is square
-
-
-def test_a_kind_that_does_not_exist_is_no_name_of_the_package():
-    package = import_module("nrs_design.proof.evidence")
-    with pytest.raises(AttributeError, match="has no attribute 'Hope'"):
-        _ = package.Hope
 
 
 def test_evidence_about_every_mode_holds_for_its_equals_too():

@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 from fractions import Fraction
-from functools import cache
 
 import pytest
 from hypothesis import given, settings
@@ -98,18 +97,13 @@ def test_pairs_of_modes_switch_at_one_value():
     assert holds(found.system, found.evidence)
 
 
-@cache
-def proved(kind):
-    return genuine(kind)
-
-
 @settings(max_examples=20, deadline=None)
 @given(
     st.sampled_from(KINDS),
     st.tuples(st.fractions(0, 1, max_denominator=50), st.fractions(0, 1, max_denominator=50)),
 )
 def test_every_mode_decreases_the_function_of_its_value_exactly(kind, shares):
-    system, evidence = proved(kind)
+    system, evidence = genuine(kind)
     P = combine(*zip(weights(shares), evidence.functions, strict=True))
     assert is_definite(P)
     for mode in system_at(system, shares).modes:
@@ -139,7 +133,7 @@ def test_random_switching_at_a_random_value_decreases(entries, share, word):
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_altered_numbers_are_refused(kind):
-    system, evidence = proved(kind)
+    system, evidence = genuine(kind)
     assert evidence.find_fault(system) is None
     zero = ((0, 0), (0, 0))
     negative = tuple(tuple(-v for v in row) for row in evidence.functions[1])
@@ -167,7 +161,7 @@ def test_altered_numbers_are_refused(kind):
 
 def test_functions_belong_to_their_corners():
     """The function of one corner is none of the opposite one."""
-    system, evidence = proved("constants-quadratic")
+    system, evidence = genuine("constants-quadratic")
     reversed_ = replace(evidence, functions=evidence.functions[::-1])
     assert reversed_.find_fault(system) is not None
     paired = Switching(fixed_ends=(("m3", "m2", "m1", "m0"),))
@@ -202,13 +196,13 @@ def test_multipliers_of_each_corner_alone_prove_nothing():
     ],
 )
 def test_a_mode_without_its_corners_is_refused(sets):
-    system, evidence = proved("constants-quadratic")
+    system, evidence = genuine("constants-quadratic")
     other = replace(system, switching=Switching(fixed_ends=sets))
     assert evidence.find_fault(other) is not None
 
 
 def test_another_mode_is_not_covered():
-    system, evidence = proved("constants-quadratic")
+    system, evidence = genuine("constants-quadratic")
     more = replace(system, modes=(*system.modes, Mode("m4", matrix([[2, 0], [0, 2]]))))
     assert evidence.find_fault(more) is not None
     altered = (*system.modes[:3], Mode("m3", matrix([[0, 1], [-1, 1]])))
@@ -216,7 +210,7 @@ def test_another_mode_is_not_covered():
 
 
 def test_nothing_is_said_of_parameters_that_vary_nor_of_resets_clocks_and_loss():
-    system, evidence = proved("constants-quadratic")
+    system, evidence = genuine("constants-quadratic")
     assert evidence.find_fault(replace(system, switching=Switching())) is not None
     resets = resets_between(("m0", "m1", [[1, 0], [0, 1]]))
     with_resets = replace(system.switching, resets=resets)
@@ -229,7 +223,7 @@ def test_nothing_is_said_of_parameters_that_vary_nor_of_resets_clocks_and_loss()
 
 def test_one_mode_at_all_corners_is_stable_or_not():
     """A mode that no constant parameter is in has to decrease all functions."""
-    system, _ = proved("constants-quadratic")
+    system, _ = genuine("constants-quadratic")
     corners = system.switching.fixed_ends[0]
     for entry, verdict in (("0.1", True), ("1.1", False)):
         modes = (*system.modes, Mode("b", matrix([[entry, 0], [0, entry]])))
@@ -255,7 +249,7 @@ def test_forms_by_hand():
 
 
 def test_the_claim_names_the_parameters():
-    system, evidence = proved("constants-quadratic, continuous")
+    system, evidence = genuine("constants-quadratic, continuous")
     assert "every constant value of the constant parameters in their ranges" in evidence.claim(
         system
     )

@@ -318,31 +318,6 @@ def test_one_value_of_a_constant_parameter_refutes():
     assert crossed.find_fault(system) is not None
 
 
-@pytest.mark.parametrize(
-    "evidence",
-    [
-        signal((0, -1), (1, 1)),
-        signal((7, 1)),
-        signal((0, 1), (1, 1), doublings=10**30),
-        GrowingSequence((("m0", Fraction(1)),) * 10**6, 3),
-    ],
-)
-@pytest.mark.parametrize("time", list(Time))
-def test_signals_out_of_range_are_rejected_at_once(evidence, time):
-    system = replace(family([[5, 1], [0, 5]], [[5, 0], [1, 5]]), time=time)
-    with ends_soon():
-        assert evidence.find_fault(system) is not None
-
-
-@pytest.mark.parametrize("time", list(Time))
-def test_long_signals_of_many_states_do_not_hang(time):
-    n = 64
-    A = [[(i * 7 + j * 3) % 5 - 2 - 9 * (i == j) for j in range(n)] for i in range(n)]
-    system = family(A, time=time)
-    with ends_soon():
-        assert signal(*[(0, 4000 - k) for k in range(500)]).find_fault(system) is not None
-
-
 def test_enormous_modes_do_not_hang_or_overflow():
     for time in Time:
         system = family([[-(10**200), 10**200], [-(10**200), -1]], time=time)
@@ -717,15 +692,6 @@ def test_modes_take_their_turns():
     assert "not its turn" in late.find_fault(third)
 
 
-def test_long_sequences_of_many_states_are_not_followed():
-    n = 30
-    rows = [[int(i == j) for j in range(n)] for i in range(n)]
-    system = family(rows, time=Time.DISCRETE)
-    system = replace(system, contact=Contact((Mode("free", matrix(rows)),), required=True))
-    long = in_contact((("m0", 1000),), NARROW)
-    assert "too long for so many states" in long.find_fault(system)
-
-
 def test_words_and_fields_of_contact():
     system = juggling()
     assert BOUNCE.claim(system) == (
@@ -951,13 +917,6 @@ def test_claim_names_the_value():
     named = replace(system, switching=replace(PAIR, fixed_parameters=(parameter,)))
     assert MIDDLE.claim(named).startswith("At k = 10.25, which the range allows and which does not")
     assert "Mode m0 to m1 is not Hurwitz" in MIDDLE.claim(named)
-
-
-def test_ends_of_other_systems_are_no_ends():
-    _, evidence = genuine("growing-sequence, value")
-    wrong = Switching(fixed_ends=(("m0", "m9"),))
-    for switching in (wrong, Switching(fixed_ends=(("m0", "m0"),)), Switching()):
-        assert evidence.find_fault(replace(branicky(), switching=switching)) is not None
 
 
 def enclosing(*factors, names=("m0", "m1")):

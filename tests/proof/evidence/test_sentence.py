@@ -9,13 +9,14 @@ from nrs_design.proof.contact import Contact
 from nrs_design.proof.evidence.graph import Node
 from nrs_design.proof.evidence.sentence import free_sentence, ruled_sentence
 from nrs_design.proof.mode import Mode, Time
-from nrs_design.proof.switching import Stay, Switching
+from nrs_design.proof.switching import Switching
 from tests.proof.graphs import common_polynomial, common_quadratic, one_form
 from tests.proof.systems import (
     bouncing,
     bouncing_in_steps,
     bouncing_in_turns,
     family,
+    left_within,
     matrix,
     resets_between,
 )
@@ -23,14 +24,6 @@ from tests.proof.systems import (
 HALF = Fraction(1, 2)
 RESETS = resets_between(("m0", "m1", [[1]]), ("m1", "m0", [[1]]))
 EIGHT = ", ".join(f"at least 1 s in m{k}" for k in range(8))
-
-
-def left_within(*stays: tuple, **rules: object) -> Switching:
-    named = (
-        (f"m{k}", Stay(Fraction(first), None if last is None else Fraction(last)))
-        for k, (first, last) in enumerate(stays)
-    )
-    return Switching(stays=tuple(named), **rules)
 
 
 def test_one_form_for_all_modes():

@@ -3,7 +3,6 @@
 from fractions import Fraction
 from math import sqrt
 
-import control
 import numpy as np
 import pytest
 
@@ -96,32 +95,6 @@ def test_what_does_not_come_to_rest_in_contact_is_not_judged():
     law, box = Admittance(ONE, ONE), {"k": interval(1, 2)}
     assert largest_tracking_error(loop, law, box, (ONE, ONE + ONE), in_contact=True) is None
     assert largest_tracking_error(loop, law, {}, (ONE, ONE + ONE)) is not None
-
-
-@pytest.mark.parametrize(("Mt", "Bt"), [(1, 4), (3, 8), (0, 2)])
-def test_against_python_control(Mt, Bt):
-    """The robot of the thesis: no frequency is above the bound, and one is within 1 %."""
-    omega = np.linspace(0.001, 12, 4001)
-    motion = control.tf(
-        *([*map(float, c)] for c in (thesis.CLOSED_LOOP.numerator, thesis.CLOSED_LOOP.denominator))
-    )
-    shown = control.tf([1.0], [float(Mt), float(Bt)]) * motion
-    touched = control.tf([0.5, 43.0356], [1, 0])
-    law = Admittance(Fraction(Mt), Fraction(Bt))
-    loop = plain(thesis.CLOSED_LOOP)
-    box = {"k": interval("43.0356", "43.0356"), "b": interval("0.5", "0.5")}
-    cases = [
-        (1 / np.abs(shown(1j * omega)), largest_impedance(loop, law, {}, BAND)),
-        (np.abs(1 - motion(1j * omega)), largest_tracking_error(loop, law, {}, BAND)),
-        (
-            np.abs(1 - (motion / (1 + shown * touched))(1j * omega)),
-            largest_tracking_error(loop, law, box, BAND, in_contact=True),
-        ),
-    ]
-    for grid, found in cases:
-        assert grid.max() <= float(found.above) * (1 + 1e-12)
-        assert float(found.above) <= grid.max() * 1.01
-        assert float(found.below) <= grid.max() * (1 + 1e-6)
 
 
 def responses(omega, values, J, pole):

@@ -8,10 +8,7 @@ from hypothesis import strategies as st
 from nrs_design.design.force_loop import design_force_gain, force_loop_response
 from nrs_design.design.transfer import TransferFunction
 from nrs_design.errors import DesignError
-
-PRINTED = TransferFunction((0.99, 56.82), (0.0351, 1.99, 56.82))  # thesis 6.1
-EXACT = TransferFunction((0.9974, 56.822), (0.0351, 1.9974, 56.822))
-SOFT = 43.0356  # N m/rad, thesis 6.3.1
+from tests.design.motion_loops import EXACT, PRINTED, SOFT
 
 
 def test_published_gain_does_not_give_the_stated_criteria():

@@ -10,11 +10,9 @@ from hypothesis import strategies as st
 from nrs_design.design.impedance import ImpedanceLoop
 from nrs_design.design.loops import Loops, gain_extremes
 from nrs_design.design.polynomials import multiply
-from nrs_design.design.transfer import TransferFunction
 from nrs_design.models.contact import Elastic, KelvinVoigt
 from tests.design.classical import displayed_impedance_at, loop_margins, open_loop
-
-EXACT = TransferFunction((0.9974, 56.822), (0.0351, 1.9974, 56.822))
+from tests.design.motion_loops import EXACT
 
 
 def rows(loop, admittances):

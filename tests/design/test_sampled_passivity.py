@@ -5,19 +5,13 @@ from math import pi, sin
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from nrs_design.controllers.float32 import to_float32
 from nrs_design.controllers.laws import Admittance, DiscreteLaw, ProportionalDerivative
 from nrs_design.controllers.step_law import StepFrame
-from nrs_design.design.passivity import passive_band
 from nrs_design.design.sampled_passivity import sampled_bands
 from nrs_design.models.actuator import Actuator
-from nrs_design.models.motion_loop import close_motion_loop, realize
-from nrs_design.switched.cut_loop import ContinuousAxis
 from nrs_design.switched.sampled_frame import INPUTS
-from tests.design.motion_loops import PLACE
 from tests.support import thinned
 from tests.switched.frames import frame_of
 
@@ -74,19 +68,6 @@ def test_against_a_scan(Mt, Bt, period):
         assert ends[0] > -1e-9 * abs(ends).max() > ends[1] or ends[0] > 0 > ends[1]
 
 
-def test_short_periods_tend_to_continuous_time():
-    """The continuous band, and what a late force takes from it."""
-    axis = ContinuousAxis((PLACE,), realize(close_motion_loop(MOTOR, MOTION.Kp, MOTION.Kd)))
-    whole = passive_band(axis, Admittance(Fraction(1), Fraction(4)), {})
-    bands = [
-        sampled_bands(MOTOR, MOTION, law_of(1, 4, T), T, (0,))[0].passive
-        for T in map(Fraction, ("0.004", "0.002", "0.001", "0.0005"))
-    ]
-    assert bands == sorted(bands)
-    assert float(bands[-1]) == pytest.approx(float(whole.passive), rel=0.02)
-    assert bands[-1] < whole.passive
-
-
 @pytest.mark.parametrize("age", [0, 2])
 def test_a_run(age):
     """Mean power of a sinusoidal force on a run of the law, motor followed between samples."""
@@ -100,20 +81,6 @@ def test_a_run(age):
         omega = 2 * pi * turns / (samples * float(T))
         power = _work(law, float(T), age, lambda t, w=omega: sin(w * t), samples)
         assert (power < 0) == gives
-
-
-def test_a_force_between_samples_takes_any_amount():
-    """One sample moves the robot; what pulls back between the others is not seen."""
-    T, law = 0.01, law_of(1, 4, Fraction("0.01"))
-
-    def force(t, pull):
-        return 1.0 if t < T / 2 else -pull * sin(pi * t / T) ** 2
-
-    works = [
-        _work(law, T, 0, lambda t, p=pull: force(t, p), samples=40, settled=0)
-        for pull in (0, 10, 1000)
-    ]
-    assert works[0] == 0 > works[1] > works[2]
 
 
 def _work(law, T, age, force, samples, settled=2000):
@@ -137,24 +104,6 @@ def _work(law, T, age, force, samples, settled=2000):
         theta += s * omega + Km * (T - s) * u
         omega = shrink * omega + Km * (1 - shrink) * u
     return work
-
-
-@pytest.mark.slow
-@settings(deadline=None, max_examples=15)
-@given(
-    Mt=st.fractions(0, 3, max_denominator=100),
-    Bt=st.fractions(Fraction(1, 2), 20, max_denominator=100),
-    T=st.sampled_from([Fraction("0.0005"), Fraction("0.002"), Fraction("0.007")]),
-    age=st.integers(0, 6),
-)
-def test_no_grid_point_contradicts(Mt, Bt, T, age):
-    law = law_of(Mt, Bt, T)
-    (band,) = sampled_bands(MOTOR, MOTION, law, T, (age,))
-    inside = np.linspace(1e-2, float(band.passive) * (1 - 1e-9), 300)
-    values = real_part(inside, law, T, age)
-    assert band.passive > 0
-    assert values.min() > -1e-9 * values.max()
-    assert real_part(np.array([float(band.broken[0])]), law, T, age)[0] < 1e-9 * values.max()
 
 
 def test_what_is_not_decided():

@@ -10,13 +10,9 @@ import pytest
 from nrs_design.controllers.float32 import to_float32
 from nrs_design.controllers.laws import Admittance, ProportionalDerivative
 from nrs_design.controllers.sensor import LowPass
-from nrs_design.design.displayed_response import largest_impedance
 from nrs_design.design.sampled_response import SampledAdmittance, largest_sampled_impedance
 from nrs_design.models.actuator import ActuatorRanges
 from nrs_design.models.interval import Interval
-from nrs_design.models.motion_loop import realize
-from nrs_design.switched.cut_loop import ContinuousAxis
-from nrs_design.thesis import thesis
 from tests.design.motion_loops import PLACE
 
 PD = ProportionalDerivative(to_float32(Fraction("117359.436")), Fraction(2060))
@@ -78,19 +74,6 @@ def test_against_a_run(one, samples):
     assert measured == pytest.approx(float(found.below), rel=1e-4)
     assert measured <= float(found.above) * (1 + 1e-4)
     assert float(found.above) <= measured * 1.01
-
-
-def test_short_periods_feel_like_the_continuous_law():
-    law = Admittance(to_float32(Fraction("0.01")), Fraction(2))
-    axis = ContinuousAxis((PLACE,), realize(thesis.CLOSED_LOOP))
-    band = Fraction(0), Fraction(60)
-    limit = largest_impedance(axis, law, {}, band)
-    gaps = []
-    for period in ("0.002", "0.0005"):
-        found = largest_sampled_impedance(shown(period=period), band)
-        gaps.append(abs(float(found.below / limit.below) - 1))
-    assert gaps[1] < gaps[0] / 2
-    assert gaps[1] < 0.02
 
 
 def test_a_loop_that_is_unstable_in_its_ranges_is_not_judged():

@@ -17,9 +17,7 @@ from nrs_design.design.transfer import (
     trim,
 )
 from nrs_design.errors import DesignError
-
-# Thesis 6.1, as printed.
-PRINTED = TransferFunction((0.99, 56.82), (0.0351, 1.99, 56.82))
+from tests.design.motion_loops import PRINTED
 
 coefficients = st.lists(st.floats(-5, 5).map(lambda x: round(x, 3)), min_size=1, max_size=5)
 

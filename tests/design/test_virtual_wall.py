@@ -56,12 +56,10 @@ def test_the_wall_in_the_air_is_the_mode_that_is_proved(K, B, late):
         (2.0, 1.0, 0.002, 0.003, 1.0),
     ],
 )
-def test_the_border_is_about_that_of_gil_and_others(inertia, friction, T, late, damping, capsys):
+def test_the_border_is_about_that_of_gil_and_others(inertia, friction, T, late, damping):
     """K below (b + B)/(T/2 + t), for small B; the closer, the slower the joint is."""
     wall = Wall(inertia, friction, T, late)
     exact, estimate = wall.border(damping), wall.estimate(damping)
-    with capsys.disabled():
-        print(f"\nborder {exact:.6g} N m/rad, Gil and others {estimate:.6g} N m/rad")
     assert exact == pytest.approx(estimate, rel=0.03)
     slow = Wall(1000 * inertia, friction, T, late)
     assert slow.border(damping) == pytest.approx(estimate, rel=1e-4)

@@ -14,12 +14,16 @@ from nrs_design.output import alone_in
 
 from .conftest import BROKEN, STABLE
 
+STABLE_SPEC = "specs/stable.nrs.yaml"
+
+
+def outcome_of(project, *names, folder="reports"):
+    specs = find_specs([project / name for name in names])
+    return run_gate(specs, Files(folder=project / folder, html=False))
+
 
 def gate(project, *names, prune=False):
-    specs = find_specs([project / name for name in names])
-    file = project / "nrs.lock"
-    outcome = run_gate(specs, Files(folder=project / "reports", html=False))
-    return write_lock(outcome, file, prune=prune)
+    return write_lock(outcome_of(project, *names), project / "nrs.lock", prune=prune)
 
 
 def locked(project):
@@ -33,17 +37,12 @@ def re_check(project):
 
 def test_lock_is_the_same_on_repeat(project):
     before = (project / "nrs.lock").read_bytes()
-    outcome = run_gate(
-        find_specs([project / "specs"]), Files(folder=project / "reports", html=False)
-    )
-    write_lock(outcome, project / "nrs.lock")
+    gate(project, "specs")
     assert (project / "nrs.lock").read_bytes() == before
 
 
 def test_lock_elsewhere_names_the_same_files(project):
-    outcome = run_gate(
-        find_specs([project / "specs"]), Files(folder=project / "reports", html=False)
-    )
+    outcome = outcome_of(project, "specs")
     lock = make_lock(outcome.specs, project / "reports/nrs.lock")
     assert lock.specs[0].path == "../specs/soft-tissue.nrs.yaml"
     assert lock.specs[0].certificate.file == "soft-tissue.cert.json"
@@ -124,9 +123,7 @@ def test_missed_goals_and_gains_are_locked(project):
 
 @pytest.mark.parametrize("text", ["", "precious", '{"schema": "nrs-design/lock/1"}'])
 def test_what_is_no_lock_is_not_overwritten(project, text):
-    outcome = run_gate(
-        [project / "specs/stable.nrs.yaml"], Files(folder=project / "reports", html=False)
-    )
+    outcome = outcome_of(project, STABLE_SPEC)
     (project / "nrs.lock").write_text(text)
     with pytest.raises(CertificateError):
         write_lock(outcome, project / "nrs.lock")
@@ -134,9 +131,7 @@ def test_what_is_no_lock_is_not_overwritten(project, text):
 
 
 def test_unwritable_lock(project):
-    outcome = run_gate(
-        [project / "specs/stable.nrs.yaml"], Files(folder=project / "ci", html=False)
-    )
+    outcome = outcome_of(project, STABLE_SPEC, folder="ci")
     with pytest.raises(OutputError, match="below the folder of the lock"):
         write_lock(outcome, project / "reports/nrs.lock")
     with pytest.raises(CertificateError, match="not a regular file"):
@@ -145,9 +140,7 @@ def test_unwritable_lock(project):
 
 def test_what_another_run_has_replaced_is_not_locked(project):
     """Two runs in one tree: the certificate on the disk must be the one that is locked."""
-    outcome = run_gate(
-        [project / "specs/stable.nrs.yaml"], Files(folder=project / "reports", html=False)
-    )
+    outcome = outcome_of(project, STABLE_SPEC)
     lock, file = project / "nrs.lock", project / "reports/stable.cert.json"
     before, ours = lock.read_bytes(), file.read_text()
     file.write_text(ours.replace(outcome.specs[0].certificate_id, 64 * "0"))
@@ -167,9 +160,7 @@ def test_nobody_reads_a_lock_that_another_run_is_about_to_write(project):
     whole = lock.read_bytes()
     lock.unlink()
     names = ("specs/stable.nrs.yaml", "specs/soft-tissue.nrs.yaml")
-    one, other = (
-        run_gate([project / name], Files(folder=project / "reports", html=False)) for name in names
-    )
+    one, other = (outcome_of(project, name) for name in names)
     with alone_in(project):
         waiting = threading.Thread(target=write_lock, args=(one, lock))
         waiting.start()

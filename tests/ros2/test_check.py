@@ -40,13 +40,6 @@ def test_too_stiff_says_how_stiff_it_may_be():
     assert again.verdict == "proved"
 
 
-def test_what_nothing_is_said_of_is_not_proved(tmp_path):
-    file = changed(tmp_path, ("true, true, true, false", "true, true, true, true"))
-    found, _, _ = statuses(file, Question((0, 0), SOFT, None))
-    assert found.verdict == "inconclusive"
-    assert "give --rotational-stiffness" in found.obligations[4].message
-
-
 CHAIN = "sensor_filter_chain: {filter1: {name: low, type: filters/LowPassFilterWrench}}"
 BROADCASTER = "force_torque_sensor_broadcaster/ForceTorqueSensorBroadcaster"
 
@@ -197,17 +190,6 @@ def test_every_controller_runs_at_the_rate_of_its_own_manager(tmp_path):
         statuses(file, Question((0, 2), SOFT, None))
 
 
-def test_a_rate_that_another_node_may_give_the_manager(tmp_path):
-    file = changed(tmp_path)
-    with file.open("a") as stream:
-        stream.write("/**/controller_manager:\n  ros__parameters: {update_rate: 20}\n")
-    found, status, _ = statuses(file, Question((0, 2), SOFT, None))
-    assert found.verdict is None
-    assert Status.ERROR in status
-    assert "counts for controller_manager, too" in found.obligations[0].message
-    assert statuses(file, Question((0, 2), SOFT, None, Fraction(500)))[0].verdict == "proved"
-
-
 def test_a_type_counts_whichever_of_several_managers_says_it(tmp_path):
     """One that is known by its type only, with its mass missing, must not vanish."""
     kind = "admittance_controller/AdmittanceController"
@@ -227,13 +209,6 @@ def test_what_cannot_be_read_beside_what_is_proved_has_no_verdict(tmp_path):
     found, status, _ = statuses(file, Question((0, 2), SOFT, None))
     assert found.verdict is None
     assert {Status.PROVED, Status.ERROR} <= set(status)
-
-
-def test_no_rate(tmp_path):
-    file = changed(tmp_path, ("    update_rate: 500\n", ""))
-    with pytest.raises(SpecError, match="rate of the control loop") as caught:
-        statuses(file, Question((0, 0), SOFT, None))
-    assert "--rate" in caught.value.remedy
 
 
 def test_what_would_not_start_is_an_error(tmp_path):

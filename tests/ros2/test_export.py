@@ -12,7 +12,6 @@ from nrs_design.certificates.certificate import dump
 from nrs_design.certificates.prove import prove
 from nrs_design.errors import DesignError
 from nrs_design.pipeline.design import run_design
-from nrs_design.ros2.check import Question, check_file
 from nrs_design.ros2.export import export_controllers
 from nrs_design.ros2.law import read_law
 from nrs_design.ros2.parameters import parse_nodes
@@ -84,16 +83,6 @@ def test_the_certificate_is_about_the_numbers_as_written(found):
         assert checked.certificate.evidence.covers_lost_contact
 
 
-def test_the_checker_of_files_agrees(found, tmp_path):
-    file = tmp_path / "exported.ros2.yaml"
-    file.write_text(found[0].text)
-    met = (Fraction(41), Fraction(45))
-    question = Question((1, 1), None, met, None, LAG)
-    outcome = check_file(file, question, Limits(), lambda step: None)
-    assert outcome.specs[0].verdict == "proved"
-    assert not outcome.specs[0].cautions
-
-
 @pytest.mark.slow
 def test_every_file_says_what_it_is_worth(design, found):
     for item in found:
@@ -114,13 +103,6 @@ def test_kept_contact_is_said(design):
     for item in exported(kept):
         assert item.verdict == "proved"
         assert "taken for granted: contact is not lost" in item.text
-
-
-def test_what_is_not_proved_is_not_written():
-    """Euler's method diverges where Bt/Mt T > 2, which is 2.15 for insertion at 10 ms."""
-    found = exported(designed(("period: 2 ms", "period: 10 ms")))
-    assert found[0].verdict == "refuted"
-    assert [item.text == "" for item in found] == [item.verdict != "proved" for item in found]
 
 
 FILTER = "sensor: {filter: {order: 1, cutoff: 100 rad/s}}\n"

@@ -12,7 +12,8 @@ from tests.support import dayawansa_martin
 
 
 @pytest.mark.parametrize(
-    "module", ["search.certification", "search.margin", "pipeline", "api", "gating.run"]
+    "module",
+    ["search.certification", "search.margin", "pipeline", "api", "gating.run", "models.plant"],
 )
 def test_nouns_are_imported_without_numpy(module):
     code = f"import sys, nrs_design.{module}; print('numpy' in sys.modules)"

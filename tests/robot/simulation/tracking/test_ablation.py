@@ -1,5 +1,3 @@
-from dataclasses import replace
-
 import pytest
 
 from nrs_design.robot.simulation.tracking import ablation_tracks, simulate
@@ -43,19 +41,3 @@ def test_the_page_states_what_the_changes_do(changed):
     for (name, track), record in zip(chosen, simulate(t for _, t in chosen), strict=True):
         (row,) = [line for line in page.splitlines() if f"{track.controller} | {name} |" in line]
         assert record.summary()["rmse"][0] == pytest.approx(float(row.split(" | ")[3]), rel=1e-2)
-
-
-@pytest.mark.slow
-def test_the_missing_rotor_inertia_is_what_costs_most(changed):
-    chosen = {
-        name: replace(
-            track, experiments=(replace(track.only("phi").experiments[0], hold=0.1, rate=4.0),)
-        )
-        for name, track in changed
-        if track.controller == "computed-torque"
-    }
-    found = simulate(chosen.values())
-    error = {name: record.rmse[0] for name, record in zip(chosen, found, strict=True)}
-    assert error["rotor inertia in the law"] < error["as designed"] / 5
-    for name in ("no Coulomb friction", "encoder without counts", "full dynamics in the law"):
-        assert error[name] > error["as designed"] / 2

@@ -21,6 +21,7 @@ from tests.certificates.attacks import (
     QUADRATIC,
     SHIPPED,
     call_it_discrete,
+    follow_nobody,
     found,
     named,
     shipped,
@@ -67,7 +68,7 @@ def decide(path, monkeypatch):
 
 def test_it_is_short_and_imports_nothing_of_ours():
     text = SCRIPT.read_text()
-    assert len(text.splitlines()) <= 252
+    assert len(text.splitlines()) <= 265
     imported = {
         (item.module if isinstance(item, ast.ImportFrom) else item.names[0].name)
         for item in ast.walk(ast.parse(text))
@@ -78,10 +79,13 @@ def test_it_is_short_and_imports_nothing_of_ours():
 
 @pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.name)
 def test_what_ships_holds(path, monkeypatch, capsys):
-    """Every statement of every certificate, whatever its kind and shape."""
-    kinds = [item["kind"] for item in json.loads(path.read_text())["statements"]]
-    assert decide(path, monkeypatch) == 0
-    assert capsys.readouterr().out.splitlines() == [f"{kind}: holds" for kind in kinds]
+    """Every statement of every certificate but of what could pull, whatever its kind and shape."""
+    document = json.loads(path.read_text())
+    known = "pulls" not in document.get("contact", {})
+    assert decide(path, monkeypatch) == (0 if known else 3)
+    said = "holds" if known else "not checked here (this kind, turns, pulls or axes)"
+    kinds = [item["kind"] for item in document["statements"]]
+    assert capsys.readouterr().out.splitlines() == [f"{kind}: {said}" for kind in kinds]
 
 
 def test_it_runs_as_typed():
@@ -107,9 +111,9 @@ def test_forgeries_do_not_hold(judge, name, change):
     forged = copy.deepcopy(document)
     change(forged)
     assert forged != document
-    # Polynomials in steps are left to others.
-    polynomial_in_steps = name == POLYNOMIAL and change is call_it_discrete
-    assert judge(forged) == (3 if polynomial_in_steps else 1)
+    # Polynomials in steps, and what is left after any time, are left to others.
+    left = change is follow_nobody or (name == POLYNOMIAL and change is call_it_discrete)
+    assert judge(forged) == (3 if left else 1)
     # Nor do they here.
     assert prove({**forged, "id": content_id(forged)}).fault is not None
 

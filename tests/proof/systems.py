@@ -16,7 +16,7 @@ from nrs_design.proof.evidence import AbstractEvidence
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.saturation import CutOff, Saturation, Start
-from nrs_design.proof.switching import ARBITRARY, Clock, Reset, Stay, Switching
+from nrs_design.proof.switching import ARBITRARY, NOWHERE, Clock, Reset, Stay, Switching
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.certify import Limits, certify, first_accepted
 from nrs_design.search.family import floats_in_silence
@@ -529,6 +529,10 @@ SYSTEMS = {
     "periodic-quadratic, rounding": lambda: bouncing_in_turns(rounded=True),
     "periodic-quadratic, kept": lambda: replace(
         bouncing_in_turns(), contact=None, clock=Clock(2, ("push 1", "push 2"))
+    ),
+    "periodic-quadratic, missed": lambda: replace(
+        family([["1/2"]], [["3/2"]], time=Time.DISCRETE),
+        clock=Clock(2, ("m0",), ((0, 1), (0, NOWHERE))),
     ),
     "growing-sequence, in turns": lambda: doubled_in_turns(3),
     "constants-quadratic": lambda: companion("0.9", "0.9"),

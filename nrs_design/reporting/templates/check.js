@@ -17,6 +17,7 @@ const check = (() => {
     need(d > 0n, "a number is no ratio");
     return [n / gcd(n, d), d / gcd(n, d)];
   }
+  const distinct = (keys, names) => need(new Set(keys).size === keys.length && keys.every((key) => names.includes(key)), "it names something else, or one twice");
   // JSON whose numbers are integers of any length; texts are marked, so that none of them is taken for a number.
   function parse(text) {
     const marked = text.replace(/"(?:[^"\\]|\\.)*"|-?\d[\d.eE+-]*/g, (m) => (m[0] === '"' ? `"$${m.slice(1)}` : `"${m}"`));
@@ -94,7 +95,8 @@ const check = (() => {
     S.A = every.map((mode) => table(mode, mode.numerators.length, mode.numerators.length));
     Object.assign(S, { names: every.map((mode) => mode.name), uniform: S.A.every(({ N }) => N.length === n) });
     S.named = (kind) => range((o[`${kind}s`] ?? []).length).map((i) => `${kind} ${i + 1}`);
-    need(count && new Set(S.names).size === every.length, "two modes have one name");
+    need(count && new Set(S.names).size === every.length && S.names.every((name) => typeof name === "string"), "two modes have one name");
+    need(S.A.map(({ N }) => N.length).reduce(larger) === n, "the modes have other states");
     need(!o.contact || (every.length > count && S.uniform && n > 1), "contact is lost, but nothing is free");
     need(S.A.slice(count).every(({ N, d }) => N.every((row, i) => row[n - 1] === (i === n - 1 && !S.flow ? d : 0n))), "free, but the deflection acts");
     known(!contact.pulls, "an environment that could pull");
@@ -133,22 +135,26 @@ const check = (() => {
       return steps.push(left(flight), ...(flow ? [] : [flight, { ...left(flight), target: "modes" }]));
     });
     if (!clock) return steps;
-    need(!flow && clock.length > 1n && S.o.switching === "arbitrary", "modes take turns without steps");
-    return range(clock.length).flatMap((k) => steps.filter((s) => clock.first.includes(s.mode) === (k === 0))
-      .map((s) => ({ ...s, source: `${s.source} ${k}`, target: `${s.target} ${(k + 1) % Number(clock.length)}` })));
+    const { length, first, ahead = range(length).map((k) => (k ? [-1n, BigInt(k + 1) % length] : [1n, -1n])) } = clock, groups = [S.names.slice(0, S.count), S.names.slice(S.count)];
+    need(!flow && length > 1n && S.o.switching === "arbitrary" && ahead.length === Number(length), "modes take turns without steps");
+    need(first.every((name) => S.names.includes(name)) && groups.every((names) => !names.length || new Set(names.map((name) => first.includes(name))).size === 2), "a turn has no mode");
+    need(ahead.every((pair) => pair.length === 2 && pair.some((to) => to >= 0n) && pair.every((to) => to >= -1n && to < length)), "an automaton is odd");
+    return ahead.flatMap((pair, k) => pair.flatMap((to, other) => (to < 0n ? [] : steps.filter((s) => first.includes(s.mode) === !other)
+      .map((s) => ({ ...s, source: `${s.source} ${k}`, target: `${s.target} ${to}` })))));
   }
   // Every step of a system that keeps rules of switching: its places are the modes.
   function stepsByMode(S, leaving, [p, q]) {
     const steps = [], { transitions, resets = [], stays = [], dwell_time: dwell = "0" } = S.rules, names = S.names.slice(0, S.count);
-    need(resets.every((r) => names.includes(r.source) && names.includes(r.target)), "a reset is of no mode");
+    need([...stays, ...(transitions ?? [])].every((pair) => pair.length === 2), "a stay or a switch is no pair");
+    for (const keys of [leaving, stays.map(([name]) => name), ...resets.map((r) => [r.source, r.target]), ...(transitions ?? [])]) distinct(keys, names);
     names.forEach((name, k) => { if (!leaving.includes(name)) steps.push(step(name, name, name, S.A[k], S.flow, 1)); });
     names.forEach((a, k) => names.forEach((b, l) => {
       if (a === b || (transitions && !transitions.some(([from, to]) => from === a && to === b))) return;
       const { N, d } = S.A[k], n = N.length, ways = resets.filter((r) => r.source === a && r.target === b), left = leaving.includes(a);
-      const own = Object.fromEntries(stays)[a] ?? { shortest: dwell }, shortest = ratio(own.shortest ?? "0"), first = S.flow || shortest[0] >= shortest[1] ? shortest : [1n, 1n];
+      const own = new Map(stays).get(a) ?? { shortest: dwell }, shortest = ratio(own.shortest ?? "0"), first = S.flow || shortest[0] >= shortest[1] ? shortest : [1n, 1n];
       const last = left ? ratio(own.longest) : first;
       need(first[0] * last[1] <= last[0] * first[1] && (S.flow || first[1] * last[1] === 1n), "a stay is odd");
-      known(!(S.flow && left), "stays of any length in continuous time");
+      known(last[0] <= 4096n * last[1], "so long a stay");
       for (const reset of ways.length ? ways : [null]) {
         let jump = reset ? table(reset, S.A[l].N.length, n) : { N: unit(n), d: 1n };
         need(jump.N.length === S.A[l].N.length, "a switch has no reset that fits");
@@ -180,7 +186,7 @@ const check = (() => {
   }
   function graph(S, o) {
     const { stays, degree = 1n, multipliers = [], nodes } = o, d = Number(degree), rate = ratio(o.rate), added = [...(o.vanishing ?? [])];
-    known(!("edges" in o), "edges to some nodes");
+    known(!("edges" in o) && !(S.flow && stays?.leaving?.length), "edges to some nodes, or stays of any length in continuous time");
     need(d >= 1 && rate[0] > 0n && (S.flow || rate[0] < rate[1]), "the rate is none of decay");
     const rounds = multipliers.some(({ fact }) => fact.startsWith("rounding")), { clock } = S.o;
     const lost = !stays && nodes.some(({ place }) => place.startsWith("free")), active = rounds ? S.named("rounding") : [];
@@ -211,7 +217,8 @@ const check = (() => {
     return `decay like ${shown}${lost ? ", through loss of contact" : ""}${rounds ? ", with rounding" : ""}`;
   }
   function noCommonQuadratic(S, { factors }) {
-    need(S.uniform && factors.every(([name, L]) => S.names.indexOf(name) in S.o.modes && L.length === S.n), "the factors are not those of modes");
+    distinct(factors.map(([name]) => name), S.names.slice(0, S.count));
+    need(S.uniform && factors.every(([, L]) => L.length === S.n), "the factors are not those of modes");
     need(factors.every(([, L, ...more]) => L.every((row) => row.length === L[0].length) && !more.length), "a factor has no shape");
     const used = factors.map(([name, L]) => [S.A[S.names.indexOf(name)], L]), common = used.map(([{ d }]) => d).reduce(lcm);
     need(definite(used.flatMap(([{ N, d }, L]) => L[0].flatMap((_, j) => {

@@ -85,7 +85,7 @@ def _verify(
 ) -> Verification:
     if (altered := find_altered(document)) is not None:
         return altered
-    if (foreign := _find_foreign(document, spec)) is not None:
+    if (foreign := find_foreign(document, spec)) is not None:
         return Verification(None, foreign)
     from nrs_design.switched.assemble import assemble_from_text
 
@@ -101,7 +101,7 @@ def _verify(
     return check(document, system)
 
 
-def _find_foreign(document: Mapping[str, Any], spec: LoadedSpec) -> str | None:
+def find_foreign(document: Mapping[str, Any], spec: LoadedSpec) -> str | None:
     """Say why a certificate is not one for this spec."""
     if document.get("spec") != {"name": spec.spec.name, "sha256": spec.sha256}:
         return "it belongs to another spec, or the spec has changed since"

@@ -24,6 +24,9 @@ if TYPE_CHECKING:
 # Highest degree, budget and memory, as far as they are given.
 SearchLimits = tuple[int | None, float | None, float | None]
 
+# Folder of certificates, whether there are reports, and whether all of them.
+OutputFiles = tuple[Path, bool, bool]
+
 # Folders that a note lists by name.
 SHOWN = 5
 
@@ -66,6 +69,12 @@ def gate(
     no_reports: Annotated[
         bool, typer.Option("--no-reports", help="Write certificates, but no HTML reports.")
     ] = False,
+    pages: Annotated[
+        bool,
+        typer.Option(
+            "--pages", help="Write the HTML report of every spec, too of what is as recorded."
+        ),
+    ] = False,
     jobs: Annotated[int, typer.Option(min=1, help="How many processes.")] = 1,
     against: Annotated[
         Path | None,
@@ -81,6 +90,9 @@ def gate(
 ) -> NoReturn:
     """Certify every spec, write certificates, reports and the lock file, and fail closed.
 
+    A certificate in the folder that still holds is kept, and not searched for again; --budget,
+    --max-degree and --memory always search. Reports are written of what is new or not fulfilled.
+
     The lock file keeps its entries for other specs, and no file of another spec is overwritten.
 
     The exit code is that of the worst obligation: 4 before 2 before 1 before 3 before 0.
@@ -93,7 +105,11 @@ def gate(
     """
     chosen = format_of(format_)
     _check_options(out, jobs, locked=locked, prune=prune)
+    if pages and (no_reports or locked):
+        given = "--no-reports" if no_reports else "--locked"
+        raise NrsDesignError(f"--pages and {given} exclude each other", remedy="keep one of them")
     search = (max_degree, budget, memory)
+    files = (reports, not no_reports, pages)
     start = perf_counter()
     if against is not None:
         from nrs_design.gating.against import base_paths
@@ -103,7 +119,7 @@ def gate(
     outcome = (
         _re_check(paths, lock)
         if locked
-        else _certify(paths, lock, reports, search, jobs, html=not no_reports, prune=prune)
+        else _certify(paths, lock, files, search, jobs, prune=prune)
     )
     if against is not None:
         from nrs_design.gating.against import compare_with_base
@@ -189,26 +205,32 @@ def _show(outcome: GateOutcome) -> None:
 def _certify(
     paths: list[Path],
     lock: Path,
-    reports: Path,
+    wanted: OutputFiles,
     search: SearchLimits,
     jobs: int,
     *,
-    html: bool,
     prune: bool,
 ) -> GateOutcome:
     from nrs_design.gating.find_specs import find_specs
     from nrs_design.gating.lock import read_lock_if_any
-    from nrs_design.gating.renew import certificates_of, check_folder, write_lock
+    from nrs_design.gating.renew import certificates_of, check_folder, recorded_in, write_lock
     from nrs_design.gating.run import Files, run_gate
     from nrs_design.output import LOCK, check_place
     from nrs_design.pipeline.certification import Overrides
 
     specs = find_specs(paths)
+    reports, html, every_page = wanted
     check_folder(reports, lock)
     check_place(lock, LOCK)
     known = read_lock_if_any(lock)
     with progress("gate") as step:
-        files = Files(folder=reports, html=html, locked=certificates_of(known, lock))
+        files = Files(
+            folder=reports,
+            html=html,
+            every_page=every_page,
+            locked=certificates_of(known, lock),
+            recorded=recorded_in(known, lock),
+        )
         outcome = run_gate(specs, files, step, Overrides(*search), jobs)
     return _with_not_examined(write_lock(outcome, lock, prune=prune), paths)
 

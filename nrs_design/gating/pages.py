@@ -34,7 +34,8 @@ _PACKAGE = Path(__file__).parents[1]
 def made_of(result: Result, limits: Limits, origin: str) -> str:
     """Return the hash of everything that a page follows from, in hexadecimal.
 
-    The limits of the searches are part of it; the origin is the spec as seen from the page.
+    The limits of the searches are part of it, and how they went is not: what is found by one is
+    found again in its certificate. The origin is the spec as seen from the page.
     """
     loaded, found = result.loaded, result.certification
     said = [
@@ -45,8 +46,6 @@ def made_of(result: Result, limits: Limits, origin: str) -> str:
         loaded.sha256,
         dict(hash_followed(loaded)),
         str(found.verdict),
-        found.rate_limit,
-        [(one.step, one.outcome, one.work) for one in found.attempts],
         None if result.certificate is None else dump(result.certificate, origin),
         (limits.max_degree, limits.budget, limits.memory, limits.optimize_rate, limits.more),
     ]

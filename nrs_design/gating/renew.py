@@ -118,6 +118,18 @@ def certificates_of(lock: Lock, file: Path) -> Mapping[Path, Path]:
     }
 
 
+def recorded_in(lock: Lock, file: Path) -> Mapping[Path, tuple[Path, str]]:
+    """Return file and id of the certificate of every locked spec, by the absolute path of it."""
+    return {
+        Path(os.path.abspath(file.parent / entry.path)): (
+            Path(os.path.normpath(file.parent / entry.certificate.file)),
+            entry.certificate.id,
+        )
+        for entry in lock.specs
+        if entry.certificate is not None
+    }
+
+
 def check_folder(folder: Path, file: Path) -> None:
     """Refuse a folder for certificates that a lock file could not name."""
     if relative_to_lock(folder, file).partition("/")[0] == "..":

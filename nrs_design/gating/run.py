@@ -1,4 +1,8 @@
-"""The gate itself: design, certify, write, re-check, for every spec."""
+"""The gate itself: design, certify, write, re-check, for every spec.
+
+What is recorded and still holds is checked, and not searched for again: another processor finds
+other last digits of the same proof.
+"""
 
 from __future__ import annotations
 
@@ -10,9 +14,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from nrs_design.axis import about
-from nrs_design.certificates.certificate import dump
+from nrs_design.certificates.certificate import Verdict, dump
+from nrs_design.certificates.goals import certified_goals
+from nrs_design.certificates.verify import find_foreign, read_document
 from nrs_design.controllers.gains import gains_of
-from nrs_design.errors import OutputError, SpecError
+from nrs_design.errors import CertificateError, OutputError, SpecError
 from nrs_design.gating.examine import Examiner
 from nrs_design.gating.judge import judge_margins, judge_scenarios
 from nrs_design.gating.obligations import (
@@ -31,6 +37,7 @@ from nrs_design.pipeline.certification import (
     Overrides,
     Result,
     run_certification,
+    run_recorded,
     run_verification,
     search_limits,
 )
@@ -46,12 +53,15 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Files:
-    """Where the files of a spec go: ``NAME.cert.json`` and, if asked for, ``NAME.html``."""
+    """Where the files of a spec are: ``NAME.cert.json`` and, if asked for, ``NAME.html``."""
 
     folder: Path  # For all of them
-    html: bool = True  # Whether reports are asked for
+    html: bool = True  # Whether reports are asked for, of what is new or not fulfilled
+    every_page: bool = False  # Whether they are of all specs
     # Which spec a certificate file is locked for, as real paths.
     locked: Mapping[Path, Path] = field(default_factory=dict)
+    # File and id of the certificate that is locked for a spec, by the absolute path of the spec.
+    recorded: Mapping[Path, tuple[Path, str]] = field(default_factory=dict)
 
     def certificate(self, name: str) -> Path:
         """Return the certificate file of the spec of that name."""
@@ -172,7 +182,9 @@ def _examine(
     if files.html:
         check_place(files.report(loaded.spec.name), PAGE)
     limits = search_limits(loaded.spec, overrides)
-    result = run_certification(loaded, limits=limits, progress=progress)
+    # Who sets how far a search goes wants one.
+    kept = None if overrides not in (None, Overrides()) else _kept(loaded, files, progress)
+    result = kept or run_certification(loaded, limits=limits, progress=progress)
     certification, certificate = result.certification, result.certificate
     examiner = Examiner.of(loaded)
     blocked = find_blocked(result, limits, progress)
@@ -181,35 +193,59 @@ def _examine(
     obligations = examiner.stability(certification.system, certification.statements, searched)
     file = None if certificate is None else place
     if certificate is not None:
-        write_output(place, dump(certificate, origin_of(loaded.path, place)), replaces=CERTIFICATE)
-        progress("re-check")
-        obligations += (examiner.certificate(place, run_verification(place, result).fault),)
+        fault = None
+        text = dump(certificate, origin_of(loaded.path, place))
+        if kept is None or not _holds_text(place, text):
+            write_output(place, text, replaces=CERTIFICATE)
+            progress("re-check")
+            fault = run_verification(place, result).fault
+        obligations += (examiner.certificate(place, fault),)
     recorded = hash_recorded(loaded)
     simulated = tuple(judge_scenarios(result, examiner, progress))
     analysis, goals = judge_margins(result, examiner, progress)
-    kept = (*examiner.contact(certificate), *examiner.limits(certificate))
-    cautions = (*kept, *examiner.cautions(analysis))
-    if files.html:
-        progress("report")
-        page = files.report(loaded.spec.name)
-        _write_page(result, page, limits, analysis, blocked)
-    outcome = examiner.outcome(
-        certification,
-        file,
-        certificate,
-        (
-            *obligations,
-            *examiner.certified_goals(certificate),
-            *goals,
-            *simulated,
-            *examiner.identified(),
-        ),
-        cautions,
+    shown = (*examiner.contact(certificate), *examiner.limits(certificate))
+    cautions = (*shown, *examiner.cautions(analysis))
+    obligations += (
+        *examiner.certified_goals(certificate),
+        *goals,
+        *simulated,
+        *examiner.identified(),
     )
+    page = files.report(loaded.spec.name)
+    fulfilled = all(item.fulfilled for item in obligations)
+    # A page that is there must be one of this spec.
+    if files.every_page or (files.html and (kept is None or not fulfilled or page.exists())):
+        progress("report")
+        _write_page(result, page, limits, analysis, blocked)
+    outcome = examiner.outcome(certification, file, certificate, obligations, cautions)
     if result.design is None:
         return replace(outcome, recorded=recorded)
     gains, units = gains_of(result.design), result.design.units
     return replace(outcome, gains=gains, units=units, recorded=recorded)
+
+
+def _kept(loaded: LoadedSpec, files: Files, progress: Progress) -> Result | None:
+    """Return what is recorded for a spec, checked exactly; None if a search could show more."""
+    file, locked = files.certificate(loaded.spec.name), None
+    if (entry := files.recorded.get(Path(os.path.abspath(loaded.path)))) is not None:
+        file, locked = entry
+    try:
+        document = read_document(file)
+        if locked not in (None, document.get("id")) or find_foreign(document, loaded):
+            return None
+        result = run_recorded(loaded, file, progress)
+    except CertificateError:
+        return None
+    verdict, goals = result.certification.verdict, certified_goals(loaded.spec, result.certificate)
+    proved = verdict is Verdict.PROVED and all(goal.met for goal in goals)
+    return result if proved or verdict is Verdict.REFUTED else None
+
+
+def _holds_text(file: Path, text: str) -> bool:
+    try:
+        return file.read_bytes() == text.encode()
+    except OSError:
+        return False
 
 
 def _write_page(

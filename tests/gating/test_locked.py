@@ -300,6 +300,7 @@ def test_remark_of_an_inconclusive_spec_is_locked_and_checked(project):
 @pytest.mark.parametrize("name", ["stable", "soft-tissue"])
 def test_inconclusive_spec_stays_inconclusive(project, inconclusive, name):
     spec = project / f"specs/{name}.nrs.yaml"
+    (project / f"reports/{name}.cert.json").unlink()
     _, again = gate_twice(project, spec)
     assert broken(again) == [("NRS102", str(Status.INCONCLUSIVE))]
     assert (again.severity, again.specs[0].verdict) == (1, "inconclusive")

@@ -1,0 +1,166 @@
+"""A gate keeps what is recorded and still holds; it searches for what is not, or may be more."""
+
+import json
+import shutil
+from pathlib import Path
+
+import pytest
+
+from nrs_design.certificates.certificate import content_id
+from nrs_design.gating.find_specs import find_specs
+from nrs_design.gating.lock import read_lock_if_any
+from nrs_design.gating.renew import certificates_of, recorded_in, write_lock
+from nrs_design.gating.run import Files, run_gate
+from nrs_design.pipeline.certification import Overrides
+from tests.support import typed
+
+from .conftest import HARD, STABLE, UNSTABLE
+
+
+@pytest.fixture
+def gate(project, monkeypatch):
+    """Run the gate on a spec and renew the lock; return whether there was a search."""
+    from nrs_design.gating import run
+
+    certify, searched = run.run_certification, []
+
+    def count(loaded, **options):
+        searched.append(loaded.spec.name)
+        return certify(loaded, **options)
+
+    monkeypatch.setattr(run, "run_certification", count)
+
+    def examine(name="stable", folder="reports", **overrides):
+        searched.clear()
+        lock = project / "nrs.lock"
+        known = read_lock_if_any(lock)
+        files = Files(
+            folder=project / folder,
+            html=False,
+            locked=certificates_of(known, lock),
+            recorded=recorded_in(known, lock),
+        )
+        specs = find_specs([project / f"specs/{name}.nrs.yaml"])
+        outcome = run_gate(specs, files, overrides=Overrides(**overrides))
+        write_lock(outcome, lock)
+        return bool(searched)
+
+    return examine
+
+
+def contents(project):
+    files = sorted(path for path in project.rglob("*") if path.is_file())
+    return {file.relative_to(project): file.read_bytes() for file in files}
+
+
+def restate(file, change):
+    """Change a certificate, and give it the id that follows."""
+    document = json.loads(file.read_text())
+    change(document)
+    document["id"] = content_id(document)
+    file.write_text(json.dumps(document, indent=2) + "\n")
+
+
+@pytest.mark.parametrize("name", ["stable", "soft-tissue"])
+def test_what_still_holds_is_not_searched_for_and_nothing_changes(project, gate, name):
+    before = contents(project)
+    assert not gate(name)
+    assert contents(project) == before
+
+
+def test_what_is_refuted_is_not_searched_for_again(project, gate):
+    (project / "specs/unstable.nrs.yaml").write_text(UNSTABLE)
+    assert gate("unstable")
+    before = contents(project)
+    assert not gate("unstable")
+    assert contents(project) == before
+
+
+def test_a_certificate_counts_without_a_lock_and_in_another_folder(project, gate):
+    text = (project / "reports/stable.cert.json").read_text()
+    lock = (project / "nrs.lock").read_bytes()
+    assert not gate(folder="ci")
+    assert (project / "ci/stable.cert.json").read_text() == text
+    (project / "nrs.lock").unlink()
+    assert not gate()
+    assert not gate("soft-tissue")
+    assert (project / "nrs.lock").read_bytes() == lock
+
+
+@pytest.mark.parametrize("overrides", [{"budget": 9.0}, {"max_degree": 4}, {"memory": 1.0}])
+def test_who_sets_how_far_a_search_goes_wants_one(gate, overrides):
+    assert gate(**overrides)
+
+
+def _altered(document):
+    (statement, *_) = document["statements"]
+    statement["claim"] = "Every solution decays at once."
+
+
+@pytest.mark.parametrize(
+    ("change", "locked"),
+    [
+        pytest.param(lambda d: d.update(schema="nrs-design/certificate/7"), False, id="schema"),
+        pytest.param(_altered, False, id="does not hold"),
+        pytest.param(lambda d: d["spec"].update(sha256="0" * 64), False, id="another spec"),
+        # It holds, and is another than the one that was locked.
+        pytest.param(lambda d: d["package"].update(version="0.1"), True, id="not the locked one"),
+    ],
+)
+def test_what_does_not_hold_or_is_not_the_locked_one_is_searched_for(project, gate, change, locked):
+    text = (project / "reports/stable.cert.json").read_text()
+    if not locked:
+        (project / "nrs.lock").unlink()
+    restate(project / "reports/stable.cert.json", change)
+    assert gate()
+    assert (project / "reports/stable.cert.json").read_text() == text
+
+
+def test_a_spec_that_has_changed_is_searched_for(project, gate):
+    spec = project / "specs/stable.nrs.yaml"
+    spec.write_text(STABLE.replace("[-2, 3]", "[-2, 2]"))
+    assert gate()
+    assert not gate()
+    spec.write_text(f"# Nothing else is said.\n{spec.read_text()}")
+    assert not gate()
+
+
+def test_other_gains_than_are_recorded_are_searched_for(project, gate, monkeypatch):
+    from nrs_design.pipeline import certification
+
+    monkeypatch.setattr(certification, "is_of_gains", lambda *given: False)
+    assert gate("soft-tissue")
+
+
+def test_a_goal_that_the_certificate_does_not_show_is_searched_for(project, gate):
+    spec = project / "specs/soft-tissue.nrs.yaml"
+    text = spec.read_text()
+    spec.write_text(f"{text}goals: {{decay_rate: 9 1/s}}\n")
+    assert gate("soft-tissue")
+    assert gate("soft-tissue")
+    spec.write_text(f"{text}goals: {{decay_rate: 3 1/s}}\n")
+    assert gate("soft-tissue")
+    assert not gate("soft-tissue")
+
+
+def test_what_is_open_is_searched_for_again(project, gate):
+    (project / "specs/hard.nrs.yaml").write_text(HARD)
+    assert gate("hard")
+    assert (project / "reports/hard.cert.json").exists()
+    assert gate("hard")
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize("processor", ["Haswell", "SkylakeX", "Prescott"])
+def test_another_processor_changes_nothing_that_is_shipped(tmp_path, monkeypatch, processor):
+    """Its sums end in other digits, so its searches would."""
+    if processor == "SkylakeX" and "avx512f" not in Path("/proc/cpuinfo").read_text():
+        pytest.skip("this processor has no AVX-512")
+    monkeypatch.setenv("OPENBLAS_CORETYPE", processor)
+    root = Path(__file__).parents[2]
+    for folder in ("specs", "reports"):
+        shutil.copytree(root / folder, tmp_path / folder, ignore=shutil.ignore_patterns("*.html*"))
+    shutil.copy(root / "nrs.lock", tmp_path)
+    before = contents(tmp_path)
+    typed("gate", "specs", cwd=tmp_path, code=0)
+    assert contents(tmp_path) == before

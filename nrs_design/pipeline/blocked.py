@@ -295,7 +295,7 @@ def blocked_lines(blocked: Blocked, path: Path) -> tuple[str, ...]:
     if not blocked.proved:
         spent = f"{blocked.work:.2g} of work"
         verb = "was" if blocked.tried == 1 else "were"
-        return (f"no cause found: {some} of the spec {verb} changed, and nothing helps ({spent})",)
+        return (f"no change found that is proved: {some} of the spec {verb} tried ({spent})",)
     alone = len(blocked.proved[0].lines) == 1
     head = "proved with any one of these changes"
     if not alone:

@@ -285,9 +285,9 @@ SEVERAL_CONTACTS = _F(
 )
 
 OTHERS = _F(
-    "{0!r}, which is no impedance controller,",
+    "{0!r}, which is not of type impedance,",
     "controllers.{0}.type",
-    "use impedance controllers",
+    "use controllers of type impedance",
     _controller(lambda c: c.commands != "velocity"),
 )
 DAMPED_FORCE = _F(

@@ -95,7 +95,8 @@ def accessibility(session: nox.Session) -> None:
     folder = session.create_tmp()
     session.run("npm", "install", "--prefix", folder, "axe-core@4.14.1", external=True, silent=True)
     axe = f"{folder}/node_modules/axe-core/axe.min.js"
-    run_there(session, "pytest", "-k", "accessibility", "tests/reporting", "tests/docs", AXE=axe)
+    pages = ("tests/reporting/test_browser.py", "tests/docs/test_built_pages.py")
+    run_there(session, "pytest", *TWO_PROCESSES, "-k", "accessibility", *pages, AXE=axe)
 
 
 @nox.session(**IN_ENVIRONMENT)

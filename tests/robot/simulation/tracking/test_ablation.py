@@ -16,7 +16,7 @@ def test_same_motions_for_both_controllers(changed):
 
 def test_one_thing_at_a_time(changed, drive):
     by_name = {(track.controller, name): track for name, track in changed}
-    assert len(by_name) == len(changed) == 11
+    assert len(by_name) == len(changed) == 12
     for (controller, name), track in by_name.items():
         plain = by_name[controller, "as designed"]
         same = {
@@ -36,7 +36,7 @@ def test_one_thing_at_a_time(changed, drive):
 @pytest.mark.slow
 def test_the_page_states_what_the_changes_do(changed):
     page = (ROOT / "docs/robot/motion-control.md").read_text()
-    names = ("as designed", "rotor inertia in the law")
+    names = ("as designed", "rotor inertia in the law", "both gains times 30")
     chosen = [(name, track.only("phi")) for name, track in changed if name in names]
     for (name, track), record in zip(chosen, simulate(t for _, t in chosen), strict=True):
         (row,) = [line for line in page.splitlines() if f"{track.controller} | {name} |" in line]

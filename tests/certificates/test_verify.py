@@ -367,6 +367,18 @@ class TestForgery:
         for i in range(len(document["assumptions"])):
             self.reject(changed(document, ("assumptions", i), DROP), spec, "'assumptions'")
 
+    def test_a_proof_for_a_narrow_range_is_none_for_a_wide_one(self, impedance, tmp_path):
+        document, _ = impedance
+        path = tmp_path / "wide.nrs.yaml"
+        path.write_text(SOFT_TISSUE.read_text().replace("768.17 N/m", "2000 N/m"))
+        wide = read_spec(path)
+        other = json.loads(dump(run_certification(wide, limits=ANY_RATE).certificate))
+        assert other["verdict"] == "refuted"
+        # Everything but the numbers is taken from the other certificate.
+        forged = {**other, "verdict": "proved", "statements": document["statements"]}
+        self.reject(forged, wide, "does not decrease")
+        self.reject({**document, "spec": other["spec"]}, wide, "")
+
     def test_changed_spec(self, tmp_path):
         spec = write_spec(tmp_path / "a.yaml", [[-1, 0], [0, -1]])
         document = json.loads(dump(run_certification(spec).certificate))
@@ -511,22 +523,10 @@ class TestForgery:
         tampered = changed(document, ("gains", "motion", "Kd"), str(2**127))
         self.reject(tampered, spec, "single precision")
 
-    @pytest.mark.parametrize(
-        "coordinates", ["Deflection", "force", "", None, 1, ["deflection"], {}]
-    )
-    def test_unknown_coordinates(self, impedance, coordinates):
-        document, spec = impedance
-        self.reject({**document, "coordinates": coordinates}, spec, "coordinates")
-
     @pytest.mark.parametrize("coordinates", ["deflection", "force", ""])
     def test_coordinates_of_given_matrices(self, given, coordinates):
         document, spec = given
         self.reject({**document, "coordinates": coordinates}, spec, "")
-
-    @pytest.mark.parametrize("gains", [None, [], "", 0, False, {"motion": {}}])
-    def test_gains_of_given_matrices(self, given, gains):
-        document, spec = given
-        self.reject({**document, "gains": gains}, spec, "")
 
     def test_nesting_too_deep_for_the_canonical_form(self, given):
         document, spec = given
@@ -554,11 +554,8 @@ class TestFiles:
             (b"", "not a certificate"),
             (b"{", "not a certificate"),
             (b"[]", "expected a JSON object"),
-            (b"null", "expected a JSON object"),
-            (b"3", "expected a JSON object"),
             (b'"text"', "expected a JSON object"),
             (b'{"rate": 0.5}', "floating-point"),
-            (b'{"rate": 1e3}', "floating-point"),
             (b'{"rate": NaN}', "floating-point"),
             (b'{"rate": -Infinity}', "floating-point"),
             (b'{"rate": 0.' + b"1" * 10_000 + b"}", "floating-point"),
@@ -566,13 +563,11 @@ class TestFiles:
             (b'{"a": {"b": 1, "b": 2}}', "a key occurs twice"),
             (b'{"Q": ' + b"7" * 4301 + b"}", "4300"),
             (b'{"a": ' + b"[" * 5000 + b"]" * 5000 + b"}", "recursion"),
-            (b'{"a": ' * 5000 + b"1" + b"}" * 5000, "recursion"),
             (b"\xff\xfe{}", "not a certificate"),
             (b"<!doctype html>\n<p>{}", "not a certificate: this is a page"),
             (b"\xef\xbb\xbf{}", "not a certificate"),
             (b"{} {}", "not a certificate"),
             (b'{"a": 1,}', "not a certificate"),
-            (b"{'a': 1}", "not a certificate"),
             (b'{"a": "\n"}', "not a certificate"),
             (b"kind: switched-system\n", "not a certificate"),
         ],

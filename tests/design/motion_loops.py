@@ -2,8 +2,10 @@
 
 from fractions import Fraction
 
+from nrs_design.controllers.laws import ProportionalDerivative
 from nrs_design.design.transfer import TransferFunction
 from nrs_design.models.actuator import Actuator
+from nrs_design.models.interval import Interval
 from nrs_design.models.motion_loop import MotionLoop, realize
 from nrs_design.switched.cut_loop import ContinuousAxis, Place
 
@@ -11,8 +13,8 @@ from nrs_design.switched.cut_loop import ContinuousAxis, Place
 PRINTED = TransferFunction((0.99, 56.82), (0.0351, 1.99, 56.82))
 EXACT = TransferFunction((0.9974, 56.822), (0.0351, 1.9974, 56.822))
 SOFT = 43.0356
-
-
+PD = ProportionalDerivative(Fraction("117359.436"), Fraction(2060))
+LAG = MotionLoop((Fraction(1),), (Fraction(1), Fraction(1)))
 PLACE = Place(Actuator(Fraction("4.8417e-4"), Fraction("0.0351")))
 
 
@@ -22,3 +24,7 @@ def axis_with(motion: TransferFunction) -> ContinuousAxis:
         tuple(map(Fraction, motion.numerator)), tuple(map(Fraction, motion.denominator))
     )
     return ContinuousAxis((PLACE,), realize(loop))
+
+
+def interval(low, high):
+    return Interval(Fraction(low), Fraction(low), Fraction(high))

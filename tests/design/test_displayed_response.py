@@ -6,7 +6,7 @@ from math import sqrt
 import numpy as np
 import pytest
 
-from nrs_design.controllers.laws import Admittance, ProportionalDerivative
+from nrs_design.controllers.laws import Admittance
 from nrs_design.controllers.sensor import LowPass
 from nrs_design.design.affine_family import Quotient
 from nrs_design.design.displayed_response import (
@@ -16,25 +16,18 @@ from nrs_design.design.displayed_response import (
 )
 from nrs_design.errors import InternalError
 from nrs_design.models.actuator import ActuatorRanges
-from nrs_design.models.interval import Interval
 from nrs_design.models.motion_loop import MotionLoop, realize
 from nrs_design.switched.cut_loop import ContinuousAxis
 from nrs_design.switched.joint import Joint
 from nrs_design.thesis import thesis
-from tests.design.motion_loops import PLACE
+from tests.design.motion_loops import LAG, PD, PLACE, interval
 
 ONE = Fraction(1)
-LAG = MotionLoop((ONE,), (ONE, ONE))
 BAND = Fraction(0), Fraction(12)
-PD = ProportionalDerivative(Fraction("117359.436"), Fraction(2060))
 
 
 def plain(loop=LAG, low_pass=None):
     return ContinuousAxis((PLACE,), realize(loop), None, low_pass)
-
-
-def interval(low, high):
-    return Interval(Fraction(low), Fraction(low), Fraction(high))
 
 
 def test_by_hand():

@@ -9,20 +9,18 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from nrs_design.controllers.laws import Admittance, ProportionalDerivative
+from nrs_design.controllers.laws import Admittance
 from nrs_design.controllers.sensor import LowPass
 from nrs_design.design.passivity import first_root, real_part
 from nrs_design.design.passivity import passive_band as band_of
 from nrs_design.models.actuator import ActuatorRanges
-from nrs_design.models.interval import Interval
 from nrs_design.models.motion_loop import MotionLoop, realize
 from nrs_design.switched.cut_loop import ContinuousAxis
 from nrs_design.switched.joint import Joint
 from nrs_design.thesis import thesis
-from tests.design.motion_loops import PLACE
+from tests.design.motion_loops import LAG, PD, PLACE, interval
 
 ONE = Fraction(1)
-LAG = MotionLoop((ONE,), (ONE, ONE))
 
 
 def axis(loop):
@@ -99,13 +97,6 @@ def test_against_a_grid(numerator, denominator, Mt, Bt):
     assert (real(np.linspace(0, end, 400)) > -1e-6 * Bt).all()
     if band.broken is not None:
         assert real(np.array([float(band.broken)]))[0] < 1e-9
-
-
-PD = ProportionalDerivative(Fraction("117359.436"), Fraction(2060))
-
-
-def interval(low, high):
-    return Interval(Fraction(low), Fraction(low), Fraction(high))
 
 
 def response(omega, values, J, lags=()):

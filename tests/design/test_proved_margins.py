@@ -31,9 +31,9 @@ from nrs_design.design.measures import (
 from nrs_design.design.proved_margins import RangedLoop, ranged_loops, with_proofs
 from nrs_design.models.contact import Elastic, Hand, KelvinBoltzmann, KelvinVoigt, Maxwell
 from nrs_design.models.contact.environment import Environment
-from nrs_design.models.interval import Interval
 from nrs_design.thesis import thesis
 from tests.design.classical import displayed_impedance_at
+from tests.design.motion_loops import interval
 
 SOFT = "41.504256", "44.246592"  # 720.56 N/m and 768.17 N/m at 0.24 m
 FOUND = {
@@ -43,10 +43,6 @@ FOUND = {
     DELAY_MARGIN: Loops.delay_margin,
     DISK_MARGIN: Loops.disk_margin,
 }
-
-
-def interval(low, high):
-    return Interval(Fraction(low), Fraction(low), Fraction(high))
 
 
 def contact(*stiffness, damping=("0", "0")):

@@ -192,23 +192,6 @@ def test_from_scratch_means_without_a_lock_file_of_the_pull_request(lines):
     assert "--lock ../gate/nrs.lock" in lines[place] or lines[place - 1] == CLEARED
 
 
-def test_what_is_weaker_is_asked_by_a_job_of_its_own():
-    jobs = parse(WORKFLOW)["jobs"]
-    asking = {
-        name
-        for name, job in jobs.items()
-        if any("--against ../target" in step.get("run", "") for step in job["steps"])
-    }
-    assert asking == {"weaker"}
-    assert "nrs-design-weaker" in parse(GITLAB)
-
-
-def test_the_licence_is_that_of_the_project():
-    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
-    assert project["license"] == {"text": "MIT"}
-    assert (ROOT / "LICENSE").read_text().startswith("MIT License\n")
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("weaker", [False, True])
 def test_the_action_writes_the_summary_of_the_job(tmp_path, weaker):

@@ -19,12 +19,15 @@ from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import ARBITRARY, Stay, Switching
 from nrs_design.search.certify import Limits, certify
 from nrs_design.spec import read_spec
+from tests.proof.evidence.test_invariant_ellipsoid import BOUNCE
+from tests.proof.evidence.test_saturated_ellipsoid import HELD
 from tests.proof.graphs import common_quadratic
-from tests.proof.systems import genuine
+from tests.proof.systems import bouncing, bouncing_in_steps, genuine, pushed, pushed_away
 from tests.support import ROOT, SOFT_TISSUE, family
 
 from .conftest import STABLE
 
+TISSUE = SOFT_TISSUE.read_text(encoding="utf-8")
 # Positive, with more digits than anybody decides about.
 ENDLESS = Fraction(1, 1 << 2_000_000)
 HALF_STABLE = family([[-1, 0], [0, -2]], [[0, 1], [-1, 0]])
@@ -32,9 +35,7 @@ HALF_STABLE = family([[-1, 0], [0, -2]], [[0, 1], [-1, 0]])
 
 @pytest.fixture
 def examiner(tmp_path):
-    path = tmp_path / "s.nrs.yaml"
-    path.write_text(STABLE)
-    return Examiner.of(read_spec(path))
+    return written(tmp_path, "", STABLE)
 
 
 def statuses(obligations):
@@ -160,11 +161,18 @@ def test_no_goal_is_met_by_corners_alone(examiner, proved, status, words):
     assert words in found.message
 
 
-def wanting(tmp_path, goals):
-    path = tmp_path / "wanting.nrs.yaml"
-    text = SOFT_TISSUE.read_text(encoding="utf-8")
-    path.write_text(f"{text}\ndisturbances: {{command: 8 deg/s}}\ngoals: {goals}\n")
-    return Examiner.of(read_spec(path))
+def certificate_of(system, *statements):
+    return Certificate("s", "0", None, {}, system, statements, "0")
+
+
+def written(path, more, text=TISSUE):
+    """Return the examiner of a spec with more lines."""
+    (path / "wanting.nrs.yaml").write_text(text + more, encoding="utf-8")
+    return Examiner.of(read_spec(path / "wanting.nrs.yaml"))
+
+
+def wanting(path, goals):
+    return written(path, f"\ndisturbances: {{command: 8 deg/s}}\ngoals: {goals}\n")
 
 
 @pytest.mark.parametrize(
@@ -181,13 +189,10 @@ def wanting(tmp_path, goals):
 )
 def test_goals_that_a_certificate_must_show(tmp_path, goals, level, ends):
     """The decay rate of the proof is 1/2 1/s; without a bound on everything, none is shown."""
-    from tests.proof.evidence.test_invariant_ellipsoid import BOUNCE
-    from tests.proof.systems import bouncing, pushed
-
     system = pushed(bouncing())
     proof = common_quadratic(((1, 0), (0, 1)), 0, Fraction(1, 2))
     bounds = () if level is None else (replace(BOUNCE, level=level),)
-    certificate = Certificate("s", "0", None, {}, system, (proof, *bounds), "0")
+    certificate = certificate_of(system, proof, *bounds)
     found = list(wanting(tmp_path, goals).certified_goals(certificate))
     assert [item.status for item in found] == ends
     assert all(item.rule.id == "NRS108" and item.line for item in found)
@@ -210,16 +215,11 @@ def test_goals_that_a_certificate_must_show(tmp_path, goals, level, ends):
 def test_the_force_that_motions_decay_from_is_held_against_the_certificate(
     tmp_path, goal, level, status, said
 ):
-    from tests.proof.evidence.test_saturated_ellipsoid import HELD
-    from tests.proof.systems import pushed_away
-
     proof = common_quadratic(((1,),), 0, Fraction(1, 2))
     shown = () if level is None else (replace(HELD, level=Fraction(level)),)
-    certificate = Certificate("s", "0", None, {}, pushed_away(), (proof, *shown), "0")
+    certificate = certificate_of(pushed_away(), proof, *shown)
     text = (ROOT / "docs/examples/saturating.nrs.yaml").read_text("utf-8")
-    path = tmp_path / "saturating.nrs.yaml"
-    path.write_text(text.replace("0.5 N*m", goal), encoding="utf-8")
-    (found,) = Examiner.of(read_spec(path)).certified_goals(certificate)
+    (found,) = written(tmp_path, "", text.replace("0.5 N*m", goal)).certified_goals(certificate)
     assert found.status is Status[status]
     assert found.rule.id == "NRS108"
     assert said in found.message
@@ -227,11 +227,9 @@ def test_the_force_that_motions_decay_from_is_held_against_the_certificate(
 
 def test_a_rate_per_step_counts_in_seconds(tmp_path):
     """rho = 0.95 in steps of a tenth of a second is at least 1/2 1/s."""
-    from tests.proof.systems import bouncing_in_steps
-
     proof = common_quadratic(((1, 0), (0, 1)), 0, Fraction("0.95"))
     for goal, status in (("0.5 1/s", Status.PROVED), ("0.6 1/s", Status.INCONCLUSIVE)):
-        certificate = Certificate("s", "0", None, {}, bouncing_in_steps(), (proof,), "0")
+        certificate = certificate_of(bouncing_in_steps(), proof)
         examiner = wanting(tmp_path, f"{{decay_rate: {goal}}}")
         assert [item.status for item in examiner.certified_goals(certificate)] == [status]
 
@@ -246,16 +244,10 @@ def test_a_rate_per_step_counts_in_seconds(tmp_path):
     ],
 )
 def test_a_delay_that_a_certificate_must_show(tmp_path, delay, wanted, status):
-    path = tmp_path / "wanting.nrs.yaml"
-    text = SOFT_TISSUE.read_text(encoding="utf-8")
-    path.write_text(
-        f"{text}\nsampling: {{period: 2 ms, delay: {delay}}}\ngoals: {{delay: {wanted}}}\n"
-    )
-    examiner = Examiner.of(read_spec(path))
+    said = f"\nsampling: {{period: 2 ms, delay: {delay}}}\ngoals: {{delay: {wanted}}}\n"
+    examiner = written(tmp_path, said)
     proof = common_quadratic(((1, 0), (0, 1)), 0, Fraction("0.95"))
-    from tests.proof.systems import bouncing_in_steps
-
-    certificate = Certificate("s", "0", None, {}, bouncing_in_steps(), (proof,), "0")
+    certificate = certificate_of(bouncing_in_steps(), proof)
     (found,) = examiner.certified_goals(certificate)
     assert (found.rule.id, found.status) == ("NRS108", status)
     assert f"{wanted} is wanted" in found.message
@@ -280,7 +272,7 @@ def test_a_rate_is_only_what_is_proved(example, name):
         assert certified_rate(None) == (None, None)
         return
     system, evidence = genuine(example)
-    certificate = Certificate("s", "0", None, {}, system, (evidence,), "0")
+    certificate = certificate_of(system, evidence)
     rate, found = certified_rate(certificate)
     assert found == name
     assert (rate is None) is (name is None)
@@ -289,11 +281,9 @@ def test_a_rate_is_only_what_is_proved(example, name):
 def test_a_limit_that_no_proof_keeps_is_warned_of(tmp_path):
     """Soft tissue, two controllers: 1.12 N m are proved at 8 deg/s, and the limit is 0.3 N m."""
     for goals, warned in (("", True), ("goals: {peak_torque: 2 N*m}\n", False)):
-        path = tmp_path / f"{warned}.nrs.yaml"
         disturbed = f"contact: kept\ndisturbances: {{command: 8 deg/s}}\n{goals}"
-        path.write_text(SOFT_TISSUE.read_text(encoding="utf-8") + disturbed, encoding="utf-8")
-        loaded = read_spec(path)
-        certificate = run_certification(loaded, limits=Limits(optimize_rate=False)).certificate
-        found = [item.message for item in Examiner.of(loaded).limits(certificate)]
+        asked, quick = written(tmp_path, disturbed), Limits(optimize_rate=False)
+        certificate = run_certification(asked.loaded, limits=quick).certificate
+        found = [item.message for item in asked.limits(certificate)]
         assert bool(found) == warned
         assert not warned or found[0].startswith("the limit of 0.3 N*m is not shown to be kept")

@@ -102,30 +102,6 @@ def test_what_is_designed_is_assembled_without_a_detour_by_text(monkeypatch):
     assert calls == {"gains_of": 1}
 
 
-def test_functions_are_counted_wherever_they_are_used():
-    """The count above looks into every module that could build a plant or optimize."""
-    for name, places in (
-        ("build_plant", {"pipeline/design", "switched/assemble", "spec/build_plant"}),
-        # A landscape prices what was not chosen: other weights, other bounds.
-        (
-            "optimize_impedance",
-            {
-                "design/constrained",
-                "design/cost_bound",
-                "design/impedance_optimum",
-                "design/landscape",
-            },
-        ),
-    ):
-        package = ROOT / "nrs_design"
-        using = {
-            path.relative_to(package).with_suffix("").as_posix()
-            for path in package.rglob("*.py")
-            if f"{name}(" in path.read_text(encoding="utf-8")
-        }
-        assert {item for item in using if not item.startswith("thesis/")} == places
-
-
 def test_the_design_keeps_the_optimum_it_found():
     designed = run_design(read_spec(SOFT_TISSUE))
     found = run_analysis(designed).impedance

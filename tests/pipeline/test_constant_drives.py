@@ -146,14 +146,6 @@ def test_a_constant_time_that_contradicts_is_refused(new, what):
     assert all(fault.remedy for fault in faults)
 
 
-def test_a_constant_beside_one_that_varies_is_refused():
-    text = LATE.replace(
-        "time_constant: 0.0351 s}", "time_constant: 0.0351 s, dead_time: [0.1 ms, 0.2 ms]}"
-    )
-    with pytest.raises(SpecError, match="beside what varies"):
-        parse_spec(text)
-
-
 def test_a_range_that_varies_may_say_so():
     both = (
         LATE.replace("{range: [2.4 ms, 3.6 ms], varies: false}", new)

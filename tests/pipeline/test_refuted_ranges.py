@@ -25,23 +25,36 @@ from nrs_design.switched.assemble import assemble
 from tests.proof.graphs import common_quadratic
 from tests.support import matrix
 
-# The largest spectral radius of an admissible loop is 0.98951, by a grid of 40 x 60 values.
-TORQUES = """\
+
+def torques(J, k, law, latency):
+    """A joint between two inertias, at a controller with these stiffness and damping."""
+    return f"""\
 kind: interaction-design
 name: torques
 axis: prismatic
-torque_interface: {inertia: {nominal: 8 kg, range: [5 kg, 12 kg], varies: false}, friction: 1 N*s/m}
-limits: {velocity: 100 mm/s, torque: 20 N, bandwidth: 2 Hz}
+torque_interface:
+  inertia: {{nominal: {J[0]} kg, range: [{J[0]} kg, {J[1]} kg], varies: false}}
+  friction: 1 N*s/m
+limits: {{velocity: 100 mm/s, torque: 20 N, bandwidth: 2 Hz}}
 environments:
   table:
     model: elastic
-    stiffness: {nominal: 5000 N/m, range: [1000 N/m, 20000 N/m], varies: false}
+    stiffness: {{nominal: {k[0]} N/m, range: [{k[0]} N/m, {k[1]} N/m], varies: false}}
 controllers:
-  c: {type: torque-impedance, environment: table, stiffness: 1000 N/m, damping: 125.2 N*s/m}
+  c:
+    type: torque-impedance
+    environment: table
+    stiffness: {law[0]} N/m
+    damping: {law[1]} N*s/m
 switching: arbitrary
-sampling: {period: 2 ms, delay: 0, latency: 2 ms}
+sampling: {{period: 2 ms, delay: 0, latency: {latency}}}
 contact: kept
 """
+
+
+# The largest spectral radius of an admissible loop is 0.98951, by a grid of 40 x 60 values.
+TORQUES = torques((5, 12), (1000, 20000), (1000, 125.2), "2 ms")
+UNSTABLE = torques((5, 12), (1000, 20000), (1000, 5000), "2 ms")
 # It is from 0.9537 to 0.9710 for all lags.
 LAG = """\
 kind: interaction-design
@@ -70,30 +83,8 @@ def spec_of(loop):
     k = round(300 * 30**stiffness), round(300 * 30**stiffness * (1.1 + 9 * stiff))
     law = round(300 * 10**K), round(20 * 200**D, 1)
     latency = ("0 ms", "2 ms", "{range: [0.4 ms, 1.6 ms], varies: false}")[late]
-    text = f"""\
-kind: interaction-design
-name: random
-axis: prismatic
-torque_interface:
-  inertia: {{nominal: {J[0]} kg, range: [{J[0]} kg, {J[1]} kg], varies: false}}
-  friction: 1 N*s/m
-limits: {{velocity: 100 mm/s, torque: 20 N, bandwidth: 2 Hz}}
-environments:
-  table:
-    model: elastic
-    stiffness: {{nominal: {k[0]} N/m, range: [{k[0]} N/m, {k[1]} N/m], varies: false}}
-controllers:
-  c:
-    type: torque-impedance
-    environment: table
-    stiffness: {law[0]} N/m
-    damping: {law[1]} N*s/m
-switching: arbitrary
-sampling: {{period: 2 ms, delay: 0, latency: {latency}}}
-contact: kept
-"""
     lates = ((0.0,), (T,), (0.0004, 0.0016))[late]
-    return text, J, k, law, lates
+    return torques(J, k, law, latency), J, k, law, lates
 
 
 def step(J, k, law, late):
@@ -175,9 +166,6 @@ def test_the_kernel_refuses_a_forged_corner():
         document = to_document(replace(forged, system=replace(system, enclosures=enclosures)))
         document["id"] = content_id(document)
         assert fault in verify_document(document, loaded).fault
-
-
-UNSTABLE = TORQUES.replace("damping: 125.2", "damping: 5000")
 
 
 def test_growth_does_not_belong_to_a_spec_without_its_enclosures():

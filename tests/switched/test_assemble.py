@@ -61,20 +61,6 @@ def test_designs_come_back_from_their_gains():
     assert system.modes[0].A.fractions()[2][2] == -Bt / Mt
 
 
-def test_limits_under_saturation_are_covered_beyond_their_named_values():
-    text = (ROOT / "docs/examples/saturating.nrs.yaml").read_text("utf-8")
-    spec = parse_spec(text.replace("contact: losable", "contact: kept"))
-    gains = {
-        "motion": {"Kp": "117359.4375", "Kd": "2060"},
-        "insertion": {"Mt": "0.00999999977648258209228515625", "Bt": "2.150000095367431640625"},
-        "withdrawal": {"Mt": "0.00999999977648258209228515625", "Bt": "1.03999996185302734375"},
-    }
-    system = assemble_from_text(spec, gains)
-    assert system.saturation is not None
-    # Limits that are larger than the named ones are covered, so these are rounded up.
-    assert any("cut off at 0.139627 rad/s (rounded up)" in text for text in system.assumptions)
-
-
 def test_a_motion_that_begins_with_a_force_may_have_a_filter_that_shows_it(tmp_path):
     text = (ROOT / "docs/examples/saturating.nrs.yaml").read_text("utf-8")
     filtered = text.replace("limits:", "sensor: {filter: {order: 2, cutoff: 20 Hz}}\nlimits:")

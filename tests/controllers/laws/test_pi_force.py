@@ -70,14 +70,4 @@ def test_what_the_integral_does_meanwhile_has_to_be_said():
     both = {"position": POSITION, "force": PI}
     with pytest.raises(SpecError, match="it is not said what the states of pi-force"):
         parse_spec(text_of(both))
-    with pytest.raises(SpecError, match="a reset of idle states beside 'force'"):
-        parse_spec(text_of(both, more="idle_states: {decay: 20 1/s, reset: true}"))
     assert parse_spec(text_of(both, more="idle_states: {decay: 20 1/s}")).idle_states
-    with pytest.raises(SpecError, match="pi-force controllers beside others"):
-        parse_spec(text_of({"force": PI}, more="idle_states: {decay: 20 1/s}"))
-
-
-def test_beside_it_no_offset_is_taken():
-    force = "{type: force, environment: soft, proportional_gain: 0.02 rad/(N*m), offset: measured}"
-    with pytest.raises(SpecError, match="the offset of 'other' beside a mixture"):
-        parse_spec(text_of({"force": PI, "other": force}, more="idle_states: {decay: 20 1/s}"))

@@ -32,9 +32,9 @@ MAIN = """#include "sampled_test.h"
 int main(void) { return (int)nrs_sampled_self_test() + 1; }
 """
 PROVED = (
-    ("certify-switching", "continuous.nrs.yaml"),
+    ("certify-switching", "continuous.nrs.yaml", "--out", "reports/continuous.cert.json"),
     ("verify", "reports/continuous.cert.json", "continuous.nrs.yaml"),
-    ("certify-switching", "sampled.nrs.yaml"),
+    ("certify-switching", "sampled.nrs.yaml", "--out", "reports/sampled.cert.json"),
     ("verify", "reports/sampled.cert.json", "sampled.nrs.yaml"),
 )
 DONE = (
@@ -147,8 +147,9 @@ def test_an_added_environment_is_proved_simulated_and_exported(tmp_path):
 def test_an_added_shape_of_a_graph_proves(tmp_path):
     """A form for each mode of the step before, at one place: the check needs nothing new."""
     (tmp_path / "two.nrs.yaml").write_text(TWO_MODES, encoding="utf-8")
+    kept = ("--out", "reports/two.cert.json")
     commands = (
-        ("certify-switching", "two.nrs.yaml", "--method", "mode-quadratic"),
+        ("certify-switching", "two.nrs.yaml", "--method", "mode-quadratic", *kept),
         ("verify", "reports/two.cert.json", "two.nrs.yaml"),
         ("report", "two.nrs.yaml"),
     )

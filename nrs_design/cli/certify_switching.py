@@ -52,9 +52,7 @@ ShortestDwell = Annotated[
 @command("certify-switching", each_axis=True)
 def certify_switching(
     spec: SpecFile,
-    out: Annotated[
-        Path | None, typer.Option(help="Certificate file; default reports/NAME.cert.json.")
-    ] = None,
+    out: Annotated[Path | None, typer.Option(help="Write the certificate to this file.")] = None,
     method: Annotated[Method, typer.Option(help="One rung of the ladder, or all.")] = Method.AUTO,
     optimize_rate: Annotated[
         bool, typer.Option(help="Look for the largest provable decay rate.")
@@ -74,7 +72,9 @@ def certify_switching(
         ),
     ] = None,
 ) -> Answer:
-    """Prove or refute exponential stability under the declared switching; keep the certificate.
+    """Prove or refute exponential stability under the declared switching.
+
+    `gate` writes certificates where it looks for them; --out writes one elsewhere.
 
     Example: nrs-design certify-switching specs/neuroboscope/soft-tissue.nrs.yaml
     """
@@ -89,9 +89,9 @@ def certify_switching(
     from nrs_design.pipeline.margins import run_proof_margins
 
     loaded = take_spec(spec)
-    path = out or Path("reports") / f"{loaded.spec.name}.cert.json"
-    check_certificate(spec, path)
-    check_place(path, CERTIFICATE)
+    if out is not None:
+        check_certificate(spec, out)
+        check_place(out, CERTIFICATE)
     history: list[tuple[int, float]] = []
     gradient = Gradient.of_texts(settings or ())
     if method is Method.GRADIENT and wants_json():
@@ -106,7 +106,7 @@ def certify_switching(
             progress=step,
         )
     # Write and print the proof before looking for margins, which takes minutes.
-    written = _write(result, path)
+    written = _write(result, out)
     if wants_text():
         _print(result)
     asked = {"margin": margin, "shortest_dwell": shortest_dwell}
@@ -181,13 +181,13 @@ def _growth_words(radius: RadiusBounds) -> str:
     return f"growth per step, rho: {low}; {high}"
 
 
-def _write(result: Result, path: Path) -> Path | None:
-    """Write the certificate, if there is one; return where it is."""
+def _write(result: Result, path: Path | None) -> Path | None:
+    """Write the certificate, if there is one and it is asked for; return where it is."""
     from nrs_design.certificates.certificate import dump
     from nrs_design.output import CERTIFICATE, write_output
     from nrs_design.ownership import origin_of
 
-    if result.certificate is None:
+    if result.certificate is None or path is None:
         return None
     origin = origin_of(result.loaded.path, path)
     write_output(path, dump(result.certificate, origin), replaces=CERTIFICATE)

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from nrs_design.search.method_run import MethodRun
     from nrs_design.spec import Spec
 
-_ANEW = "make it anew with certify-switching"
+_ANEW = "make it anew with certify-switching --out"
 
 
 @dataclass(frozen=True, slots=True)

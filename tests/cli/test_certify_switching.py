@@ -45,32 +45,30 @@ quantization, friction, saturation
 def test_proved(tmp_path):
     result = typed("certify-switching", SOFT_TISSUE, cwd=tmp_path, code=0)
     assert result.stdout == SHORT
+    assert list(tmp_path.iterdir()) == [], "what gates a build is written by gate"
     long = run("certify-switching", SOFT_TISSUE, "-v", cwd=tmp_path).stdout
     assert "Every solution, with contact lost and made again" in long
     assert "taken for granted (nrs-design report says how to test each):" in long
     assert "common quadratic function: exists" in long
-    assert "certificate written to reports/soft-tissue.cert.json" in result.stderr
-    document = json.loads((tmp_path / "reports" / "soft-tissue.cert.json").read_text())
-    assert document["verdict"] == "proved"
 
 
 def test_inconclusive_leaves_no_file(tmp_path):
     write_spec(tmp_path / "eleven.nrs.yaml", *HARD)
-    result = run("certify-switching", "eleven.nrs.yaml", "--budget", 0, "-v", cwd=tmp_path, code=3)
+    asked = ("eleven.nrs.yaml", "--budget", 0, "--out", "c.json", "-v")
+    result = run("certify-switching", *asked, cwd=tmp_path, code=3)
     assert "given: INCONCLUSIVE: no proof, and no signal that grows" in result.stdout
     assert "not begun: the budget of 0 is used up (--budget)" in result.stdout
-    assert not (tmp_path / "reports").exists()
+    assert not (tmp_path / "c.json").exists()
 
 
 def test_inconclusive_with_a_remark_keeps_it(tmp_path):
     write_spec(tmp_path / "eleven.nrs.yaml", *HARD)
-    result = run(
-        "certify-switching", "eleven.nrs.yaml", "--max-degree", 8, "-v", cwd=tmp_path, code=3
-    )
+    asked = ("eleven.nrs.yaml", "--max-degree", 8, "--out", "c.json", "-v")
+    result = run("certify-switching", *asked, cwd=tmp_path, code=3)
     assert "polynomial of degree 10: not tried: --max-degree is 8" in result.stdout
     assert "given: INCONCLUSIVE: no proof, and no signal that grows" in result.stdout
     assert "no common quadratic function exists" in result.stdout
-    document = json.loads((tmp_path / "reports" / "given.cert.json").read_text())
+    document = json.loads((tmp_path / "c.json").read_text())
     assert [item["kind"] for item in document["statements"]] == ["no-common-quadratic"]
     assert document["verdict"] == "inconclusive"
 
@@ -78,10 +76,10 @@ def test_inconclusive_with_a_remark_keeps_it(tmp_path):
 @pytest.mark.slow
 def test_two_resets_from_one_mode_to_another(tmp_path):
     path = ROOT / "docs" / "examples" / "contact-either-way.nrs.yaml"
-    result = run("certify-switching", path, "-v", cwd=tmp_path, code=1)
+    file = tmp_path / "c.json"
+    result = run("certify-switching", path, "-v", "--out", file, cwd=tmp_path, code=1)
     assert "then reset 2 to contact" in result.stdout
     assert "Mode free is left after at most 4 s." in result.stdout
-    file = tmp_path / "reports" / "contact-either-way.cert.json"
     run("verify", file, path, "-v", cwd=tmp_path, code=1)
     run("report", path, "--out", "page.html", "-v", cwd=tmp_path, code=1)
     assert "reset 2 of 2 to contact" in (tmp_path / "page.html").read_text()
@@ -102,11 +100,11 @@ switching: arbitrary
 def test_constants_are_the_difference_between_refuted_and_proved(tmp_path):
     path = tmp_path / "a.nrs.yaml"
     path.write_text(CORNERS)
-    result = run("certify-switching", path, "-v", cwd=tmp_path, code=0)
+    result = run("certify-switching", path, "-v", "--out", "c.json", cwd=tmp_path, code=0)
     assert "For every constant value of k and m in their ranges" in result.stdout
-    run("verify", "reports/corners.cert.json", path, "-v", cwd=tmp_path, code=0)
+    run("verify", "c.json", path, "-v", cwd=tmp_path, code=0)
     path.write_text(CORNERS.replace(", varies: false", ""))
-    run("verify", "reports/corners.cert.json", path, "-v", cwd=tmp_path, code=1)
+    run("verify", "c.json", path, "-v", cwd=tmp_path, code=1)
     assert "Repeating" in run("certify-switching", path, "-v", cwd=tmp_path, code=1).stdout
 
 
@@ -317,14 +315,14 @@ def broken_pipe():
     ("opened", "code", "said"),
     [
         # Who reads changes nothing: the system is proved, and its certificate is written.
-        (broken_pipe, 0, "certificate written to reports/commuting.cert.json\n"),
+        (broken_pipe, 0, "certificate written to c.json\n"),
         (lambda: os.open("/dev/full", os.O_WRONLY), 2, "the output cannot be written"),
     ],
 )
 def test_output_that_nobody_takes(tmp_path, opened, code, said):
-    written = opened()
+    written, asked = opened(), ("certify-switching", str(COMMUTING), "--out", "c.json")
     done = subprocess.run(
-        [sys.executable, "-m", "nrs_design", "certify-switching", str(COMMUTING)],
+        [*(sys.executable, "-m", "nrs_design"), *asked],
         stdout=written,
         stderr=subprocess.PIPE,
         text=True,
@@ -368,8 +366,9 @@ def test_dwell_time_in_steps_is_proved_or_refuted(tmp_path):
             '  - {name: m1, A: [["1/2", 0], [2, "1/2"]]}\n'
             f"switching: {{dwell_time: {steps} steps}}\n"
         )
-        assert said in run("certify-switching", path.name, "-v", cwd=tmp_path, code=code).stdout
-        run("verify", "reports/steps.cert.json", path.name, "-v", cwd=tmp_path, code=code)
+        asked = ("certify-switching", path.name, "-v", "--out", "c.json")
+        assert said in run(*asked, cwd=tmp_path, code=code).stdout
+        run("verify", "c.json", path.name, "-v", cwd=tmp_path, code=code)
 
 
 class TestGradientOptions:

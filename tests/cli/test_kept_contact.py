@@ -27,14 +27,14 @@ def spec(tmp_path):
 
 
 def test_the_verdict_is_open_and_the_growth_is_told(spec, tmp_path):
-    told = run("certify-switching", spec, "-v", cwd=tmp_path, code=3)
+    told = run("certify-switching", spec, "-v", "--out", "c.json", cwd=tmp_path, code=3)
     assert told.stdout.startswith(f"pulling: INCONCLUSIVE (refuted {KEPT}; ")
     assert "is not Schur (eigenvalue about 1.00054" in told.stdout
     assert f"(refuted {KEPT}; open where contact may be lost)" in told.stdout
     # The claim says that contact is kept; so how it is lost is not taken for granted beside it.
     assert "the environment pulling as it pushes" in told.stdout
     assert "Contact is lost where" not in told.stdout
-    checked = run("verify", "reports/pulling.cert.json", spec, "-v", cwd=tmp_path, code=3)
+    checked = run("verify", "c.json", spec, "-v", cwd=tmp_path, code=3)
     assert checked.stdout.startswith(f"INCONCLUSIVE (refuted {KEPT}) for this spec")
 
 

@@ -78,7 +78,9 @@ def test_margins_of_a_sampled_loop(tmp_path):
     head, _, _ = TEXT.partition("  withdrawal:")
     path.write_text(f"{head}switching: arbitrary\nsampling: {{period: 10 ms, delay: 0}}\n")
     result = run(
-        "certify-switching", path.name, "--margin", "--budget", "0.3", cwd=tmp_path, code=0
+        *("certify-switching", path.name, "--margin", "--budget", "0.3", "--out", "a.cert.json"),
+        cwd=tmp_path,
+        code=0,
     )
     told = result.stderr.splitlines()
     written = next(i for i, line in enumerate(told) if "certificate written to" in line)

@@ -155,7 +155,7 @@ class Simulation(AbstractResult):
     designed : nrs_design.pipeline.design.Designed
         The spec and its gains.
     runs : tuple of ScenarioRun
-        One for each scenario, and for each axis where one moves several.
+        One for each scenario.
     """
 
     designed: Designed

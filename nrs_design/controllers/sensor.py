@@ -97,7 +97,6 @@ class Sensor:
     errors: Mapping[str, Fraction] = field(default_factory=dict)
     filter: LowPass | None = None  # Of the signal
     noise: float | None = None  # One-sided power density in (N m)^2/Hz
-    arm: Fraction | None = None  # Distance from the pivot to the contact point in m, rounded down
     carries: bool = False  # Whether a tool hangs on it
 
     @property
@@ -114,15 +113,10 @@ def build_sensor(spec: SensorSpec | None) -> Sensor:
     low_pass = None
     if spec.filter is not None:
         low_pass = LowPass(spec.filter.order, to_float32(spec.filter.cutoff.not_below))
-    arm = None
-    if spec.contact is not None:
-        lever = [a - b for a, b in zip(spec.contact.exact, pivot, strict=True)]
-        arm = length_between(lever)[0]
     return Sensor(
         dict(_errors(spec, pivot)),
         low_pass,
         None if spec.noise_density is None else spec.noise_density.si,
-        arm,
         spec.tool is not None,
     )
 

@@ -259,7 +259,7 @@ class Examiner:
                 yield self.obligation(RESPONSE_GOAL, subject, status, message, place)
 
     def certified_goals(self, certificate: Certificate | None) -> Iterator[Obligation]:
-        """Yield NRS108 for every goal, and limit of contact with people, to be proved."""
+        """Yield NRS108 for every goal to be proved."""
         for goal in certified_goals(self.loaded.spec, certificate):
             # What wants no number is said whole already.
             wanted = "" if goal.wanted == "largest" else f"; {goal.wanted} is wanted"

@@ -46,10 +46,8 @@ def judge_scenarios(result: Result, examiner: Examiner, progress: Progress) -> I
     for name in limited:
         progress(f"scenario {name}")
         try:
-            # One run for each axis that moves.
-            runs = list(run_scenarios(result.designed, Runs((name,))))
+            (simulated,) = run_scenarios(result.designed, Runs((name,)))
         except DesignError as error:
             yield examiner.no_scenario(name, error)
         else:
-            for simulated in runs:
-                yield from examiner.scenario(name, simulated)
+            yield from examiner.scenario(name, simulated)

@@ -340,9 +340,7 @@ WORDS: Mapping[str, Word] = MappingProxyType(
                 "signal along which a motion grows, or a value of a constant parameter with one of "
                 "these. Where `contact: losable` is asked for, it is a sequence of contact and "
                 "flight that a growing motion makes by itself; growth for which the environment "
-                "would have to pull is no such witness. Modes of a sampled loop enclose what the "
-                "motor does, as closely as the assumptions say: a witness there may be of no motor "
-                "in the range.",
+                "would have to pull is no such witness.",
                 "Mend the spec or the design: the message names the witness. A mode needs more "
                 "damping (raise Bt) or a narrower range; a signal is also taken away by a longer "
                 "dwell time or by fewer transitions, if the robot keeps to them. Exit code 1.",

@@ -2,8 +2,8 @@
 
 Definiteness and the stability of a mode are decided here and nowhere else. What else a verdict
 rests on: the conditions in `nrs_design.proof.evidence` that form these matrices, and, where
-a condition holds an exponential or a period (`mode_quadratic` with a dwell time in continuous time,
-`unstable_period`), the enclosures of python-flint, which are taken as they are.
+a condition holds an exponential (a dwell time in continuous time, a period), the enclosures of
+python-flint, which are taken as they are.
 
 A rational matrix is given as integers over a positive denominator; positive factors change
 neither definiteness nor the Hurwitz property, so all tests run on integers.

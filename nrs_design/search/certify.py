@@ -35,9 +35,9 @@ from nrs_design.search.rate_limit import rate_limit
 from nrs_design.search.structure import merge_equal_modes, stand_in, triangular_blocks
 from nrs_design.work import Allowance, Fuse, NotAffordableError
 
-# The end of a search that had a solution, but no rate to claim for it.
 # Share of the work on a bound for ellipsoids off the origin.
 OFF_THE_ORIGIN = 0.7
+# The end of a search that had a solution, but no rate to claim for it.
 NO_RATE = "what was found shows no rate of decay"
 SATURATION = "decay under saturation"
 SUSPICIOUS, ENCLOSURE = "suspicious modes", "enclosure of the ranges"

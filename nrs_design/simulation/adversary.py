@@ -91,10 +91,7 @@ def _settles(A: Array) -> bool:
 
 
 def improve(game: Game, aim: Aim, signals: Signals, sweeps: int) -> Signals:
-    """Improve runs until a sweep gains nothing, or there have been enough.
-
-    Returns the best that each run came to, and what was wanted at its end, shape (S,).
-    """
+    """Improve runs until a sweep gains nothing, or there have been enough; return the best."""
     states = play(game, signals)
     value = _at_end(game, aim, signals, states)
     actions, shares = signals.actions.copy(), signals.shares.copy()

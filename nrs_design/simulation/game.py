@@ -141,7 +141,7 @@ class Signals:
 
 
 def play(game: Game, signals: Signals) -> Array:
-    """Simulate runs from rest; shape (K + 1, S, n), at a switch before the reset."""
+    """Simulate runs from their first states; shape (K + 1, S, n), at a switch before the reset."""
     steps, runs = signals.actions.shape
     states = np.zeros((steps + 1, runs, game.order))
     states[0] = signals.states

@@ -66,11 +66,11 @@ class Outputs:
 
 
 def simulate_release(system: SwitchedSystem, outputs: Outputs, Q: Array | None) -> SwitchedRun:
-    """Simulate several adversaries, and keep the run that comes furthest beside its limits.
+    """Simulate an adversary, and keep the run that comes furthest beside its limits.
 
-    Each takes at every step the mode after which something is largest: the norm of a proved Q, the
-    velocity, or the force. Modes that take turns keep them; where rules forbid to switch at any
-    time, one mode holds throughout. The last state is the deflection where contact may be lost by
+    He takes at every step the mode after which the norm of a proved Q is largest; without a Q, the
+    velocity. Modes that take turns keep them; where rules forbid to switch at any time, each mode
+    in turn holds throughout. The last state is the deflection where contact may be lost by
     it; the modes of the run are those of `all_modes`.
     """
     losable = system.contact is not None

@@ -181,7 +181,7 @@ class SampledAxis:
     def sample(
         self, t: float, hand: float, noise: float, age: int, late: float, missed: bool
     ) -> None:
-        """Run the law once; return its command, which takes effect `late` s after the sample.
+        """Run the law once; its command takes effect `late` s after the sample.
 
         The hand is in rad/s, the noise of the torque in N m; `age` is that of the force sample.
         Where the deadline is missed, the law is not run, and the command is held or zero.

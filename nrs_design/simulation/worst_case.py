@@ -60,7 +60,7 @@ def worst_runs(
 
 
 def worst_against(system: SwitchedSystem, bound: Bound) -> WorstRun:
-    """Let an adversary try to reach a bound, within seconds; `worst_runs` searches longer.
+    """Let an adversary try to reach a bound, from rest.
 
     A bound holds however modes follow each other, and so he need keep no rules of switching.
     """

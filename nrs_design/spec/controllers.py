@@ -174,16 +174,16 @@ class ImpedanceControllerSpec(AbstractControllerSpec):
         "multiplies limits.torque/limits.velocity, no unit; not with desired_impedance"
     )
     Mt: InertiaGain = Field(
-        description="admittance inertia in kg*m^2: one quantity, {min: ..., max: ...} for the "
-        "design, or {nominal: ...}; 0 allowed"
+        description="admittance inertia in kg*m^2: one quantity, or {min: ..., max: ...} "
+        "for the design; 0 allowed"
     )
     Bt: DampingGain = Field(
-        description="admittance damping in N*m*s/rad: one quantity, {min: ..., max: ...} for the "
-        "design, or {nominal: ...}; > 0"
+        description="admittance damping in N*m*s/rad: one quantity, or {min: ..., max: ...} "
+        "for the design; > 0"
     )
     Kt: SpringGain | None = optional(
         "admittance spring in N*m/rad, which draws the robot back to its position "
-        "reference: one quantity, or {nominal: ...}; > 0; default: no spring; with one, contact "
+        "reference: one quantity; > 0; default: no spring; with one, contact "
         "is taken for kept unless the spec says `contact: losable`"
     )
     weights: CostWeights = Field(
@@ -202,7 +202,7 @@ class ImpedanceControllerSpec(AbstractControllerSpec):
             "Kt.min",
             lambda s: s.Kt is not None and not s.Kt.fixed,
             "the design chooses Mt and Bt only",
-            "give nominal instead of min and max; `design: {{free: ...}}` frees it under proof",
+            "give one quantity for both; `design: {{free: ...}}` frees it under proof",
         ),
         *exclusive("desired_impedance", "desired_impedance_ratio"),
     )

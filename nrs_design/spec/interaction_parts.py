@@ -183,8 +183,6 @@ class AbstractInteractionSpec(SpecModel):
         parts.update((("environments", name), item) for name, item in self.environments.items())
         if self.sampling is not None:
             parts["sampling",] = self.sampling
-        if self.sensor is not None and self.sensor.tool is not None:
-            parts["sensor", "tool"] = self.sensor.tool
         return parts
 
     @property

@@ -21,7 +21,6 @@ from nrs_design.spec.quantity_fields import (
     Coordinate,
     Duration,
     Gravity,
-    LargestCommand,
     Length,
     LengthBounds,
     LinearAcceleration,
@@ -194,11 +193,8 @@ class DriveSpec(SpecModel):
     encoder_counts: Counts = Field(
         description="counts of the encoder per turn of the gearhead's output"
     )
-    largest_command: LargestCommand | None = optional(
-        "largest command that the motor's driver takes, in rpm: exported code saturates there"
-    )
 
-    checks = commands_in(_DRIVEN_BY, "gain", "coulomb_friction", "largest_command")
+    checks = commands_in(_DRIVEN_BY, "gain", "coulomb_friction")
 
 
 class RobotControlSpec(SpecModel):

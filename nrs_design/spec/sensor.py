@@ -10,7 +10,6 @@ from pydantic import Field
 from nrs_design.spec.check import Row
 from nrs_design.spec.fields import whole
 from nrs_design.spec.model import SpecModel, optional
-from nrs_design.spec.provenance import IdentifiedSpec
 from nrs_design.spec.quantity import Quantity
 from nrs_design.spec.quantity_fields import (
     Angle,
@@ -61,7 +60,7 @@ class CenterSpec(SpecModel):
     z: RangedCoordinate = Field(description=_AT.format(axis="z", what="the center of mass"))
 
 
-class ToolSpec(IdentifiedSpec):
+class ToolSpec(SpecModel):
     """What hangs on the sensor. Its weight is taken off the signal, with the nominal values."""
 
     mass: RangedMass = Field(
@@ -116,9 +115,6 @@ class SensorSpec(SpecModel):
         "largest error of the measured direction of gravity, an angle; with tool"
     )
     pivot: PointSpec | None = optional("the pivot, from the origin of the sensor; default: there")
-    contact: PointSpec | None = optional(
-        "the contact point, from the origin of the sensor: errors are shown as a force there, too"
-    )
 
     def _alone(self) -> tuple[str, str, str] | None:
         """Return a key that counts with another one only, that one, and how to write it."""
@@ -134,12 +130,6 @@ class SensorSpec(SpecModel):
             "add `bias: 5 N*mm`, or remove sensor",
         ),
         Row("{0}", _alone, "{0} counts with {1} only", "add `{2}`"),
-        Row(
-            "contact",
-            lambda s: s.contact is not None and s.contact.exact == s._pivot,
-            "the contact point is at the pivot",
-            "a force has no torque there",
-        ),
     )
 
     @property
@@ -152,7 +142,3 @@ class SensorSpec(SpecModel):
         center = self.tool and self.tool.center_of_mass
         parts = (center.x, center.y, center.z) if center else ()
         return self.tool is not None and not all(p.fixed for p in (self.tool.mass, *parts))
-
-    @property
-    def _pivot(self) -> tuple[Fraction, ...]:
-        return (Fraction(0),) * 3 if self.pivot is None else self.pivot.exact

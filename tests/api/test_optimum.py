@@ -24,7 +24,7 @@ def test_gains_and_margins_of_the_thesis():
 def test_facts_are_those_of_the_command():
     found = nrs.load(SOFT_TISSUE).optimize().to_dict()
     said = document_of("optimize", SOFT_TISSUE, cwd=ROOT)
-    # Of the goals of a certificate, and of a box for retuning.
+    # Of the command's document, and of the goals of a certificate.
     rest = {key: said.pop(key) for key in ("schema", "certified")}
     assert rest["certified"] is None
     assert json.loads(json.dumps(found)) | said == json.loads(json.dumps(found))

@@ -94,15 +94,6 @@ def test_a_filter_that_single_precision_loses_is_refused():
         LowPass(1, F(1, 10**6)).discretize(F(1, 500))
 
 
-def test_a_contact_gives_its_arm():
-    found = sensor(
-        bias="1e-3 N*m",
-        pivot={"x": "0 m", "y": "0 m", "z": "-0.1 m"},
-        contact={"x": "0.03 m", "y": "0 m", "z": "-0.06 m"},
-    )
-    assert found.arm == F("0.05")
-
-
 @pytest.mark.parametrize("order", [1, 2, 4])
 def test_lags_and_how_a_processor_holds_them(order):
     """``1/(1 + s/w)^order``; sampled, ``p = exp(-w T)`` and one in the long run."""

@@ -18,19 +18,13 @@ ANSWERS = Path(__file__).with_name("answers")
 # Rates and bounds are found by a search, whose last digits a processor decides.
 TOLERANCE = 1e-5
 NUMBER = re.compile(r"(\d+(?:\.\d+)?(?:e[+-]?\d+)?)")
-# What says where and when, is known by another name, or is about a part that goes.
+# What says where and when, or is known by another name.
 LEFT_OUT = re.compile(
     "path|line|column|remedy|(spec_)?sha256|certificate(_id|_json)?|attempts|seconds|(lines_)?work|"
-    "decay_rate_exact|files|package|together|retuned|robot|bounds_faults|on_trust|binary|parallel|"
-    "safety|creep|deviation_from_sampled|starts|seed|coordinates|couplings|taus"
+    "decay_rate_exact|files|package|together|robot|binary|parallel|starts|seed|coordinates|taus"
 )
 FORMATS = ("json", "c", "cmake", "monitor", "vectors", "fmu", "mat", "coq")
 OF_SPECS = ("check", "tune", "certify-switching", "simulate", "optimize")
-# These are to lose a key that goes; what is asked of them does not depend on it.
-WITHOUT = {
-    "everything-at-once": r"^coupling:\n( .*\n)*|^ *load_inertia:.*\n",
-}
-GOES = re.compile("soft-tissue-axes|retuned-gains|six-torques|three-axes")
 ROBOT = "specs/robots/neuroboscope.nrs.yaml"
 OTHERS = (
     f"robot check {ROBOT}",
@@ -51,15 +45,13 @@ OTHERS = (
 def specs() -> dict[str, Path]:
     folders = ("specs/examples", "specs/neuroboscope", "docs/examples")
     paths = [path for folder in folders for path in sorted((ROOT / folder).glob("*.nrs.yaml"))]
-    named = {path.name.removesuffix(".nrs.yaml"): path for path in paths}
-    return {name: path for name, path in named.items() if not GOES.fullmatch(name)}
+    return {path.name.removesuffix(".nrs.yaml"): path for path in paths}
 
 
 def rows() -> Iterator[tuple[str, str]]:
     """Yield the name of each file of answers with each command in it."""
     for name in specs():
-        for command in ("certify-switching",) if name in WITHOUT else OF_SPECS:
-            yield name, command
+        yield from ((name, command) for command in OF_SPECS)
         if certificate_of(name).is_file():
             yield name, "verify"
             yield from ((name, f"export {format_}") for format_ in FORMATS)
@@ -76,10 +68,6 @@ def answer(name: str, command: str, folder: Path) -> Any:
         words = shlex.split(command)
         return asked(*(ROOT / w if (ROOT / w).is_file() else w for w in words), folder=folder)
     path = specs()[name]
-    if name in WITHOUT:
-        text = re.sub(WITHOUT[name], "", path.read_text(encoding="utf-8"), flags=re.MULTILINE)
-        path = folder / path.name
-        path.write_text(text, encoding="utf-8")
     if command == "verify":
         return asked("verify", certificate_of(name), path, folder=folder)
     if command.startswith("export "):

@@ -133,7 +133,7 @@ def test_the_filter_is_written_out():
             ],
             "more than a spring",
         ),
-        ([("    Bt: {min", "    Kt: {nominal: 1 N*m/rad}\n    Bt: {min")], "a spring"),
+        ([("    Bt: {min", "    Kt: 1 N*m/rad\n    Bt: {min")], "a spring"),
         ([("Mt: {min: 0.01 kg*m^2", "Mt: {min: 5e-5 kg*m^2")], "mass: .* is not between 0.0001"),
     ],
     ids=["sampling", "rate", "periods", "late", "age", "filter", "damping", "spring", "bounds"],

@@ -27,7 +27,6 @@ sensor:
   tool: {TOOL}
   pose_error: 0.5 deg
   imu_error: 1 deg
-  contact: {{x: 0 m, y: 0 m, z: 0.14 m}}
 """
 
 
@@ -58,7 +57,6 @@ def test_everything_is_read_and_listed() -> None:
         ("{filter: {order: 5, cutoff: 30 Hz}}", "5 is not an integer from 1 to 4"),
         ("{filter: {order: 1}}", "cutoff"),
         ("{tool: {mass: 0 kg, center_of_mass: {x: 0 m, y: 0 m, z: 0 m}}}", "positive"),
-        ("{bias: 1 N*m, contact: {x: 0 m, y: 0 m, z: 0 m}}", "the contact point is at the pivot"),
         ("{bais: 1 N*m}", "did you mean bias"),
     ],
 )

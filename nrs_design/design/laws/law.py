@@ -136,7 +136,7 @@ def choose_given(task: Task, given: ControllerSpec) -> Choice:
     for name in law.gains_in(given):
         value = getattr(given, law.fixed.get(name, name))
         if isinstance(value, GainSpec):
-            value = value.nominal if value.fixed else None
+            value = value.min if value.fixed else None
         if value is None:
             raise DesignError(
                 f"nothing chooses {name} of a {law.name} controller",

@@ -5,8 +5,8 @@ from the states at once, without the force. With the states xp of the motion loo
 
     Mt vm' = -Bt vm + k delta + b Cp xp + m Cp (Ap xp - Bp vm),
 
-which is affine in k, b, m, 1/Mt and Bt, and with ranges of the motor in Km and 1/tau, each for
-itself: corners suffice, for a mass too that changes as fast as it likes.
+which is affine in k, b and m, and with ranges of the motor in Km and 1/tau, each for itself:
+corners suffice, for a mass too that changes as fast as it likes.
 """
 
 from __future__ import annotations

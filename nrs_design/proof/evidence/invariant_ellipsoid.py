@@ -45,9 +45,8 @@ class InvariantEllipsoid(AbstractEvidence):
 
     gives ``V+ <= (1 - a) V + sum a_i d_i^2/bound_i^2``. And ``[[Q, q'], [q, level^2]] > 0`` gives
     ``z^2 < level^2 V``. Where contact may be lost, the same holds for free motion and in between,
-    with the multipliers of `nrs_design.proof.evidence.conewise_quadratic`; the disturbances then
-    take part in where the deflection goes.
-
+    with the multipliers of `nrs_design.proof.steps`; the disturbances then take part in where the
+    deflection goes.
     """
 
     kind: ClassVar[str] = "invariant-ellipsoid"

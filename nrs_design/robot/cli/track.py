@@ -73,8 +73,7 @@ def track(
 ) -> Answer:
     """Simulate the motion controllers of thesis 4.2 to 4.4 and compare their tracking errors.
 
-    Links and steps are those of `nrs-design simulate` with three axes. The loop is not: these laws
-    follow a pose, in double precision and without tissue.
+    These laws follow a pose, in double precision and without tissue.
 
     Example: nrs-design robot track specs/robots/neuroboscope.nrs.yaml --figures figures
     """

@@ -15,7 +15,8 @@ from nrs_design.design.impedance_optimum import (
     impedance_cost,
     optimize_impedance,
 )
-from nrs_design.pipeline.design import run_analysis, run_design
+from nrs_design.pipeline.analysis import run_analysis
+from nrs_design.pipeline.design import run_design
 from nrs_design.spec import read_spec
 
 if TYPE_CHECKING:

@@ -16,8 +16,8 @@ from nrs_design.errors import DesignError, OutputError, SpecError
 from nrs_design.facts.certification import certification_facts
 from nrs_design.output import CERTIFICATE, PAGE, check_html, write_output
 from nrs_design.ownership import check_certificate, origin_of
+from nrs_design.pipeline.analysis import run_analysis
 from nrs_design.pipeline.certification import Result
-from nrs_design.pipeline.design import run_analysis
 from nrs_design.proof.text import counted
 from nrs_design.search.certification import Attempt
 from nrs_design.spec import LoadedSpec, read_spec

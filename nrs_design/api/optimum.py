@@ -12,8 +12,8 @@ from nrs_design.api.paper import latex_of_gains
 from nrs_design.api.result import AbstractResult, Figures, illustrated
 from nrs_design.facts.design import finite, optimum_facts
 from nrs_design.facts.spec import spec_facts
-from nrs_design.pipeline.design import Designed, run_analysis
-from nrs_design.spec import doubt_spec
+from nrs_design.pipeline.analysis import run_analysis
+from nrs_design.pipeline.design import Designed
 
 if TYPE_CHECKING:
     from nrs_design.design.analysis import DesignAnalysis
@@ -95,11 +95,11 @@ class Optimum(AbstractResult):
         return self.designed.spec.axis
 
     def _facts(self) -> dict[str, Any]:
-        spec, analysis = self.designed.spec, self._analysis
+        analysis = self._analysis
         return {
             **spec_facts(self.designed.loaded),
             **optimum_facts(self.designed, analysis, {}),
-            "warnings": [str(doubt) for doubt in (*doubt_spec(spec), *analysis.warnings)],
+            "warnings": [str(doubt) for doubt in analysis.warnings],
             "gains": self.gains,
             "units": self.units,
             # JSON has no infinity: null is what nothing limits.

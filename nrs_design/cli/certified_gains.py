@@ -54,8 +54,8 @@ class CertifiedGains:
             return None
 
         from nrs_design.certificates.goals import certified_goals
+        from nrs_design.pipeline.analysis import run_analysis
         from nrs_design.pipeline.certified_optimum import run_certified_optimum
-        from nrs_design.pipeline.design import run_analysis
 
         name = None if out is None else name_for(designed.loaded, out)
         with progress(f"gains with their proof for {designed.spec.name}") as step:

@@ -19,7 +19,7 @@ from nrs_design.errors import NrsDesignError, OutputError
 from nrs_design.proof.text import counted
 
 if TYPE_CHECKING:
-    from nrs_design.gating.obligations import GateOutcome
+    from nrs_design.gating.obligations import Caution, GateOutcome
 
 # Highest degree, budget and memory, as far as they are given.
 SearchLimits = tuple[int | None, float | None, float | None]
@@ -125,18 +125,24 @@ def gate(
         from nrs_design.gating.against import compare_with_base
 
         outcome = compare_with_base(outcome, paths, against, lock)
+    cautions = outcome.cautions
+    for item in cautions[:1]:
+        _warn(item)
     _deliver(outcome, chosen, out)
-    cautions = [caution for spec in outcome.specs for caution in spec.cautions]
-    shown = [item for item in cautions if wants_details() or not item.flagged]
+    shown = [item for item in cautions[1:] if wants_details() or not item.beyond]
     for item in shown:
-        note(f"warning: {item.path}:{item.line}:{item.column}: {item.message}")
-    if len(shown) < len(cautions):
-        remarks = counted(len(cautions) - len(shown), "remark")
-        note(f"note: {remarks} on designs, which `optimize` marks (-v lists them)")
+        _warn(item)
+    hidden = len(cautions[1:]) - len(shown)
+    if hidden:
+        note(f"note: {counted(hidden, 'more remark')} on designs, as `optimize` lists them (or -v)")
     for text in outcome.notes:
         note(f"note: {text}")
     note(f"{perf_counter() - start:.1f} s")
     raise typer.Exit(exit_codes.OF_SEVERITY[outcome.severity])
+
+
+def _warn(item: Caution) -> None:
+    note(f"warning: {item.path}:{item.line}:{item.column}: {item.message}")
 
 
 def format_of(format_: GateFormat) -> GateFormat:

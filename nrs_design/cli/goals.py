@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from nrs_design.cli import exit_codes
 from nrs_design.cli.command import Answer
-from nrs_design.cli.printing import detail, note, say, wants_details
+from nrs_design.cli.printing import detail, note, say
 from nrs_design.cli.tables import print_table
 from nrs_design.facts.spec import spec_facts
 
@@ -64,30 +64,23 @@ def design_answer(
     *,
     proved: bool = True,
     judged: bool = False,
-    marked: bool = False,
 ) -> Answer:
-    """Return the answer of a command that shows a design: with goals and with what is doubtful.
+    """Return the answer of a command that shows a design: the worst of it, goals, what is doubtful.
 
     The exit code is 1 if an item misses a goal, or one that needs a proof is not `proved`.
-    `judged`, `marked`: `show` says what is proved of the goals of a certificate, and marks what is
-    unusual.
+    `judged`: `show` says what is proved of the goals of a certificate.
     """
-    from nrs_design.spec import doubt_spec
-
-    loaded, spec = designed.loaded, designed.spec
-    doubts = (*doubt_spec(spec), *analysis.warnings)
+    loaded, spec, doubts = designed.loaded, designed.spec, analysis.warnings
 
     def show_all() -> None:
+        for doubt in doubts[:1]:
+            note(f"warning: {doubt}")
         show()
         _print_goals(spec.name, items)
         if not judged:
             _say_unjudged(spec)
-        about = {item.name for item in items}
-        for doubt in doubts:
-            # Of a controller that another command shows, that command says it.
-            own = not doubt.flagged or (not marked and doubt.at[1] in about)
-            if own or wants_details():
-                note(f"warning: {doubt}")
+        for doubt in doubts[1:]:
+            note(f"warning: {doubt}")
 
     return Answer(
         lambda: spec_facts(loaded) | facts() | {"warnings": [str(doubt) for doubt in doubts]},

@@ -53,7 +53,8 @@ def optimize(
     Example: nrs-design optimize specs/neuroboscope/soft-tissue.nrs.yaml
     """
     from nrs_design.cli.certified_gains import CertifiedGains
-    from nrs_design.pipeline.design import run_analysis, run_interaction
+    from nrs_design.pipeline.analysis import run_analysis
+    from nrs_design.pipeline.design import run_interaction
 
     loaded = take_spec(spec)
     with progress(f"designing {loaded.spec.name}") as step:
@@ -96,7 +97,6 @@ def optimize(
         show,
         proved=proved,
         judged=certified is not None,
-        marked=True,
     )
 
 

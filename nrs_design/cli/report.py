@@ -247,7 +247,7 @@ def _report_robot(
 
 def _analysis(result: Result) -> DesignAnalysis | None:
     """Return what the design achieves, or nothing where a nominal loop has no margins."""
-    from nrs_design.pipeline.design import run_analysis
+    from nrs_design.pipeline.analysis import run_analysis
 
     if result.designed is None:
         return None

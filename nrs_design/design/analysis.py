@@ -8,6 +8,7 @@ from typing import TypeVar
 
 from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.design.design import root_locus_design
+from nrs_design.design.doubts import doubt_same
 from nrs_design.design.laws import LAW_DESIGNS
 from nrs_design.design.laws.force import ForceAnalysis
 from nrs_design.design.laws.impedance import ImpedanceAnalysis
@@ -16,7 +17,7 @@ from nrs_design.design.laws.torque_impedance import TorqueAnalysis
 from nrs_design.design.root_locus import MotionLoopResponse, PdDesign, motion_loop_response
 from nrs_design.design.transfer import TransferFunction
 from nrs_design.models.plant import Plant
-from nrs_design.spec import Doubt, InteractionDesignSpec
+from nrs_design.spec import Doubt, InteractionDesignSpec, doubt_spec, worst_first
 
 __all__ = [
     "AbstractControllerAnalysis",
@@ -41,6 +42,7 @@ class DesignAnalysis:
     reached: MotionLoopResponse  # Poles, damping and overshoot that G really has
     # One for each controller that goals are for, law by law.
     measured: tuple[AbstractControllerAnalysis, ...]
+    doubts: tuple[Doubt, ...]  # About the spec, and about all controllers together
 
     @property
     def impedance(self) -> tuple[ImpedanceAnalysis, ...]:
@@ -64,8 +66,10 @@ class DesignAnalysis:
 
     @property
     def warnings(self) -> tuple[Doubt, ...]:
-        """What is doubtful about the design, and no goal speaks of it."""
-        return tuple(doubt for item in self.measured for doubt in item.doubts())
+        """What is doubtful about the spec and its design, and no goal speaks of it, worst first."""
+        return worst_first(
+            (*self.doubts, *(doubt for item in self.measured for doubt in item.doubts()))
+        )
 
     def _of(self, kind: type[E]) -> tuple[E, ...]:
         return tuple(item for item in self.measured if isinstance(item, kind))
@@ -82,6 +86,7 @@ def analyze_design(
         motion_source=_source(spec),
         reached=motion_loop_response(task.motion),
         measured=tuple(_measured(task, design)),
+        doubts=(*doubt_spec(spec), *doubt_same(spec, design)),
     )
 
 

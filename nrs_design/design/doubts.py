@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from itertools import combinations
 
-from nrs_design.controllers.controller_design import ImpedanceOptimum
+from nrs_design.controllers.controller_design import ControllerDesign, ImpedanceOptimum
 from nrs_design.design.goals import Achieved
 from nrs_design.design.measures import DISK_MARGIN, MARGINS, SENSITIVITY_PEAK, Measure
-from nrs_design.spec import Doubt, ImpedanceControllerSpec
+from nrs_design.spec import Doubt, ImpedanceControllerSpec, InteractionDesignSpec
 
 
 def doubt_values(name: str, achieved: tuple[Achieved, ...]) -> Iterator[Doubt]:
@@ -24,7 +25,7 @@ def doubt_values(name: str, achieved: tuple[Achieved, ...]) -> Iterator[Doubt]:
         )
         keys = ", ".join(item.measure.goal for item in found)
         text = f"{name}: {', '.join(bad)}; a goal says what is accepted: {keys}"
-        yield Doubt(("controllers", name), text, flagged=True)
+        yield Doubt(("controllers", name), text, beyond=max(map(_beyond, found)))
 
 
 def is_unusual(measure: Measure, achieved: tuple[Achieved, ...]) -> bool:
@@ -36,6 +37,24 @@ def is_unusual(measure: Measure, achieved: tuple[Achieved, ...]) -> bool:
         return False
     values = (item.value for item in achieved if item.measure == measure)
     return any(not math.isnan(v) and measure.violation(v, limit) > 0 for v in values)
+
+
+def _beyond(item: Achieved) -> float:
+    """Return a value over the usual limit of its measure, or the limit over the value."""
+    assert item.measure.doubtful is not None, "it is unusual"
+    return 1 + item.measure.violation(item.value, item.measure.doubtful)
+
+
+def doubt_same(spec: InteractionDesignSpec, design: ControllerDesign) -> Iterator[Doubt]:
+    """Yield the controllers that are another one by another name: a switch to them does nothing."""
+
+    def acts(name: str) -> object:
+        return getattr(spec.controllers[name], "offset", None)
+
+    for one, other in combinations(design.controllers, 2):
+        if (one.law, one.contacts, acts(one.name)) == (other.law, other.contacts, acts(other.name)):
+            text = f"{other.name}: the same law, gains and contacts as {one.name}"
+            yield Doubt(("controllers", other.name), text, beyond=1.0)
 
 
 def doubt_bounds(
@@ -51,4 +70,4 @@ def doubt_bounds(
         for side, end in (("lower", bounds.min), ("upper", bounds.max)):
             if value == end.si:
                 text = f"{name}: {gain} is on its {side} bound {end.text}"
-                yield Doubt(("controllers", name, gain), text, flagged=True)
+                yield Doubt(("controllers", name, gain), text, beyond=1.0)

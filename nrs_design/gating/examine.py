@@ -340,9 +340,10 @@ class Examiner:
             yield self.caution(message, "limits", "torque")
 
     def cautions(self, analysis: DesignAnalysis | None) -> Iterator[Caution]:
-        """Yield what is doubtful about the spec and its design."""
-        for doubt in (*doubt_spec(self.loaded.spec), *(analysis.warnings if analysis else ())):
-            yield replace(self.caution(str(doubt), *doubt.at), flagged=doubt.flagged)
+        """Yield what is doubtful about the spec and its design, worst first."""
+        doubts = doubt_spec(self.loaded.spec) if analysis is None else analysis.warnings
+        for doubt in doubts:
+            yield replace(self.caution(str(doubt), *doubt.at), beyond=doubt.beyond)
 
 
 def _met(reached: bool) -> Status:

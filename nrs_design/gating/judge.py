@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 from nrs_design.errors import DesignError
 from nrs_design.gating.examine import Examiner
 from nrs_design.gating.obligations import Obligation
+from nrs_design.pipeline.analysis import run_analysis
 from nrs_design.pipeline.certification import Result
-from nrs_design.pipeline.design import run_analysis
 from nrs_design.progress import Progress
 
 if TYPE_CHECKING:

@@ -60,7 +60,7 @@ class Caution:
     # line, column: place in the spec, counted from 1.
     line: int
     column: int
-    flagged: bool = False  # Whether the table of `optimize` marks it
+    beyond: float = 0.0  # A value of the design over its limit; 0 where it has none
 
 
 _SEVERITY = {
@@ -122,6 +122,12 @@ class GateOutcome:
     specs: tuple[SpecOutcome, ...]  # In the order of their paths
     notes: tuple[str, ...] = ()  # What a person should know beside it
     changes: BaseChanges | None = None  # What differs from a base; None if it was not asked for
+
+    @property
+    def cautions(self) -> tuple[Caution, ...]:
+        """What is doubtful, worst first, else in the order of the specs."""
+        every = (item for spec in self.specs for item in spec.cautions)
+        return tuple(sorted(every, key=lambda item: -item.beyond))
 
     @property
     def broken(self) -> tuple[Obligation, ...]:

@@ -13,7 +13,6 @@ from nrs_design.spec import LoadedSpec
 
 if TYPE_CHECKING:
     from nrs_design.controllers.controller_design import ControllerDesign
-    from nrs_design.design.analysis import DesignAnalysis
     from nrs_design.design.linear_parts import LinearParts
     from nrs_design.design.open_loops import OpenLoop
     from nrs_design.models.plant import Plant
@@ -114,14 +113,6 @@ def run_design(loaded: LoadedSpec) -> Designed | None:
     with placed(loaded):
         plant = build_plant(spec)
         return Designed(loaded, spec, plant, design_controllers(spec, plant))
-
-
-def run_analysis(designed: Designed) -> DesignAnalysis:
-    """Compute what a design achieves; an unstable nominal loop is a `DesignError`."""
-    from nrs_design.design.analysis import analyze_design
-
-    with placed(designed.loaded):
-        return analyze_design(designed.spec, designed.plant, designed.design)
 
 
 def run_linear_parts(designed: Designed) -> LinearParts:

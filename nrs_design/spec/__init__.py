@@ -18,7 +18,7 @@ if TYPE_CHECKING:
         ImpedanceControllerSpec,
         PositionControllerSpec,
     )
-    from nrs_design.spec.doubts import Doubt, doubt_spec
+    from nrs_design.spec.doubts import Doubt, doubt_spec, worst_first
     from nrs_design.spec.environment import (
         ElasticSpec,
         EnvironmentSpec,
@@ -98,6 +98,7 @@ __all__ = [
     "parse_exact",
     "parse_spec",
     "read_spec",
+    "worst_first",
 ]
 
 _HOMES = {
@@ -107,7 +108,7 @@ _HOMES = {
         "controllers": "ControllerSpec CostWeights ForceControllerSpec "
         "IdleStatesSpec ImpedanceControllerSpec "
         "PositionControllerSpec",
-        "doubts": "Doubt doubt_spec",
+        "doubts": "Doubt doubt_spec worst_first",
         "environment": "ElasticSpec EnvironmentSpec KelvinVoigtSpec",
         "exact": "parse_exact",
         "gain_fields": "GainSpec",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -19,7 +19,8 @@ class Doubt:
 
     at: tuple[str, ...]  # Keys that lead to it in the spec
     message: str  # What is doubtful; one line
-    flagged: bool = False  # Whether the table of the design marks it
+    # A value of the design over its limit: how useless it makes the design; 0 where it has none.
+    beyond: float = 0.0
 
     def __str__(self) -> str:
         """Return the message."""
@@ -31,3 +32,8 @@ def doubt_spec(spec: Spec) -> Iterator[Doubt]:
     yield from (Doubt(at, text) for at, text in doubt_sizes(spec))
     for found in find_faults(spec.warnings, spec):
         yield Doubt(found["at"], f"{found['message']} ({found['remedy']})")
+
+
+def worst_first(doubts: Iterable[Doubt]) -> tuple[Doubt, ...]:
+    """Return doubts by how far they are beyond a limit, else in their order."""
+    return tuple(sorted(doubts, key=lambda doubt: -doubt.beyond))

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from nrs_design.cli import main
+from tests.design.holder import USELESS
 from tests.gating.conftest import STABLE
 from tests.support import PRINT_ERROR, ROOT, typed
 from tests.terminal import run_on_terminal
@@ -57,6 +58,16 @@ def test_quiet_says_only_what_is_not_fulfilled(gate, capsys):
     }
     assert gate("specs", "--locked", "-q", "--json") == 0
     assert json.loads(capsys.readouterr().out)["passed"]
+
+
+def test_the_worst_fact_leads_although_all_is_fulfilled(gate, capsys):
+    Path("specs/holder.nrs.yaml").write_text(USELESS)
+    assert gate("specs", "--no-reports") == 0
+    said = " ".join(capsys.readouterr().err.split())
+    assert said.startswith(
+        "warning: specs/holder.nrs.yaml:5:30: simulated, insertion-and-withdrawal: a torque of 0.99"
+    )
+    assert "note: 6 more remarks on designs" in said
 
 
 def test_a_narrow_terminal(tmp_path):

@@ -13,8 +13,9 @@ from nrs_design.certificates.bounds import bound_on
 from nrs_design.certificates.certificate import Verdict
 from nrs_design.certificates.goals import decay_rate
 from nrs_design.errors import DesignError
+from nrs_design.pipeline.analysis import run_analysis
 from nrs_design.pipeline.certified_optimum import run_certified_optimum, steering_goals
-from nrs_design.pipeline.design import run_analysis, run_interaction
+from nrs_design.pipeline.design import run_interaction
 from nrs_design.spec import read_spec
 
 from .free import FORCE, PD, SAMPLED, freed

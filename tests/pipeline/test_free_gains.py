@@ -9,7 +9,8 @@ import pytest
 from nrs_design.design.impedance_optimum import optimize_impedance
 from nrs_design.design.laws.impedance import impedance_problem, requirement_of
 from nrs_design.design.laws.law import Task
-from nrs_design.pipeline.design import run_analysis, run_design
+from nrs_design.pipeline.analysis import run_analysis
+from nrs_design.pipeline.design import run_design
 from nrs_design.pipeline.free_gains import gain_branches
 from nrs_design.pipeline.written_gains import with_gains
 

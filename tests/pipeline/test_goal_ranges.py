@@ -3,7 +3,7 @@
 import pytest
 
 from nrs_design.errors import DesignError
-from nrs_design.pipeline.design import run_analysis
+from nrs_design.pipeline.analysis import run_analysis
 from nrs_design.pipeline.goal_ranges import wanted_age, with_delay
 
 from .free import freed

@@ -7,8 +7,8 @@ from fractions import Fraction
 import pytest
 
 from nrs_design.gating.examine import Examiner
+from nrs_design.pipeline.analysis import run_analysis
 from nrs_design.pipeline.certification import run_certification
-from nrs_design.pipeline.design import run_analysis
 from nrs_design.proof.evidence import Shows
 from nrs_design.proof.mode import Time
 from nrs_design.reporting.sections.goals import goal_facts, goals_section, judged_goals
@@ -108,6 +108,10 @@ def test_lights_of_a_design(report):
     assert found["Goals"] == ("unknown", "no goals set")
     assert found["Margins"] == ("doubtful", "3 warnings (worst corner)")
     assert found["Data"][0] == "unknown"
+    first, worst = report("proved").key[0]
+    assert first == "Worst of it"
+    assert worst.startswith("withdrawal: sensitivity peak Ms 3.753")
+    assert worst.endswith("(2 more warnings)")
     assert lights(report("refuted"))["Proof"][0] == "bad"
     assert lights(report("inconclusive"))["Proof"][0] == "doubtful"
 

@@ -18,7 +18,7 @@ def to_github(outcome: GateOutcome) -> str:
         for i in outcome.broken
     ]
     changed = () if outcome.changes is None else outcome.changes.others
-    cautions = (*(item for spec in outcome.specs for item in spec.cautions), *changed)
+    cautions = (*outcome.cautions, *changed)
     warnings = [_annotation("warning", i, "nrs-design", i.message) for i in cautions]
     lines = (*_first(errors, "more"), *_first(warnings, "more warnings"))
     return "".join(f"{line}\n" for line in lines)

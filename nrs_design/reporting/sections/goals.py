@@ -20,7 +20,7 @@ from nrs_design.reporting.document import (
 )
 from nrs_design.reporting.sections.places import contact_at, linked, with_line
 from nrs_design.reporting.sections.titles import GOALS
-from nrs_design.spec import InteractionDesignSpec, doubt_spec
+from nrs_design.spec import InteractionDesignSpec
 from nrs_design.spec.goals import OF_THE_CERTIFICATE
 
 if TYPE_CHECKING:
@@ -116,10 +116,7 @@ def _measured(result: Result, analysis: DesignAnalysis | None) -> Iterator[Block
         return
     yield Paragraph(" ".join(MEANING))
     yield Table("Goals and worst values", _COLUMNS, rows)
-    doubts = tuple(
-        with_line(designed.loaded, str(doubt), *doubt.at)
-        for doubt in (*doubt_spec(designed.spec), *analysis.warnings)
-    )
+    doubts = tuple(with_line(designed.loaded, str(doubt), *doubt.at) for doubt in analysis.warnings)
     if doubts:
         yield Bullets("Warnings", doubts)
 

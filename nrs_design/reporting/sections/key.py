@@ -13,7 +13,7 @@ from nrs_design.design.measures import SENSITIVITY_PEAK
 from nrs_design.proof.bounds import lower, upper
 from nrs_design.proof.mode import Time
 from nrs_design.reporting.document import Bullets, Derived, Paragraph, Section
-from nrs_design.reporting.formatting import shortened
+from nrs_design.reporting.formatting import plural, shortened
 from nrs_design.reporting.register import register_of
 from nrs_design.reporting.sections.head import proved_rate
 from nrs_design.reporting.sections.titles import EVIDENCE, GOALS, MODES
@@ -31,6 +31,7 @@ _DIGITS = 4
 def key_facts(result: Result, analysis: DesignAnalysis | None) -> tuple[tuple[str, str], ...]:
     """Return labels and values for the head of the page, each on the safe side."""
     return (
+        *_worst(analysis),
         *_modes(result),
         *_decay(result),
         *_force(result),
@@ -50,6 +51,14 @@ def tests_section(result: Result) -> Section | None:
         return None
     text = f"{len(tests)} assumptions are neither tested nor argued. Each has a test:"
     return Section(TESTS, (Paragraph(text), Bullets("", tests)))
+
+
+def _worst(analysis: DesignAnalysis | None) -> Iterator[tuple[str, str]]:
+    """Yield what is furthest beyond a limit, and how much else is doubtful."""
+    doubts = () if analysis is None else analysis.warnings
+    if doubts and doubts[0].beyond:
+        more = f" ({plural(len(doubts) - 1, 'more warning')})" if doubts[1:] else ""
+        yield "Worst of it", Derived(f"{doubts[0]}{more}", GOALS)
 
 
 def _modes(result: Result) -> Iterator[tuple[str, str]]:
@@ -113,6 +122,8 @@ def _achieved(analysis: DesignAnalysis | None) -> Iterator[tuple[str, str]]:
         limit, per = (weakest.lowest_limit, unit("N*m/rad")) if arm is None else (arm, "N/m")
         size = "any stiffness" if math.isinf(limit) else f"{lower(Fraction(limit), _DIGITS)} {per}"
         yield "Stands up to", Derived(f"{size} ({weakest.name}; floating point)", GOALS)
+    if [*_worst(analysis)]:
+        return
     worst = max(analysis.impedance, key=lambda item: item.worst(SENSITIVITY_PEAK).value)
     value = SENSITIVITY_PEAK.text(worst.worst(SENSITIVITY_PEAK).value)
     said = f"sensitivity peak {value} ({worst.name}; usual: {SENSITIVITY_PEAK.usual})"

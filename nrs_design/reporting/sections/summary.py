@@ -28,7 +28,7 @@ from nrs_design.reporting.sections.titles import (
     MODES,
     SATURATION,
 )
-from nrs_design.spec import InteractionDesignSpec, doubt_spec
+from nrs_design.spec import InteractionDesignSpec
 
 if TYPE_CHECKING:
     from nrs_design.design.analysis import DesignAnalysis
@@ -171,7 +171,7 @@ def _margins(spec: InteractionDesignSpec, analysis: DesignAnalysis | None) -> Li
     if analysis is None:
         return Light("Margins", State.BAD, "none: a nominal loop is unstable")
     state, text = State.GOOD, "no warning in any corner (floating point, no part of the proof)"
-    if count := len((*doubt_spec(spec), *analysis.warnings)):
+    if count := len(analysis.warnings):
         state, text = State.DOUBTFUL, f"{plural(count, 'warning')} (worst corner)"
     return Light("Margins", state, text, GOALS)
 

@@ -1,0 +1,49 @@
+"""What a design achieves, and what its runs break."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+from nrs_design.axis import about, unit
+from nrs_design.errors import NrsDesignError
+from nrs_design.pipeline.design import Designed, placed
+from nrs_design.proof.bounds import upper
+from nrs_design.spec import Doubt
+
+if TYPE_CHECKING:
+    from nrs_design.design.analysis import DesignAnalysis
+
+
+def run_analysis(designed: Designed) -> DesignAnalysis:
+    """Compute what a design achieves, with what its runs break of the limit of the torque.
+
+    An unstable nominal loop is a `DesignError`.
+    """
+    from nrs_design.design.analysis import analyze_design
+
+    with placed(designed.loaded):
+        found = analyze_design(designed.spec, designed.plant, designed.design)
+    return replace(found, doubts=(*found.doubts, *_doubt_runs(designed)))
+
+
+def _doubt_runs(designed: Designed) -> Iterator[Doubt]:
+    """Yield the runs whose torque is beyond the limit of the spec; what cannot be run has none."""
+    from nrs_design.pipeline.scenarios import run_scenarios
+
+    try:
+        runs = tuple(run_scenarios(designed))
+    except NrsDesignError:
+        return
+    limit = designed.spec.limits.torque
+    with about(designed.spec.axis):
+        of = unit("N*m")
+    for one in runs:
+        peak = one.metrics["peak_torque"]
+        # A limit of the scenario itself is judged by the gate.
+        if "torque" not in one.scenario.limits and peak > limit.si:
+            text = f"simulated, {one.scenario.name}: a torque of {upper(Fraction(peak), 4)} {of}, "
+            text += f"beyond limits.torque of {limit.text}"
+            yield Doubt(("limits", "torque"), text, beyond=peak / limit.si)

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import platform
 import shutil
-import subprocess
 from collections.abc import Mapping
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from nrs_design.errors import DesignError
+from nrs_design.processes import run_program
 
 # No path, time or random name gets into the library.
 FLAGS = (
@@ -31,10 +31,7 @@ def shared_library(compile_with: str, sources: Mapping[str, str]) -> bytes:
         for name, text in sources.items():
             (Path(folder) / name).write_text(text, encoding="ascii")
         files = [name for name in sources if name.endswith(".c")]
-        command = [compile_with, *FLAGS, "-o", "library.so", *files]
-        done = subprocess.run(
-            command, cwd=folder, capture_output=True, text=True, check=False, errors="replace"
-        )
+        done = run_program(compile_with, [*FLAGS, "-o", "library.so", *files], folder)
         if done.returncode:
             raise DesignError(
                 f"{compile_with} does not compile the law: {done.stderr.strip()[:500]}",

@@ -15,6 +15,7 @@ from threading import Event, Thread
 from typing import TypeVar
 
 from nrs_design.errors import NrsDesignError
+from nrs_design.processes import workers
 
 T = TypeVar("T")
 Work = Callable[[int], T]
@@ -55,16 +56,8 @@ def spread(work: Work[T], points: Collection[int], jobs: int) -> Iterator[tuple[
 
 
 def _in_processes(work: Work[T], points: Sequence[int], jobs: int) -> Iterator[tuple[int, T]]:
-    from joblib import Parallel, delayed
-
-    parallel = Parallel(
-        n_jobs=jobs,
-        backend="loky",
-        return_as="generator_unordered",
-        initializer=_begin,
-        initargs=(os.getpid(),),
-    )
-    yield from parallel(delayed(_numbered)(work, point) for point in points)
+    parallel = workers(jobs, _begin, os.getpid())
+    yield from parallel((_numbered, (work, point), {}) for point in points)
 
 
 def _begin(run: int) -> None:

@@ -71,10 +71,10 @@ def _seconds(time: Fraction) -> str:
 def _scope(evidence: AbstractEvidence, system: SwitchedSystem) -> str:
     switching = system.switching
     signals = "the declared rules of switching"
-    if switching.is_arbitrary:
-        signals = f"any switching among {counted(len(system.modes), 'mode')}"
-    elif switching.fixed_ends:
+    if system.has_constants:
         signals = "any switching, at constant parameters"
+    elif switching.is_arbitrary:
+        signals = f"any switching among {counted(len(system.modes), 'mode')}"
     if system.clock is not None:
         rule = f"in rounds of {system.clock.length} steps"
         signals += f", {rule}" if system.clock.is_round else ", deadlines missed as the rule allows"

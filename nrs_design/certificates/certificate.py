@@ -9,9 +9,10 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import Any
 
+from nrs_design.models.cut import RangeCut
 from nrs_design.proof.evidence import AbstractEvidence, Shows
 from nrs_design.proof.evidence.abstract import AT_ANY_DEFLECTION, IN_KEPT_CONTACT
-from nrs_design.proof.evidence.fields import system_fields
+from nrs_design.proof.evidence.fields import system_fields, written
 from nrs_design.proof.system import SwitchedSystem
 
 SCHEMA = "nrs-design/certificate/8"
@@ -57,6 +58,8 @@ class Certificate:
     # At which points of the ranges the system stands; empty for all of them. What grows there
     # refutes the spec, and nothing else there says anything of it.
     points: str = ""
+    # In which parts the ranges of constants are cut, each a case of the system; empty for none.
+    cuts: tuple[RangeCut, ...] = ()
 
     @property
     def verdict(self) -> str:
@@ -166,6 +169,7 @@ def to_document(certificate: Certificate) -> dict[str, Any]:
         "coordinates": certificate.coordinates,
         "gains": {name: dict(values) for name, values in certificate.gains.items()},
         **({} if not certificate.points else {"points": certificate.points}),
+        **({} if not certificate.cuts else {"cuts": written(certificate.cuts)}),
         **_own_fields(certificate),
         "statements": [
             {"kind": item.kind, "claim": item.claim(system), **item.to_fields()}

@@ -22,8 +22,9 @@ from nrs_design.certificates.certificate import (
 )
 from nrs_design.errors import DISAGREE, CertificateError, InternalError, NrsDesignError
 from nrs_design.files import is_page, open_regular, read_json_text, unique_keys
+from nrs_design.models.cut import RangeCut
 from nrs_design.proof.evidence import AbstractEvidence, Shows, read_evidence
-from nrs_design.proof.evidence.fields import read_system, read_text
+from nrs_design.proof.evidence.fields import read_list, read_object, read_system, read_text
 from nrs_design.proof.exact import IntegerMatrix
 from nrs_design.proof.second_opinion import agrees
 from nrs_design.proof.system import SwitchedSystem
@@ -153,12 +154,18 @@ def read_certificate(document: Mapping[str, Any], system: SwitchedSystem) -> Cer
         statements=_statements(document, system),
         version=read_text(document["package"]["version"]),
         points=read_points(document),
+        cuts=read_cuts(document),
     )
 
 
 def read_points(document: Mapping[str, Any]) -> str:
     """Read at which points of the ranges a system stands; empty for all of them."""
     return read_text(document["points"]) if "points" in document else ""
+
+
+def read_cuts(document: Mapping[str, Any]) -> tuple[RangeCut, ...]:
+    """Read in which parts the ranges of constants are cut; empty for none."""
+    return tuple(read_object(RangeCut, item) for item in read_list(document.get("cuts", [])))
 
 
 def confirmed(judge: Callable[[], Verification]) -> Verification:

@@ -22,6 +22,7 @@ from nrs_design.certificates.prove import (
     judged,
     prove,
     read_certificate,
+    read_cuts,
     read_document,
     read_gains,
     read_points,
@@ -90,7 +91,8 @@ def _verify(
     from nrs_design.switched.assemble import assemble_from_text
 
     gains = read_gains(document)
-    system = assemble_from_text(spec.spec, gains, plant=plant, points=read_points(document))
+    points, cuts = read_points(document), read_cuts(document)
+    system = assemble_from_text(spec.spec, gains, plant=plant, points=points, cuts=cuts)
     held = held_system(document)
     if not held.enclosures and not is_of_growth(read_certificate(document, system)):
         # Which modes are attained does not matter where nothing grows, and is left out there.

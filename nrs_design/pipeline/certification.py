@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from nrs_design import __version__
 from nrs_design.certificates.certificate import Certificate, Gains, Verdict
 from nrs_design.errors import CertificateError
+from nrs_design.models.cut import RangeCut
 from nrs_design.pipeline.design import Designed, placed, run_design
 from nrs_design.progress import Progress, silent
 from nrs_design.proof.system import SwitchedSystem
@@ -93,11 +94,45 @@ def run_certification(
     designed, system = _assembled(loaded)
     limits = limits or search_limits(loaded.spec)
     certification = certify(system, method, limits, progress)
-    points = ""
-    if certification.verdict is Verdict.INCONCLUSIVE and certification.refuted_in is None:
+    points, cuts = "", tuple[RangeCut, ...]()
+    if certification.is_open:
         points, certification = _at_points(loaded, designed, certification, limits, progress)
-    certificate = certificate_of(loaded, designed, certification, points)
+    if certification.is_open and method is Method.AUTO:
+        cuts, certification = _in_cases(loaded, designed, certification, limits, progress)
+    certificate = certificate_of(loaded, designed, certification, points, cuts)
     return Result(loaded, designed, certification, certificate)
+
+
+def _in_cases(
+    loaded: LoadedSpec,
+    designed: Designed | None,
+    known: Certification,
+    limits: Limits,
+    progress: Progress,
+) -> tuple[tuple[RangeCut, ...], Certification]:
+    """Look for a proof of each part of the ranges of constants, where none was found of them all.
+
+    Under arbitrary switching; a constant is in one part for ever.
+    """
+    from nrs_design.pipeline.cases import CASES, find_cases
+    from nrs_design.search.certify import certify_cases
+    from nrs_design.switched.assemble import assemble
+
+    switching = known.system.switching
+    if designed is None or not switching.fixed_parameters or switching.resets:
+        return (), known
+    progress(CASES)
+    with placed(loaded):
+        start = perf_counter()
+        found = find_cases(designed, switching.fixed_parameters, limits)
+        attempt = Attempt(CASES, found.outcome, perf_counter() - start, found.work)
+        attempts = (*known.attempts, attempt)
+        if not found.cuts:
+            return (), replace(known, attempts=attempts)
+        parts, proofs = zip(*found.proved, strict=True)
+        cuts = found.cuts
+        system = assemble(designed.spec, designed.plant, designed.design, cuts=cuts, parts=parts)
+    return cuts, certify_cases(system, proofs, attempts)
 
 
 def _at_points(
@@ -131,6 +166,7 @@ def certificate_of(
     designed: Designed | None,
     certification: Certification,
     points: str = "",
+    cuts: tuple[RangeCut, ...] = (),
 ) -> Certificate | None:
     """Return what may be written to a file; None if nothing was shown."""
     if not certification.statements:
@@ -144,6 +180,7 @@ def certificate_of(
         statements=certification.statements,
         version=__version__,
         points=points,
+        cuts=cuts,
     )
 
 

@@ -48,6 +48,8 @@ def _find_obstacle(designed: Designed, system: SwitchedSystem) -> str | None:
     rules, touched = system.switching, designed.plant.among(designed.design.contacts)
     if not touched:
         return "no contact is declared"
+    if system.cases:
+        return "the ranges of constants are cut in cases, and a run would mix them"
     if rules.resets:
         return "a switch sets parts of the state anew, which this run does not do"
     if not rules.is_arbitrary and (system.contact is not None or system.clock is not None):

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
-from itertools import compress
 from typing import TypeAlias
 
 from nrs_design.proof.switching import Clock
@@ -16,37 +15,10 @@ Leads: TypeAlias = tuple[int | None, ...]
 
 
 def on_turn(system: SwitchedSystem, clock: Clock, *, first: bool) -> SwitchedSystem:
-    """Return a system whose modes take turns with the modes of one kind alone.
-
-    What disturbs it stays: the rows of roundings are over the states and all disturbances.
-    """
+    """Return a system whose modes take turns with the modes of one kind alone."""
     names = frozenset(clock.first)
-    kept = [(mode.name in names) is first for mode in system.every_mode]
-    flying = kept[len(system.modes) :]
-    contact = system.contact
-    if contact is not None:
-        contact = replace(contact, free=tuple(compress(contact.free, flying)))
-    roundings = (
-        replace(
-            item,
-            columns=tuple(compress(item.columns, kept)),
-            rows=tuple(compress(item.rows, kept)),
-        )
-        for item in system.roundings
-    )
-    channels = (
-        replace(item, columns=tuple(compress(item.columns, kept))) for item in system.channels
-    )
-    return replace(
-        system,
-        modes=tuple(compress(system.modes, kept)),
-        contact=contact,
-        roundings=tuple(roundings),
-        channels=tuple(channels),
-        saturation=None,
-        clock=None,
-        enclosures=tuple(item for item in system.enclosures if (item[0] in names) is first),
-    )
+    kept = [mode.name for mode in system.every_mode if (mode.name in names) is first]
+    return replace(system.only(frozenset(kept)), clock=None)
 
 
 def keeps_turns(clock: Clock, steps: Sequence[tuple[str, Fraction]]) -> bool:

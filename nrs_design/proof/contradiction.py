@@ -27,6 +27,7 @@ def find_contradiction(system: SwitchedSystem) -> str | None:
         or _find_odd_clock(system)
         or _find_odd_saturation(system)
         or _find_odd_enclosure(system)
+        or _find_odd_case(system)
     )
 
 
@@ -200,6 +201,22 @@ def _find_odd_enclosure(system: SwitchedSystem) -> str | None:
         return "an enclosure is not one of modes, or a mode is in two of them"
     if any(len({sizes[name] for name in names}) != 1 for names in system.enclosures):
         return "an enclosure is empty, or its modes are not of one size"
+    return None
+
+
+def _find_odd_case(system: SwitchedSystem) -> str | None:
+    if not system.cases:
+        return None
+    named = [name for names in system.cases for name in names]
+    if sorted(named) != sorted(mode.name for mode in system.every_mode):
+        return "a mode is in no case, or in two"
+    if not system.switching.is_arbitrary or not system.is_uniform:
+        return "there are cases, and rules of switching or modes of unlike size besides"
+    for only in map(system.only, system.cases):
+        if not only.modes or bool(only.free) is not bool(system.free):
+            return "a case has no mode, in contact or free"
+        if (odd := _find_odd_clock(only)) is not None:
+            return odd
     return None
 
 

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from itertools import compress
 
 from nrs_design.proof.channels import Channel, Output, Rounding
 from nrs_design.proof.contact import Contact, Flights
@@ -46,6 +48,9 @@ class SwitchedSystem:
     # one. Sets that are one at the corners of constant parameters have the same weights, in their
     # order. A mode that is in no set is attained itself.
     enclosures: tuple[tuple[str, ...], ...] = ()
+    # Sets of modes, in contact or free, of which one is in force for ever: no signal leads from one
+    # set to another, and nobody knows which it is. Every mode is in one. None: all are one set.
+    cases: tuple[tuple[str, ...], ...] = ()
 
     def __post_init__(self) -> None:
         """Take the word for a time as that time, so that no check takes it for another."""
@@ -67,6 +72,41 @@ class SwitchedSystem:
             assumptions=self.assumptions,
             switching=switching,
             enclosures=self.enclosures if enclosures is None else enclosures,
+        )
+
+    def only(self, names: Collection[str]) -> SwitchedSystem:
+        """TRUSTED: return the system with some of its modes, in contact and free.
+
+        What disturbs it stays: the rows of roundings are over the states and all disturbances.
+        """
+        kept = [mode.name in names for mode in self.every_mode]
+        flying = kept[len(self.modes) :]
+        contact, clock = self.contact, self.clock
+        if contact is not None:
+            contact = replace(contact, free=tuple(compress(contact.free, flying)))
+        if clock is not None:
+            clock = replace(clock, first=tuple(name for name in clock.first if name in names))
+        roundings = (
+            replace(
+                item,
+                columns=tuple(compress(item.columns, kept)),
+                rows=tuple(compress(item.rows, kept)),
+            )
+            for item in self.roundings
+        )
+        channels = (
+            replace(item, columns=tuple(compress(item.columns, kept))) for item in self.channels
+        )
+        return replace(
+            self,
+            modes=tuple(compress(self.modes, kept)),
+            contact=contact,
+            clock=clock,
+            roundings=tuple(roundings),
+            channels=tuple(channels),
+            saturation=None,
+            enclosures=tuple(item for item in self.enclosures if item[0] in names),
+            cases=(),
         )
 
     @property
@@ -96,6 +136,11 @@ class SwitchedSystem:
             Mode(mode.name, RationalMatrix(tuple(leading(mode.A.numerators)), mode.A.denominator))
             for mode in self.free
         )
+
+    @property
+    def has_constants(self) -> bool:
+        """Whether parameters are unknown but constant, anywhere or in cases."""
+        return bool(self.switching.fixed_ends or self.cases)
 
     def enclosure_of(self, mode: str) -> tuple[str, ...]:
         """TRUSTED: return the modes between which what is attained is; a mode that is, alone."""

@@ -73,6 +73,11 @@ class Certification:
         return refuted_in(self.system, self.statements)
 
     @property
+    def is_open(self) -> bool:
+        """Whether it is neither proved nor refuted, nor refuted in some contact."""
+        return self.verdict is Verdict.INCONCLUSIVE and self.refuted_in is None
+
+    @property
     def granted(self) -> tuple[str, ...]:
         """What the statements take for granted."""
         return granted(self.system, self.statements)

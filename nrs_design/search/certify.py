@@ -19,12 +19,12 @@ from nrs_design.certificates.certificate import (
 from nrs_design.errors import DISAGREE, DesignError, InternalError
 from nrs_design.progress import Progress, silent
 from nrs_design.proof.channels import Channel, Output
-from nrs_design.proof.evidence import AbstractEvidence, Shows
+from nrs_design.proof.evidence import AbstractEvidence, FormsOnGraph, Shows
 from nrs_design.proof.exact import TooLargeError
 from nrs_design.proof.mode import Time
 from nrs_design.proof.second_opinion import agrees
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.search.candidates import Candidates
+from nrs_design.search.candidates import Candidates, E
 from nrs_design.search.certification import Attempt, Certification, Limits
 from nrs_design.search.family import Family, floats_in_silence
 from nrs_design.search.fast_check import find_fault
@@ -43,7 +43,7 @@ SATURATION = "decay under saturation"
 SUSPICIOUS, ENCLOSURE = "suspicious modes", "enclosure of the ranges"
 WIDE = (
     "is not stable, and no loop of the spec need be there: nothing that covers the enclosure can "
-    "be proved; narrow the ranges, or split a constant one into a spec for each part"
+    "be proved; narrow the ranges"
 )
 NOT_IN_TURNS = (
     "not looked for: where the loop has two periods or misses deadlines, decay is proved, and no "
@@ -128,6 +128,29 @@ def certify_growth(system: SwitchedSystem, limits: Limits | None = None) -> Cert
     search = examine_suspicious_modes if system.clock is None else search_rounds
     evidence, _ = _take(partial(search, family), system, family.allowance)
     return _concluded(system, "suspicious modes", evidence)
+
+
+def prove_together(system: SwitchedSystem, allowance: Allowance) -> tuple[FormsOnGraph | None, str]:
+    """Search for forms that all modes share, under arbitrary switching; say how that ended."""
+    from nrs_design.search.graphs import search_periodic_quadratic, search_together
+
+    with floats_in_silence():
+        family = Family.of(system, allowance, optimize_rate=False)
+    search = search_together if system.clock is None else search_periodic_quadratic
+    return _take(partial(search, family), system, allowance)
+
+
+def certify_cases(
+    system: SwitchedSystem, parts: Sequence[FormsOnGraph], attempts: tuple[Attempt, ...]
+) -> Certification:
+    """Conclude that a system is stable of which every case has been shown to be."""
+    from nrs_design.search.cases import joined
+
+    evidence = joined(system, parts)
+    _check_again((evidence,), system)
+    if not agrees(system, evidence):
+        raise InternalError(DISAGREE)
+    return replace(_conclude(system, "cases", (evidence,), attempts), rate_limit=rate_limit(system))
 
 
 def _concluded(
@@ -329,10 +352,8 @@ def _known(system: SwitchedSystem, remarks: Sequence[AbstractEvidence]) -> froze
 
 
 def _take(
-    search: Callable[[], Candidates[AbstractEvidence]],
-    system: SwitchedSystem,
-    allowance: Allowance,
-) -> tuple[AbstractEvidence | None, str]:
+    search: Callable[[], Candidates[E]], system: SwitchedSystem, allowance: Allowance
+) -> tuple[E | None, str]:
     """Make one search; where it is not affordable, or floating point fails, nothing is found."""
     try:
         with floats_in_silence():
@@ -346,10 +367,10 @@ def _take(
 
 
 def first_accepted(
-    candidates: Candidates[AbstractEvidence],
+    candidates: Candidates[E],
     system: SwitchedSystem,
     allowance: Allowance | None = None,
-) -> tuple[AbstractEvidence | None, str]:
+) -> tuple[E | None, str]:
     """Return the first candidate that the exact check accepts, and in words how the search ended.
 
     Nothing becomes evidence but here, or from evidence that was accepted here. No more candidates

@@ -441,7 +441,7 @@ def search_together(family: Family) -> Candidates[FormsOnGraph]:
     Where the arithmetic rounds, forms that cover that are tried before others.
     """
     lost, rounds = family.system.contact is not None, bool(family.system.roundings)
-    return (yield from _together(family, rounds + lost, rounds, lost=lost))
+    return (yield from _together(family, (rounds + lost) or 1, rounds, lost=lost))
 
 
 def search_raw(family: Family) -> Candidates[FormsOnGraph]:

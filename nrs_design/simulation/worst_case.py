@@ -144,7 +144,7 @@ def _is_free(system: SwitchedSystem) -> bool:
 
 
 def _check(system: SwitchedSystem) -> None:
-    if not system.is_uniform or system.switching.fixed_ends:
+    if not system.is_uniform or system.has_constants:
         raise ValueError("modes differ in size, or are ends of a constant parameter")
     if system.clock is not None and not system.switching.is_arbitrary:
         raise ValueError("modes take turns, and are ruled besides")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from itertools import chain
@@ -10,9 +10,11 @@ from typing import TYPE_CHECKING
 
 from nrs_design.axis import AxisType
 from nrs_design.errors import AssemblyError
+from nrs_design.models.cut import Ends, RangeCut, cut_ranges
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
+from nrs_design.switched.assumption import say
 from nrs_design.switched.assumptions import (
     GIVEN_MATRICES,
     assume_matrices,
@@ -24,10 +26,12 @@ from nrs_design.switched.assumptions import (
     scale_texts,
     sensor_texts,
 )
+from nrs_design.switched.cases import in_cases
 from nrs_design.switched.constant_parameters import (
     constant_lateness,
     constants_of,
     with_constants,
+    within,
 )
 from nrs_design.switched.constraints import assemble_switching
 from nrs_design.switched.parameters import (
@@ -57,6 +61,7 @@ def assemble_from_text(
     scale: Fraction = DECLARED,
     plant: Plant | None = None,
     points: str = "",
+    cuts: Sequence[RangeCut] = (),
 ) -> SwitchedSystem:
     """Assemble the switched system of a spec from the gains that a certificate quotes.
 
@@ -68,8 +73,8 @@ def assemble_from_text(
     if spec.kind == "switched-system":
         if gains:
             raise AssemblyError("given matrices have no gains")
-        if points:
-            raise AssemblyError("the corners of given matrices are points of the ranges already")
+        if points or cuts:
+            raise AssemblyError("the ranges of given matrices are not cut, and have no points")
         return assemble_matrices(spec, scale)
     if spec.kind == "robot":
         raise AssemblyError("a robot spec has no modes")
@@ -77,7 +82,8 @@ def assemble_from_text(
     from nrs_design.spec.build_plant import build_plant
 
     design = design_from_gains(spec, gains)
-    return assemble(spec, plant or build_plant(spec), design, scale, points=points)
+    plant = plant or build_plant(spec)
+    return assemble(spec, plant, design, scale, points=points, cuts=cuts)
 
 
 def assemble_matrices(spec: SwitchedSystemSpec, scale: Fraction = DECLARED) -> SwitchedSystem:
@@ -115,29 +121,25 @@ def assemble(
     scale: Fraction = DECLARED,
     *,
     points: str = "",
+    cuts: Sequence[RangeCut] = (),
+    parts: Sequence[SwitchedSystem] = (),
 ) -> SwitchedSystem:
     """Return the closed loop of an interaction design, one mode for each corner of its boxes.
 
-    Every declared range is stretched by the scale, not negative, about its nominal value. An
-    `AssemblyError` if a stiffness or a gain does not stay positive, or if the rules of switching
-    make too many switches.
+    Every declared range is stretched by the scale, not negative, about its nominal value. Those of
+    constants are cut in parts, each a case, as `closed_part` returns it if `parts` does not hold
+    it. An `AssemblyError` if a stiffness or a gain does not stay positive, or if the rules of
+    switching make too many switches.
     """
     from nrs_design.spec.build_plant import build_conditions
 
     _check_scale(scale)
     conditions = build_conditions(spec)
-    if points and (points not in POINTS or conditions.sampling is None):
+    if points and (points not in POINTS or conditions.sampling is None or cuts):
         raise AssemblyError(f"there is no system at the points {points!r} of the ranges")
     scale = Fraction(0) if points == NOMINAL else scale
     plant = plant.scaled(scale, conditions.touched)
-    if conditions.sampling is not None:
-        from nrs_design.switched.sampled_loop import close_sampled_loop
-
-        sampling = conditions.sampling
-        system = close_sampled_loop(conditions, sampling, plant, design, points=bool(points))
-    else:
-        state = state_of(conditions, plant, design)
-        system = _assemble_continuous(conditions, plant, state)
+    system = _closed(conditions, plant, design, points)
     (drive,) = spec.drives
     constants = tuple(
         constants_of(
@@ -154,6 +156,13 @@ def assemble(
     unit = spec.axis.unit
     constants = tuple(replace(c, said=replace(c.said, unit=unit(c.said.unit))) for c in constants)
     system = with_constants(system, constants)
+    constant = tuple(constant_texts(system.switching))
+    if cuts:
+        whole = {c.said.name: (c.said.low, c.said.high) for c in constants}
+        each = cut_ranges(whole, cuts)
+        parts = parts or [closed_part(conditions, plant, design, drive, part) for part in each]
+        system = in_cases(system, parts)
+        constant = (*constant, say("constant.cases", cases=len(system.cases)))
     period = None if conditions.sampling is None else conditions.sampling.outer
     sensed = sensor_texts(
         design.sensor,
@@ -169,9 +178,36 @@ def assemble(
         *preload_texts(conditions.preloads, scale),
         *scale_texts(scale),
         *points_texts(points),
-        *constant_texts(system.switching),
+        *constant,
     )
     return _on_axis(replace(system, assumptions=texts), spec.axis)
+
+
+def closed_part(
+    conditions: OperatingConditions,
+    plant: Plant,
+    design: ControllerDesign,
+    drive: str,
+    part: Ends,
+) -> SwitchedSystem:
+    """Return the closed loop with constants in a part of their ranges, where they may change.
+
+    `drive` is the part of the spec that the motor is.
+    """
+    late = part.get(conditions.constant_late or "", conditions.late)
+    return _closed(replace(conditions, late=late), within(plant, drive, part), design)
+
+
+def _closed(
+    conditions: OperatingConditions, plant: Plant, design: ControllerDesign, points: str = ""
+) -> SwitchedSystem:
+    """Return the closed loop as if no range were constant."""
+    if conditions.sampling is None:
+        return _assemble_continuous(conditions, plant, state_of(conditions, plant, design))
+    from nrs_design.switched.sampled_loop import close_sampled_loop
+
+    sampling = conditions.sampling
+    return close_sampled_loop(conditions, sampling, plant, design, points=bool(points))
 
 
 def _on_axis(system: SwitchedSystem, axis: AxisType) -> SwitchedSystem:

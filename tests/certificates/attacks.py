@@ -6,6 +6,8 @@ from fractions import Fraction
 from typing import Any
 
 from nrs_design.certificates.certificate import Certificate, to_document
+from nrs_design.search.cases import joined
+from nrs_design.switched.cases import in_cases
 from tests.proof.systems import genuine
 from tests.support import ROOT
 
@@ -353,12 +355,20 @@ PAGE_ALONE = (
     "mode-polynomial",
     "periodic-quadratic",
     "periodic-quadratic, rounding",
+    "cases: periodic-quadratic, rounding",
+    "cases: conewise-quadratic",
+    "cases: conewise-quadratic, discrete",
 )
 
 
 def found(example):
-    """Return the certificate of what a search finds for an example."""
-    system, evidence = genuine(example)
+    """Return the certificate of what a search finds for an example; twice, if it is of cases."""
+    *cases, name = example.split(": ")
+    system, evidence = genuine(name)
+    if cases:
+        proofs = (evidence, evidence)
+        system = in_cases(system, (system, system))
+        evidence = joined(system, proofs)
     return to_document(Certificate("family", "0" * 64, None, {}, system, (evidence,), "0.1.0"))
 
 

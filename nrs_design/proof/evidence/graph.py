@@ -43,6 +43,8 @@ ends suffice. For d > 1 it need not be convex.
 *Turns.* A step of a round leads from ``modes k`` to ``modes k+1``, and from the last to the first.
 A mode need not be stable by itself.
 
+*Cases.* In each of them all this holds with the places of its own: no step leads to another.
+
 *Stays.* A mode is followed by its own steps until its shortest stay T is left; those T and the
 switch are one step, ``G exp(A T)`` or ``G A^T`` (Geromel and Colaneri 2006; resets: thesis 5.13). A
 mode of ``leaving`` is not followed by itself, may be unstable, and every length of its stay is a
@@ -243,9 +245,10 @@ class FormsOnGraph(AbstractFunction):
         sizes = {CONTACT: system.order}
         if self.covers_lost_contact:
             sizes[FREE] = system.order - 1
-        if system.clock is None:
-            return sizes
-        return {_at(place, k): n for k in range(system.clock.length) for place, n in sizes.items()}
+        length = 0 if system.clock is None else system.clock.length
+        for count in filter(None, (length, len(system.cases))):
+            sizes = {at_place(place, k): n for k in range(count) for place, n in sizes.items()}
+        return sizes
 
     def _find_odd_places(self, system: SwitchedSystem) -> str | None:
         if self.covers_lost_contact and system.contact is None:
@@ -538,8 +541,8 @@ class FormsOnGraph(AbstractFunction):
         return replace(carried, vanishing=tuple(found))
 
 
-def _at(place: str, turn: int) -> str:
-    """Return a place at a step of a round."""
+def at_place(place: str, turn: int) -> str:
+    """Return a place at a step of a round, or in a case."""
     return f"{place} {turn}"
 
 
@@ -552,6 +555,12 @@ def steps_together(
     The modes are of one size, and may take turns; contact is kept unless it is `lost` and made. The
     rate that maps are to keep decides in which units they are counted.
     """
+    if system.cases:
+        return tuple(
+            replace(step, source=at_place(step.source, k), target=at_place(step.target, k))
+            for k, names in enumerate(system.cases)
+            for step in steps_together(system.only(frozenset(names)), acting, rate, lost)
+        )
     grain = grain_of(rate**2)
     if system.clock is None:
         return tuple(steps_of(system, acting, grain, lost=lost))
@@ -567,8 +576,8 @@ def steps_together(
         replace(
             step,
             where=f"{step.where}, at {at} {k}",
-            source=_at(step.source, k),
-            target=_at(step.target, target),
+            source=at_place(step.source, k),
+            target=at_place(step.target, target),
         )
         for k, kind, target in clock.turns()
         for step in parts[kind]

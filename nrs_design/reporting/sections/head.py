@@ -102,13 +102,14 @@ def _aside(certification: Certification) -> _Facts:
 
 def switching_words(result: Result) -> str:
     """Say which switching signals the spec declares, in a few words."""
-    switching = result.certification.system.switching
+    system = result.certification.system
+    switching = system.switching
     spec = result.loaded.spec
     assert not isinstance(spec, RobotSpec)  # It has no modes, hence no certification.
     words = [str(spec.switching)]
     if switching.resets:
         words.append("the state is reset at some switches")
-    if switching.fixed_ends:
+    if system.has_constants:
         words.append(f"{constants_words(switching)}: unknown but constant")
     return "; ".join(words)
 

@@ -122,7 +122,7 @@ def _saturated(result: Result) -> tuple[str, ...]:
 
 
 def _signals(system: SwitchedSystem) -> str:
-    if system.switching.fixed_ends:
+    if system.has_constants:
         return f"the declared switching, with {constants_words(system.switching)} constant"
     if system.switching.is_arbitrary and not system.switching.resets:
         return "arbitrary switching"

@@ -134,13 +134,19 @@ const check = (() => {
       const flight = { ...s, n: n - 1, source: "free", M: s.M.map(without), facts };
       return steps.push(left(flight), ...(flow ? [] : [flight, { ...left(flight), target: "modes" }]));
     });
-    if (!clock) return steps;
+    if (!clock) return inCases(S, steps);
     const { length, first, ahead = range(length).map((k) => (k ? [-1n, BigInt(k + 1) % length] : [1n, -1n])) } = clock, groups = [S.names.slice(0, S.count), S.names.slice(S.count)];
     need(!flow && length > 1n && S.o.switching === "arbitrary" && ahead.length === Number(length), "modes take turns without steps");
     need(first.every((name) => S.names.includes(name)) && groups.every((names) => !names.length || new Set(names.map((name) => first.includes(name))).size === 2), "a turn has no mode");
     need(ahead.every((pair) => pair.length === 2 && pair.some((to) => to >= 0n) && pair.every((to) => to >= -1n && to < length)), "an automaton is odd");
-    return ahead.flatMap((pair, k) => pair.flatMap((to, other) => (to < 0n ? [] : steps.filter((s) => first.includes(s.mode) === !other)
-      .map((s) => ({ ...s, source: `${s.source} ${k}`, target: `${s.target} ${to}` })))));
+    return inCases(S, ahead.flatMap((pair, k) => pair.flatMap((to, other) => (to < 0n ? [] : steps.filter((s) => first.includes(s.mode) === !other)
+      .map((s) => ({ ...s, source: `${s.source} ${k}`, target: `${s.target} ${to}` }))))));
+  }
+  // Of cases one is there for ever: each has places of its own.
+  function inCases({ o: { cases, switching }, names }, steps) {
+    if (!cases) return steps;
+    need(switching === "arbitrary" && cases.flat().sort().join() === [...names].sort().join(), "a mode is in no case, or in two");
+    return cases.flatMap((own, k) => steps.filter((s) => own.includes(s.mode)).map((s) => ({ ...s, source: `${s.source} ${k}`, target: `${s.target} ${k}` })));
   }
   // Every step of a system that keeps rules of switching: its places are the modes.
   function stepsByMode(S, leaving, [p, q]) {
@@ -202,8 +208,8 @@ const check = (() => {
       values.set(`${fact}/${target}`, value);
     }
     for (const node of nodes) need(definite(own(form(node.form, sizes[node.place], d), 1n)), `a form at ${node.place} is not positive definite`);
-    const flat = nodes.filter(() => lost && S.flow).map((node) => form(node.form, sizes[node.place], d, S.n - 1).rows.join());
-    need(new Set(flat).size < 2, "it jumps where contact is lost");
+    const flat = new Map(nodes.filter(() => lost && S.flow).map((node) => [`${node.place.split(" ")[1]}/${form(node.form, sizes[node.place], d, S.n - 1).rows.join()}`, 1]));
+    need(flat.size <= (lost && S.flow ? S.o.cases?.length ?? 1 : 0), "it jumps where contact is lost");
     for (const s of steps) for (const from of nodes) nodes.forEach((to, b) => {
       if (from.place !== s.source || to.place !== s.target) return;
       const after = form(to.form, sizes[s.target], d, s.M.length), power = BigInt(2 * d * s.time);
@@ -217,6 +223,7 @@ const check = (() => {
     return `decay like ${shown}${lost ? ", through loss of contact" : ""}${rounds ? ", with rounding" : ""}`;
   }
   function noCommonQuadratic(S, { factors }) {
+    known(!S.o.cases, "a statement on cases");
     distinct(factors.map(([name]) => name), S.names.slice(0, S.count));
     need(S.uniform && factors.every(([, L]) => L.length === S.n), "the factors are not those of modes");
     need(factors.every(([, L, ...more]) => L.every((row) => row.length === L[0].length) && !more.length), "a factor has no shape");

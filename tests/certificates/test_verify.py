@@ -362,11 +362,6 @@ class TestForgery:
         self.reject({**document, "modes": document["modes"][1:]}, spec, "'modes'")
         self.reject({**document, "modes": document["modes"][::-1]}, spec, "'modes'")
 
-    def test_dropped_assumption(self, impedance):
-        document, spec = impedance
-        for i in range(len(document["assumptions"])):
-            self.reject(changed(document, ("assumptions", i), DROP), spec, "'assumptions'")
-
     def test_a_proof_for_a_narrow_range_is_none_for_a_wide_one(self, impedance, tmp_path):
         document, _ = impedance
         path = tmp_path / "wide.nrs.yaml"

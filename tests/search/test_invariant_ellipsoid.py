@@ -1,4 +1,4 @@
-"""Bounds on the force for the robot of the thesis: known answers, and runs that attack them."""
+"""Bounds on the force for the robot of the thesis: known answers, and what they cover."""
 
 from dataclasses import replace
 from fractions import Fraction
@@ -13,9 +13,6 @@ from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.certify import Limits, certify, first_accepted
 from nrs_design.search.family import floats_in_silence
 from nrs_design.search.invariant_ellipsoid import search_ellipsoid
-from nrs_design.simulation.game import Game, Signals, free_counterparts, play
-from nrs_design.simulation.worst_case import worst_against
-from nrs_design.simulation.worst_outputs import output_values
 from nrs_design.work import Allowance
 from tests.proof.systems import (
     bouncing,
@@ -123,56 +120,6 @@ def test_nothing_is_found_where_no_quadratic_function_exists():
         evidence, why = first_accepted(search, system)
     assert evidence is None
     assert why
-
-
-RUNS, LENGTH = 10_000, 400
-
-
-@slow
-@pytest.mark.parametrize(
-    ("contact", "Bt", "near"), [("kept", INSERTION, 0.75), ("losable", INSERTION, 0.55)]
-)
-def test_ten_thousand_runs_do_not_leave_the_bound(contact, Bt, near):
-    """Random modes and signs, and the adversary's best run with a share of its choices changed."""
-    system = thesis_robot(
-        SOFT,
-        Bt,
-        "0.01",
-        sampling="{period: 2 ms, delay: 1}",
-        contact=contact,
-        disturbances="{command: 8 deg/s}",
-    )
-    evidence = bounded(system)
-    game = Game.of(system, system.channels, 1.0)
-    rng = np.random.default_rng(13)
-    bad = worst_against(system, evidence.bound(system))
-    held = rng.integers(1, 60, RUNS)
-    blocks = np.arange(LENGTH)[:, None] // held
-    modes = np.take_along_axis(rng.integers(0, len(game.maps), (LENGTH, RUNS)), blocks, axis=0)
-    signs = np.take_along_axis(rng.choice([-1.0, 1.0], (LENGTH, RUNS)), blocks, axis=0)
-    half, late = RUNS // 2, min(LENGTH, len(bad.mode))
-    kept = rng.random((late, half)) < rng.random(half)
-    kept[:, 0] = True
-    own = np.sign(bad.disturbances[-late:])
-    signs[:-late, 0] = 0.0
-    signs[-late:, :half] = np.where(kept, own, signs[-late:, :half])
-    chosen = _in_contact(system, bad.mode)[-late:, None]
-    modes[-late:, :half] = np.where(kept, chosen, modes[-late:, :half])
-    largest = 0.0
-    for part in (slice(k, k + 1000) for k in range(0, RUNS, 1000)):
-        states = play(game, Signals.from_rest(game, modes[:, part], signs[:, part, None]))
-        values = np.abs(output_values(system, system.outputs[0], states))
-        largest = max(largest, float(values.max()))
-    level = float(evidence.level)
-    assert near * level < largest < level
-
-
-def _in_contact(system: SwitchedSystem, modes: np.ndarray) -> np.ndarray:
-    """Return the modes that were chosen, also while nothing was touched."""
-    if system.contact is None:
-        return modes
-    count, places = len(system.modes), free_counterparts(system).tolist()
-    return np.array([k if k < count else places.index(k - count) for k in modes.tolist()])
 
 
 @pytest.mark.slow

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from nrs_design.search.certify import Limits, certify
 from nrs_design.search.stays import round_stays
 from tests.search.test_pieces import timed
 
@@ -31,32 +30,3 @@ def test_modes_that_may_stay_have_coordinates_as_well():
     system = timed((0, 0), [[["-1", "5"], ["0", "-2"]], [["-2", "0"], ["4", "-1"]]])
     found = round_stays(system, ("a",))
     assert all(np.linalg.cond(one.whole) < 100 for one in found.values())
-
-
-@pytest.mark.parametrize("width", ["0", "0.05", "0.2"])
-@pytest.mark.parametrize("seed", range(3))
-def test_cycles_with_nearly_fixed_stays_are_proved(seed, width):
-    """Random modes, one of them unstable; the worst of many random signals shrinks."""
-    rng = np.random.default_rng(seed)
-    found = []
-    while len(found) < 3:
-        matrices = rng.normal(size=(2, 2, 2)).round(2)
-        stays = rng.uniform(0.2, 2, 2).round(1)
-        if max(np.linalg.eigvals(A).real.max() for A in matrices) < 0:
-            continue
-        if not 0.7 < worst(matrices, stays, float(width)) < 0.9:
-            continue
-        system = timed((width, width), matrices.astype(str), stays.astype(str))
-        found.append(str(certify(system, limits=Limits(optimize_rate=False)).verdict))
-    assert found == ["proved"] * 3
-
-
-def worst(matrices, stays, width):
-    """Return the largest spectral radius per period, of some signals of three periods."""
-    flows = [
-        [expm(A * t * (1 + width * share)) for share in (0, 0.5, 1)]
-        for A, t in zip(matrices, stays, strict=True)
-    ]
-    periods = [B @ A for A in flows[0] for B in flows[1]]
-    words = [C @ D @ E for C in periods for D in periods for E in periods]
-    return np.abs(np.linalg.eigvals(np.array(words))).max() ** (1 / 3)

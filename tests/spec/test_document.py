@@ -273,22 +273,11 @@ def test_the_longest_text_is_read() -> None:
     assert to_data(parse_document("a: " + "x" * MAX_SCALAR)) == {"a": "x" * MAX_SCALAR}
 
 
-@pytest.mark.parametrize(
-    ("name", "content", "said"),
-    [
-        ("run.csv", b"time_s,force_N\n0,1\n", "this is a table, not a spec"),
-        ("run.tsv", b"time_s\tforce_N\n0\t1\n", "this is a table, not a spec"),
-        ("b.nrs.yaml", "name: Gr\xf6\xdfe".encode("latin-1"), "byte 0xf6 is not UTF-8 text"),
-    ],
-)
-def test_files_of_another_kind_are_named(
-    tmp_path: Path, name: str, content: bytes, said: str
-) -> None:
-    path = tmp_path / name
-    path.write_bytes(content)
-    with pytest.raises(SpecError) as caught:
-        read_source(path)
-    assert caught.value.message == said
+def test_a_table_is_named(tmp_path: Path) -> None:
+    for name, end in (("run.csv", ","), ("run.tsv", "\t")):
+        (tmp_path / name).write_text(f"time_s{end}force_N\n0{end}1\n")
+        with pytest.raises(SpecError, match="this is a table, not a spec"):
+            read_source(tmp_path / name)
 
 
 def test_a_decimal_comma_hides_what_would_be_said_of_its_halves(tmp_path: Path) -> None:

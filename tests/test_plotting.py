@@ -1,14 +1,13 @@
 """A settings file of matplotlib in the working directory, as a stranger may leave one there."""
 
 import os
-import shutil
 import subprocess
 import sys
 
 import pytest
 
 from tests.package import FILES
-from tests.support import COMMUTING, ROOT, SOFT_TISSUE, typed
+from tests.support import ROOT
 from tests.test_structure import imports
 
 HOSTILE = "figure.dpi: 7\naxes.facecolor: red\ntimezone: Nowhere\nbackend: module://evil\n"
@@ -30,40 +29,6 @@ def test_settings_of_the_working_directory_are_not_read(tmp_path):
     (tmp_path / "evil.py").write_text("raise SystemExit('evil was imported')\n")
     done = look(tmp_path, MATPLOTLIBRC=str(tmp_path))
     assert done.stdout.split() == ["UTC", "100.0", str(tmp_path)], done.stderr
-
-
-@pytest.mark.slow
-def test_figures_are_the_same_beside_hostile_settings(tmp_path):
-    pages = []
-    for name in ("clean", "hostile"):
-        folder = tmp_path / name
-        folder.mkdir()
-        if name == "hostile":
-            (folder / "matplotlibrc").write_text(HOSTILE)
-        shutil.copy(COMMUTING, folder / "c.nrs.yaml")
-        typed("report", "c.nrs.yaml", "--out", "c.html", cwd=folder, code=0)
-        pages.append((folder / "c.html").read_bytes())
-    assert pages[0] == pages[1]
-
-
-# Commands that draw, or need python-control, with what they need.
-DRAWING = {
-    "report": (SOFT_TISSUE, "--budget", 1, "--out", "x.html"),
-    "tune": (SOFT_TISSUE, "--json"),
-    "compare-methods": (COMMUTING, "--figure", "x.svg"),
-    "identify tissue": (ROOT / "specs/data/nose-1.csv", "--report", "x.html"),
-    "robot kinematics": (ROOT / "specs/robots/neuroboscope.nrs.yaml", "--figures", "f"),
-}
-
-
-@pytest.mark.slow
-@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="this system has no pipes with a name")
-@pytest.mark.parametrize("command", DRAWING)
-def test_a_pipe_is_not_waited_for(tmp_path, command):
-    """Whoever opens it waits until somebody writes; python-control imports matplotlib, too."""
-    os.mkfifo(tmp_path / "matplotlibrc")
-    done = typed(*command.split(), *DRAWING[command], cwd=tmp_path)
-    assert done.returncode in (0, 1, 3), done.stderr
 
 
 @pytest.mark.slow

@@ -130,27 +130,11 @@ def test_a_document_replaces_documents_only(gate, capsys):
         assert gate("specs", "--no-reports", "--format", format_, "--out", "gate.out", "-q") == 0
 
 
-@pytest.mark.parametrize(
-    "name", ["a b.nrs.yaml", "100%.nrs.yaml", "[red]x[bold].nrs.yaml", "-x;é#"]
-)
-def test_hostile_file_names(gate, capsys, name):
-    Path("specs/stable.nrs.yaml").rename(f"specs/{name}")
-    assert gate(f"specs/{name}", "--no-reports", "-v") == 0
-    assert name in capsys.readouterr().out
-    assert gate(f"specs/{name}", "--locked", "--format", "github") == 0
-
-
 def test_a_lock_that_cannot_be_written_is_said_before_the_proofs(gate, capsys):
     Path("nrs.lock").mkdir()
     assert gate("specs", "--no-reports") == 2
     assert "error[NRS005]: nrs.lock" in capsys.readouterr().err
     assert not Path("reports").exists()
-
-
-def test_locked_without_a_lock(gate, capsys):
-    assert gate("specs", "--locked") == 2
-    assert "error[NRS004]: nrs.lock" in capsys.readouterr().err
-    assert [p.name for p in Path().iterdir()] == ["specs"]
 
 
 def test_reports_are_written_by_default(gate):

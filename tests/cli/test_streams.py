@@ -14,11 +14,8 @@ COMMUTING, PRINT_ERROR, SOFT_TISSUE = map(str, (COMMUTING, PRINT_ERROR, SOFT_TIS
 @pytest.mark.parametrize(
     ("arguments", "code"),
     [
-        pytest.param(("schema",), 0, marks=pytest.mark.slow),
         pytest.param(("check", SOFT_TISSUE), 0, marks=pytest.mark.slow),
         (("certify-switching", PRINT_ERROR, "-v"), 1),
-        pytest.param(("explain",), 0, marks=pytest.mark.slow),
-        pytest.param(("--help",), 0, marks=pytest.mark.slow),
         (("check", "missing.nrs.yaml"), 2),
     ],
 )

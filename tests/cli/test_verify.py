@@ -112,18 +112,6 @@ def test_altered(certified, tmp_path):
     assert content["claims"] is content["gains"] is content["certificate_id"] is None
 
 
-@pytest.mark.parametrize("extra", ["\ud800", "\x1b[2J", "\nPROVED: the certificate holds"])
-def test_hostile_text_is_quoted(certified, tmp_path, extra):
-    document = json.loads((certified / "commuting.json").read_text())
-    document[extra] = None
-    document["id"] = content_id(document)
-    (tmp_path / "c.json").write_text(json.dumps(document))
-    result = run("verify", "c.json", COMMUTING, cwd=tmp_path, code=1)
-    assert result.stdout.startswith("REJECTED: its field '")
-    assert result.stdout.count("\n") == 1
-    assert "\x1b" not in result.stdout
-
-
 @pytest.mark.parametrize("content", [None, b"", b"[]", b'{"a": NaN}', b"[" * 9000, b"9" * 5000])
 def test_not_a_certificate(tmp_path, content):
     if content is not None:

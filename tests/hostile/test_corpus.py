@@ -1,7 +1,6 @@
 """Every command on every hostile input: its exit code, time, memory, words, and what it touches."""
 
 import os
-from pathlib import Path
 
 import pytest
 
@@ -182,13 +181,6 @@ def test_what_is_no_file(place, command, kind):
         path.symlink_to("/dev/zero")
     ended = check(place, *command, codes=(0,) if is_schema else (2,))
     assert ("nrs.schema.json cannot be read" in ended.text) is is_schema
-
-
-@pytest.mark.parametrize("name", ["nul.cert.json", "AUX", "com1.html"])
-def test_no_file_is_written_under_the_name_of_a_device(place, name):
-    write(place / "work/spec.nrs.yaml", COMMUTING.read_bytes())
-    check(place, "certify-switching", "--out", name, "spec.nrs.yaml", codes=(2,))
-    assert not Path(name).exists()
 
 
 @pytest.mark.parametrize("option", ["--reports", "--lock"])

@@ -168,28 +168,8 @@ def test_a_range_that_was_not_there_is_a_change(tmp_path, motor):
     assert any(line.startswith("actuator.gain.range: not there -> [") for line in changed)
 
 
-def test_what_changes_and_what_is_lost(tmp_path, silicone):
-    text = SOFT_TISSUE.read_text().replace(
-        "    model: elastic\n", "    model: kelvin-voigt\n    damping: 5 N*s/m\n"
-    )
-    loaded = merged(tmp_path, text)
-    new = merge_tissue(loaded, silicone, None, None)
-    changed, lost = spec_changes(loaded, new)
-    assert lost == ("environments.soft.damping: 5 N*s/m",)
-    assert "environments.soft.model: kelvin-voigt -> elastic" in changed
-    assert any(line.startswith("environments.soft.stiffness: 747.1461 N/m -> ") for line in changed)
-    assert spec_changes(loaded, text) == ((), ())
-
-
-def test_the_declared_law_is_kept(tmp_path):
+def test_a_hand_is_told_by_no_record_of_a_press(tmp_path):
     options = {"preloaded": False, "rotational": False}
-    loaded = read_spec(ROBOT / "tissue-and-tool.nrs.yaml")
-    assert law_to_write(loaded, "soft", None, None, **options) == "elastic"
-    assert law_to_write(loaded, "soft", None, "kelvin-voigt", **options) == "kelvin-voigt"
-    with pytest.raises(DataError, match="hunt-crossley has no place"):
-        law_to_write(loaded, "soft", None, "hunt-crossley", **options)
-    with pytest.raises(SpecError, match="several environments"):
-        law_to_write(loaded, None, None, None, **options)
     held = "    model: hand\n    damping: 5 N*s/m\n    mass: 0.1 kg\n"
     hand = merged(tmp_path, SOFT_TISSUE.read_text().replace("    model: elastic\n", held))
     with pytest.raises(

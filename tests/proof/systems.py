@@ -283,16 +283,23 @@ def drifting() -> SwitchedSystem:
     return replace(family([[-2, -1], [1, 0]]), contact=Contact((free,), required=True))
 
 
+def cut_off(
+    name: str, limit: Entry, column: Rows, row: Rows, modes: int = 1, **more: object
+) -> CutOff:
+    """Cut a signal off at a limit that is the same in so many modes."""
+    columns, rows = (matrix(column),) * modes, (matrix(row),) * modes
+    return CutOff(name=name, unit="N", limit=Fraction(limit), columns=columns, rows=rows, **more)
+
+
 def saturating() -> SwitchedSystem:
     """The same mass, pushed by ``v' = v + s1 + s2`` on a ground that does not slow it.
 
     ``s1 = sat(-v)``, cut off at 2, and ``s2 = sat(s1 - v)``, cut off at 1: from ``v = 3`` on it
     flies away.
     """
-    column, first, second = matrix([[1], [0]]), matrix([[-1, 0]]), matrix([[-1, 0, 1]])
     signals = (
-        CutOff(name="s1", unit="N", limit=Fraction(2), columns=(column,) * 3, rows=(first,) * 3),
-        CutOff(name="s2", unit="N", limit=Fraction(1), columns=(column,) * 3, rows=(second,) * 3),
+        cut_off("s1", 2, [[1], [0]], [[-1, 0]], 3),
+        cut_off("s2", 1, [[1], [0]], [[-1, 0, 1]], 3),
     )
     start = Start("force", "N", tuple(matrix([[0], [Fraction(1, k)]]) for k in (1, 2)))
     return replace(bouncing(), saturation=Saturation(signals, start))
@@ -311,13 +318,7 @@ def kept(system: SwitchedSystem) -> SwitchedSystem:
 
 def pushed_away(pull: Entry = 3) -> SwitchedSystem:
     """``x' = x + sat(-pull x)``, cut off at 1: it decays from ``|x| < 1`` exactly."""
-    signal = CutOff(
-        name="s",
-        unit="N",
-        limit=Fraction(1),
-        columns=(matrix([[1]]),),
-        rows=(matrix([[-Fraction(pull)]]),),
-    )
+    signal = cut_off("s", 1, [[1]], [[-Fraction(pull)]])
     start = Start("place", "m", (matrix([[1]]),))
     system = family([[1 - Fraction(pull)]])
     return replace(system, saturation=Saturation((signal,), start))
@@ -325,9 +326,7 @@ def pushed_away(pull: Entry = 3) -> SwitchedSystem:
 
 def pushed_away_in_steps() -> SwitchedSystem:
     """``x+ = 3/2 x + sat(-x)``, cut off at 1: it decays from ``|x| < 2`` exactly."""
-    signal = CutOff(
-        name="s", unit="N", limit=Fraction(1), columns=(matrix([[1]]),), rows=(matrix([[-1]]),)
-    )
+    signal = cut_off("s", 1, [[1]], [[-1]])
     start = Start("place", "m", (matrix([[1]]),))
     system = family([["1/2"]], time=Time.DISCRETE)
     return replace(system, saturation=Saturation((signal,), start), sample_time=Fraction(1, 10))
@@ -339,16 +338,9 @@ def saturating_in_steps() -> SwitchedSystem:
     What makes the push is rounded.
     """
     system = bouncing_in_steps()
-    column, row, share = matrix([[1], [0]]), matrix([["-3/10", 0]]), Fraction(1, 1000)
-    rounding = Rounding("s", (column,) * 3, (matrix([[3 * share / 10, 0]]),) * 3)
-    signal = CutOff(
-        name="s",
-        unit="N",
-        limit=Fraction(1, 2),
-        columns=(column,) * 3,
-        rows=(row,) * 3,
-        errors=(matrix([[1]]),) * 3,
-    )
+    column, row = [[1], [0]], [["-3/10", 0]]
+    rounding = Rounding("s", (matrix(column),) * 3, (matrix([["3/10000", 0]]),) * 3)
+    signal = cut_off("s", "1/2", column, row, 3, errors=(matrix([[1]]),) * 3)
     start = Start("force", "N", tuple(matrix([[0], [Fraction(1, k)]]) for k in (1, 2)))
     return replace(system, roundings=(rounding,), saturation=Saturation((signal,), start))
 

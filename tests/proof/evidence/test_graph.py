@@ -4,7 +4,6 @@ from dataclasses import replace
 from fractions import Fraction
 from itertools import product
 from math import comb
-from random import Random
 
 import numpy as np
 import pytest
@@ -1304,56 +1303,6 @@ class TestAttacks:
         assert [*evidence.forms(disturbed(0))] == [*evidence.forms(system)]
         # A rounding that grows with the state is still held against.
         assert evidence.find_fault(disturbed(100)) is not None
-
-
-def situation(system: SwitchedSystem, random: Random):
-    """Return a mode, its matrix, a state that it can be in, and how many entries V has of it."""
-    n, contact = system.order, system.contact
-    x = [Fraction(random.randint(-9, 9)) for _ in range(n)]
-    k = random.randrange(len(system.every_mode))
-    A = system.every_mode[k].A.fractions()
-    if k < len(system.modes):
-        return k, A, [*x[:-1], abs(x[-1])] if contact else x, n
-    lags = [*x[:-1], abs(x[-1])]
-    pulled = [q for q in contact.pulls if dot(q.fractions()[0], lags) <= 0]
-    if pulled and random.random() < 0.5:
-        return k, A, lags, n
-    return k, A, [*x[:-1], -abs(x[-1])], n - 1
-
-
-def dot(left, right):
-    return sum((a * b for a, b in zip(left, right, strict=True)), Fraction(0))
-
-
-def _square(Q: Rows, x: list[Fraction]) -> Fraction:
-    return dot(x, [dot(row, x) for row in Q])
-
-
-class TestErrorsWithinTheirBounds:
-    @pytest.mark.parametrize("damping", [None, 0, 1])
-    def test_no_step_within_the_bounds_raises_a_form(self, damping):
-        """At random states in contact, in flight and while what is touched lags; None: kept."""
-        system = bouncing_in_steps(damping or 0)
-        if damping is None:
-            system = replace(system, contact=None)
-        count = len(system.every_mode)
-        columns = (matrix([["1/2"], ["1/4"]]),) * count
-        sizes = [[["1/100", "1/50"]]] * 2 + [[["1/100", 0]]]
-        rounding = Rounding("F", columns, tuple(map(matrix, sizes[:count])))
-        system = replace(system, roundings=(rounding,))
-        found = certify(system, limits=Limits(optimize_rate=False))
-        item = next(one for one in found.statements if one.shows is Shows.STABILITY)
-        assert item.covers_rounding
-        assert item.covers_lost_contact is (damping is not None)
-        Q, value = item.nodes[0].form, _square if damping is None else _value
-        for seed in range(60):
-            random = Random(seed)
-            k, A, x, _ = situation(system, random)
-            error = random.choice((-1, 1)) * dot(rounding.rows[k].fractions()[0], x)
-            moves = [dot(row, x) for row in A]
-            column = rounding.columns[k].fractions()
-            moved = [a + error * b for a, (b,) in zip(moves, column, strict=True)]
-            assert value(Q, moved) <= item.rate**2 * value(Q, x)
 
 
 class TestRulesOfStays:

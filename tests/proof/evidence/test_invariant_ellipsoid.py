@@ -30,19 +30,15 @@ from tests.proof.systems import (
 from tests.proof.truth import combine, holds, inequality, is_positive_multiple, moves
 from tests.support import is_definite_by_ldl
 
+
+def pushing(Q, log2, share, level, *multipliers):
+    numbers = (Fraction(share),), Fraction(level), multipliers
+    return InvariantEllipsoid(("push",), "force", Q, log2, *numbers)
+
+
 # By hand, for pushes of 1/4: V = 13 v^2 + 10 v delta + 14 delta^2, about.
-BOUNCE = InvariantEllipsoid(
-    ("push",), "force", ((55, 22), (22, 56)), 2, (Fraction(1, 2),), Fraction(3, 5), ()
-)
-STEPS = InvariantEllipsoid(
-    ("push",),
-    "force",
-    ((3059, 1375), (1375, 3495)),
-    8,
-    (Fraction(457, 10_000),),
-    Fraction(61, 100),
-    (2598,),
-)
+BOUNCE = pushing(((55, 22), (22, 56)), 2, "1/2", "3/5")
+STEPS = pushing(((3059, 1375), (1375, 3495)), 8, "0.0457", "0.61", 2598)
 PULLED = replace(BOUNCE, Q=((60, 17), (17, 55)), shares=(Fraction(1, 3),), multipliers=(80, 80))
 KEPT = replace(bouncing(), contact=None)
 ROUNDING = Rounding("F", (matrix([[0], [0]]),) * 3, (matrix([[0, 0, 0]]),) * 3)
@@ -182,7 +178,7 @@ ESCAPES: dict[str, tuple[SwitchedSystem, Rows]] = {
     ),
 }
 
-SHARES = {"in free motion, mode f": Fraction(11, 16)}
+SHARES = {"in free motion, mode f": "11/16"}
 
 
 @pytest.mark.parametrize("where", ESCAPES)
@@ -190,15 +186,7 @@ def test_each_condition_in_steps_bars_a_set_that_is_left(where):
     system, Q = ESCAPES[where]
     faults = set()
     for multiplier in (0, 1, 2, 4, 8, 16, 32, 64):
-        candidate = InvariantEllipsoid(
-            ("push",),
-            "force",
-            Q,
-            4,
-            (SHARES.get(where, Fraction(1, 2)),),
-            Fraction(10),
-            (multiplier,),
-        )
+        candidate = pushing(Q, 4, SHARES.get(where, "1/2"), 10, multiplier)
         broken = {
             failure.removeprefix("the ellipsoid can be left ")
             for failure, form in candidate.forms(system)
@@ -237,7 +225,7 @@ def test_each_condition_in_continuous_time_bars_a_set_that_is_left():
     calm = [[-2, 0], [1, 0]]
     flying = moved(contact, calm, B, [[4], [0]], Time.CONTINUOUS)
     lagging = moved(contact, [[-2, 0], [8, 0]], B, B, Time.CONTINUOUS, [[-9, 1]])
-    candidate = InvariantEllipsoid(("push",), "force", ROUND, 4, (Fraction(1),), Fraction(2))
+    candidate = pushing(ROUND, 4, 1, 2)
     good = moved(contact, calm, B, B, Time.CONTINUOUS)
     assert candidate.find_fault(good) is None
     assert candidate.find_fault(flying).endswith("in free motion, mode f")
@@ -287,9 +275,7 @@ def test_what_lags_in_steps_can_leave_the_set(where):
         channels=(Channel("push", "N", Fraction(1, 1000), columns),),
         outputs=(Output("force", "N", (matrix([[0, 1]]),)),),
     )
-    ellipsoid = InvariantEllipsoid(
-        ("push",), "force", Q, 0, (Fraction(1, 50),), Fraction(10), multipliers
-    )
+    ellipsoid = pushing(Q, 0, "1/50", 10, *multipliers)
     fault = ellipsoid.find_fault(system)
     assert fault == f"the ellipsoid can be left {where}"
     assert not holds(system, ellipsoid)
@@ -317,9 +303,7 @@ def test_against_the_definition(contact, free, columns, Q, multiplier, share, le
     flight = [[Fraction(free[0], 8), 0], [Fraction(free[1], 8), moves]]
     system = moved([[a, b], [c, d]], flight, B, B_free, time, *pulls)
     p, q, r = Q
-    candidate = InvariantEllipsoid(
-        ("push",), "force", ((p, q), (q, r)), 1, (share,), level, (multiplier,)
-    )
+    candidate = pushing(((p, q), (q, r)), 1, share, level, multiplier)
     assert (candidate.find_fault(system) is None) == holds(system, candidate)
 
 

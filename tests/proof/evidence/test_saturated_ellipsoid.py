@@ -10,11 +10,12 @@ from hypothesis import strategies as st
 from nrs_design.proof.evidence import SaturatedEllipsoid, Shows, read_evidence
 from nrs_design.proof.evidence.fields import MAX_INTEGER_BITS
 from nrs_design.proof.mode import Time
-from nrs_design.proof.saturation import CutOff, Saturation
+from nrs_design.proof.saturation import Saturation
 from nrs_design.proof.second_opinion import agrees
 from nrs_design.proof.switching import Reset, Switching
 from tests.proof.systems import (
     bouncing,
+    cut_off,
     family,
     genuine,
     kept,
@@ -25,15 +26,17 @@ from tests.proof.systems import (
 )
 from tests.proof.truth import holds
 
+
+def of_one_state(q, h, rate, level, logs=(8, 4)):
+    rows = tuple((entry,) for entry in ((h,) if isinstance(h, int) else h))
+    numbers = {"rate": Fraction(rate), "level": Fraction(level), "H": rows}
+    return SaturatedEllipsoid(
+        Q=((q,),), denominator_log2=logs[0], H_denominator_log2=logs[1], **numbers
+    )
+
+
 # For x' = x + sat(-3 x): h = -17/16, V = (19/16)^2 x^2 nearly, from |x| <= 13/16.
-HELD = SaturatedEllipsoid(
-    Q=((361,),),
-    denominator_log2=8,
-    rate=Fraction(1, 32),
-    H=((-17,),),
-    H_denominator_log2=4,
-    level=Fraction(13, 16),
-)
+HELD = of_one_state(361, -17, "1/32", "13/16")
 
 
 def test_a_scalar_loop_decays_from_inside_of_its_region():
@@ -69,15 +72,7 @@ def test_the_claim_says_that_contact_may_be_lost():
 
 def test_the_known_region_is_filled():
     """It is |x| < 1: with h near -1 the certificate comes as near as wanted."""
-    rows, Q = ((-(2**20) - 2**3,),), ((2**40 + 2**26,),)
-    near = SaturatedEllipsoid(
-        Q=Q,
-        denominator_log2=40,
-        rate=Fraction(1, 10**6),
-        H=rows,
-        H_denominator_log2=20,
-        level=Fraction(9999, 10000),
-    )
+    near = of_one_state(2**40 + 2**26, -(2**20) - 2**3, "1e-6", "0.9999", (40, 20))
     assert near.find_fault(pushed_away()) is None
     assert near.find_fault(pushed_away(2)) is None
     assert near.find_fault(pushed_away(1)) is not None
@@ -90,9 +85,7 @@ def test_the_known_region_is_filled():
     st.fractions("1/100", 2, max_denominator=100),
 )
 def test_nothing_is_shown_from_outside_of_the_known_region(h, q, level, rate):
-    evidence = SaturatedEllipsoid(
-        Q=((q,),), denominator_log2=8, rate=rate, H=((h,),), H_denominator_log2=4, level=level
-    )
+    evidence = of_one_state(q, h, rate, level)
     if evidence.find_fault(pushed_away()) is None:
         assert level < 1
         assert holds(pushed_away(), evidence)
@@ -119,24 +112,10 @@ def test_a_denominator_may_be_as_long_as_is_read():
 
 def test_a_row_is_held_against_the_square_of_its_limit():
     """In whole numbers: h = -2 in V = 20 x^2 reaches sqrt(1/5), h = -5 in V = 5 x^2 sqrt(5)."""
-    near = SaturatedEllipsoid(
-        Q=((20,),),
-        denominator_log2=0,
-        rate=Fraction(1, 2),
-        H=((-2,),),
-        H_denominator_log2=0,
-        level=Fraction(1, 5),
-    )
+    near = of_one_state(20, -2, "1/2", "1/5", (0, 0))
     assert near.find_fault(changed(limit=Fraction(1, 2))) is None
     assert "beyond its limit" in near.find_fault(changed(limit=Fraction(2, 5)))
-    far = SaturatedEllipsoid(
-        Q=((5,),),
-        denominator_log2=0,
-        rate=Fraction(1, 2),
-        H=((-5,),),
-        H_denominator_log2=0,
-        level=Fraction(1, 5),
-    )
+    far = of_one_state(5, -5, "1/2", "1/5", (0, 0))
     assert "beyond its limit" in far.find_fault(changed(limit=Fraction(2)))
     assert far.find_fault(changed(limit=Fraction(5, 2))) is None
 
@@ -263,36 +242,17 @@ def test_free_motion_has_conditions_of_its_own():
 
 def test_every_choice_of_arguments_and_rows_is_needed():
     """Two signals, one in the other: x' = x + s1 + s2, s1 = sat(-x) and s2 = sat(s1 - x)."""
-    s1 = CutOff(
-        name="s1", unit="N", limit=Fraction(2), columns=(matrix([[1]]),), rows=(matrix([[-1]]),)
-    )
-    s2 = CutOff(
-        name="s2", unit="N", limit=Fraction(1), columns=(matrix([[1]]),), rows=(matrix([[-1, 1]]),)
-    )
-    what = Saturation((s1, s2), pushed_away().saturation.start)
+    signals = cut_off("s1", 2, [[1]], [[-1]]), cut_off("s2", 1, [[1]], [[-1, 1]])
+    what = Saturation(signals, pushed_away().saturation.start)
     system = replace(pushed_away(), modes=family([[-2]]).modes, saturation=what)
     # The last vertex alone bars this: from x = 3 it flies away, and h2 = -1/4 is no pull.
-    weak = SaturatedEllipsoid(
-        Q=((16,),),
-        denominator_log2=8,
-        rate=Fraction(1, 64),
-        H=((-16,), (-4,)),
-        H_denominator_log2=5,
-        level=Fraction(7, 2),
-    )
+    weak = of_one_state(16, (-16, -4), "1/64", "7/2", (8, 5))
     assert "does not decrease" in weak.find_fault(system)
     assert not holds(system, weak)
 
 
 # For x+ = 3/2 x + sat(-x): h = -9/16, V = (5/8)^2 x^2 nearly, from |x| <= 3/2.
-STEPS = SaturatedEllipsoid(
-    Q=((25,),),
-    denominator_log2=6,
-    rate=Fraction(31, 32),
-    H=((-9,),),
-    H_denominator_log2=4,
-    level=Fraction(3, 2),
-)
+STEPS = of_one_state(25, -9, "31/32", "3/2", (6, 4))
 
 
 def test_a_loop_in_steps_decays_from_inside_of_its_region():
@@ -318,9 +278,7 @@ def test_a_loop_in_steps_decays_from_inside_of_its_region():
 def test_no_region_in_steps_is_larger_than_that_of_the_motions(h, q, rate, level):
     """It is |x| < 2, by hand."""
     system = pushed_away_in_steps()
-    evidence = SaturatedEllipsoid(
-        Q=((q,),), denominator_log2=6, rate=rate, H=((h,),), H_denominator_log2=4, level=level
-    )
+    evidence = of_one_state(q, h, rate, level, (6, 4))
     if evidence.find_fault(system) is None:
         assert level < 2
         assert rate < 1

@@ -4,16 +4,14 @@ The list is the one definition of the law. From it follow its exact linear map a
 term is rounded (`nrs_design.controllers.step_analysis`), the C (`nrs_design.exporters.formats.c`)
 and the same steps in NumPy (`nrs_design.controllers.replica`).
 
-An operation is one of `Kind`. Every one rounds once, as IEEE 754 says, square roots and quotients
-too; a saturation does not round, and a table that is interpolated rounds as `replica` does. None is
-a function of libm. The laws of a single axis are `LINEAR`: their map is that of a step in which
-nothing saturates.
+An operation is one of `Kind`. Every one rounds once, as IEEE 754 says; a saturation does not round.
+The map of a law is that of a step in which nothing saturates.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from fractions import Fraction
 from typing import Literal, TypeVar
 
@@ -25,24 +23,9 @@ V = TypeVar("V")
 # it is made of; as a number of its own, of which the next operations take the rounded value; in
 # proportion to the largest angle, apart from all terms.
 Rounding = Literal["term", "own", "angle", "none"]
-Kind = Literal[
-    "add",
-    "subtract",
-    "multiply",
-    "saturate",
-    "shift",
-    "rest",
-    "product",
-    "divide",
-    "invert",
-    "root",
-    "interpolate",
-]
-LINEAR: frozenset[Kind] = frozenset({"add", "subtract", "multiply", "saturate"})
+Kind = Literal["add", "subtract", "multiply", "saturate"]
 # Of these, the left operand is a coefficient.
-WITH_COEFFICIENT: frozenset[Kind] = frozenset(
-    {"multiply", "saturate", "shift", "rest", "invert", "interpolate"}
-)
+WITH_COEFFICIENT: frozenset[Kind] = frozenset({"multiply", "saturate"})
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,8 +40,6 @@ class Value:
     rounding: Rounding = "none"  # Whether it is rounded when it is read, and how that counts
     # Whether a state is the measured angle at first; others are zero.
     starts_at_angle: bool = False
-    # Whether a value beyond its limit is refused as such; if not, the checks of results do it.
-    guarded: bool = True
     stored: str = ""  # As modes call a state that matters to stability, with its unit
 
 
@@ -69,17 +50,13 @@ class Coefficient:
     name: str  # As the exported code calls it
     symbol: str  # As terms and formulas call it
     unit: str  # Its unit
-    # Single-precision numbers: one, one for each mode, or those of a table.
-    values: tuple[Fraction, ...]
-    # Whether it is a number of the robot, without a name of its own in the exported code.
-    inline: bool = False
-    table: bool = False  # Whether it is a table at equal distances, for `interpolate`
+    values: tuple[Fraction, ...]  # Single-precision numbers: one, or one for each mode
     symbols: tuple[str, ...] = ()  # As terms call it in each mode, where that is not `symbol`
 
     @property
     def by_mode(self) -> bool:
         """Whether each mode has a number of its own."""
-        return len(self.values) > 1 and not self.table
+        return len(self.values) > 1
 
     def of(self, mode: int) -> Fraction:
         """Return its value in a mode."""
@@ -96,11 +73,7 @@ class Operation:
 
     name: str  # Of the result
     # ``add``, ``subtract``: left plus or minus right. ``multiply``: a coefficient times right.
-    # ``saturate``: right within plus and minus a coefficient. ``shift``: right plus a coefficient.
-    # ``rest``: a coefficient minus right. ``product``, ``divide``: left times or over right.
-    # ``invert``: a coefficient over right. ``root``: the square root of right, without a left
-    # operand. ``interpolate``: a table at right, which counts from its first entry and ends at its
-    # last.
+    # ``saturate``: right within plus and minus a coefficient.
     kind: Kind
     # left, right: names of values, of coefficients, or of results of operations before.
     left: str
@@ -116,8 +89,7 @@ class StepLaw:
     A ValueError if a name is used before it is computed, or twice, or kinds of operands do not fit.
     """
 
-    # Controllers, in the order of the spec; none where there is nothing to choose.
-    modes: tuple[str, ...]
+    modes: tuple[str, ...]  # Controllers, in the order of the spec
     # inputs, states: what a step gets.
     inputs: tuple[Value, ...]
     states: tuple[Value, ...]
@@ -126,8 +98,6 @@ class StepLaw:
     outputs: Mapping[str, str]  # Outputs, and the results that they are; ``units`` has their units
     following: Mapping[str, str]  # Every state, and the result that it has after the step
     units: Mapping[str, str]  # Of the outputs
-    # Results that have to be numbers within a limit; if one is not, the step is not valid.
-    checks: Mapping[str, Fraction] = field(default_factory=dict)
     logic: StepLogic | None = None  # What chooses the mode, where the spec says it
 
     def __post_init__(self) -> None:
@@ -136,23 +106,18 @@ class StepLaw:
         if set(self.following) != {state.name for state in self.states}:
             raise ValueError("every state needs the value that follows it, and nothing else")
         results = {operation.name for operation in self.operations}
-        if not {*self.outputs.values(), *self.following.values(), *self.checks} <= results:
+        if not {*self.outputs.values(), *self.following.values()} <= results:
             raise ValueError("an output, or the next state, is not computed")
         self._check_numbers()
 
     def _check_operations(self) -> None:
         known = {value.name for value in self.values}
-        constants = {c.name: c for c in self.coefficients}
+        constants = {c.name for c in self.coefficients}
         names = [*(value.name for value in self.values), *(c.name for c in self.coefficients)]
         for operation in self.operations:
-            with_coefficient = operation.kind in WITH_COEFFICIENT
-            lefts = constants.keys() if with_coefficient else known
-            missing = operation.kind != "root" and operation.left not in lefts
-            if missing or operation.right not in known:
+            lefts = constants if operation.kind in WITH_COEFFICIENT else known
+            if operation.left not in lefts or operation.right not in known:
                 raise ValueError(f"{operation.name} is computed from what is not there")
-            of_table = with_coefficient and constants[operation.left].table
-            if of_table != (operation.kind == "interpolate"):
-                raise ValueError(f"{operation.name} is no use of a table")
             known.add(operation.name)
             names.append(operation.name)
         if len({*names}) != len(names):
@@ -162,23 +127,16 @@ class StepLaw:
         numbers = [
             *(n for c in self.coefficients for n in c.values),
             *(v.limit for v in self.values),
-            *self.checks.values(),
         ]
         if not all(map(is_float32, numbers)):
             raise ValueError("a coefficient or a limit is no single-precision number")
-        for c in self.coefficients:
-            if len(c.values) < 2 if c.table else len(c.values) not in (1, len(self.modes)):
-                raise ValueError("a coefficient has a number for some modes only")
+        if any(len(c.values) not in (1, len(self.modes)) for c in self.coefficients):
+            raise ValueError("a coefficient has a number for some modes only")
 
     @property
     def values(self) -> tuple[Value, ...]:
         """Inputs and states, in this order."""
         return (*self.inputs, *self.states)
-
-    @property
-    def guarded(self) -> tuple[Value, ...]:
-        """Inputs and states that are refused beyond their limits."""
-        return tuple(value for value in self.values if value.guarded)
 
     @property
     def coefficient(self) -> Mapping[str, Coefficient]:
@@ -195,8 +153,6 @@ class StepLaw:
         """
         found = dict(known)
         for operation in self.operations:
-            right = found[operation.right]
-            # A root has no left operand.
-            left = found.get(operation.left, right)
+            left, right = found[operation.left], found[operation.right]
             found[operation.name] = compute[operation.kind](left, right)
         return found

@@ -8,7 +8,7 @@ from fractions import Fraction
 from types import MappingProxyType
 
 from nrs_design.controllers.float32 import PRECISION
-from nrs_design.controllers.operations import LINEAR, Kind, Operation, StepLaw
+from nrs_design.controllers.operations import Kind, Operation, StepLaw
 from nrs_design.errors import DesignError
 from nrs_design.models.linear_form import LinearForm, combine, zero
 
@@ -49,12 +49,6 @@ class Term:
         return Term(prefix + self.name, combine((factor, self.form)), self.roundings + more)
 
 
-def _check_linear(law: StepLaw) -> None:
-    others = {operation.kind for operation in law.operations} - LINEAR
-    if others:
-        raise ValueError(f"not linear: {', '.join(sorted(others))}")
-
-
 def rounded_terms(
     law: StepLaw,
     mode: int,
@@ -73,7 +67,6 @@ def rounded_terms(
     used within the step, it counts with the rounded terms in it besides: nobody has to know how
     large angles get.
     """
-    _check_linear(law)
     held, off, terms = numbers or {}, errors or {}, dict[str, tuple[Term, ...]]()
     size = len(next(iter(given.values())))
     for value in law.values:
@@ -129,11 +122,7 @@ def _terms(
 
 
 def check_range(law: StepLaw) -> None:
-    """Refuse a law with an operation that can leave single precision within the limits of values.
-
-    A ValueError if the law is not linear: its results are checked instead.
-    """
-    _check_linear(law)
+    """Refuse a law that can leave single precision within the limits of its values."""
     bounds = {value.name: value.limit for value in law.values}
     bounds |= {c.name: max(map(abs, c.values)) for c in law.coefficients}
     found = law.read(bounds, _BOUNDS)

@@ -71,11 +71,9 @@ class CNames:
         return {self.start: law.logic.start, **{self.hold(mode): stay for mode, stay in holds}}
 
     def coefficients(self, law: StepLaw) -> dict[str, tuple[Coefficient, Fraction]]:
-        """Return every coefficient of a law that has a macro, by it."""
+        """Return every coefficient of a law with its number, by its macro."""
         found: dict[str, tuple[Coefficient, Fraction]] = {}
         for coefficient in law.coefficients:
-            if coefficient.inline or coefficient.table:
-                continue
             owners = law.modes if coefficient.by_mode else ("",)
             for owner, value in zip(owners, coefficient.values, strict=True):
                 found[self.coefficient(coefficient, owner)] = coefficient, value

@@ -68,15 +68,3 @@ def test_a_law_that_could_leave_single_precision_is_refused(exponent, fits):
         return
     with pytest.raises(DesignError, match="beyond single precision"):
         check_range(large)
-
-
-@pytest.mark.parametrize(
-    ("kind", "left"), [("product", "y"), ("divide", "y"), ("root", ""), ("shift", "h")]
-)
-def test_what_is_not_linear_has_no_forms(kind, left):
-    """Nor may it pass for something else."""
-    made = of(Operation("z", kind, left, "x"))
-    x, y = coordinates(2)
-    for ask in (lambda: rounded_terms(made, 0, {"x": x, "y": y}), lambda: check_range(made)):
-        with pytest.raises(ValueError, match=f"not linear: {kind}"):
-            ask()

@@ -72,14 +72,13 @@ def make_vectors(law: StepLaw, count: int = COUNT) -> Vectors:
     # The bits of this generator are fixed; what NumPy makes of them may change.
     draw = np.random.PCG64(SEED).random_raw
     wild = draw(count) % 4 == 0
-    modes = max(len(law.modes), 1)
-    mode = (draw(count) % (modes + wild).astype(np.uint64)).astype(np.uint32)
+    mode = (draw(count) % (len(law.modes) + wild).astype(np.uint64)).astype(np.uint32)
     given: dict[str, Single] = {}
     for value in law.values:
         scale = np.float32(min(float(value.limit), 1.0))
         given[value.name] = _draw(draw(count), draw(count), wild, scale)
     result = step(law, mode, given)
-    parts: dict[str, NDArray[np.uint32]] = {"mode": mode} if law.modes else {}
+    parts: dict[str, NDArray[np.uint32]] = {"mode": mode}
     parts |= {v.name: _bits(given[v.name]) for v in law.inputs}
     parts |= {f"before.{v.name}": _bits(given[v.name]) for v in law.states}
     parts |= {name: _bits(values) for name, values in result.outputs.items()}

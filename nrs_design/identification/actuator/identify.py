@@ -12,7 +12,7 @@ from nrs_design.identification.actuator.doubts import find_doubts
 from nrs_design.identification.actuator.frequency_fit import fit_phasors, fit_response
 from nrs_design.identification.actuator.model import FROM_THE_ROW, ActuatorFit, MotorFigures, fit_of
 from nrs_design.identification.actuator.phasors import Phasors, phasors_of
-from nrs_design.identification.actuator.scan import scan_motor
+from nrs_design.identification.actuator.scan import longest_delay, scan_motor
 from nrs_design.identification.actuator.time_fit import TimeFit, fit_in_time
 from nrs_design.identification.datasets import ActuatorRecord, FrequencyResponse, Source
 from nrs_design.identification.datasets.checks import doubt_step
@@ -28,6 +28,12 @@ from nrs_design.spec.provenance import MOTOR_COVERS, Coverage
 _MISSED = 0.01
 # A second order must explain so much of what the first misses.
 _WORTHWHILE = 0.2
+
+
+UNDETERMINED = (
+    "the records do not determine the dead time: it may be a tenth of a record, or longer (record "
+    "steps, or more samples of fast motions)"
+)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -70,6 +76,8 @@ class ActuatorIdentification:
     @property
     def caveats(self) -> tuple[str, ...]:
         """Doubts, and a dead time, for a spec that has no place for it."""
+        if self.chosen.motor is not None and self.chosen.dead_time is None:
+            return (*self.doubts, UNDETERMINED)
         if self.late is None:
             return self.doubts
         wide = self.late.outward(3)
@@ -126,7 +134,7 @@ def _spread(records: Sequence[ActuatorRecord], coverage: Coverage) -> tuple[Esti
     wholes: dict[tuple[str, str], list[ActuatorRecord]] = {}
     for record in records:
         wholes.setdefault(_origin(record), []).append(record)
-    fits = [fit_of(parts[0].name, _alone(parts)) for parts in wholes.values()]
+    fits = [fit_of(parts[0].name, _alone(parts), longest_delay(parts)) for parts in wholes.values()]
     single = [(fit.gain, fit.time_constant) for fit in fits]
     logarithms = np.log([[estimate.value for estimate in row] for row in single])
     return spread_ranges(coverage, logarithms, single)
@@ -169,13 +177,15 @@ def _from_records(
     phasors, fits = _from_phasors(records)
     progress("time domain")
     found = _first_order(records)
-    fits.append(fit_of("output in the time domain", found))
+    longest = longest_delay(records)
+    fits.append(fit_of("output in the time domain", found, longest))
     reason = "The fit to the output uses every sample."
     if found.uncertainty.whiteness < WHITE:
         progress("second order")
         second = _second_order(records, found)
         if second is not None:
-            found, fits = second, [*fits, fit_of("second order, in the time domain", second)]
+            fits = [*fits, fit_of("second order, in the time domain", second, longest)]
+            found = second
             reason = "The motor of first order fails; that of second order explains more."
     chosen, step = fits[-1], min(record.step for record in records)
     return ActuatorIdentification(

@@ -107,12 +107,15 @@ def actuator_fit(method: str, logarithms: Array, known: Uncertainty) -> Actuator
     return ActuatorFit(method, estimates[0], estimates[1], friction, known)
 
 
-def fit_of(method: str, found: TimeFit) -> ActuatorFit:
-    """Return the estimates of a fit in time; a dead time is never below zero."""
+def fit_of(method: str, found: TimeFit, longest: float) -> ActuatorFit:
+    """Return the estimates of a fit in time; a dead time is never below zero.
+
+    One that may be beyond the longest, in s, is not determined.
+    """
     motor, known = found.motor, found.uncertainty
     positive = [*known.estimates(motor.parameters)[:-1]]
     half = student_quantile(known.degrees) * float(known.errors[-1])
     ends = (motor.delay, motor.delay - half, motor.delay + half)
-    late = Estimate(*(max(end, 0.0) for end in ends))
+    late = Estimate(*(max(end, 0.0) for end in ends)) if ends[-1] <= longest else None
     friction = positive[2] if motor.friction is not None else None
     return ActuatorFit(method, positive[0], positive[1], friction, known, late, motor)

@@ -25,6 +25,11 @@ _CLEAR = 4.0
 _NEARLY = 4.0
 
 
+def longest_delay(records: Sequence[ActuatorRecord]) -> float:
+    """Return the longest dead time, or time constant, that is looked for, in s."""
+    return _LONGEST * max(float(record.time[-1]) for record in records)
+
+
 def scan_motor(records: Sequence[ActuatorRecord]) -> MotorModel:
     """Return the best of many motors; whatever the command is, gain and friction are linear."""
     tried = [(*_solve(records, *pair), *pair) for pair in _grid(records)]
@@ -66,7 +71,7 @@ def _differ(X: Array) -> bool:
 
 def _grid(records: Sequence[ActuatorRecord]) -> Iterator[tuple[float, float]]:
     step = min(record.step for record in records)
-    longest = _LONGEST * max(record.time[-1] for record in records)
+    longest = longest_delay(records)
     taus = np.geomspace(step, max(longest, 4 * step), _TIME_CONSTANTS)
     delays = [d * step for d in _DELAYS if d * step <= longest]
     return ((float(tau), delay) for delay in delays for tau in taus)

@@ -22,6 +22,7 @@ from nrs_design.reporting.formatting import number
 
 if TYPE_CHECKING:
     from nrs_design.identification.actuator import ActuatorIdentification
+    from nrs_design.identification.actuator.model import ActuatorFit
 
 
 def actuator_report(found: ActuatorIdentification) -> Report:
@@ -49,6 +50,13 @@ def actuator_report(found: ActuatorIdentification) -> Report:
     )
 
 
+def _dead_time(fit: ActuatorFit) -> str:
+    """Return the dead time of a fit in s; only a fit in time has one."""
+    if fit.dead_time is None:
+        return "taken for zero" if fit.motor is None else "not determined"
+    return in_interval(fit.dead_time)
+
+
 def fits(found: ActuatorIdentification) -> Table:
     """Return the estimates of every method."""
     rows = tuple(
@@ -57,7 +65,7 @@ def fits(found: ActuatorIdentification) -> Table:
             in_interval(fit.gain),
             in_interval(fit.time_constant),
             in_interval(fit.friction) if fit.friction else "not determined",
-            in_interval(fit.dead_time) if fit.dead_time else "taken for zero",
+            _dead_time(fit),
         )
         for fit in found.fits
     )

@@ -7,8 +7,9 @@ import pytest
 
 from nrs_design.errors import DataError
 from nrs_design.identification.actuator import identify_actuator
+from nrs_design.identification.actuator.model import fit_of
 from nrs_design.identification.actuator.motor import MotorModel
-from nrs_design.identification.actuator.scan import scan_motor
+from nrs_design.identification.actuator.scan import longest_delay, scan_motor
 from nrs_design.identification.actuator.time_fit import fit_in_time
 from nrs_design.identification.datasets import ActuatorRecord
 from tests.identification import motors, synthetic
@@ -47,6 +48,16 @@ def test_parameters(kind, is_angle):
     assert fit.dead_time.low > 0.006
     assert result.doubts == ()
     assert result.step == pytest.approx(0.002)
+
+
+def test_a_dead_time_whose_interval_is_longer_than_what_is_looked_for_is_not_determined():
+    record = motors.record("multisine", 1, noise=0.05)
+    fit = fit_in_time([record], scan_motor([record]))
+    high = fit_of("one", fit, longest_delay([record])).dead_time.high
+    assert fit_of("one", fit, 1.01 * high).dead_time is not None
+    chosen = fit_of("one", fit, 0.99 * high)
+    assert chosen.dead_time is None
+    assert "not determine the dead time" in replace(found(record), chosen=chosen).caveats[-1]
 
 
 def test_under_one_step_friction_is_not_told_from_gain():

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from decimal import ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_EVEN, Decimal
 from math import isfinite
 from pathlib import Path
@@ -23,24 +23,38 @@ from nrs_design.models.contact import (
     AbstractLinearLaw,
     HuntCrossley,
 )
+from nrs_design.proof.text import counted
 from nrs_design.spec import InteractionDesignSpec, LoadedSpec, parse_spec
 from nrs_design.spec.fields import MAX_TITLE
 from nrs_design.spec.preload import FINEST, LARGEST, LEAST
 from nrs_design.spec.provenance import MAX_DOUBTS
 from nrs_design.spec.quantity import Quantity
+from nrs_design.spec.quantity_fields import RangedQuantity
 from nrs_design.spec.sampling import LONGEST_DELAY, SamplingSpec
 from nrs_design.spec.spec_document import SpecDocument
 
 _DIGITS = 6
+# Fewer records say nothing of how much a tissue, or a motor, varies; nor is a range so many times
+# narrower than the declared one likely to hold what that one was for.
+FEW, MUCH = 3, 10
+NARROWER = "narrower than the declared one"
+# Ends are rounded outwards.
+ROUNDED = 1.01
 # What only a power law has in a spec.
 _POWER_KEYS = ("exponent", "about", "preload")
 
 
 def merge_tissue(
-    loaded: LoadedSpec, found: TissueIdentification, environment: str | None, arm: str | None
+    loaded: LoadedSpec,
+    found: TissueIdentification,
+    environment: str | None,
+    arm: str | None,
+    *,
+    replace: bool = False,
 ) -> str:
     """Return the text of a spec with the chosen law in one of its environments.
 
+    A much narrower range than the declared one takes its place only with `replace`.
     Its range is written, which covers the pooled interval and that of every record. Linear records
     need a lever arm such as ``0.24 m``, by default the one of the spec.
     """
@@ -54,6 +68,9 @@ def merge_tissue(
             f"a range is unlimited, the records do not determine it: {model.doubts[0]}",
             remedy="choose a simpler law with --model, or record again as the message says",
         )
+    declared = check_interaction(loaded).environments[name].parameters()
+    narrow = _narrowed(declared, dict(zip(law.keys, ranges, strict=True)), found.sources)
+    _ask_for(narrow, replace=replace)
     document = SpecDocument(loaded)
     node = document.root["environments"][name]
     power = found.tangent is not None and has_place(found.tangent)
@@ -74,7 +91,7 @@ def merge_tissue(
     else:
         ends = span(found.tangent.low, found.tangent.high, "rad" if found.rotational else "m", 6)
         document.put(node, "linearized_about", f"deflections of {ends}")
-    _put_origin(document, node, found.sources, found.caveats)
+    _put_origin(document, node, found.sources, (*found.caveats, *narrow))
     document.put(node, "range_id", _rewritten(document, node).environments[name].values_id())
     return document.text()
 
@@ -181,12 +198,44 @@ def _put_power_law(
     return (*keys, *_POWER_KEYS)
 
 
+def _narrowed(
+    declared: Mapping[str, RangedQuantity],
+    found: Mapping[str, Estimate],
+    sources: Sequence[Source],
+) -> tuple[str, ...]:
+    """Say which ranges, relative to the nominal value, get narrower by few records or by much."""
+    records = len({source.sha256 for source in sources})
+    few = records < FEW
+    texts = []
+    for key in found.keys() & declared.keys():
+        low, high = (end.si for end in declared[key].range)
+        before = (high - low) / declared[key].nominal.si
+        after = (found[key].high - found[key].low) / found[key].value
+        if ROUNDED * after < before and (few or MUCH * after <= before):
+            times = f"{before / after:.3g} times {NARROWER}"
+            texts.append(f"{key}: the range from {counted(records, 'record')} is {times}")
+    return tuple(sorted(texts))
+
+
+def _ask_for(narrow: Sequence[str], *, replace: bool) -> None:
+    if narrow and not replace:
+        raise DataError(
+            "; ".join(narrow),
+            remedy=f"give {FEW} records or more that show how much it varies, or take it all the "
+            "same with --replace, which keeps the doubt in the spec",
+        )
+
+
 def _put_origin(
     document: SpecDocument, node: Any, sources: Sequence[Source], caveats: Sequence[str]
 ) -> None:
     """Note files and doubts; a reason that was given for other doubts does not hold for them."""
-    document.put(node, "provenance", [_provenance(source) for source in sources])
+    provenance = [_provenance(source) for source in sources]
     texts = [_one_line(caveat) for caveat in caveats]
+    if [dict(item) for item in node.get("provenance", ())] == provenance:
+        # The range that was declared before the same records is not there any more.
+        texts += [old for old in node.get("doubts", ()) if old.endswith(NARROWER)]
+    document.put(node, "provenance", provenance)
     if len(texts) > MAX_DOUBTS:
         more = len(texts) - MAX_DOUBTS + 1
         texts = [*texts[: MAX_DOUBTS - 1], f"and {more} more"]
@@ -203,9 +252,12 @@ def _one_line(text: str) -> str:
     return plain if len(plain) <= MAX_TITLE else f"{plain[: MAX_TITLE - 4]} ..."
 
 
-def merge_actuator(loaded: LoadedSpec, found: ActuatorIdentification) -> str:
+def merge_actuator(
+    loaded: LoadedSpec, found: ActuatorIdentification, *, replace: bool = False
+) -> str:
     """Return the text of a spec with the identified actuator and its intervals.
 
+    A much narrower range than the declared one takes its place only with `replace`.
     Where the proof can cover ranges of the actuator, these are written; else the intervals stand
     beside the nominal values, for the record.
     """
@@ -224,7 +276,11 @@ def merge_actuator(loaded: LoadedSpec, found: ActuatorIdentification) -> str:
     intervals = {}
     units = f"rad/s/{found.unit}", "s"
     ranges = found.ranges if covered else found.chosen.ranges
-    for name, estimate, unit in zip(("gain", "time_constant"), ranges, units, strict=True):
+    names = ("gain", "time_constant")
+    declared = {name: getattr(spec.actuator, name) for name in names}
+    narrow = _narrowed(declared, dict(zip(names, ranges, strict=True)), found.sources)
+    _ask_for(narrow if covered else (), replace=replace)
+    for name, estimate, unit in zip(names, ranges, units, strict=True):
         written = _ranged(estimate, unit, name)
         if covered:
             _put_range(document, node, name, written)
@@ -242,7 +298,7 @@ def merge_actuator(loaded: LoadedSpec, found: ActuatorIdentification) -> str:
     if found.late is not None and spec.takes_dead_time:
         document.put(node, "dead_time", _outwards(found.late, "s")["range"])
         caveats = found.doubts
-    _put_origin(document, node, found.sources, caveats)
+    _put_origin(document, node, found.sources, (*caveats, *(narrow if covered else ())))
     rewritten = _rewritten(document, node)
     if covered:
         assert rewritten.actuator is not None

@@ -108,7 +108,7 @@ def test_one_of_several_environments(silicone):
 
 @pytest.mark.slow
 def test_to_kelvin_voigt_and_back(tmp_path, silicone, voigt):
-    text = merge_tissue(read_spec(SOFT_TISSUE), voigt, None, None)
+    text = merge_tissue(read_spec(SOFT_TISSUE), voigt, None, None, replace=True)
     soft = merged(tmp_path, text).spec.environments["soft"]
     assert soft.model == "kelvin-voigt"
     assert soft.lever_arm is None
@@ -116,7 +116,7 @@ def test_to_kelvin_voigt_and_back(tmp_path, silicone, voigt):
     assert "# Thesis 6.3.2.1 asks for a nonzero inertia" in text
     with pytest.raises(SpecError, match="no lever_arm"):
         merge_tissue(merged(tmp_path, text), silicone, None, None)
-    back = merge_tissue(merged(tmp_path, text), silicone, None, "0.24 m")
+    back = merge_tissue(merged(tmp_path, text), silicone, None, "0.24 m", replace=True)
     soft = merged(tmp_path, back).spec.environments["soft"]
     assert (soft.model, soft.lever_arm.text) == ("elastic", "0.24 m")
     assert "# Thesis 6.3.2.1 asks for a nonzero inertia" in back
@@ -148,7 +148,7 @@ def test_line_ends_stay(tmp_path, silicone):
 @pytest.mark.parametrize("file", [SAMPLED, SOFT_TISSUE])
 def test_ranges_of_the_actuator_where_the_proof_covers_them(tmp_path, motor, file):
     """Both ranges hold together with 95 %, so that each is wider than its own interval."""
-    text = merge_actuator(read_spec(file), motor)
+    text = merge_actuator(read_spec(file), motor, replace=True)
     spec = parse_spec(text)
     assert (spec.actuator.intervals, spec.actuator.range_covers) == (None, "confidence")
     assert spec.actuator.range_id == spec.actuator.values_id()
@@ -201,8 +201,9 @@ def test_intervals_where_no_proof_covers_ranges(tmp_path, motor, old, new):
 def test_a_dead_time_is_no_age_of_the_force(late):
     """It acts in the motion loop; where the law runs at samples, it has a place of its own."""
     loaded = read_spec(SAMPLED)
-    written = parse_spec(merge_actuator(loaded, late))
-    assert late.doubts == written.actuator.doubts == ()
+    written = parse_spec(merge_actuator(loaded, late, replace=True))
+    assert late.doubts == ()
+    assert all("narrower" in doubt for doubt in written.actuator.doubts)
     first, last = (end.exact for end in written.actuator.dead_time[:2])
     assert float(first) <= late.late.low < late.late.high <= float(last)
     assert written.sampling == loaded.spec.sampling
@@ -301,7 +302,7 @@ def test_laws_without_a_place_in_a_spec():
 def test_doubts_are_noted_and_a_reason_holds_for_them_only(tmp_path, silicone):
     loaded = read_spec(SOFT_TISSUE)
     doubtful = identify_tissue([record(KelvinVoigt(400.0, 60.0), quick(1), 0.02, 1)], "elastic")
-    text = merge_tissue(loaded, doubtful, None, None)
+    text = merge_tissue(loaded, doubtful, None, None, replace=True)
     soft = parse_spec(text).environments["soft"]
     assert soft.doubts == doubtful.caveats
     assert (soft.range_covers, soft.accept_doubt) == ("confidence", None)

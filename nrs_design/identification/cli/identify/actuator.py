@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -15,6 +16,7 @@ from nrs_design.identification.cli.identify.common import (
     ColumnMap,
     CoversOption,
     DataFiles,
+    Replace,
     WriteTo,
     deliver,
     print_fits,
@@ -43,6 +45,7 @@ def actuator(
         typer.Option(help="What the range holds: this motor, 95 % of records, or the next one."),
     ] = CoversOption.CONFIDENCE,
     write: WriteTo = None,
+    narrower: Replace = False,
     report: ReportTo = None,
     date: Date = None,
 ) -> Answer:
@@ -76,7 +79,8 @@ def actuator(
             check_actuator(outputs.spec, record.unit)
     with progress("fitting") as step:
         found = identify_actuator(records, motor, covers.value, step)
-    return deliver(outputs, found, actuator_facts, _print, actuator_report, merge_actuator)
+    merge = partial(merge_actuator, replace=narrower)
+    return deliver(outputs, found, actuator_facts, _print, actuator_report, merge)
 
 
 def _print(found: ActuatorIdentification) -> None:

@@ -34,6 +34,13 @@ WriteTo = Annotated[
     Path | None,
     typer.Option("--write", metavar="SPEC", help="Merge the result into this spec file."),
 ]
+Replace = Annotated[
+    bool,
+    typer.Option(
+        "--replace",
+        help="Let --write narrow a declared range by few records, or by much; a doubt remains.",
+    ),
+]
 
 
 class CoversOption(StrEnum):

@@ -16,6 +16,7 @@ from nrs_design.identification.cli.identify.common import (
     ColumnMap,
     CoversOption,
     DataFiles,
+    Replace,
     WriteTo,
     deliver,
     print_fits,
@@ -50,6 +51,7 @@ def tissue(
     prony: Prony = False,
     lever_arm: LeverArm = None,
     write: WriteTo = None,
+    replace: Replace = False,
     environment: EnvironmentName = None,
     report: ReportTo = None,
     date: Date = None,
@@ -111,7 +113,7 @@ def tissue(
         partial(tissue_facts, arm=arm, series=series),
         partial(_print, arm=arm, texts=texts),
         partial(tissue_report, arm=arm, series=texts),
-        partial(merge_tissue, environment=environment, arm=lever_arm),
+        partial(merge_tissue, environment=environment, arm=lever_arm, replace=replace),
     )
 
 

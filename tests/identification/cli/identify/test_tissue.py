@@ -37,7 +37,17 @@ def test_end_to_end(tmp_path):
 def test_writing_a_law_that_fits_worse_warns(tmp_path):
     spec = tmp_path / "copy.nrs.yaml"
     shutil.copy(SOFT_TISSUE, spec)
-    arguments = ("identify", "tissue", NOSE[0], "--model", "elastic", "--write", spec, "-q")
+    arguments = (
+        "identify",
+        "tissue",
+        NOSE[0],
+        "--model",
+        "elastic",
+        "--write",
+        spec,
+        "--replace",
+        "-q",
+    )
     first, *doubts = run(*arguments, cwd=tmp_path, code=3).stderr.splitlines()
     assert first.startswith("warning: kelvin-boltzmann describes the records better than elastic")
     assert any("the residual is" in doubt for doubt in doubts)
@@ -76,11 +86,14 @@ def test_the_law_of_the_spec_is_kept_unless_another_is_asked_for(tmp_path):
     spec = tmp_path / "copy.nrs.yaml"
     spec.write_text(SOFT_TISSUE.read_text().replace(*VOIGT))
     arguments = ("identify", "tissue", damped_csv(tmp_path), "--write", spec)
+    assert "27.8 times narrower" in run(*arguments, cwd=tmp_path, code=2).stderr
+    arguments = (*arguments, "--replace")
     kept = run(*arguments, cwd=tmp_path, code=0)
     assert "kelvin-voigt is the law of the spec, which is kept" in kept.stdout
     assert "changed: environments.soft.damping: 30 N*s/m -> 29." in kept.stderr
     assert "no longer there" not in kept.stderr
     soft = read_spec(spec).spec.environments["soft"]
+    assert soft.doubts[0].startswith("stiffness: the range from 1 record is 27.8 times narrower")
     assert soft.model == "kelvin-voigt"
     assert soft.damping.range[0].si < 30 < soft.damping.range[1].si
     told = run(*arguments, "--model", "elastic", "-q", cwd=tmp_path, code=3)
@@ -152,7 +165,7 @@ def test_another_unit_or_sign_is_no_success(tmp_path, scales, said):
     path = press_csv(tmp_path, record(KelvinVoigt(400.0, 3.0), quick(1), 0.001, 1), scales)
     shutil.copy(SOFT_TISSUE, spec)
     assert f"warning: press: {said}" in run("identify", "tissue", path, cwd=tmp_path, code=3).stderr
-    options = ("--write", spec, "--model", "elastic", "-q")
+    options = ("--write", spec, "--model", "elastic", "--replace", "-q")
     written = run("identify", "tissue", path, *options, cwd=tmp_path)
     if "signs" in said:
         # No spring pushes that way: its range has no end, and nothing is written.

@@ -8,7 +8,7 @@ import pytest
 from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Switching
 from nrs_design.search.family import Family, floats_in_silence
-from tests.proof.systems import dayawansa_martin, family, golden, rectangular
+from tests.proof.systems import family
 
 
 def test_scaling_is_a_similarity_by_powers_of_two():
@@ -17,13 +17,6 @@ def test_scaling_is_a_similarity_by_powers_of_two():
     D = np.diag(2.0**found.exponents)
     for mode, scaled in zip(system.modes, found.matrices, strict=True):
         assert D @ scaled @ np.linalg.inv(D) == pytest.approx(np.array(mode.A.floats()))
-
-
-@pytest.mark.parametrize(
-    ("system", "limit"), [(dayawansa_martin(6), 1.0), (golden("0.5"), 0.5), (rectangular(), 0.5)]
-)
-def test_the_limit_is_the_rate_of_the_slowest_mode(system, limit):
-    assert Family.of(system).limit == pytest.approx(limit, rel=1e-6)
 
 
 def test_numbers_beyond_floating_point_do_not_crash():

@@ -39,6 +39,12 @@ def test_slowest_direction_decays_at_the_smallest_rate():
     assert max(slope) == pytest.approx(-2 * mode_rates(COMMUTING, Q).min())
 
 
+def test_rates_of_rotations_are_their_real_parts_and_in_steps_singular_values():
+    assert mode_rates(COMMUTING, np.eye(2)) == pytest.approx([1.0, 2.0])
+    discrete = system([[0, 2], [0, 0]], [[0, 0], [0, 0]], time=Time.DISCRETE)
+    assert mode_rates(discrete, np.eye(2)) == pytest.approx([2.0, 0.0])
+
+
 def test_step_resolves_the_fastest_eigenvalue():
     assert fine_step(system([[-50]])) == pytest.approx(0.002)
     assert fine_step(system([[0]])) == 0.1

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from nrs_design.certificates.bounds import bound_on
 from nrs_design.certificates.certificate import Verdict
 from nrs_design.pipeline.certification import assemble_spec
 from nrs_design.pipeline.design import run_design
@@ -378,44 +377,6 @@ def test_a_reset_zeroes_what_an_admittance_leaves(tmp_path):
         kept = [[Fraction(int(i == j not in (0, 3))) for j in range(5)] for i in range(5)]
         assert item.map.fractions() == kept
     assert "they are set to zero first" in " ".join(system.assumptions)
-
-
-@pytest.mark.nightly
-def test_runs_of_position_and_force_control_keep_the_certified_bound(tmp_path):
-    """200 runs in single precision, half of them greedy, under friction: none is beyond, some near.
-
-    Law and motor step by step, without the model; half of them lose contact. Controller, age of
-    the sample, stiffness and friction are chosen anew at every sample; a greedy run takes the sign
-    of friction that goes on.
-    """
-    sampling = "{period: 2 ms, delay: [0, 1]}\ndisturbances: {friction: 55.3 rpm}"
-    system = system_of(tmp_path, f"{sampling}\ncontact: losable", text=FORCE)
-    found = certify(system)
-    bound = bound_on(system, found.statements, "force")
-    rng, single, runs, steps = np.random.default_rng(17), np.float32, 200, 400
-    Kp, D, Kf = single(117359.43), single(1030000), single(0.02)
-    tau, Km, T = 0.0351, 4.8417e-4, 0.002
-    E, low, high = np.exp(-T / tau), 720.56 * 0.24**2, 768.17 * 0.24**2
-    theta, omega = np.zeros(runs), np.zeros(runs)
-    before, old, worst = np.zeros(runs, single), np.zeros(runs, single), np.zeros(runs)
-    greedy, loses = np.arange(runs) < runs // 2, np.arange(runs) % 2 == 0
-    for _ in range(steps):
-        lasting = rng.uniform(size=runs) < 0.9
-        k = np.where(greedy & lasting, high, rng.uniform(low, high, runs))
-        force = (k * np.where(loses, np.maximum(theta, 0), theta)).astype(single)
-        felt = np.where(rng.integers(0, 2, runs) == 0, force, old)
-        controls_force = rng.uniform(size=runs) < np.where(greedy, 0.05, 0.5)
-        reference = np.where(controls_force, Kf * (single(0) - felt), single(0))
-        e = reference - theta.astype(single)
-        u = Kp * e + D * (e - before)
-        pushed = np.where(greedy, np.where(omega >= 0, 1.0, -1.0), rng.uniform(-1, 1, runs))
-        held = Km * (u.astype(float) + 55.3 * pushed)
-        theta = theta + tau * (1 - E) * omega + (T - tau * (1 - E)) * held
-        omega = E * omega + (1 - E) * held
-        before, old = e, force
-        worst = np.maximum(worst, high * np.abs(theta))
-    assert worst.max() <= float(bound.level)
-    assert worst.max() > 0.5 * float(bound.level)
 
 
 def radius(system, wanted="insertion"):

@@ -28,10 +28,9 @@ from nrs_design.gating.places import Places
 from nrs_design.gating.recorded import hash_recorded
 from nrs_design.gating.rules import NOT_WEAKER
 from nrs_design.spec import LoadedSpec, read_spec
-from nrs_design.spec.document import to_data
 from nrs_design.spec.load import is_there
 from nrs_design.spec.task_space import file_of
-from nrs_design.spec.weaker import Change, find_changes
+from nrs_design.spec.weaker import Change, find_changes, meaning_of
 
 _GONE = "this spec of the base is gone: what it asked for is no longer shown"
 # Verdicts, from the one that shows most.
@@ -153,7 +152,7 @@ def _of_spec(path: Path, now: SpecOutcome) -> Iterator[Change]:
     except NrsDesignError as error:
         yield Change((), f"cannot be compared: that of the base cannot be read ({error})", True)
         return
-    yield from find_changes(to_data(before.root), to_data(after.root))
+    yield from find_changes(meaning_of(before.spec), meaning_of(after.spec))
     yield from _of_recorded(before, after)
 
 
@@ -162,7 +161,7 @@ def _of_recorded(before: LoadedSpec, after: LoadedSpec) -> Iterator[Change]:
     was, now = hash_recorded(before), hash_recorded(after)
     for name in was.keys() & now.keys():
         if was[name] != now[name]:
-            yield Change(("scenarios",), f"the commands in {name} are others", False)
+            yield Change(("scenarios",), f"the commands in {name} are others", True)
 
 
 def _of_lock(entry: LockedSpec | None, now: SpecOutcome) -> Iterator[Change]:

@@ -232,8 +232,9 @@ NOT_WEAKER = Rule(
     "With --against BASE, what the specs of BASE asked for is still asked for: no spec is gone, no "
     "range covers less, no goal, limit or disturbance is looser, nothing more is taken for granted "
     "(a dwell time, contact that is kept, a doubt that is accepted), and no certified rate or "
-    "verdict is lower. A proof of a weaker spec is a proof, so no other rule sees this. Values "
-    "that are neither more nor less, and versions, are listed as other changes, and break nothing.",
+    "verdict is lower. What cannot be compared counts as weaker. A proof of a weaker spec is a "
+    "proof, so no other rule sees this. What makes another robot or law, and versions, are listed "
+    "as other changes, and break nothing.",
     "If it is meant, let somebody who may decide that say so where the change is reviewed: there "
     "is no option for it, because the change itself could set it. Otherwise, take it back.",
 )

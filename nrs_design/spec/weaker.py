@@ -1,22 +1,28 @@
 """In which places a spec asks for less, or takes more for granted, than another one did.
 
-The two are compared by what they say. That something is weaker is decided by rules about the kind
-of a place: a range that no longer covers the other, a limit of a goal, something that is not said
-any more. Of what no rule knows, only that it has changed is said: a motor of another gain is
-another motor, and neither more nor less.
+The two are compared by what they mean: as models, defaults filled in. That something is weaker is
+decided by rules about the kind of a place: a range that no longer covers the other, a limit of a
+goal, something that is not said any more. What makes another robot or another law, such as the gain
+of a motor, is neither more nor less. Whatever else cannot be compared is weaker, and so is another
+value where nobody has said which of two asks for more.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, fields, is_dataclass
 from fractions import Fraction
 
+from pydantic import BaseModel
+from pydantic.fields import FieldInfo
+
 from nrs_design.errors import SpecError
-from nrs_design.proof.text import quoted
+from nrs_design.proof.text import exact_text, quoted
 from nrs_design.spec.document import Data
 from nrs_design.spec.exact import is_number, parse_exact
 from nrs_design.spec.quantity import Quantity, is_less
+from nrs_design.spec.quantity_fields import Times
+from nrs_design.spec.switching import ARBITRARY, DwellTime, SwitchingSpec
 
 # What is assumed of switching, and why a doubt does not count: with it, less is shown.
 _ASSUMED = frozenset(
@@ -24,8 +30,22 @@ _ASSUMED = frozenset(
 )
 # What a proof is not about: words for people, where values come from, how long is searched.
 _BESIDE = frozenset({"title", "description", "provenance", "certification", "design"})
+# Parts that make another robot, another law or another system, beside what is said of goals and of
+# contacts: neither more nor less than those of before.
+_ANOTHER = frozenset(
+    {
+        *("name", "actuator", "motion_loop", "idle_states", "anti_windup", "controllers"),
+        *("velocity_interface", "position_interface", "torque_interface", "modes", "resets"),
+        *("gravity", "base_tilt", "legs", "platform", "drive", "control", "balance"),
+    }
+)
+_ANOTHER_BELOW = (("sensor", "filter"), ("sampling", "admittance"))
+# Words for people.
+_WORDS = frozenset({"accept_doubt", "range_covers", "linearized_about"})
+_ASKED = frozenset({"goals", "contacts", "environment"})
 # Parts whose keys are names that somebody has given, and no words of ours.
 _NAMED = frozenset({"environments", "controllers", "parameters", "modes", "scenarios"})
+_OF_MODES = frozenset({"dwell_time", "longest_dwell_time"})
 # Limits below which something must stay, and above which: of a goal, a scenario, an assumption.
 _AT_MOST = frozenset({"peak_torque", "dwell_time", "hold", "of"})
 # How many deadlines may be missed is what must be borne.
@@ -33,6 +53,8 @@ _AT_LEAST = frozenset(
     {"decay_rate", "delay", "initial_force", "longest_dwell_time", "at_most", "consecutive"}
 )
 _LIMITS = "limits"
+# What a motor gives at most: to count on more is weaker.
+_HIGHEST = ([_LIMITS, "torque"], [_LIMITS, "command"])
 # Parts whose numbers must be borne: disturbances, errors of signals, the age of a sample. Of the
 # sensor, those below it are parts of the loop.
 _BORNE = frozenset({"disturbances", "sampling"})
@@ -67,6 +89,44 @@ class Change:
     weaker: bool
 
 
+def meaning_of(value: object) -> Data:
+    """Return what a part of a spec says, defaults filled in: however it is written, the same."""
+    if isinstance(value, SwitchingSpec) and value.is_arbitrary:
+        return ARBITRARY
+    if isinstance(value, Times):
+        ends = (value.shortest.text, value.longest.text)
+        return _ranged({"range": ends, "varies": meaning_of(value.varies)})
+    if isinstance(value, BaseModel):
+        named = ((f.alias or name, getattr(value, name)) for name, f in _fields_of(value))
+        said = {key: meaning_of(item) for key, item in named if item is not None and item != ""}
+        return _ranged(said) if "nominal" in said else said
+    if isinstance(value, Quantity | DwellTime):
+        return value.text
+    if isinstance(value, Fraction):
+        return exact_text(value)
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, dict):
+        return {str(key): meaning_of(item) for key, item in value.items()}
+    if isinstance(value, tuple | list):
+        return tuple(meaning_of(item) for item in value)
+    if is_dataclass(value):
+        return {field.name: meaning_of(getattr(value, field.name)) for field in fields(value)}
+    return str(value)
+
+
+def _fields_of(value: BaseModel) -> Iterable[tuple[str, FieldInfo]]:
+    return type(value).model_fields.items()
+
+
+def _ranged(said: dict[str, Data]) -> Data:
+    """Return one value as its text, whose range is that value, and more of them as they are."""
+    known = _without(said, {"varies"}).values()
+    points = {end for item in known for end in (item if isinstance(item, tuple) else (item,))}
+    point = points.pop() if len(points) == 1 else None
+    return point if isinstance(point, str) else said
+
+
 def find_changes(before: Data, after: Data) -> Iterator[Change]:
     """Yield where a spec differs from an earlier one."""
     yield from _changes(_written_out(before, after), _written_out(after, before), ())
@@ -91,8 +151,8 @@ def _written_out(said: Data, other: Data) -> Data:
             continue
         whole = dict(controller)
         environment = whole.get("environment")
-        moved = "contacts" in beside or beside.get("environment") != environment
-        if isinstance(environment, str) and "contacts" not in whole and moved:
+        moved = beside.get("contacts") or beside.get("environment") != environment
+        if isinstance(environment, str) and not whole.get("contacts") and moved:
             whole["contacts"] = (environment,)
         own, theirs = whole.get("goals", {}), beside.get("goals")
         if isinstance(goals, dict) and isinstance(own, dict) and isinstance(theirs, dict):
@@ -113,6 +173,9 @@ def _changes(before: Data, after: Data, at: Place) -> Iterator[Change]:
         yield from _of_ranges(was, now, at, (_said(before), _said(after)))
         if isinstance(before, dict) and isinstance(after, dict):
             beside = {"range", "nominal"}
+            if not is_less(*was):
+                # One value has no way to vary.
+                beside.add("varies")
             yield from _of_keys(_without(before, beside), _without(after, beside), at)
     elif isinstance(before, dict) and isinstance(after, dict):
         yield from _of_keys(before, after, at)
@@ -131,7 +194,7 @@ def _of_keys(before: dict[str, Data], after: dict[str, Data], at: Place) -> Iter
         else:
             keys = _keys(here)
             weaker = not _is_assumed(keys) and _BESIDE.isdisjoint(keys)
-            if keys[-1] in _UNSAID:
+            if _is_unsaid(keys):
                 weaker &= _word(said) == _STRONGER[keys[-1]]
             yield Change(here, f"{_name(here)} is gone, {_said(said)} before", weaker)
     for key, said in after.items():
@@ -139,8 +202,13 @@ def _of_keys(before: dict[str, Data], after: dict[str, Data], at: Place) -> Iter
             here = (*at, key)
             keys = _keys(here)
             weaker = _is_assumed(keys)
-            weaker |= keys[-1] in _UNSAID and _word(said) != _STRONGER[keys[-1]]
+            weaker |= _is_unsaid(keys) and _word(said) != _STRONGER[keys[-1]]
             yield Change(here, f"{_name(here)} is new: {_said(said)}", weaker)
+
+
+def _is_unsaid(keys: Sequence[str]) -> bool:
+    """Tell whether something holds where nothing is said; other keys may be named `contact`."""
+    return keys[-1] in _UNSAID and keys not in (["sensor", "contact"],)
 
 
 def _is_assumed(keys: Sequence[str]) -> bool:
@@ -207,6 +275,8 @@ def _is_weaker(before: Data, after: Data, at: Place) -> bool:
         return False
     if stronger := _STRONGER.get(key):
         return _word(after) != stronger
+    if _is_another(path):
+        return False
     if isinstance(before, str) is not isinstance(after, str) or _is_law(at):
         return True
     goal = "goals" in path
@@ -214,16 +284,22 @@ def _is_weaker(before: Data, after: Data, at: Place) -> bool:
     borne = _is_borne(path) and key not in _AT_MOST
     least = (goal and key.startswith("min_")) or not _AT_LEAST.isdisjoint(path) or borne
     was, now = _number(before), _number(after)
-    if was is None or now is None or was.dimension != now.dimension:
-        # A limit that cannot be compared with that of before.
-        return was is not None and (most or least or _is_touched(at))
+    if was is None or now is None or was.dimension != now.dimension or not (most or least):
+        return True
     return (most and is_less(was, now)) or (least and is_less(now, was))
+
+
+def _is_another(path: list[str]) -> bool:
+    """Tell whether a part makes another robot, law or system, and asks for nothing."""
+    if tuple(path[:2]) in _ANOTHER_BELOW or (path[-1:] and path[-1] in _WORDS):
+        return True
+    return bool(path) and path[0] in _ANOTHER and _ASKED.isdisjoint(path)
 
 
 def _keys(at: Place) -> list[str]:
     """Return the words of ours on the way to a place, without names that somebody has given."""
-    place = 1 if at[:1] and at[0] in _NAMED else None
-    return [part for i, part in enumerate(at) if isinstance(part, str) and i != place]
+    named = [i + 1 for i, part in enumerate(at[:2]) if part in (_OF_MODES if i else _NAMED)]
+    return [part for i, part in enumerate(at) if isinstance(part, str) and i not in named]
 
 
 def _word(said: Data) -> Data:
@@ -254,11 +330,13 @@ def _is_borne(path: list[str]) -> bool:
 
 def _is_limit(path: list[str]) -> bool:
     """Tell whether a place is a limit that a scenario must keep, or the one of the torque."""
-    return (_LIMITS in path and "scenarios" in path) or path == [_LIMITS, "torque"]
+    return (_LIMITS in path and "scenarios" in path) or path in _HIGHEST
 
 
 def _range_of(said: Data, key: str) -> tuple[Quantity, Quantity] | None:
     """Return the ends of what is said of a value with a range; None if that is something else."""
+    if isinstance(said, dict) and "range" in said and "nominal" not in said:
+        return _range_of(said["range"], "range")
     if isinstance(said, dict) and "nominal" in said:
         ends = said.get("range", (said["nominal"], said["nominal"]))
         return _range_of(ends, "range")
@@ -276,6 +354,7 @@ def _number(said: Data) -> Quantity | None:
     if not isinstance(said, str):
         return None
     number, _, unit = said.partition(" ")
+    unit = "1" if unit.strip() in ("step", "steps") else unit
     try:
         value: Fraction | None = parse_exact(number) if is_number(number) else None
         return None if value is None else Quantity(said, value, unit.strip() or "1")

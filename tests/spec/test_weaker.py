@@ -5,9 +5,10 @@ import re
 
 import pytest
 
+from nrs_design.spec import read_spec
 from nrs_design.spec.document import parse_document, to_data
 from nrs_design.spec.schema import json_schema
-from nrs_design.spec.weaker import find_changes
+from nrs_design.spec.weaker import find_changes, meaning_of
 from tests.support import ROOT
 
 TEXT = """\
@@ -64,6 +65,7 @@ misses: {mode: miss, at_most: 2, of: 10}
 """
 WEAKER = {
     "constant stiffness": ("[720 N/m, 768 N/m]}", "[720 N/m, 768 N/m], varies: false}"),
+    "constant motor": ("4.9e-4 rad/s/rpm]}", "4.9e-4 rad/s/rpm], varies: false}"),
     "range": ("[720 N/m, 768 N/m]", "[730 N/m, 768 N/m]"),
     "range in another unit": ("[720 N/m, 768 N/m]", "[0.73 N/mm, 0.8 N/mm]"),
     "range that is elsewhere": ("[720 N/m, 768 N/m]", "[7 N/mm, 8 N/mm]"),
@@ -123,7 +125,7 @@ WEAKER = {
 NEITHER = {
     *("[0.73 N/mm, 0.8 N/mm]", "[7 N/mm, 8 N/mm]", "stiffness: 9 N/m", "model: elastic", "0.1 m"),
     *("own: {environment: hard}", "own: {environment: soft, contacts: [hard]}"),
-    "dwell_time: {fast: 0.2 s, slow: 0.2 s}",
+    *("dwell_time: {fast: 0.2 s, slow: 0.2 s}", "peak_torque: whatever"),
 }
 OTHER = {
     "words": ("title: words", "title: other words"),
@@ -162,6 +164,61 @@ SWITCHED_OTHER = {
     ),
     "entry": ("[[-2, 0]", "[[-3, 0]"),
 }
+
+
+SPEC = """\
+kind: interaction-design
+name: a
+actuator: {gain: 4.8417e-4 rad/s/rpm, time_constant: 0.0351 s}
+motion_loop:
+  {damping_ratio: 0.707, settling_time: 0.1404 s, derivative_gain: 2060 rpm*s/rad,
+   zero: 56.9706 1/s}
+limits: {velocity: 8 deg/s, torque: 0.3 N*m, bandwidth: 2 Hz, command: 9000 rpm}
+environments:
+  soft: {model: elastic, stiffness: 747 N/m, lever_arm: 0.24 m}
+controllers:
+  insertion: {type: impedance, environment: soft, Mt: 0.01 kg*m^2, Bt: 2 N*m*s/rad}
+sampling: {period: 2 ms, delay: 0, latency: [0.1 ms, 0.5 ms]}
+switching: {SWITCHING}
+"""
+STEPS = """\
+kind: switched-system
+name: b
+time: discrete
+modes: [{name: works, A: [[0.5]]}, {name: title, A: [[0.4]]}]
+switching: {dwell_time: {title: 2 steps, works: 2 steps}, longest_dwell_time: {title: 900 steps}}
+"""
+ARBITRARY = SPEC.replace("{SWITCHING}", "arbitrary")
+# Spec, an edit of it, and whether it is weaker there and back.
+READ = [
+    (STEPS, "works: 2 steps", "works: 200 steps", True, False),
+    (STEPS, "title: 2 steps", "title: 200 steps", True, False),
+    (STEPS, "title: 900 steps", "title: 800 steps", True, False),
+    (STEPS, "{title: 900 steps}", "900 steps", True, True),
+    (STEPS, "longest_dwell_time: {title: 900 steps}", "transitions: []", True, True),
+    (STEPS, "A: [[0.4]]", "A: [[0.3]]", False, False),
+    (STEPS, "A: [[0.4]]", "A: [[2/5]]", False, False),
+    (ARBITRARY, "command: 9000 rpm", "command: 12000 rpm", True, False),
+    (ARBITRARY, "velocity: 8 deg/s", "velocity: 9 deg/s", True, True),
+    (ARBITRARY, "[0.1 ms, 0.5 ms]", "{range: [0.2 ms, 0.3 ms], varies: false}", True, False),
+    (ARBITRARY, "[0.1 ms, 0.5 ms]", "{range: [0.1 ms, 0.5 ms], varies: false}", True, False),
+    (ARBITRARY, "[0.1 ms, 0.5 ms]", "{range: [0.1 ms, 0.5 ms], varies: true}", False, False),
+    (ARBITRARY, "[0.1 ms, 0.5 ms]", "0.3 ms", True, False),
+    (ARBITRARY, "delay: 0", "delay: 0, admittance: exact", False, False),
+    (ARBITRARY, "delay: 0", "delay: [0, 0]", False, False),
+    (ARBITRARY, "747 N/m", "{nominal: 747 N/m, range: [740 N/m, 750 N/m]}", False, True),
+]
+
+
+@pytest.mark.parametrize(("text", "old", "new", "there", "back"), READ)
+def test_specs_are_compared_by_what_they_mean(tmp_path, text, old, new, there, back):
+    said = []
+    for name, content in (("a", text), ("b", edited(text, old, new))):
+        path = tmp_path / f"{name}.nrs.yaml"
+        path.write_text(content)
+        said.append(meaning_of(read_spec(path).spec))
+    assert any(change.weaker for change in find_changes(*said)) is there
+    assert any(change.weaker for change in find_changes(*reversed(said))) is back
 
 
 UNSAID_WEAKER = {

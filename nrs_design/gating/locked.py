@@ -19,6 +19,7 @@ from nrs_design.gating.obligations import (
     failed,
 )
 from nrs_design.gating.recorded import hash_recorded
+from nrs_design.gating.required import find_missing
 from nrs_design.gating.rules import (
     LOCKED,
     RULES,
@@ -98,6 +99,9 @@ def _examine(loaded: LoadedSpec, entry: LockedSpec | None, file: Path) -> SpecOu
         return _missed(examiner, f"this spec is not in {file.name} ({RENEW})")
     if (changed := _find_change(loaded, entry)) is not None:
         return _missed(examiner, f"{changed} ({RENEW})")
+    if lacks := find_missing(loaded.spec, {(goal.rule, goal.subject) for goal in entry.goals}):
+        listed = "; ".join(f"{rule} of {subject}" for rule, subject in lacks)
+        return _missed(examiner, f"{file.name} does not say how this ended: {listed} ({RENEW})")
     if entry.certificate is None:
         return _inconclusive(examiner, entry, file)
     place = Path(os.path.normpath(file.parent / entry.certificate.file))

@@ -221,8 +221,8 @@ LOCKED = Rule(
     "With --locked, every spec must have an entry with the hash of what it says now (comments and "
     "layout do not count), with the certificate and the gains that were locked, and designed by "
     "this version of nrs-design; and every locked spec must still exist and be examined. Goals "
-    "that only a design can decide, such as NRS103, end as they are locked: they are not computed "
-    "again.",
+    "that only a design can decide, such as NRS103, must be there, and end as they are locked: "
+    "they are not computed again.",
     "Run `nrs-design gate` without --locked, look at what changed, and commit the new lock file "
     "together with its certificates; with --prune for specs that were removed.",
 )

@@ -94,6 +94,10 @@ def move(certificate):
     )
 
 
+def forget(project):
+    edit_lock(project, lambda specs: specs[0]["goals"].pop())
+
+
 # What was done to a project; which obligations break; and what is said of the first.
 TAMPERED = {
     "a changed spec": (
@@ -106,6 +110,11 @@ TAMPERED = {
         write(SPEC, TEMPLATES["robot"]),
         [("NRS105", "missed")],
         "has changed since it was locked",
+    ),
+    "a goal that is no longer locked": (
+        forget,
+        [("NRS105", "missed")],
+        "does not say how this ended: NRS103 of withdrawal",
     ),
     "a new spec": (
         write("specs/new.nrs.yaml", UNSTABLE),

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from nrs_design.axis import axis_with
 from nrs_design.certificates.bounds import bound_on
 from nrs_design.certificates.certificate import Certificate, Verdict
-from nrs_design.certificates.certified_goal import CertifiedGoal
 from nrs_design.proof.bounds import rounded_down, rounded_up
 from nrs_design.proof.mode import Time
+from nrs_design.spec.faults import Location
 
 if TYPE_CHECKING:
     from nrs_design.spec import InteractionDesignSpec, Spec
@@ -22,6 +22,22 @@ if TYPE_CHECKING:
 # numbers that a proof shows, and last what is proved about.
 STEERING = ("decay_rate", "peak_torque", "delay")
 _FREE = "with the gains of the least cost; optimize --out NEW.nrs.yaml chooses others by this goal"
+
+
+@dataclass(frozen=True, slots=True)
+class CertifiedGoal:
+    """One goal of a spec that a certificate must show."""
+
+    key: str  # Of the goal in the spec, such as ``decay_rate``
+    said: str  # What is proved; numbers are rounded to their safe side
+    wanted: str  # As the spec writes it; ``largest`` wants no number
+    # Whether what is proved is enough. Where it is not, nothing is known: more may be true.
+    met: bool
+
+    @property
+    def place(self) -> Location:
+        """Keys that lead to it in the spec."""
+        return "goals", self.key
 
 
 def certified_goals(spec: Spec, certificate: Certificate | None) -> Iterator[CertifiedGoal]:

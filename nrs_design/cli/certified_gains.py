@@ -14,7 +14,7 @@ from nrs_design.errors import OutputError
 from nrs_design.proof.bounds import lower_float
 
 if TYPE_CHECKING:
-    from nrs_design.certificates.certified_goal import CertifiedGoal
+    from nrs_design.certificates.goals import CertifiedGoal
     from nrs_design.design.analysis import DesignAnalysis
     from nrs_design.pipeline.certification import Result
     from nrs_design.pipeline.certified_optimum import CertifiedOptimum

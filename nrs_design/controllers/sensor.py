@@ -83,11 +83,6 @@ class DiscreteLowPass:
     p: Fraction
     q: Fraction
 
-    @property
-    def states(self) -> tuple[str, ...]:
-        """Names and units of the states."""
-        return tuple(f"filtered {i} before [N*m]" for i in range(1, self.order + 1))
-
 
 @dataclass(frozen=True, slots=True)
 class Sensor:
@@ -96,7 +91,7 @@ class Sensor:
     # What may last, by where it comes from: bounds on torques about the pivot in N m.
     errors: Mapping[str, Fraction] = field(default_factory=dict)
     filter: LowPass | None = None  # Of the signal
-    noise: float | None = None  # One-sided power density in (N m)^2/Hz
+    noisy: bool = False  # Whether a power density of noise is given, which is in no bound
     carries: bool = False  # Whether a tool hangs on it
 
     @property
@@ -116,7 +111,7 @@ def build_sensor(spec: SensorSpec | None) -> Sensor:
     return Sensor(
         dict(_errors(spec, pivot)),
         low_pass,
-        None if spec.noise_density is None else spec.noise_density.si,
+        spec.noise_density is not None,
         spec.tool is not None,
     )
 

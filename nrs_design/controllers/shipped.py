@@ -59,7 +59,11 @@ def _step_law(
     if spec.offset != "none":
         first = next(c.name for c in design.controllers if c.law.commands == "position")
         because = "it jumps at every switch, and no proof of a law in steps covers that"
-        raise _without_program("force control takes an offset", because, first)
+        raise DesignError(
+            f"force control takes an offset, of which there is no program: {because}",
+            remedy="export the gains alone, with --format json",
+            at=("controllers", first),
+        )
     if (odd := design.find_odd_states(mixed=spec.idle_states is not None)) is not None:
         raise DesignError(odd, remedy=SHARED_STATES, at=("controllers",))
     idle = spec.idle_states
@@ -95,14 +99,6 @@ def _on_axis(law: StepLaw, axis: AxisType) -> StepLaw:
 
 def _renamed(unit: str, command: str) -> str:
     return command + unit.removeprefix("rpm") if unit.startswith("rpm") else unit
-
-
-def _without_program(what: str, because: str, controller: str) -> DesignError:
-    return DesignError(
-        f"{what}, of which there is no program: {because}",
-        remedy="export the gains alone, with --format json",
-        at=("controllers", controller),
-    )
 
 
 def step_limits(spec: InteractionDesignSpec) -> StepLimits:

@@ -78,7 +78,6 @@ class Blocked:
     lines: int  # How many there are
     unbounded: bool  # Whether something disturbs, whose effect was left out of all of it
     work: float  # Spent on it, in units
-    budget: float  # What was there
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,7 +122,7 @@ class _Search:
         several = () if proved else self._together(lines, STRETCH * self._budget)
         proved += self._single(drastic, self._budget, self._budget) + several
         unbounded = bool(self._result.certification.system.channels)
-        return Blocked(proved, len(lines), len(found), unbounded, self._spent, self._budget)
+        return Blocked(proved, len(lines), len(found), unbounded, self._spent)
 
     def _single(
         self, lines: Sequence[Concession], find: float, stretch: float

@@ -61,7 +61,6 @@ class RadiusBounds:
     lower: Fraction | None  # Some signal reaches it; None if no word was found
     # That signal, again and again: modes with the number of their steps.
     word: Steps | None
-    evidence: AbstractEvidence | None  # That it grows, of modes divided by the lower end
     upper: Fraction | None  # No signal grows by more, but for a constant factor; None if not shown
     method: str | None  # By which rung that was found
 
@@ -86,7 +85,7 @@ def bound_radius(found: Certification, limits: Limits) -> RadiusBounds | None:
     if system.roundings:
         return None
     budget = min(limits.budget, BUDGET)
-    bounds = RadiusBounds(None, None, None, None, None)
+    bounds = RadiusBounds(None, None, None, None)
     with floats_in_silence():
         matrices = np.array([mode.A.floats() for mode in system.modes])
         graph = StepGraph.of(system, matrices) if np.isfinite(matrices).all() else None
@@ -120,7 +119,7 @@ def _with_words(
             radius = (growth / float(claim)) ** len(word)
             evidence, _ = first_accepted(_proposed(divided, steps, edges, radius), divided)
             if evidence is not None:
-                return replace(bounds, lower=claim, word=steps, evidence=evidence)
+                return replace(bounds, lower=claim, word=steps)
     return bounds
 
 
@@ -138,9 +137,9 @@ def _without_memory(system: SwitchedSystem, bounds: RadiusBounds, limits: Limits
     """Find the upper end that a form for each mode shows."""
     lower = bounds.lower or Fraction(1)
     for room in ROOM:
-        if (shown := _shown(system, room * lower, Method.MODE_QUADRATIC, limits)) is not None:
+        if (shown := _shown(system, room * lower, limits)) is not None:
             # What is claimed is off the best by a share of the room.
-            closer = _shown(system, shown[0] * CLOSE, Method.MODE_QUADRATIC, limits)
+            closer = _shown(system, shown[0] * CLOSE, limits)
             upper, method = min(shown, closer or shown)
             return replace(bounds, upper=upper, method=method)
     return bounds
@@ -229,11 +228,9 @@ def _rounded(
     return None
 
 
-def _shown(
-    system: SwitchedSystem, by: Fraction, method: Method, limits: Limits
-) -> tuple[Fraction, str] | None:
+def _shown(system: SwitchedSystem, by: Fraction, limits: Limits) -> tuple[Fraction, str] | None:
     """Return what the modes divided by a number are shown to grow by, as they are."""
-    found = certify(_divided(system, by), method, limits)
+    found = certify(_divided(system, by), Method.MODE_QUADRATIC, limits)
     if found.verdict is not Verdict.PROVED or found.evidence is None:
         return None
     rate = found.evidence.proved_rate(found.system)

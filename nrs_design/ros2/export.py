@@ -57,7 +57,6 @@ class _Chosen:
     """A controller for an axis, and what it touches."""
 
     designed: Designed
-    controller: Controller
     met: Range
 
 
@@ -82,7 +81,7 @@ def export_controllers(
             )
     for name, controllers in _controllers(designs):
         chosen = {
-            axis: _Chosen(designs[axis], controller, _met(designs[axis], controller))
+            axis: _Chosen(designs[axis], _met(designs[axis], controller))
             for axis, controller in controllers.items()
         }
         body = _body(controllers, share, _rate(sampling))

@@ -112,22 +112,18 @@ def refuted_at_once(system: SwitchedSystem, limits: Limits | None = None) -> str
 
     Floating point suspects, exact tests decide. Empty for any contact, None if none grows.
     """
-    found = certify_growth(system, limits)
-    evidence = found.statements[:1]
-    return None if not evidence else refuted_in(system, evidence) or ""
-
-
-def certify_growth(system: SwitchedSystem, limits: Limits | None = None) -> Certification:
-    """Refute by one mode, or a round of two, that grows: of those that are suspected."""
     from nrs_design.search.rounds import search_rounds
     from nrs_design.search.unstable_mode import examine_suspicious_modes
 
-    limits = limits or Limits()
     with floats_in_silence():
-        family = Family.of(system, _allowance(limits))
+        family = Family.of(system, _allowance(limits or Limits()))
     search = examine_suspicious_modes if system.clock is None else search_rounds
     evidence, _ = _take(partial(search, family), system, family.allowance)
-    return _concluded(system, "suspicious modes", evidence)
+    if evidence is None:
+        return None
+    if not agrees(system, evidence):
+        raise InternalError(DISAGREE)
+    return refuted_in(system, (evidence,)) or ""
 
 
 def prove_together(system: SwitchedSystem, allowance: Allowance) -> tuple[FormsOnGraph | None, str]:
@@ -151,16 +147,6 @@ def certify_cases(
     if not agrees(system, evidence):
         raise InternalError(DISAGREE)
     return replace(_conclude(system, "cases", (evidence,), attempts), rate_limit=rate_limit(system))
-
-
-def _concluded(
-    system: SwitchedSystem, method: str, evidence: AbstractEvidence | None
-) -> Certification:
-    """Conclude from one statement that the exact check has accepted, or from none."""
-    statements = () if evidence is None else (evidence,)
-    if evidence is not None and not agrees(system, evidence):
-        raise InternalError(DISAGREE)
-    return _conclude(system, method, statements, ())
 
 
 def _allowance(limits: Limits) -> Allowance:

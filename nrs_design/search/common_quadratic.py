@@ -10,11 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.proof.evidence import FormsOnGraph
+from nrs_design.proof.evidence.fields import Matrix
+from nrs_design.proof.evidence.graph import Node
 from nrs_design.proof.mode import Time
+from nrs_design.proof.steps import CONTACT
 from nrs_design.search.balance import mean_norm
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
 from nrs_design.search.decay import fastest_first, rate_of
-from nrs_design.search.draw import one_form
 from nrs_design.search.family import Family
 from nrs_design.search.lmi import find_common_quadratic, margins
 from nrs_design.search.rounding import BITS, claims, digits, rate_at, round_rate, unscale
@@ -25,6 +27,11 @@ BACK_OFF = Fraction(1999, 2000)
 SMALLEST = 2.0**-14
 
 Array = NDArray[np.float64]
+
+
+def one_form(Q: Matrix, log2: int, rate: Fraction) -> FormsOnGraph:
+    """Return one form over ``2^log2`` for all modes."""
+    return FormsOnGraph((Node(CONTACT, Q),), log2, rate)
 
 
 def search_by_lmi(family: Family) -> Candidates[FormsOnGraph]:
@@ -74,7 +81,7 @@ def decide_one_state(family: Family) -> Candidates[FormsOnGraph]:
     claimed = BACK_OFF * -max(numbers)
     if system.time is Time.DISCRETE:
         claimed = 1 - BACK_OFF * (1 - max(map(abs, numbers)))
-    yield Candidate(one_form(system, ((1,),), 0, round_rate(claimed, system.time)))
+    yield Candidate(one_form(((1,),), 0, round_rate(claimed, system.time)))
     return None
 
 
@@ -127,4 +134,4 @@ def round_quadratic(family: Family, Q: Array, claim: Fraction) -> Iterator[Forms
             common = gcd(*(entry for row in rows for entry in row)) or 1
             twos = (common & -common).bit_length() - 1
             reduced = tuple(tuple(entry >> twos for entry in row) for row in rows)
-            yield one_form(family.system, reduced, max(denominator_log2 - twos, 0), claim)
+            yield one_form(reduced, max(denominator_log2 - twos, 0), claim)

@@ -35,13 +35,6 @@ class Motions:
         scaled = np.ldexp(free, d[None, :] - d[:, None])
         return cls(family.system.time, family.matrices, scaled, pulls)
 
-    def transformed(self, T: Array) -> Motions:
-        """Return the same in coordinates ``x = T z``."""
-        inverse = np.linalg.inv(T)
-        return Motions(
-            self.time, inverse @ self.contact @ T, inverse @ self.free @ T, self.pulls @ T
-        )
-
 
 def separating_coordinates(motions: Motions) -> Array:
     """Return T that makes the mean of the modes' norms round, but leaves the deflection alone."""

@@ -19,7 +19,7 @@ from nrs_design.proof.mode import Time
 BACK_OFFS = (0.99995, 0.9998, 0.9995, 0.999, 0.998, 0.99, 0.9, 0.5, 0.1, 1e-2, 1e-3, 1e-4)
 BITS = (4, 6, 8, 10, 12, 16, 20, 24, 32, 40, 50, 60)
 # Where a check takes long: so many rates, and every so many bits.
-FEW_RATES, FEW_BITS = 3, 4
+FEW_RATES = 3
 RATE_BITS = 16
 
 
@@ -50,10 +50,9 @@ def claims(
             yield claim
 
 
-def digits(fewest: int = BITS[0], *, few: bool = False) -> tuple[int, ...]:
-    """Return numbers of bits after the binary point, from the fewest on; `few`: not all of them."""
-    bits = tuple(bits for bits in BITS if bits >= fewest)
-    return bits[::FEW_BITS] if few else bits
+def digits(fewest: int = BITS[0]) -> tuple[int, ...]:
+    """Return numbers of bits after the binary point, from the fewest on."""
+    return tuple(bits for bits in BITS if bits >= fewest)
 
 
 def round_rate(rate: float | Fraction, time: Time) -> Fraction:

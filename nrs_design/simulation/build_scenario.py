@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
 
@@ -137,10 +137,12 @@ def _recorded(path: Path, largest: float) -> tuple[Profile, float]:
 def _surface(spec: InteractionDesignSpec, plant: Plant, written: SurfaceSpec) -> Surface:
     sign = 1 if written.side == "above" else -1
     found = _touched(spec, plant, written.environment, written.at.si, sign, written.parameters)
-    laws = drawn_laws(spec, plant, written.beside, _PICKS[written.parameters])
-    return replace(found, beside=written.beside).with_laws(
-        {found.environment: (found.law, found.element), **laws}
+    pick = _PICKS[written.parameters]
+    elements = (
+        _law(spec.environments[name], plant.environment(name), pick)[1] for name in written.beside
     )
+    arms = tuple(element for element in elements if element is not None)
+    return replace(found, arms=arms, beside=written.beside)
 
 
 def _touched(
@@ -148,16 +150,6 @@ def _touched(
 ) -> Surface:
     law, element = _law(spec.environments[name], plant.environment(name), _PICKS[end])
     return Surface(name, law, element, at, sign)
-
-
-def drawn_laws(
-    spec: InteractionDesignSpec, plant: Plant, names: Collection[str], pick: Pick
-) -> dict[str, tuple[AbstractContactLaw, Element | None]]:
-    """Return the laws of environments, with every parameter picked from its range.
-
-    `pick` takes a range and returns a number within; it is asked in the order of the parameters.
-    """
-    return {name: _law(spec.environments[name], plant.environment(name), pick) for name in names}
 
 
 _PICKS: Mapping[str, Pick] = {

@@ -119,15 +119,6 @@ class Signals:
             self.actions[:, runs], self.shares[:, runs], self.states[runs], self.nodes[runs]
         )
 
-    def beside(self, other: Signals) -> Signals:
-        """Return these runs and others."""
-        return Signals(
-            np.concatenate([self.actions, other.actions], axis=1),
-            np.concatenate([self.shares, other.shares], axis=1),
-            np.concatenate([self.states, other.states]),
-            np.concatenate([self.nodes, other.nodes]),
-        )
-
     def spans(self, game: Game, states: Array, first: Indices, steps: int) -> Signals:
         """Return some steps of each run, from a step of its own on."""
         runs, rows = np.arange(len(first)), first + np.arange(steps)[:, None]

@@ -9,12 +9,14 @@ from nrs_design.controllers.shipped import shipped_law
 from nrs_design.errors import DesignError
 from nrs_design.models.plant import Plant
 from nrs_design.progress import Progress, silent
-from nrs_design.simulation.processor import run_axis
 from nrs_design.simulation.run import MAX_STEPS, Run
-from nrs_design.simulation.sampled_axis import SampledAxis, Turns
+from nrs_design.simulation.sampled_axis import SampledAxis, SampleInputs, Turns
 from nrs_design.simulation.scenario import Scenario
 from nrs_design.simulation.step_program import StepProgram
 from nrs_design.spec import InteractionDesignSpec
+
+# Samples after which it is told how far the run is.
+_OFTEN = 20_000
 
 
 def simulate_sampled(
@@ -27,7 +29,27 @@ def simulate_sampled(
     tell: Progress = silent,
 ) -> Run:
     """Simulate a scenario with the law that ships, at most so many of its samples."""
-    return run_axis(sampled_axis(spec, plant, design, scenario), max_steps, tell)
+    return _run_axis(sampled_axis(spec, plant, design, scenario), max_steps, tell)
+
+
+def _run_axis(axis: SampledAxis, max_steps: int, tell: Progress) -> Run:
+    """Run the law of an axis at the samples of its scenario, at most so many."""
+    wanted = math.floor(axis.scenario.duration / axis.T + 1e-9) + 1
+    count = min(wanted, max_steps)
+    inputs = SampleInputs.of(axis.scenario, axis.T, axis.delay, axis.late, axis.misses, count)
+    instants = [*inputs.times.tolist(), float(inputs.times[-1]) + axis.T]
+    drawn = (inputs.hand, inputs.noise, inputs.ages, inputs.lates, inputs.missed)
+    rows = list(zip(*(column.tolist() for column in drawn), strict=True))
+    stopped = None
+    if count < wanted:
+        stopped = f"{max_steps} samples by {instants[count - 1]:.6g} s: the budget is used up"
+    for k in range(count):
+        t = instants[k]
+        axis.sample(t, *rows[k])
+        axis.move(instants[k + 1] - t)
+        if k % _OFTEN == 0:
+            tell(f"{t:.3g} s")
+    return axis.finish(inputs, stopped)
 
 
 def sampled_axis(

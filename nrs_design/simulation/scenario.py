@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -93,13 +93,6 @@ class Surface:
     arms: tuple[Element, ...] = ()
     beside: tuple[str, ...] = ()  # The environments of these, in their order
 
-    def with_laws(self, laws: Mapping[str, tuple[AbstractContactLaw, Element | None]]) -> Surface:
-        """Return the surface with laws of its environments, by their names; see `drawn_laws`."""
-        law, element = laws[self.environment]
-        others = (laws[name][1] for name in self.beside)
-        arms = tuple(other for other in others if other is not None)
-        return replace(self, law=law, element=element, arms=arms)
-
     @property
     def is_linear(self) -> bool:
         """Whether the exact engine knows it."""
@@ -115,10 +108,6 @@ class Condition:
     # low, high: within which it holds.
     low: float = -math.inf
     high: float = math.inf
-
-    def holds(self, signals: Mapping[str, float]) -> bool:
-        """Tell whether the signal is within; one that is no number is not."""
-        return self.low <= signals[self.signal] <= self.high
 
 
 @dataclass(frozen=True, slots=True)

@@ -93,9 +93,9 @@ COMBINATIONS: tuple[Row[Spec], ...] = (
     *_beside(CONSTANT_TISSUE, LOSABLE, TWO_PERIODS, AT_ONCE, MEMORY, PRELOADED),
     not_together(CONSTANT_LAG, TIMED),
     # The sampled loop.
-    *_beside(OFFSET, SAMPLED),
-    *_beside(GIVEN_LOOP, SAMPLED),
-    *_beside(SAMPLED_DWELL, SAMPLED),
+    not_together(OFFSET, SAMPLED),
+    not_together(GIVEN_LOOP, SAMPLED),
+    not_together(SAMPLED_DWELL, SAMPLED),
     *(not_together(DWELL, *features) for features in CHANGING),
     *_beside(TWO_PERIODS, OTHERS, RULES),
     # The rule for misses decides what may follow what.

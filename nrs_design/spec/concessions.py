@@ -270,10 +270,10 @@ def _dwell(
     given = _get(said, (*at, "dwell_time"))
     if arbitrary and said.get("switching") == "arbitrary":
         if discrete:
-            yield Concession(at, _dwell_form(MOST_STEPS - 2, _steps_at, "arbitrary"))
+            yield Concession(at, _dwell_form(MOST_STEPS - 2, _steps_at))
         elif slowest is not None and slowest > 0:
             longest = min(Fraction(2) ** ceil(log2(TIMES / slowest)), Fraction(LONGEST_DWELL))
-            yield Concession(at, _dwell_form(DWELLS, partial(_seconds_at, longest), "arbitrary"))
+            yield Concession(at, _dwell_form(DWELLS, partial(_seconds_at, longest)))
     elif isinstance(given, str) and not discrete and _number(given, "1 s") * TIMES < LONGEST_DWELL:
         shortest = _number(given, "1 s")
 
@@ -284,11 +284,11 @@ def _dwell(
         yield Concession((*at, "dwell_time"), form)
 
 
-def _dwell_form(size: int, text: Callable[[int], str], asked: str) -> Way:
+def _dwell_form(size: int, text: Callable[[int], str]) -> Way:
     def says(step: int) -> Data:
         return "arbitrary" if step > size else {"dwell_time": text(step)}
 
-    return Way(WITH, says, lambda k: f"dwell_time: {text(k)}", asked, size + 1)
+    return Way(WITH, says, lambda k: f"dwell_time: {text(k)}", "arbitrary", size + 1)
 
 
 def _steps_at(step: int) -> str:

@@ -238,7 +238,7 @@ def sensor_texts(
         yield say(which, lasting, lasting=lasting, parts=parts)
     if sensor.carries:
         yield say("sensor.tool", "accelerations of the tool far below that of gravity")
-    if sensor.noise is not None:
+    if sensor.noisy:
         yield say("sensor.noise", "none")
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from pathlib import Path
 
 from tests.support import ROOT
 
@@ -36,7 +35,3 @@ def python_of(page: str) -> list[str]:
 
 def commands_of(page: str) -> list[str]:
     return [line.replace("\\\n", " ") for line in COMMAND.findall(text_of(page))]
-
-
-def folder_of(page: str) -> Path:
-    return (ROOT / page).parent

@@ -1,10 +1,7 @@
 """Files that a stranger may send: each case writes one into a folder."""
 
-import io
 import json
 import os
-import struct
-import zipfile
 from collections.abc import Callable
 from pathlib import Path
 
@@ -189,34 +186,6 @@ PROPOSALS: dict[str, Callable[[], str | bytes]] = {
     ),
 }  # fmt: skip
 
-
-def deep_cells(depth: int) -> bytes:
-    """Write a MATLAB file with a cell in a cell in a cell ..., on which its reader crashes."""
-    cell = struct.pack("<II IIII IIii II", 14, 48, 6, 8, 1, 0, 5, 8, 1, 1, 1, 0)
-    content = cell * depth + struct.pack("<II", 14, 0)
-    return b"MATLAB 5.0 MAT-file".ljust(124) + struct.pack("<HH", 0x100, 0x4D49) + content
-
-
-def packed(**entries: bytes) -> bytes:
-    file = io.BytesIO()
-    with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as archive:
-        for name, content in entries.items():
-            archive.writestr(name.replace("__", "/"), content)
-    return file.getvalue()
-
-
-def claimed(shape: str) -> bytes:
-    """Write an array of NumPy that claims a shape, without its entries."""
-    head = f"{{'descr': '<f8', 'fortran_order': False, 'shape': {shape}}}".encode()
-    return b"\x93NUMPY\x01\x00" + struct.pack("<H", len(head) + 1) + head + b"\n"
-
-
-# Of other programs, whose readers crash on them or make room for what they claim.
-FOREIGN: dict[str, Callable[[], bytes]] = {
-    "deep.mat": lambda: deep_cells(100_000),
-    "huge.npz": lambda: packed(**{"P.npy": claimed("(1099511627776,)"), "A.npy": claimed("(9,)")}),
-    "object.npz": lambda: packed(**{"P.npy": claimed("(1,)").replace(b"<f8", b"|O ")}),
-}
 
 NAMES = (
     "a\n::error::x.nrs.yaml",

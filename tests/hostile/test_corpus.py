@@ -7,7 +7,6 @@ import pytest
 from nrs_design.gating.lock import Lock, dump_lock
 from tests.hostile.corpus import (
     CERTIFICATES,
-    FOREIGN,
     LARGE_SPECS,
     LOCKS,
     NAMES,
@@ -130,14 +129,6 @@ def test_a_lock(place, case):
 def test_a_proposal(place, case):
     write(place / "work/p.json", PROPOSALS[case]())
     check(place, "check-lyapunov", "p.json", codes=(0, 1, 2))
-
-
-@pytest.mark.parametrize("name", FOREIGN)
-@pytest.mark.parametrize("command", [("identify", "tissue"), ("check-lyapunov",)], ids=" ".join)
-def test_a_file_of_another_program_is_named_and_not_read(place, command, name):
-    write(place / "work" / name, FOREIGN[name]())
-    ended = check(place, *command, name, codes=(2,))
-    assert ended.text.count("error[NRS006]") == 1
 
 
 @pytest.mark.parametrize("name", NAMES)

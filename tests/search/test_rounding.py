@@ -36,7 +36,6 @@ def test_few_claims_and_few_digits_where_checks_take_long():
     assert [float(c) for c in claims(1.0, 1.0, CONTINUOUS, 0.9, few=True)] == pytest.approx(
         [0.9, 0.5, 0.1], rel=1e-4
     )
-    assert digits(12, few=True) == (12, 32)
     assert digits(10)[:2] == (10, 12)
     assert digits() == BITS
 

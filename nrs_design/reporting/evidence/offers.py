@@ -43,7 +43,6 @@ class Offer:
     forms: tuple[Form, ...] = ()
     denominator_log2: int = 0  # of all forms
     leaving: tuple[str, ...] = ()  # modes that must be left, in which a form may grow
-    numbers: tuple[Fraction, ...] = ()  # others of the certificate, such as multipliers
     weights: tuple[tuple[str, Fraction], ...] = ()  # of modes, with sum one
     growth: Growth | None = None
     blocks: tuple[tuple[int, ...], ...] = ()  # states of each diagonal block

@@ -109,7 +109,7 @@ class Greedy:
     rate: float | None = None  # Sets the length of the run; None for a fixed length
 
     def draw(
-        self, title: str, said: str, label: str, line: str = "", name: str = "run"
+        self, title: str, said: str, label: str, line: str = ""
     ) -> tuple[SwitchedRun, Illustration]:
         """Return the run, and its norm over time.
 
@@ -125,7 +125,7 @@ class Greedy:
         caption = f"{said}{freely(self.system)}{some_modes(self.system, self.played)}"
         deflection = "" if self.played.contact is None else drawn.states[-1]
         figure = draw_run(response, values, bound, drawn, label, deflection)
-        return response, Illustration(name, title, caption, figure)
+        return response, Illustration("run", title, caption, figure)
 
 
 def bounded_run(

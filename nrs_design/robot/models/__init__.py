@@ -18,7 +18,6 @@ from nrs_design.robot.models.correction import (
     correct_separately,
     correction_coefficients,
     thesis_tilts,
-    tilt_table,
     tilt_tables,
     to_csv,
 )
@@ -115,7 +114,6 @@ __all__ = [
     "survey_workspace",
     "thesis_grid",
     "thesis_tilts",
-    "tilt_table",
     "tilt_tables",
     "to_csv",
     "torque_shares",

@@ -81,13 +81,6 @@ class TiltTable:
     least_squares: Array
 
 
-def tilt_table(
-    robot: Robot, tilts: Iterable[float], sines: Sequence[Sine] = DEPTH_SINES
-) -> TiltTable:
-    """Return the coefficients for every tilt of the base, in rad; by default for depth alone."""
-    return tilt_tables(robot, tilts, sines)[0]
-
-
 def tilt_tables(
     robot: Robot, tilts: Iterable[float], *groups: Sequence[Sine]
 ) -> tuple[TiltTable, ...]:

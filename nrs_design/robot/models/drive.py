@@ -25,7 +25,6 @@ class JointDrive:
     gears. The friction of the motor that the gain K accounts for is part of the damping.
     """
 
-    ratio: float  # Motor turns per turn of the joint, 905 in the thesis
     # Turns of the encoder, at the gearhead's output, per turn of the joint: 5 in the thesis.
     encoder_ratio: float
     inertia: float  # Of the rotor, ``N^2 I_r`` in kg m^2
@@ -57,7 +56,6 @@ def build_drive(spec: DriveSpec) -> JointDrive:
             at=("drive",),
         )
     return JointDrive(
-        ratio=ratio,
         encoder_ratio=capstan,
         inertia=ratio**2 * inertia,
         damping=ratio**2 / (speed * gradient),

@@ -120,21 +120,11 @@ def _gravity_in_plane(gravity: Vector, closed: Posture, leg: LegPosture) -> Vect
 
 
 def _torque(closed: Posture, motion: RobotMotion, robot: Robot, weight: Scalar = 1.0) -> Array:
-    torques = joint_torques(closed, motion, robot, robot.gravity_vector, weight)
-    return np.asarray(stacked(torques), dtype=np.float64)
-
-
-def joint_torques(
-    closed: Posture, motion: RobotMotion, robot: Robot, gravity: Vector, weight: Scalar = 1.0
-) -> Vector:
-    """Collect what every leg takes, and hand it on to the joints, in N m.
-
-    Gravity is in the base frame, in m/s^2; it is multiplied by the weight.
-    """
+    """Collect what every leg takes, with gravity times a weight, and hand it on to the joints."""
     on_W: Vector = (0.0, 0.0, 0.0)
     on_d: Scalar = 0.0
     for leg, rates, loads in zip(closed.legs, motion.legs, robot.loads, strict=True):
-        fall = scale(weight, _gravity_in_plane(gravity, closed, leg))
+        fall = scale(weight, _gravity_in_plane(robot.gravity_vector, closed, leg))
         on_alpha, on_gamma, on_depth = _leg_forces(motion, leg, rates, loads, fall)
         pull = add(scale(on_alpha, leg.normal), scale(-on_gamma, leg.leg.axis))
         on_W = add(on_W, scale(1.0 / leg.sin_gamma, pull))
@@ -145,7 +135,7 @@ def joint_torques(
     on_W = add(on_W, scale(theta3 * middle.beta_gamma / middle.sin_gamma, middle.leg.axis))
     theta1 = left.sin_gamma * dot(closed.u1, on_W)
     theta2 = right.sin_gamma * dot(closed.u2, on_W)
-    return theta1, theta2, theta3
+    return np.asarray(stacked((theta1, theta2, theta3)), dtype=np.float64)
 
 
 def _leg_forces(

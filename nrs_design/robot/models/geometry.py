@@ -83,49 +83,24 @@ def posture(robot: Robot, pose: ArrayLike) -> Posture:
     return closed
 
 
-@dataclass(frozen=True, slots=True)
-class Driven:
-    """What joint angles say of a pose, so that it need not be computed from the pose again."""
-
-    normals: tuple[Vector, Vector]  # Of the planes of the side legs
-    sin_gamma: tuple[Scalar, Scalar]  # Of the endoscope in these planes
-    crank: tuple[Scalar, Scalar]  # Cosine and sine of the middle leg's crank angle
-
-
-def close_loops(robot: Robot, W: Vector, d: Scalar, driven: Driven | None = None) -> Posture:
-    """Close the loops of all legs, whether they reach that far or not, at direction W and depth d.
-
-    `driven` is given where the pose comes from joint angles.
-    """
-    planes: tuple[_Plane | None, ...] = (None, None)
-    if driven is not None:
-        planes = tuple(zip(driven.normals, driven.sin_gamma, strict=True))
-    left, right = (
-        _leg_posture(leg, W, d, plane, None)
-        for leg, plane in zip(robot.legs[:2], planes, strict=True)
-    )
-    crank = None if driven is None else driven.crank
-    middle = _leg_posture(robot.legs[2], W, d, None, crank)
+def close_loops(robot: Robot, W: Vector, d: Scalar) -> Posture:
+    """Close the loops of all legs, whether they reach that far or not, at direction and depth."""
+    left, right, middle = (_leg_posture(leg, W, d) for leg in robot.legs)
     inverse = 1.0 / dot(W, cross(left.normal, right.normal))
     u1 = scale(inverse, cross(right.normal, W))
     u2 = scale(inverse, cross(W, left.normal))
     return Posture(W, d, (left, right, middle), u1, u2)
 
 
-# Normal of the plane of a leg, and the sine of gamma in it.
-_Plane = tuple[Vector, Scalar]
-
-
-def _leg_posture(
-    leg: Leg, W: Vector, d: Scalar, plane: _Plane | None, crank: tuple[Scalar, Scalar] | None
-) -> LegPosture:
+def _leg_posture(leg: Leg, W: Vector, d: Scalar) -> LegPosture:
     a, l1, l2, l3 = leg.axis, leg.l1, leg.l2, leg.l3
     cos_gamma = dot(a, W)
-    normal, sin_gamma = plane or _plane_of(a, W, cos_gamma)
+    sin_gamma = np.sqrt(1.0 - cos_gamma * cos_gamma)
+    normal = scale(1.0 / sin_gamma, cross(a, W))
     end = (d * cos_gamma + l3 * sin_gamma, d * sin_gamma - l3 * cos_gamma)
     end_gamma = (l3 * cos_gamma - d * sin_gamma, l3 * sin_gamma + d * cos_gamma)
     x, y = end[0] - leg.l0, end[1]
-    cos_beta, sin_beta = crank or _crank(leg, x, y)
+    cos_beta, sin_beta = _crank(leg, x, y)
     cos_kappa, sin_kappa = (x - l1 * cos_beta) / l2, (y - l1 * sin_beta) / l2
     sin_elbow = sin_kappa * cos_beta - cos_kappa * sin_beta
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -149,11 +124,6 @@ def _leg_posture(
             kappa_gamma=(cos_beta * end_gamma[0] + sin_beta * end_gamma[1]) * per_l2,
             kappa_d=(cos_beta * cos_gamma + sin_beta * sin_gamma) * per_l2,
         )
-
-
-def _plane_of(a: Vector, W: Vector, cos_gamma: Scalar) -> _Plane:
-    sin_gamma = np.sqrt(1.0 - cos_gamma * cos_gamma)
-    return scale(1.0 / sin_gamma, cross(a, W)), sin_gamma
 
 
 def _crank(leg: Leg, x: Scalar, y: Scalar) -> tuple[Scalar, Scalar]:

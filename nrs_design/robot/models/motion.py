@@ -37,11 +37,7 @@ class RobotMotion:
 
 def joint_driven(closed: Posture, velocity: ArrayLike, acceleration: ArrayLike) -> RobotMotion:
     """Return the motion that rates of the joints make, in rad/s and rad/s^2."""
-    return driven_by(closed, components(velocity), components(acceleration))
-
-
-def driven_by(closed: Posture, v: Vector, a: Vector) -> RobotMotion:
-    """Return the same of three components each."""
+    v, a = components(velocity), components(acceleration)
     left, right, middle = closed.legs
     W_1 = add(scale(left.sin_gamma * v[0], closed.u1), scale(right.sin_gamma * v[1], closed.u2))
     pushes = [

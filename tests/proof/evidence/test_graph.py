@@ -25,7 +25,6 @@ from nrs_design.proof.steps import Stays
 from nrs_design.proof.switching import Clock, Reset, Stay, Switching
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.certify import Limits, Verdict, certify
-from nrs_design.search.draw import undeflected
 from nrs_design.search.graphs import search_polynomial
 from nrs_design.search.method import Method
 from tests.proof.graphs import (
@@ -36,6 +35,7 @@ from tests.proof.graphs import (
     mode_quadratic,
     one_form,
     scalars,
+    undeflected,
 )
 from tests.proof.systems import (
     LAGGING,

@@ -539,7 +539,6 @@ def test_claims():
 
 
 ONCE = (("m0", 1), ("free", 1))
-FACTOR = (Fraction(19, 10), Fraction(2))
 NARROW = (Fraction(19416, 10000), Fraction(19417, 10000))
 BOUNCE = in_contact(ONCE, NARROW)
 NO_SIGNS = "the enclosure does not show a growing motion that keeps the signs of contact"

@@ -9,14 +9,13 @@ from nrs_design.robot.models import (
     Sine,
     correction,
     correction_coefficients,
-    tilt_table,
     tilt_tables,
 )
 from nrs_design.robot.models.correction import DEPTH_SINES, TABLE_3_5, correct, to_csv
 
 
 def test_table_for_the_controller(robot):
-    table = tilt_table(robot, np.radians([-40.0, 0.0]))
+    (table,) = tilt_tables(robot, np.radians([-40.0, 0.0]), DEPTH_SINES)
     lines = to_csv(table).splitlines()
     assert lines[0].split(",")[:4] == ["theta4_deg", "K1", "K2", "K3"]
     assert [float(number) for number in lines[1].split(",")] == pytest.approx(
@@ -55,7 +54,7 @@ def test_least_squares_leaves_the_least_error():
 def test_tables_of_several_groups_of_motions_are_those_of_each(robot, monkeypatch):
     """To the last bit, and a motion that is in both is moved once."""
     tilts = np.radians([-40.0, 0.0])
-    apart = [tilt_table(robot, tilts, group) for group in (DEPTH_SINES, TABLE_3_5)]
+    apart = [tilt_tables(robot, tilts, group)[0] for group in (DEPTH_SINES, TABLE_3_5)]
     moved = []
     moves = correction.joint_motion
     monkeypatch.setattr(correction, "joint_motion", lambda *at: moved.append(at) or moves(*at))

@@ -64,7 +64,23 @@ def close_loop(
         switching=assemble_switching(rules, groups, _resets(state)),
         contact=losable,
         flights=flights,
+        enclosures=tuple(_enclosures(state)),
     )
+
+
+def _enclosures(state: SharedState) -> Iterator[tuple[str, ...]]:
+    """Yield the modes that enclose one motion, where stiffness and damping depend on each other."""
+    for controller in state.design.controllers:
+        for environment in state.contacts(controller):
+            name = f"{controller.name}/{environment.name}"
+            box = state.contact_box(environment).beside(state.motor_box)
+            found: dict[str, list[str]] = {}
+            for point, (corner, _) in zip(
+                box.points(name, state.motor_box.ranges), box.named_values(name), strict=True
+            ):
+                found.setdefault(point, []).append(corner)
+            if environment.depends:
+                yield from (tuple(names) for names in found.values() if len(names) > 1)
 
 
 def _resets(state: SharedState) -> Iterator[tuple[str, str, RationalMatrix]]:

@@ -23,11 +23,11 @@ from nrs_design.pipeline.cases import CASES, find_cases
 from nrs_design.pipeline.certification import assemble_spec, gains_text, run_certification
 from nrs_design.pipeline.design import run_design
 from nrs_design.pipeline.release import physical_outputs
-from nrs_design.proof.evidence.growing_sequence import staying
+from nrs_design.proof.evidence.growing_sequence import UNATTAINED, staying
 from nrs_design.proof.switching import Reset, Switching
 from nrs_design.search.certification import Limits
 from nrs_design.search.certify import ENCLOSURE
-from nrs_design.spec import LoadedSpec, load_spec, parse_spec
+from nrs_design.spec import LoadedSpec, load_spec, parse_spec, read_spec
 from nrs_design.switched.assemble import assemble, assemble_from_text
 from nrs_design.switched.cases import in_cases
 from tests.proof.graphs import common_quadratic
@@ -234,6 +234,17 @@ def test_what_has_no_cases():
     for whole in (moved, replace(system, states=("x",))):
         with pytest.raises(AssemblyError, match="share no state, or a switch moves it"):
             in_cases(whole, (system, system))
+
+
+def test_a_corner_of_a_preload_refutes_nothing():
+    """Stiffness and damping follow one deflection; in continuous time a mode is one corner."""
+    loaded = read_spec(ROOT / "specs/neuroboscope/concha.nrs.yaml")
+    system = assemble_spec(loaded, run_design(loaded))
+    unit = matrix([[int(i == j) for j in range(system.order)] for i in range(system.order)])
+    growing = replace(system, modes=tuple(replace(mode, A=unit) for mode in system.modes))
+    for mode in system.modes:
+        assert UNATTAINED in staying(mode.name).find_fault(growing)
+        assert staying(mode.name).find_fault(replace(growing, enclosures=())) is None
 
 
 def test_the_kernel_refuses_a_forged_corner():

@@ -8,6 +8,7 @@ import os
 import sys
 import warnings
 from contextlib import suppress
+from typing import NoReturn
 
 from nrs_design.cli import exit_codes
 
@@ -15,10 +16,12 @@ __all__ = ["main", "program"]
 
 # Imports make many objects that stay until the end, so the collector need not look at them.
 COLLECT_AFTER = 200_000
+# Of addresses, in bytes: with less, OpenBLAS ends the process with code 1.
+LEAST_MEMORY = 512 * 2**20
 
 
 def main() -> None:
-    """Run the program; exit with code 4 if it cannot be loaded.
+    """Run the program; exit with code 4 if it cannot be loaded, and with 130 after Ctrl-C.
 
     Under ``-W error`` warnings are shown, but do not end the program: they are about code, not
     about a spec.
@@ -29,12 +32,38 @@ def main() -> None:
     if any(entry[0] == "error" for entry in warnings.filters):
         warnings.simplefilter("default")
     try:
-        from nrs_design.cli.app import main as run
-    except Exception as error:
-        if sys.stderr:
-            sys.stderr.write(f"internal error: nrs-design cannot be loaded: {error!a}\n")
-        sys.exit(exit_codes.INTERNAL)
-    run()
+        _refuse_little_memory()
+        try:
+            from nrs_design.cli.app import main as run
+        except Exception as error:
+            if isinstance(error, MemoryError):
+                raise
+            _end(f"internal error: nrs-design cannot be loaded: {error!a}", exit_codes.INTERNAL)
+        run()
+    except KeyboardInterrupt:
+        # Wherever it falls, be it into an import.
+        sys.exit(exit_codes.INTERRUPTED)
+    except MemoryError:
+        _end("error: there is not enough memory (allow more)", exit_codes.USAGE)
+
+
+def _refuse_little_memory() -> None:
+    """End where numerical libraries would end the program themselves, as if a spec were refuted."""
+    if sys.platform == "win32":
+        return
+    import resource
+
+    allowed = resource.getrlimit(resource.RLIMIT_AS)[0]
+    if 0 <= allowed < LEAST_MEMORY:
+        few, least = allowed // 2**20, LEAST_MEMORY // 2**20
+        said = f"{few} MiB of memory are allowed, and {least} MiB are needed (ulimit -v)"
+        _end(f"error: {said}", exit_codes.USAGE)
+
+
+def _end(message: str, code: int) -> NoReturn:
+    if sys.stderr:
+        sys.stderr.write(f"{message}\n")
+    sys.exit(code)
 
 
 def program() -> None:

@@ -138,6 +138,9 @@ def main() -> None:
             failed = f"{printable(error.filename)} cannot be read or written"
         insist(f"error: {failed} ({error.strerror})")
         sys.exit(exit_codes.USAGE)
+    except MemoryError:
+        # Said where less is loaded.
+        raise
     except Exception as error:
         if "-v" in sys.argv or "--verbose" in sys.argv:
             import traceback

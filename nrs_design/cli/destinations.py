@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -119,7 +120,7 @@ def check_beside(loaded: LoadedSpec, out: Path) -> None:
     from nrs_design.errors import OutputError
     from nrs_design.gating.recorded import hash_followed
 
-    beside = out.parent.resolve() == loaded.path.parent.resolve()
+    beside = os.path.realpath(out.parent) == os.path.realpath(loaded.path.parent)
     if hash_followed(loaded) and not beside:
         raise OutputError(
             "the spec names files beside itself",

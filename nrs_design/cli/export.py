@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -148,7 +149,7 @@ def _export_design(
     beside = next(iter(files.values())).parent / f"{name}.cert.json"
     proof = certificate or beside
     for file in files.values():
-        if file.resolve() == proof.resolve():
+        if os.path.realpath(file) == os.path.realpath(proof):
             raise OutputError("is the certificate file", path=file, remedy="choose another --out")
     check_places(chosen, files, name)
     check_certificate(spec, beside)

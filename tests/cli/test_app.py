@@ -157,6 +157,38 @@ def test_a_defect_is_exit_code_4(tmp_path, verbose):
     assert ("Traceback" in result.stderr) == bool(verbose)
 
 
+@pytest.mark.parametrize(
+    ("error", "code", "said"),
+    [("KeyboardInterrupt", 130, ""), ("MemoryError", 2, "error: there is not enough memory")],
+)
+@pytest.mark.parametrize("module", ["typer", "nrs_design.cli.verify", "flint"])
+def test_what_falls_into_an_import_ends_as_elsewhere(tmp_path, module, error, code, said):
+    program = (
+        "import sys\n"
+        "class Finder:\n"
+        "    def find_spec(self, name, path=None, target=None):\n"
+        f"        if name == '{module}': raise {error}\n"
+        "sys.meta_path.insert(0, Finder())\n"
+        "from nrs_design.cli import program; program()"
+    )
+    certificate = ROOT / "reports" / "commuting.cert.json"
+    result = start(tmp_path, "-c", program, "verify", "--json", certificate)
+    assert (result.returncode, result.stderr[: len(said)]) == (code, said)
+    assert result.stderr.count("\n") == bool(said)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="limits are those of Linux")
+def test_too_little_memory_is_no_verdict(tmp_path):
+    """Under 120,000 KiB OpenBLAS ended the program with 1, which says that a spec is refuted."""
+    limited = f'ulimit -v 120000; exec "{sys.executable}" -m nrs_design "$@"'
+    command = ["bash", "-c", limited, "bash", "certify-switching", str(COMMUTING)]
+    done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path, check=False)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert (
+        done.stderr == "error: 117 MiB of memory are allowed, and 512 MiB are needed (ulimit -v)\n"
+    )
+
+
 def start(tmp_path, *command, **environment):
     return subprocess.run(
         [sys.executable, *map(str, command)],

@@ -88,10 +88,10 @@ def _draw(folder: Path, step: Progress) -> tuple[Counterpart, ...]:
 
 def _link(page: Path, gallery: Path) -> str:
     """Return where the gallery is, seen from another page."""
-    from os.path import relpath
+    from os.path import realpath, relpath
     from urllib.parse import quote
 
-    return quote(Path(relpath(gallery.resolve(), page.resolve().parent)).as_posix())
+    return quote(Path(relpath(realpath(gallery), Path(realpath(page)).parent)).as_posix())
 
 
 def _summary(

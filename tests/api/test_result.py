@@ -63,11 +63,6 @@ def test_a_figure_that_there_is_not(results):
     assert "shaken" in str(caught.value.remedy)
 
 
-def test_a_figure_for_a_paper_in_a_line(tmp_path):
-    nrs.load(SOFT_TISSUE).certify().plot(width="ieee").savefig(tmp_path / "run.pdf")
-    assert (tmp_path / "run.pdf").read_bytes().startswith(b"%PDF-")
-
-
 def test_there_are_two_widths():
     with pytest.raises(DesignError, match="no width 'wide'"):
         nrs.certify([[[-1]]]).plot(width="wide")

@@ -7,7 +7,7 @@ import pytest
 import nrs_design as nrs
 from nrs_design.errors import CertificateError, DesignError
 from tests.api.pairs import pair
-from tests.support import FORCE_LIMIT, ROOT, SOFT_TISSUE
+from tests.support import ROOT, SOFT_TISSUE
 
 
 def test_unknown_method():
@@ -34,18 +34,6 @@ def test_options_of_runs_are_checked():
             study.simulate(**options)
     with pytest.raises(DesignError, match="has no name"):
         study.simulate(["one", "two"])
-
-
-def test_a_study_of_a_spec(tmp_path):
-    study = nrs.load(SOFT_TISSUE)
-    assert [c.name for c in study.design().controllers] == ["insertion", "withdrawal"]
-    decision = study.certify()
-    assert decision.verdict == "proved"
-    decision.save(tmp_path)
-    # The spec is a file already, so no second copy is made.
-    assert [file.name for file in tmp_path.iterdir()] == ["soft-tissue.cert.json"]
-    assert study.export(tmp_path / "soft-tissue.cert.json").verdict == "proved"
-    assert nrs.verify(tmp_path / "soft-tissue.cert.json", FORCE_LIMIT).fault is not None
 
 
 def test_scenarios_are_simulated():

@@ -35,13 +35,6 @@ def test_decay_that_is_slower_than_asked_is_told(tmp_path):
     assert "no decay" not in done.stdout
 
 
-def test_discrete(tmp_path):
-    file = tmp_path / "a.json"
-    file.write_text('{"A": [[0.5]], "P": [[1]]}')
-    done = run("check-lyapunov", file, "--discrete", cwd=tmp_path, code=0)
-    assert "rho <= 0.500001" in done.stdout
-
-
 def test_an_option_does_not_turn_a_rate_in_one_over_seconds_into_one_per_step(tmp_path):
     file = tmp_path / "a.json"
     file.write_text('{"A": [["-0.3"]], "P": [[1]], "rate": "0.4", "time": "continuous"}')

@@ -105,7 +105,6 @@ def test_slips_of_the_pen(tmp_path, old, new, said):
         (("Gat",), "did you mean gate?"),
         (("exprot",), "did you mean export?"),
         (("zzz",), "there are init, check, explain"),
-        (("x",), "there are init, check, explain"),
         (("robot", "chek"), "did you mean check?"),
         (("tune", COMMUTING), "nothing to tune"),
         (("simulate", COMMUTING), "describes no interaction"),

@@ -69,10 +69,7 @@ def test_margins_say_on_what_they_rest(spec, tmp_path):
 
 
 def test_what_asks_for_kept_contact_is_refuted(spec):
-    for contact, verdict in (("contact: kept", "refuted"), ("", "refuted")):
+    for contact in ("contact: kept", ""):
         spec.write_text(PULLING.replace("contact: losable", contact), encoding="utf-8")
-        result = run_certification(read_spec(spec))
-        assert (str(result.certification.verdict), result.certification.refuted_in) == (
-            verdict,
-            None,
-        )
+        found = run_certification(read_spec(spec)).certification
+        assert (found.verdict, found.refuted_in) == ("refuted", None)

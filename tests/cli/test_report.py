@@ -6,7 +6,6 @@ from typer.testing import CliRunner
 
 from nrs_design.cli.app import make_app
 from nrs_design.errors import OutputError
-from tests.reporting.conftest import KINDS
 from tests.support import COMMUTING, PRINT_ERROR, ROOT
 
 COMMUTING, PRINT_ERROR = map(str, (COMMUTING, PRINT_ERROR))
@@ -76,14 +75,6 @@ def test_refuted_still_gets_its_report(tmp_path):
     assert document["verdict"] == "refuted"
     assert len(document["certificate_id"]) == 64
     assert document["certificate_id"] in out.read_text()
-
-
-def test_inconclusive_exits_with_three(tmp_path):
-    spec = tmp_path / "short-dwell.nrs.yaml"
-    spec.write_text(f"kind: switched-system\nname: short-dwell\n{KINDS['inconclusive']}")
-    done = run(str(spec), "--out", str(tmp_path / "r.html"), "-q", "--max-degree", "4")
-    assert done.exit_code == 3
-    assert done.stderr == ""
 
 
 @pytest.mark.slow

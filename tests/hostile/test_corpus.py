@@ -66,12 +66,6 @@ def test_a_spec_is_checked(place, case):
     check(place, "check", "spec.nrs.yaml")
 
 
-@pytest.mark.parametrize("case", ["coprime 12", "coprime 30", "digits 12"])
-def test_the_decision_about_a_mode_is_bounded(place, case):
-    write(place / "work/spec.nrs.yaml", SPECS[case]())
-    check(place, "gate", "--no-reports", "spec.nrs.yaml")
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("case", "command"),

@@ -135,11 +135,9 @@ def test_readers_are_silent(tmp_path):
         ("Deflection [μm]", ("deflection", "um")),
         ("command_pwm", ("command", "counts")),
         ("Force", ("force", "")),
-        ("Force (mn)", ("force", "mn")),
         ("Load cell serial", None),
         ("t [s]", ("time", "s", "", True)),
         ("t_s", ("time", "s", "", True)),
-        ("Time_s", ("time", "s")),
         ("TIME_MS", ("time", "MS")),
         ("F [kN]", ("force", "kN", "", True)),
         ("Position (deg)", ("angle", "deg", "", True)),
@@ -173,10 +171,6 @@ def test_a_full_name_goes_before_a_symbol_and_of_two_symbols_the_user_chooses(tm
         read_tissue(path)
     assert "--map deflection_m=NAME" in str(caught.value.remedy)
     check(read_tissue(path, parse_mapping(["deflection_mm=z [mm]"])))
-
-
-def test_mega_is_not_milli():
-    assert not read_name("force_MN").known
 
 
 @pytest.mark.parametrize(

@@ -434,7 +434,6 @@ def test_evidence_about_every_mode_holds_for_its_equals_too():
     assert evidence.spread(system, twice(system)) is evidence
     system, evidence = genuine("common-quadratic")
     assert evidence.spread(system, twice(system)) == evidence
-    assert evidence.find_fault(twice(system)) is None
 
 
 def test_the_matrix_of_one_quadratic_function():

@@ -5,7 +5,6 @@ from fractions import Fraction
 
 import pytest
 
-from nrs_design.certificates.certificate import CommonQuadraticStatus, Verdict
 from nrs_design.proof.evidence import (
     BlockTriangular,
     NoCommonQuadratic,
@@ -15,7 +14,6 @@ from nrs_design.proof.evidence.block_triangular import diagonal_block
 from nrs_design.proof.evidence.growing_sequence import staying
 from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Switching
-from nrs_design.search.certify import certify
 from tests.proof.graphs import common_polynomial, common_quadratic, mode_quadratic
 from tests.proof.systems import family, genuine, resets_between
 from tests.support import ends_soon
@@ -47,7 +45,6 @@ def test_both_directions_of_driving_are_one_block():
     for blocks in (((0,), (1,)), ((1,), (0,))):
         evidence = BlockTriangular(blocks, ((0, ONE), (1, ONE)))
         assert evidence.find_fault(system) is not None
-    assert certify(system).verdict is Verdict.REFUTED
 
 
 @pytest.mark.parametrize(
@@ -68,11 +65,6 @@ def test_one_unstable_block_suffices():
     system = family([[-1, 5, 1], [0, 0, 1], [0, -1, 0]])
     evidence = BlockTriangular(((0,), (1, 2)), ((1, staying("m0")),))
     assert evidence.find_fault(system) is None
-    assert certify(system).verdict is Verdict.REFUTED
-
-
-def test_quadratic_blocks_make_a_quadratic_whole():
-    assert certify(CASCADE).common_quadratic is CommonQuadraticStatus.EXISTS
 
 
 def test_resets_are_not_covered_whatever_the_parts_cover():
@@ -136,15 +128,6 @@ def test_the_claim_names_blocks_and_states():
         f"Block 1 (x1): {one} Block 2 (x2): {one} Together: every solution decays exponentially, "
         "at any rate slower than the slowest of these."
     )
-
-
-def test_a_part_must_fit_the_switching_too():
-    mixed = genuine("growing-sequence, average")[1]
-    rows = [mode.A.fractions() for mode in genuine("growing-sequence, average")[0].modes]
-    system = family(*([[*A[0], 0], [*A[1], 0], [0, 0, -1]] for A in rows))
-    evidence = BlockTriangular(((0, 1), (2,)), ((0, mixed),))
-    assert evidence.find_fault(system) is None
-    assert evidence.find_fault(replace(system, switching=Switching(Fraction(5)))) is not None
 
 
 @pytest.mark.parametrize(

@@ -110,27 +110,6 @@ def test_every_mode_decreases_the_function_of_its_value_exactly(kind, shares):
         assert is_definite(decrease(mode.A.fractions(), P, evidence.rate, system.time))
 
 
-@settings(max_examples=15, deadline=None)
-@given(
-    st.lists(st.fractions(-1, 1, max_denominator=20), min_size=12, max_size=12),
-    st.fractions(0, 1, max_denominator=50),
-    st.lists(st.integers(0, 1), min_size=1, max_size=6),
-)
-def test_random_switching_at_a_random_value_decreases(entries, share, word):
-    """Two modes with two corners each: at one value, every product shrinks one norm."""
-    rows = [[entries[4 * k : 4 * k + 2], entries[4 * k + 2 : 4 * k + 4]] for k in range(3)]
-    rows = [[[v * Fraction(4, 5) for v in row] for row in A] for A in rows]
-    sets = Switching(fixed_ends=(("m0", "m1"), ("m2", "m2")))
-    system = family(*rows, time=Time.DISCRETE, switching=sets)
-    found = certify(system, Method.CONSTANTS_QUADRATIC)
-    if found.verdict is not Verdict.PROVED:
-        return
-    P = combine(*zip(weights((share,)), found.evidence.functions, strict=True))
-    modes = system_at(system, (share,)).modes
-    for k in word:
-        assert is_definite(decrease(modes[k].A.fractions(), P, found.evidence.rate, system.time))
-
-
 @pytest.mark.parametrize("kind", KINDS)
 def test_altered_numbers_are_refused(kind):
     system, evidence = genuine(kind)

@@ -166,7 +166,16 @@ def stored(system):
     return json.loads(json.dumps(system_fields(system)))
 
 
-WRITTEN = {**SYSTEMS, "ruled": lambda: RULED, "rounded": lambda: ROUNDED}
+AMONG = juggling_among_modes()
+PULLING = replace(AMONG, flights=replace(AMONG.flights, pulls=(matrix([[1, 0, 2]]),)))
+WRITTEN = {
+    **SYSTEMS,
+    "ruled": lambda: RULED,
+    "rounded": lambda: ROUNDED,
+    "pulling in flight": lambda: PULLING,
+    "the shortest round": lambda: doubled_in_turns(2),
+    "the longest round": lambda: doubled_in_turns(100),
+}
 
 
 @pytest.mark.parametrize("example", WRITTEN)
@@ -275,12 +284,6 @@ def test_malformed_turns(clock, reason):
         read_system("x", {**fields, "clock": clock})
 
 
-def test_the_longest_and_the_shortest_round():
-    for length in (2, 100):
-        system = doubled_in_turns(length)
-        assert read_system("family", system_fields(system)) == system
-
-
 def test_that_loss_must_be_covered_is_true_or_false():
     assert "required" not in stored(bouncing())["contact"]
     fields = system_fields(drifting())
@@ -324,15 +327,6 @@ def test_how_contact_is_lost_is_written_beside_the_assumptions():
     for odd in ({"lost": ""}, {"loss": None}, {"free": None}):
         with pytest.raises((TypeError, ValueError)):
             read_system(system.name, {**fields, "contact": {**fields["contact"], **odd}})
-
-
-def test_free_motion_among_the_modes_is_read_as_it_was_written():
-    system = juggling_among_modes()
-    pulling = replace(system, flights=replace(system.flights, pulls=(matrix([[1, 0, 2]]),)))
-    for written in (system, pulling):
-        fields = json.loads(json.dumps(system_fields(written)))
-        assert read_system(written.name, fields) == written
-        assert written.is_losable
 
 
 @given(st.fractions(min_value="1/1000000", max_value=10**6))

@@ -223,8 +223,8 @@ def private_names(path: Path) -> Iterator[str]:
 
 
 def test_tests_use_what_is_public():
-    # What IPython, os and named tuples call so is public.
-    known = {"_repr_html_", "_exit", "_replace"}
+    # What IPython, os, named tuples and ctypes call so is public.
+    known = {"_repr_html_", "_exit", "_replace", "_fields_"}
     private = [
         (path.name, name)
         for path in sorted((ROOT / "tests").rglob("*.py"))

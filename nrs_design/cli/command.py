@@ -25,7 +25,7 @@ from nrs_design.errors import NrsDesignError
 if TYPE_CHECKING:
     from nrs_design.spec import LoadedSpec
 
-VERBOSE = "Print all of it: the whole claim, what it takes for granted, and every step."
+VERBOSE = "Print what the short answer leaves out."
 QUIET = "Print nothing but errors, and what --json, --format or --out ask for; see the exit code."
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON document on stdout.")]
 Verbose = Annotated[bool, typer.Option("--verbose", "-v", help=VERBOSE)]
@@ -93,6 +93,9 @@ def command(
             inspect.Parameter(n, keyword, default=False, annotation=options[n]) for n in options
         ]
         parameters = (*signature.parameters.values(), *added)
+        # Typer keeps the line breaks of all paragraphs but the first.
+        paragraphs = (inspect.getdoc(function) or "").split("\n\n")
+        run.__doc__ = "\n\n".join(" ".join(text.split()) for text in paragraphs)
         vars(run)["__signature__"] = signature.replace(parameters=parameters)
         vars(run)["settings"] = {"ignore_unknown_options": passes_on}
         run.__annotations__ = {p.name: p.annotation for p in parameters}

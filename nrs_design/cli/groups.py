@@ -48,6 +48,8 @@ def _printable_faults() -> Iterator[None]:
         if hasattr(error, "format_message") and hasattr(error, "message"):
             # pydantic puts "Value error, " in front of our messages.
             error.message = printable(error.message).removeprefix("Value error, ")
+            if "unexpected extra argument" in error.message and ".nrs.yaml" in error.message:
+                error.message += ": one spec at a time; `nrs-design gate` takes several"
         raise
 
 

@@ -161,7 +161,8 @@ def _period(loaded: LoadedSpec, spec: InteractionDesignSpec, asked: Fraction | N
         raise DesignError(
             "nothing says when a processor runs the law",
             path=loaded.path,
-            remedy="add `sampling: {period: 2 ms, delay: 1}` to the spec; unproved, --sample-time",
+            remedy="add `sampling: {period: 2 ms, delay: 1}` to the spec; or, without a proof, "
+            "give --unproved --sample-time",
         )
     return period
 

@@ -73,7 +73,9 @@ def did_you_mean(
     alike = [choice for choice in choices if choice.lower() == word.lower()]
     if not choices:
         return "there is none yet: add it"
-    near = alike or called or difflib.get_close_matches(word, choices, n=1)
+    # What is mistyped rarely begins with another letter: `coupling` is no `sampling`.
+    begun = [choice for choice in choices if choice[:1].lower() == word[:1].lower()]
+    near = alike or called or difflib.get_close_matches(word, begun, n=1)
     more = ", ..." * (len(choices) > MAX_LISTED)
     listing = f"{noun} {', '.join(islice(choices, MAX_LISTED))}{more}"
     return f"did you mean {near[0]}? {listing}" if near else listing

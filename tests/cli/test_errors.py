@@ -112,6 +112,8 @@ def test_slips_of_the_pen(tmp_path, old, new, said):
         (("verify", COMMUTING, COMMUTING), "this is a spec, not a certificate (name the"),
         (("optimize", COMMUTING), "commuting.nrs.yaml:4:1"),
         (("certify-switching", COMMUTING, "--margin"), "commuting.nrs.yaml:8:1"),
+        (("certify-switching", "a.nrs.yaml", "b.nrs.yaml"), "one spec at a time"),
+        (("explain", "NRS111"), "NRS111 is retired"),
     ],
 )
 def test_wrong_use_says_what_is_meant(tmp_path, arguments, said):

@@ -89,6 +89,7 @@ IMPEDANCE_FAULTS = [
     ("name: sample", "name: ../etc/passwd", "../etc", "not a name"),
     ("name: sample", "name: [a]", "[a]", "single value"),
     ("name: sample", "nane: sample", "nane", "did you mean name?"),
+    ("name: sample", "name: sample\ncoupling: 1", "coupling", "`coupling` (keys here are"),
     ("time_constant", "tau", "tau", "did you mean time_constant? keys here are command, gain, "),
     ("damping_ratio:", "zeta:", "zeta", "did you mean damping_ratio?"),
     ("stiffness: 747", "k: 747", "k: ", "did you mean stiffness?"),

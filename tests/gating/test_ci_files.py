@@ -139,14 +139,17 @@ def test_gitlab_installs_and_keeps_what_github_does():
     jobs = parse(GITLAB)
     before = jobs.pop(".nrs-design")["before_script"]
     installs = [step["run"] for step in steps() if "pip install" in step.get("run", "")][:2]
-    # In a checkout of the base, and what is judged is read elsewhere.
-    assert before[1:] == [before[1], "cd ../base", *installs, 'cd "$CI_PROJECT_DIR"']
-    assert "CI_MERGE_REQUEST_TARGET_BRANCH_NAME" in before[0]
-    assert before[1] == "git worktree add --detach ../base FETCH_HEAD"
+    fetched = 'git fetch --depth 1 "$CI_REPOSITORY_URL" "$%s"'
+    placed = "git worktree add --detach ../%s FETCH_HEAD"
+    # Whichever branch is to change, the default branch judges, and what is judged lies elsewhere.
+    got = [fetched % "CI_DEFAULT_BRANCH", placed % "default"]
+    assert before == [*got, "cd ../default", *installs, 'cd "$CI_PROJECT_DIR"']
+    *compared, _ = jobs["nrs-design-weaker"]["script"]
+    assert compared == [fetched % "CI_MERGE_REQUEST_TARGET_BRANCH_NAME", placed % "target"]
     assert set(jobs) == {"nrs-design-locked", "nrs-design-weaker", "nrs-design-gate"}
     for job in jobs.values():
         *cleared, line = job["script"]
-        assert set(cleared) <= {CLEARED}
+        assert set(cleared) <= {CLEARED, *compared}
         assert job["extends"] == ".nrs-design"
         assert job["artifacts"]["reports"]["junit"] == line.rpartition("--out ")[2]
         assert job["artifacts"]["when"] == "always"
@@ -190,6 +193,18 @@ def test_from_scratch_means_without_a_lock_file_of_the_pull_request(lines):
     """A lock file that it brought would be believed about the bounds of robots."""
     (place,) = (k for k, line in enumerate(lines) if "gate/nrs.lock" in line)
     assert "--lock ../gate/nrs.lock" in lines[place] or lines[place - 1] == CLEARED
+
+
+def test_the_action_installs_by_no_module_of_the_checkout(tmp_path):
+    """It is the checkout that is judged."""
+    (tmp_path / "pip.py").write_text("raise SystemExit('taken over')")
+    (step,) = (s for s in parse(ACTION)["runs"]["steps"] if "pip install" in s.get("run", ""))
+    path = f"{Path(sys.executable).parent}:{os.environ['PATH']}"
+    environment = {**os.environ, **step["env"], "PACKAGE": "--help", "PATH": path}
+    done = subprocess.run(
+        ["bash", "-c", step["run"]], env=environment, cwd=tmp_path, capture_output=True, text=True
+    )
+    assert (done.returncode, done.stderr) == (0, "")
 
 
 @pytest.mark.slow

@@ -12,8 +12,9 @@ from benchmarks.single_precision import Choices, simulate_single_precision
 from nrs_design.certificates.bounds import bound_on
 from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.controllers.step_law import StepFrame, build_law
-from nrs_design.pipeline.certification import Overrides, run_certification, search_limits
+from nrs_design.pipeline.certification import Overrides, search_limits
 from nrs_design.pipeline.design import Designed
+from nrs_design.pipeline.runs import run_certification
 from nrs_design.proof.evidence.abstract import Bound
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.simulation.worst_case import worst_against

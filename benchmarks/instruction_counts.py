@@ -20,7 +20,7 @@ from nrs_design.exporters.build import build_unproved
 from nrs_design.exporters.c_names import CNames
 from nrs_design.exporters.formats.c import header_text, source_text
 from nrs_design.exporters.formats.vectors import make_vectors
-from nrs_design.pipeline.design import run_design
+from nrs_design.pipeline.runs import run_design
 from nrs_design.spec import read_spec
 
 HERE = Path(__file__).parent

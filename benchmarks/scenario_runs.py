@@ -17,7 +17,7 @@ from benchmarks.measure import Comparison, Finding, Size, least_side_by_side
 from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.controllers.laws import Admittance
 from nrs_design.models.plant import Plant
-from nrs_design.pipeline.design import run_design
+from nrs_design.pipeline.runs import run_design
 from nrs_design.simulation.build_scenario import default_scenario
 from nrs_design.simulation.exact import simulate_exactly
 from nrs_design.simulation.sampled import simulate_sampled

@@ -6,8 +6,7 @@ from typing import Literal
 import numpy as np
 
 from nrs_design.models.contact import HuntCrossley
-from nrs_design.pipeline.certification import run_certification
-from nrs_design.pipeline.design import run_design
+from nrs_design.pipeline.runs import run_certification, run_design
 from nrs_design.pipeline.scenarios import Runs, run_scenarios
 from nrs_design.spec import read_spec
 from nrs_design.spec.environment import HuntCrossleySpec

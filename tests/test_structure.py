@@ -201,6 +201,7 @@ def test_clocks_are_read_by_the_fuse_and_for_the_eye_only():
         # How long something took, told beside what was found.
         "nrs_design.search.certify",
         "nrs_design.pipeline.certification",
+        "nrs_design.pipeline.runs",
         "nrs_design.cli.printing",
         "nrs_design.cli.gate",
         "nrs_design.cli.sweep",

@@ -14,13 +14,14 @@ from nrs_design.api.optimum import Optimum
 from nrs_design.api.simulation import Simulation
 from nrs_design.api.worst import WorstFound
 from nrs_design.errors import DesignError
-from nrs_design.pipeline.certification import (
-    Overrides,
-    read_valid_certificate,
+from nrs_design.pipeline.certification import Overrides, search_limits
+from nrs_design.pipeline.design import placed
+from nrs_design.pipeline.runs import (
     run_certification,
-    search_limits,
+    run_design,
+    run_interaction,
+    run_interaction_of,
 )
-from nrs_design.pipeline.design import Designed, placed, run_design, run_interaction
 from nrs_design.search.certification import Limits
 from nrs_design.search.gradient_settings import Gradient
 from nrs_design.search.method import Method
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
     from nrs_design.certificates.certificate import Certificate
     from nrs_design.controllers.controller_design import ControllerDesign
     from nrs_design.exporters.state_space import StateSpaces
+    from nrs_design.pipeline.design import Designed
     from nrs_design.pipeline.scenarios import Runs
     from nrs_design.spec import Spec
 
@@ -202,9 +204,8 @@ class Study:
         from nrs_design.pipeline.scenarios import run_scenarios
 
         wanted = _runs(scenarios, engine, period, delay)
-        designed = self._interaction()
         with placed(self.loaded):
-            proof = self._proof(designed, certificate)
+            designed, proof = self._interaction(certificate)
             return Simulation.of(designed, tuple(run_scenarios(designed, wanted)), proof)
 
     def worst_case(self, certificate: str | Path | None = None) -> WorstFound:
@@ -234,9 +235,8 @@ class Study:
         """
         from nrs_design.pipeline.worst_case import run_worst_case
 
-        designed = self._interaction()
         with placed(self.loaded):
-            proof = self._proof(designed, certificate)
+            designed, proof = self._interaction(certificate)
             case = run_worst_case(designed, proof)
         return WorstFound(designed, case)
 
@@ -261,15 +261,10 @@ class Study:
         with placed(self.loaded):
             return Exported(self.loaded, export_design(self.loaded, file))
 
-    def _interaction(self) -> Designed:
-        """Design what interacts; refuse another kind of spec."""
-        return run_interaction(self.loaded, "describes no interaction")
-
-    def _proof(self, designed: Designed, certificate: str | Path | None) -> Certificate | None:
-        """Return what a file proves of this spec, checked; None without a file."""
-        if certificate is None:
-            return None
-        return read_valid_certificate(Path(certificate), self.loaded, designed)
+    def _interaction(self, certificate: str | Path | None) -> tuple[Designed, Certificate | None]:
+        """Design what interacts, with what a file proves of it, if there is one."""
+        file = None if certificate is None else Path(certificate)
+        return run_interaction_of(self.loaded, file, "describes no interaction")
 
 
 def _runs(

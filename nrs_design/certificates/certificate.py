@@ -60,6 +60,9 @@ class Certificate:
     points: str = ""
     # In which parts the ranges of constants are cut, each a case of the system; empty for none.
     cuts: tuple[RangeCut, ...] = ()
+    # Smallest and largest age of the force, in samples, where that is more than the spec declares,
+    # as its goal `delay` asks. What is proved there holds of the spec.
+    ages: tuple[int, int] | None = None
 
     @property
     def verdict(self) -> str:
@@ -170,6 +173,7 @@ def to_document(certificate: Certificate) -> dict[str, Any]:
         "gains": {name: dict(values) for name, values in certificate.gains.items()},
         **({} if not certificate.points else {"points": certificate.points}),
         **({} if not certificate.cuts else {"cuts": written(certificate.cuts)}),
+        **({} if certificate.ages is None else {"ages": [*certificate.ages]}),
         **_own_fields(certificate),
         "statements": [
             {"kind": item.kind, "claim": item.claim(system), **item.to_fields()}

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from nrs_design.axis import axis_with
 from nrs_design.certificates.bounds import bound_on
@@ -15,13 +15,24 @@ from nrs_design.proof.mode import Time
 from nrs_design.spec.faults import Location
 
 if TYPE_CHECKING:
+    from nrs_design.proof.system import SwitchedSystem
     from nrs_design.spec import InteractionDesignSpec, Spec
 
 
-# Goals that `optimize` chooses free gains by, where other commands take those of the least cost:
-# numbers that a proof shows, and last what is proved about.
+N = TypeVar("N", Fraction, float)
+# Goals that free gains are chosen by: numbers that a proof shows, and last what is proved about.
 STEERING = ("decay_rate", "peak_torque", "delay")
-_FREE = "with the gains of the least cost; optimize --out NEW.nrs.yaml chooses others by this goal"
+_FREE = "optimize says which gains come nearest"
+
+
+def steering_goals(spec: Spec) -> tuple[str, ...]:
+    """Return the goals of a spec that its free gains are chosen by; none where no gain is free."""
+    if spec.kind != "interaction-design" or spec.goals is None:
+        return ()
+    from nrs_design.controllers.gains import free_gains
+
+    given = {key for key, _ in spec.goals.given()}
+    return tuple(key for key in STEERING if key in given) if any(free_gains(spec)) else ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,17 +56,10 @@ def certified_goals(spec: Spec, certificate: Certificate | None) -> Iterator[Cer
 
     The certificate has been checked; None if nothing was shown.
     """
+    steering = steering_goals(spec)
     for goal in _goals(spec, certificate):
-        others = not goal.met and goal.key in STEERING and _has_free_gains(spec)
-        yield replace(goal, said=f"{goal.said}, {_FREE}") if others else goal
-
-
-def _has_free_gains(spec: Spec) -> bool:
-    """Tell whether a spec leaves gains to choose."""
-    if spec.kind != "interaction-design":
-        return False
-    gains = (gain for c in spec.controllers.values() for gain in c.gains().values())
-    return bool(spec.design.free) or any(not gain.fixed for gain in gains)
+        others = not goal.met and goal.key in steering
+        yield replace(goal, said=f"{goal.said}; {_FREE}") if others else goal
 
 
 def _goals(spec: Spec, certificate: Certificate | None) -> Iterator[CertifiedGoal]:
@@ -107,14 +111,18 @@ def _decay_rate(wanted: Fraction, text: str, certificate: Certificate | None) ->
 
 
 def decay_rate(certificate: Certificate | None) -> Fraction | None:
-    """Return the proved rate in 1/s; None if none is proved, or no period is known.
-
-    Of a contraction rho per step, ``(1 - rho)`` over the period is not above it.
-    """
+    """Return the proved rate in 1/s, as `rate_per_second` does; None if nothing was shown."""
     evidence = None if certificate is None else certificate.evidence
     if certificate is None or evidence is None:
         return None
-    rate, system = evidence.proved_rate(certificate.system), certificate.system
+    return rate_per_second(evidence.proved_rate(certificate.system), certificate.system)
+
+
+def rate_per_second(rate: N | None, system: SwitchedSystem) -> N | None:
+    """Return a rate of a system in 1/s; None if there is none, or no period is known.
+
+    Of a contraction rho per step, ``(1 - rho)`` over the period is not above it.
+    """
     if rate is None or system.time is Time.CONTINUOUS:
         return rate
     return None if system.sample_time is None else (1 - rate) / system.sample_time
@@ -126,7 +134,7 @@ def _delay(
     assert spec.sampling is not None
     if certificate is None or certificate.verdict != Verdict.PROVED:
         return CertifiedGoal("delay", "nothing was proved", text, False)
-    oldest, least = spec.sampling.oldest, spec.sampling.delay[0] * spec.sampling.outer
+    least, oldest = (n * spec.sampling.outer for n in certificate.ages or spec.sampling.delay)
     ages = f"{rounded_up(least, 's')} to {rounded_down(oldest, 's')} old"
     said = f"the loop is proved for force samples {ages}"
     return CertifiedGoal("delay", said, text, oldest >= wanted)

@@ -137,6 +137,8 @@ def check_document(document: Mapping[str, Any], system: SwitchedSystem) -> Verif
     fault = _find_difference(document, certificate)
     if certificate.points and not all(item.shows in GROWTH for item in certificate.statements):
         fault = fault or "it is about points of the ranges, where only growth says something"
+    if certificate.ages and not all(item.shows.is_good for item in certificate.statements):
+        fault = fault or "what grows with an older force than the spec declares says nothing of it"
     forms = tuple(list[IntegerMatrix]() for _ in certificate.statements)
     for statement, made in zip(certificate.statements, forms, strict=True):
         fault = fault or statement.find_fault(system, made)
@@ -155,6 +157,7 @@ def read_certificate(document: Mapping[str, Any], system: SwitchedSystem) -> Cer
         version=read_text(document["package"]["version"]),
         points=read_points(document),
         cuts=read_cuts(document),
+        ages=read_ages(document),
     )
 
 
@@ -166,6 +169,16 @@ def read_points(document: Mapping[str, Any]) -> str:
 def read_cuts(document: Mapping[str, Any]) -> tuple[RangeCut, ...]:
     """Read in which parts the ranges of constants are cut; empty for none."""
     return tuple(read_object(RangeCut, item) for item in read_list(document.get("cuts", [])))
+
+
+def read_ages(document: Mapping[str, Any]) -> tuple[int, int] | None:
+    """Read which ages of the force a system has beyond the declared ones; None for no others."""
+    if "ages" not in document:
+        return None
+    low, high = document["ages"]
+    if type(low) is not int or type(high) is not int:
+        raise TypeError("ages are numbers of samples")
+    return low, high
 
 
 def confirmed(judge: Callable[[], Verification]) -> Verification:

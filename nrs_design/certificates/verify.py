@@ -21,6 +21,7 @@ from nrs_design.certificates.prove import (
     held_system,
     judged,
     prove,
+    read_ages,
     read_certificate,
     read_cuts,
     read_document,
@@ -88,11 +89,16 @@ def _verify(
         return altered
     if (foreign := find_foreign(document, spec)) is not None:
         return Verification(None, foreign)
+    from nrs_design.certificates.ages import declaring_more
     from nrs_design.switched.assemble import assemble_from_text
 
+    ages = read_ages(document)
+    said = spec.spec if ages is None else declaring_more(spec.spec, ages)
+    if said is None:
+        return Verification(None, "its ages of the force are not all those of the spec")
     gains = read_gains(document)
     points, cuts = read_points(document), read_cuts(document)
-    system = assemble_from_text(spec.spec, gains, plant=plant, points=points, cuts=cuts)
+    system = assemble_from_text(said, gains, plant=plant, points=points, cuts=cuts)
     held = held_system(document)
     if not held.enclosures and not is_of_growth(read_certificate(document, system)):
         # Which modes are attained does not matter where nothing grows, and is left out there.

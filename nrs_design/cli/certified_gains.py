@@ -11,6 +11,7 @@ from nrs_design.cli.destinations import check_beside
 from nrs_design.cli.granted import print_granted
 from nrs_design.cli.printing import note, progress, say
 from nrs_design.errors import OutputError
+from nrs_design.progress import Progress
 from nrs_design.proof.bounds import lower_float
 
 if TYPE_CHECKING:
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
     from nrs_design.pipeline.certified_optimum import CertifiedOptimum
     from nrs_design.pipeline.design import Designed
     from nrs_design.spec import LoadedSpec
+    from nrs_design.spec.spec_document import SpecDocument
 
 ENDING = ".nrs.yaml"
 
@@ -43,7 +45,9 @@ class CertifiedGains:
 
         A `DesignError` if the goals are not reached.
         """
-        if not _is_steered(designed, analysis):
+        from nrs_design.certificates.goals import certified_goals, steering_goals
+
+        if not steering_goals(designed.spec):
             if out is not None:
                 raise OutputError(
                     "only gains that were chosen by a goal of the proof are written",
@@ -53,17 +57,17 @@ class CertifiedGains:
                 )
             return None
 
-        from nrs_design.certificates.goals import certified_goals
         from nrs_design.pipeline.analysis import run_analysis
         from nrs_design.pipeline.certified_optimum import run_certified_optimum
 
         name = None if out is None else name_for(designed.loaded, out)
         with progress(f"gains with their proof for {designed.spec.name}") as step:
-            found = run_certified_optimum(designed, analysis, step, name)
+            found = run_certified_optimum(designed, analysis, step)
+            written = None if name is None else certified_spec(found, name, step)
         own = found.result.designed
         assert own is not None, "as it was designed before"
         goals = tuple(certified_goals(own.spec, found.result.certificate))
-        certificate = None if out is None else write_certified(found.result, out)
+        certificate = None if written is None or out is None else write_certified(written, out)
         return cls(designed, found, own, run_analysis(own), goals, out, certificate)
 
     @property
@@ -100,10 +104,9 @@ class CertifiedGains:
             ends = "PROVED" if goal.met else "NOT PROVED"
             say(f"goal {goal.key}, {goal.wanted}: {ends}: {goal.said}")
         if self.spec is None:
-            say("  the spec does not give these gains: --out NEW.nrs.yaml writes it with them;")
-            say("  certify-switching, report, gate and export take those of the least cost")
+            say("  every command takes these gains; --out NEW.nrs.yaml writes a spec with them")
         print_granted(found.result)
-        more, rate = max(found.cost - found.free_cost, 0.0), found.free_rate
+        more, rate = max(found.cost - found.free_cost, 0.0), found.free_rate or 0.0
         # A rate that is not positive is no decay.
         shows = f"a decay of {rate:.3g} 1/s" if rate > 0 else "no decay"
         if self.analysis.impedance:
@@ -138,13 +141,13 @@ class CertifiedGains:
                 if on is not None:
                     say("of the sensor nor effort of the motor; look at both before you take it")
         if (delay := self._declared) is not None:
-            say(f"proved for `sampling.delay: {delay}`, which the spec does not declare yet")
+            say(f"proved for `sampling.delay: {delay}`, more than the spec declares")
 
     @property
     def _declared(self) -> list[int] | None:
         """The ages of the force that were declared beyond those of the spec."""
-        old, new = (one.spec.sampling for one in (self.given, self.designed))
-        return None if new is None or old is None or new.delay == old.delay else [*new.delay]
+        certificate = self.found.result.certificate
+        return None if certificate is None or certificate.ages is None else [*certificate.ages]
 
     @property
     def rate(self) -> Fraction | None:
@@ -178,6 +181,25 @@ def name_for(loaded: LoadedSpec, out: Path) -> str:
     return name
 
 
+def certified_spec(found: CertifiedOptimum, name: str, step: Progress) -> Result:
+    """Return the spec that gives these gains, and declares what is proved of it, certified."""
+    from nrs_design.pipeline.certification import certify_design
+    from nrs_design.pipeline.runs import run_design
+    from nrs_design.pipeline.written_gains import with_gains
+
+    designed, certificate = found.result.designed, found.result.certificate
+    assert designed is not None, "as it was designed before"
+    ages = None if certificate is None else certificate.ages
+
+    def change(document: SpecDocument) -> None:
+        document.put(document.root, "name", name)
+        if ages is not None:
+            document.put(document.root["sampling"], "delay", [*ages])
+
+    loaded = with_gains(designed, found.gains, change)
+    return certify_design(loaded, run_design(loaded), progress=step)
+
+
 def _certificate_of(name: str) -> Path:
     return Path("reports") / f"{name}.cert.json"
 
@@ -194,13 +216,3 @@ def write_certified(result: Result, out: Path) -> Path:
     write_outputs([(out, result.loaded.text, b""), (path, content, CERTIFICATE)])
     note(f"spec written to {out}, certificate to {path}")
     return path
-
-
-def _is_steered(designed: Designed, analysis: DesignAnalysis) -> bool:
-    """Tell whether a goal chooses gains; only then is the search for them loaded."""
-    if designed.spec.goals is None:
-        return False
-
-    from nrs_design.pipeline.certified_optimum import steering_goals
-
-    return bool(steering_goals(designed, analysis))

@@ -80,13 +80,9 @@ def certify_switching(
     """
     from nrs_design.output import CERTIFICATE, check_place
     from nrs_design.ownership import check_certificate
-    from nrs_design.pipeline.certification import (
-        Overrides,
-        find_relief,
-        run_certification,
-        search_limits,
-    )
+    from nrs_design.pipeline.certification import Overrides, find_relief, search_limits
     from nrs_design.pipeline.margins import run_proof_margins
+    from nrs_design.pipeline.runs import run_certification
 
     loaded = take_spec(spec)
     if out is not None:

@@ -49,7 +49,8 @@ def compare_methods(
     Example: nrs-design compare-methods specs/neuroboscope/soft-tissue.nrs.yaml
     """
     from nrs_design.output import PNG, check_place
-    from nrs_design.pipeline.certification import Overrides, run_comparison, search_limits
+    from nrs_design.pipeline.certification import Overrides, search_limits
+    from nrs_design.pipeline.runs import run_comparison
 
     if figure is not None:
         check_place(figure, PNG)

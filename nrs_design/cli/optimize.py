@@ -54,12 +54,14 @@ def optimize(
     """
     from nrs_design.cli.certified_gains import CertifiedGains
     from nrs_design.pipeline.analysis import run_analysis
-    from nrs_design.pipeline.design import run_interaction
+    from nrs_design.pipeline.design import design_at_least_cost, interaction_of
 
     loaded = take_spec(spec)
     with progress(f"designing {loaded.spec.name}") as step:
         step("cost")
-        designed = run_interaction(loaded, "has nothing to design")
+        interaction_of(loaded, "has nothing to design")
+        designed = design_at_least_cost(loaded)
+        assert designed is not None, "an interaction design"
         step("margins")
         chosen = analysis = run_analysis(designed)
     certified = CertifiedGains.of(designed, analysis, out)

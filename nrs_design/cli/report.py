@@ -184,13 +184,9 @@ def _build(
 ) -> tuple[Result, Report]:
     """Certify, look for all that is asked for, and lay out the page."""
     from nrs_design.pipeline.blocked import find_blocked
-    from nrs_design.pipeline.certification import (
-        run_certification,
-        run_comparison,
-        run_recorded,
-        search_limits,
-    )
+    from nrs_design.pipeline.certification import search_limits
     from nrs_design.pipeline.margins import run_proof_margins
+    from nrs_design.pipeline.runs import run_certification, run_comparison, run_recorded
     from nrs_design.reporting import build_report
 
     limits = search_limits(loaded.spec, overrides)
@@ -203,7 +199,11 @@ def _build(
     )
     blocked = find_blocked(result, limits, step)
     step("figures")
-    runs = run_comparison(loaded, limits, progress=step)[1] if asked.compare_methods else ()
+    runs = (
+        run_comparison(result.loaded, limits, step, result.designed)[1]
+        if asked.compare_methods
+        else ()
+    )
     return result, build_report(
         result,
         _analysis(result),

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from functools import partial
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import typer
@@ -56,7 +55,7 @@ def simulate(
     """
     from nrs_design.cli.simulate_scenarios import simulate_scenarios
     from nrs_design.cli.worst_case import worst_case
-    from nrs_design.pipeline.design import run_interaction
+    from nrs_design.pipeline.runs import run_interaction_of
     from nrs_design.pipeline.scenarios import Runs
 
     timed = any(value is not None for value in (period, delay, outer_period))
@@ -71,22 +70,20 @@ def simulate(
     how = None if engine is None else str(engine)
     wanted = Runs(tuple(dict.fromkeys(scenario or ())), how, period, delay, max_steps, outer_period)
     with progress(f"simulating {loaded.spec.name}") as step:
-        designed = run_interaction(loaded, "describes no interaction")
-        prove = partial(_proof, designed, certificate, step, bound=bound)
+        designed, kept = run_interaction_of(loaded, certificate, "describes no interaction", step)
+        prove = partial(_proof, designed, kept, step, bound=bound)
         if worst:
             return worst_case(designed, prove(), out, step)
         return simulate_scenarios(designed, wanted, prove, out, step)
 
 
 def _proof(
-    designed: Designed, file: Path | None, step: Progress, *, bound: bool
+    designed: Designed, kept: Certificate | None, step: Progress, *, bound: bool
 ) -> Certificate | None:
     """Return the certificate whose bounds are shown, if there is one."""
-    from nrs_design.pipeline.certification import read_valid_certificate, run_certification
+    if kept is not None or not bound or designed.spec.disturbances is None:
+        return kept
+    from nrs_design.pipeline.certification import certify_design
 
-    if file is not None:
-        return read_valid_certificate(file, designed.loaded, designed)
-    if not bound or designed.spec.disturbances is None:
-        return None
     step("certifying its bounds")
-    return run_certification(designed.loaded, progress=step).certificate
+    return certify_design(designed.loaded, designed, progress=step).certificate

@@ -62,7 +62,7 @@ def tune(spec: SpecFile) -> Answer:
     """
     from nrs_design.errors import DesignError
     from nrs_design.pipeline.analysis import run_analysis
-    from nrs_design.pipeline.design import run_interaction
+    from nrs_design.pipeline.runs import run_interaction
 
     loaded = take_spec(spec)
     with progress(f"tuning {loaded.spec.name}"):

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
 
 from nrs_design.axis import AxisType
 from nrs_design.controllers.laws import AbstractLaw, CompliantLaw, ProportionalDerivative
@@ -62,6 +63,17 @@ class ControllerDesign:
     def laws(self) -> dict[str, AbstractLaw]:
         """Every law by the name of its controller, the motion controller first."""
         return {self.motion.name: self.motion} | {c.name: c.law for c in self.controllers}
+
+    def with_gains(self, gains: Mapping[str, Mapping[str, Fraction]]) -> ControllerDesign:
+        """Return the design with some other gains, by the names of `laws`."""
+        motion = self.motion
+        if not motion.absent:
+            motion = motion.of({**motion.gains, **gains.get(motion.name, {})})
+        controllers = (
+            replace(one, law=one.law.of({**one.law.gains, **gains.get(one.name, {})}))
+            for one in self.controllers
+        )
+        return replace(self, motion=motion, controllers=tuple(controllers))
 
     def leading_laws(self, *, mixed: bool) -> list[CompliantLaw]:
         """Return the laws whose states the modes share.

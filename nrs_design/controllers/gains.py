@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from fractions import Fraction
 
 from nrs_design.axis import AxisType
@@ -12,10 +12,19 @@ from nrs_design.controllers.laws import LAWS, NO_MOTION, ProportionalDerivative
 from nrs_design.controllers.sensor import build_sensor
 from nrs_design.errors import CertificateError
 from nrs_design.proof.taylor import exponential_between
-from nrs_design.spec import ControllerSpec, IdleStatesSpec, InteractionDesignSpec, parse_exact
+from nrs_design.spec import (
+    ControllerSpec,
+    GainSpec,
+    IdleStatesSpec,
+    InteractionDesignSpec,
+    parse_exact,
+)
 from nrs_design.spec.controllers import contact_names
+from nrs_design.spec.quantity import exact_number
 
 MOTION = ProportionalDerivative.name
+# Gains by controller.
+Numbers = Mapping[str, Mapping[str, Fraction]]
 
 
 def gains_of(design: ControllerDesign) -> dict[str, dict[str, str]]:
@@ -54,22 +63,77 @@ def design_from_gains(
     expected = {MOTION, *spec.controllers}
     if set(gains) != expected:
         raise CertificateError(f"its gains are not those of {', '.join(sorted(expected))}")
-    motion = _motion(spec, gains)
+    numbers = {name: _numbers(spec, name, texts) for name, texts in gains.items()}
+    given = _unfreed(spec, numbers)
+    motion = _motion(spec, given)
     controllers = tuple(
-        _controller(name, controller, gains) for name, controller in spec.controllers.items()
+        _controller(name, controller, given[name]) for name, controller in spec.controllers.items()
     )
     sensor = build_sensor(spec.sensor)
-    return ControllerDesign(motion, controllers, sensor, spec.command, spec.axis)
+    found = ControllerDesign(motion, controllers, sensor, spec.command, spec.axis)
+    return found.with_gains(numbers)
 
 
-def _motion(
-    spec: InteractionDesignSpec, gains: Mapping[str, Mapping[str, str]]
-) -> ProportionalDerivative:
+def free_gains(spec: InteractionDesignSpec) -> Iterator[tuple[str, str]]:
+    """Yield controller and name of every gain that the spec leaves to choose."""
+    for name, controller in spec.controllers.items():
+        yield from ((name, gain) for gain, own in controller.gains().items() if not own.fixed)
+    for name, free in spec.design.free.items():
+        yield from ((name, gain) for gain, _ in free.given())
+
+
+def chosen_of(spec: InteractionDesignSpec, gains: Mapping[str, Mapping[str, str]]) -> Numbers:
+    """Return those of the gains, such as a certificate quotes, that the spec leaves to choose."""
+    found: dict[str, dict[str, Fraction]] = {}
+    for name, gain in free_gains(spec):
+        found.setdefault(name, {})[gain] = parse_exact(gains[name][gain])
+    return found
+
+
+def _unfreed(spec: InteractionDesignSpec, gains: Numbers) -> Numbers:
+    """Return gains with those that `design.free` names as the spec gives them, if it does.
+
+    A `CertificateError` if one is farther from that than its factors allow.
+    """
+    found = {name: dict(own) for name, own in gains.items()}
+    for name, free in spec.design.free.items():
+        for gain, factors in free.given():
+            given = _given(spec, name, gain)
+            if given is None:
+                continue
+            low, high = (to_float32(factor * given) for factor in (factors.min, factors.max))
+            if not low <= found[name].get(gain, given) <= high:
+                raise CertificateError(f"gain {gain} of {name} is outside its bounds")
+            found[name][gain] = given
+    loop = spec.motion_loop
+    zero = None if loop is None or loop.derivative_gain is not None else loop.zero
+    if MOTION in spec.design.free and zero is not None:
+        # The root locus gives Kd, and the zero gives Kp by it: the spec gives neither.
+        found[MOTION]["Kp"] = to_float32(found[MOTION]["Kd"] * zero.exact)
+    return found
+
+
+def _given(spec: InteractionDesignSpec, name: str, gain: str) -> Fraction | None:
+    """Return the gain of a controller, or of the motion loop, that the spec gives, if it does."""
+    if name == MOTION:
+        loop = spec.motion_loop
+        if loop is None or loop.derivative_gain is None:
+            return None
+        Kd = to_float32(loop.derivative_gain.exact)
+        if gain == "Kd":
+            return Kd
+        return None if loop.zero is None else to_float32(Kd * loop.zero.exact)
+    given = spec.controllers[name]
+    said = getattr(given, LAWS[given.type].fixed.get(gain, gain))
+    said = said.min if isinstance(said, GainSpec) else said
+    return None if said is None else to_float32(exact_number(said))
+
+
+def _motion(spec: InteractionDesignSpec, gains: Numbers) -> ProportionalDerivative:
     """Return the motion controller; none where the robot has its own."""
     if spec.motion_loop is None:
-        _numbers(gains, MOTION, ())
         return NO_MOTION
-    motion = ProportionalDerivative.of(_numbers(gains, MOTION, ("Kp", "Kd")))
+    motion = ProportionalDerivative.of(gains[MOTION])
     if motion.Kp <= 0 or motion.Kd <= 0:
         raise CertificateError("the gains of the motion controller are not positive")
     if not motion_gains_fixed_by(spec, motion):
@@ -96,25 +160,24 @@ def motion_gains_fixed_by(spec: InteractionDesignSpec, motion: ProportionalDeriv
     return loop.zero is None or motion.Kp == to_float32(motion.Kd * loop.zero.exact)
 
 
-def _controller(
-    name: str, spec: ControllerSpec, gains: Mapping[str, Mapping[str, str]]
-) -> Controller:
-    law_type = LAWS[spec.type]
-    values = _numbers(gains, name, law_type.gains_in(spec))
+def _controller(name: str, spec: ControllerSpec, values: Mapping[str, Fraction]) -> Controller:
     for gain, bounds in spec.gains().items():
         low, high = to_float32(bounds.min.exact), to_float32(bounds.max.exact)
         if not low <= values[gain] <= high:
             raise CertificateError(f"gain {gain} of controller {name} is outside its bounds")
-    law = law_type.of(values)
+    law = LAWS[spec.type].of(values)
     if fault := law.find_fault(spec):
         raise CertificateError(f"controller {name}: {fault}")
     return Controller(name, law, spec.environment, contact_names(spec.contacts))
 
 
 def _numbers(
-    gains: Mapping[str, Mapping[str, str]], name: str, expected: tuple[str, ...]
+    spec: InteractionDesignSpec, name: str, texts: Mapping[str, str]
 ) -> dict[str, Fraction]:
-    texts = gains[name]
+    """Read the gains of a controller, or of the motion loop."""
+    expected: tuple[str, ...] = () if spec.motion_loop is None else ("Kp", "Kd")
+    if name != MOTION:
+        expected = LAWS[spec.controllers[name].type].gains_in(spec.controllers[name])
     if set(texts) != set(expected):
         wanted = f"are not {', '.join(expected)}" if expected else "should be no gains at all"
         raise CertificateError(f"the gains of {name} {wanted}")

@@ -12,8 +12,8 @@ from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.errors import DesignError
 from nrs_design.exporters.build import build_record, build_unproved, find_mismatch
 from nrs_design.exporters.record import ExportRecord
-from nrs_design.pipeline.certification import run_certification, run_recorded
-from nrs_design.pipeline.design import Designed, interaction_of, run_design
+from nrs_design.pipeline.design import Designed, interaction_of
+from nrs_design.pipeline.runs import run_certification, run_design, run_recorded
 from nrs_design.progress import Progress, silent
 from nrs_design.proof.text import exact_text
 from nrs_design.spec import InteractionDesignSpec, LoadedSpec
@@ -121,14 +121,14 @@ def _certified_afresh(loaded: LoadedSpec, progress: Progress) -> Export:
 
 
 def _certified_by(loaded: LoadedSpec, file: Path, progress: Progress) -> Export:
-    progress("design")
-    designed = run_design(loaded)
-    assert designed is not None, "an interaction design"
     progress("re-check")
-    checked = verify(file, designed.loaded, plant=designed.plant)
+    checked = verify(file, loaded)
     if checked.certificate is None or checked.fault is not None:
         remedy = "leave --certificate out to prove anew"
         return Export("rejected", None, None, f"{file} is rejected: {checked.fault} ({remedy})")
+    progress("design")
+    designed = run_design(loaded, recorded=checked.certificate.gains)
+    assert designed is not None, "an interaction design"
     found, design = checked.certificate, designed.design
     if found.verdict == "refuted":
         return Export("refuted", None, found, f"{file} refutes the design", design)

@@ -14,7 +14,7 @@ from pathlib import Path
 from nrs_design.certificates.certificate import Gains, Verdict
 from nrs_design.errors import AssemblyError, DesignError, SpecError
 from nrs_design.pipeline.certification import Result, assemble_spec, gains_text, search_limits
-from nrs_design.pipeline.design import run_design
+from nrs_design.pipeline.design import design_at_least_cost
 from nrs_design.progress import Progress, silent
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.proof.text import counted
@@ -211,7 +211,8 @@ class _Search:
     def _certified(self, loaded: LoadedSpec, budget: float) -> _Decided | None:
         from nrs_design.search.certify import certify, refuted_at_once
 
-        designed = run_design(loaded)
+        # If these are proved, so is the spec: other gains are chosen only with their proof.
+        designed = design_at_least_cost(loaded)
         system = assemble_spec(loaded, designed)
         if _same_search(system, self._result.certification.system):
             return None

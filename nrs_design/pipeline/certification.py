@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import partial
 from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING
 
 from nrs_design import __version__
-from nrs_design.certificates.certificate import Certificate, Gains, Verdict
-from nrs_design.errors import CertificateError
+from nrs_design.certificates.certificate import Certificate, Gains, Verdict, common_quadratic_of
+from nrs_design.errors import AssemblyError, DesignError
 from nrs_design.models.cut import RangeCut
-from nrs_design.pipeline.design import Designed, placed, run_design
+from nrs_design.pipeline.design import Designed, placed
+from nrs_design.pipeline.goal_ranges import for_goal
 from nrs_design.progress import Progress, silent
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.certification import Attempt, Certification, Limits
@@ -25,10 +25,7 @@ from nrs_design.work import GIGABYTE
 if TYPE_CHECKING:
     from nrs_design.certificates.verify import Verification
     from nrs_design.controllers.controller_design import ControllerDesign
-    from nrs_design.search.method_run import MethodRun
     from nrs_design.spec import Spec
-
-_ANEW = "make it anew with certify-switching --out"
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,34 +70,81 @@ def search_limits(
             limits = replace(limits, budget=float(said.budget))
     if asked.memory is not None:
         limits = replace(limits, memory=asked.memory * GIGABYTE)
+    goals = spec.goals if spec.kind == "interaction-design" else None
+    if goals is not None and goals.decay_rate is not None:
+        limits = replace(limits, decay_rate=goals.decay_rate.exact)
     return limits
 
 
-def run_certification(
+def certify_design(
     loaded: LoadedSpec,
+    designed: Designed | None,
     *,
     method: Method = Method.AUTO,
     limits: Limits | None = None,
     progress: Progress = silent,
 ) -> Result:
-    """Take a spec all the way to a verdict; method and limits are by default as the spec says.
+    """Take a design to a verdict; method and limits are by default as its spec says.
 
-    A spec without a design is a `DesignError`, modes that make no switched system are an
-    `AssemblyError`, and a search that the clock stopped is a `ClockError`.
+    Where the goal `delay` asks for an older force than the spec declares, that is proved of it, if
+    all goals that gains are chosen by are met then; it holds of the younger one.
     """
+    limits = limits or search_limits(loaded.spec)
+    older: tuple[Attempt, ...] = ()
+    try:
+        wide = None if designed is None else for_goal(designed)
+        if designed is not None and wide is not None:
+            found = _certified(loaded, wide, method, limits, progress)
+            if (result := _of_older(designed, wide, found)) is not None:
+                return result
+            older = tuple(replace(a, step=f"{a.step}, older force") for a in found.attempts)
+    except (DesignError, AssemblyError):
+        pass  # What is not modelled is not proved.
+    found = _certified(loaded, designed, method, limits, progress)
+    points, cuts = "", tuple[RangeCut, ...]()
+    if found.is_open:
+        points, found = _at_points(loaded, designed, found, limits, progress)
+    if found.is_open and method is Method.AUTO:
+        cuts, found = _in_cases(loaded, designed, found, limits, progress)
+    found = replace(found, attempts=(*older, *found.attempts))
+    return Result(loaded, designed, found, certificate_of(loaded, designed, found, points, cuts))
+
+
+def _certified(
+    loaded: LoadedSpec,
+    designed: Designed | None,
+    method: Method,
+    limits: Limits,
+    progress: Progress,
+) -> Certification:
     from nrs_design.search.certify import certify
 
-    progress("design")
-    designed, system = _assembled(loaded)
-    limits = limits or search_limits(loaded.spec)
-    certification = certify(system, method, limits, progress)
-    points, cuts = "", tuple[RangeCut, ...]()
-    if certification.is_open:
-        points, certification = _at_points(loaded, designed, certification, limits, progress)
-    if certification.is_open and method is Method.AUTO:
-        cuts, certification = _in_cases(loaded, designed, certification, limits, progress)
-    certificate = certificate_of(loaded, designed, certification, points, cuts)
-    return Result(loaded, designed, certification, certificate)
+    with placed(loaded):
+        system = assemble_spec(loaded, designed)
+    return certify(system, method, limits, progress)
+
+
+def _of_older(designed: Designed, wide: Designed, found: Certification) -> Result | None:
+    """Return what a proof for an older force says of a design; None where a goal is not met."""
+    assert wide.spec.sampling is not None, "a delay is of samples"
+    good = tuple(item for item in found.statements if item.shows.is_good)
+    status = common_quadratic_of(found.system, good)
+    found = replace(found, statements=good, common_quadratic=status)
+    certificate = certificate_of(designed.loaded, designed, found)
+    if certificate is None:
+        return None
+    certificate = replace(certificate, ages=wide.spec.sampling.delay)
+    result = Result(designed.loaded, designed, found, certificate)
+    return result if meets_goals(result) else None
+
+
+def meets_goals(result: Result) -> bool:
+    """Tell whether a spec is proved, with the goals that gains are chosen by."""
+    from nrs_design.certificates.goals import STEERING, certified_goals
+
+    goals = certified_goals(result.loaded.spec, result.certificate)
+    proved = result.certification.verdict is Verdict.PROVED
+    return proved and all(goal.met for goal in goals if goal.key in STEERING)
 
 
 def _in_cases(
@@ -184,24 +228,6 @@ def certificate_of(
     )
 
 
-def run_recorded(loaded: LoadedSpec, file: Path, progress: Progress = silent) -> Result:
-    """Take the verdict of a certificate file, checked exactly, instead of searching.
-
-    One that does not hold for this spec, or has other gains, is a `CertificateError`.
-    """
-    progress("design")
-    designed = run_design(loaded)
-    progress(f"checking {file.name}")
-    start = perf_counter()
-    kept = read_valid_certificate(file, loaded, designed)
-    taken = perf_counter() - start
-    if not is_of_gains(kept.gains, designed):
-        message = "it is about other gains than are designed here"
-        raise CertificateError(message, path=file, remedy=_ANEW)
-    certification = recorded_certification(kept, file, taken)
-    return Result(loaded, designed, certification, kept)
-
-
 def recorded_certification(kept: Certificate, file: Path, seconds: float = 0.0) -> Certification:
     """Return what a certificate that was checked shows, as if it had been found just now."""
     from nrs_design.certificates.certificate import verdict_of
@@ -220,39 +246,6 @@ def recorded_certification(kept: Certificate, file: Path, seconds: float = 0.0) 
         (Attempt("certificate", outcome, seconds),),
         limit,
     )
-
-
-def read_valid_certificate(
-    file: Path, loaded: LoadedSpec, designed: Designed | None
-) -> Certificate:
-    """Return what a certificate file holds, checked exactly against its spec."""
-    from nrs_design.certificates.verify import verify
-
-    found = verify(file, loaded, plant=None if designed is None else designed.plant)
-    if found.certificate is None or found.fault is not None:
-        raise CertificateError(str(found.fault), path=file, remedy=_ANEW)
-    return found.certificate
-
-
-def run_comparison(
-    loaded: LoadedSpec,
-    limits: Limits,
-    progress: Progress = silent,
-) -> tuple[SwitchedSystem, tuple[MethodRun, ...]]:
-    """Compare the LMI, which comes first, with the gradient iteration on the exact modes."""
-    from nrs_design.search.certify import certify
-    from nrs_design.search.comparison import compare_methods
-
-    _, system = _assembled(loaded)
-    with placed(loaded):
-        return system, compare_methods(partial(certify, system), limits, progress)
-
-
-def _assembled(loaded: LoadedSpec) -> tuple[Designed | None, SwitchedSystem]:
-    """Design a spec and assemble its modes."""
-    designed = run_design(loaded)
-    with placed(loaded):
-        return designed, assemble_spec(loaded, designed)
 
 
 def gains_text(designed: Designed | None) -> Gains:

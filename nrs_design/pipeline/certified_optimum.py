@@ -10,33 +10,44 @@ checked as that of any spec.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from nrs_design.axis import unit
-from nrs_design.certificates.certificate import Verdict
-from nrs_design.certificates.goals import STEERING, certified_goals
+from nrs_design.certificates.goals import STEERING
 from nrs_design.errors import DesignError
-from nrs_design.pipeline.certification import Result, assemble_spec, run_certification
+from nrs_design.pipeline.certification import (
+    Result,
+    assemble_spec,
+    certify_design,
+    meets_goals,
+    search_limits,
+)
 from nrs_design.pipeline.design import Designed, placed
-from nrs_design.pipeline.free_gains import Array, FreeGains, gain_branches, has_free_gains, in_order
-from nrs_design.pipeline.goal_ranges import wanted_age, with_delay
+from nrs_design.pipeline.free_gains import (
+    Array,
+    FreeGains,
+    RoundedGains,
+    gain_branches,
+    in_order,
+    with_problems,
+)
+from nrs_design.pipeline.goal_ranges import for_goal, wanted_age, wanting
 from nrs_design.pipeline.proof_constraints import NOTHING, ROOM, DesignEvaluator, constraints_of
 from nrs_design.pipeline.written_gains import Written
 from nrs_design.progress import Progress, silent
 from nrs_design.proof.bounds import rounded_down
 
 if TYPE_CHECKING:
-    # What was certified, what ships of the free gains, and the point.
-    Proved = tuple[Result, Written, Array]
+    # What was certified, and the gains.
+    Proved = tuple[Result, RoundedGains]
+    from nrs_design.controllers.controller_design import ControllerDesign
     from nrs_design.design.analysis import DesignAnalysis
     from nrs_design.design.trust_region import ConstrainedOptimum, ConstrainedProblem, Evaluation
     from nrs_design.spec import Quantity
-    from nrs_design.spec.spec_document import SpecDocument
 
 # Roundings that are proved at most.
 MOST_ROUNDINGS = 4
@@ -70,97 +81,76 @@ class CertifiedOptimum:
     """The gains that were found, with their proof."""
 
     result: Result  # Of the spec with these gains; its certificate has been checked exactly
-    gains: Written  # What ships of the free ones
+    gains: Written  # What a spec would say of the free ones
     cost: float  # Summed over the controllers
     free_cost: float  # The least without goals of the certificate
-    free_rate: float  # The best decay rate there in floating point, 1/s
+    # The best decay rate there in floating point, 1/s; None where it was not looked for.
+    free_rate: float | None
     goals: tuple[SteeredGoal, ...]
     tried: int  # Designs whose rate was found
     # Gains that `design.free` names and that are on a bound, and on which.
     at_bounds: tuple[tuple[str, str], ...] = ()
 
 
-def steering_goals(designed: Designed, analysis: DesignAnalysis) -> tuple[str, ...]:
-    """Return the goals that gains can be steered by; none where no gain is free."""
-    goals = designed.spec.goals
-    given = [] if goals is None else [key for key, _ in goals.given()]
-    return tuple(key for key in STEERING if key in given and has_free_gains(designed, analysis))
-
-
 def run_certified_optimum(
-    designed: Designed,
-    analysis: DesignAnalysis,
-    progress: Progress = silent,
-    name: str | None = None,
+    designed: Designed, analysis: DesignAnalysis, progress: Progress = silent
+) -> CertifiedOptimum:
+    """Choose the free gains as `find_certified_optimum` does, or take those of the least cost.
+
+    These the design has; they are taken where any function proves the goals of them. Where none are
+    proved for the goal `delay`, the `DesignError` names the longest that is reached.
+    """
+    with placed(designed.loaded):
+        age = wanted_age(designed)
+    try:
+        return find_certified_optimum(designed, analysis, progress)
+    except DesignError as error:
+        if (found := _at_least_cost(designed, analysis, progress)) is not None:
+            return found
+        if age is None:
+            raise
+        with placed(designed.loaded):
+            raise _too_old(designed, analysis, age, progress, error) from error
+
+
+def find_certified_optimum(
+    designed: Designed, analysis: DesignAnalysis, progress: Progress = silent
 ) -> CertifiedOptimum:
     """Choose the free gains of all controllers at once, with their proof; at least one goal steers.
 
     Where a mass may be zero, the best without masses and the best with them are compared: without,
-    a force acts at once, else a sample later. A goal `delay` beyond what the spec declares is
-    declared in the spec that is proved. Where none are proved, the `DesignError` names the nearest.
+    a force acts at once, else a sample later. Where none are proved, the `DesignError` names the
+    nearest.
     """
     with placed(designed.loaded):
-        if (age := wanted_age(designed)) is None:
-            return _cheapest(designed, analysis, progress, name)
-        try:
-            return _cheapest_at(designed, analysis, age, progress, name)
-        except DesignError as error:
-            raise _too_old(designed, analysis, age, progress, error) from error
+        wide, items = designed, analysis
+        if (older := for_goal(designed)) is not None:
+            wide, items = older, with_problems(older, analysis)
+        found, missed = [], []
+        for gains in gain_branches(wide, items):
+            try:
+                found.append(_Search(designed, gains, progress).run())
+            except DesignError as error:
+                missed.append(error)
+        if not found:
+            raise missed[0]
+        return min(found, key=lambda item: item.cost)
 
 
-def cheapest_gains(
-    gains: FreeGains, progress: Progress, name: str | None = None
-) -> CertifiedOptimum:
-    """Choose the gains of one branch, with their proof."""
-    return _Search(gains, progress, name).run()
-
-
-def meets_goals(result: Result) -> bool:
-    """Tell whether a spec is proved, with the goals that steer, for its own ages of the force."""
-    goals = certified_goals(result.loaded.spec, result.certificate)
-    proved = result.certification.verdict is Verdict.PROVED
-    return proved and all(goal.met for goal in goals if goal.key in STEERING[:-1])
-
-
-def check_steerable(designed: Designed) -> None:
-    """Refuse what no form for all modes could prove, whatever the gains."""
-    from nrs_design.search.rate_slope import may_have_slope
-
-    if not may_have_slope(assemble_spec(designed.loaded, designed)):
-        raise DesignError(
-            "gains are chosen with their proof only where one quadratic function may be one: not "
-            "with two periods, rules that lead through unstable modes, or one state",
-            remedy="optimize without a goal of the proof, and let certify-switching try others",
-            at=("goals",) if designed.spec.goals is not None else (),
-        )
-
-
-def _cheapest(
-    designed: Designed, analysis: DesignAnalysis, progress: Progress, name: str | None
-) -> CertifiedOptimum:
-    """Search all branches of gains, and return the cheapest."""
-    check_steerable(designed)
-    found, missed = [], []
-    for gains in gain_branches(designed, analysis):
-        try:
-            found.append(cheapest_gains(gains, progress, name))
-        except DesignError as error:
-            missed.append(error)
-    if not found:
-        raise missed[0]
-    return min(found, key=lambda item: item.cost)
-
-
-def _cheapest_at(
-    designed: Designed,
-    analysis: DesignAnalysis,
-    age: int,
-    progress: Progress,
-    name: str | None = None,
-) -> CertifiedOptimum:
-    """Do the same of a spec that declares an older force."""
-    progress(f"force samples up to {age} periods old")
-    return _cheapest(*with_delay(designed, analysis, age), progress, name)
+def _at_least_cost(
+    designed: Designed, analysis: DesignAnalysis, progress: Progress
+) -> CertifiedOptimum | None:
+    """Return the gains of the least cost, if any function proves the goals of them."""
+    result = certify_design(designed.loaded, designed, progress=progress)
+    branches = (one for one in gain_branches(designed, analysis) if one.holds(designed.design))
+    gains = next(branches, None)
+    if gains is None or not meets_goals(result):
+        return None
+    one, given = gains.of(designed.design), designed.spec.goals
+    wanted = [] if given is None else [(key, getattr(given, key)) for key in STEERING]
+    goals = tuple(SteeredGoal(key, goal.exact, False, None) for key, goal in wanted if goal)
+    cost = gains.cost(one.x)
+    return CertifiedOptimum(result, one.written, cost, cost, None, goals, 0)
 
 
 def _too_old(
@@ -179,7 +169,8 @@ def _too_old(
     while high - low > 1:
         middle = (low + high) // 2
         try:
-            low, nearest = middle, _cheapest_at(designed, analysis, middle, progress)
+            asked = wanting(designed, middle)
+            low, nearest = middle, find_certified_optimum(asked, analysis, progress)
         except DesignError:
             high = middle
     reached = "nor is what the spec declares"
@@ -199,17 +190,18 @@ def _too_old(
 class _Search:
     """The search for the cheapest gains whose proof meets the goals."""
 
-    def __init__(self, gains: FreeGains, progress: Progress, name: str | None) -> None:
-        self.gains, self.progress, self.name = gains, progress, name
-        self.goals = gains.designed.spec.goals
-        given = {key: getattr(self.goals, key, None) for key in STEERING}
-        self.wanted: dict[str, Quantity] = {k: v for k, v in given.items() if v is not None}
+    def __init__(self, given: Designed, gains: FreeGains, progress: Progress) -> None:
+        self.given, self.gains, self.progress = given, gains, progress
+        self.goals = given.spec.goals
+        asked = {key: getattr(self.goals, key, None) for key in STEERING}
+        self.wanted: dict[str, Quantity] = {k: v for k, v in asked.items() if v is not None}
         self.constraints = constraints_of(self.goals, *ROOMS[0])
 
     def run(self) -> CertifiedOptimum:
         """Search, round and prove; where the proof falls short, once more with more room."""
         self.progress("free optimum")
         start = free = self.gains.optimum()
+        self._check_steerable()
         evaluations, free_rate = 0, None
         for rooms in ROOMS:
             self.constraints = constraints_of(self.goals, *rooms)
@@ -220,17 +212,26 @@ class _Search:
             if found.last.values.min() <= -NEAR:
                 break
             self.progress("proof")
-            if (proved := self._proved(found, problem)) is not None:
-                prices = found.shadow_prices
+            if (proved := self._proved(found, problem, evaluations)) is not None:
                 bounds = self.gains.at_bounds(found.last.x)
+                prices = found.shadow_prices
                 return self._optimum(free, free_rate, proved, prices, evaluations, bounds)
             start = found.last.x
-        self.progress("proof")
-        # Other functions may prove the optimum of the cost alone; nothing binds there.
-        if (proved := self._otherwise(free)) is not None:
-            nothing = np.zeros(len(self.constraints))
-            return self._optimum(free, free_rate or 0.0, proved, nothing, evaluations)
         raise self._unreachable(found.last, in_floats=rooms != ROOMS[0])
+
+    def _check_steerable(self) -> None:
+        """Refuse what no form for all modes could prove, whatever the gains."""
+        from nrs_design.search.rate_slope import may_have_slope
+
+        wide = self.gains.designed
+        if not may_have_slope(assemble_spec(wide.loaded, wide)):
+            raise DesignError(
+                "gains are chosen with their proof only where one quadratic function may be one: "
+                "not with two periods, rules that lead through unstable modes, or one state; and "
+                "nothing proves the goals of those of the least cost",
+                remedy="relax a goal, or give the gains",
+                at=("goals",),
+            )
 
     def _minimum(self, start: Array) -> tuple[ConstrainedProblem, Evaluation, ConstrainedOptimum]:
         """Minimize the cost in floating point, also from other starts if that misses a goal."""
@@ -258,11 +259,11 @@ class _Search:
         evaluations: int,
         at_bounds: tuple[tuple[str, str], ...] = (),
     ) -> CertifiedOptimum:
-        result, written, x = proved
+        result, one = proved
         return CertifiedOptimum(
             result,
-            written,
-            self.gains.cost(x),
+            one.written,
+            self.gains.cost(one.x),
             self.gains.cost(free),
             free_rate,
             tuple(self._goals(prices)),
@@ -281,29 +282,28 @@ class _Search:
             binds, price = found.get(key, (found[self.constraints[0].key][0], None))
             yield SteeredGoal(key, wanted.exact, binds, price if binds else None)
 
-    def _proved(self, found: ConstrainedOptimum, problem: ConstrainedProblem) -> Proved | None:
+    def _proved(
+        self, found: ConstrainedOptimum, problem: ConstrainedProblem, evaluations: int
+    ) -> Proved | None:
         """Round to the digits that ship, the cheapest first, and prove one that meets the goals."""
         last, near = found.last, []
-        for x, written in self.gains.roundings(last.x):
-            missed = problem.penalty(last.values + found.jacobian @ (x - last.x))
-            if problem.penalty(self.gains.spared(x)) == 0:
-                near.append(((missed > 0, problem.cost(x) + missed), x, written))
-        for x, written in in_order(near)[:MOST_ROUNDINGS]:
-            if (result := self._certified(written)) is not None:
-                return result, written, x
+        for one in self.gains.roundings(last.x):
+            missed = problem.penalty(last.values + found.jacobian @ (one.x - last.x))
+            if problem.penalty(self.gains.spared(one.x)) == 0:
+                near.append(((missed > 0, problem.cost(one.x) + missed), one))
+        for one in in_order(near)[:MOST_ROUNDINGS]:
+            design = self.gains.shipping(one, last.x, evaluations)
+            if (result := self._certified(design)) is not None:
+                return result, one
         return None
 
-    def _certified(self, written: Written) -> Result | None:
-        """Certify the spec with these gains; None if a goal that steers is not met."""
-        result = run_certification(self.gains.respecified(written, partial(_named, self.name)))
+    def _certified(self, design: ControllerDesign) -> Result | None:
+        """Certify the spec with a design; None if a goal that steers is not met."""
+        designed = replace(self.given, design=design)
+        # Where the first proof falls short, other gains are nearer than other functions.
+        limits = replace(search_limits(designed.spec), decay_rate=None)
+        result = certify_design(designed.loaded, designed, limits=limits)
         return result if meets_goals(result) else None
-
-    def _otherwise(self, free: Array) -> Proved | None:
-        """Return the optimum of the cost alone, if its goals are proved."""
-        near = [((float(np.abs(x - free).sum()),), x, w) for x, w in self.gains.roundings(free)]
-        x, written = in_order(near)[0]
-        result = self._certified(written)
-        return None if result is None else (result, written, x)
 
     def _unreachable(self, last: Evaluation, *, in_floats: bool) -> DesignError:
         """Say which goal gains miss, and how near they come."""
@@ -329,8 +329,3 @@ class _Search:
             "give the gains, and let certify-switching try other functions",
             at=at,
         )
-
-
-def _named(name: str | None, document: SpecDocument) -> None:
-    if name is not None:
-        document.put(document.root, "name", name)

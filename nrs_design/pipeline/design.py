@@ -88,16 +88,11 @@ def interaction_of(loaded: LoadedSpec, lacks: str) -> InteractionDesignSpec:
     )
 
 
-def run_interaction(loaded: LoadedSpec, lacks: str) -> Designed:
-    """Design an interaction; refuse other kinds of specs, as `interaction_of` does."""
-    interaction_of(loaded, lacks)
-    designed = run_design(loaded)
-    assert designed is not None
-    return designed
+def design_at_least_cost(loaded: LoadedSpec) -> Designed | None:
+    """Build the plant of a spec and choose gains of the least cost; None for given matrices.
 
-
-def run_design(loaded: LoadedSpec) -> Designed | None:
-    """Build the plant of a spec and design its controllers; None for given matrices."""
+    Which gains a spec has, `nrs_design.pipeline.runs.run_design` decides.
+    """
     if loaded.spec.kind == "robot":
         raise wrong_kind(
             loaded,

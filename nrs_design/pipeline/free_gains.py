@@ -7,7 +7,7 @@ different laws.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
@@ -28,10 +28,9 @@ from nrs_design.pipeline.gain_coordinate import (
     bounded_gain,
     freed_gains,
 )
-from nrs_design.pipeline.written_gains import Written, with_gains
-from nrs_design.spec import LoadedSpec
+from nrs_design.pipeline.written_gains import Written
+from nrs_design.proof.text import exact_text
 from nrs_design.spec.interaction_parts import MOTION
-from nrs_design.spec.spec_document import SpecDocument
 
 if TYPE_CHECKING:
     from nrs_design.controllers.controller_design import ControllerDesign
@@ -49,6 +48,20 @@ LEAST_MASS = Fraction(1, 1000)
 MOST_KNOWN = 64
 # What a goal may be missed by in floating point.
 MISSED = 1e-6
+
+
+@dataclass(frozen=True, eq=False)
+class RoundedGains:
+    """Gains near a point as a spec may give them."""
+
+    x: Array  # The point that they are
+    # By controller and name: in the units of the design, and as a spec writes them.
+    gains: Mapping[tuple[str, str], tuple[Fraction, str]]
+
+    @property
+    def written(self) -> Written:
+        """What a spec says of them."""
+        return {name: text for name, (_, text) in self.gains.items()}
 
 
 @dataclass(frozen=True)
@@ -125,13 +138,19 @@ class FreeGains:
 
     def cost(self, x: Array) -> float:
         """Return the cost at a point, summed over the impedance controllers."""
+        return sum(self.costs(x).values())
+
+    def costs(self, x: Array) -> dict[str, float]:
+        """Return the cost of each impedance controller at a point."""
         from nrs_design.design.impedance_optimum import impedance_cost
 
         gains = self.gains(x)
-        return sum(
-            float(impedance_cost(problem, gains[item.name]["Mt"], gains[item.name]["Bt"]))
+        return {
+            item.name: float(
+                impedance_cost(problem, gains[item.name]["Mt"], gains[item.name]["Bt"])
+            )
             for item, problem in zip(self.items, self._problems(x), strict=True)
-        )
+        }
 
     def spared(self, x: Array) -> Array:
         """Return for each controller with goals by how much they are met; negative if missed."""
@@ -148,39 +167,64 @@ class FreeGains:
         return self._design(x, to_float32)
 
     def _design(self, x: Array, rounded: Callable[[Fraction], Fraction]) -> ControllerDesign:
-        own = self.designed.design
-        gains = {
-            name: {gain: rounded(Fraction(value)) for gain, value in values.items()}
-            for name, values in self.gains(x).items()
-        }
-        motion = own.motion if own.motion.absent else type(own.motion).of(gains[MOTION])
-        controllers = (replace(c, law=c.law.of(gains[c.name])) for c in own.controllers)
-        return replace(own, motion=motion, controllers=tuple(controllers))
+        return self.designed.design.with_gains(
+            {
+                name: {gain: rounded(Fraction(value)) for gain, value in values.items()}
+                for name, values in self.gains(x).items()
+            }
+        )
 
     def system(self, x: Array, plant: Plant | None = None) -> SwitchedSystem:
         """Assemble the modes with the single-precision gains next to a point."""
         designed = replace(self.designed, design=self.design(x), plant=plant or self.designed.plant)
         return assemble_spec(designed.loaded, designed)
 
-    def roundings(self, x: Array) -> Iterator[tuple[Array, Written]]:
-        """Yield points near one as a spec may give them, and what it says then."""
+    def roundings(self, x: Array) -> Iterator[RoundedGains]:
+        """Yield points near one as a spec may give them."""
         digits = self.designed.spec.design.significant_digits
+        zeros = {
+            (item.name, gain): (Fraction(0), f"0 {unit('kg*m^2')}")
+            for item in self.items
+            for gain in free_names(item)
+        }
         pairs = zip(self.coordinates, x, strict=True)
         for near in product(*(one.near(float(value), digits) for one, value in pairs)):
-            texts = {one.name: text for one, (_, text) in zip(self.coordinates, near, strict=True)}
-            zeros = {
-                (item.name, gain): f"0 {unit('kg*m^2')}"
-                for item in self.items
-                for gain in free_names(item)
-                if (item.name, gain) not in texts
-            }
-            yield np.log([value for value, _ in near]), zeros | texts
+            chosen = dict(zip((one.name for one in self.coordinates), near, strict=True))
+            point = np.log([float(value) for value, _ in near])
+            yield RoundedGains(point, zeros | chosen)
 
-    def respecified(
-        self, written: Written, change: Callable[[SpecDocument], None] = lambda document: None
-    ) -> LoadedSpec:
-        """Return the spec with gains given, as `with_gains` does."""
-        return with_gains(self.designed, written, change)
+    def holds(self, design: ControllerDesign) -> bool:
+        """Tell whether a design has masses where these gains have some, and none where not."""
+        masses = (design.laws[item.name].gains["Mt"] for item in self.items)
+        return all((mass == 0) == self.massless for mass in masses)
+
+    def of(self, design: ControllerDesign) -> RoundedGains:
+        """Return the gains of such a design, in as few digits as make them."""
+        laws = design.laws
+        own = {one.name: laws[one.controller].gains[one.gain] for one in self.coordinates}
+        point = np.log([float(value) for value in own.values()])
+        for near in self.roundings(point):
+            if self.shipping(near, point, 1) == design:
+                return near
+        units = {one.name: one.unit for one in self.coordinates}
+        return RoundedGains(point, {n: (v, f"{exact_text(v)} {units[n]}") for n, v in own.items()})
+
+    def shipping(self, one: RoundedGains, x: Array, tried: int) -> ControllerDesign:
+        """Return the design that ships of a rounding of a point, which was found in so many."""
+        from nrs_design.controllers.controller_design import ImpedanceOptimum
+
+        chosen: dict[str, dict[str, Fraction]] = {}
+        for (name, gain), (value, _) in one.gains.items():
+            chosen.setdefault(name, {})[gain] = to_float32(value)
+        found, gains, costs = self.designed.design.with_gains(chosen), self.gains(x), self.costs(x)
+        for own, value in zip(self.coordinates, x, strict=True):
+            gains[own.controller][own.gain] = own.settled(float(value))
+        best = {
+            name: ImpedanceOptimum(gains[name]["Mt"], gains[name]["Bt"], cost, tried)
+            for name, cost in costs.items()
+        }
+        controllers = (replace(c, optimum=best.get(c.name)) for c in found.controllers)
+        return replace(found, controllers=tuple(controllers))
 
     def said(self, x: Array) -> str:
         """Write the gains at a point for people: those of impedance controllers, and free ones."""
@@ -324,14 +368,23 @@ def gain_branches(designed: Designed, analysis: DesignAnalysis) -> Iterator[Free
         yield FreeGains(designed, analysis, massless=False)
 
 
-def has_free_gains(designed: Designed, analysis: DesignAnalysis) -> bool:
-    """Tell whether there is a gain to choose."""
-    return bool(designed.spec.design.free) or any(map(free_names, analysis.impedance))
+def with_problems(designed: Designed, analysis: DesignAnalysis) -> DesignAnalysis:
+    """Return what gains are optimized for under another spec than that of an analysis.
+
+    What its own gains achieve is not asked: others are to be chosen, and these may be unstable.
+    """
+    from nrs_design.design.laws.impedance import impedance_problem, requirement_of
+    from nrs_design.design.laws.law import Task
+
+    task, items = Task(designed.spec, designed.plant, designed.design.motion), []
+    for item in analysis.impedance:
+        requirement = requirement_of(task, item.given)
+        problem = impedance_problem(task, item.given, requirement)
+        items.append(replace(item, problem=problem, requirement=requirement))
+    return replace(analysis, measured=(*items, *analysis.tuned))
 
 
-def in_order(
-    choices: Sequence[tuple[tuple[float, ...], Array, Written]],
-) -> list[tuple[Array, Written]]:
-    """Return points and what is written of them, the best first."""
-    ranked = sorted(choices, key=lambda item: (*item[0], *map(float, item[1])))
-    return [(x, written) for _, x, written in ranked]
+def in_order(choices: Sequence[tuple[tuple[float, ...], RoundedGains]]) -> list[RoundedGains]:
+    """Return roundings, the best first."""
+    ranked = sorted(choices, key=lambda item: (*item[0], *map(float, item[1].x)))
+    return [one for _, one in ranked]

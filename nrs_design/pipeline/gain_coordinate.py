@@ -51,14 +51,20 @@ class GainCoordinate:
         low, high = self.ends
         return exp(min(max(x, low), high))
 
-    def near(self, x: float, digits: int) -> list[tuple[float, str]]:
+    def settled(self, x: float) -> float:
+        """Return the same, and a bound itself where a search stopped at it."""
+        bounds = zip(self.ends, (self.low, self.high), strict=True)
+        at = (float(bound) for end, bound in bounds if abs(x - end) < CLOSE)
+        return next(at, self.value(x))
+
+    def near(self, x: float, digits: int) -> list[tuple[Fraction, str]]:
         """Return values near a coordinate as a spec may give them, and their texts.
 
         Of a gain that a spec gives, and that is free by factors, that is the nearest one only.
         """
         for end in self.written or ():
             if end.exact > 0 and abs(x - log(end.si)) < CLOSE:
-                return [(end.si, end.text)]
+                return [(end.exact, end.text)]
         value = self.value(x)
         found = {round_significant(near, digits) for near in neighbors(value, digits)}
         inside = sorted(v for v in found if self.low <= v <= self.high and v > 0)
@@ -67,7 +73,7 @@ class GainCoordinate:
             at = min(inside, key=lambda v: abs(v - Fraction(value)), default=self.given)
             assert at is not None, "as factors are on a given gain"
             inside = [at]
-        return [(float(v), f"{exact_text(v)} {self.unit}") for v in inside]
+        return [(v, f"{exact_text(v)} {self.unit}") for v in inside]
 
     def at_bound(self, x: float) -> str | None:
         """Say on which of its bounds a gain is that is free by factors; None if on neither."""

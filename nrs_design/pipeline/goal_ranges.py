@@ -1,4 +1,4 @@
-"""What a goal of the proof asks a spec to declare: a goal `delay` is proved, so it is declared."""
+"""What a goal `delay` asks of a proof: to hold for an older force than the spec declares."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ from math import ceil
 from typing import TYPE_CHECKING
 
 from nrs_design.errors import DesignError
-from nrs_design.pipeline.design import Designed, run_design
-from nrs_design.pipeline.written_gains import edited
+from nrs_design.pipeline.design import Designed
+from nrs_design.proof.text import exact_text
+from nrs_design.spec.quantity import Quantity
 from nrs_design.spec.sampling import LONGEST_DELAY
-from nrs_design.spec.spec_document import SpecDocument
 
 if TYPE_CHECKING:
-    from nrs_design.design.analysis import DesignAnalysis
+    from nrs_design.spec import InteractionDesignSpec
 
 
 def wanted_age(designed: Designed) -> int | None:
@@ -36,27 +36,31 @@ def wanted_age(designed: Designed) -> int | None:
     return age
 
 
-def with_delay(
-    designed: Designed, analysis: DesignAnalysis, age: int
-) -> tuple[Designed, DesignAnalysis]:
-    """Return a spec that declares ages of the force in samples up to this one, and its problems.
+def for_goal(designed: Designed) -> Designed | None:
+    """Return a design whose spec declares what its goal `delay` asks for; None if it does."""
+    age = wanted_age(designed)
+    return None if age is None else declaring(designed, age)
 
-    What its own gains achieve is not asked: others are to be chosen, and these may be unstable.
-    """
-    from nrs_design.design.laws.impedance import impedance_problem, requirement_of
-    from nrs_design.design.laws.law import Task
 
-    sampling = designed.spec.sampling
+def declaring(designed: Designed, age: int) -> Designed:
+    """Return a design whose spec declares ages of the force up to this one, in samples."""
+    from nrs_design.certificates.ages import declaring_ages
+
+    assert designed.spec.sampling is not None, "a delay is of samples"
+    least = designed.spec.sampling.delay[0]
+    return _with_spec(designed, declaring_ages(designed.spec, (min(least, age), age)))
+
+
+def wanting(designed: Designed, age: int) -> Designed:
+    """Return a design whose goal `delay` is so many samples."""
+    goals, sampling = designed.spec.goals, designed.spec.sampling
+    assert goals is not None, "as one is the delay"
     assert sampling is not None, "a delay is of samples"
+    text = exact_text(age * sampling.outer)
+    delay = Quantity(f"{text} s", age * sampling.outer, "s")
+    goals = goals.model_copy(update={"delay": delay})
+    return _with_spec(designed, designed.spec.model_copy(update={"goals": goals}))
 
-    def change(document: SpecDocument) -> None:
-        document.put(document.root["sampling"], "delay", [min(sampling.delay[0], age), age])
 
-    found = run_design(edited(designed.loaded, change))
-    assert found is not None, "as it was one"
-    task, items = Task(found.spec, found.plant, found.design.motion), []
-    for item in analysis.impedance:
-        requirement = requirement_of(task, item.given)
-        problem = impedance_problem(task, item.given, requirement)
-        items.append(replace(item, problem=problem, requirement=requirement))
-    return found, replace(analysis, measured=(*items, *analysis.tuned))
+def _with_spec(designed: Designed, spec: InteractionDesignSpec) -> Designed:
+    return replace(designed, loaded=replace(designed.loaded, spec=spec), spec=spec)

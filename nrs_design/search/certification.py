@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from fractions import Fraction
 
 from nrs_design.certificates.certificate import (
     CommonQuadraticStatus,
@@ -32,6 +33,8 @@ class Limits:
     optimize_rate: bool = True  # Look for the largest provable decay rate, not only for some
     more: bool = True  # Look for bounds under disturbances and the like, where stability is proved
     gradient: Gradient = field(default_factory=Gradient)  # Settings of the gradient iteration
+    # What a goal asks for, in 1/s; a search goes on until it is proved, or cannot be.
+    decay_rate: Fraction | None = None
 
 
 @dataclass(frozen=True, slots=True)

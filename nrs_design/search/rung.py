@@ -112,6 +112,10 @@ class Facts:
         return self.has_constant and self.system.is_uniform and self.leaves_stable
 
 
+# What looks for growth, or for why there is no quadratic function.
+REFUTING = (None, Method.PERIOD, Method.VALUE, Method.OBSTRUCTION)
+
+
 def _always(facts: Facts) -> bool:
     """Say yes."""
     return True
@@ -143,6 +147,8 @@ class Rung:
 
     def is_idle(self, known: frozenset[Shows]) -> bool:
         """Tell whether it can find nothing more."""
+        if Shows.STABILITY in known and (self.only_quadratic or self.method in REFUTING):
+            return True
         without_quadratic = self.only_quadratic and Shows.NO_COMMON_QUADRATIC in known
         return without_quadratic or (self.in_kept_contact and Shows.INSTABILITY_IN_CONTACT in known)
 

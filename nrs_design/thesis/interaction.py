@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from pathlib import Path
 
-from nrs_design.pipeline.design import run_design
+from nrs_design.pipeline.runs import run_design
 from nrs_design.pipeline.scenarios import Runs, run_scenarios
 from nrs_design.proof.text import exact_text
 from nrs_design.simulation.run import Run

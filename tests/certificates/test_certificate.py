@@ -15,7 +15,7 @@ from nrs_design.certificates.certificate import (
     to_document,
     verdict_of,
 )
-from nrs_design.pipeline.certification import run_certification
+from nrs_design.pipeline.runs import run_certification
 from nrs_design.proof.evidence import BlockTriangular, GrowingSequence, NoCommonQuadratic
 from nrs_design.proof.evidence.growing_sequence import staying
 from nrs_design.proof.switching import Reset, Switching

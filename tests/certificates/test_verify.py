@@ -33,7 +33,7 @@ from nrs_design.certificates.certificate import content_id, dump
 from nrs_design.certificates.verify import Verification, read_document, verify, verify_document
 from nrs_design.controllers.float32 import exact_decimal
 from nrs_design.errors import CertificateError
-from nrs_design.pipeline.certification import run_certification
+from nrs_design.pipeline.runs import run_certification
 from nrs_design.proof.evidence.fields import system_fields
 from nrs_design.proof.evidence.growing_sequence import staying
 from nrs_design.search.certify import Limits

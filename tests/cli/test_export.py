@@ -12,7 +12,7 @@ from nrs_design.certificates.verify import verify
 from nrs_design.cli import main
 from nrs_design.exporters import format_names, format_of
 from nrs_design.exporters.record import ExportRecord
-from nrs_design.pipeline.certification import run_certification
+from nrs_design.pipeline.runs import run_certification
 from nrs_design.spec import read_spec
 from tests.support import program_named
 

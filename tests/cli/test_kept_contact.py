@@ -5,7 +5,7 @@ import json
 import pytest
 
 import nrs_design as nrs
-from nrs_design.pipeline.certification import run_certification
+from nrs_design.pipeline.runs import run_certification
 from nrs_design.spec import read_spec
 from tests.simulation.interactions import WITHDRAWAL, text_of
 from tests.support import document_of, run

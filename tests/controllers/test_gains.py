@@ -7,7 +7,7 @@ import pytest
 from nrs_design.controllers.float32 import is_float32
 from nrs_design.controllers.gains import design_from_gains, gains_of
 from nrs_design.errors import CertificateError, SpecError
-from nrs_design.pipeline.design import run_design
+from nrs_design.pipeline.runs import run_design
 from nrs_design.spec import read_spec
 from tests.support import FORCE_LIMIT, SOFT_TISSUE
 

@@ -13,7 +13,7 @@ from nrs_design.controllers.shipped import shipped_law, step_limits
 from nrs_design.controllers.step_logic import StepLogic
 from nrs_design.errors import DesignError
 from nrs_design.models.linear_form import coordinates, zero
-from nrs_design.pipeline.design import run_design
+from nrs_design.pipeline.runs import run_design
 from nrs_design.spec import read_spec
 from tests.controllers.roundings import linear_forms
 from tests.support import ROOT, SOFT_TISSUE

@@ -1,7 +1,7 @@
 """What a design achieves, as people see it."""
 
 from nrs_design.pipeline.analysis import run_analysis
-from nrs_design.pipeline.design import run_design
+from nrs_design.pipeline.runs import run_design
 from nrs_design.spec import read_spec
 from tests.support import SOFT_TISSUE
 

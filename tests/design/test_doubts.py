@@ -3,7 +3,7 @@
 import pytest
 
 from nrs_design.pipeline.analysis import run_analysis
-from nrs_design.pipeline.design import run_design
+from nrs_design.pipeline.runs import run_design
 from nrs_design.spec import read_spec
 from tests.design.holder import USELESS
 from tests.support import FORCE_LIMIT, SOFT_TISSUE

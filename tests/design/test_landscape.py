@@ -10,7 +10,7 @@ from nrs_design.design.impedance import characteristic_basis, stabilizes
 from nrs_design.design.impedance_optimum import impedance_cost
 from nrs_design.design.landscape import alternatives, cheapest_damping, delay_borne, map_cost
 from nrs_design.pipeline.analysis import run_analysis
-from nrs_design.pipeline.design import run_design
+from nrs_design.pipeline.runs import run_design
 from nrs_design.reporting.sections.landscape import draw_cost
 from nrs_design.spec import read_spec
 from tests.design.classical import loop_margins

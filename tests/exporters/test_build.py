@@ -10,7 +10,7 @@ from nrs_design.controllers.float32 import exact_decimal
 from nrs_design.errors import CertificateError
 from nrs_design.exporters.build import build_record
 from nrs_design.exporters.export import export_design
-from nrs_design.pipeline.certification import run_certification
+from nrs_design.pipeline.runs import run_certification
 from nrs_design.spec import LoadedSpec, parse_spec, read_spec
 from tests.support import ROOT
 

@@ -12,7 +12,7 @@ from nrs_design.exporters.c_names import CNames, literal
 from nrs_design.exporters.formats.c import header_text
 from nrs_design.exporters.formats.vectors import make_vectors, vectors_text
 from nrs_design.exporters.logic_cases import COUNT, logic_document
-from nrs_design.pipeline.design import run_design
+from nrs_design.pipeline.runs import run_design
 from nrs_design.spec import read_spec
 from tests.exporters.programs import (
     STRICT,

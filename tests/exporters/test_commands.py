@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from nrs_design.controllers.shipped import shipped_law
-from nrs_design.pipeline.design import run_design
+from nrs_design.pipeline.runs import run_design
 from nrs_design.spec import LoadedSpec, parse_spec
 from tests.support import SOFT_TISSUE
 

@@ -9,7 +9,7 @@ from nrs_design.errors import NrsDesignError
 from nrs_design.exporters import format_names, format_of, rendered
 from nrs_design.exporters.deployed import LARGEST_BYTES, compare_deployed
 from nrs_design.exporters.export import Execution, export_design
-from nrs_design.pipeline.certification import run_certification
+from nrs_design.pipeline.runs import run_certification
 from nrs_design.spec import read_spec
 from tests.exporters.programs import write_formats
 from tests.support import ROBOT, ROOT

@@ -13,7 +13,7 @@ from nrs_design.design.measures import GAIN_MARGIN
 from nrs_design.errors import DesignError
 from nrs_design.gating.examine import Examiner, certified_rate
 from nrs_design.gating.obligations import Status
-from nrs_design.pipeline.certification import run_certification
+from nrs_design.pipeline.runs import run_certification
 from nrs_design.proof.evidence.growing_sequence import staying
 from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import ARBITRARY, Stay, Switching

@@ -126,16 +126,16 @@ def test_a_spec_that_has_changed_is_searched_for(project, gate):
 
 
 def test_other_gains_than_are_recorded_are_searched_for(project, gate, monkeypatch):
-    from nrs_design.pipeline import certification
+    from nrs_design.pipeline import runs
 
-    monkeypatch.setattr(certification, "is_of_gains", lambda *given: False)
+    monkeypatch.setattr(runs, "is_of_gains", lambda *given: False)
     assert gate("soft-tissue")
 
 
 def test_a_goal_that_the_certificate_does_not_show_is_searched_for(project, gate):
     spec = project / "specs/soft-tissue.nrs.yaml"
     text = spec.read_text()
-    spec.write_text(f"{text}goals: {{decay_rate: 9 1/s}}\n")
+    spec.write_text(f"{text}goals: {{decay_rate: 900 1/s}}\n")
     assert gate("soft-tissue")
     assert gate("soft-tissue")
     spec.write_text(f"{text}goals: {{decay_rate: 3 1/s}}\n")

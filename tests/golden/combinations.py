@@ -14,7 +14,7 @@ from typing import Any
 
 from nrs_design.errors import AssemblyError, SpecError
 from nrs_design.pipeline.certification import assemble_spec
-from nrs_design.pipeline.design import run_design
+from nrs_design.pipeline.runs import run_design
 from nrs_design.spec import read_spec
 from tests.golden.answers import ANSWERS
 from tests.spec.test_combinations import merged, slid

@@ -16,7 +16,7 @@ from nrs_design.certificates.verify import read_document, verify_document
 from nrs_design.errors import NrsDesignError
 from nrs_design.gating.lock import read_lock
 from nrs_design.identification.datasets.records import read_tissue
-from nrs_design.pipeline.certification import run_certification
+from nrs_design.pipeline.runs import run_certification
 from nrs_design.spec import read_spec
 from tests.support import COMMUTING, ROOT, SOFT_TISSUE
 

@@ -3,7 +3,8 @@
 import pytest
 
 from nrs_design.certificates.certificate import Verdict, dump
-from nrs_design.pipeline.certification import run_certification, run_verification
+from nrs_design.pipeline.certification import run_verification
+from nrs_design.pipeline.runs import run_certification
 from nrs_design.search.certification import Limits
 from nrs_design.spec import read_spec
 from tests.proof.graphs import shape_of

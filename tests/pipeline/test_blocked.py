@@ -8,7 +8,7 @@ import pytest
 
 from nrs_design.certificates.certificate import Verdict
 from nrs_design.pipeline.blocked import Blocked, blocked_lines, find_blocked, line_text
-from nrs_design.pipeline.certification import run_certification
+from nrs_design.pipeline.runs import run_certification
 from nrs_design.search.certification import Limits
 from nrs_design.spec import read_spec
 from tests.support import COMMUTING, PRINT_ERROR, ROOT, SOFT_TISSUE

@@ -7,8 +7,8 @@ import pytest
 from scipy.linalg import expm
 
 from nrs_design.errors import AssemblyError, SpecError
-from nrs_design.pipeline.certification import assemble_spec, run_certification
-from nrs_design.pipeline.design import run_design
+from nrs_design.pipeline.certification import assemble_spec
+from nrs_design.pipeline.runs import run_certification, run_design
 from nrs_design.spec import parse_spec, read_spec
 
 TORQUES = """\

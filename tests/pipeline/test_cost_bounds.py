@@ -2,7 +2,7 @@
 
 from nrs_design.pipeline.analysis import run_analysis
 from nrs_design.pipeline.cost_bounds import run_cost_bounds
-from nrs_design.pipeline.design import run_interaction
+from nrs_design.pipeline.runs import run_interaction
 from nrs_design.spec import read_spec
 from tests.support import SOFT_TISSUE
 

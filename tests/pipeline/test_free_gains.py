@@ -6,12 +6,14 @@ from math import log
 import numpy as np
 import pytest
 
+from nrs_design.controllers.gains import design_from_gains, gains_of
 from nrs_design.design.impedance_optimum import optimize_impedance
 from nrs_design.design.laws.impedance import impedance_problem, requirement_of
 from nrs_design.design.laws.law import Task
+from nrs_design.errors import CertificateError
 from nrs_design.pipeline.analysis import run_analysis
-from nrs_design.pipeline.design import run_design
 from nrs_design.pipeline.free_gains import gain_branches
+from nrs_design.pipeline.runs import run_design
 from nrs_design.pipeline.written_gains import with_gains
 
 from .free import FORCE, PD, freed
@@ -54,14 +56,20 @@ def test_the_least_cost_is_at_a_corner_of_the_motion_gains():
 def test_a_point_is_the_design_of_what_is_written():
     designed = freed(PD, MASS)
     gains = branch(designed)
-    x, written = next(iter(gains.roundings(gains.optimum())))
-    own = gains.design(x)
-    found = run_design(with_gains(designed, written)).design
+    one = next(iter(gains.roundings(gains.optimum())))
+    own = gains.shipping(one, one.x, 1)
+    found = run_design(with_gains(designed, one.written)).design
     assert found.laws["insertion"] == own.laws["insertion"]
     for gain in ("Kp", "Kd"):
         exact, near = float(found.motion.gains[gain]), float(own.motion.gains[gain])
         assert exact == pytest.approx(near, rel=2e-7)
-    assert "motion Kp = " in gains.said(x)
+    assert "motion Kp = " in gains.said(one.x)
+    # A re-check takes freed gains within their factors, and no others.
+    texts = gains_of(own)
+    assert design_from_gains(designed.spec, texts) == own
+    texts["motion"]["Kp"] = str(2 * int(designed.design.motion.Kp))
+    with pytest.raises(CertificateError, match="Kp of motion is outside its bounds"):
+        design_from_gains(designed.spec, texts)
 
 
 def test_goals_of_a_force_controller_hold_beside():

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nrs_design.pipeline.design import run_design, run_interaction
 from nrs_design.pipeline.gain_coordinate import GainCoordinate, bounded_gain, freed_gains
+from nrs_design.pipeline.runs import run_design, run_interaction
 from nrs_design.pipeline.written_gains import with_gains
 from nrs_design.spec import read_spec
 from tests.support import ROOT
@@ -24,13 +24,13 @@ def coordinate(low, high, given=None):
 
 def test_the_nearest_number_of_so_few_digits():
     one = coordinate("0.5", 2, Fraction(1))
-    assert one.near(log(1.2345), 3) == [(1.23, "1.23 rpm/rad")]
+    assert one.near(log(1.2345), 3) == [(Fraction("1.23"), "1.23 rpm/rad")]
     # On a bound that is no such number, the next one inside.
     assert one.near(log(2), 1) == [(2.0, "2 rpm/rad")]
-    assert coordinate("0.5", "1.2345", Fraction(1)).near(log(1.2345), 3)[0][0] == 1.23
+    assert coordinate("0.5", "1.2345", Fraction(1)).near(log(1.2345), 3)[0][0] == Fraction("1.23")
     # Bounds nearer to each other than such numbers leave what is given.
     narrow = coordinate("1.2341", "1.2349", Fraction("1.2345"))
-    assert narrow.near(log(1.2345), 2) == [(1.2345, "1.2345 rpm/rad")]
+    assert narrow.near(log(1.2345), 2) == [(Fraction("1.2345"), "1.2345 rpm/rad")]
 
 
 @given(st.floats(-2, 2), st.integers(1, 7))
@@ -38,7 +38,7 @@ def test_what_is_near_is_within_the_bounds(x, digits):
     one = coordinate("0.3", 3, Fraction(1))
     for value, text in one.near(x, digits):
         assert one.low <= Fraction(text.split()[0]) <= one.high
-        assert value == float(Fraction(text.split()[0]))
+        assert value == Fraction(text.split()[0])
         assert abs(log(value) - min(max(x, one.ends[0]), one.ends[1])) < 0.8
 
 

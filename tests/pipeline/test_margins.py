@@ -9,9 +9,9 @@ from nrs_design.certificates.certificate import Verdict
 from nrs_design.errors import AssemblyError, DesignError
 from nrs_design.facts.certification import margins_facts
 from nrs_design.pipeline import margins
-from nrs_design.pipeline.certification import assemble_spec, run_certification
-from nrs_design.pipeline.design import run_design
+from nrs_design.pipeline.certification import assemble_spec
 from nrs_design.pipeline.margins import run_proof_margins
+from nrs_design.pipeline.runs import run_certification, run_design
 from nrs_design.reporting.margins import margin_lines
 from nrs_design.search.certification import Limits
 from nrs_design.search.certify import refuted_at_once

@@ -20,9 +20,9 @@ from nrs_design.certificates.verify import verify_document
 from nrs_design.errors import AssemblyError
 from nrs_design.models.cut import MAX_PARTS, RangeCut
 from nrs_design.pipeline.cases import CASES, find_cases
-from nrs_design.pipeline.certification import assemble_spec, gains_text, run_certification
-from nrs_design.pipeline.design import run_design
+from nrs_design.pipeline.certification import assemble_spec, gains_text
 from nrs_design.pipeline.release import physical_outputs
+from nrs_design.pipeline.runs import run_certification, run_design
 from nrs_design.proof.evidence.growing_sequence import UNATTAINED, staying
 from nrs_design.proof.switching import Reset, Switching
 from nrs_design.search.certification import Limits

@@ -4,8 +4,8 @@ import control
 import numpy as np
 import pytest
 
-from nrs_design.pipeline.certification import run_certification
 from nrs_design.pipeline.release import physical_outputs
+from nrs_design.pipeline.runs import run_certification
 from nrs_design.search.certification import Limits
 from nrs_design.simulation.release import Outputs
 from nrs_design.simulation.switched import simulate_switching

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from nrs_design.pipeline.analysis import run_analysis
-from nrs_design.pipeline.certification import run_certification
+from nrs_design.pipeline.runs import run_certification
 from nrs_design.reporting import Report, build_report, render_html
 from nrs_design.search.certification import Limits
 from nrs_design.spec import LoadedSpec, read_spec

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from nrs_design.pipeline.certification import run_certification
+from nrs_design.pipeline.runs import run_certification
 from nrs_design.reporting.next_steps import next_steps
 from nrs_design.search.certification import Limits
 from nrs_design.spec import read_spec

@@ -2,7 +2,7 @@
 
 import pytest
 
-from nrs_design.pipeline.certification import run_certification
+from nrs_design.pipeline.runs import run_certification
 from nrs_design.reporting.register import register_of
 from nrs_design.spec import read_spec
 from nrs_design.switched.assumption import Standing, say

@@ -5,7 +5,7 @@ import pytest
 
 from nrs_design.errors import DesignError
 from nrs_design.pipeline.analysis import run_analysis
-from nrs_design.pipeline.certification import run_certification, run_comparison
+from nrs_design.pipeline.runs import run_certification, run_comparison
 from nrs_design.reporting import build_report
 from nrs_design.reporting.document import Bullets, Illustration, Listing, Paragraph, Table
 from nrs_design.reporting.figures.run import draw_phase_plane, draw_run

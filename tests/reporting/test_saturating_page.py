@@ -7,7 +7,7 @@ import re
 import pytest
 
 from nrs_design.pipeline.analysis import run_analysis
-from nrs_design.pipeline.certification import run_certification
+from nrs_design.pipeline.runs import run_certification
 from nrs_design.reporting import build_report
 from nrs_design.reporting.document import Illustration, Table
 from nrs_design.spec import read_spec

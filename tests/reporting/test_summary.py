@@ -8,7 +8,7 @@ import pytest
 
 from nrs_design.gating.examine import Examiner
 from nrs_design.pipeline.analysis import run_analysis
-from nrs_design.pipeline.certification import run_certification
+from nrs_design.pipeline.runs import run_certification
 from nrs_design.proof.evidence import Shows
 from nrs_design.proof.mode import Time
 from nrs_design.reporting.sections.goals import goal_facts, goals_section, judged_goals

@@ -11,7 +11,7 @@ import pytest
 from nrs_design.certificates.certificate import dump
 from nrs_design.certificates.prove import prove
 from nrs_design.errors import DesignError
-from nrs_design.pipeline.design import run_design
+from nrs_design.pipeline.runs import run_design
 from nrs_design.ros2.export import export_controllers
 from nrs_design.ros2.law import read_law
 from nrs_design.ros2.parameters import parse_nodes

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from decimal import Decimal
 from typing import Any
 
-from nrs_design.pipeline.design import run_design
+from nrs_design.pipeline.runs import run_design
 from nrs_design.proof.evidence import AbstractEvidence
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.candidates import Candidates

@@ -58,6 +58,24 @@ def ando_shih(c):
     return [[c, 0], [c, 0]], [[0, c], [0, f"-{c}"]]
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("asked", "method"),
+    [
+        (None, "lmi"),
+        # No quadratic function shows it; one of degree four does.
+        ("0.3", "polynomial of degree 4"),
+        # No proof shows it: the slowest mode decays with 1/s.
+        ("1.1", "lmi"),
+    ],
+)
+def test_a_search_goes_on_until_the_decay_that_is_asked_for(asked, method):
+    rate = None if asked is None else Fraction(asked)
+    found = certify(STABLE, limits=Limits(decay_rate=rate, budget=20))
+    assert found.method == method
+    assert (found.evidence.proved_rate(STABLE) >= Fraction("0.3")) == (asked == "0.3")
+
+
 @st.composite
 def merging_families(draw):
     """Discrete time: few different blocks, coupled in some modes, and some modes twice."""

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 from nrs_design.certificates.certificate import CommonQuadraticStatus, Verdict
 from nrs_design.errors import AssemblyError, DesignError
-from nrs_design.pipeline.certification import run_certification
 from nrs_design.pipeline.margins import run_proof_margins
+from nrs_design.pipeline.runs import run_certification
 from nrs_design.proof.switching import Stay, Switching
 from nrs_design.search.certification import Certification, Limits
 from nrs_design.search.certify import certify

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from nrs_design.errors import DesignError
-from nrs_design.pipeline.design import run_design
+from nrs_design.pipeline.runs import run_design
 from nrs_design.pipeline.scenarios import Runs, run_scenarios
 from nrs_design.simulation.build_scenario import default_scenario
 from nrs_design.simulation.sampled_axis import SampleInputs

@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from nrs_design.pipeline.certification import run_certification
-from nrs_design.pipeline.design import run_design
+from nrs_design.pipeline.runs import run_certification, run_design
 from nrs_design.pipeline.scenarios import run_scenarios
 from nrs_design.pipeline.worst_case import run_worst_case
 from nrs_design.proof.channels import Channel, Output

@@ -10,7 +10,7 @@ import pytest
 from nrs_design.axis import AxisType
 from nrs_design.errors import AssemblyError, SpecError
 from nrs_design.pipeline.certification import assemble_spec
-from nrs_design.pipeline.design import run_design
+from nrs_design.pipeline.runs import run_design
 from nrs_design.spec import doubt_spec, parse_spec, read_spec
 from nrs_design.spec import features as f
 from nrs_design.spec.check import Row

@@ -3,7 +3,7 @@
 import pytest
 
 from nrs_design.errors import SpecError
-from nrs_design.pipeline.design import run_design
+from nrs_design.pipeline.runs import run_design
 from nrs_design.spec import doubt_spec, parse_spec, read_spec
 from nrs_design.spec.describe import describe
 from nrs_design.spec.plausible import doubt_size, doubt_sizes, size_of, sizes

@@ -4,7 +4,7 @@ import pytest
 
 from nrs_design.controllers.gains import gains_of
 from nrs_design.errors import AssemblyError, CertificateError
-from nrs_design.pipeline.design import run_design
+from nrs_design.pipeline.runs import run_design
 from nrs_design.proof.mode import Time
 from nrs_design.spec import load_spec, parse_spec, read_spec
 from nrs_design.spec.build_plant import build_plant

@@ -6,7 +6,7 @@ from dataclasses import fields
 
 import pytest
 
-from nrs_design.pipeline.design import run_design
+from nrs_design.pipeline.runs import run_design
 from nrs_design.spec import read_spec
 from nrs_design.spec.load import axes_at
 from nrs_design.switched.assemble import assemble, assemble_matrices

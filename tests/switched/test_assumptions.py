@@ -7,8 +7,7 @@ import pytest
 
 from nrs_design.models.contact import HuntCrossley
 from nrs_design.models.motion_loop import realize
-from nrs_design.pipeline.certification import run_certification
-from nrs_design.pipeline.design import run_design
+from nrs_design.pipeline.runs import run_certification, run_design
 from nrs_design.spec import LoadedSpec, parse_spec, read_spec
 from nrs_design.spec.build_plant import build_plant
 from nrs_design.switched.assemble import assemble

@@ -6,7 +6,7 @@ import pytest
 
 from nrs_design.errors import AssemblyError, InternalError
 from nrs_design.pipeline.certification import assemble_spec
-from nrs_design.pipeline.design import run_design
+from nrs_design.pipeline.runs import run_design
 from nrs_design.proof.constant import corner_weights, system_at
 from nrs_design.proof.contradiction import find_contradiction
 from nrs_design.proof.switching import FixedParameter

@@ -6,7 +6,7 @@ import pytest
 
 from nrs_design.controllers.gains import gains_of
 from nrs_design.errors import AssemblyError
-from nrs_design.pipeline.design import run_design
+from nrs_design.pipeline.runs import run_design
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.switching import Reset, Stay
 from nrs_design.spec import LoadedSpec, parse_spec

@@ -11,7 +11,7 @@ import pytest
 from nrs_design.design.loop_family import LoopFamily
 from nrs_design.models.contact import KelvinVoigt
 from nrs_design.pipeline.certification import assemble_spec
-from nrs_design.pipeline.design import run_design
+from nrs_design.pipeline.runs import run_design
 from nrs_design.spec import read_spec
 from nrs_design.switched.cut_loop import ProcessorAxis, axis_of, characteristic
 from tests.support import thinned

@@ -10,8 +10,8 @@ import pytest
 from nrs_design.certificates.bounds import bound_on
 from nrs_design.certificates.certificate import dump
 from nrs_design.certificates.verify import verify_document
-from nrs_design.pipeline.certification import assemble_spec, run_certification, search_limits
-from nrs_design.pipeline.design import run_design
+from nrs_design.pipeline.certification import assemble_spec, search_limits
+from nrs_design.pipeline.runs import run_certification, run_design
 from nrs_design.reporting.sections.proof import proof_section
 from nrs_design.spec import read_spec
 from tests.support import SOFT_TISSUE

@@ -12,8 +12,7 @@ from nrs_design.controllers.laws import PositionControl, ProportionalForce
 from nrs_design.errors import AssemblyError
 from nrs_design.models.contact import Elastic
 from nrs_design.models.motion_loop import MotionLoop, realize
-from nrs_design.pipeline.certification import run_certification
-from nrs_design.pipeline.design import run_design
+from nrs_design.pipeline.runs import run_certification, run_design
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.spec import parse_spec, read_spec
 from nrs_design.spec.build_plant import build_plant

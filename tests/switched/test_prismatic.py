@@ -6,8 +6,8 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from nrs_design.pipeline.certification import assemble_spec, run_certification
-from nrs_design.pipeline.design import run_design
+from nrs_design.pipeline.certification import assemble_spec
+from nrs_design.pipeline.runs import run_certification, run_design
 from nrs_design.spec import read_spec
 from tests.support import ROOT, run
 

@@ -13,7 +13,7 @@ from nrs_design.controllers.laws import Admittance, PositionControl, Proportiona
 from nrs_design.controllers.operations import Operation
 from nrs_design.controllers.step_law import StepFrame
 from nrs_design.errors import InternalError
-from nrs_design.pipeline.design import run_design
+from nrs_design.pipeline.runs import run_design
 from nrs_design.spec import read_spec
 from nrs_design.switched.sampled_law import kinds_of, list_law, short
 from tests.support import ROOT

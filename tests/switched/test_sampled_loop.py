@@ -10,7 +10,7 @@ from scipy.linalg import expm
 
 from nrs_design.certificates.certificate import Verdict
 from nrs_design.pipeline.certification import assemble_spec
-from nrs_design.pipeline.design import run_design
+from nrs_design.pipeline.runs import run_design
 from nrs_design.proof.contradiction import find_contradiction
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem

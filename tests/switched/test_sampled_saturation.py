@@ -11,7 +11,7 @@ from scipy.linalg import expm
 
 from nrs_design.controllers.shipped import shipped_law
 from nrs_design.pipeline.certification import assemble_spec
-from nrs_design.pipeline.design import run_design
+from nrs_design.pipeline.runs import run_design
 from nrs_design.search.certify import first_accepted
 from nrs_design.search.saturated_steps import search_saturated_steps
 from nrs_design.simulation.norms import clipped, quadratic_norm

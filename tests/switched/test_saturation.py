@@ -5,8 +5,8 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from nrs_design.pipeline.certification import assemble_spec, run_certification
-from nrs_design.pipeline.design import run_design
+from nrs_design.pipeline.certification import assemble_spec
+from nrs_design.pipeline.runs import run_certification, run_design
 from nrs_design.proof.bounds import rounded_down
 from nrs_design.simulation.saturation import saturated_rates
 from nrs_design.spec import read_spec

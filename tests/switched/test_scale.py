@@ -11,7 +11,7 @@ from nrs_design.errors import AssemblyError
 from nrs_design.models.contact import KelvinVoigt
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.interval import Interval
-from nrs_design.pipeline.design import run_design
+from nrs_design.pipeline.runs import run_design
 from nrs_design.spec import LoadedSpec, parse_spec
 from nrs_design.switched.assemble import assemble_from_text
 

@@ -4,7 +4,7 @@ from fractions import Fraction
 
 from nrs_design.controllers.float32 import exact_decimal
 from nrs_design.controllers.sensor import LowPass, Sensor
-from nrs_design.pipeline.design import run_design
+from nrs_design.pipeline.runs import run_design
 from nrs_design.spec import read_spec
 from nrs_design.switched.assemble import assemble
 from nrs_design.switched.assumptions import sensor_texts

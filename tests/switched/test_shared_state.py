@@ -11,7 +11,7 @@ from nrs_design.controllers.laws import Admittance
 from nrs_design.models.actuator import Actuator
 from nrs_design.models.contact import KelvinVoigt
 from nrs_design.models.motion_loop import close_motion_loop, realize
-from nrs_design.pipeline.design import run_design
+from nrs_design.pipeline.runs import run_design
 from nrs_design.spec import parse_spec, read_spec
 from nrs_design.spec.build_plant import build_plant
 from nrs_design.switched.assemble import assemble

@@ -57,7 +57,8 @@ def export(
     Example: nrs-design ros2 export mine.nrs.yaml --axis ry --lag '5..20 ms'
     """
     from nrs_design.pipeline.certification import search_limits
-    from nrs_design.pipeline.design import placed, run_interaction
+    from nrs_design.pipeline.design import placed
+    from nrs_design.pipeline.runs import run_interaction
     from nrs_design.ros2.export import SEVERITY, export_controllers
 
     axes = _axes_of(spec, axis)

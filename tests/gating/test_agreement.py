@@ -1,0 +1,173 @@
+"""Every command says the same about the goals of a proof, of the same gains.
+
+`optimize` and `gate` choose gains each for itself; `certify-switching`, `simulate` and `export`
+take the way of `gate`; `report` and `export` with a certificate, that of `run_recorded`.
+"""
+
+import json
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from nrs_design.certificates.certificate import content_id, dump
+from nrs_design.certificates.goals import STEERING, certified_goals, steering_goals
+from nrs_design.certificates.prove import read_document
+from nrs_design.certificates.verify import verify_document
+from nrs_design.errors import DesignError
+from nrs_design.gating.run import Files, run_gate
+from nrs_design.pipeline.analysis import run_analysis
+from nrs_design.pipeline.certified_optimum import run_certified_optimum
+from nrs_design.pipeline.design import design_at_least_cost
+from nrs_design.pipeline.runs import run_certification, run_recorded
+from nrs_design.spec import read_spec
+from tests.support import ROOT
+
+pytestmark = pytest.mark.slow
+# The loop of soft-tissue-sampled, for which gains of the least cost decay at 0.977 1/s.
+BY_RATE = """\
+kind: interaction-design
+name: by-rate
+actuator: {gain: MOTOR, time_constant: LAG}
+motion_loop: {damping_ratio: 0.707, settling_time: 0.1404 s, derivative_gain: 2060 rpm*s/rad}
+limits: {velocity: 8 deg/s, torque: 0.3 N*m, bandwidth: 2 Hz}
+environments:
+  soft: {model: elastic, lever_arm: 0.24 m, stiffness: STIFFNESS}
+controllers:
+  insertion: {type: impedance, environment: soft, MASSES}
+  OTHER
+design: {significant_digits: DIGITS}
+switching: arbitrary
+sampling: {period: 2 ms, delay: [0, 1]}
+contact: CONTACT
+goals: {GOALS}
+"""
+CASE = {
+    "OTHER": "withdrawal: {type: impedance, environment: soft, "
+    "desired_impedance_ratio: 0.5, MASSES}",
+    "MOTOR": "{nominal: 4.84e-4 rad/s/rpm, range: [4.74e-4 rad/s/rpm, 4.94e-4 rad/s/rpm]}",
+    "LAG": "{nominal: 0.0351 s, range: [0.034398 s, 0.035802 s]}",
+    "STIFFNESS": "{nominal: 747.1461 N/m, range: [720.56 N/m, 768.17 N/m]}",
+    "MASSES": "Mt: {min: 0.01 kg*m^2, max: 1 kg*m^2}, Bt: {min: 0.1 N*m*s/rad, max: 20 N*m*s/rad}",
+    "DIGITS": "5",
+    "CONTACT": "losable",
+    "GOALS": "decay_rate: 2 1/s",
+}
+
+
+def written(folder, **changes):
+    text = BY_RATE
+    for key, value in (CASE | changes).items():
+        text = text.replace(key, value)
+    path = folder / "by-rate.nrs.yaml"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def goals_of(result):
+    return goals_of_certificate(result.loaded, result.certificate)
+
+
+def goals_of_certificate(loaded, certificate):
+    found = certified_goals(loaded.spec, certificate)
+    return {goal.key: (goal.said, goal.met) for goal in found}
+
+
+def agreed(path, folder):
+    """Return which goals are met, after every command has said the same."""
+    loaded = read_spec(path)
+    assert steering_goals(loaded.spec)
+    designed = design_at_least_cost(loaded)
+    (gate,) = run_gate([path], Files(folder=folder, html=False)).specs
+    recorded = run_recorded(loaded, gate.certificate)
+    shown = goals_of(recorded)
+    obligations = {
+        item.subject.removeprefix("system: "): (item.message, str(item.status) == "proved")
+        for item in gate.obligations
+        if item.rule.id == "NRS108"
+    }
+    assert {key: met for key, (_, met) in shown.items()} == {
+        key: met for key, (_, met) in obligations.items()
+    }
+    assert all(said in obligations[key][0] for key, (said, _) in shown.items())
+    try:
+        optimum = run_certified_optimum(designed, run_analysis(designed))
+    except DesignError:
+        assert not all(met for _, met in shown.values())
+        assert recorded.design == designed.design
+    else:
+        assert all(met for _, met in goals_of(optimum.result).values())
+        assert goals_of(optimum.result) == shown
+        # It is the very certificate.
+        assert optimum.result.certificate.id == read_document(gate.certificate)["id"]
+        assert optimum.result.design == recorded.design
+    return {key: met for key, (_, met) in shown.items() if key in STEERING}
+
+
+ALONE = {"OTHER": "", "MOTOR": "4.8417e-4 rad/s/rpm", "LAG": "0.0351 s"}
+
+
+@pytest.mark.parametrize(
+    ("changes", "met"),
+    [
+        ({}, {"decay_rate": True}),
+        # What no gains reach is said of those of the least cost.
+        (ALONE | {"CONTACT": "kept", "GOALS": "decay_rate: 25 1/s"}, {"decay_rate": False}),
+        # An older force than the spec declares is proved of it.
+        (
+            ALONE | {"GOALS": "decay_rate: 2 1/s, delay: 4 ms"},
+            {"decay_rate": True, "delay": True},
+        ),
+    ],
+)
+def test_all_commands_agree(tmp_path, changes, met):
+    assert agreed(written(tmp_path, **changes), tmp_path) == met
+
+
+def test_ages_beyond_the_declared_ones_are_checked(tmp_path):
+    """Of given gains, too, the goal `delay` is searched for; only a wider loop is taken for it."""
+    fixed = {"MASSES": "Mt: 0.01 kg*m^2, Bt: 2.15 N*m*s/rad", "CONTACT": "kept"}
+    loaded = read_spec(written(tmp_path, **(ALONE | fixed | {"GOALS": "delay: 4 ms"})))
+    certificate = run_certification(loaded).certificate
+    assert certificate.ages == (0, 2)
+    assert goals_of_certificate(loaded, certificate)["delay"][1]
+    document = json.loads(dump(certificate))
+    assert verify_document(document, loaded).fault is None
+    for ages, said in (
+        ([0, 1], "'states' is not that of the spec"),
+        ([1, 2], "not all those of the spec"),
+        ([0, 11], "not all those of the spec"),
+        ([0, True], "malformed"),
+        (None, "'states' is not that of the spec"),
+    ):
+        forged = {key: value for key, value in document.items() if key != "ages"}
+        forged |= {} if ages is None else {"ages": ages}
+        assert said in verify_document(forged | {"id": content_id(forged)}, loaded).fault
+
+
+def test_all_commands_agree_on_the_example(tmp_path):
+    path = ROOT / "docs" / "examples" / "gains-with-proof.nrs.yaml"
+    assert agreed(path, tmp_path) == {"decay_rate": True, "delay": True}
+
+
+@settings(max_examples=max(6, settings.default.max_examples // 2))
+@given(
+    low=st.integers(200, 900),
+    rate=st.sampled_from(["0.5", "2", "5", "9"]),
+    delay=st.sampled_from(["", ", delay: 2 ms", ", delay: 4 ms"]),
+    contact=st.sampled_from(["losable", "kept"]),
+    digits=st.integers(3, 6),
+    least=st.sampled_from(["0", "0.01"]),
+)
+def test_all_commands_agree_on_any_design(
+    tmp_path_factory, low, rate, delay, contact, digits, least
+):
+    folder = tmp_path_factory.mktemp("drawn")
+    changes = ALONE | {
+        "STIFFNESS": f"{{nominal: {low + 20} N/m, range: [{low} N/m, {low + 50} N/m]}}",
+        "MASSES": CASE["MASSES"].replace("0.01", least),
+        "DIGITS": str(digits),
+        "CONTACT": contact,
+        "GOALS": f"decay_rate: {rate} 1/s{delay}",
+    }
+    agreed(written(folder, **changes), folder)

@@ -111,7 +111,7 @@ def certify_switching(
     if method is Method.AUTO and str(result.certification.verdict) == "inconclusive":
         from nrs_design.pipeline.blocked import find_blocked
 
-        with progress(f"why {loaded.spec.name} is not proved", lines=True) as step:
+        with progress(f"why {loaded.spec.name} is not proved") as step:
             blocked = find_blocked(result, limits, step)
     with progress(f"margins of {loaded.spec.name}", lines=True) as step:
         margins = run_proof_margins(result, limits, step, **asked)

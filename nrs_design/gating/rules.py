@@ -354,11 +354,11 @@ WORDS: Mapping[str, Word] = MappingProxyType(
                 "but only with an environment that pulls as it pushes, which none does: where "
                 "contact may be lost, that decides nothing. Near the rest position under a "
                 "constant force that pushes in, it is how motions grow until contact is lost.",
-                "Search longer: with a larger --budget, more --memory or a higher --max-degree "
-                "(of certify-switching, report and gate), whichever the message says has ended "
-                "the search. Or ask for less: a longer dwell time, narrower ranges "
-                "(certify-switching --margin finds the largest with a proof), more damping. A "
-                "gate fails closed. Exit code 3.",
+                "Take one of the changes that certify-switching lists: this spec accepts each of "
+                "them, and is proved then; those of gains come first. Or search longer: with a "
+                "larger --budget, more --memory or a higher --max-degree (of certify-switching, "
+                "report and gate), whichever the message says has ended the search. A gate fails "
+                "closed. Exit code 3.",
             ),
             Word(
                 "met",

@@ -1,8 +1,9 @@
 """Why a verdict is inconclusive: which lines of the spec keep it from being proved.
 
-Each line alone is changed to what asks for the least, the spec is taken all the way again, and
-where it is proved then, so is as much of what the line asks for as can be. What counts as proved
-has passed the exact check, of exactly the changed spec.
+The gains that are given are changed together first. Then each line alone is changed to what asks
+for the least, the spec is taken all the way again, and where it is proved then, so is as much of
+what the line asks for as can be. What counts as proved has passed the exact check, of exactly the
+changed spec.
 """
 
 from __future__ import annotations
@@ -21,10 +22,13 @@ from nrs_design.proof.text import counted
 from nrs_design.search.certification import Certification, Limits
 from nrs_design.spec import LoadedSpec
 from nrs_design.spec.concessions import (
+    CALMER,
+    GIVEN_GAINS,
     WITHOUT,
     Concession,
     Edit,
     Way,
+    calmer,
     concessions,
 )
 from nrs_design.spec.document import Position, to_data
@@ -34,8 +38,10 @@ from nrs_design.spec.places import dotted
 
 # Of the budget of the search, what may be spent here: a step that is begun goes beyond it a little.
 SHARE = 0.4
-# Of that, up to where it may be spent on finding lines about numbers and words, on how far they go
-# (or, if there is none, on several together), and on what is left out whole.
+# Of that, what may be spent on gains.
+GAINS = 0.4
+# Of the rest, up to where it may be spent on finding lines about numbers and words, on how far they
+# go (or, if there is none, on several together), and on what is left out whole.
 FIND, STRETCH = 0.4, 0.8
 # A look at single modes, in units.
 LOOK = 0.02
@@ -118,11 +124,26 @@ class _Search:
         lines = found[:MOST_LINES]
         mild = [line for line in lines if line.least.word != WITHOUT]
         drastic = [line for line in lines if line.least.word == WITHOUT]
-        proved = self._single(mild, FIND * self._budget, STRETCH * self._budget)
-        several = () if proved else self._together(lines, STRETCH * self._budget)
+        gains = self._calmer(GAINS * self._budget)
+        start, rest = self._spent, self._budget - self._spent
+        proved = gains + self._single(mild, start + FIND * rest, start + STRETCH * rest)
+        several = () if proved else self._together(lines, start + STRETCH * rest)
         proved += self._single(drastic, self._budget, self._budget) + several
         unbounded = bool(self._result.certification.system.channels)
         return Blocked(proved, len(lines), len(found), unbounded, self._spent)
+
+    def _calmer(self, until: float) -> tuple[Proved, ...]:
+        """Return what is proved when all gains are changed together, the least that is found.
+
+        The calmest are tried first, and may take half of the work: if they do not help, none do.
+        """
+        ways = [calmer(self._result.loaded, *factors) for factors in CALMER]
+        if not ways[-1] or not self._decide(_least(ways[-1]), until / 2):
+            return ()
+        for left, lines in zip(range(len(ways), 0, -1), ways, strict=True):
+            if lines and self._decide(_least(lines), (until - self._spent) / left):
+                break
+        return (self._proved(tuple((line, line.least, 0) for line in lines)),)
 
     def _single(
         self, lines: Sequence[Concession], find: float, stretch: float
@@ -201,7 +222,7 @@ class _Search:
         try:
             loaded = _edited(self._result.loaded, edits)
             if loaded.sha256 not in self._found:
-                self._progress(_told(edits))
+                self._progress(f"trying change {len(self._found) + 1}")
                 self._found[loaded.sha256] = self._certified(loaded, budget)
             return self._found[loaded.sha256]
         except (SpecError, DesignError, AssemblyError):
@@ -234,12 +255,17 @@ class _Search:
         proof, evidence = decided.certification, decided.certification.evidence
         assert evidence is not None
         known = set(self._result.certification.granted)
+        given = {line.at[1] for line, _, _ in lines if line.at[-1] in GIVEN_GAINS}
         return Proved(
             tuple(self._blocking(*item) for item in lines),
             evidence.claim(proof.system),
             tuple(text for text in proof.granted if text not in known),
             decided.loaded.sha256,
-            any(self._gains.get(name) != gains for name, gains in decided.gains.items()),
+            any(
+                self._gains.get(name) != gains
+                for name, gains in decided.gains.items()
+                if name not in given
+            ),
         )
 
     def _blocking(self, line: Concession, form: Way, step: int) -> Blocking:
@@ -275,14 +301,6 @@ def _least(lines: Sequence[Concession]) -> list[Edit]:
     return [edit for line in lines for edit in line.edits(line.least, 0)]
 
 
-def _told(edits: Sequence[Edit]) -> str:
-    said = (
-        f"without {dotted(at)}" if value is None else f"{dotted(at)}: {in_one_line(value)}"
-        for at, value in edits
-    )
-    return ", ".join(said)
-
-
 def _same_search(one: SwitchedSystem, other: SwitchedSystem) -> bool:
     """Tell whether two systems differ in words only."""
     return replace(one, name="", assumptions=()) == replace(other, name="", assumptions=())
@@ -296,7 +314,7 @@ def blocked_lines(blocked: Blocked, path: Path) -> tuple[str, ...]:
         spent = f"{blocked.work:.2g} of work"
         verb = "was" if blocked.tried == 1 else "were"
         return (f"no change found that is proved: {some} of the spec {verb} tried ({spent})",)
-    alone = len(blocked.proved[0].lines) == 1
+    alone = len(blocked.proved) > 1 or len(blocked.proved[0].lines) == 1
     head = "proved with any one of these changes"
     if not alone:
         head = f"proved with these changes together, and with none of {some} alone that was tried"

@@ -36,6 +36,10 @@ DWELL_DIGITS = 3
 MOST_STEPS = 32
 UP, DOWN, WITHIN, WITH, WITHOUT = "up to", "down to", "within", "with", "without"
 
+# By how much the damping of all controllers rises, and their force gains fall; mildest first.
+CALMER = ((2, 1), (1, 2), (2, 2), (4, 2), (2, 4), (4, 4))
+GIVEN_GAINS = ("Bt", "proportional_gain", "integral_gain")
+
 Edit = tuple[Keys, Data | None]
 
 
@@ -120,6 +124,39 @@ def _of_interaction(
     if spec.sampling is None:
         yield from _dwell(spec.switching.is_arbitrary, said, slowest, discrete=False)
     yield from _left_out(spec)
+
+
+def calmer(loaded: LoadedSpec, more: int, less: int) -> tuple[Concession, ...]:
+    """Return the gains that a spec gives, with so many times the damping, and a part of the others.
+
+    They are changed together: one controller alone seldom keeps the others from being proved.
+    """
+    less_force = Fraction(1, less)
+    factors = dict(zip(GIVEN_GAINS, (Fraction(more), less_force, less_force), strict=True))
+    said = to_data(loaded.root)
+    assert isinstance(said, dict)
+    controllers = _get(said, ("controllers",))
+    if not isinstance(loaded.spec, InteractionDesignSpec) or not isinstance(controllers, dict):
+        return ()
+    return tuple(
+        _changed_to(at, given, _scaled(given, factor))
+        for name in controllers
+        for key, factor in factors.items()
+        if (given := _get(said, at := ("controllers", name, key))) is not None and factor != 1
+    )
+
+
+def _changed_to(at: Keys, given: Data, new: Data) -> Concession:
+    way = Way(WITH, lambda _: new, lambda _: in_one_line(new), in_one_line(given))
+    return Concession(at, way, other_loop=True)
+
+
+def _scaled(given: Data, factor: Fraction) -> Data:
+    """Multiply a quantity, or both bounds of one."""
+    if isinstance(given, dict):
+        return {key: _scaled(value, factor) for key, value in given.items()}
+    assert isinstance(given, str), "a gain is a quantity or has bounds"
+    return " ".join((exact_text(_number(given) * factor), *given.split(" ", 1)[1:]))
 
 
 def _left_out(spec: InteractionDesignSpec) -> Iterator[Concession]:

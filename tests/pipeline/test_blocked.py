@@ -11,6 +11,7 @@ from nrs_design.pipeline.blocked import Blocked, blocked_lines, find_blocked, li
 from nrs_design.pipeline.runs import run_certification
 from nrs_design.search.certification import Limits
 from nrs_design.spec import read_spec
+from tests.design.holder import USELESS
 from tests.support import COMMUTING, PRINT_ERROR, ROOT, SOFT_TISSUE
 
 EXACT = "stiffness: {nominal: 747.1461 N/m, range: [720.56 N/m, 768.17 N/m]}\n    lever_arm: 0.24 m"
@@ -221,11 +222,28 @@ def test_lines_that_block_together(tmp_path):
 @pytest.mark.slow
 def test_nothing_helps_against_a_spring_that_is_too_stiff(tmp_path):
     text = (ROOT / "docs/examples/pulling.nrs.yaml").read_text(encoding="utf-8")
-    text = text.replace("58 N*m/rad", "90 N*m/rad").replace("delay: 2", "delay: 0")
+    text = text.replace("58 N*m/rad", "900 N*m/rad").replace("delay: 2", "delay: 0")
     found = blocked(tmp_path, text, 2)
     assert found.proved == ()
     (line,) = blocked_lines(found, Path("a"))
     assert line.startswith("no change found that is proved: 1 line of the spec was tried")
+
+
+@pytest.mark.slow
+def test_calmer_gains_of_all_controllers_come_first(tmp_path):
+    text = USELESS.replace("{min: 7 N*m*s/rad, max: 20 N*m*s/rad}", "2 N*m*s/rad")
+    text = text.replace("600 N/m", "{nominal: 600 N/m, range: [300 N/m, 900 N/m]}")
+    text = text.replace("0.015 rad", "0.06 rad") + "sampling: {period: 2 ms, delay: [0, 3]}\n"
+    gains, *others = blocked(tmp_path, text, 4).proved
+    assert [line.write for line in gains.lines] == [
+        "Bt: 4 N*m*s/rad",
+        "Bt: 4 N*m*s/rad",
+        "proportional_gain: 0.03 rad/(N*m)",
+    ]
+    assert not gains.new_gains
+    assert others
+    written = text.replace("Bt: 2 N", "Bt: 4 N").replace("0.06 rad", "0.03 rad")
+    assert verdict(tmp_path, written, 4) is Verdict.PROVED
 
 
 @pytest.mark.slow

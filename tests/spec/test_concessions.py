@@ -8,12 +8,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from nrs_design.spec import LoadedSpec, parse_spec
-from nrs_design.spec.concessions import PARTS, Concession, concessions
+from nrs_design.spec.concessions import PARTS, Concession, calmer, concessions
 from nrs_design.spec.document import parse_document, to_data
 from nrs_design.spec.edits import changed
 from nrs_design.spec.load import respecified
 from nrs_design.spec.weaker import find_changes
-from tests.support import ROOT, SOFT_TISSUE
+from tests.support import FORCE_LIMIT, ROOT, SOFT_TISSUE
 
 TEXT = SOFT_TISSUE.read_text(encoding="utf-8")
 BT = "Bt: {min: 0.1 N*m*s/rad, max: 20 N*m*s/rad"
@@ -167,3 +167,14 @@ def test_identified_ranges_lose_what_was_said_of_them():
         ("environments", "soft", "range_covers"),
     )
     assert at_least(spec, line).spec.environments["soft"].fixed
+
+
+def test_given_gains_of_all_controllers_change_together():
+    """Bounds move as one; a gain that is designed from something else is not given."""
+    lines = calmer(loaded(TEXT.replace(BT, "Bt: {min: 0.1 N*m*s/rad, max: 1.5 N*m*s/rad")), 2, 4)
+    assert [line.edits(line.least, 0) for line in lines] == [
+        ((("controllers", name, "Bt"), {"min": "0.2 N*m*s/rad", "max": f"{top} N*m*s/rad"}),)
+        for name, top in (("insertion", 3), ("withdrawal", 3))
+    ]
+    (force,) = calmer(loaded(FORCE_LIMIT.read_text(encoding="utf-8")), 2, 4)
+    assert force.least.says(0) == "0.005 rad/(N*m)"

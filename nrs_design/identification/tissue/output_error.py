@@ -122,7 +122,7 @@ def fit_record(kind: type[AbstractContactLaw], record: TissueRecord | Trial) -> 
     trial = record if isinstance(record, Trial) else prepare(record)
     bounds = box(kind, trial)
     problem = LeastSquaresProblem(kind, trial)
-    coarse = LeastSquaresProblem(kind, trial.thinned(-(-len(trial.force) // COARSE)))
+    coarse = LeastSquaresProblem(kind, trial.thinned(COARSE))
     candidates = sorted(map(coarse.at, coarse.starts()), key=lambda start: start.cost)
     ends = [_search(start, bounds, _ROUGHLY) for start in candidates[:STARTS]]
     best = min(ends, key=lambda end: end.cost)

@@ -56,7 +56,7 @@ class Series:
 
 def fit_series(trial: Trial) -> Series:
     """Fit series of one to three terms, and choose by BIC."""
-    thin = trial.thinned(-(-len(trial.force) // _COARSE))
+    thin = trial.thinned(_COARSE)
     fits = [_fit(thin, terms) for terms in range(1, MOST_TERMS + 1)]
     best = fits[0]
     for fit in fits[1:]:

@@ -22,6 +22,8 @@ from nrs_design.models.contact import Motion
 from nrs_design.proof.text import counted
 
 FEWEST = 50
+# So many are left, if there are, where a record is thinned for a first look.
+_LEAST_USED = 4 * FEWEST
 # So near to the position of contact, as a part of the travel, a sample may be in air or not.
 _EDGE = 0.02
 # Farther from it, more would be lost by leaving samples out than by a few that are in air.
@@ -150,8 +152,9 @@ class Trial:
         """Return the trial with all samples used."""
         return replace(self, used=np.ones(len(self.force), bool))
 
-    def thinned(self, every: int) -> Trial:
-        """Return the trial with one of so many samples."""
+    def thinned(self, most: int) -> Trial:
+        """Return the trial with at most so many samples, or more where few of them are used."""
+        every = min(-(-len(self.force) // most), max(1, int(self.used.sum()) // _LEAST_USED))
         if every == 1:
             return self
         pick = slice(None, None, every)

@@ -33,6 +33,15 @@ def test_a_record_cut_while_the_tissue_relaxes(law):
     assert not prepare(trial.record, Preparation(start=0.0)).unrested
 
 
+def test_a_short_contact_in_a_long_record_is_left_when_it_is_thinned():
+    """Of a million rows one in 500 was kept, and none of a contact of 300."""
+    trial = prepare(DATA)
+    rows = np.arange(len(trial.force))
+    short = replace(trial, used=(rows > 100) & (rows < 400))
+    assert sum(short.thinned(2).used) >= 200
+    assert len(trial.thinned(1000).force) <= 1000 < len(trial.force)
+
+
 def conditioned():
     """The first of three cycles is 30 % stiffer, as a tissue that is loaded the first time."""
     motion = quick(2)

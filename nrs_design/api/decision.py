@@ -16,7 +16,7 @@ from nrs_design.errors import DesignError, OutputError, SpecError
 from nrs_design.facts.certification import certification_facts
 from nrs_design.output import CERTIFICATE, PAGE, check_html, write_output
 from nrs_design.ownership import check_certificate, origin_of
-from nrs_design.pipeline.analysis import run_analysis
+from nrs_design.pipeline.analysis import run_judgement
 from nrs_design.pipeline.certification import Result
 from nrs_design.proof.text import counted
 from nrs_design.search.certification import Attempt
@@ -218,7 +218,7 @@ class Decision(AbstractResult):
         analysis = None
         if self.result.designed is not None:
             try:
-                analysis = run_analysis(self.result.designed)
+                analysis = run_judgement(self.result.designed)
             except DesignError:
                 # Where a nominal loop has no margins, the page has none.
                 analysis = None

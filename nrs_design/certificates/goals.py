@@ -20,19 +20,7 @@ if TYPE_CHECKING:
 
 
 N = TypeVar("N", Fraction, float)
-# Goals that free gains are chosen by: numbers that a proof shows, and last what is proved about.
-STEERING = ("decay_rate", "peak_torque", "delay")
 _FREE = "optimize says which gains come nearest"
-
-
-def steering_goals(spec: Spec) -> tuple[str, ...]:
-    """Return the goals of a spec that its free gains are chosen by; none where no gain is free."""
-    if spec.kind != "interaction-design" or spec.goals is None:
-        return ()
-    from nrs_design.controllers.gains import free_gains
-
-    given = {key for key, _ in spec.goals.given()}
-    return tuple(key for key in STEERING if key in given) if any(free_gains(spec)) else ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,6 +44,8 @@ def certified_goals(spec: Spec, certificate: Certificate | None) -> Iterator[Cer
 
     The certificate has been checked; None if nothing was shown.
     """
+    from nrs_design.controllers.gains import steering_goals
+
     steering = steering_goals(spec)
     for goal in _goals(spec, certificate):
         others = not goal.met and goal.key in steering

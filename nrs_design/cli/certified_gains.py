@@ -45,7 +45,7 @@ class CertifiedGains:
 
         A `DesignError` if the goals are not reached.
         """
-        from nrs_design.certificates.goals import certified_goals, steering_goals
+        from nrs_design.controllers.gains import steering_goals
 
         if not steering_goals(designed.spec):
             if out is not None:
@@ -57,6 +57,7 @@ class CertifiedGains:
                 )
             return None
 
+        from nrs_design.certificates.goals import certified_goals
         from nrs_design.pipeline.analysis import run_analysis
         from nrs_design.pipeline.certified_optimum import run_certified_optimum
 

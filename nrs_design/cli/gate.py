@@ -12,7 +12,7 @@ import typer
 
 from nrs_design.cli import exit_codes
 from nrs_design.cli.command import command
-from nrs_design.cli.options import Budget, MaxDegree, Memory
+from nrs_design.cli.options import Budget, Memory
 from nrs_design.cli.printing import note, progress, say, say_failure, wants_details, wants_json
 from nrs_design.cli.tables import print_table
 from nrs_design.errors import NrsDesignError, OutputError
@@ -21,8 +21,8 @@ from nrs_design.proof.text import counted
 if TYPE_CHECKING:
     from nrs_design.gating.obligations import Caution, GateOutcome
 
-# Highest degree, budget and memory, as far as they are given.
-SearchLimits = tuple[int | None, float | None, float | None]
+# Budget and memory, as far as they are given.
+SearchLimits = tuple[float | None, float | None]
 
 # Folder of certificates, whether there are reports, and whether all of them.
 OutputFiles = tuple[Path, bool, bool]
@@ -84,14 +84,13 @@ def gate(
             "here than there, and fail on it.",
         ),
     ] = None,
-    max_degree: MaxDegree = None,
     budget: Budget = None,
     memory: Memory = None,
 ) -> NoReturn:
     """Certify every spec, write certificates, reports and the lock file, and fail closed.
 
-    A certificate in the folder that still holds is kept, and not searched for again; --budget,
-    --max-degree and --memory always search. Reports are written of what is new or not fulfilled.
+    A certificate in the folder that still holds is kept, and not searched for again; --budget and
+    --memory always search. Reports are written of what is new or not fulfilled.
 
     The lock file keeps its entries for other specs, and no file of another spec is overwritten.
 
@@ -108,7 +107,7 @@ def gate(
     if pages and (no_reports or locked):
         given = "--no-reports" if no_reports else "--locked"
         raise NrsDesignError(f"--pages and {given} exclude each other", remedy="keep one of them")
-    search = (max_degree, budget, memory)
+    search = (budget, memory)
     files = (reports, not no_reports, pages)
     start = perf_counter()
     if against is not None:
@@ -237,7 +236,7 @@ def _certify(
             locked=certificates_of(known, lock),
             recorded=recorded_in(known, lock),
         )
-        outcome = run_gate(specs, files, step, Overrides(*search), jobs)
+        outcome = run_gate(specs, files, step, Overrides(None, *search), jobs)
     return _with_not_examined(write_lock(outcome, lock, prune=prune), paths)
 
 

@@ -247,12 +247,12 @@ def _report_robot(
 
 def _analysis(result: Result) -> DesignAnalysis | None:
     """Return what the design achieves, or nothing where a nominal loop has no margins."""
-    from nrs_design.pipeline.analysis import run_analysis
+    from nrs_design.pipeline.analysis import run_judgement
 
     if result.designed is None:
         return None
     try:
-        return run_analysis(result.designed)
+        return run_judgement(result.designed)
     except DesignError as error:
         note(f"no margins in this report: {error.message}")
         return None

@@ -17,12 +17,15 @@ from nrs_design.spec import (
     GainSpec,
     IdleStatesSpec,
     InteractionDesignSpec,
+    Spec,
     parse_exact,
 )
 from nrs_design.spec.controllers import contact_names
 from nrs_design.spec.quantity import exact_number
 
 MOTION = ProportionalDerivative.name
+# Goals that free gains are chosen by: numbers that a proof shows, and last what is proved about.
+STEERING = ("decay_rate", "peak_torque", "delay")
 # Gains by controller.
 Numbers = Mapping[str, Mapping[str, Fraction]]
 
@@ -80,6 +83,14 @@ def free_gains(spec: InteractionDesignSpec) -> Iterator[tuple[str, str]]:
         yield from ((name, gain) for gain, own in controller.gains().items() if not own.fixed)
     for name, free in spec.design.free.items():
         yield from ((name, gain) for gain, _ in free.given())
+
+
+def steering_goals(spec: Spec) -> tuple[str, ...]:
+    """Return the goals of a spec that its free gains are chosen by; none where no gain is free."""
+    if spec.kind != "interaction-design" or spec.goals is None:
+        return ()
+    given = {key for key, _ in spec.goals.given()}
+    return tuple(key for key in STEERING if key in given) if any(free_gains(spec)) else ()
 
 
 def chosen_of(spec: InteractionDesignSpec, gains: Mapping[str, Mapping[str, str]]) -> Numbers:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from nrs_design.errors import DesignError
 from nrs_design.gating.examine import Examiner
 from nrs_design.gating.obligations import Obligation
-from nrs_design.pipeline.analysis import run_analysis
+from nrs_design.pipeline.analysis import run_judgement
 from nrs_design.pipeline.certification import Result
 from nrs_design.progress import Progress
 
@@ -27,7 +27,7 @@ def judge_margins(
         return None, ()
     progress("margins")
     try:
-        analysis = run_analysis(result.designed)
+        analysis = run_judgement(result.designed)
     except DesignError as error:
         return None, (examiner.no_margins(error),)
     judged = (examiner.stiffness_ranges, examiner.goals, examiner.responses)

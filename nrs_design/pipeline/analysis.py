@@ -18,14 +18,16 @@ if TYPE_CHECKING:
 
 
 def run_analysis(designed: Designed) -> DesignAnalysis:
-    """Compute what a design achieves, with what its runs break of the limit of the torque.
-
-    An unstable nominal loop is a `DesignError`.
-    """
+    """Compute what a design achieves; an unstable nominal loop is a `DesignError`."""
     from nrs_design.design.analysis import analyze_design
 
     with placed(designed.loaded):
-        found = analyze_design(designed.spec, designed.plant, designed.design)
+        return analyze_design(designed.spec, designed.plant, designed.design)
+
+
+def run_judgement(designed: Designed) -> DesignAnalysis:
+    """Compute what a design achieves, with what its runs break of the limit of the torque."""
+    found = run_analysis(designed)
     return replace(found, doubts=(*found.doubts, *_doubt_runs(designed)))
 
 

@@ -140,7 +140,8 @@ def _of_older(designed: Designed, wide: Designed, found: Certification) -> Resul
 
 def meets_goals(result: Result) -> bool:
     """Tell whether a spec is proved, with the goals that gains are chosen by."""
-    from nrs_design.certificates.goals import STEERING, certified_goals
+    from nrs_design.certificates.goals import certified_goals
+    from nrs_design.controllers.gains import STEERING
 
     goals = certified_goals(result.loaded.spec, result.certificate)
     proved = result.certification.verdict is Verdict.PROVED

@@ -9,7 +9,7 @@ from time import perf_counter
 from typing import TYPE_CHECKING
 
 from nrs_design.certificates.certificate import Certificate, Gains
-from nrs_design.certificates.goals import steering_goals
+from nrs_design.controllers.gains import steering_goals
 from nrs_design.errors import CertificateError, DesignError
 from nrs_design.pipeline.certification import (
     Result,

@@ -11,9 +11,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from nrs_design.certificates.certificate import content_id, dump
-from nrs_design.certificates.goals import STEERING, certified_goals, steering_goals
+from nrs_design.certificates.goals import certified_goals
 from nrs_design.certificates.prove import read_document
 from nrs_design.certificates.verify import verify_document
+from nrs_design.controllers.gains import STEERING, steering_goals
 from nrs_design.errors import DesignError
 from nrs_design.gating.run import Files, run_gate
 from nrs_design.pipeline.analysis import run_analysis

@@ -11,7 +11,8 @@ import pytest
 
 from nrs_design.certificates.bounds import bound_on
 from nrs_design.certificates.certificate import Verdict
-from nrs_design.certificates.goals import decay_rate, steering_goals
+from nrs_design.certificates.goals import decay_rate
+from nrs_design.controllers.gains import steering_goals
 from nrs_design.errors import DesignError
 from nrs_design.pipeline.analysis import run_analysis
 from nrs_design.pipeline.certification import gains_text

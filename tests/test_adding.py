@@ -127,13 +127,22 @@ def law_classes() -> frozenset[str]:
     return frozenset(specs - others | laws | {*EVIDENCE.values()})
 
 
+def is_union(node: ast.AST) -> bool:
+    match node:
+        case ast.Name() | ast.Attribute():
+            return True
+        case ast.BinOp(left=left, op=ast.BitOr(), right=right):
+            return is_union(left) and is_union(right)
+    return isinstance(node, ast.Tuple) and bool(node.elts) and all(map(is_union, node.elts))
+
+
 def with_unions(classes: frozenset[str], files: Iterable[Iterable[ast.AST]]) -> frozenset[str]:
     """Classes, and all that unions and tuples of them are assigned to."""
     assigned = [
         node
         for nodes in files
         for node in nodes
-        if isinstance(node, ast.Assign) and isinstance(node.value, ast.Tuple | ast.BinOp)
+        if isinstance(node, ast.Assign) and is_union(node.value)
     ]
     known, before = classes, frozenset[str]()
     while known > before:

@@ -44,11 +44,11 @@ def certified_goals(spec: Spec, certificate: Certificate | None) -> Iterator[Cer
 
     The certificate has been checked; None if nothing was shown.
     """
-    from nrs_design.controllers.gains import steering_goals
-
-    steering = steering_goals(spec)
     for goal in _goals(spec, certificate):
-        others = not goal.met and goal.key in steering
+        # Who has goals has loaded what gains are.
+        from nrs_design.controllers.gains import steering_goals
+
+        others = not goal.met and goal.key in steering_goals(spec)
         yield replace(goal, said=f"{goal.said}; {_FREE}") if others else goal
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from fractions import Fraction
+from typing import TYPE_CHECKING
 
 from nrs_design.axis import AxisType
 from nrs_design.controllers.controller_design import Controller, ControllerDesign
@@ -17,11 +18,13 @@ from nrs_design.spec import (
     GainSpec,
     IdleStatesSpec,
     InteractionDesignSpec,
-    Spec,
     parse_exact,
 )
 from nrs_design.spec.controllers import contact_names
 from nrs_design.spec.quantity import exact_number
+
+if TYPE_CHECKING:
+    from nrs_design.spec import Spec
 
 MOTION = ProportionalDerivative.name
 # Goals that free gains are chosen by: numbers that a proof shows, and last what is proved about.

@@ -38,7 +38,7 @@ def _of_controllers(spec: InteractionDesignSpec) -> Iterator[Asked]:
     # A force that is sampled more often than the motion loop has no such limit.
     limited = sampling is None or sampling.outer >= sampling.period.exact
     for name, controller in spec.controllers.items():
-        if controller.type == "impedance" and limited:
+        if controller.limits_stiffness and limited:
             yield STIFFNESS_RANGE.id, name
         given = (spec.goals, getattr(controller, "goals", None))
         keys = {key for goals in given if goals is not None for key, _ in goals.given()}

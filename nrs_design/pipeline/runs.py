@@ -9,7 +9,6 @@ from time import perf_counter
 from typing import TYPE_CHECKING
 
 from nrs_design.certificates.certificate import Certificate, Gains
-from nrs_design.controllers.gains import steering_goals
 from nrs_design.errors import CertificateError, DesignError
 from nrs_design.pipeline.certification import (
     Result,
@@ -41,11 +40,13 @@ def run_design(
     the cheapest that are proved to meet the goals, if such are found.
     """
     designed = design_at_least_cost(loaded)
-    if designed is None or not steering_goals(designed.spec):
+    if designed is None:
+        return None
+    from nrs_design.controllers.gains import chosen_of, steering_goals
+
+    if not steering_goals(designed.spec):
         return designed
     if recorded is not None:
-        from nrs_design.controllers.gains import chosen_of
-
         return replace(
             designed, design=designed.design.with_gains(chosen_of(designed.spec, recorded))
         )

@@ -128,6 +128,8 @@ class AbstractControllerSpec(SpecModel):
     makes_torques: ClassVar[bool] = False
     # Whether it keeps a state that stays in the command of other controllers, and decays there.
     bleeds: ClassVar[bool] = False
+    # Whether its design has a limit of the stiffness that it may touch.
+    limits_stiffness: ClassVar[bool] = False
     # Gains that `design.free` may name, and the key in whose place each may be given.
     freeable: ClassVar[Mapping[str, str | None]] = MappingProxyType({})
 
@@ -162,6 +164,7 @@ class ImpedanceControllerSpec(AbstractControllerSpec):
         json_schema_extra={"not": {"required": ["desired_impedance", "desired_impedance_ratio"]}}
     )
     commands: ClassVar[Command] = "velocity"
+    limits_stiffness: ClassVar[bool] = True
     freeable: ClassVar[Mapping[str, str | None]] = MappingProxyType({"Kt": None})
 
     type: Literal["impedance"] = Field(description="impedance: admittance Y = 1/(Mt s + Bt + Kt/s)")

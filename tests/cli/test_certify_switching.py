@@ -328,10 +328,7 @@ def test_output_that_nobody_takes(tmp_path, opened, code, said):
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("command", "spec", "closed"),
-    [
-        ("certify-switching", COMMUTING, ">&- 2>&-"),
-        ("tune", SOFT_TISSUE, ">&-"),
-    ],
+    [("certify-switching", COMMUTING, ">&- 2>&-"), ("tune", SOFT_TISSUE, ">&-")],
 )
 def test_closed_streams(tmp_path, command, spec, closed):
     line = f'exec "$0" -m nrs_design {command} "$1" {closed}'

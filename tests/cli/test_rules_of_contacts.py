@@ -10,10 +10,7 @@ from tests.support import run
 # The agile controller makes the tool unstable, and is left there in time.
 LAW = "{type: impedance, environment: %s, contacts: [tissue, tool], Mt: 0.03 kg*m^2, "
 TEXT = text_of(
-    {
-        "agile": LAW % "tissue" + "Bt: 1.04 N*m*s/rad}",
-        "careful": LAW % "tool" + "Bt: 4 N*m*s/rad}",
-    },
+    {"agile": LAW % "tissue" + "Bt: 1.04 N*m*s/rad}", "careful": LAW % "tool" + "Bt: 4 N*m*s/rad}"},
     {
         "tissue": "{model: elastic, stiffness: 43.0356 N*m/rad}",
         "tool": "{model: elastic, stiffness: 104.7 N*m/rad}",

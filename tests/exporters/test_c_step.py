@@ -23,10 +23,7 @@ def of(operation):
 def test_helpers_are_there_where_they_are_called():
     plain = of(Operation("y", "multiply", "h", "x"))
     called = ("is_within(", "saturated(")
-    for text, wanted in (
-        (guards(plain), [True, False]),
-        (guards(LAWS["limits"]), [True, True]),
-    ):
+    for text, wanted in ((guards(plain), [True, False]), (guards(LAWS["limits"]), [True, True])):
         assert [name in text for name in called] == wanted
 
 

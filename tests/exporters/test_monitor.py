@@ -22,11 +22,7 @@ from tests.identification import runs
 
 LAW = LAWS["inertia"]
 # Of the checks of `audit`, what the monitor calls them.
-SAME = {
-    "dwell times": {"STAY", "ORDER"},
-    "saturation": {"SATURATION"},
-    "force": {"FORCE"},
-}
+SAME = {"dwell times": {"STAY", "ORDER"}, "saturation": {"SATURATION"}, "force": {"FORCE"}}
 
 
 class Watching(Monitor):

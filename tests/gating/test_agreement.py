@@ -115,10 +115,7 @@ ALONE = {"OTHER": "", "MOTOR": "4.8417e-4 rad/s/rpm", "LAG": "0.0351 s"}
         # What no gains reach is said of those of the least cost.
         (ALONE | {"CONTACT": "kept", "GOALS": "decay_rate: 25 1/s"}, {"decay_rate": False}),
         # An older force than the spec declares is proved of it.
-        (
-            ALONE | {"GOALS": "decay_rate: 2 1/s, delay: 4 ms"},
-            {"decay_rate": True, "delay": True},
-        ),
+        (ALONE | {"GOALS": "decay_rate: 2 1/s, delay: 4 ms"}, {"decay_rate": True, "delay": True}),
     ],
 )
 def test_all_commands_agree(tmp_path, changes, met):

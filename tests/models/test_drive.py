@@ -8,12 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from nrs_design.errors import AssemblyError
-from nrs_design.models.drive import (
-    lagging_drive,
-    position_drive,
-    torque_drive,
-    velocity_drive,
-)
+from nrs_design.models.drive import lagging_drive, position_drive, torque_drive, velocity_drive
 from nrs_design.models.interval import Interval
 from nrs_design.models.motion_loop import MotionLoop
 

@@ -40,14 +40,7 @@ OPERATORS: dict[type, type] = {
 NAMES = {"all": "any", "any": "all", "max": "min", "min": "max"}
 CONDITIONS = (ast.Name, ast.Attribute, ast.Call, ast.Subscript)
 # What does not run, and the words of an error.
-UNCHANGED = {
-    "annotation",
-    "returns",
-    "decorator_list",
-    "type_params",
-    "exc",
-    "cause",
-}
+UNCHANGED = {"annotation", "returns", "decorator_list", "type_params", "exc", "cause"}
 
 
 Place = tuple[Any, str | int]

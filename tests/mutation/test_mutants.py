@@ -37,11 +37,7 @@ def test_what_is_changed(source, changed):
 
 @pytest.mark.parametrize(
     ("returns", "given", "others"),
-    [
-        ("bool", "a", ["True", "False"]),
-        ("str | None", "a", ["None"]),
-        ("int", "a", []),
-    ],
+    [("bool", "a", ["True", "False"]), ("str | None", "a", ["None"]), ("int", "a", [])],
 )
 def test_other_answers_of_a_function(returns, given, others):
     names = [mutant.name for mutant in mutants(f"def f() -> {returns}:\n    return {given}")]

@@ -142,12 +142,7 @@ def test_what_an_automaton_allows():
     assert ONE_OF_THREE.after(0, first=True) == 0
     assert ONE_OF_THREE.after(0, first=False) == 1
     assert ONE_OF_THREE.after(1, first=False) is None
-    assert [*ONE_OF_THREE.turns()] == [
-        (0, True, 0),
-        (0, False, 1),
-        (1, True, 2),
-        (2, True, 0),
-    ]
+    assert [*ONE_OF_THREE.turns()] == [(0, True, 0), (0, False, 1), (1, True, 2), (2, True, 0)]
     assert [*ROUND.turns()] == [(0, True, 1), (1, False, 2), (2, False, 0)]
 
 

@@ -28,9 +28,7 @@ def lower(rows):
 
 
 @given(
-    st.lists(st.floats(-1, 1), min_size=3, max_size=3),
-    st.floats(0, 1e-3),
-    st.integers(-200, 200),
+    st.lists(st.floats(-1, 1), min_size=3, max_size=3), st.floats(0, 1e-3), st.integers(-200, 200)
 )
 def test_rounded_balls_stay_below_every_matrix_in_them(entries, radius, exponent):
     """If the rounded matrix is definite, so are all corners of the ball matrix."""
@@ -51,11 +49,7 @@ def test_rounded_balls_stay_below_every_matrix_in_them(entries, radius, exponent
         assert smallest < 4 * radius + 1e-12
 
 
-@given(
-    st.lists(st.floats(-1, 1), min_size=3, max_size=3),
-    st.floats(0, 1e-3),
-    st.integers(-60, 60),
-)
+@given(st.lists(st.floats(-1, 1), min_size=3, max_size=3), st.floats(0, 1e-3), st.integers(-60, 60))
 def test_states_in_other_units_cost_nothing(entries, radius, log2):
     """What is below a form is below it in other units, and is found there as well."""
     a, b, c = entries

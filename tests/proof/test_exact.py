@@ -246,10 +246,7 @@ def test_only_matrices_of_one_shape_are_added(other):
 class TestProducts:
     @given(
         st.tuples(st.integers(1, 6), st.integers(1, 6), st.integers(1, 6)).flatmap(
-            lambda sizes: st.tuples(
-                rectangle(sizes[0], sizes[1]),
-                rectangle(sizes[1], sizes[2]),
-            )
+            lambda sizes: st.tuples(rectangle(sizes[0], sizes[1]), rectangle(sizes[1], sizes[2]))
         )
     )
     def test_against_sums_of_products(self, factors):

@@ -10,9 +10,7 @@ from hypothesis import strategies as st
 
 from nrs_design.errors import InternalError
 from nrs_design.proof.channels import Rounding
-from nrs_design.proof.evidence import (
-    BlockTriangular,
-)
+from nrs_design.proof.evidence import BlockTriangular
 from nrs_design.proof.evidence.growing_sequence import GrowingSequence, staying
 from nrs_design.proof.exact import is_positive_definite
 from nrs_design.proof.mode import Time

@@ -13,13 +13,7 @@ from nrs_design.proof.evidence.graph import Node
 from nrs_design.proof.exact import is_positive_definite
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
-from nrs_design.proof.stays import (
-    EnclosedStep,
-    find_odd_stays,
-    power,
-    shifted,
-    steps_of_stays,
-)
+from nrs_design.proof.stays import EnclosedStep, find_odd_stays, power, shifted, steps_of_stays
 from nrs_design.proof.steps import Stays
 from nrs_design.proof.switching import Edge, Stay, Switching
 from tests.proof.graphs import mode_quadratic, scalars

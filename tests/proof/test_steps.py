@@ -13,12 +13,7 @@ from nrs_design.proof.evidence import InvariantEllipsoid
 from nrs_design.proof.evidence.abstract import NOT_ROUNDED, ROUNDED
 from nrs_design.proof.mode import Time
 from nrs_design.proof.second_opinion import agrees
-from nrs_design.proof.steps import (
-    Acting,
-    flow_step,
-    map_step,
-    multiplier_names,
-)
+from nrs_design.proof.steps import Acting, flow_step, map_step, multiplier_names
 from nrs_design.proof.system import SwitchedSystem
 from tests.proof.graphs import common_quadratic, forms_of_steps, one_form
 from tests.proof.systems import Entry, bouncing, bouncing_in_steps, crowded, family, matrix

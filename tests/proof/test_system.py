@@ -5,13 +5,7 @@ import pytest
 
 from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Stay, Switching
-from tests.proof.systems import (
-    bouncing_in_steps,
-    family,
-    matrix,
-    pushed,
-    resets_between,
-)
+from tests.proof.systems import bouncing_in_steps, family, matrix, pushed, resets_between
 
 HALF = Fraction(1, 2)
 

@@ -121,11 +121,7 @@ def test_lights_of_a_design(report):
     [
         ("decay_rate: 0.5 1/s", "good", "proved: decay_rate"),
         ("decay_rate: 300 1/s", "doubtful", "NOT proved: decay_rate"),
-        (
-            "decay_rate: 0.5 1/s, max_sensitivity_peak: 50",
-            "good",
-            "all 2 met; proved: decay_rate",
-        ),
+        ("decay_rate: 0.5 1/s, max_sensitivity_peak: 50", "good", "all 2 met; proved: decay_rate"),
         (
             "decay_rate: 300 1/s, max_sensitivity_peak: 50",
             "doubtful",

@@ -157,12 +157,7 @@ LINE_FAULTS = [
     ("    Mt:", "    contacts: [[hand, glass]]", None, "there is no environment 'glass'"),
     ("    Mt:", "    desired_impedance_ratio: 0", "0\n    Mt", "not positive"),
     ("    Mt:", f"{WANTED}\n    desired_impedance_ratio: 0.5", "0.5\n    Mt", "exclude each other"),
-    (
-        "    Mt:",
-        "    weights: {displayed: 0, sensitivity: 0}",
-        "{displayed",
-        "weights are zero",
-    ),
+    ("    Mt:", "    weights: {displayed: 0, sensitivity: 0}", "{displayed", "weights are zero"),
     ("    Mt:", "    weights: {displayed: -1}", "-1}", "zero or positive"),
     ("limits:", f"{LOOP}[1, 2], denominator: [1, 2]}}", "[1, 2], den", "not strictly proper"),
     ("limits:", f"{LOOP}[1], denominator: [0, 2]}}", "0, 2]", "highest coefficient is zero"),

@@ -5,13 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from nrs_design.thesis import (
-    actuator,
-    hands_on,
-    impedance,
-    table,
-    thesis,
-)
+from nrs_design.thesis import actuator, hands_on, impedance, table, thesis
 from nrs_design.thesis.comparison import PrintVerdict, meets_standard
 from nrs_design.thesis.table import reproduce, topic_rows
 

@@ -9,16 +9,8 @@ import pytest
 
 from nrs_design.proof.channels import Rounding
 from nrs_design.proof.contact import Flights
-from nrs_design.proof.evidence import (
-    KINDS,
-    AbstractEvidence,
-    Shows,
-)
-from nrs_design.proof.evidence.abstract import (
-    GROWN_WITHOUT_ROUNDING,
-    find_indefinite,
-    is_square,
-)
+from nrs_design.proof.evidence import KINDS, AbstractEvidence, Shows
+from nrs_design.proof.evidence.abstract import GROWN_WITHOUT_ROUNDING, find_indefinite, is_square
 from nrs_design.proof.evidence.growing_sequence import staying
 from nrs_design.proof.exact import MAX_WORK
 from nrs_design.proof.matrix import RationalMatrix

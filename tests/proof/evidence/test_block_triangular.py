@@ -5,11 +5,7 @@ from fractions import Fraction
 
 import pytest
 
-from nrs_design.proof.evidence import (
-    BlockTriangular,
-    NoCommonQuadratic,
-    read_evidence,
-)
+from nrs_design.proof.evidence import BlockTriangular, NoCommonQuadratic, read_evidence
 from nrs_design.proof.evidence.block_triangular import diagonal_block
 from nrs_design.proof.evidence.growing_sequence import staying
 from nrs_design.proof.mode import Time

@@ -63,14 +63,7 @@ from tests.proof.systems import (
     slow_switching_in_steps,
     two_ways,
 )
-from tests.proof.truth import (
-    edge_form,
-    edges_at,
-    exponential,
-    holds,
-    is_in_other_units,
-    moves,
-)
+from tests.proof.truth import edge_form, edges_at, exponential, holds, is_in_other_units, moves
 from tests.search.support import found as accepted
 from tests.support import broken, ends_soon, is_definite_by_ldl
 

@@ -561,11 +561,7 @@ def test_one_step_of_contact_and_one_of_flight():
         (ONCE, (Fraction(99, 100), Fraction(2)), "not beyond the limit"),
         (ONCE, (NARROW[1], NARROW[0]), "not beyond the limit"),
         (ONCE, (NARROW[0], NARROW[0]), "not beyond the limit"),
-        (
-            ONCE,
-            (NARROW[0], 2 - Fraction(1, MAX_FACTOR_DENOMINATOR + 1)),
-            "too many digits",
-        ),
+        (ONCE, (NARROW[0], 2 - Fraction(1, MAX_FACTOR_DENOMINATOR + 1)), "too many digits"),
         ((), NARROW, "does not cover this kind of switching"),
         ((("m0", 0), ("free", 1)), NARROW, "a time is not between"),
         ((("m0", MAX_STEPS), ("free", 1)), NARROW, "too long for so many states"),

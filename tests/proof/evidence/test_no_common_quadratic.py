@@ -10,12 +10,7 @@ from nrs_design.proof.evidence import NoCommonQuadratic
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.switching import Switching
-from tests.proof.systems import (
-    ando_shih,
-    dayawansa_martin,
-    family,
-    genuine,
-)
+from tests.proof.systems import ando_shih, dayawansa_martin, family, genuine
 
 IDENTITY = ((1, 0), (0, 1))
 

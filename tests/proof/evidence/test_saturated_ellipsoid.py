@@ -189,10 +189,7 @@ UNEVEN = replace(
         (changed(rows=(matrix([[1, 1]]),)), "s does not have the size of the state"),
         (without_signals(), "no signal saturates"),
         (without_signals(SIGNAL, SIGNAL), "s does not have the size of the state"),
-        (
-            without_signals(*(replace(SIGNAL, name=f"s{i}") for i in range(5))),
-            "more than 4 do",
-        ),
+        (without_signals(*(replace(SIGNAL, name=f"s{i}") for i in range(5))), "more than 4 do"),
         (
             replace(
                 pushed_away(),

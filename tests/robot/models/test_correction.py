@@ -5,12 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nrs_design.robot.models import (
-    Sine,
-    correction,
-    correction_coefficients,
-    tilt_tables,
-)
+from nrs_design.robot.models import Sine, correction, correction_coefficients, tilt_tables
 from nrs_design.robot.models.correction import DEPTH_SINES, TABLE_3_5, correct, to_csv
 
 

@@ -64,6 +64,7 @@ class ConstrainedOptimum:
 
     last: Evaluation
     jacobian: Array  # Shape (k, n), there
+    cost: float
     # Shape (k,). What the cost rises by if a constraint is one harder to meet.
     shadow_prices: Array
     evaluations: int
@@ -97,7 +98,7 @@ def minimize_in_trust_region(problem: ConstrainedProblem, start: Evaluation) -> 
         cuts = [here, *others[-MOST_CUTS:]]
     shadow_prices = np.array([*_shadow_prices(problem, here)])
     last = Evaluation(here.x, here.values, lambda: here.jacobian)
-    return ConstrainedOptimum(last, here.jacobian, shadow_prices, count)
+    return ConstrainedOptimum(last, here.jacobian, problem.cost(here.x), shadow_prices, count)
 
 
 @dataclass(frozen=True, eq=False)

@@ -61,6 +61,7 @@ class RadiusBounds:
     lower: Fraction | None  # Some signal reaches it; None if no word was found
     # That signal, again and again: modes with the number of their steps.
     word: Steps | None
+    evidence: AbstractEvidence | None  # That it grows, of modes divided by the lower end
     upper: Fraction | None  # No signal grows by more, but for a constant factor; None if not shown
     method: str | None  # By which rung that was found
 
@@ -85,7 +86,7 @@ def bound_radius(found: Certification, limits: Limits) -> RadiusBounds | None:
     if system.roundings:
         return None
     budget = min(limits.budget, BUDGET)
-    bounds = RadiusBounds(None, None, None, None)
+    bounds = RadiusBounds(None, None, None, None, None)
     with floats_in_silence():
         matrices = np.array([mode.A.floats() for mode in system.modes])
         graph = StepGraph.of(system, matrices) if np.isfinite(matrices).all() else None
@@ -119,7 +120,7 @@ def _with_words(
             radius = (growth / float(claim)) ** len(word)
             evidence, _ = first_accepted(_proposed(divided, steps, edges, radius), divided)
             if evidence is not None:
-                return replace(bounds, lower=claim, word=steps)
+                return replace(bounds, lower=claim, word=steps, evidence=evidence)
     return bounds
 
 

@@ -88,7 +88,7 @@ def test_what_is_held_is_said_to_be():
 def test_without_inertia_no_velocity_is_said_to_start_at_zero(tmp_path):
     text = MIXED.read_text().replace("decay: 20 1/s", "decay: 20 1/s, reset: true")
     path = tmp_path / "mixed-controllers.nrs.yaml"
-    path.write_text(text.replace("nominal: 0.01 kg*m^2", "nominal: 0 kg*m^2"))
+    path.write_text(text.replace("Mt: 0.01 kg*m^2", "Mt: 0 kg*m^2"))
     designed = run_design(read_spec(path))
     system = assemble(designed.spec, designed.plant, designed.design)
     texts = " ".join(system.assumptions)

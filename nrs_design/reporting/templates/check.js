@@ -1,6 +1,6 @@
-// Decides from the numbers of the certificate in the page whether its statements hold, in integers alone and with no network.
-// What each number means, and what must hold, is in docs/certificates/format.md. Vectors are maps from what they multiply to
-// ratios [n, d], or to integers: monomials of the states ("2", "0,2"), and what acts beside them ("rounding 1").
+// Decides from the numbers of the certificate in the page whether its statements hold, in integers alone, with no network. What each
+// number means, and what must hold, is in docs/certificates/format.md. Vectors are maps from monomials of the states ("2", "0,2"),
+// and from what acts beside them ("rounding 1"), to ratios [n, d], or to integers.
 const check = (() => {
   class Unchecked extends Error {}
   const need = (truth, words, Kind = Error) => { if (!truth) throw new Kind(words); }, known = (truth, words) => need(truth, words, Unchecked);
@@ -14,8 +14,7 @@ const check = (() => {
   const multiplied = (left, right) => total([...left].flatMap(([a, x]) => [...right].map(([b, y]) => [sorted(a, b), x * y])));
   function ratio(text) {
     const [n, d = 1n] = /^\d+(\/\d+)?$/.test(text) ? text.split("/").map(BigInt) : [1n, 0n];
-    need(d > 0n, "a number is no ratio");
-    return [n / gcd(n, d), d / gcd(n, d)];
+    return need(d > 0n, "a number is no ratio"), [n / gcd(n, d), d / gcd(n, d)];
   }
   const distinct = (keys, names) => need(new Set(keys).size === keys.length && keys.every((key) => names.includes(key)), "it names something else, or one twice");
   // JSON whose numbers are integers of any length; texts are marked, so that none of them is taken for a number.

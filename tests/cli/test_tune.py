@@ -51,7 +51,6 @@ def test_a_force_error_without_goal_is_warned_of(tmp_path):
     ("name", "count", "worst"),
     [
         ("soft-tissue", 3, "withdrawal: sensitivity peak Ms 3.753"),
-        ("force-limit", 1, "simulated, insertion-and-withdrawal: a torque of 0.3391 N*m"),
         ("nose", 2, "insertion: Mt is on its lower bound"),
     ],
 )

@@ -2,7 +2,7 @@
 
 import pytest
 
-from nrs_design.pipeline.analysis import run_analysis
+from nrs_design.pipeline.analysis import run_judgement
 from nrs_design.pipeline.runs import run_design
 from nrs_design.spec import read_spec
 from tests.design.holder import USELESS
@@ -11,7 +11,7 @@ from tests.support import FORCE_LIMIT, SOFT_TISSUE
 
 def warnings(path):
     loaded = read_spec(path)
-    return [str(doubt) for doubt in run_analysis(run_design(loaded)).warnings]
+    return [str(doubt) for doubt in run_judgement(run_design(loaded)).warnings]
 
 
 def changed(tmp_path, *replacements, source=SOFT_TISSUE):

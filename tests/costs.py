@@ -17,7 +17,7 @@ import pytest
 
 COSTS = Path(__file__).with_name("costs.tsv")
 # Processor seconds. The default session has thousands of tests; CI has all but studies.
-SLOW, NIGHTLY = 0.1, 0.5
+SLOW, NIGHTLY = 0.1, 0.25
 # What is published, every page prints what it shows; and that the house stands without a wing, and
 # with an addition.
 IN_CI = ("tests/docs/", "tests/test_wings.py", "tests/test_additions.py")

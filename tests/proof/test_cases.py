@@ -41,6 +41,7 @@ FORMS = FormsOnGraph(
 
 def test_each_case_has_a_form_of_its_own():
     """There is none for both, and a form of the other case is none of this one."""
+    assert (SWITCHED.has_constants, CASES.has_constants) == (False, True)
     assert FORMS.find_fault(CASES) is None
     assert "not a form at every place" in FORMS.find_fault(SWITCHED)
     (up, down) = FORMS.nodes

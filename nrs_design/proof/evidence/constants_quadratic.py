@@ -71,13 +71,10 @@ class ConstantsQuadratic(AbstractFunction):
         for index, P in enumerate(self.functions):
             yield f"P at corner {index + 1} is not symmetric and positive definite", P
         modes = {mode.name: mode for mode in system.modes}
-        known: set[tuple[str, Matrix]] = set()
         for corners, (F, G) in zip(system.switching.fixed_ends, self.multipliers, strict=True):
             for name, P in zip(corners, self.functions, strict=True):
-                if (name, P) not in known:
-                    form = self._decrease(modes[name], P, F, G, system.time)
-                    yield f"V does not decrease in mode {name}", form
-                    known.add((name, P))
+                form = self._decrease(modes[name], P, F, G, system.time)
+                yield f"V does not decrease in mode {name}", form
 
     def _decrease(self, mode: Mode, P: Matrix, F: Matrix, G: Matrix, time: Time) -> list[list[int]]:
         """Form what must be positive, times the denominators of mode and rate."""

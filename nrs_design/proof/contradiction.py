@@ -212,6 +212,9 @@ def _find_odd_case(system: SwitchedSystem) -> str | None:
         return "a mode is in no case, or in two"
     if not system.switching.is_arbitrary or not system.is_uniform:
         return "there are cases, and rules of switching or modes of unlike size besides"
+    cases = [frozenset(names) for names in system.cases]
+    if any(not any(case.issuperset(names) for case in cases) for names in system.enclosures):
+        return "what is between the modes of an enclosure is in no case"
     for only in map(system.only, system.cases):
         if not only.modes or bool(only.free) is not bool(system.free):
             return "a case has no mode, in contact or free"

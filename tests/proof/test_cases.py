@@ -73,6 +73,7 @@ def test_nothing_grows_across_cases():
         ({"switching": Switching(transitions=(("m0", "m1"),))}, "rules of switching"),
         ({"cases": (("m0", "m1"), ())}, "a case has no mode"),
         ({"clock": Clock(2, ("m0",))}, "a step of a round has no mode"),
+        ({"enclosures": (("m0", "m1"),)}, "is in no case"),
     ],
 )
 def test_what_are_no_cases(change, reason):

@@ -18,9 +18,12 @@ import pytest
 COSTS = Path(__file__).with_name("costs.tsv")
 # Processor seconds. The default session has thousands of tests; CI has all but studies.
 SLOW, NIGHTLY = 0.1, 0.25
-# What is published, every page prints what it shows; and that the house stands without a wing, and
-# with an addition.
-IN_CI = ("tests/docs/", "tests/test_wings.py", "tests/test_additions.py")
+# What is published, every page prints what it shows; what the house is, with an addition and
+# without a wing; and what commands load and begin with.
+IN_CI = (
+    *("tests/docs/", "tests/test_wings.py", "tests/test_additions.py", "tests/test_structure.py"),
+    *("tests/cli/test_app.py", "tests/cli/test_init.py"),
+)
 
 
 @cache

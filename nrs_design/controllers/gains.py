@@ -21,6 +21,7 @@ from nrs_design.spec import (
     parse_exact,
 )
 from nrs_design.spec.controllers import contact_names
+from nrs_design.spec.free import FactorBounds
 from nrs_design.spec.quantity import exact_number
 
 if TYPE_CHECKING:
@@ -96,12 +97,31 @@ def steering_goals(spec: Spec) -> tuple[str, ...]:
     return tuple(key for key in STEERING if key in given) if any(free_gains(spec)) else ()
 
 
-def chosen_of(spec: InteractionDesignSpec, gains: Mapping[str, Mapping[str, str]]) -> Numbers:
-    """Return those of the gains, such as a certificate quotes, that the spec leaves to choose."""
+def with_chosen(
+    spec: InteractionDesignSpec,
+    design: ControllerDesign,
+    gains: Mapping[str, Mapping[str, str]],
+) -> ControllerDesign:
+    """Return a design with those of the gains of a certificate that the spec leaves to choose.
+
+    A `CertificateError` if one is farther from the design than `design.free` allows.
+    """
     found: dict[str, dict[str, Fraction]] = {}
     for name, gain in free_gains(spec):
         found.setdefault(name, {})[gain] = parse_exact(gains[name][gain])
-    return found
+    laws = design.laws
+    for name, free in spec.design.free.items():
+        for gain, factors in free.given():
+            _check_near(name, gain, laws[name].gains[gain], factors, found[name][gain])
+    return design.with_gains(found)
+
+
+def _check_near(
+    name: str, gain: str, given: Fraction, factors: FactorBounds, found: Fraction
+) -> None:
+    low, high = (to_float32(factor * given) for factor in (factors.min, factors.max))
+    if not low <= found <= high:
+        raise CertificateError(f"gain {gain} of {name} is outside its bounds")
 
 
 def _unfreed(spec: InteractionDesignSpec, gains: Numbers) -> Numbers:
@@ -115,9 +135,7 @@ def _unfreed(spec: InteractionDesignSpec, gains: Numbers) -> Numbers:
             given = _given(spec, name, gain)
             if given is None:
                 continue
-            low, high = (to_float32(factor * given) for factor in (factors.min, factors.max))
-            if not low <= found[name].get(gain, given) <= high:
-                raise CertificateError(f"gain {gain} of {name} is outside its bounds")
+            _check_near(name, gain, given, factors, found[name].get(gain, given))
             found[name][gain] = given
     loop = spec.motion_loop
     zero = None if loop is None or loop.derivative_gain is not None else loop.zero

@@ -99,7 +99,7 @@ def _examine(loaded: LoadedSpec, entry: LockedSpec | None, file: Path) -> SpecOu
         return _missed(examiner, f"this spec is not in {file.name} ({RENEW})")
     if (changed := _find_change(loaded, entry)) is not None:
         return _missed(examiner, f"{changed} ({RENEW})")
-    if lacks := find_missing(loaded.spec, {(goal.rule, goal.subject) for goal in entry.goals}):
+    if lacks := find_missing(loaded.spec, {(g.rule, g.subject): g.status for g in entry.goals}):
         listed = "; ".join(f"{rule} of {subject}" for rule, subject in lacks)
         return _missed(examiner, f"{file.name} does not say how this ended: {listed} ({RENEW})")
     if entry.certificate is None:

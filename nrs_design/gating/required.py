@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
 from nrs_design.gating.rules import GOAL, RESPONSE_GOAL, SCENARIO_LIMIT, STIFFNESS_RANGE
@@ -17,13 +17,14 @@ _RESPONSES = ("transparency", "accuracy")
 _NO_MARGINS = (STIFFNESS_RANGE.id, "controllers")
 
 
-def find_missing(spec: Spec, locked: Collection[Asked]) -> tuple[Asked, ...]:
-    """Return what a spec asks of its design, and is not locked."""
+def find_missing(spec: Spec, locked: Mapping[Asked, str]) -> tuple[Asked, ...]:
+    """Return what a spec asks of its design, and is not locked, each with its status."""
     if spec.kind != "interaction-design":
         return ()
-    asked = () if _NO_MARGINS in locked else tuple(_of_controllers(spec))
-    # A scenario that cannot be simulated stands for its limits.
-    limits = (one for one in _of_scenarios(spec) if (one[0], one[1].split(":")[0]) not in locked)
+    # What could not be judged stands for all that was asked of it, and is never met.
+    unjudged = {one for one, status in locked.items() if status != "met"}
+    asked = () if _NO_MARGINS in unjudged else tuple(_of_controllers(spec))
+    limits = (one for one in _of_scenarios(spec) if (one[0], one[1].split(":")[0]) not in unjudged)
     return tuple(one for one in (*asked, *limits) if one not in locked)
 
 

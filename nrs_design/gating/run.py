@@ -17,7 +17,7 @@ from nrs_design.axis import about
 from nrs_design.certificates.certificate import Verdict, dump
 from nrs_design.certificates.goals import certified_goals
 from nrs_design.certificates.verify import find_foreign, read_document
-from nrs_design.controllers.gains import gains_of
+from nrs_design.controllers.gains import gains_of, steering_goals
 from nrs_design.errors import CertificateError, OutputError, SpecError
 from nrs_design.gating.examine import Examiner
 from nrs_design.gating.judge import judge_margins, judge_scenarios
@@ -232,7 +232,9 @@ def _kept(loaded: LoadedSpec, files: Files, progress: Progress) -> Result | None
         return None
     verdict, goals = result.certification.verdict, certified_goals(loaded.spec, result.certificate)
     proved = verdict is Verdict.PROVED and all(goal.met for goal in goals)
-    return result if proved or verdict is Verdict.REFUTED else None
+    # Of gains that a search chooses, those that are refuted say nothing of others.
+    refuted = verdict is Verdict.REFUTED and not steering_goals(loaded.spec)
+    return result if proved or refuted else None
 
 
 def _holds_text(file: Path, text: str) -> bool:

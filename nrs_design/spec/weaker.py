@@ -263,7 +263,8 @@ def _of_ranges(
     same = covers and not is_less(new_low, low) and not is_less(high, new_high)
     if not (same and said[0] == said[1]):
         message = f"{_name(at)}: {said[0]} before, {said[1]} now"
-        weaker = not covers and (not was_point or _is_touched(at))
+        lower = _is_borne(_keys(at)) and is_less(new_high, high)
+        weaker = not covers and (not was_point or _is_touched(at) or lower)
         yield Change(at, message + weaker * " (values of before are not covered)", weaker)
 
 

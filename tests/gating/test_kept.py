@@ -76,6 +76,15 @@ def test_what_is_refuted_is_not_searched_for_again(project, gate):
     assert contents(project) == before
 
 
+def test_gains_that_are_refuted_say_nothing_of_those_that_a_search_chooses(
+    project, gate, monkeypatch
+):
+    monkeypatch.setattr("nrs_design.gating.run.steering_goals", lambda spec: ("decay_rate",))
+    (project / "specs/unstable.nrs.yaml").write_text(UNSTABLE)
+    assert gate("unstable")
+    assert gate("unstable")
+
+
 def test_a_certificate_counts_without_a_lock_and_in_another_folder(project, gate):
     text = (project / "reports/stable.cert.json").read_text()
     lock = (project / "nrs.lock").read_bytes()

@@ -14,10 +14,11 @@ RUN = """scenarios:
 SOFT_TISSUE = ROOT / "specs/neuroboscope/soft-tissue.nrs.yaml"
 
 
-def asked(tmp_path, text, *locked):
+def asked(tmp_path, text, locked=(), status="missed"):
     path = tmp_path / "s.nrs.yaml"
     path.write_text(text)
-    return [f"{rule} {subject}" for rule, subject in find_missing(read_spec(path).spec, locked)]
+    known = {locked: status} if locked else {}
+    return [f"{rule} {subject}" for rule, subject in find_missing(read_spec(path).spec, known)]
 
 
 def test_every_shipped_lock_says_what_its_spec_asks():
@@ -25,11 +26,11 @@ def test_every_shipped_lock_says_what_its_spec_asks():
     for entry in entries:
         spec = read_spec(ROOT / entry.path).spec
         locked = [(goal.rule, goal.subject) for goal in entry.goals]
-        assert find_missing(spec, locked) == ()
+        assert find_missing(spec, dict.fromkeys(locked, "met")) == ()
         # Whichever is gone is missing.
         for index in range(len(locked)):
             rest = locked[:index] + locked[index + 1 :]
-            assert find_missing(spec, rest) == (locked[index],)
+            assert find_missing(spec, dict.fromkeys(rest, "met")) == (locked[index],)
 
 
 def test_goals_of_the_spec_and_limits_of_runs_are_asked(tmp_path):
@@ -47,6 +48,9 @@ def test_goals_of_the_spec_and_limits_of_runs_are_asked(tmp_path):
     assert asked(tmp_path, text) == [*controllers, *limits]
     assert asked(tmp_path, text, ("NRS103", "controllers")) == limits
     assert asked(tmp_path, text, ("NRS109", "hit")) == controllers
+    # What was never judged is not met, whatever a lock says.
+    for stand_in in (("NRS103", "controllers"), ("NRS109", "hit")):
+        assert asked(tmp_path, text, stand_in, "met") == [*controllers, *limits]
 
 
 @pytest.mark.parametrize(("outer", "limited"), [("1 ms", False), ("4 ms", True)])

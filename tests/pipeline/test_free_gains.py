@@ -1,12 +1,15 @@
 """The cheapest gains of all, with those of the motion loop and a spring among them."""
 
 from dataclasses import replace
+from fractions import Fraction
 from math import log
 
 import numpy as np
 import pytest
 
-from nrs_design.controllers.gains import design_from_gains, gains_of
+from nrs_design.controllers.float32 import exact_decimal, to_float32
+from nrs_design.controllers.gains import design_from_gains, gains_of, with_chosen
+from nrs_design.design.design import design_controllers
 from nrs_design.design.impedance_optimum import optimize_impedance
 from nrs_design.design.laws.impedance import impedance_problem, requirement_of
 from nrs_design.design.laws.law import Task
@@ -15,6 +18,9 @@ from nrs_design.pipeline.analysis import run_analysis
 from nrs_design.pipeline.free_gains import gain_branches
 from nrs_design.pipeline.runs import run_design
 from nrs_design.pipeline.written_gains import with_gains
+from nrs_design.spec import parse_spec
+from nrs_design.spec.build_plant import build_plant
+from tests.support import SOFT_TISSUE
 
 from .free import FORCE, PD, freed
 
@@ -96,3 +102,25 @@ def test_a_spring_moves_the_cost():
     here[[one.gain for one in gains.coordinates].index("Kt")] = log(2)
     assert gains.cost(free) < gains.cost(here)
     assert float(gains.design(free).laws["insertion"].gains["Kt"]) == pytest.approx(1)
+
+
+@pytest.mark.parametrize(("factor", "fits"), [("1", True), ("1.04", True), ("3", False)])
+def test_recorded_gains_are_as_near_as_the_spec_says(factor, fits):
+    """Also where the root locus gives what is free, and the spec gives neither gain."""
+    text = SOFT_TISSUE.read_text()
+    for line in ("  derivative_gain: 2060 rpm*s/rad\n", "  zero: 56.9706 1/s\n"):
+        assert line in text
+        text = text.replace(line, "")
+    near = "{min: 0.95, max: 1.05}"
+    text = text.replace("design:\n", f"design:\n  free: {{motion: {{Kp: {near}, Kd: {near}}}}}\n")
+    spec = parse_spec(f"{text}goals: {{decay_rate: 1 1/s}}\n")
+    design = design_controllers(spec, build_plant(spec))
+    gains = gains_of(design)
+    for gain in ("Kp", "Kd"):
+        moved = to_float32(design.laws["motion"].gains[gain] * Fraction(factor))
+        gains["motion"][gain] = exact_decimal(moved)
+    if fits:
+        assert gains_of(with_chosen(spec, design, gains)) == gains
+        return
+    with pytest.raises(CertificateError, match="gain Kp of motion is outside its bounds"):
+        with_chosen(spec, design, gains)

@@ -206,6 +206,7 @@ READ = [
     (ARBITRARY, "[0.1 ms, 0.5 ms]", "0.3 ms", True, False),
     (ARBITRARY, "delay: 0", "delay: 0, admittance: exact", False, False),
     (ARBITRARY, "delay: 0", "delay: [0, 0]", False, False),
+    (ARBITRARY, "delay: 0", "delay: 2", False, True),
     (ARBITRARY, "747 N/m", "{nominal: 747 N/m, range: [740 N/m, 750 N/m]}", False, True),
 ]
 

@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING
 
 from nrs_design.models.cut import MAX_PARTS, Ends, RangeCut, cut_ranges
 from nrs_design.proof.constant import value_at
-from nrs_design.proof.evidence import FormsOnGraph
 from nrs_design.proof.switching import ARBITRARY, FixedParameter
-from nrs_design.proof.system import SwitchedSystem
+from nrs_design.search.cases import ProvedCase
 from nrs_design.search.certification import Limits
 from nrs_design.work import Allowance, Fuse, NotAffordableError
 
@@ -27,9 +26,6 @@ PER_MODE = 0.005
 # parts that reach zero, the shorter one counts as shorter.
 ZERO_AT = Fraction(1, 8)
 
-# A system with what proves it.
-Proved = tuple[SwitchedSystem, FormsOnGraph]
-
 
 @dataclass(frozen=True, slots=True)
 class Cases:
@@ -38,7 +34,7 @@ class Cases:
     outcome: str
     work: float
     cuts: tuple[RangeCut, ...] = ()
-    proved: tuple[Proved, ...] = field(default=(), repr=False)
+    proved: tuple[ProvedCase, ...] = field(default=(), repr=False)
 
 
 def find_cases(designed: Designed, constants: Sequence[FixedParameter], limits: Limits) -> Cases:
@@ -51,7 +47,7 @@ def find_cases(designed: Designed, constants: Sequence[FixedParameter], limits: 
     (drive,) = designed.spec.drives
     allowance = Allowance(ALL_PARTS * limits.budget, limits.memory, Fuse.of(limits.budget))
 
-    def proved_at(part: Ends) -> Proved | str:
+    def proved_at(part: Ends) -> ProvedCase | str:
         if allowance.left <= 0:
             raise NotAffordableError(
                 f"the budget of {allowance.total:g} for all parts is used up (--budget)"
@@ -70,12 +66,12 @@ def find_cases(designed: Designed, constants: Sequence[FixedParameter], limits: 
 
 
 def _cut(
-    constants: Sequence[FixedParameter], proved_at: Callable[[Ends], Proved | str]
-) -> tuple[tuple[RangeCut, ...], tuple[Proved, ...], str]:
+    constants: Sequence[FixedParameter], proved_at: Callable[[Ends], ProvedCase | str]
+) -> tuple[tuple[RangeCut, ...], tuple[ProvedCase, ...], str]:
     """Cut parts without a proof, as long as there is one at their middle; that of all first."""
     whole = {p.name: (p.low, p.high) for p in constants}
     cuts: list[RangeCut] = []
-    proved: dict[int, Proved] = {}
+    proved: dict[int, ProvedCase] = {}
     todo = [0]
     while todo:
         index = todo.pop()

@@ -12,6 +12,9 @@ from nrs_design.proof.steps import ROUNDING
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.switched.cases import name_in_case
 
+# The system of a case with what proves it.
+ProvedCase = tuple[SwitchedSystem, FormsOnGraph]
+
 
 def joined(system: SwitchedSystem, parts: Sequence[FormsOnGraph]) -> FormsOnGraph:
     """Return the evidence on all cases of a system from that on each, in their order.

@@ -40,8 +40,8 @@ def lint(session: nox.Session) -> None:
 
 @nox.session
 def environment(session: nox.Session) -> None:
-    """Install the package and what tests and mypy need, once for all sessions that run in it."""
-    install(session, ".[test]", "mypy", "scipy-stubs")
+    """Install the package and what tests, mypy and pages need, once for all sessions that run in it."""
+    install(session, ".[docs,test]", "mypy", "scipy-stubs")
 
 
 def install(session: nox.Session, *wanted: str) -> None:
@@ -84,9 +84,11 @@ def types(session: nox.Session) -> None:
 
 @nox.session(**IN_ENVIRONMENT)
 def tests(session: nox.Session) -> None:
-    """Run all but the dear tests; CI leaves those of the proofs to `coverage`."""
-    left_out = ["--ignore=tests/proof"] if os.environ.get("CI") == "true" else []
-    run_there(session, "pytest", *TWO_PROCESSES, "-m", "not slow", *left_out, *session.posargs)
+    """Run all but the dear tests; in CI those too, and `coverage` has the ones of the proofs."""
+    chosen = ("-m", "not slow")
+    if os.environ.get("CI") == "true":
+        chosen = ("-m", "not nightly", "--ignore=tests/proof")
+    run_there(session, "pytest", *TWO_PROCESSES, *chosen, *session.posargs)
 
 
 @nox.session(**IN_ENVIRONMENT)
@@ -113,17 +115,12 @@ def mutation(session: nox.Session) -> None:
 
 
 @nox.session(**IN_ENVIRONMENT)
-def slow(session: nox.Session) -> None:
-    """Run the dear tests that CI runs; those of the proofs run in `coverage`."""
-    chosen = ("-m", "slow and not nightly", "--ignore=tests/proof")
-    run_there(session, "pytest", *TWO_PROCESSES, *chosen, *session.posargs)
-
-
-@nox.session(**IN_ENVIRONMENT)
 def nightly(session: nox.Session) -> None:
-    """Run the studies, and many more examples of every property: an hour."""
+    """Run the studies, many more examples of every property, and all benchmarks: an hour."""
     chosen = ("-m", "nightly or hypothesis", "--hypothesis-profile", "many")
     run_there(session, "pytest", *TWO_PROCESSES, *chosen, *session.posargs)
+    # Whether each still runs; how fast is for `benchmarks`.
+    run_there(session, "python", "-m", "benchmarks", "--smoke")
 
 
 @nox.session(**IN_ENVIRONMENT)
@@ -133,11 +130,10 @@ def frama(session: nox.Session) -> None:
     run_there(session, "pytest", "-m", "slow or nightly", "tests/exporters/test_eva.py")
 
 
-@nox.session
+@nox.session(**IN_ENVIRONMENT)
 def docs(session: nox.Session) -> None:
     """Build the documentation as plain files in site/; a broken link fails."""
-    install(session, ".[docs]")
-    session.run("python", "-m", "mkdocs", "build", *session.posargs)
+    run_there(session, "python", "-m", "mkdocs", "build", *session.posargs)
 
 
 @nox.session
@@ -162,8 +158,7 @@ def package(session: nox.Session) -> None:
             session.run(program, "gate", "specs/", "--locked", external=True)
 
 
-@nox.session
+@nox.session(**IN_ENVIRONMENT)
 def benchmarks(session: nox.Session) -> None:
     """Measure our speed beside the peers', as ratios in one run."""
-    install(session, ".[test]")
-    session.run("python", "-m", "benchmarks", *session.posargs)
+    run_there(session, "python", "-m", "benchmarks", *session.posargs)

@@ -1,4 +1,4 @@
-"""What each test takes of a processor, measured: it says in which session a test runs.
+"""What each test takes, measured on an idle machine: it says in which session a test runs.
 
 ``python -m tests.costs`` runs all tests but the nightly ones in one process and writes `COSTS`, a
 line for each test that takes longer than `SLOW`. A test that is not there is in the default
@@ -8,21 +8,24 @@ otherwise: how fast a machine is decides nothing.
 """
 
 import os
-import resource
 from collections.abc import Iterator, Sequence
 from functools import cache
 from pathlib import Path
+from time import perf_counter
 
 import pytest
 
 COSTS = Path(__file__).with_name("costs.tsv")
-# Processor seconds. The default session has thousands of tests; CI has all but studies.
+# Seconds. The default session has thousands of tests; CI has all but studies.
 SLOW, NIGHTLY = 0.1, 0.25
 # What is published, every page prints what it shows; what the house is, with an addition and
 # without a wing; and what commands load and begin with.
 IN_CI = (
     *("tests/docs/", "tests/test_wings.py", "tests/test_additions.py", "tests/test_structure.py"),
     *("tests/cli/test_app.py", "tests/cli/test_init.py"),
+    # That commands agree, checkers agree, and nothing that lies beside a spec is run.
+    *("tests/gating/test_agreement.py", "tests/certificates/test_mutated.py"),
+    "tests/hostile/test_planted.py",
 )
 
 
@@ -49,12 +52,6 @@ def mark_by_cost(items: Sequence[pytest.Item]) -> None:
             item.add_marker(pytest.mark.slow)
 
 
-def processor_seconds() -> float:
-    """Return the time of this process and of those that it waited for."""
-    uses = [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
-    return sum(use.ru_utime + use.ru_stime for use in uses)
-
-
 class Measurement:
     """A plugin that measures every test from its first fixture to its last."""
 
@@ -63,9 +60,9 @@ class Measurement:
 
     @pytest.hookimpl(wrapper=True)
     def pytest_runtest_protocol(self, item: pytest.Item) -> Iterator[None]:
-        start = processor_seconds()
+        start = perf_counter()
         yield
-        self.costs[name_of(item)] = processor_seconds() - start
+        self.costs[name_of(item)] = perf_counter() - start
 
 
 def main() -> int:

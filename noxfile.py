@@ -40,7 +40,7 @@ def lint(session: nox.Session) -> None:
 
 @nox.session
 def environment(session: nox.Session) -> None:
-    """Install the package and what tests, mypy and pages need, once for all sessions that run in it."""
+    """Install the package and what tests, mypy and pages need, once for all sessions in it."""
     install(session, ".[docs,test]", "mypy", "scipy-stubs")
 
 

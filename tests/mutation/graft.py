@@ -26,6 +26,7 @@ def _graft_names(names: Any, changed: Any, owner: Any) -> None:
         elif functions := _functions(old):
             for target, source in zip(functions, _functions(new), strict=True):
                 target.__code__, target.__defaults__ = source.__code__, source.__defaults__
+                target.__kwdefaults__ = source.__kwdefaults__
         elif isinstance(old, (int, tuple, Fraction)) and new != old:
             setattr(owner, name, new)
 

@@ -26,13 +26,12 @@ from nrs_design.spec.concessions import (
     GIVEN_GAINS,
     WITHOUT,
     Concession,
-    Edit,
     Way,
     calmer,
     concessions,
 )
 from nrs_design.spec.document import Position, to_data
-from nrs_design.spec.edits import Keys, changed, in_one_line, node_at
+from nrs_design.spec.edits import Edit, Keys, edited, identified_above, in_one_line, node_at
 from nrs_design.spec.load import respecified
 from nrs_design.spec.places import dotted
 
@@ -154,7 +153,7 @@ class _Search:
         """
         blocking = []
         for left, line in zip(range(len(lines), 0, -1), lines, strict=True):
-            if self._decide(line.edits(line.least, 0), (find - self._spent) / left):
+            if self._decide([line.edit(line.least, 0)], (find - self._spent) / left):
                 blocking.append(line)
         found = []
         for left, line in zip(range(len(blocking), 0, -1), blocking, strict=True):
@@ -173,7 +172,7 @@ class _Search:
         way = line.least
         left = len(line.others) + max(way.size - 1, 0).bit_length()
         for other in line.others:
-            if self._decide(line.edits(other, 0), 2 * (until - self._spent) / (left + 1)):
+            if self._decide([line.edit(other, 0)], 2 * (until - self._spent) / (left + 1)):
                 way = other
                 break
             left -= 1
@@ -181,7 +180,7 @@ class _Search:
         while high - low > 1:
             middle = (low + high) // 2
             left = (high - low - 1).bit_length()
-            if self._decide(line.edits(way, middle), 2 * (until - self._spent) / (left + 1)):
+            if self._decide([line.edit(way, middle)], 2 * (until - self._spent) / (left + 1)):
                 low = middle
             else:
                 high = middle
@@ -249,7 +248,7 @@ class _Search:
         return _Decided(loaded, decided, gains_text(designed))
 
     def _proved(self, lines: Sequence[tuple[Concession, Way, int]]) -> Proved:
-        edits = [edit for line, form, step in lines for edit in line.edits(form, step)]
+        edits = [line.edit(form, step) for line, form, step in lines]
         decided = self._found[_edited(self._result.loaded, edits).sha256]
         assert decided is not None
         proof, evidence = decided.certification, decided.certification.evidence
@@ -279,7 +278,7 @@ class _Search:
             form.word,
             "" if says is None else f"{key}: {in_one_line(says)}",
             line.other_loop,
-            tuple(dotted(at) for at in line.beside),
+            tuple(map(dotted, identified_above(self._result.loaded.root, line.at))),
         )
 
     def _name(self, at: Keys) -> str:
@@ -291,14 +290,11 @@ class _Search:
 
 
 def _edited(loaded: LoadedSpec, edits: Sequence[Edit]) -> LoadedSpec:
-    root = loaded.root
-    for at, said in edits:
-        root = changed(root, at, said)
-    return respecified(loaded, root)
+    return respecified(loaded, edited(loaded.root, edits))
 
 
 def _least(lines: Sequence[Concession]) -> list[Edit]:
-    return [edit for line in lines for edit in line.edits(line.least, 0)]
+    return [line.edit(line.least, 0) for line in lines]
 
 
 def _same_search(one: SwitchedSystem, other: SwitchedSystem) -> bool:

@@ -15,7 +15,7 @@ from math import ceil, floor, log2
 
 from nrs_design.proof.text import exact_text
 from nrs_design.spec.document import Data, to_data
-from nrs_design.spec.edits import Keys, in_one_line
+from nrs_design.spec.edits import Edit, Keys, in_one_line
 from nrs_design.spec.exact import parse_exact
 from nrs_design.spec.interaction import InteractionDesignSpec
 from nrs_design.spec.load import LoadedSpec
@@ -40,8 +40,6 @@ UP, DOWN, WITHIN, WITH, WITHOUT = "up to", "down to", "within", "with", "without
 CALMER = ((2, 1), (1, 2), (2, 2), (4, 2), (2, 4), (4, 4))
 GIVEN_GAINS = ("Bt", "proportional_gain", "integral_gain")
 
-Edit = tuple[Keys, Data | None]
-
 
 @dataclass(frozen=True, slots=True)
 class Way:
@@ -62,15 +60,14 @@ class Concession:
     least: Way  # At 0, it asks for the least
     # Ask for more than that at 0 already; the first one that is proved there is looked at further.
     others: tuple[Way, ...] = ()
-    beside: tuple[Keys, ...] = ()  # What holds of the values as they were, and is left out as well
     # Whether what is proved then is about another loop, or takes more for granted, rather than
     # about less of what was asked for.
     other_loop: bool = False
     in_all: bool = True  # Whether it is changed where all lines are that make sense together
 
-    def edits(self, form: Way, step: int) -> tuple[Edit, ...]:
+    def edit(self, form: Way, step: int) -> Edit:
         """Return what is written at a step."""
-        return ((self.at, form.says(step)), *((at, None) for at in self.beside))
+        return self.at, form.says(step)
 
 
 def concessions(loaded: LoadedSpec, slowest: float | None) -> Iterator[Concession]:
@@ -104,11 +101,10 @@ def _of_interaction(
     spec: InteractionDesignSpec, said: dict[str, Data], slowest: float | None
 ) -> Iterator[Concession]:
     for name in sorted(spec.touched):
-        identified = _identified(said, ("environments", name))
         for key in ("exponent", *spec.environments[name].parameters()):
-            yield from _range(said, ("environments", name, key), identified)
+            yield from _range(said, ("environments", name, key))
     for at in spec.motor_ranges:
-        yield from _range(said, at, _identified(said, at[:1]))
+        yield from _range(said, at)
     for place, quantity in spec.ranges.items():
         if quantity.varies and not quantity.fixed:
             yield _with((*place, "varies"), "false", "true")
@@ -190,15 +186,7 @@ def _without(at: Keys, *, other_loop: bool = False, in_all: bool = True) -> Conc
     return Concession(at, form, other_loop=other_loop, in_all=in_all)
 
 
-def _identified(said: dict[str, Data], at: Keys) -> tuple[Keys, ...]:
-    """Return where it is said that values are those that were identified, if it is."""
-    part = _get(said, at)
-    if not isinstance(part, dict) or "range_id" not in part:
-        return ()
-    return tuple((*at, key) for key in ("range_id", "range_covers") if key in part)
-
-
-def _range(said: dict[str, Data], at: Keys, beside: tuple[Keys, ...] = ()) -> Iterator[Concession]:
+def _range(said: dict[str, Data], at: Keys) -> Iterator[Concession]:
     """Yield the range of a quantity, if one is written; the center is its nominal value."""
     part = _get(said, at)
     if not isinstance(part, dict) or not isinstance(part.get("range"), tuple):
@@ -218,7 +206,7 @@ def _range(said: dict[str, Data], at: Keys, beside: tuple[Keys, ...] = ()) -> It
             Way(DOWN, down, lambda k: down(k)[0], low, PARTS),
         )
     least = Way(WITHIN, both, lambda k: in_one_line(both(k)), in_one_line((low, high)), PARTS)
-    yield Concession((*at, "range"), least, others, beside)
+    yield Concession((*at, "range"), least, others)
 
 
 def _ends(ends: tuple[str, str, str], moved: tuple[bool, bool], step: int) -> tuple[str, str]:

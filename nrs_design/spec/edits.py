@@ -1,10 +1,17 @@
-"""A document with one place changed: what a person could have written instead."""
+"""A document with places changed: what a person could have written instead."""
 
 from __future__ import annotations
+
+from collections.abc import Iterable
 
 from nrs_design.spec.document import Data, Mapping, Node, Position, Scalar, Sequence
 
 Keys = tuple[str | int, ...]
+# A place, and what is written there; None leaves it out.
+Edit = tuple[Keys, Data | None]
+
+# What may change beside identified values.
+NOT_IDENTIFIED = frozenset({"provenance", "accept_doubt", "range_id", "load_inertia"})
 
 
 def node_at(root: Node, at: Keys) -> Node | None:
@@ -18,6 +25,29 @@ def node_at(root: Node, at: Keys) -> Node | None:
         else:
             return None
     return node
+
+
+def identified_above(root: Node, at: Keys) -> tuple[Keys, ...]:
+    """Return where it is said that values are those that were identified, if they are at a place.
+
+    That holds of no others.
+    """
+    for depth in range(len(at) - 1, 0, -1):
+        node = node_at(root, at[:depth])
+        if isinstance(node, Mapping) and "range_id" in node.entries:
+            said = ("range_id", "range_covers") if at[depth] not in NOT_IDENTIFIED else ()
+            return tuple((*at[:depth], key) for key in said if key in node.entries)
+    return ()
+
+
+def edited(root: Node, edits: Iterable[Edit]) -> Node:
+    """Return a document with all edits, without what identification said of the values before."""
+    edits = tuple(edits)
+    for at in dict.fromkeys(key for place, _ in edits for key in identified_above(root, place)):
+        root = changed(root, at, None)
+    for at, said in edits:
+        root = changed(root, at, said)
+    return root
 
 
 def changed(root: Node, at: Keys, said: Data | None) -> Node:

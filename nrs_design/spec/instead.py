@@ -14,7 +14,7 @@ from contextvars import ContextVar
 from pathlib import Path
 
 from nrs_design.spec.document import Node
-from nrs_design.spec.edits import Keys, changed
+from nrs_design.spec.edits import Keys, edited
 
 # A place of the document, and the text that it holds there.
 Change = tuple[Keys, str]
@@ -37,6 +37,4 @@ def as_read(root: Node, file: Path) -> Node:
     said = _CHANGES.get()
     if said is None or said[0] != os.path.realpath(file):
         return root
-    for at, text in said[1]:
-        root = changed(root, at, text)
-    return root
+    return edited(root, said[1])

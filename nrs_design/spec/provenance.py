@@ -11,6 +11,7 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import Field
 
 from nrs_design.spec.check import Row
+from nrs_design.spec.edits import NOT_IDENTIFIED
 from nrs_design.spec.fields import Hash, Title
 from nrs_design.spec.model import SpecModel, optional
 from nrs_design.spec.plausible import unusual
@@ -107,8 +108,7 @@ class IdentifiedRangesSpec(IdentifiedSpec):
 
     def values_id(self) -> str:
         """Return the SHA-256 of what identification writes, whatever the layout of the text."""
-        beside = {"provenance", "accept_doubt", "range_id", "load_inertia"}
-        names = [name for name in type(self).model_fields if name not in beside]
+        names = [name for name in type(self).model_fields if name not in NOT_IDENTIFIED]
         canonical = json.dumps({name: _plain(getattr(self, name)) for name in names})
         return hashlib.sha256(canonical.encode()).hexdigest()
 

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from nrs_design.spec import LoadedSpec, parse_spec
 from nrs_design.spec.concessions import PARTS, Concession, calmer, concessions
 from nrs_design.spec.document import parse_document, to_data
-from nrs_design.spec.edits import changed
+from nrs_design.spec.edits import changed, edited
 from nrs_design.spec.load import respecified
 from nrs_design.spec.weaker import find_changes
 from tests.support import FORCE_LIMIT, ROOT, SOFT_TISSUE
@@ -52,10 +52,7 @@ def lines_of(spec: LoadedSpec, slowest: float | None = None) -> dict[str, Conces
 
 
 def at_least(spec: LoadedSpec, line: Concession) -> LoadedSpec:
-    root = spec.root
-    for at, said in line.edits(line.least, 0):
-        root = changed(root, at, said)
-    return respecified(spec, root)
+    return respecified(spec, edited(spec.root, [line.edit(line.least, 0)]))
 
 
 @pytest.mark.parametrize("name", PARTS_OF)
@@ -161,19 +158,16 @@ def test_identified_ranges_lose_what_was_said_of_them():
     values = parse_spec(text).environments["soft"].values_id()
     text = text.replace(covers, f"{covers}    range_id: {values}\n")
     spec = loaded(text)
-    line = lines_of(spec)[STIFFNESS]
-    assert line.beside == (
-        ("environments", "soft", "range_id"),
-        ("environments", "soft", "range_covers"),
-    )
-    assert at_least(spec, line).spec.environments["soft"].fixed
+    assert spec.spec.environments["soft"].range_id == values
+    soft = at_least(spec, lines_of(spec)[STIFFNESS]).spec.environments["soft"]
+    assert (soft.fixed, soft.range_id, soft.range_covers) == (True, None, None)
 
 
 def test_given_gains_of_all_controllers_change_together():
     """Bounds move as one; a gain that is designed from something else is not given."""
     lines = calmer(loaded(TEXT.replace(BT, "Bt: {min: 0.1 N*m*s/rad, max: 1.5 N*m*s/rad")), 2, 4)
-    assert [line.edits(line.least, 0) for line in lines] == [
-        ((("controllers", name, "Bt"), {"min": "0.2 N*m*s/rad", "max": f"{top} N*m*s/rad"}),)
+    assert [line.edit(line.least, 0) for line in lines] == [
+        (("controllers", name, "Bt"), {"min": "0.2 N*m*s/rad", "max": f"{top} N*m*s/rad"})
         for name, top in (("insertion", 3), ("withdrawal", 3))
     ]
     (force,) = calmer(loaded(FORCE_LIMIT.read_text(encoding="utf-8")), 2, 4)

@@ -3,7 +3,7 @@
 import pytest
 
 from nrs_design.errors import SpecError
-from nrs_design.spec import read_spec
+from nrs_design.spec import parse_spec, read_spec
 from nrs_design.spec.instead import saying_instead
 from tests.support import COMMUTING, ROOT, SOFT_TISSUE
 
@@ -22,6 +22,30 @@ def test_read_as_if_it_were_written(tmp_path):
         assert said.sha256 == written.sha256
         assert read_spec(COMMUTING).sha256
     assert read_spec(SOFT_TISSUE) == before
+
+
+@pytest.mark.parametrize(
+    ("at", "text", "kept"),
+    [
+        (("stiffness",), "750 N/m", False),
+        (("lever_arm",), "0.2 m", False),
+        (("accept_doubt",), "another reason", True),
+    ],
+)
+def test_other_values_are_not_those_that_were_identified(tmp_path, at, text, kept):
+    """They were refused, or would be said to hold what the records do."""
+    file = tmp_path / "a.nrs.yaml"
+    arm = "    lever_arm: 0.24 m\n"
+    beside = "    range_covers: tolerance\n    doubts: [too few]\n    accept_doubt: a reason\n"
+    written = SOFT_TISSUE.read_text(encoding="utf-8").replace(arm, arm + beside)
+    identified = parse_spec(written).environments["soft"].values_id()
+    file.write_text(written.replace(beside, f"{beside}    range_id: {identified}\n"))
+    at = ("environments", "soft", *at)
+    with saying_instead(file, [(at, text)]):
+        soft = read_spec(file).spec.environments["soft"]
+    assert (soft.range_id, soft.range_covers) == (
+        (identified, "tolerance") if kept else (None, None)
+    )
 
 
 def test_a_fault_has_the_place_of_what_it_replaces():

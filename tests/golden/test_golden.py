@@ -5,7 +5,7 @@ from functools import cache
 
 import pytest
 
-from tests.golden.answers import ANSWERS, answer, differences, rows
+from tests.golden.answers import ANSWERS, answer, differences, rows, specs
 from tests.golden.combinations import outcomes, stored, subjects
 
 # Gains and certificates are of the same optimum, and are compared more often.
@@ -36,3 +36,12 @@ def test_nothing_is_stored_that_is_not_asked():
 def test_what_combines_and_what_is_refused_stays(subject):
     """A pair or row of features is refused with the same words, or makes the same system."""
     assert outcomes(subject) == stored()["outcomes"][subject]
+
+
+@pytest.mark.parametrize("name", specs())
+def test_a_shipped_spec_leaves_no_question_open(name):
+    """It has no doubt, and says `contact: kept` where only that is proved."""
+    checked, decided = (stored_answers(name)[key] for key in ("check", "certify-switching"))
+    assert not any(spec["warnings"] for spec in checked["specs"])
+    if "contact: not said" in str(checked) and decided["verdict"] == "proved":
+        assert "with contact lost" in decided["claim"]

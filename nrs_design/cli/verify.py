@@ -48,6 +48,9 @@ def verify(
     and the answer says so: whose modes they are is then not known, and gains, coordinates and
     assumptions, which nothing holds against anything, are not printed.
 
+    Gains that the spec leaves to a design are those of the file, if they are within what the spec
+    allows; `gate` holds them against the design. -v lists them.
+
     With --deployed, every file of a folder that a processor runs must be, byte for byte, what is
     exported with the certificate by this release; files of another release are named as such. The
     answer says first what was compared and what was not. How the files are compiled is not looked
@@ -209,7 +212,13 @@ def _print_gains(certificate: Certificate, spec: Spec) -> None:
         if gains:
             said = (f"{gain} = {value} {units[name][gain]}" for gain, value in gains.items())
             say(f"  {name}: {', '.join(said)}")
-    if isinstance(spec, InteractionDesignSpec) and spec.sampling is not None:
+    if not isinstance(spec, InteractionDesignSpec):
+        return
+    from nrs_design.controllers.gains import designed_gains
+
+    if found := ", ".join(map(" ".join, designed_gains(spec, certificate.gains))):
+        say(f"  as recorded, within what the spec allows, not designed again (gate does): {found}")
+    if spec.sampling is not None:
         _print_sampled_derivative(certificate, spec.sampling.period.exact)
 
 

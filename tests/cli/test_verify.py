@@ -34,6 +34,8 @@ def test_proof_holds(certified):
     result = typed("verify", "soft-tissue.json", SOFT_TISSUE, "-v", cwd=certified, code=0)
     assert result.stdout.startswith("PROVED for this spec, checked exactly")
     assert "insertion: Mt = 0.00999999977648258209228515625 kg*m^2, Bt = 2.15" in result.stdout
+    said = "as recorded, within what the spec allows, not designed again (gate does): insertion Mt,"
+    assert said in result.stdout
 
 
 def test_the_derivative_gain_is_that_of_a_program(tmp_path):

@@ -19,6 +19,7 @@ from nrs_design.facts.export import export_facts
 
 if TYPE_CHECKING:
     from nrs_design.exporters.export import Execution, Export
+    from nrs_design.pipeline.runs import Recorded
 
 
 # A command of its own writes it, since it proves another law.
@@ -43,7 +44,10 @@ def export(
     ] = False,
     certificate: Annotated[
         Path | None,
-        typer.Option(help="Certificate of this design; without it, the design is certified."),
+        typer.Option(
+            help="Certificate of this design; without it, the one that nrs.lock or the folder "
+            "records, if it holds; else the design is certified."
+        ),
     ] = None,
     out: Annotated[
         Path,
@@ -153,11 +157,12 @@ def _export_design(
             raise OutputError("is the certificate file", path=file, remedy="choose another --out")
     check_places(chosen, files, name)
     check_certificate(spec, beside)
+    recorded = None if certificate else _recorded(spec, beside)
     with progress(f"exporting {name}") as step:
         if chosen.alone:
-            result = export_proof(loaded, certificate, step)
+            result = export_proof(loaded, certificate, step, recorded)
         else:
-            result = export_design(loaded, certificate, step, execution)
+            result = export_design(loaded, certificate, step, execution, recorded)
     remarks: tuple[str, ...] = ()
     if result.may_be_written:
         # A design of which there is no program is told at its place in the spec.
@@ -172,6 +177,17 @@ def _export_design(
         # Nothing was written, which is an error of its own.
         loud=not result.may_be_written,
     )
+
+
+def _recorded(spec: Path, beside: Path) -> Recorded:
+    """Return the certificate that nrs.lock of this folder has for a spec; else the one beside."""
+    from nrs_design.gating.lock import read_lock_if_any
+    from nrs_design.gating.renew import recorded_in
+    from nrs_design.pipeline.runs import Recorded
+
+    lock = Path("nrs.lock")
+    locked = recorded_in(read_lock_if_any(lock), lock)
+    return locked.get(Path(os.path.abspath(spec)), Recorded(beside))
 
 
 def _show(

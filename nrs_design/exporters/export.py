@@ -12,8 +12,15 @@ from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.errors import DesignError
 from nrs_design.exporters.build import build_record, build_unproved, find_mismatch
 from nrs_design.exporters.record import ExportRecord
+from nrs_design.pipeline.certification import Result
 from nrs_design.pipeline.design import Designed, interaction_of
-from nrs_design.pipeline.runs import run_certification, run_design, run_recorded
+from nrs_design.pipeline.runs import (
+    Recorded,
+    run_certification,
+    run_design,
+    run_kept,
+    run_recorded,
+)
 from nrs_design.progress import Progress, silent
 from nrs_design.proof.text import exact_text
 from nrs_design.spec import InteractionDesignSpec, LoadedSpec
@@ -58,17 +65,19 @@ def export_design(
     certificate: Path | None = None,
     progress: Progress = silent,
     execution: Execution | None = None,
+    recorded: Recorded | None = None,
 ) -> Export:
     """Design a spec and return its export record, if the design is proved.
 
-    A given certificate is re-checked; without one the design is certified afresh. With an
-    execution, for files that a processor runs, the proof must be about the sampled loop.
+    A given certificate is re-checked; without one the design is that of the recorded certificate
+    that still holds, or is certified afresh. With an execution, for files that a processor runs,
+    the proof must be about the sampled loop.
     """
     spec = interaction_of(loaded, "has no gains to export")
     _check_one_period(loaded, spec)
     period = None if execution is None else _period(loaded, spec, execution.sample_time)
     export = (
-        _certified_afresh(loaded, progress)
+        _certified_here(loaded, recorded, progress)
         if certificate is None
         else _certified_by(loaded, certificate, progress)
     )
@@ -79,16 +88,19 @@ def export_design(
 
 
 def export_proof(
-    loaded: LoadedSpec, certificate: Path | None = None, progress: Progress = silent
+    loaded: LoadedSpec,
+    certificate: Path | None = None,
+    progress: Progress = silent,
+    recorded: Recorded | None = None,
 ) -> Export:
     """Return what formats take for which a certificate is enough; of a design, with its record.
 
     A `CertificateError` if the given file is no certificate of this spec, or does not hold.
     """
     if loaded.spec.kind == "interaction-design":
-        return export_design(loaded, certificate, progress)
+        return export_design(loaded, certificate, progress, recorded=recorded)
     result = (
-        run_certification(loaded, progress=progress)
+        _kept_or_anew(loaded, recorded, progress)
         if certificate is None
         else run_recorded(loaded, certificate, progress)
     )
@@ -108,8 +120,13 @@ def _check_one_period(loaded: LoadedSpec, spec: InteractionDesignSpec) -> None:
         )
 
 
-def _certified_afresh(loaded: LoadedSpec, progress: Progress) -> Export:
-    result = run_certification(loaded, progress=progress)
+def _kept_or_anew(loaded: LoadedSpec, recorded: Recorded | None, progress: Progress) -> Result:
+    kept = None if recorded is None else run_kept(loaded, recorded, progress)
+    return kept or run_certification(loaded, progress=progress)
+
+
+def _certified_here(loaded: LoadedSpec, recorded: Recorded | None, progress: Progress) -> Export:
+    result = _kept_or_anew(loaded, recorded, progress)
     verdict = str(result.certification.verdict)
     assert result.designed is not None, "an interaction design"
     if result.certificate is None or verdict != "proved":

@@ -21,6 +21,7 @@ from nrs_design.gating.lock import (
 )
 from nrs_design.gating.obligations import GateOutcome, SpecOutcome, Status
 from nrs_design.output import LOCK, alone_in, write_output
+from nrs_design.pipeline.runs import Recorded
 from nrs_design.spec.load import is_there
 
 
@@ -118,10 +119,10 @@ def certificates_of(lock: Lock, file: Path) -> Mapping[Path, Path]:
     }
 
 
-def recorded_in(lock: Lock, file: Path) -> Mapping[Path, tuple[Path, str]]:
-    """Return file and id of the certificate of every locked spec, by the absolute path of it."""
+def recorded_in(lock: Lock, file: Path) -> Mapping[Path, Recorded]:
+    """Return the certificate of every locked spec, by the absolute path of it."""
     return {
-        Path(os.path.abspath(file.parent / entry.path)): (
+        Path(os.path.abspath(file.parent / entry.path)): Recorded(
             Path(os.path.normpath(file.parent / entry.certificate.file)),
             entry.certificate.id,
         )

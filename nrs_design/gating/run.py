@@ -14,11 +14,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from nrs_design.axis import about
-from nrs_design.certificates.certificate import Verdict, dump
-from nrs_design.certificates.goals import certified_goals
-from nrs_design.certificates.verify import find_foreign, read_document
-from nrs_design.controllers.gains import gains_of, steering_goals
-from nrs_design.errors import CertificateError, OutputError, SpecError
+from nrs_design.certificates.certificate import dump
+from nrs_design.controllers.gains import gains_of
+from nrs_design.errors import OutputError, SpecError
 from nrs_design.gating.examine import Examiner
 from nrs_design.gating.judge import judge_margins, judge_scenarios
 from nrs_design.gating.obligations import (
@@ -34,7 +32,7 @@ from nrs_design.output import CERTIFICATE, PAGE, check_place, write_output
 from nrs_design.ownership import REMEDY, check_owner, origin_of
 from nrs_design.pipeline.blocked import Blocked, blocked_lines, find_blocked
 from nrs_design.pipeline.certification import Overrides, Result, run_verification, search_limits
-from nrs_design.pipeline.runs import run_certification, run_recorded
+from nrs_design.pipeline.runs import Recorded, run_certification, run_kept
 from nrs_design.progress import Progress, silent
 from nrs_design.spec import LoadedSpec, RobotSpec, read_spec
 from nrs_design.spec.task_space import file_of
@@ -54,12 +52,17 @@ class Files:
     every_page: bool = False  # Whether they are of all specs
     # Which spec a certificate file is locked for, as real paths.
     locked: Mapping[Path, Path] = field(default_factory=dict)
-    # File and id of the certificate that is locked for a spec, by the absolute path of the spec.
-    recorded: Mapping[Path, tuple[Path, str]] = field(default_factory=dict)
+    # The certificate that is locked for a spec, by the absolute path of the spec.
+    recorded: Mapping[Path, Recorded] = field(default_factory=dict)
 
     def certificate(self, name: str) -> Path:
         """Return the certificate file of the spec of that name."""
         return self.folder / f"{name}.cert.json"
+
+    def recorded_for(self, loaded: LoadedSpec) -> Recorded:
+        """Return the certificate that is locked for a spec; else where it would be."""
+        beside = Recorded(self.certificate(loaded.spec.name))
+        return self.recorded.get(Path(os.path.abspath(loaded.path)), beside)
 
     def report(self, name: str) -> Path:
         """Return the report file of the spec of that name."""
@@ -177,7 +180,8 @@ def _examine(
         check_place(files.report(loaded.spec.name), PAGE)
     limits = search_limits(loaded.spec, overrides)
     # Who sets how far a search goes wants one.
-    kept = None if overrides not in (None, Overrides()) else _kept(loaded, files, progress)
+    wanted = overrides not in (None, Overrides())
+    kept = None if wanted else run_kept(loaded, files.recorded_for(loaded), progress)
     result = kept or run_certification(loaded, limits=limits, progress=progress)
     certification, certificate = result.certification, result.certificate
     examiner = Examiner.of(loaded)
@@ -216,25 +220,6 @@ def _examine(
         return replace(outcome, recorded=recorded)
     gains, units = gains_of(result.design), result.design.units
     return replace(outcome, gains=gains, units=units, recorded=recorded)
-
-
-def _kept(loaded: LoadedSpec, files: Files, progress: Progress) -> Result | None:
-    """Return what is recorded for a spec, checked exactly; None if a search could show more."""
-    file, locked = files.certificate(loaded.spec.name), None
-    if (entry := files.recorded.get(Path(os.path.abspath(loaded.path)))) is not None:
-        file, locked = entry
-    try:
-        document = read_document(file)
-        if locked not in (None, document.get("id")) or find_foreign(document, loaded):
-            return None
-        result = run_recorded(loaded, file, progress)
-    except CertificateError:
-        return None
-    verdict, goals = result.certification.verdict, certified_goals(loaded.spec, result.certificate)
-    proved = verdict is Verdict.PROVED and all(goal.met for goal in goals)
-    # Of gains that a search chooses, those that are refuted say nothing of others.
-    refuted = verdict is Verdict.REFUTED and not steering_goals(loaded.spec)
-    return result if proved or refuted else None
 
 
 def _holds_text(file: Path, text: str) -> bool:

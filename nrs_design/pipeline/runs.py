@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING
 
-from nrs_design.certificates.certificate import Certificate, Gains
+from nrs_design.certificates.certificate import Certificate, Gains, Verdict
 from nrs_design.errors import CertificateError, DesignError
 from nrs_design.pipeline.certification import (
     Result,
@@ -28,6 +28,14 @@ if TYPE_CHECKING:
     from nrs_design.search.method_run import MethodRun
 
 _ANEW = "make it anew with certify-switching --out"
+
+
+@dataclass(frozen=True, slots=True)
+class Recorded:
+    """Where the certificate of a spec is recorded."""
+
+    file: Path
+    id: str | None = None  # As a lock file names it; None where none does
 
 
 def run_design(
@@ -94,6 +102,26 @@ def run_recorded(loaded: LoadedSpec, file: Path, progress: Progress = silent) ->
     designed, kept = read_recorded(loaded, file)
     certification = recorded_certification(kept, file, perf_counter() - start)
     return Result(loaded, designed, certification, kept)
+
+
+def run_kept(loaded: LoadedSpec, recorded: Recorded, progress: Progress = silent) -> Result | None:
+    """Return what is recorded for a spec, checked exactly; None if a search could show more."""
+    from nrs_design.certificates.goals import certified_goals
+    from nrs_design.certificates.verify import find_foreign, read_document
+    from nrs_design.controllers.gains import steering_goals
+
+    try:
+        document = read_document(recorded.file)
+        if recorded.id not in (None, document.get("id")) or find_foreign(document, loaded):
+            return None
+        result = run_recorded(loaded, recorded.file, progress)
+    except CertificateError:
+        return None
+    verdict, goals = result.certification.verdict, certified_goals(loaded.spec, result.certificate)
+    proved = verdict is Verdict.PROVED and all(goal.met for goal in goals)
+    # Of gains that a search chooses, those that are refuted say nothing of others.
+    refuted = verdict is Verdict.REFUTED and not steering_goals(loaded.spec)
+    return result if proved or refuted else None
 
 
 def read_recorded(loaded: LoadedSpec, file: Path) -> tuple[Designed | None, Certificate]:

@@ -12,6 +12,7 @@ from nrs_design.certificates.verify import verify
 from nrs_design.cli import main
 from nrs_design.exporters import format_names, format_of
 from nrs_design.exporters.record import ExportRecord
+from nrs_design.gating.lock import SCHEMA
 from nrs_design.pipeline.runs import run_certification
 from nrs_design.spec import read_spec
 from tests.support import program_named
@@ -77,7 +78,35 @@ def signed(text, edit):
     document = json.loads(text)
     edit(document)
     document["id"] = content_id(document)
-    return json.dumps(document)
+    return json.dumps(document, indent=2)
+
+
+@pytest.mark.parametrize(
+    ("where", "locked", "out", "kept"),
+    [
+        pytest.param("reports/soft-tissue.cert.json", None, "reports", True, id="beside"),
+        pytest.param("proofs/mine.cert.json", "itself", "there", True, id="locked"),
+        pytest.param("reports/soft-tissue.cert.json", "another", "reports", False, id="not it"),
+        pytest.param("reports/soft-tissue.cert.json", None, "there", False, id="not there"),
+    ],
+)
+def test_what_is_recorded_and_holds_is_exported(export, certificate, where, locked, out, kept):
+    """A search ends in other digits on another processor, and the lock would then be broken."""
+    text = signed(certificate, lambda document: document["package"].update(version="0.1"))
+    Path(where).parent.mkdir()
+    Path(where).write_text(text)
+    Path("a.nrs.yaml").write_text(SPEC.read_text())
+    if locked is not None:
+        found = json.loads(text)["id"] if locked == "itself" else "0" * 64
+        entry = {"path": "a.nrs.yaml", "certificate": {"file": where, "id": found}, "rate": None}
+        entry |= {"sha256": read_spec(SPEC).sha256, "version": "1", "verdict": "proved"}
+        document = {"schema": SCHEMA, "specs": [entry | {"gains": {}, "goals": []}]}
+        Path("nrs.lock").write_text(json.dumps(document))
+    assert export("a.nrs.yaml", "--out", out) == 0
+    shipped = json.loads(Path(out, "soft-tissue.export.json").read_text())
+    written = json.loads(Path(out, "soft-tissue.cert.json").read_text())
+    assert shipped["proof"]["certificate_id"] == written["id"]
+    assert (written["id"] == json.loads(text)["id"]) is kept
 
 
 def other_gain(document):

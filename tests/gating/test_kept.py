@@ -79,7 +79,7 @@ def test_what_is_refuted_is_not_searched_for_again(project, gate):
 def test_gains_that_are_refuted_say_nothing_of_those_that_a_search_chooses(
     project, gate, monkeypatch
 ):
-    monkeypatch.setattr("nrs_design.gating.run.steering_goals", lambda spec: ("decay_rate",))
+    monkeypatch.setattr("nrs_design.controllers.gains.steering_goals", lambda spec: ("decay_rate",))
     (project / "specs/unstable.nrs.yaml").write_text(UNSTABLE)
     assert gate("unstable")
     assert gate("unstable")

@@ -34,7 +34,7 @@ def _print_goals(name: str, items: Iterable[AbstractControllerAnalysis]) -> None
             found.standing.text,
         ]
         for item in items
-        for found in item.judged
+        for found in item.judged_goals
         if found.goal is not None
     ]
     if rows:
@@ -93,9 +93,7 @@ def _exit_code(items: Iterable[AbstractControllerAnalysis], *, proved: bool) -> 
     """Return 1 where a goal is missed or one of the proof is not proved, 3 where one is open."""
     from nrs_design.design.measures import GoalStanding
 
-    # Proofs take a second, and are for goals.
-    asked = [item for item in items if any(found.goal is not None for found in item.achieved)]
-    found = {one.standing for item in asked for one in item.judged}
+    found = {one.standing for item in items for one in item.judged_goals}
     if not proved or GoalStanding.MISSED in found:
         return exit_codes.REFUTED
     return exit_codes.INCONCLUSIVE if GoalStanding.NOT_JUDGED in found else exit_codes.PROVED

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +25,7 @@ from nrs_design.switched.cut_loop import AbstractAxis, Place, ProcessorAxis
 _OPENED, _CLOSED, _FREE = "opened", "closed", "free"
 # A virtual mass in kg m^2 that is next to none.
 _LEAST = 1e-12
+_KEPT = 512
 
 
 @dataclass(frozen=True)
@@ -126,29 +127,30 @@ class LoopFamily:
 
     @cached_property
     def _inert(self) -> dict[str, FloatArray]:
-        return self._basis(inert=True)
+        return _basis(self, inert=True)
 
     @cached_property
     def _static(self) -> dict[str, FloatArray]:
-        return self._basis(inert=False)
+        return _basis(self, inert=False)
 
-    def _basis(self, *, inert: bool) -> dict[str, FloatArray]:
-        """Return the polynomials by name, shape (2, 3, n): at no stiffness and of 1 N m/rad."""
-        made = [
-            self.axis.admittances(
-                self.contact.at_stiffness(Fraction(k)), self.spring, self.place, inert=inert
-            )
-            for k in (1, 2)
-        ]
-        exact = {
-            name: np.array(
-                [[getattr(loop, name) for loop in three] for three in made], dtype=object
-            )
-            for name in (_OPENED, _FREE, _CLOSED)
-        }
-        for cut in (_OPENED, _FREE):
-            exact[f"from {cut}"] = exact[_CLOSED] - exact[cut]
-        return {name: _affine(values) for name, values in exact.items()}
+
+# Controllers share them where they touch the same, and choosing their gains does with measuring.
+@lru_cache(maxsize=_KEPT)
+def _basis(family: LoopFamily, *, inert: bool) -> dict[str, FloatArray]:
+    """Return the polynomials by name, shape (2, 3, n): at no stiffness and of 1 N m/rad."""
+    made = [
+        family.axis.admittances(
+            family.contact.at_stiffness(Fraction(k)), family.spring, family.place, inert=inert
+        )
+        for k in (1, 2)
+    ]
+    exact = {
+        name: np.array([[getattr(loop, name) for loop in three] for three in made], dtype=object)
+        for name in (_OPENED, _FREE, _CLOSED)
+    }
+    for cut in (_OPENED, _FREE):
+        exact[f"from {cut}"] = exact[_CLOSED] - exact[cut]
+    return {name: _affine(values) for name, values in exact.items()}
 
 
 def _affine(values: NDArray[np.object_]) -> FloatArray:

@@ -23,6 +23,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 from fractions import Fraction
+from functools import cached_property
 from itertools import pairwise
 from math import isfinite, prod
 from typing import Any
@@ -77,7 +78,7 @@ _PIECES, _BEYOND = 6, Fraction(1_000_001, 1_000_000)
 Polynomial = list[Fraction]  # Highest power first
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class RangedLoop:
     """The loops of one controller in one environment, over all ranges."""
 
@@ -94,7 +95,7 @@ class RangedLoop:
         given = {**self.ranges, **self.environment.parameters}
         return {name: r for name, r in given.items() if r.low != r.high}
 
-    @property
+    @cached_property
     def stable(self) -> bool:
         """Whether the loop is shown to be stable in the whole box."""
         return self._stays_stable(ONE)
@@ -313,7 +314,8 @@ def with_proofs(
     The desired impedance is in N m s/rad, the highest frequency of the command in rad/s; `home` is
     the environment that the gains are designed for. They are of impedance controllers alone.
     """
-    if not loops or not all(loop.stable for loop in loops):
+    proposed = [found for found in achieved if _is_provable(found)]
+    if not proposed or not loops or not all(loop.stable for loop in loops):
         return tuple(achieved)
     at_home = [
         replace(
@@ -328,12 +330,15 @@ def with_proofs(
     ]
     return tuple(
         replace(found, proved=_proved(found, at_home if found.measure in AT_HOME else loops))
-        if found.measure in PROVABLE
-        and found.value > 0
-        and found.standing is not GoalStanding.MISSED
+        if found in proposed
         else found
         for found in achieved
     )
+
+
+def _is_provable(found: Achieved) -> bool:
+    good = found.value > 0 and found.standing is not GoalStanding.MISSED
+    return good and found.measure in PROVABLE
 
 
 def _proved(found: Achieved, loops: Sequence[RangedLoop]) -> Fraction | None:

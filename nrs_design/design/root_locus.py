@@ -5,6 +5,7 @@ from __future__ import annotations
 import cmath
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -108,6 +109,7 @@ def dominant_pair(roots: ComplexArray) -> tuple[float, float]:
     return -(first + second).real / (2 * wn), wn
 
 
+@lru_cache(maxsize=64)
 def step_overshoot(tf: TransferFunction) -> float:
     """Return the overshoot of the unit step response as a fraction of its final value.
 

@@ -18,6 +18,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import lru_cache
 from itertools import product
 
 from nrs_design.axis import unit
@@ -49,6 +50,7 @@ from nrs_design.switched.sampled_frame import Frame, Turn
 
 Polynomial = tuple[Fraction, ...]
 ZERO, ONE = Fraction(0), Fraction(1)
+_KEPT = 512
 # Shares of the force that reach the law and a motor with a load.
 _CLOSED, _OPENED, _FREE = ForceShare(), ForceShare(sensed=ZERO), ForceShare(ZERO, ZERO)
 
@@ -216,7 +218,7 @@ class ProcessorAxis(AbstractAxis):
         return first, second, third
 
     def _cut(self, law: DiscreteLaw, contact: AbstractLinearLaw, place: Place) -> CutLoop:
-        opened, closed = map(characteristic, self._modes(law, contact, place))
+        opened, closed = (_of_step(self, law, place, *touch) for touch in _touches(contact))
         while opened[-1] == closed[-1] == 0:  # A force sample that leaves its last place.
             opened, closed = opened[:-1], closed[:-1]
         opened, closed = (on_the_axis(p, self.period) for p in (opened, closed))
@@ -226,15 +228,15 @@ class ProcessorAxis(AbstractAxis):
         self, law: DiscreteLaw, contact: AbstractLinearLaw, place: Place
     ) -> tuple[Sequence[LinearForm], Sequence[LinearForm]]:
         """Close the loop over a period of the force; what is touched does not load the motor."""
-        k, b = contact.exact[0], (*contact.exact, ZERO)[1]
-        frame = self._frame(law, place)
-        opened, closed = (self._rows(frame, law, place, *touch) for touch in ((ZERO, ZERO), (k, b)))
+        opened, closed = (self.step(law, place, *touch) for touch in _touches(contact))
         return opened, closed
 
-    def _rows(
-        self, frame: Frame, law: DiscreteLaw, place: Place, k: Fraction, b: Fraction
+    def step(
+        self, law: DiscreteLaw, place: Place, k: Fraction, b: Fraction
     ) -> Sequence[LinearForm]:
+        """Return what a period makes of the states, in contact of a stiffness and damping."""
         # Of numbers that are enclosed, the middle.
+        frame = _frame(self, law, place)
         motor = {symbol: interval.middle for symbol, interval in frame.motor.box.ranges.items()}
         motor |= dict.fromkeys(frame.motor.box.hull[0], ZERO)
         values = {**motor, "Km": place.motor.gain, "k": k, "b": b}
@@ -246,15 +248,31 @@ class ProcessorAxis(AbstractAxis):
                 rows = [*multiply_matrices(between, rows)]
         return rows
 
-    def _frame(self, law: DiscreteLaw, place: Place) -> Frame:
-        low_pass = None if self.low_pass is None else self.low_pass.discretize(self.sampling.outer)
-        D = self.motion.over(self.sampling.period.exact)
-        step = StepFrame(self.motion.Kp, D, low_pass, takes=self.takes)
-        timing = CommandTiming(self.sampling.step, place.late, place.late)
-        motor = hold(ActuatorRanges.point(place.motor), timing)
-        if self.drive is not None:
-            motor = HeldDrive.of(self.drive.at({"tau": place.motor.time_constant}), timing)
-        return Frame(timing, motor, step, (law,), place.age)
+
+def _touches(contact: AbstractLinearLaw) -> tuple[tuple[Fraction, Fraction], ...]:
+    """Return stiffness and damping of nothing, and of a contact."""
+    return (ZERO, ZERO), (contact.exact[0], (*contact.exact, ZERO)[1])
+
+
+# Laws and contacts of a spec share what touches nothing, and the motor.
+@lru_cache(maxsize=_KEPT)
+def _of_step(
+    axis: ProcessorAxis, law: DiscreteLaw, place: Place, k: Fraction, b: Fraction
+) -> Polynomial:
+    return characteristic(axis.step(law, place, k, b))
+
+
+@lru_cache(maxsize=_KEPT)
+def _frame(axis: ProcessorAxis, law: DiscreteLaw, place: Place) -> Frame:
+    T = axis.sampling.outer
+    low_pass = None if axis.low_pass is None else axis.low_pass.discretize(T)
+    D = axis.motion.over(axis.sampling.period.exact)
+    step = StepFrame(axis.motion.Kp, D, low_pass, takes=axis.takes)
+    timing = CommandTiming(axis.sampling.step, place.late, place.late)
+    motor = hold(ActuatorRanges.point(place.motor), timing)
+    if axis.drive is not None:
+        motor = HeldDrive.of(axis.drive.at({"tau": place.motor.time_constant}), timing)
+    return Frame(timing, motor, step, (law,), place.age)
 
 
 def axis_of(
@@ -320,13 +338,17 @@ def on_the_axis(polynomial: Sequence[Fraction], period: Fraction) -> Polynomial:
 
     The polynomial is in z, of degree n, highest power first; T is the period.
     """
-    half = period / 2
-    total, power = [polynomial[0]], [ONE]
-    for c in polynomial[1:]:
-        power = multiply(power, [-half, ONE])
-        risen = multiply(total, [half, ONE])
-        total = [a + c * b for a, b in zip(risen, power, strict=True)]
-    return tuple(total)
+    from flint import fmpq, fmpq_poly
+
+    half = fmpq(period.numerator, 2 * period.denominator)
+    first, *others = (fmpq(c.numerator, c.denominator) for c in polynomial)
+    total, power = fmpq_poly([first]), fmpq_poly([1])
+    rising, falling = fmpq_poly([1, half]), fmpq_poly([1, -half])
+    for c in others:
+        power *= falling
+        total = total * rising + c * power
+    found = [Fraction(int(c.p), int(c.q)) for c in total.coeffs()]
+    return (*[ZERO] * (len(polynomial) - len(found)), *reversed(found))
 
 
 def multiply(a: Sequence[Fraction], b: Sequence[Fraction]) -> list[Fraction]:

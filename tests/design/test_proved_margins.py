@@ -31,9 +31,13 @@ from nrs_design.design.measures import (
 from nrs_design.design.proved_margins import RangedLoop, ranged_loops, with_proofs
 from nrs_design.models.contact import Elastic, Hand, KelvinBoltzmann, KelvinVoigt, Maxwell
 from nrs_design.models.contact.environment import Environment
+from nrs_design.pipeline.analysis import run_analysis
+from nrs_design.pipeline.runs import run_design
+from nrs_design.spec import read_spec
 from nrs_design.thesis import thesis
 from tests.design.classical import displayed_impedance_at
 from tests.design.motion_loops import interval
+from tests.support import FORCE_LIMIT
 
 SOFT = "41.504256", "44.246592"  # 720.56 N/m and 768.17 N/m at 0.24 m
 FOUND = {
@@ -181,6 +185,20 @@ def test_a_value_that_is_shown_is_the_one_that_is_proved():
     # What nothing limits, and what is wrong, is not proved.
     assert free.proved is None
     assert creep.proved is None
+
+
+def test_goals_are_proved_and_what_has_none_only_for_who_wants_to_see_it(monkeypatch, tmp_path):
+    """A gate asks for goals: to prove the other margins took longer than all else that it does."""
+    said = "goals: {max_force_error: 0.55"
+    text, file = FORCE_LIMIT.read_text(encoding="utf-8"), tmp_path / "a.nrs.yaml"
+    assert said in text
+    file.write_text(text.replace(said, f"{said}, min_gain_margin: 1.1"), encoding="utf-8")
+    (item,) = run_analysis(run_design(read_spec(file))).measured
+    asked, holds = [], RangedLoop.holds
+    monkeypatch.setattr(RangedLoop, "holds", lambda *of: asked.append(of[1]) or holds(*of))
+    assert [one.measure for one in item.judged_goals if one.proved] == [GAIN_MARGIN] == [*{*asked}]
+    assert [one for one in item.judged if one.goal is not None] == [*item.judged_goals]
+    assert {*asked} > {GAIN_MARGIN}
 
 
 def test_what_is_covered():

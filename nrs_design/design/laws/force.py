@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cached_property
 
 from nrs_design.controllers.controller_design import Controller
 from nrs_design.controllers.float32 import round_significant, to_float32
@@ -45,10 +45,9 @@ class ForceAnalysis(AbstractControllerAnalysis):
     # ranges.
     loops: tuple[RangedLoop, ...] = ()
 
-    @cached_property
-    def judged(self) -> tuple[Achieved, ...]:
-        """The worst values, with what is proved of them over all values of the ranges."""
-        return with_proofs(self.achieved, self.loops)
+    def prove(self, achieved: Sequence[Achieved]) -> tuple[Achieved, ...]:
+        """Return worst values with what is proved of them over all values of the ranges."""
+        return with_proofs(achieved, self.loops)
 
 
 def loops_of(

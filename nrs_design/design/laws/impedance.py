@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cached_property
 
 import numpy as np
 
@@ -84,11 +83,10 @@ class ImpedanceAnalysis(AbstractControllerAnalysis):
     # once.
     loops: tuple[RangedLoop, ...] = ()
 
-    @cached_property
-    def judged(self) -> tuple[Achieved, ...]:
-        """The worst values, with what is proved of them over all values of the ranges."""
+    def prove(self, achieved: Sequence[Achieved]) -> tuple[Achieved, ...]:
+        """Return worst values with what is proved of them over all values of the ranges."""
         home, loop = self.given.environment, self.requirement
-        return with_proofs(self.achieved, self.loops, home, loop.desired, loop.bandwidth)
+        return with_proofs(achieved, self.loops, home, loop.desired, loop.bandwidth)
 
     @property
     def limit_at_arm(self) -> float | None:

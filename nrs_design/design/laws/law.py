@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from fractions import Fraction
@@ -97,10 +97,21 @@ class AbstractControllerAnalysis(ABC):
             item.measure for item in self.achieved if is_unusual(item.measure, self.achieved)
         )
 
-    @property
+    @cached_property
     def judged(self) -> tuple[Achieved, ...]:
         """The same, with what is proved of them over all values of the ranges."""
-        return self.achieved
+        asked = {found.measure: found for found in self.judged_goals}
+        others = iter(self.prove([found for found in self.achieved if found.goal is None]))
+        return tuple(asked.get(found.measure) or next(others) for found in self.achieved)
+
+    @cached_property
+    def judged_goals(self) -> tuple[Achieved, ...]:
+        """Those that have a goal, which a gate asks for: a proof of any other takes as long."""
+        return self.prove([found for found in self.achieved if found.goal is not None])
+
+    def prove(self, achieved: Sequence[Achieved]) -> tuple[Achieved, ...]:
+        """Return worst values with what is proved of them over all values of the ranges."""
+        return tuple(achieved)
 
     @property
     def proved_titles(self) -> tuple[str, ...]:

@@ -57,7 +57,7 @@ def judged_goals(result: Result, analysis: DesignAnalysis | None) -> tuple[State
     """Return how all goals of a spec stand together, and the same in words."""
     proofs = tuple(certified_goals(result.loaded.spec, result.certificate))
     measured = () if analysis is None else analysis.measured
-    goals = [f for item in measured for f in item.judged if f.goal is not None]
+    goals = [found for item in measured for found in item.judged_goals]
     missed = sum(found.standing is GoalStanding.MISSED for found in goals)
     unjudged = sum(found.standing is GoalStanding.NOT_JUDGED for found in goals)
     responses = [f for item in (analysis.impedance if analysis else ()) for f in item.responses]

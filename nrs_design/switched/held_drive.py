@@ -6,8 +6,9 @@ one number after the other, but for the sum of ``(length of a range)^2/8`` times
 derivative by that number. That, and what is rounded, is enclosed: all entries together are in the
 simplex around the box of what they may be off (docs/certificates/drives.md).
 
-What is touched may change its stiffness and damping within a period, too. Its mean over the period
-is in the range, and takes the place of a constant one; by how much that is off is enclosed as well.
+What is touched may change its stiffness and damping within a period, too, but for what is constant.
+Its mean over the period is in the range, and takes the place of a constant one; by how much that is
+off is enclosed as well.
 """
 
 from __future__ import annotations
@@ -262,7 +263,7 @@ def _moved(
     ends = {s: _ends(i, inverse=s in drive.inverse) for s, i in numbers.items()}
     anywhere = {s: _hull(*e) for s, e in ends.items()}
     M = _sizes(_generator(drive.rates, anywhere, n))
-    ranged = [s for s in LOAD if numbers[s].low < numbers[s].high]
+    ranged = [s for s in LOAD if numbers[s].varies and numbers[s].low < numbers[s].high]
     widths = [_ball(numbers[s].high - numbers[s].low) for s in ranged]
     slopes = [_sizes(_generator(drive.rates.slope(s), anywhere, n)) for s in ranged]
     found = {}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
+from itertools import chain
 from types import MappingProxyType
 from typing import Literal
 
@@ -77,7 +78,7 @@ def assume_sampled(
         *_late_texts(frame.timing, conditions.constant_late),
         *_jump_texts(frame),
         _delay_text(*sampling.delay),
-        _motor_text(ranges, frame, conditions.axis),
+        _motor_text(ranges, frame, conditions.axis, environments),
         *([] if design.takes is Takes.TORQUE else [say("unloaded.sampled")]),
         *(map(say, ("friction.period", "at-samples.force")) if disturbed else ()),
         say(f"inputs.{inputs}{but}", rest=REST[loss == "on the surface"]),
@@ -142,7 +143,9 @@ def _jump_texts(frame: Frame) -> Iterator[Assumption]:
         yield say("command-age.before", "the order that is named")
 
 
-def _motor_text(ranges: ActuatorRanges, frame: Frame, axis: AxisType) -> Assumption:
+def _motor_text(
+    ranges: ActuatorRanges, frame: Frame, axis: AxisType, environments: Sequence[Environment]
+) -> Assumption:
     motor, tau, timing = motor_text(ranges, axis), ranges.time_constant, frame.timing
     corner = "a corner of that, of no motor of the range"
     if timing.varies:
@@ -151,7 +154,7 @@ def _motor_text(ranges: ActuatorRanges, frame: Frame, axis: AxisType) -> Assumpt
         corner = f"an end, less than 2^-{EXPONENTIAL_BITS - 1} away"
     moving = ranges.may_change("at every sample, not in between")
     if frame.motor.drive is not None:
-        return _drive_text(frame.motor.drive, axis)
+        return _drive_text(frame.motor.drive, axis, environments)
     if frame.step.streams:
         lag = motor.partition(" and its time constant ")[2]
         return say("motor.followed", lag, motor=lag, moving=moving, corner=corner)
@@ -164,14 +167,17 @@ def _motor_text(ranges: ActuatorRanges, frame: Frame, axis: AxisType) -> Assumpt
     )
 
 
-def _drive_text(drive: Drive, axis: AxisType) -> Assumption:
+def _drive_text(drive: Drive, axis: AxisType, environments: Sequence[Environment]) -> Assumption:
     """Say how a robot moves that has no motor of the user's."""
     moving = may_change(drive.ranges.values(), "at every sample, not in between")
     if drive.takes is Takes.TORQUE:
         inertia = f"{interval_text(drive.ranges['J'])} {axis.unit('kg*m^2')}"
         friction = f"{interval_text(drive.ranges['B'])} {axis.unit('N*m*s/rad')}"
         bound = f"J {inertia}, B {friction}"
-        return say("motor.torque", bound, inertia=inertia, friction=friction, moving=moving)
+        touched = chain.from_iterable(environment.ranges for environment in environments)
+        but = ", but for what is constant" * any(number.is_constant for number in touched)
+        said = {"inertia": inertia, "friction": friction, "moving": moving, "but": but}
+        return say("motor.torque", bound, **said)
     if "tau" in drive.ranges:
         lag = f"{interval_text(drive.ranges['tau'])} s"
         return say("motor.followed-position", lag, lag=lag, moving=moving)

@@ -100,7 +100,7 @@ def known_entries(frame: Frame, channels: Sequence[Channel]) -> list[int]:
 def anything_of(environments: Iterable[Environment], *, lost: bool) -> dict[str, Interval]:
     """Return where stiffness and damping are of any of some environments, or of nothing.
 
-    `lost`: nothing may be touched, too.
+    `lost`: nothing may be touched, too. What is constant stays so where nothing else is touched.
     """
     each = [(e.stiffness, damping_of(e)) for e in environments]
     zero = Fraction(0)
@@ -109,6 +109,7 @@ def anything_of(environments: Iterable[Environment], *, lost: bool) -> dict[str,
             ranges[0].nominal,
             zero if lost else min(r.low for r in ranges),
             max(r.high for r in ranges),
+            lost or len(ranges) > 1 or ranges[0].varies,
         )
         for symbol, ranges in zip(("k", "b"), zip(*each, strict=True), strict=True)
     }

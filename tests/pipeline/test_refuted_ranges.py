@@ -61,7 +61,9 @@ contact: kept
 
 
 # The largest spectral radius of an admissible loop is 0.98951, by a grid of 40 x 60 values.
-TORQUES = torques((5, 12), (1000, 20000), (1000, 125.2), "2 ms")
+WHOLE = torques((5, 12), (1000, 20000), (1000, 125.2), "2 ms")
+# Here it is 0.99624.
+TORQUES = torques((2, 6), (1000, 20000), (564, 827.7), "1 ms")
 UNSTABLE = torques((5, 12), (1000, 20000), (1000, 5000), "2 ms")
 # It is from 0.9537 to 0.9710 for all lags.
 LAG = """\
@@ -144,9 +146,7 @@ def witness(found, J, k, law, lates):
     return total
 
 
-@pytest.mark.parametrize(
-    ("text", "parts"), [(LAG, 2), pytest.param(TORQUES, 18, marks=pytest.mark.slow)]
-)
+@pytest.mark.parametrize(("text", "parts"), [(LAG, 2), (TORQUES, 4)])
 def test_constant_ranges_are_proved_in_parts(text, parts):
     """A mode of the enclosure is not stable, which refutes nothing; each part has a proof."""
     result = decide(text, WORK)
@@ -161,6 +161,12 @@ def test_constant_ranges_are_proved_in_parts(text, parts):
     assert f"cut in {parts} parts" in document["assumptions"][-1]
     assert isinstance(physical_outputs(result), str)
     assert "at constant parameters" in brief(certification.evidence, certification.system)
+
+
+def test_constants_do_not_change_within_a_period():
+    """Enclosed as if they did, the ranges had to be cut in 18 parts."""
+    certification = decide(WHOLE).certification
+    assert (certification.verdict, certification.method) == ("proved", "constants quadratic")
 
 
 CUT = RangeCut(0, "position_interface.time_constant", Fraction(3, 325))
@@ -206,7 +212,7 @@ def test_a_part_left_out_is_missed(lags):
 @pytest.mark.parametrize(
     ("text", "most", "outcome"),
     [
-        (TORQUES.replace("damping: 125.2", "damping: 5000"), 64, "none at torque_interface.iner"),
+        (UNSTABLE, 64, "none at torque_interface.iner"),
         (LAG, 1, "of 1 parts of the constant ranges, not all have a proof"),
         (TORQUES, 64, "the budget of 1 for all parts is used up (--budget)"),
     ],
@@ -252,7 +258,7 @@ def test_the_kernel_refuses_a_forged_corner():
     loaded = loaded_of(TORQUES)
     designed = run_design(loaded)
     system = assemble_spec(loaded, designed)
-    evidence = staying("c/table/k-min/J-max/hull-1")
+    evidence = staying("c/table/k-min/J-max/hull-2")
     assert "surely unstable" in evidence.find_fault(system)
     assert evidence.find_fault(replace(system, enclosures=())) is None
     forged = Certificate(

@@ -1,5 +1,6 @@
 """Drives over a period: enclosures, and loops by hand."""
 
+from dataclasses import replace
 from fractions import Fraction
 from itertools import pairwise
 
@@ -12,6 +13,8 @@ from scipy.linalg import expm
 from nrs_design.controllers.laws import LAWS, Admittance
 from nrs_design.controllers.step_law import StepFrame
 from nrs_design.errors import AssemblyError
+from nrs_design.models.contact.elastic import Elastic
+from nrs_design.models.contact.environment import Environment
 from nrs_design.models.drive import (
     Takes,
     lagging_drive,
@@ -26,6 +29,7 @@ from nrs_design.switched.held_drive import HeldDrive
 from nrs_design.switched.held_motor import WAY, Commands
 from nrs_design.switched.parameter_box import Box, around
 from nrs_design.switched.sampled_frame import Frame
+from nrs_design.switched.sampled_inputs import anything_of
 
 F = Fraction
 T = F(1, 500)
@@ -33,12 +37,14 @@ SECOND = MotionLoop((F(900),), (F(1), F(60), F(900)))
 ZEROED = MotionLoop((F(28), F(1619)), (F(1), F(57), F(1619)))
 TORQUE = torque_drive(Interval(F(1, 5), F(3, 20), F(3, 10)), Interval(F(1, 2), F(2, 5), F(3, 5)))
 TOUCHED = {"k": Interval(F(40), F(20), F(60)), "b": Interval(F(1, 10), F(0), F(1, 5))}
+CONSTANT = {s: replace(interval, varies=False) for s, interval in TOUCHED.items()}
 DRIVES = {
     "velocity": (velocity_drive(ZEROED), None),
     "position": (position_drive(SECOND), None),
     "jumping position": (position_drive(ZEROED), None),
     "lag": (lagging_drive(Interval(F(3, 100), F(1, 50), F(1, 25))), None),
     "torque": (TORQUE, TOUCHED),
+    "torque, constant load": (TORQUE, CONSTANT),
     "torque in the air": (TORQUE, None),
 }
 
@@ -307,6 +313,30 @@ def test_what_is_touched_may_change_within_a_period(pieces, late):
             off[row, 2] += float(entry.off)
     assert (abs(found - wanted) <= off + 1e-13).all()
     assert off.max() < 0.002
+
+
+@pytest.mark.parametrize("changing", [set(), {"k"}, {"b"}, {"k", "b"}])
+def test_what_is_constant_does_not_change_within_a_period(changing):
+    """It adds nothing to the change of what is not."""
+
+    def off(touched):
+        held = HeldDrive.of(TORQUE, CommandTiming(T), touched)
+        return {place: entry.off for place, entry in held.entries.items()}
+
+    some = off({s: replace(i, varies=s in changing) for s, i in TOUCHED.items()})
+    none, every = off(CONSTANT), off(TOUCHED)
+    assert all(none[place] <= some[place] <= every[place] for place in every)
+    assert (some == none) is (not changing)
+    assert (some == every) is (changing == {"k", "b"})
+
+
+@pytest.mark.parametrize(
+    ("contacts", "lost", "constant"), [(1, False, True), (1, True, False), (2, False, False)]
+)
+def test_a_contact_is_constant_where_nothing_else_is_touched(contacts, lost, constant):
+    interval = Interval(F(40), F(20), F(60), varies=False)
+    each = [Environment(str(i), Elastic, (interval,)) for i in range(contacts)]
+    assert anything_of(each, lost=lost)["k"].is_constant is constant
 
 
 @pytest.mark.parametrize("late", [0.5, 1.0, 1.25, 1.5])

@@ -92,7 +92,7 @@ class Examiner:
     def caution(self, message: str, *keys: str | int) -> Caution:
         """Return a caution about something in this spec, by the keys that lead there."""
         at = self.places.at(*keys)
-        return Caution(self.loaded.path, message, at.line, at.column)
+        return Caution(self.loaded.path, message, at.line, at.column, at=keys)
 
     def outcome(
         self,

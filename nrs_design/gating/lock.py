@@ -99,6 +99,15 @@ class LockedGoal(_Frozen):
         return self
 
 
+class LockedRemark(_Frozen):
+    """The worst remark on a design, which its runs and margins alone decide."""
+
+    message: str
+    at: list[str]  # Keys that lead to its place in the spec
+    # As of a `Caution`, three digits of it: the last ones are of a processor.
+    beyond: float = Field(gt=0, allow_inf_nan=False)
+
+
 def _skip_retired(goals: list[LockedGoal]) -> list[LockedGoal]:
     """Return the goals of rules that there are: an older release locked others."""
     return [goal for goal in goals if goal.rule not in RETIRED]
@@ -120,13 +129,13 @@ class LockedSpec(_Frozen):
     gains: dict[str, dict[str, str]]
     goals: Annotated[list[LockedGoal], AfterValidator(_skip_retired)]
     recorded: dict[str, Sha256] = Field(default_factory=dict)
+    remark: LockedRemark | None = None
 
     @model_serializer(mode="wrap")
-    def _leave_out_nothing_recorded(self, dump: SerializerFunctionWrapHandler) -> dict[str, Any]:
+    def _leave_out_what_is_empty(self, dump: SerializerFunctionWrapHandler) -> dict[str, Any]:
         document: dict[str, Any] = dump(self)
-        if not self.recorded:
-            del document["recorded"]
-        return document
+        may_lack = ("recorded", "remark")
+        return {key: value for key, value in document.items() if value or key not in may_lack}
 
     @model_validator(mode="after")
     def _check_certificate(self) -> LockedSpec:

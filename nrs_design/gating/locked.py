@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from nrs_design import __version__
@@ -12,6 +13,7 @@ from nrs_design.certificates.verify import verify
 from nrs_design.gating.examine import Examiner, certified_rate
 from nrs_design.gating.lock import Lock, LockedGoal, LockedSpec, relative_to_lock
 from nrs_design.gating.obligations import (
+    Caution,
     GateOutcome,
     Obligation,
     SpecOutcome,
@@ -31,6 +33,7 @@ from nrs_design.spec.load import is_there
 
 RENEW = "run nrs-design gate without --locked"
 PRUNE = "run nrs-design gate with --prune"
+_AS_LOCKED = "(as locked; not computed again)"
 
 
 def run_locked(
@@ -138,7 +141,8 @@ def _confirmed(
         examiner.certificate(place, None),
         *_others(examiner, certificate, entry, file),
     )
-    cautions = (*examiner.limits(certificate), *examiner.cautions(None))
+    of_proof = (*examiner.contact(certificate), *examiner.limits(certificate))
+    cautions = (*of_proof, *examiner.cautions(None), *_remark(examiner, entry))
     return examiner.outcome(certificate, place, certificate, found, cautions)
 
 
@@ -158,9 +162,16 @@ def _goals(examiner: Examiner, entry: LockedSpec) -> Iterator[Obligation]:
             RULES[goal.rule],
             goal.subject,
             Status(goal.status),
-            f"{goal.message} (as locked; not computed again)",
+            f"{goal.message} {_AS_LOCKED}",
             _place(goal),
         )
+
+
+def _remark(examiner: Examiner, entry: LockedSpec) -> Iterator[Caution]:
+    """Yield the worst remark on the design, as it was locked."""
+    if (found := entry.remark) is not None:
+        caution = examiner.caution(f"{found.message} {_AS_LOCKED}", *found.at)
+        yield replace(caution, beyond=found.beyond)
 
 
 def _place(goal: LockedGoal) -> tuple[str, ...]:

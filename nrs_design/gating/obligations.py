@@ -61,6 +61,7 @@ class Caution:
     line: int
     column: int
     beyond: float = 0.0  # A value of the design over its limit; 0 where it has none
+    at: tuple[str | int, ...] = ()  # Keys that lead there, as far as they are known
 
 
 _SEVERITY = {

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
+from operator import attrgetter
 from pathlib import Path
 
 from nrs_design import __version__
@@ -14,12 +15,13 @@ from nrs_design.gating.lock import (
     DECIDED_AGAIN,
     Lock,
     LockedCertificate,
+    LockedRemark,
     LockedSpec,
     dump_lock,
     read_lock_if_any,
     relative_to_lock,
 )
-from nrs_design.gating.obligations import GateOutcome, SpecOutcome, Status
+from nrs_design.gating.obligations import Caution, GateOutcome, SpecOutcome, Status
 from nrs_design.output import LOCK, alone_in, write_output
 from nrs_design.pipeline.runs import Recorded
 from nrs_design.spec.load import is_there
@@ -104,6 +106,8 @@ def _still_holds(entry: LockedSpec, spec: SpecOutcome) -> bool:
     return spec.verdict is None and spec.sha256 == entry.sha256
 
 
+# A value that has no bound is so many times over its limit.
+_MOST = 1e6
 # What is shown by no certificate is taken from a lock file on trust, so it is not proved there.
 _LOCKED = {Status.PROVED: "met", Status.REFUTED: "missed"}
 
@@ -167,5 +171,15 @@ def _entry(spec: SpecOutcome, file: Path) -> LockedSpec:
                 if item.rule not in DECIDED_AGAIN
             ],
             "recorded": dict(spec.recorded),
+            "remark": _remark(spec.cautions),
         }
     )
+
+
+def _remark(cautions: Sequence[Caution]) -> LockedRemark | None:
+    """Return the worst of what a design alone shows; JSON knows no infinity."""
+    worst = max(cautions, key=attrgetter("beyond"), default=None)
+    if worst is None or not worst.beyond:
+        return None
+    beyond = float(f"{min(worst.beyond, _MOST):.3g}")
+    return LockedRemark(message=worst.message, at=[*map(str, worst.at)], beyond=beyond)

@@ -64,10 +64,13 @@ def test_the_worst_fact_leads_although_all_is_fulfilled(gate, capsys):
     Path("specs/holder.nrs.yaml").write_text(USELESS)
     assert gate("specs", "--no-reports") == 0
     said = " ".join(capsys.readouterr().err.split())
-    assert said.startswith(
-        "warning: specs/holder.nrs.yaml:5:30: simulated, insertion-and-withdrawal: a torque of 0.99"
-    )
+    worst = "warning: specs/holder.nrs.yaml:5:30: simulated, insertion-and-withdrawal: a torque of "
+    assert said.startswith(f"{worst}0.9968 N*m, beyond limits.torque of 0.5 N*m")
     assert "note: 6 more remarks on designs" in said
+    assert gate("specs", "--locked") == 0
+    again = " ".join(capsys.readouterr().err.split())
+    assert again.startswith(f"{worst}0.9968 N*m, beyond limits.torque of 0.5 N*m (as locked; not")
+    assert "proved for contact that is kept" in again
 
 
 def test_a_narrow_terminal(tmp_path):

@@ -1,4 +1,5 @@
 import json
+import math
 
 import pytest
 
@@ -26,6 +27,7 @@ def test_lock_reads_back(project):
 
 
 GOAL = {"rule": "NRS103", "subject": "tissue", "status": "met", "message": "reached"}
+REMARK = {"message": "far off", "at": ["limits"], "beyond": 2.0}
 ENTRY = {
     "path": "a.nrs.yaml",
     "sha256": "0" * 64,
@@ -102,6 +104,8 @@ def test_an_inconclusive_spec_may_have_the_certificate_of_a_remark(tmp_path, cer
         document({**ENTRY, "goals": [{**GOAL, "status": "fine"}]}),
         document({**ENTRY, "goals": [{**GOAL, "status": "proved"}]}),
         document({**ENTRY, "gains": {"tissue": {"Mt": 0.25}}}),
+        document({**ENTRY, "remark": {**REMARK, "at": [-9]}}),
+        document({**ENTRY, "remark": {**REMARK, "beyond": math.nan}}),
         document({**ENTRY, "unknown": 1}),
         document(ENTRY).replace('"rate"', '"path"'),
     ],

@@ -1,13 +1,16 @@
 import json
+import math
 import shutil
 import threading
+from dataclasses import replace
 
 import pytest
 
 from nrs_design.errors import CertificateError, OutputError
 from nrs_design.gating.find_specs import find_specs
-from nrs_design.gating.lock import read_lock
+from nrs_design.gating.lock import LockedRemark, dump_lock, read_lock
 from nrs_design.gating.locked import run_locked
+from nrs_design.gating.obligations import Caution
 from nrs_design.gating.renew import certificates_of, check_folder, make_lock, write_lock
 from nrs_design.gating.run import Files, run_gate
 from nrs_design.output import alone_in
@@ -46,6 +49,14 @@ def test_lock_elsewhere_names_the_same_files(project):
     lock = make_lock(outcome.specs, project / "reports/nrs.lock")
     assert lock.specs[0].path == "../specs/soft-tissue.nrs.yaml"
     assert lock.specs[0].certificate.file == "soft-tissue.cert.json"
+
+
+def test_a_remark_on_a_value_without_bound_reads_back(project):
+    file, (spec,) = project / "nrs.lock", outcome_of(project, STABLE_SPEC).specs
+    far = Caution(spec.path, "Ms unbounded", 1, 1, beyond=math.inf, at=("controllers", "a"))
+    file.write_text(dump_lock(make_lock([replace(spec, cautions=(far,))], file)))
+    remark = read_lock(file).specs[0].remark
+    assert remark == LockedRemark(message="Ms unbounded", at=["controllers", "a"], beyond=1e6)
 
 
 def test_one_part_after_the_other_keeps_both(project):

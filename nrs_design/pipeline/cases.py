@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 CASES = "cases"
 # Share of the budget for all parts together.
 ALL_PARTS = 0.5
-# Work to assemble a mode, and to check that corners suffice.
-PER_MODE = 0.005
+# Work to assemble modes, and to check that corners suffice: most of it is about their pairs.
+PER_PAIR = 1.5e-4
 # Of the largest end of a whole range, which a part is compared with beside its own ends: of two
 # parts that reach zero, the shorter one counts as shorter.
 ZERO_AT = Fraction(1, 8)
@@ -54,7 +54,7 @@ def find_cases(designed: Designed, constants: Sequence[FixedParameter], limits: 
             )
         system = closed_part(conditions, designed.plant, designed.design, drive, part)
         system = replace(system, switching=ARBITRARY)
-        allowance.charge(PER_MODE * len(system.modes))
+        allowance.charge(PER_PAIR * len(system.modes) ** 2)
         proof, outcome = prove_together(system, allowance)
         return outcome if proof is None else (system, proof)
 

@@ -54,9 +54,10 @@ class PeriodEntry:
         total = values.get(self.symbol, ZERO)
         for ends, value in self.corners.items():
             ways = zip(self.depends, ends, strict=True)
-            total += value * prod(
-                (shares[s] if end else 1 - shares[s] for s, end in ways), start=ONE
-            )
+            factors = [shares[s] if end else 1 - shares[s] for s, end in ways]
+            # Where corners are checked, most factors are zero.
+            if all(factors):
+                total += value * prod(factors, start=ONE)
         return total
 
 

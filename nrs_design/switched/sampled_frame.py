@@ -206,9 +206,10 @@ class Frame:
         made = _sample(self, law, delay, seen, turn)
         ages = [*([] if turn is Turn.MOTION else [_force(self, *contact)]), *made.at.samples]
         _, others = _around(made.after)
+        needed = {name: self.motor.symbols_of(name) for name in (*self.motor.states, WAY)}
         taken = {
-            name: tuple(item for item in values.items() if item[0] in self.motor.symbols_of(name))
-            for name in (*self.motor.states, WAY)
+            name: tuple((symbol, value) for symbol, value in values.items() if symbol in symbols)
+            for name, symbols in needed.items()
         }
         reference, delta = _place(made, self.motor, taken.pop(WAY))
         return [

@@ -1,8 +1,6 @@
 """A gate keeps what is recorded and still holds; it searches for what is not, or may be more."""
 
 import json
-import shutil
-from pathlib import Path
 
 import pytest
 
@@ -12,7 +10,6 @@ from nrs_design.gating.lock import read_lock_if_any
 from nrs_design.gating.renew import certificates_of, recorded_in, write_lock
 from nrs_design.gating.run import Files, run_gate
 from nrs_design.pipeline.certification import Overrides
-from tests.support import typed
 
 from .conftest import HARD, STABLE, UNSTABLE
 
@@ -154,19 +151,3 @@ def test_what_is_open_is_searched_for_again(project, gate, monkeypatch):
     assert gate("hard")
     assert (project / "reports/hard.cert.json").exists()
     assert gate("hard")
-
-
-@pytest.mark.nightly
-@pytest.mark.parametrize("processor", ["Haswell", "SkylakeX", "Prescott"])
-def test_another_processor_changes_nothing_that_is_shipped(tmp_path, monkeypatch, processor):
-    """Its sums end in other digits, so its searches would."""
-    if processor == "SkylakeX" and "avx512f" not in Path("/proc/cpuinfo").read_text():
-        pytest.skip("this processor has no AVX-512")
-    monkeypatch.setenv("OPENBLAS_CORETYPE", processor)
-    root = Path(__file__).parents[2]
-    for folder in ("specs", "reports"):
-        shutil.copytree(root / folder, tmp_path / folder, ignore=shutil.ignore_patterns("*.html*"))
-    shutil.copy(root / "nrs.lock", tmp_path)
-    before = contents(tmp_path)
-    typed("gate", "specs", cwd=tmp_path, code=0)
-    assert contents(tmp_path) == before

@@ -15,8 +15,9 @@ from typing import TYPE_CHECKING
 
 from nrs_design.axis import about
 from nrs_design.certificates.certificate import dump
+from nrs_design.certificates.prove import find_altered, read_document
 from nrs_design.controllers.gains import gains_of
-from nrs_design.errors import OutputError, SpecError
+from nrs_design.errors import CertificateError, OutputError, SpecError
 from nrs_design.gating.examine import Examiner
 from nrs_design.gating.judge import judge_margins, judge_scenarios
 from nrs_design.gating.obligations import (
@@ -192,9 +193,9 @@ def _examine(
     file = None if certificate is None else place
     if certificate is not None:
         fault = None
-        text = dump(certificate, origin_of(loaded.path, place))
-        if kept is None or not _holds_text(place, text):
-            write_output(place, text, replaces=CERTIFICATE)
+        origin = origin_of(loaded.path, place)
+        if kept is None or not _holds(place, certificate.id, origin):
+            write_output(place, dump(certificate, origin), replaces=CERTIFICATE)
             progress("re-check")
             fault = run_verification(place, result).fault
         obligations += (examiner.certificate(place, fault),)
@@ -222,11 +223,14 @@ def _examine(
     return replace(outcome, gains=gains, units=units, recorded=recorded)
 
 
-def _holds_text(file: Path, text: str) -> bool:
+def _holds(file: Path, id_: str, origin: str) -> bool:
+    """Tell whether a file is the certificate of an id, which covers all of it but its origin."""
     try:
-        return file.read_bytes() == text.encode()
-    except OSError:
+        document = read_document(file)
+    except CertificateError:
         return False
+    said = document.get("id"), document.get("origin")
+    return said == (id_, origin) and find_altered(document) is None
 
 
 def _write_page(

@@ -27,7 +27,7 @@ from nrs_design.controllers.laws import CompliantLaw
 from nrs_design.design.force_limit import NO_OFFSET, Approach, steady_force_error
 from nrs_design.design.hands_on import hand_effort, transparency
 from nrs_design.design.loop_family import LoopFamily
-from nrs_design.design.loops import Loops, gain_extremes
+from nrs_design.design.loops import Loops, gain_extremes, stacked
 from nrs_design.design.measures import (
     AT_HOME,
     CREEP,
@@ -35,10 +35,8 @@ from nrs_design.design.measures import (
     CREEP_MEASURES,
     DELAY_MARGIN,
     DISK_MARGIN,
-    FORCE_ERROR,
     GAIN_MARGIN,
     HAND_EFFORT,
-    IMPEDANCE_ERROR,
     MONOTONE,
     PHASE_MARGIN,
     SENSITIVITY_PEAK,
@@ -139,7 +137,10 @@ class AbstractRequirement(ABC):
         if self.axis is None and measure not in CREEP_MEASURES:
             return np.full(count, np.nan), [NOT_COMPUTED] * count
         corners = [*self._measured_at(measure)]
-        table = np.array([self._at(corner, measure, *gains) for corner in corners])
+        if measure in _MARGINS:
+            table = self._margins(measure, *gains)
+        else:
+            table = np.array([self._at(corner, measure, *gains) for corner in corners])
         worst = table.argmax(axis=0) if measure.upper else table.argmin(axis=0)
         values = np.take_along_axis(table, worst[None, :], axis=0)[0]
         in_the_air = measure in CREEP_MEASURES
@@ -168,6 +169,26 @@ class AbstractRequirement(ABC):
         beyond = replace(found, value=float(value), where=where)
         return beyond if beyond.standing is GoalStanding.MISSED else found
 
+    def _margins(self, measure: Measure, *gains: FloatArray) -> FloatArray:
+        """Return a margin at every corner, for every set of gains."""
+        table = np.empty((len(self.corners), len(gains[0]) if gains else 1))
+        for which, loops in self._every(*gains):
+            table[which] = _MARGINS[measure](loops).reshape(len(which), -1)
+        return table
+
+    def _every(self, *gains: FloatArray) -> list[tuple[list[int], Loops]]:
+        """Return the open loops at all corners, made once for all measures of the same gains."""
+        key = tuple(each.tobytes() for each in gains)
+        if key not in self._stacks:
+            self._stacks.clear()
+            loops = [self.loops(corner, *gains) for corner in self.corners]
+            self._stacks[key] = stacked(loops)
+        return self._stacks[key]
+
+    @cached_property
+    def _stacks(self) -> dict[tuple[bytes, ...], list[tuple[list[int], Loops]]]:
+        return {}
+
     def _measured_at(self, measure: Measure) -> Iterator[ContactCorner]:
         return (corner for corner in self.corners if corner.home or measure not in AT_HOME)
 
@@ -189,7 +210,12 @@ class AbstractRequirement(ABC):
         return tuple(inner for group in groups.values() for inner in _inside(group))
 
     @abstractmethod
-    def _at(self, corner: ContactCorner, measure: Measure, *gains: FloatArray) -> FloatArray: ...
+    def loops(self, corner: ContactCorner, *gains: FloatArray) -> Loops:
+        """Return the open loops at a corner."""
+
+    @abstractmethod
+    def _at(self, corner: ContactCorner, measure: Measure, *gains: FloatArray) -> FloatArray:
+        """Return a measure that is no margin of the loops."""
 
 
 @dataclass(frozen=True)
@@ -232,8 +258,9 @@ class Requirement(AbstractRequirement):
             worst = np.maximum(worst, missed)
         return worst
 
-    def loops(self, corner: ContactCorner, Mt: FloatArray, Bt: FloatArray) -> Loops:
-        """Return the open loops at a corner."""
+    def loops(self, corner: ContactCorner, *gains: FloatArray) -> Loops:
+        """Return the open loops at a corner, for Mt and Bt."""
+        Mt, Bt = gains
         return self.family(corner).loops(Mt, Bt, corner.contact.stiffness)
 
     def displayed(
@@ -291,15 +318,12 @@ class Requirement(AbstractRequirement):
             return np.full_like(Bt, angle)
         if measure in (TRANSPARENCY, HAND_EFFORT):
             return self._held(corner, measure, Mt, Bt)
-        loops = self.loops(corner, Mt, Bt)
-        if measure is not IMPEDANCE_ERROR:
-            return _margin(loops, measure)
         if corner.Kt:  # Towards rest the robot displays the spring, and no damping.
             return np.full(len(Mt), np.inf)
         shown = self._shown(corner, Mt, Bt)
         low, high = gain_extremes(shown.numerator, shown.denominator, self._seen_bandwidth)
         error = np.maximum(high / self.desired, self.desired / low)
-        return np.where(loops.stable, error, np.inf)
+        return np.where(self.loops(corner, Mt, Bt).stable, error, np.inf)
 
     def _held(
         self, corner: ContactCorner, measure: Measure, Mt: FloatArray, Bt: FloatArray
@@ -343,16 +367,16 @@ class ForceRequirement(AbstractRequirement):
     approach: Approach = NO_OFFSET  # How the limit is reached, for the steady error
 
     def _at(self, corner: ContactCorner, measure: Measure, *gains: FloatArray) -> FloatArray:
-        loops = self._loops[corner.label]
-        if measure is not FORCE_ERROR:
-            return _margin(loops, measure)
         gain, stiffness = float(self.law.gains["Kp"]), corner.contact.stiffness
         error = steady_force_error(self.motion, stiffness, gain, self.approach)
-        return np.where(loops.stable, error, np.inf)
+        return np.where(self.loops(corner).stable, error, np.inf)
+
+    def loops(self, corner: ContactCorner, *gains: FloatArray) -> Loops:
+        """Return the open loop at a corner."""
+        return self._loops[corner.label]
 
     @cached_property
     def _loops(self) -> dict[str, Loops]:
-        """The open loops at all corners."""
         assert self.axis is not None, "without an axis there are no loops"
         period, found = self.axis.period, {}
         for corner in self.corners:
@@ -415,11 +439,10 @@ def _inside(group: Sequence[ContactCorner]) -> Iterator[ContactCorner]:
             yield replace(first, contact=contact, label=f"{first.environment}, {', '.join(at)}")
 
 
-def _margin(loops: Loops, measure: Measure) -> FloatArray:
-    return {
-        SENSITIVITY_PEAK: Loops.sensitivity_peak,
-        GAIN_MARGIN: Loops.gain_margin,
-        PHASE_MARGIN: Loops.phase_margin,
-        DELAY_MARGIN: Loops.delay_margin,
-        DISK_MARGIN: Loops.disk_margin,
-    }[measure](loops)
+_MARGINS = {
+    SENSITIVITY_PEAK: Loops.sensitivity_peak,
+    GAIN_MARGIN: Loops.gain_margin,
+    PHASE_MARGIN: Loops.phase_margin,
+    DELAY_MARGIN: Loops.delay_margin,
+    DISK_MARGIN: Loops.disk_margin,
+}

@@ -53,8 +53,7 @@ class LoopFamily:
         there. None crosses at zero, where a positive k only adds to what is positive. Infinite if
         no stiffness destabilizes the loop, 0 if it is unstable however soft the contact is.
         """
-        one = np.array([Mt]), np.array([Bt])
-        free, contact = (self._polynomials(_CLOSED, *one)[i][0] for i in (0, 1))
+        (free,), (contact,) = self._polynomials(_CLOSED, np.array([Mt]), np.array([Bt]))
         rows = free[None], contact[None]
         critical = -ratio(*rows, frequencies(product_parts(*rows)[1]))[0].real
         ends = [-free[0] / contact[0]] if contact[0] else []

@@ -7,7 +7,9 @@ python-control takes one loop after the other, on a grid; the tests hold it agai
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -37,12 +39,12 @@ class Loops:
     # 1)`` instead of s.
     period: float | None = None
 
-    @property
+    @cached_property
     def closed(self) -> FloatArray:
         """The characteristic polynomials."""
         return self.numerator + self.denominator
 
-    @property
+    @cached_property
     def stable(self) -> BoolArray:
         """Which closed loops are Hurwitz."""
         return hurwitz(self.closed)
@@ -78,7 +80,7 @@ class Loops:
 
     def phase_margin(self) -> FloatArray:
         """Return the smallest phase, of either sign, that destabilizes, in rad."""
-        phase, _ = self._crossovers()
+        phase, _ = self._crossovers
         return np.where(self.stable, _smallest(np.abs(phase)), 0.0)
 
     def delay_margin(self) -> FloatArray:
@@ -86,7 +88,7 @@ class Loops:
 
         Sampled, dead times are whole samples by which the force is older.
         """
-        phase, omega = self._crossovers()
+        phase, omega = self._crossovers
         dead = _smallest(phase % (2 * math.pi) / self._true(omega))
         if self.period is not None:
             dead = np.floor(dead / self.period) * self.period
@@ -104,6 +106,7 @@ class Loops:
         half = None if self.period is None else self.period / 2
         return omega if half is None else np.arctan(omega * half) / half
 
+    @cached_property
     def _crossovers(self) -> tuple[FloatArray, FloatArray]:
         """Return the phase over -180 degrees, and the frequency, of every gain crossover."""
         excess = squared(self.numerator) - squared(self.denominator)
@@ -112,6 +115,24 @@ class Loops:
 
     def _at(self, omega: FloatArray) -> ComplexArray:
         return ratio(self.numerator, self.denominator, omega)
+
+
+def stacked(loops: Sequence[Loops]) -> list[tuple[list[int], Loops]]:
+    """Return loops of one period as few, those of one length together, and which are in each."""
+    alike: dict[int, list[int]] = {}
+    for i, one in enumerate(loops):
+        alike.setdefault(one.numerator.shape[1], []).append(i)
+    return [
+        (
+            which,
+            Loops(
+                np.concatenate([loops[i].numerator for i in which]),
+                np.concatenate([loops[i].denominator for i in which]),
+                loops[which[0]].period,
+            ),
+        )
+        for which in alike.values()
+    ]
 
 
 def _at_infinity(numerator: FloatArray, denominator: FloatArray) -> FloatArray:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from nrs_design.design.transfer import ComplexArray, FloatArray
+from nrs_design.models.exponential import expm
 
 # Time constants that a motion is followed for, and samples of each, or of each radian.
 _LONG, _FINE = 12.0, 16
@@ -19,8 +20,6 @@ def largest(A: FloatArray, c: FloatArray, x: FloatArray, rates: ComplexArray) ->
     motion is exact, also with repeated poles: a grid resolved for every pole only tells which
     extremum is the highest, and halving finds where its slope is zero.
     """
-    from scipy.linalg import expm
-
     parts = []
     for p in rates[rates.imag >= 0]:
         count = int(min(_LONG * _FINE * (1 + abs(p.imag / p.real)), _MOST))

@@ -17,8 +17,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.linalg import expm
 
+from nrs_design.models.exponential import expm
 from nrs_design.simulation.scenario import Array
 
 DEGREE = 14

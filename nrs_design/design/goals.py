@@ -27,7 +27,7 @@ from nrs_design.controllers.laws import CompliantLaw
 from nrs_design.design.force_limit import NO_OFFSET, Approach, steady_force_error
 from nrs_design.design.hands_on import hand_effort, transparency
 from nrs_design.design.loop_family import LoopFamily
-from nrs_design.design.loops import Loops, gain_extremes, stacked
+from nrs_design.design.loops import Loops, by_length, gain_extremes
 from nrs_design.design.measures import (
     AT_HOME,
     CREEP,
@@ -182,7 +182,7 @@ class AbstractRequirement(ABC):
         if key not in self._stacks:
             self._stacks.clear()
             loops = [self.loops(corner, *gains) for corner in self.corners]
-            self._stacks[key] = stacked(loops)
+            self._stacks[key] = by_length(loops)
         return self._stacks[key]
 
     @cached_property

@@ -117,7 +117,7 @@ class Loops:
         return ratio(self.numerator, self.denominator, omega)
 
 
-def stacked(loops: Sequence[Loops]) -> list[tuple[list[int], Loops]]:
+def by_length(loops: Sequence[Loops]) -> list[tuple[list[int], Loops]]:
     """Return loops of one period as few, those of one length together, and which are in each."""
     alike: dict[int, list[int]] = {}
     for i, one in enumerate(loops):

@@ -31,7 +31,7 @@ from nrs_design.spec.concessions import (
     concessions,
 )
 from nrs_design.spec.document import Position, to_data
-from nrs_design.spec.edits import Edit, Keys, edited, identified_above, in_one_line, node_at
+from nrs_design.spec.edits import Edit, Keys, identified_above, in_one_line, node_at, with_edits
 from nrs_design.spec.load import respecified
 from nrs_design.spec.places import dotted
 
@@ -290,7 +290,7 @@ class _Search:
 
 
 def _edited(loaded: LoadedSpec, edits: Sequence[Edit]) -> LoadedSpec:
-    return respecified(loaded, edited(loaded.root, edits))
+    return respecified(loaded, with_edits(loaded.root, edits))
 
 
 def _least(lines: Sequence[Concession]) -> list[Edit]:

@@ -40,7 +40,7 @@ def identified_above(root: Node, at: Keys) -> tuple[Keys, ...]:
     return ()
 
 
-def edited(root: Node, edits: Iterable[Edit]) -> Node:
+def with_edits(root: Node, edits: Iterable[Edit]) -> Node:
     """Return a document with all edits, without what identification said of the values before."""
     edits = tuple(edits)
     for at in dict.fromkeys(key for place, _ in edits for key in identified_above(root, place)):

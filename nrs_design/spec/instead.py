@@ -14,7 +14,7 @@ from contextvars import ContextVar
 from pathlib import Path
 
 from nrs_design.spec.document import Node
-from nrs_design.spec.edits import Keys, edited
+from nrs_design.spec.edits import Keys, with_edits
 
 # A place of the document, and the text that it holds there.
 Change = tuple[Keys, str]
@@ -37,4 +37,4 @@ def as_read(root: Node, file: Path) -> Node:
     said = _CHANGES.get()
     if said is None or said[0] != os.path.realpath(file):
         return root
-    return edited(root, said[1])
+    return with_edits(root, said[1])

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from nrs_design.spec import LoadedSpec, parse_spec
 from nrs_design.spec.concessions import PARTS, Concession, calmer, concessions
 from nrs_design.spec.document import parse_document, to_data
-from nrs_design.spec.edits import changed, edited
+from nrs_design.spec.edits import changed, with_edits
 from nrs_design.spec.load import respecified
 from nrs_design.spec.weaker import find_changes
 from tests.support import FORCE_LIMIT, ROOT, SOFT_TISSUE
@@ -52,7 +52,7 @@ def lines_of(spec: LoadedSpec, slowest: float | None = None) -> dict[str, Conces
 
 
 def at_least(spec: LoadedSpec, line: Concession) -> LoadedSpec:
-    return respecified(spec, edited(spec.root, [line.edit(line.least, 0)]))
+    return respecified(spec, with_edits(spec.root, [line.edit(line.least, 0)]))
 
 
 @pytest.mark.parametrize("name", PARTS_OF)

@@ -348,11 +348,11 @@ def test_nothing_admissible_is_refuted(loop):
 @pytest.mark.nightly
 @pytest.mark.parametrize("seed", range(4))
 def test_many_loops(seed):
-    """Of 200 loops, none is refuted without a loop that grows, and a fifth at most is open.
+    """Of 200 loops, none is refuted without a loop that grows, and a tenth at most is open.
 
-    Of the first 53, 7 are; a tenth is wanted.
+    Of the first 100, 3 are: their damping is so small that 64 parts are too few.
     """
     rng = np.random.default_rng(seed)
     each = [(*rng.uniform(0, 1, 6), int(rng.integers(3))) for _ in range(50)]
     verdicts = Counter(verdict_on(loop, WORK) for loop in each)
-    assert verdicts["inconclusive"] <= 10, verdicts
+    assert verdicts["inconclusive"] <= 5, verdicts

@@ -80,13 +80,6 @@ LADDER: tuple[Rung, ...] = (
         first=QUICK,
     ),
     # After what proves through the loss of contact, before what speaks of kept contact.
-    Rung(
-        "free motion",
-        None,
-        lambda f: f.may_lose_contact and f.is_losable,
-        _in("unstable_contact", "examine_free_motion"),
-        in_kept_contact=False,
-    ),
     *(
         Rung(
             name,

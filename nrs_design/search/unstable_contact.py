@@ -24,8 +24,7 @@ from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.balance import scale_states
 from nrs_design.search.candidates import Candidate, Candidates
 from nrs_design.search.family import Family, stand_ins, to_floats
-from nrs_design.search.unstable_mode import unstable_modes
-from nrs_design.work import Cost
+from nrs_design.work import Allowance, Cost
 
 Array = NDArray[np.float64]
 
@@ -40,28 +39,26 @@ SHARE = 0.1
 NEAR, LOOKS, PROPOSED = 0.9, 2000, 8
 # What is at rest in the air begins anew.
 AT_REST = 1e-9
+# Work of an entry of a matrix that is enclosed.
+PER_ENTRY = 4e-6
 # An eigenvalue is sought so near to the one of floating point, and enclosed with so many halvings.
 AROUND, HALVINGS = 1e-7, 120
 
 
-def examine_free_motion(family: Family) -> Candidates[GrowingSequence]:
-    """Test exactly every mode of free motion, without the deflection."""
-    return (yield from unstable_modes(family.system.free_motions(), family))
-
-
 def search_contact(family: Family) -> Candidates[GrowingSequence]:
     """Search for a mode that pushes in and grows, and for sequences of contact and flight."""
-    loop = _Loop.of(family)
+    loop, allowance = _Loop.of(family), family.allowance
     for mode in range(len(loop.names)):
-        yield from loop.candidates([mode])
+        yield from loop.candidates([mode], allowance)
     if family.system.time is Time.CONTINUOUS:
         return "no mode has a real eigenvalue along which it grows and pushes in"
     size = loop.matrices[0].size
-    family.allowance.take(
+    allowance.take(
         Cost(2e-8 * MOTIONS * LENGTH * len(loop.names) * size, 64.0 * MOTIONS * LENGTH * size),
         "simulating the loss of contact",
     )
-    found = (c for sequence in islice(loop.sequences(), LOOKS) for c in loop.candidates(sequence))
+    sequences = islice(loop.sequences(), LOOKS)
+    found = (c for sequence in sequences for c in loop.candidates(sequence, allowance))
     yield from islice(found, PROPOSED)
     return NOTHING_GROWS
 
@@ -188,7 +185,9 @@ class _Loop:
             states[step + 1] = x
         return chosen, states, sizes, turns
 
-    def candidates(self, sequence: Sequence[int]) -> Iterator[Candidate[GrowingSequence]]:
+    def candidates(
+        self, sequence: Sequence[int], allowance: Allowance
+    ) -> Iterator[Candidate[GrowingSequence]]:
         """Yield a sequence, for every eigenvalue that grows along a motion with its signs."""
         M = self.matrices[sequence[0]]
         for mode in sequence[1:]:
@@ -206,6 +205,7 @@ class _Loop:
                 steps = tuple(
                     (self.names[mode], Fraction(len([*same]))) for mode, same in groupby(sequence)
                 )
+                allowance.take(_enclosing_cost(self.system, steps), "the enclosure of a sequence")
                 factor = _bracket(self.system, steps, float(value.real))
                 if factor is not None:
                     yield Candidate(GrowingSequence(steps, factor=factor))
@@ -233,6 +233,11 @@ def _distinct(modes: Sequence[Mode]) -> list[Mode]:
     """Return modes without those that differ by an enclosed number."""
     named = stand_ins([mode.name for mode in modes], to_floats([mode.A for mode in modes]))
     return [mode for mode in modes if named[mode.name] == mode.name]
+
+
+def _enclosing_cost(system: SwitchedSystem, steps: Steps) -> Cost:
+    sets = (system.enclosure_of(name) for name in {name for name, _ in steps})
+    return Cost(PER_ENTRY * system.order**2 * sum(map(len, sets)))
 
 
 def _bracket(

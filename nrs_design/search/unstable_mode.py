@@ -12,8 +12,9 @@ from nrs_design.proof.evidence.growing_sequence import decides, staying
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.spectrum import affordable, is_stable
+from nrs_design.search.balance import scale_states
 from nrs_design.search.candidates import Candidate, Candidates
-from nrs_design.search.family import Family
+from nrs_design.search.family import Family, to_floats
 from nrs_design.work import Cost
 
 # Modes nearer to the stability limit than this, relative to their norm, get an exact test first.
@@ -24,22 +25,34 @@ ALWAYS_TESTED = 0.05
 
 def examine_suspicious_modes(family: Family) -> Candidates[GrowingSequence]:
     """Test exactly the modes that floating-point eigenvalues do not show to be stable."""
-    lasting = {mode.name for mode in family.system.lasting_modes()}
-    suspicious = [
-        mode
-        for mode, ok in zip(family.system.modes, seems_stable(family), strict=True)
-        if not ok and mode.name in lasting
-    ]
-    return (yield from unstable_modes(suspicious, family))
+    return (yield from unstable_modes(_suspicious(family), family))
 
 
 def examine_every_mode(family: Family) -> Candidates[GrowingSequence]:
-    """Test exactly every mode that need never be left."""
-    lasting = family.system.lasting_modes()
-    outcome = yield from unstable_modes(lasting, family)
-    if outcome and (left := len(family.system.modes) - len(lasting)):
+    """Test exactly every mode that need never be left, and free motion without the deflection."""
+    system, lasting = family.system, family.system.lasting_modes()
+    outcome = yield from unstable_modes((*system.free_motions(), *lasting), family)
+    if outcome and (left := len(system.modes) - len(lasting)):
         outcome += f"; {left} not tested, they must be left and may be unstable"
     return outcome
+
+
+def _suspicious(family: Family) -> list[Mode]:
+    """Return the modes that may last and do not seem stable, those without contact first.
+
+    What is unstable in the air is so whatever is touched, and no proof covers it.
+    """
+    system, free = family.system, family.system.free_motions()
+    flying = frozenset(() if system.flights is None else system.flights.flying)
+    lasting = {mode.name for mode in system.lasting_modes()}
+    pairs = zip(system.modes, seems_stable(family), strict=True)
+    modes = [mode for mode, ok in pairs if not ok and mode.name in lasting]
+    modes.sort(key=lambda mode: mode.name not in flying)
+    if not free:
+        return modes
+    scaled = scale_states(to_floats([mode.A for mode in free]), family.exponents[:-1])
+    pairs = zip(free, _clearly_stable(scaled, system.time), strict=True)
+    return [*(mode for mode, ok in pairs if not ok), *modes]
 
 
 def unstable_modes(modes: Iterable[Mode], family: Family) -> Candidates[GrowingSequence]:
@@ -66,9 +79,7 @@ def find_unstable_corner(family: Family) -> str | None:
     """Name a mode that is not stable, and need not be attained; None if there is none."""
     system = family.system
     corners = {name for names in system.enclosures for name in names}
-    lasting = {mode.name for mode in system.lasting_modes()}
-    pairs = zip(system.modes, seems_stable(family), strict=True)
-    suspicious = (mode for mode, ok in pairs if not ok and mode.name in corners & lasting)
+    suspicious = (mode for mode in _suspicious(family) if mode.name in corners)
     for mode, fits in affordable(suspicious):
         if fits and decides(system, mode.name) and not is_stable(mode.A, system.time):
             return mode.name
@@ -85,13 +96,19 @@ def exact_test_cost(A: RationalMatrix) -> Cost:
 
 def seems_stable(family: Family) -> NDArray[np.bool_]:
     """Tell in floating point which modes are clearly stable; shape (m,)."""
-    if not np.isfinite(family.matrices).all():
-        return np.zeros(len(family.matrices), dtype=bool)
-    size = np.abs(family.matrices).max(axis=(1, 2))
+    size = np.abs(family.matrices).max()
     continuous = family.system.time is Time.CONTINUOUS
-    if SUSPICION * size.max() < family.limit if continuous else family.limit < 1 - SUSPICION:
+    slow = SUSPICION * size < family.limit if continuous else family.limit < 1 - SUSPICION
+    if slow and np.isfinite(size):
         return np.ones(len(family.matrices), dtype=bool)
-    eigenvalues = np.linalg.eigvals(family.matrices)
-    if continuous:
+    return _clearly_stable(family.matrices, family.system.time)
+
+
+def _clearly_stable(matrices: NDArray[np.float64], time: Time) -> NDArray[np.bool_]:
+    if not np.isfinite(matrices).all():
+        return np.zeros(len(matrices), dtype=bool)
+    eigenvalues = np.linalg.eigvals(matrices)
+    if time is Time.CONTINUOUS:
+        size = np.abs(matrices).max(axis=(1, 2))
         return np.asarray(eigenvalues.real.max(axis=1) < -SUSPICION * size)
     return np.asarray(np.abs(eigenvalues).max(axis=1) < 1 - SUSPICION)

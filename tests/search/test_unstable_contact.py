@@ -8,12 +8,15 @@ import pytest
 from nrs_design.certificates.certificate import Verdict
 from nrs_design.proof.contact import Contact, Flights
 from nrs_design.proof.evidence import GrowingSequence
+from nrs_design.proof.evidence.abstract import AT_ANY_DEFLECTION
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.system import SwitchedSystem
+from nrs_design.search import unstable_contact
 from nrs_design.search.certify import Limits, certify, first_accepted, refuted_at_once
 from nrs_design.search.family import Family
 from nrs_design.search.method import Method
 from nrs_design.search.unstable_contact import NOTHING_GROWS, search_contact
+from nrs_design.work import Allowance, NotAffordableError
 from tests.proof.systems import (
     bouncing,
     bouncing_in_steps,
@@ -100,11 +103,11 @@ def test_what_decays_has_no_witness():
     assert found_in(losable) == (None, NOTHING_GROWS)
 
 
-def test_free_motion_is_examined():
-    result = certify(drifting())
-    assert result.evidence.names_unstable_mode
-    assert result.evidence.steps[0][0] == "free"
-    assert result.verdict is Verdict.REFUTED
+def test_enclosing_a_sequence_is_paid_for(monkeypatch):
+    monkeypatch.setattr(unstable_contact, "PER_ENTRY", 1.0)
+    searched = search_contact(Family.of(juggling(), Allowance(1.0)))
+    with pytest.raises(NotAffordableError, match="the enclosure of a sequence would take"):
+        next(searched)
 
 
 def turning(kept: str) -> SwitchedSystem:
@@ -112,6 +115,28 @@ def turning(kept: str) -> SwitchedSystem:
     free = Mode("free", matrix([[kept, 0], [1, 1]]))
     system = family([[kept, "-6/5"], [1, 1]], time=Time.DISCRETE, names=["touch"])
     return replace(system, states=("v", "delta"), contact=Contact((free,), required=True))
+
+
+def turning_among_modes() -> SwitchedSystem:
+    """The same, that may leave what it touches anywhere: neither mode is stable."""
+    system, flights = turning("9/10"), Flights(("touch",), ("free",))
+    modes = (*system.modes, *system.free)
+    return replace(system, modes=modes, contact=None, flights=flights)
+
+
+@pytest.mark.parametrize(
+    ("system", "verdict", "where"),
+    [
+        (drifting(), Verdict.REFUTED, None),
+        (turning_among_modes(), Verdict.INCONCLUSIVE, AT_ANY_DEFLECTION),
+    ],
+)
+def test_free_motion_is_judged_first_and_named(system, verdict, where):
+    result = certify(system)
+    assert (result.verdict, result.refuted_in) == (verdict, where)
+    assert result.attempts[0].outcome == "mode free is not stable"
+    assert result.statements[0].names_unstable_mode
+    assert refuted_at_once(system) == (where or "")
 
 
 def test_growth_in_kept_contact_leaves_the_verdict_open():

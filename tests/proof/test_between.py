@@ -1,5 +1,6 @@
 """The modes between which a sampled loop is: by hand, and against motions with cut-off signals."""
 
+from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
@@ -8,7 +9,7 @@ from hypothesis import strategies as st
 
 from nrs_design.proof.between import between
 from nrs_design.simulation.saturation import saturated_rates
-from tests.proof.systems import pushed_away_in_steps, saturating_in_steps
+from tests.proof.systems import matrix, pushed_away_in_steps, saturating_in_steps
 
 HELD = [[Fraction(-1, 8), Fraction(1, 16)]]
 
@@ -36,6 +37,19 @@ def test_what_is_rounded_goes_with_the_argument():
         [Fraction(1, 10), 1],
     ]
     assert between(system, [HELD] * 3).roundings == ()
+
+
+def test_every_rounding_keeps_its_own_column():
+    system = saturating_in_steps()
+    (item,), saturation = system.roundings, system.saturation
+    other = replace(item, columns=(matrix([[0], [7]]),) * 3)
+    (signal,) = saturation.signals
+    # It does not act where s is the argument.
+    signals = (replace(signal, errors=(matrix([[1, 0]]),) * 3),)
+    both = replace(system, roundings=(item, other), saturation=replace(saturation, signals=signals))
+    first, second = between(both, [HELD] * 3, rounding=True).roundings
+    assert [c.fractions() for c in first.columns] == [[[1], [0]], [[0], [0]]] * 3
+    assert [c.fractions() for c in second.columns] == [[[0], [7]]] * 6
 
 
 @given(st.floats(-3, 3), st.floats(-3, 3), st.floats(-0.12, 0.12), st.floats(-0.12, 0.12))

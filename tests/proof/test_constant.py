@@ -5,7 +5,13 @@ from fractions import Fraction
 
 import pytest
 
-from nrs_design.proof.constant import find_odd_shares, name_between, system_at, value_at
+from nrs_design.proof.constant import (
+    find_odd_shares,
+    name_between,
+    system_at,
+    value_at,
+    value_text,
+)
 from nrs_design.proof.switching import ARBITRARY, FixedParameter, Stay, Switching
 from nrs_design.spec import parse_spec
 from nrs_design.switched.assemble import assemble_from_text
@@ -24,6 +30,10 @@ modes:
   - {name: c, A: [[-1, 0], [1, -1]]}
 switching: RULES
 """
+
+
+def ends(*sets):
+    return Switching(fixed_ends=tuple(map(tuple, sets)))
 
 
 def assembled(rules="arbitrary"):
@@ -117,6 +127,12 @@ def test_a_stay_must_suit_both_ends():
         ({"enclosed": True}, (Fraction(1),), "values are enclosed only"),
         ({"twice": True}, (Fraction(1),), "not one share for each"),
         ({}, (Fraction(2),), "not between 0 and 1"),
+        ({}, (Fraction(-1, 2),), "not between 0 and 1"),
+        (ends("abcd"), (Fraction(1, 3), Fraction(2)), "not between 0 and 1"),
+        (ends("abcd"), (Fraction(1, 3), Fraction(1)), None),
+        (ends("abcdefgh"), (Fraction(1, 3), Fraction(1), Fraction(0)), None),
+        (ends("abcdef"), (Fraction(1, 3), Fraction(1), Fraction(0)), "not one share for each"),
+        (ends("ab", "abcd"), (Fraction(1, 3),), "not one share for each"),
         ({}, (Fraction(1, 3),), None),
     ],
 )
@@ -136,8 +152,42 @@ def test_a_parameter_that_acts_by_its_inverse_has_values_between():
     assert value_at(parameter, Fraction(1, 2)) == Fraction(3, 2)
     assert value_at(replace(parameter, inverse=False), Fraction(1, 2)) == 2
     assert [value_at(parameter, Fraction(s)) for s in (0, 1)] == [1, 3]
+    far = FixedParameter("J", Fraction(2), Fraction(4), "kg", inverse=True)
+    assert value_at(far, Fraction(1, 3)) == Fraction(12, 5)
+    named = replace(ends("ab"), fixed_parameters=(far, replace(parameter, name="k")))
+    system = family([[1]], switching=named)
+    shares = (Fraction(1, 3), Fraction(1))
+    assert value_text(system, shares) == "At J = 2.4 kg and k = 3"
+    unnamed = value_text(family([[1]], switching=ends("ab")), shares[:1])
+    assert unnamed == "At 1/3 of the way from the low to the high end of the parameter"
 
 
 def test_a_value_that_is_none_has_no_system():
     with pytest.raises(ValueError, match="no share is given"):
         system_at(assembled(), ())
+
+
+@pytest.mark.parametrize(
+    ("corners", "enclosed", "found"),
+    [
+        # What is enclosed at each end is so between them.
+        (["45", "01", "23"], ["02", "13"], ["02 13"]),
+        (["45", "01", "23"], [], []),
+        # At one end alone, in sets of two sizes, at two places, and with a part that has no ends.
+        (["01", "23"], ["02"], [""]),
+        (["01", "23"], ["02", "134"], [""]),
+        (["01", "23"], ["02", "31"], [""]),
+        (["01"], ["02", "13"], [""]),
+    ],
+)
+def test_enclosures_at_a_value(corners, enclosed, found):
+    def named(*sets):
+        return tuple(tuple(f"m{k}" for k in one) for one in sets)
+
+    system = family(*([[k]] for k in range(6)), switching=ends(*named(*corners)))
+    system = replace(system, enclosures=named(*enclosed))
+    expected = tuple(
+        tuple(f"m{a} to m{b}" for a, b in zip(*pair.split(), strict=True)) if pair else ()
+        for pair in found
+    )
+    assert system_at(system, (Fraction(1, 2),)).enclosures == expected

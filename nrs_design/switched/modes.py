@@ -125,8 +125,6 @@ def with_idle(rows: Rows, rates: Mapping[int, Fraction]) -> Rows:
     """Return a mode among states that it does not use.
 
     These decay at rates in 1/s, by their places among all.
-
-    These decay at rates in 1/s, by their places among all.
     """
     size = len(rows) + len(rates)
     full = [zero(size) for _ in range(size)]

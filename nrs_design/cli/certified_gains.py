@@ -118,7 +118,7 @@ class CertifiedGains:
             say(f"no gain here has a cost: goals alone move what is given, which shows {shows}")
         for steered in found.goals if self.analysis.impedance else ():
             if not steered.binds:
-                say(f"{steered.key} does not bind")
+                say(f"{steered.key} does not raise the cost")
             elif (tighter := steered.price_of_a_percent) is None:
                 say(f"{steered.key} binds")
             else:

@@ -22,7 +22,7 @@ from nrs_design.spec.features import (
     touched,
 )
 from nrs_design.spec.goals import OF_THE_CERTIFICATE, ONLY_FOR, GoalsSpec, ResponseGoal
-from nrs_design.spec.interaction_parts import FREE, INTERFACES, MOTION
+from nrs_design.spec.interaction_parts import FREE, INTERFACES, MOTION, NOT_CONTROLLERS, OF_CORNERS
 from nrs_design.spec.interaction_parts import AbstractInteractionSpec as Spec
 from nrs_design.spec.logic_checks import LOGIC_CHECKS
 from nrs_design.spec.motion import IN_ITS_UNIT, AboutCommands
@@ -73,6 +73,11 @@ def _named_environments(spec: Spec) -> Iterator[tuple[Location, Reference]]:
             for index, contact in enumerate(controller.contacts):
                 for key in names_in(contact):
                     yield ("controllers", name, "contacts", index), reference(name=key)
+
+
+def _is_of_modes(name: str) -> bool:
+    """Tell whether modes have this word in the place of a contact, or behind it."""
+    return name == FREE or OF_CORNERS.fullmatch(name) is not None
 
 
 def _freed(spec: Spec) -> Iterator[tuple[Location, tuple[Spec, str, str]]]:
@@ -376,16 +381,18 @@ INTERACTION_CHECKS: tuple[Row[Spec], ...] = (
         ),
     ),
     Row(
-        "environments.free",
-        lambda s: FREE in s.environments,
-        "an environment cannot be called 'free': so are the modes without contact",
+        "environments.{0}",
+        lambda s: next(filter(_is_of_modes, s.environments), None),
+        "an environment cannot be called {0!r}: so are the modes without contact, or at the end of "
+        "a range",
         "call it by what it is, such as `tissue`",
     ),
     Row(
-        "controllers.motion",
-        lambda s: MOTION in s.controllers,
-        "a controller cannot be called 'motion': so is the motion loop among the gains and the "
-        "modes",
+        "controllers.{0}",
+        lambda s: next(
+            ((n, NOT_CONTROLLERS[n]) for n in s.controllers if n in NOT_CONTROLLERS), None
+        ),
+        "a controller cannot be called {0!r}: so are {1}",
         "call it by what it does, such as `insertion`",
     ),
     *switching_checks(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from fractions import Fraction
 from types import MappingProxyType
@@ -54,6 +55,13 @@ INTERFACES: Mapping[str, Takes] = MappingProxyType({f"{takes}_interface": takes 
 DriveSpec = ActuatorSpec | FollowingSpec | TorqueInterfaceSpec
 # What the motion controller is called where gains are listed.
 MOTION = "motion"
+# What stands in the place of a controller in names of modes, and what it is.
+NOT_CONTROLLERS = {
+    MOTION: "the motion loop among the gains and the modes",
+    "miss": "the modes of a missed deadline",
+}
+# What stands behind the contact in names of modes: ends of ranges, ages, and points.
+OF_CORNERS = re.compile(r"([A-Za-z]|tau|Km|[a-z]\d+)-(min|max)|(delay|hull|case)-\d+")
 
 
 class DesignSpec(SpecModel):

@@ -314,19 +314,22 @@ def test_mixture_refusals(changes: tuple[tuple[str, str], ...], place: str, reas
     assert_among_faults(text, reason, place)
 
 
-@pytest.mark.parametrize("more", ["", "sampling: {period: 2 ms, outer_period: 4 ms, delay: 0}\n"])
-def test_no_controller_is_called_like_the_motion_loop(more):
-    """Gains are listed by these names, and so are modes in which the motion loop runs alone."""
-    text = SOFT_TISSUE.read_text(encoding="utf-8") + more
-    with pytest.raises(SpecError, match="controller cannot be called 'motion'"):
-        parse_spec(text.replace("  insertion:", "  motion:"))
+@pytest.mark.parametrize("name", ["motion", "miss"])
+def test_no_controller_is_called_like_other_modes(name):
+    """Gains are listed by these names, and so are modes in which no law is computed."""
+    text = SOFT_TISSUE.read_text(encoding="utf-8")
+    with pytest.raises(SpecError, match=f"controller cannot be called '{name}'"):
+        parse_spec(text.replace("  insertion:", f"  {name}:"))
 
 
-def test_no_environment_is_called_like_free_motion():
+@pytest.mark.parametrize("name", ["free", "tau-min", "s-max", "h0-min", "k-max", "delay-1"])
+def test_no_environment_is_called_like_what_names_of_modes_end_with(name):
     text = SOFT_TISSUE.read_text()
-    with pytest.raises(SpecError, match="cannot be called 'free'"):
+    with pytest.raises(SpecError, match=f"cannot be called '{name}'"):
         parse_spec(
-            re.sub(r"\bsoft:", "free:", text.replace("environment: soft", "environment: free"))
+            re.sub(
+                r"\bsoft:", f"{name}:", text.replace("environment: soft", f"environment: {name}")
+            )
         )
 
 

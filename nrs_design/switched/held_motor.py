@@ -240,10 +240,13 @@ class RestOfPeriod:
 
 def _highest(rising: tuple[Fraction, Fraction], falling: tuple[Fraction, Fraction]) -> Fraction:
     """Return the most of the lesser of two lines over a stretch, given at its ends."""
+    highest = max(map(min, zip(rising, falling, strict=True)))
     ends = (rising[0] - falling[0], rising[1] - falling[1])
     if ends[0] >= 0 or ends[1] <= 0:
-        return max(min(pair) for pair in zip(rising, falling, strict=True))
-    return rising[0] + (rising[1] - rising[0]) * ends[0] / (ends[0] - ends[1])
+        return highest
+    # Where they cross is the top only if one of them rises and the other falls.
+    crossing = rising[0] + (rising[1] - rising[0]) * ends[0] / (ends[0] - ends[1])
+    return max(highest, crossing)
 
 
 def _ends_of(ranges: ActuatorRanges) -> Iterator[tuple[tuple[str, ...], ActuatorRanges]]:

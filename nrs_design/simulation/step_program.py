@@ -36,14 +36,22 @@ class StepProgram:
 
     def __init__(self, law: StepLaw) -> None:
         self.law = law
-        self._names = [value.name for value in law.values]
-        self._limits = [np.float32(float(value.limit)) for value in law.values]
+        limits = [np.float32(float(value.limit)) for value in law.values]
+        self._limits = [(-limit, limit) for limit in limits]
         self._numbers = [
-            {c.name: np.float32(float(c.of(mode))) for c in law.coefficients}
+            [np.float32(float(c.of(mode))) for c in law.coefficients]
             for mode in range(len(law.modes))
         ]
-        self._outputs = [*law.outputs.values()]
-        self._states = [law.following[state.name] for state in law.states]
+        # All values of a step are in one list, in this order.
+        names = [*(value.name for value in law.values), *(c.name for c in law.coefficients)]
+        places = {name: i for i, name in enumerate(names)}
+        self._operations = []
+        for operation in law.operations:
+            operands = places[operation.left], places[operation.right]
+            self._operations.append((_COMPUTED[operation.kind], *operands))
+            places[operation.name] = len(places)
+        self._outputs = [places[name] for name in law.outputs.values()]
+        self._states = [places[law.following[state.name]] for state in law.states]
 
     def step(
         self, mode: int, given: Sequence[np.float32]
@@ -53,8 +61,10 @@ class StepProgram:
         Inputs and states are given as `StepLaw.values` lists them. If it is not valid, outputs are
         zero and states stay as they were.
         """
-        if not all(-most <= v <= most for v, most in zip(given, self._limits, strict=True)):
-            return [np.float32(0)] * len(self._outputs), [*given[len(self.law.inputs) :]], False
-        known = self._numbers[mode] | dict(zip(self._names, given, strict=True))
-        found = self.law.read(known, _COMPUTED)
-        return [found[name] for name in self._outputs], [found[name] for name in self._states], True
+        for value, (low, high) in zip(given, self._limits, strict=True):
+            if not low <= value <= high:
+                return [np.float32(0)] * len(self._outputs), [*given[len(self.law.inputs) :]], False
+        found = [*given, *self._numbers[mode]]
+        for compute, left, right in self._operations:
+            found.append(compute(found[left], found[right]))
+        return [found[i] for i in self._outputs], [found[i] for i in self._states], True

@@ -218,7 +218,9 @@ class ProcessorAxis(AbstractAxis):
         return first, second, third
 
     def _cut(self, law: DiscreteLaw, contact: AbstractLinearLaw, place: Place) -> CutLoop:
-        opened, closed = (_of_step(self, law, place, *touch) for touch in _touches(contact))
+        # One place is asked for, and the hash of all takes as long as the loop.
+        alone = replace(self, places=())
+        opened, closed = (_of_step(alone, law, place, *touch) for touch in _touches(contact))
         while opened[-1] == closed[-1] == 0:  # A force sample that leaves its last place.
             opened, closed = opened[:-1], closed[:-1]
         opened, closed = (on_the_axis(p, self.period) for p in (opened, closed))

@@ -7,6 +7,7 @@ import pytest
 
 from nrs_design.cli.goals import design_answer
 from nrs_design.design.goals import Achieved
+from nrs_design.design.laws.law import AbstractControllerAnalysis
 from nrs_design.design.measures import DELAY_MARGIN, GAIN_MARGIN, PHASE_MARGIN
 from nrs_design.facts.goals import goals_summary
 from nrs_design.spec import read_spec
@@ -20,7 +21,7 @@ def designed():
 
 
 def item(*achieved):
-    return SimpleNamespace(name="insertion", achieved=achieved, judged=achieved, proved_titles=())
+    return AbstractControllerAnalysis("insertion", achieved)
 
 
 FREE = Achieved(GAIN_MARGIN, 1.0, "soft")

@@ -9,6 +9,7 @@ import pytest
 
 from nrs_design.certificates.certificate import Certificate
 from nrs_design.design.goals import Achieved
+from nrs_design.design.laws.law import AbstractControllerAnalysis
 from nrs_design.design.measures import GAIN_MARGIN
 from nrs_design.errors import DesignError
 from nrs_design.gating.examine import Examiner, certified_rate
@@ -140,7 +141,7 @@ def test_an_unstable_design_has_no_margins_and_misses(examiner):
 )
 def test_goals_are_met_missed_or_not_set(examiner, goal, statuses):
     achieved = [Achieved(GAIN_MARGIN, 2.5, "soft", goal, everywhere=True)]
-    item = SimpleNamespace(name="a", achieved=achieved, judged=achieved)
+    item = AbstractControllerAnalysis("a", achieved)
     found = list(examiner.goals(SimpleNamespace(measured=[item])))
     assert [obligation.status for obligation in found] == statuses
 
@@ -155,7 +156,7 @@ def test_goals_are_met_missed_or_not_set(examiner, goal, statuses):
 )
 def test_no_goal_is_met_by_corners_alone(examiner, proved, status, words):
     achieved = [Achieved(GAIN_MARGIN, 2.5, "soft", 2.0, proved)]
-    item = SimpleNamespace(name="a", achieved=achieved, judged=achieved)
+    item = AbstractControllerAnalysis("a", achieved)
     (found,) = examiner.goals(SimpleNamespace(measured=[item]))
     assert found.status is status
     assert words in found.message

@@ -177,7 +177,7 @@ class Examiner:
             message = f"{name} is not {region} (eigenvalue about {eigenvalue})"
             if not decides(system, mode.name):
                 status = Status.INCONCLUSIVE
-                message += ", which is growth for which the environment would have to pull"
+                message += f", which is growth {_open_growth(system, mode.name)}"
         return self.obligation(MODE_STABLE, mode.name, status, message, self.places.mode(mode.name))
 
     def nothing_to_certify(self) -> SpecOutcome:
@@ -341,6 +341,13 @@ class Examiner:
         doubts = doubt_spec(self.loaded.spec) if analysis is None else analysis.warnings
         for doubt in doubts:
             yield replace(self.caution(str(doubt), *doubt.at), beyond=doubt.beyond)
+
+
+def _open_growth(system: SwitchedSystem, mode: str) -> str:
+    """Say why growth of a mode leaves open what happens where contact is lost."""
+    if system.flights is not None and mode in system.flights.flying:
+        return "of free motion, until it comes to the surface"
+    return "for which the environment would have to pull"
 
 
 def _met(reached: bool) -> Status:

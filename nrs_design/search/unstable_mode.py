@@ -38,7 +38,7 @@ def examine_every_mode(family: Family) -> Candidates[GrowingSequence]:
 
 
 def _suspicious(family: Family) -> list[Mode]:
-    """Return the modes that may last and do not seem stable, those without contact first.
+    """Return the modes that may last and do not seem stable: what refutes, then free motion first.
 
     What is unstable in the air is so whatever is touched, and no proof covers it.
     """
@@ -47,7 +47,7 @@ def _suspicious(family: Family) -> list[Mode]:
     lasting = {mode.name for mode in system.lasting_modes()}
     pairs = zip(system.modes, seems_stable(family), strict=True)
     modes = [mode for mode, ok in pairs if not ok and mode.name in lasting]
-    modes.sort(key=lambda mode: mode.name not in flying)
+    modes.sort(key=lambda mode: (not decides(system, mode.name), mode.name not in flying))
     if not free:
         return modes
     scaled = scale_states(to_floats([mode.A for mode in free]), family.exponents[:-1])

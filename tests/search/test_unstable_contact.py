@@ -139,6 +139,14 @@ def test_free_motion_is_judged_first_and_named(system, verdict, where):
     assert refuted_at_once(system) == (where or "")
 
 
+def test_what_grows_in_and_out_of_contact_refutes_before_what_grows_in_one_of_them():
+    system = turning_among_modes()
+    either = Mode("either", matrix([[1, -2], [1, 1]]))
+    result = certify(replace(system, modes=(*system.modes, either)))
+    assert result.verdict is Verdict.REFUTED
+    assert result.evidence.steps == (("either", 1),)
+
+
 def test_growth_in_kept_contact_leaves_the_verdict_open():
     system = turning("9/10")
     for method in (Method.AUTO, Method.PERIOD):

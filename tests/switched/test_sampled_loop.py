@@ -337,7 +337,8 @@ def test_what_position_control_touches_is_sampled(tmp_path):
 
 def test_contact_lost_under_force_control_is_a_mode_without_force(tmp_path):
     """What unilateral contact does to the sample, max(0, k delta), lies between the two."""
-    system = system_of(tmp_path, "{period: 2 ms, delay: [0, 1]}\ncontact: losable", text=FORCE)
+    losable = FORCE.replace("contact: kept", "contact: losable")
+    system = system_of(tmp_path, "{period: 2 ms, delay: [0, 1]}", text=losable)
     assert system.contact is None
     modes = {mode.name: mode.A.fractions() for mode in system.modes}
     free = {name for name in modes if name.startswith("force/free/")}

@@ -5,7 +5,7 @@ import re
 import pytest
 
 from nrs_design.cli.tables import print_table
-from tests.support import SOFT_TISSUE, run
+from tests.support import SOFT_TISSUE
 from tests.terminal import run_on_terminal
 
 STYLE = re.compile("\x1b\\[[0-9;?]*[A-Za-z]")
@@ -32,11 +32,6 @@ def test_rows_become_columns_as_far_as_they_fit(monkeypatch, capsys):
     heads = [line for line in words if line[:1] == ["name"]]
     assert heads == [["name", "row0"], ["name", "row1"], ["name", "row2"]]
     assert ["a", "m", "1.123456"] in words
-
-
-def test_a_pipe_gets_every_row_on_one_line(tmp_path):
-    lines = run("optimize", SOFT_TISSUE, cwd=tmp_path).stdout.splitlines()
-    assert sum(line.split()[:1] == ["insertion"] for line in lines) == 1
 
 
 def test_a_long_cell_in_a_pipe_stays_whole(capsys):

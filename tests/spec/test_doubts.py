@@ -9,19 +9,13 @@ def doubts(text):
 
 
 def test_an_environment_that_no_controller_touches():
+    """Those of a contact are touched; given matrices have none."""
     for sample in (IMPEDANCE, FORCE):
         (doubt,) = doubts(sample)
         assert doubt.at == ("environments", "hand")
         assert "environment hand is touched by no controller" in str(doubt)
-
-
-def test_a_contact_is_touched():
     text = spoiled(IMPEDANCE, "environment: soft", "environment: soft\n    contacts: [soft, hand]")
-    assert doubts(text) == []
-
-
-def test_given_matrices_have_no_environments():
-    assert doubts(SWITCHED) == []
+    assert doubts(text) == doubts(SWITCHED) == []
 
 
 LOGIC = """\

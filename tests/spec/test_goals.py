@@ -116,13 +116,10 @@ RESPONSES = """goals:
 """
 
 
-def test_goals_for_frequency_responses_are_read():
+def test_goals_for_frequency_responses_are_those_of_impedance_controllers():
     spec = interaction(with_goals(RESPONSES))
     assert spec.goals.transparency.limit == 3
     assert spec.goals.accuracy.limit == Fraction(1, 10)
-
-
-def test_they_are_for_impedance_controllers():
     assert "for impedance controllers" in refusal(with_goals(RESPONSES, sample=FORCE)).message
 
 

@@ -165,12 +165,10 @@ LINE_FAULTS = [
 ]
 
 
-@pytest.mark.parametrize(("before", "line", "at", "said"), LINE_FAULTS)
-def test_refuses_a_line_with_its_place(before: str, line: str, at: str, said: str) -> None:
-    assert_refused(spoiled(IMPEDANCE, before, f"{line}\n{before}"), said, at)
+LINES = [(before, f"{line}\n{before}", *rest) for before, line, *rest in LINE_FAULTS]
 
 
-@pytest.mark.parametrize(("old", "new", "at", "said"), IMPEDANCE_FAULTS)
+@pytest.mark.parametrize(("old", "new", "at", "said"), IMPEDANCE_FAULTS + LINES)
 def test_refuses_with_place_and_remedy(old: str, new: str, at: str, said: str) -> None:
     assert_refused(spoiled(IMPEDANCE, old, new), said, at)
 
@@ -259,23 +257,6 @@ def test_maxwell_alone() -> None:
     assert gel.at_pivot()["damping"].nominal.exact == 40 * Fraction("0.0576")
 
 
-@pytest.mark.parametrize(
-    ("text", "change", "place", "reason"),
-    [
-        (MAXWELL, ("environment: soft", "environment: soft\n    contacts: [soft, hand]"),
-         "maxwell", "has no rest position, so 'soft' shares no deflection with hand"),
-        (BOLTZMANN.replace("nominal: 400", "nominal: 0").replace("300", "0"), ("", ""),
-         "0 N*s/m", "must be positive"),
-        (BOLTZMANN.replace("    series_stiffness: 17 N/m\n", ""), ("", ""),
-         "soft", "series_stiffness` is missing"),
-        (BOLTZMANN.replace("17 N/m", "17 N*m/rad"), ("", ""), "17 N*m", "a lever_arm is given"),
-    ],
-)  # fmt: skip
-def test_viscoelastic_refusals(text: str, change: tuple[str, str], place: str, reason: str) -> None:
-    spoilt = spoiled(IMPEDANCE, SOFT, text).replace(*change, 1)
-    assert_among_faults(spoilt, reason, place)
-
-
 def test_force_control_of_a_kelvin_voigt_spring_is_allowed() -> None:
     text = spoiled(FORCE, "model: elastic", "model: kelvin-voigt\n    damping: 0 N*s/m")
     assert interaction(text).environments["soft"].is_spring
@@ -299,14 +280,23 @@ def test_idle_states() -> None:
 @pytest.mark.parametrize(
     ("changes", "place", "reason"),
     [
+        (((SOFT, MAXWELL), ("environment: soft", "environment: soft\n    contacts: [soft, hand]")),
+         "maxwell", "has no rest position, so 'soft' shares no deflection with hand"),
+        (((SOFT, BOLTZMANN), ("nominal: 400", "nominal: 0"), ("300", "0")), "0 N*s/m",
+         "must be positive"),
+        (((SOFT, BOLTZMANN), ("    series_stiffness: 17 N/m\n", "")), "soft",
+         "series_stiffness` is missing"),
+        (((SOFT, BOLTZMANN), ("17 N/m", "17 N*m/rad")), "17 N*m", "a lever_arm is given"),
         ((FREE,), "impedance", "it is not said what the states of impedance controllers do"),
         ((IDLE,), "idle_states", "idle_states without impedance controllers beside"),
         ((FREE, IDLE, ("20 1/s", "20 s")), "20 s", "one over it"),
         ((FREE, IDLE, ("20 1/s", "-20 1/s")), "-20 1/s", "zero or positive"),
         ((FREE, IDLE, ("decay: 20 1/s", "reset: true")), "idle_states", "decay` is missing"),
     ],
-)
-def test_mixture_refusals(changes: tuple[tuple[str, str], ...], place: str, reason: str) -> None:
+)  # fmt: skip
+def test_refuses_contacts_and_mixtures(
+    changes: tuple[tuple[str, str], ...], place: str, reason: str
+) -> None:
     text = IMPEDANCE
     for old, new in changes:
         assert old in text

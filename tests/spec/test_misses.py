@@ -5,9 +5,9 @@ from math import comb
 
 import pytest
 
-from nrs_design.errors import SpecError
 from nrs_design.spec import parse_spec
 from nrs_design.spec.misses import automaton_of
+from tests.spec.samples import assert_refused
 
 TEXT = """\
 kind: switched-system
@@ -105,7 +105,4 @@ def test_a_number_in_a_row_is_a_window():
 )
 def test_rules_that_say_nothing_are_refused(old, new, said):
     assert old in TEXT
-    with pytest.raises(SpecError, match=said) as caught:
-        parse_spec(TEXT.replace(old, new))
-    assert caught.value.line > 1
-    assert caught.value.remedy
+    assert_refused(TEXT.replace(old, new), said)

@@ -11,6 +11,8 @@ from .samples import IMPEDANCE, spoiled
 HASH = "0123456789abcdef" * 4
 ARM = "    lever_arm: 0.24 m\n"
 ENTRY = f"    provenance: [{{file: a.csv, sha256: {HASH}, data: synthetic}}]\n"
+DOUBT = '    doubts: ["a: the residual is 46 % of the range of the force"]\n'
+REASON = "    accept_doubt: a phantom, to be measured again\n"
 GAIN = "gain: 4.8417e-4 rad/s/rpm"
 INTERVALS = (
     "intervals: {gain: [4.8e-4 rad/s/rpm, 4.9e-4 rad/s/rpm], time_constant: [35 ms, 0.036 s]}"
@@ -22,44 +24,37 @@ def test_an_environment_says_where_it_comes_from():
     (source,) = spec.environments["soft"].provenance
     assert (source.file, source.sha256, source.data) == ("a.csv", HASH, "synthetic")
     assert ("environments.soft.provenance[0]", "a.csv", "synthetic", "") in describe(spec)
-
-
-def test_without_it_nothing_is_said():
-    spec = parse_spec(IMPEDANCE)
-    assert spec.environments["soft"].provenance == ()
-    assert spec.actuator.intervals is None
+    assert parse_spec(IMPEDANCE).environments["soft"].provenance == ()
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "message"),
+    ("lines", "message"),
     [
-        (HASH, HASH[:-1], "is not a SHA-256"),
-        (HASH, HASH.upper(), "is not a SHA-256"),
-        ("synthetic", "guessed", "data"),
-        ("file: a.csv, ", "", "file"),
+        (ENTRY.replace(HASH, HASH[:-1]), "is not a SHA-256"),
+        (ENTRY.replace(HASH, HASH.upper()), "is not a SHA-256"),
+        (ENTRY.replace("synthetic", "guessed"), "data"),
+        (ENTRY.replace("file: a.csv, ", ""), "file"),
+        (REASON, "no doubts to accept"),
+        (f'{DOUBT}    accept_doubt: " "\n', "no reason is given"),
+        ("    range_covers: everything\n", "range_covers"),
     ],
 )
-def test_wrong_provenance(old, new, message):
+def test_wrong_origin_or_acceptance(lines, message):
     with pytest.raises(SpecError, match=message) as caught:
-        parse_spec(spoiled(IMPEDANCE, ARM, ARM + ENTRY.replace(old, new)))
+        parse_spec(spoiled(IMPEDANCE, ARM, ARM + lines))
     assert caught.value.line is not None
 
 
 def test_intervals_of_the_actuator():
+    """Each must hold the value; without them nothing is said."""
     spec = parse_spec(spoiled(IMPEDANCE, GAIN, f"{GAIN}\n  {INTERVALS}"))
     assert spec.actuator.intervals.time_constant[0].si == pytest.approx(0.035)
     names = [row.name for row in describe(spec)]
     assert "actuator.intervals.gain" in names
-
-
-def test_an_interval_must_hold_the_value():
+    assert parse_spec(IMPEDANCE).actuator.intervals is None
     wrong = INTERVALS.replace("4.8e-4", "4.85e-4")
     with pytest.raises(SpecError, match=r"does not hold '4\.8417e-4 rad/s/rpm'"):
         parse_spec(spoiled(IMPEDANCE, GAIN, f"{GAIN}\n  {wrong}"))
-
-
-DOUBT = '    doubts: ["a: the residual is 46 % of the range of the force"]\n'
-REASON = "    accept_doubt: a phantom, to be measured again\n"
 
 
 def test_doubts_and_what_a_range_holds_are_listed():
@@ -96,16 +91,3 @@ def test_a_doubt_that_nobody_accepts_is_a_warning():
     spec = parse_spec(spoiled(IMPEDANCE, ARM, ARM + DOUBT))
     (doubt,) = (item for item in doubt_spec(spec) if "in doubt" in item.message)
     assert doubt.at == ("environments", "soft", "doubts")
-
-
-@pytest.mark.parametrize(
-    ("lines", "message"),
-    [
-        (REASON, "no doubts to accept"),
-        (f'{DOUBT}    accept_doubt: " "\n', "no reason is given"),
-        ("    range_covers: everything\n", "range_covers"),
-    ],
-)
-def test_wrong_acceptance(lines, message):
-    with pytest.raises(SpecError, match=message):
-        parse_spec(spoiled(IMPEDANCE, ARM, ARM + lines))

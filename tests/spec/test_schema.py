@@ -8,7 +8,8 @@ import pytest
 from jsonschema import Draft7Validator
 from ruamel.yaml import YAML
 
-from nrs_design.spec.load import read_axes
+from nrs_design.spec import load_spec
+from nrs_design.spec.load import axes_at, read_axes
 from nrs_design.spec.schema import json_schema
 from nrs_design.spec.templates import TEMPLATES
 
@@ -53,8 +54,12 @@ def test_the_schema_is_draft_7() -> None:
 
 
 @pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.name)
-def test_shipped_specs_validate(path: Path) -> None:
+def test_shipped_specs_validate_and_are_named_as_their_files(path: Path) -> None:
     assert faults(path.read_text()) == []
+    for axis in axes_at(path):
+        file, _, name = axis.name.partition("#")
+        said = file.removesuffix(".nrs.yaml") + f"-{name}" * bool(name)
+        assert load_spec(axis).name == said
 
 
 @pytest.mark.parametrize(

@@ -118,18 +118,6 @@ def test_refuses_what_is_no_rule(rules: str) -> None:
     assert (error.line, error.column) == place_of(text, f"{rules}\n")
 
 
-@pytest.mark.parametrize(
-    ("old", "new", "at", "said"),
-    [
-        ("  - {from: b, to: a, map: [[1], [0]]}\n", "", "[[-1, -1]", "from b to a has no reset"),
-        ("[[1], [0]]", "[[2, 0]]", "[[2, 0]]", "1 x 2, expected 2 x 1"),
-        ("[[1, 0]]", "[[2], [0]]", "[[2], [0]]", "2 x 1, expected 1 x 2"),
-    ],
-)
-def test_refuses_sizes_that_do_not_fit(old: str, new: str, at: str, said: str) -> None:
-    assert_refused(spoiled(UNEQUAL, old, new), said, at)
-
-
 def test_missing_reset_is_reported_at_the_transition() -> None:
     text = spoiled(UNEQUAL, "switching: arbitrary", "switching: {transitions: [[a, b], [b, a]]}")
     text = spoiled(text, "  - {from: b, to: a, map: [[1], [0]]}\n", "")
@@ -167,17 +155,6 @@ def test_refuses_dwell_times(text: str, said: str) -> None:
     assert said in message_of(lambda: parse_dwell_time(text))
 
 
-@pytest.mark.parametrize(
-    ("old", "new", "at", "said"),
-    [
-        ("withdrawal]]", "withdrawel]]", "withdrawel", "did you mean withdrawal?"),
-        ("500 ms", "5 steps", "5 steps", "is not a time"),
-    ],
-)
-def test_refuses_rules_of_controllers(old: str, new: str, at: str, said: str) -> None:
-    assert_refused(spoiled(PAIR, old, new), said, at)
-
-
 def test_a_range_that_is_not_touched_does_not_matter() -> None:
     text = spoiled(PAIR, "43 N*m/rad", "{nominal: 43 N*m/rad, range: [40 N*m/rad, 50 N*m/rad]}")
     assert interaction(text).switching.dwell_time is not None
@@ -193,10 +170,11 @@ def test_damping_moves_too() -> None:
 
 DISCRETE = spoiled(SWITCHED, "continuous", "discrete")
 STAYS = "{dwell_time: {b: 2 steps}, longest_dwell_time: {a: 1 step, b: 5 steps}}"
+LEFT = spoiled(DISCRETE, "arbitrary", STAYS)
 
 
 def test_times_by_mode() -> None:
-    rules = switched(spoiled(DISCRETE, "arbitrary", STAYS)).switching
+    rules = switched(LEFT).switching
     two, one = DwellTime("2 steps", Fraction(2), "steps"), DwellTime("1 step", Fraction(1), "steps")
     assert rules.stay("a") == (None, one)
     assert rules.stay("b") == (two, DwellTime("5 steps", Fraction(5), "steps"))
@@ -212,20 +190,31 @@ def test_one_longest_time_for_all() -> None:
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "at", "said"),
+    ("sample", "old", "new", "at", "said"),
     [
-        ("{b: 2 steps}", "{c: 2 steps}", "2 steps}", "there is no mode 'c'"),
-        ("{b: 2 steps}", "{}", "{}, longest", "no mode is named"),
-        ("{b: 2 steps}", "{b: [2]}", "[2]", "single value"),
-        ("b: 2 steps", "b: 2 s", "2 s}", "not a dwell time in discrete time, expected steps"),
-        ("b: 2 steps", "b: 2.5 steps", "2.5 steps", "not a whole number"),
-        ("b: 2 steps", "b: 6 steps", "5 steps}}", "after 5 steps, but not before 6 steps"),
-        ("a: 1 step,", "a: 1 s,", "1 s,", "not a dwell time in discrete time"),
-        ("5 steps}}", "5 steps}, transitions: [[b, a]]}", "1 step,", "nothing may follow it"),
+        (
+            UNEQUAL,
+            "  - {from: b, to: a, map: [[1], [0]]}\n",
+            "",
+            "[[-1, -1]",
+            "b to a has no reset",
+        ),
+        (UNEQUAL, "[[1], [0]]", "[[2, 0]]", "[[2, 0]]", "1 x 2, expected 2 x 1"),
+        (UNEQUAL, "[[1, 0]]", "[[2], [0]]", "[[2], [0]]", "2 x 1, expected 1 x 2"),
+        (PAIR, "withdrawal]]", "withdrawel]]", "withdrawel", "did you mean withdrawal?"),
+        (PAIR, "500 ms", "5 steps", "5 steps", "is not a time"),
+        (LEFT, "{b: 2 steps}", "{c: 2 steps}", "2 steps}", "there is no mode 'c'"),
+        (LEFT, "{b: 2 steps}", "{}", "{}, longest", "no mode is named"),
+        (LEFT, "{b: 2 steps}", "{b: [2]}", "[2]", "single value"),
+        (LEFT, "b: 2 steps", "b: 2 s", "2 s}", "not a dwell time in discrete time, expected steps"),
+        (LEFT, "b: 2 steps", "b: 2.5 steps", "2.5 steps", "not a whole number"),
+        (LEFT, "b: 2 steps", "b: 6 steps", "5 steps}}", "after 5 steps, but not before 6 steps"),
+        (LEFT, "a: 1 step,", "a: 1 s,", "1 s,", "not a dwell time in discrete time"),
+        (LEFT, "5 steps}}", "5 steps}, transitions: [[b, a]]}", "1 step,", "nothing may follow it"),
     ],
 )
-def test_refuses_times_that_cannot_be_kept(old: str, new: str, at: str, said: str) -> None:
-    assert_refused(spoiled(spoiled(DISCRETE, "arbitrary", STAYS), old, new), said, at)
+def test_refuses_what_does_not_fit(sample: str, old: str, new: str, at: str, said: str) -> None:
+    assert_refused(spoiled(sample, old, new), said, at)
 
 
 def test_a_mode_alone_cannot_be_left() -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
+from functools import partial
 from typing import TYPE_CHECKING
 
 from nrs_design.models.cut import MAX_PARTS, Ends, RangeCut, cut_ranges
@@ -38,7 +39,10 @@ class Cases:
 
 
 def find_cases(designed: Designed, constants: Sequence[FixedParameter], limits: Limits) -> Cases:
-    """Cut the constant ranges of a design until each part is proved, or one cannot be."""
+    """Cut the constant ranges of a design until each part is proved, or one cannot be.
+
+    With a goal for the decay, until each decays so; where that cannot be, at any rate.
+    """
     from nrs_design.search.certify import prove_together
     from nrs_design.spec.build_plant import build_conditions
     from nrs_design.switched.assemble import closed_part
@@ -47,7 +51,7 @@ def find_cases(designed: Designed, constants: Sequence[FixedParameter], limits: 
     (drive,) = designed.spec.drives
     allowance = Allowance(ALL_PARTS * limits.budget, limits.memory, Fuse.of(limits.budget))
 
-    def proved_at(part: Ends) -> ProvedCase | str:
+    def proved_at(part: Ends, wanted: Fraction | None) -> ProvedCase | str:
         if allowance.left <= 0:
             raise NotAffordableError(
                 f"the budget of {allowance.total:g} for all parts is used up (--budget)"
@@ -55,14 +59,19 @@ def find_cases(designed: Designed, constants: Sequence[FixedParameter], limits: 
         system = closed_part(conditions, designed.plant, designed.design, drive, part)
         system = replace(system, switching=ARBITRARY)
         allowance.charge(PER_PAIR * len(system.modes) ** 2)
-        proof, outcome = prove_together(system, allowance)
+        proof, outcome = prove_together(system, allowance, wanted)
         return outcome if proof is None else (system, proof)
 
-    try:
-        cuts, proved, outcome = _cut(constants, proved_at)
-    except NotAffordableError as reason:
-        cuts, proved, outcome = (), (), str(reason)
-    return Cases(outcome, allowance.charged, cuts, proved)
+    found = Cases("", 0.0)
+    for wanted in dict.fromkeys((limits.decay_rate, None)):
+        try:
+            cuts, proved, outcome = _cut(constants, partial(proved_at, wanted=wanted))
+        except NotAffordableError as reason:
+            cuts, proved, outcome = (), (), str(reason)
+        found = Cases(outcome, allowance.charged, cuts, proved)
+        if cuts:
+            break
+    return found
 
 
 def _cut(

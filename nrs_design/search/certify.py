@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import replace
+from fractions import Fraction
 from functools import partial
 from time import perf_counter
 
@@ -129,14 +130,23 @@ def refuted_at_once(system: SwitchedSystem, limits: Limits | None = None) -> str
     return refuted_in(system, (evidence,)) or ""
 
 
-def prove_together(system: SwitchedSystem, allowance: Allowance) -> tuple[FormsOnGraph | None, str]:
-    """Search for forms that all modes share, under arbitrary switching; say how that ended."""
+def prove_together(
+    system: SwitchedSystem, allowance: Allowance, wanted: Fraction | None = None
+) -> tuple[FormsOnGraph | None, str]:
+    """Search for forms that all modes share, under arbitrary switching; say how that ended.
+
+    With a wanted decay in 1/s, forms that show less are none.
+    """
     from nrs_design.search.graphs import search_periodic_quadratic, search_together
 
     with floats_in_silence():
-        family = Family.of(system, allowance, optimize_rate=False)
+        family = Family.of(system, allowance, optimize_rate=wanted is not None)
     search = search_together if system.clock is None else search_periodic_quadratic
-    return _take(partial(search, family), system, allowance)
+    found, outcome = _take(partial(search, family), system, allowance)
+    shown = None if found is None else rate_per_second(found.rate, system)
+    if wanted is not None and shown is not None and shown < wanted:
+        return None, f"{outcome}, with less decay than the goal"
+    return found, outcome
 
 
 def certify_cases(

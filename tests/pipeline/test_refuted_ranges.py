@@ -15,6 +15,7 @@ from scipy.linalg import expm
 
 from nrs_design.certificates.brief import brief
 from nrs_design.certificates.certificate import Certificate, content_id, to_document
+from nrs_design.certificates.goals import certified_goals
 from nrs_design.certificates.prove import prove
 from nrs_design.certificates.verify import verify_document
 from nrs_design.errors import AssemblyError
@@ -161,6 +162,16 @@ def test_constant_ranges_are_proved_in_parts(text, parts):
     assert f"cut in {parts} parts" in document["assumptions"][-1]
     assert isinstance(physical_outputs(result), str)
     assert "at constant parameters" in brief(certification.evidence, certification.system)
+
+
+@pytest.mark.parametrize(("wanted", "parts", "met"), [("2.5", 3, True), ("30", 2, False)])
+def test_parts_are_cut_until_the_goal_is_met(wanted, parts, met):
+    """Two parts decay with 0.46 1/s; what no lag reaches is asked of none."""
+    loaded = loaded_of(f"{LAG}goals: {{decay_rate: {wanted} 1/s}}\n")
+    certificate = run_certification(loaded).certificate
+    assert len(certificate.cuts) == parts - 1
+    (goal,) = certified_goals(loaded.spec, certificate)
+    assert goal.met is met
 
 
 def test_constants_do_not_change_within_a_period():

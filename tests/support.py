@@ -163,6 +163,14 @@ def typed(
     return done
 
 
+def replaced(text: str, *changes: tuple[str, str]) -> str:
+    """Replace pieces of a text, each of which must be there when its turn comes."""
+    for old, new in changes:
+        assert old in text, old
+        text = text.replace(old, new)
+    return text
+
+
 def number_in(text: str) -> Fraction:
     """Read a number of a claim, such as ``0.25`` or ``1 - 2.5e-22``."""
     return Fraction(text) if " - " not in text else 1 - Fraction(text.removeprefix("1 - "))

@@ -5,7 +5,7 @@ import re
 import pytest
 
 from tests.simulation.interactions import text_of
-from tests.support import FORCE_LIMIT, ROOT, SOFT_TISSUE, document_of, run
+from tests.support import FORCE_LIMIT, ROOT, SOFT_TISSUE, document_of, replaced, run
 
 
 def write(tmp_path, text):
@@ -112,10 +112,8 @@ def test_nothing_to_optimize(tmp_path):
 
 
 def spec_with(tmp_path, goals, *replacements):
-    text = SOFT_TISSUE.read_text()
-    for old, new in (("switching: arb", f"goals: {goals}\nswitching: arb"), *replacements):
-        assert old in text
-        text = text.replace(old, new)
+    wanted = ("switching: arb", f"goals: {goals}\nswitching: arb")
+    text = replaced(SOFT_TISSUE.read_text(), wanted, *replacements)
     (tmp_path / "goals.nrs.yaml").write_text(text)
     return "goals.nrs.yaml"
 

@@ -92,11 +92,6 @@ def test_what_is_no_proof_of_the_spec_says_why(certified, arguments, code, said)
     assert said in (result.stderr if code == 2 else result.stdout)
 
 
-def test_quiet(certified):
-    result = run("verify", "-q", "commuting.json", COMMUTING, cwd=certified)
-    assert (result.returncode, result.stdout, result.stderr) == (0, "", "")
-
-
 def test_remark_that_decides_nothing(tmp_path):
     """It holds, and says so, but is no verdict: exit code 3."""
     spec = write_spec(tmp_path / "hard.nrs.yaml", *HARD).path

@@ -12,7 +12,7 @@ from nrs_design.pipeline.analysis import run_analysis
 from nrs_design.pipeline.runs import run_design
 from nrs_design.spec import read_spec
 from nrs_design.switched.sampled_frame import INPUTS
-from tests.support import SOFT_TISSUE
+from tests.support import SOFT_TISSUE, replaced
 from tests.switched.frames import frame_of
 
 TEXT = SOFT_TISSUE.read_text(encoding="utf-8")
@@ -26,10 +26,7 @@ ERROR = 0.797 * 9.81 * 0.2 * np.radians(1)
 
 
 def designed(path, more="", *changes, sensor=SENSOR):
-    text = TEXT
-    for old, new in changes:
-        assert old in text
-        text = text.replace(old, new)
+    text = replaced(TEXT, *changes)
     file = path / "sensed.nrs.yaml"
     file.write_text(f"{text}{sensor}{more}\n", encoding="utf-8")
     found = run_design(read_spec(file))

@@ -6,7 +6,7 @@ from nrs_design.pipeline.analysis import run_judgement
 from nrs_design.pipeline.runs import run_design
 from nrs_design.spec import read_spec
 from tests.design.holder import USELESS
-from tests.support import FORCE_LIMIT, SOFT_TISSUE
+from tests.support import FORCE_LIMIT, SOFT_TISSUE, replaced
 
 
 def warnings(path):
@@ -15,12 +15,8 @@ def warnings(path):
 
 
 def changed(tmp_path, *replacements, source=SOFT_TISSUE):
-    text = source.read_text()
-    for old, new in replacements:
-        assert old in text
-        text = text.replace(old, new)
     path = tmp_path / "changed.nrs.yaml"
-    path.write_text(text)
+    path.write_text(replaced(source.read_text(), *replacements))
     return path
 
 

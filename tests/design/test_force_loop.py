@@ -10,6 +10,8 @@ from nrs_design.design.transfer import TransferFunction
 from nrs_design.errors import DesignError
 from tests.design.motion_loops import EXACT, PRINTED, SOFT
 
+THIRD_ORDER = TransferFunction((800.0,), (1.0, 27.0, 240.0, 800.0))
+
 
 def test_published_gain_does_not_give_the_stated_criteria():
     # Thesis 6.33 derives Kp = 0.02 from zeta = 0.707, wn = 40.297; the poles say otherwise.
@@ -56,9 +58,8 @@ def test_design_returns_zero_where_the_motion_loop_already_has_the_damping():
 
 
 def test_third_order_motion_loop_uses_its_dominant_pair():
-    motion = TransferFunction((800.0,), (1.0, 27.0, 240.0, 800.0))
-    gain = design_force_gain(motion, 10.0, 0.4)
-    response = force_loop_response(motion, 10.0, gain)
+    gain = design_force_gain(THIRD_ORDER, 10.0, 0.4)
+    response = force_loop_response(THIRD_ORDER, 10.0, gain)
     assert response.damping_ratio == pytest.approx(0.4)
     pair = [p for p in response.poles if p.imag > 0]
     assert abs(pair[0]) == pytest.approx(response.natural_frequency)
@@ -71,24 +72,21 @@ def test_unreachable_damping_names_what_is_reachable(zeta):
     assert caught.value.remedy == "gains reach 0.70717 to 1"
 
 
-def test_unstable_loop_is_refused():
-    motion = TransferFunction((800.0,), (1.0, 27.0, 240.0, 800.0))
-    with pytest.raises(DesignError, match="unstable with Kp = 10"):
-        force_loop_response(motion, SOFT, 10.0)
+@pytest.mark.parametrize(
+    ("motion", "stiffness", "gain", "message"),
+    [
+        (THIRD_ORDER, SOFT, 10.0, "unstable with Kp = 10"),
+        (EXACT, 0.0, 0.1, "must"),
+        (EXACT, SOFT, -0.1, "must"),
+        (TransferFunction((1.0,), (0.1, 1.0)), SOFT, 0.02, "two poles"),
+    ],
+)
+def test_what_has_no_response_is_refused(motion, stiffness, gain, message):
+    with pytest.raises(DesignError, match=message):
+        force_loop_response(motion, stiffness, gain)
 
 
 @pytest.mark.parametrize("zeta", [0.0, 1.0, -0.5])
 def test_bad_damping_ratio(zeta):
     with pytest.raises(DesignError, match="between 0 and 1"):
         design_force_gain(EXACT, SOFT, zeta)
-
-
-@pytest.mark.parametrize(("stiffness", "gain"), [(0.0, 0.1), (SOFT, -0.1)])
-def test_bad_stiffness_and_gain(stiffness, gain):
-    with pytest.raises(DesignError, match="must"):
-        force_loop_response(EXACT, stiffness, gain)
-
-
-def test_first_order_motion_loop_has_no_pair():
-    with pytest.raises(DesignError, match="two poles"):
-        force_loop_response(TransferFunction((1.0,), (0.1, 1.0)), SOFT, 0.02)

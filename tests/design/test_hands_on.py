@@ -116,9 +116,8 @@ def test_a_hand_that_lets_go_is_proved(tmp_path):
 
 def test_a_spring_in_the_admittance(tmp_path):
     """Kt of 5 N m/rad beside a hand of 25: at rest it gives way by 25/30; the proof takes it up."""
-    text = HANDS_ON.read_text().replace("{min: 0.1 kg*m^2, max: 3 kg*m^2}", "0.1 kg*m^2")
-    text = text.replace("{min: 1 kg*m^2/s, max: 20 kg*m^2/s}", "4.6 kg*m^2/s\n    Kt: 5 N*m/rad")
-    text = text.replace("contact: losable", "contact: kept")
+    damping = "4.6 kg*m^2/s"
+    text = table("0.1", "4.6").replace(damping, f"{damping}\n    Kt: 5 N*m/rad")
     (tmp_path / "spring.nrs.yaml").write_text(text)
     (light,) = document_of("optimize", "spring.nrs.yaml", cwd=tmp_path, code=1)["controllers"]
     goals = {item["goal"]: item for item in light["goals"]}

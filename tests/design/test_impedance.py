@@ -16,7 +16,7 @@ from tests.design.classical import (
     open_loop,
     sensitivity,
 )
-from tests.design.motion_loops import EXACT, PRINTED, SOFT
+from tests.design.motion_loops import EXACT, SOFT
 
 
 @pytest.mark.parametrize(
@@ -68,18 +68,22 @@ def test_stability_agrees_with_computed_roots(Mt, Bt, stiffness, damping):
     assert bool(stabilizes(loop, Mt, Bt)) == (rightmost < 0)
 
 
-@pytest.mark.parametrize(("stiffness", "damping"), [(0.0, 0.0), (-1.0, 0.0), (1.0, -1.0)])
-def test_loop_refuses_bad_input(stiffness, damping):
-    with pytest.raises(DesignError, match="must"):
-        ImpedanceLoop(PRINTED, KelvinVoigt(stiffness, damping))
-
-
 @pytest.mark.parametrize(
-    "contact", [Maxwell(1.0, 0.0), Maxwell(0.0, 1.0), KelvinBoltzmann(1.0, 1.0, 0.0)]
+    ("contact", "Kt", "message"),
+    [
+        (KelvinVoigt(0.0, 0.0), 0.0, "must"),
+        (KelvinVoigt(-1.0, 0.0), 0.0, "must"),
+        (KelvinVoigt(1.0, -1.0), 0.0, "must"),
+        (Maxwell(1.0, 0.0), 0.0, "must be positive"),
+        (Maxwell(0.0, 1.0), 0.0, "must be positive"),
+        (KelvinBoltzmann(1.0, 1.0, 0.0), 0.0, "must be positive"),
+        (Maxwell(1.129, 120.233), 0.8, "no rest position"),
+        (KelvinVoigt(SOFT, 0.3), -1.0, "not be negative"),
+    ],
 )
-def test_viscoelastic_parameters_are_positive(contact):
-    with pytest.raises(DesignError, match="must be positive"):
-        ImpedanceLoop(EXACT, contact)
+def test_contacts_and_springs_without_a_loop(contact, Kt, message):
+    with pytest.raises(DesignError, match=message):
+        ImpedanceLoop(EXACT, contact, Kt)
 
 
 def test_poles_with_a_spring_are_those_that_python_control_closes():
@@ -92,10 +96,3 @@ def test_poles_with_a_spring_are_those_that_python_control_closes():
     loop = ImpedanceLoop(EXACT, KelvinVoigt(SOFT, 0.3), 0.8)
     found = np.roots(closed_loop_polynomial(loop, 0.01, 1.04))
     assert np.sort_complex([*found, 0]) == pytest.approx(wanted, rel=1e-6, abs=1e-9)
-
-
-def test_what_has_no_rest_position_has_no_spring():
-    with pytest.raises(DesignError, match="no rest position"):
-        ImpedanceLoop(EXACT, Maxwell(1.129, 120.233), 0.8)
-    with pytest.raises(DesignError, match="not be negative"):
-        ImpedanceLoop(EXACT, KelvinVoigt(SOFT, 0.3), -1.0)

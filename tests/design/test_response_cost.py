@@ -1,6 +1,5 @@
 """Transparency and accuracy in the cost: by hand, against python-control, and what they choose."""
 
-import json
 import re
 
 import control
@@ -12,7 +11,7 @@ from nrs_design.design.response_cost import response_cost
 from nrs_design.design.transfer import TransferFunction
 from nrs_design.models.contact import KelvinVoigt
 from tests.design.motion_loops import EXACT
-from tests.support import ROOT, run
+from tests.support import ROOT, document_of, run
 
 LAG = TransferFunction((1.0,), (1.0, 1.0))
 TISSUE = KelvinVoigt(3, 0.5)
@@ -45,8 +44,7 @@ def chosen(tmp_path, weights):
     assert fixed in text
     path = tmp_path / "weighed.nrs.yaml"
     path.write_text(text.replace(fixed, free), encoding="utf-8")
-    result = run("optimize", path, "--json", cwd=tmp_path)
-    (item,) = json.loads(result.stdout)["controllers"]
+    (item,) = document_of("optimize", path, cwd=tmp_path)["controllers"]
     assert any("add the largest response" in said for said in item["over"]) == (
         "transparency" in weights or "accuracy" in weights
     )

@@ -7,18 +7,14 @@ import pytest
 
 from nrs_design.design.displayed_response import LargestResponse
 from nrs_design.design.response_goals import JudgedResponse
-from tests.support import ROOT, run
+from tests.support import ROOT, document_of, replaced, run
 
 EXAMPLE = ROOT / "docs/examples/transparency.nrs.yaml"
 
 
 def written(tmp_path, *changes):
-    text = EXAMPLE.read_text("utf-8")
-    for before, after in changes:
-        assert before in text
-        text = text.replace(before, after)
     path = tmp_path / "felt.nrs.yaml"
-    path.write_text(text, encoding="utf-8")
+    path.write_text(replaced(EXAMPLE.read_text("utf-8"), *changes), encoding="utf-8")
     return path
 
 
@@ -67,8 +63,7 @@ def test_optimize_shows_them_and_their_exit_code(tmp_path, change):
 def test_of_a_sampled_law_accuracy_is_not_judged(tmp_path):
     """At rest it feels the damping too; single precision is in what is covered."""
     path = written(tmp_path, ("switching:", "sampling: {period: 2 ms, delay: [0, 1]}\nswitching:"))
-    result = run("optimize", path, "--json", cwd=tmp_path, code=1)
-    (item,) = json.loads(result.stdout)["controllers"]
+    (item,) = document_of("optimize", path, cwd=tmp_path, code=1)["controllers"]
     felt, off = item["responses"]
     assert felt["status"] == "proved"
     assert felt["at_least"] == pytest.approx(2, rel=1e-6)
@@ -87,8 +82,9 @@ def test_of_a_sampled_law_accuracy_is_not_judged(tmp_path):
 )
 def test_what_a_sampled_law_is_not_judged_with(tmp_path, change, why):
     sampled = ("switching:", "sampling: {period: 2 ms, delay: 0}\nswitching:")
-    result = run("optimize", written(tmp_path, sampled, change), "--json", cwd=tmp_path, code=1)
-    (item,) = json.loads(result.stdout)["controllers"]
+    (item,) = document_of("optimize", written(tmp_path, sampled, change), cwd=tmp_path, code=1)[
+        "controllers"
+    ]
     assert why in item["responses"][0]["shown"]
 
 

@@ -7,7 +7,7 @@ from nrs_design.pipeline.analysis import run_analysis
 from nrs_design.pipeline.runs import run_design
 from nrs_design.spec import parse_spec, read_spec
 from nrs_design.spec.templates import TEMPLATES
-from tests.support import document_of, run
+from tests.support import document_of, replaced, run
 
 TEXT = TEMPLATES["torque-interface"]
 AT_ONCE = ((", latency: 0.3 ms", ""), ("  dead_time: 0.2 ms", "  #"))
@@ -18,12 +18,8 @@ RANGED = "friction: {nominal: 1 N*m*s/rad, range: [0.4 N*m*s/rad, 2 N*m*s/rad]}"
 @pytest.fixture
 def analyzed(tmp_path):
     def make(*edits):
-        text = TEXT
-        for old, new in edits:
-            assert old in text
-            text = text.replace(old, new)
         path = tmp_path / "mine.nrs.yaml"
-        path.write_text(text, encoding="utf-8")
+        path.write_text(replaced(TEXT, *edits), encoding="utf-8")
         return run_analysis(run_design(read_spec(path))).torque
 
     return make
@@ -75,9 +71,8 @@ def test_tune_prints_it(tmp_path):
     ],
 )
 def test_what_does_not_fit_is_refused_with_a_remedy(old, new, what):
-    assert old in TEXT
     with pytest.raises(SpecError) as caught:
-        parse_spec(TEXT.replace(old, new, 1))
+        parse_spec(replaced(TEXT, (old, new)))
     faults = caught.value.faults or (caught.value,)
     said = " ".join(f"{fault.message} {fault.remedy}" for fault in faults)
     assert what in said

@@ -7,10 +7,9 @@ from dataclasses import replace
 import pytest
 
 from nrs_design.exporters.c_names import CNames
-from nrs_design.exporters.formats.c import header_text, render, source_text
-from nrs_design.exporters.formats.monitor import render as render_monitor
+from nrs_design.exporters.formats.c import header_text, source_text
 from nrs_design.spec.monitoring import MonitoringSpec
-from tests.exporters.programs import LAWS, run
+from tests.exporters.programs import LAWS, run, write_formats
 
 pytestmark = pytest.mark.slow
 EVA = (
@@ -124,9 +123,7 @@ def test_no_input_makes_a_monitor_undefined(tmp_path, sampled_export, surface):
         told = MonitoringSpec.model_validate(numbers | {"surface": surface})
         spec = sampled_export.spec.model_copy(update={"monitoring": told, "contact": "losable"})
         sampled_export = replace(sampled_export, spec=spec)
-    for files in (render(sampled_export), render_monitor(sampled_export)):
-        for ending, content in files.items():
-            (tmp_path / f"soft-tissue{ending}").write_bytes(content)
+    write_formats(tmp_path, sampled_export, ("c", "monitor"))
     (tmp_path / "loop.c").write_text(MONITOR)
     sources = (tmp_path / "soft-tissue_monitor.c", tmp_path / "loop.c")
     together = ("-eva", "-eva-precision", "2", "-machdep", "gcc_x86_64")

@@ -20,8 +20,18 @@ def test_a_proof_of_the_sampled_loop_is_one_of_the_program(sampled_export):
     record = sampled_export.record
     assert (sampled_export.verdict, record.verdict, record.unproved) == ("proved", "proved", None)
     assert (record.sample_time.exact, record.delay) == ("0.002", (0, 1))
-    assert "sample time: 0.002 s, force sample 0 to 1 sample old" in header_lines(record)
     assert not [text for text in record.outside if "continuous" in text]
+
+
+def test_sample_time_and_delay_are_in_every_header(sampled_export, continuous_export):
+    record = sampled_export.record
+    for shown, said in (
+        (record, "0.002 s, force sample 0 to 1 sample old"),
+        (record.model_copy(update={"delay": (1, 1)}), "0.002 s, force sample 1 sample old"),
+        (record.model_copy(update={"delay": None}), "0.002 s"),
+        (continuous_export.record, "none, the statement is about continuous time"),
+    ):
+        assert f"sample time: {said}" in header_lines(shown)
 
 
 def test_the_sample_time_may_be_repeated_but_not_changed(sampled, sampled_export, tmp_path):

@@ -251,14 +251,11 @@ def test_every_variable_of_a_step(law, described):
         assert found[value.name].get("description") == value.meaning
 
 
-def test_names_verdict_and_step(described):
+def test_names_verdict_step_and_the_unit_of_turns(described):
+    """FMI: what is in base units is factor times what is in this unit; 60 rpm are 2 pi rad/s."""
     assert described.get("description").startswith("PROVED: ")
     assert described.find("CoSimulation").get("modelIdentifier") == "nrs_a_b"
     assert [f.get("name") for f in described.iter("File")] == ["fmu.c", "a.b.c"]
     assert described.find("DefaultExperiment").get("stepSize") == "0.002"
-
-
-def test_turns_per_minute_are_turned_into_radians(described):
-    """FMI: what is in base units is factor times what is in this unit; 60 rpm are 2 pi rad/s."""
     (rpm,) = [unit[0] for unit in described.iter("Unit") if unit.get("name") == "rpm"]
     assert 60 * float(rpm.get("factor")) == pytest.approx(6.283185307179586, rel=1e-15)

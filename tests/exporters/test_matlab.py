@@ -17,7 +17,7 @@ from nrs_design.exporters.formats.mat import render
 from nrs_design.spec import read_spec
 from tests.design.test_linear_parts import filtered
 from tests.exporters.conftest import CONTINUOUS
-from tests.support import ROOT, program_named, skip_for_want_of
+from tests.support import ROOT, program_named, replaced, skip_for_want_of
 
 # u = M (K (E y + f)) by the parts alone, at some frequencies, beside the closed loop.
 FEEDBACK = """\
@@ -125,11 +125,9 @@ def test_octave_sees_a_wrong_matrix(export, tmp_path):
 
 
 def test_a_motor_that_feels_what_is_touched_has_no_such_loops(tmp_path):
-    text = CONTINUOUS.read_text()
-    file = tmp_path / "loaded.nrs.yaml"
-    old = "  time_constant: 0.0351 s\n"
-    assert old in text
-    file.write_text(text.replace(old, f"{old}  load_inertia: 1.213 kg*m^2\n"))
+    file, old = tmp_path / "loaded.nrs.yaml", "  time_constant: 0.0351 s\n"
+    loaded = (old, f"{old}  load_inertia: 1.213 kg*m^2\n")
+    file.write_text(replaced(CONTINUOUS.read_text(), loaded))
     export = export_design(read_spec(file))
     read = loaded_mat(render(export)[".mat"], tmp_path)
     assert "acts on the motor" in str(read["info"]["loops_left_out"])

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from nrs_design.exporters.formats.c import render as render_c
 from nrs_design.exporters.formats.monitor import KINDS, render
 from nrs_design.identification.running import bounds_of_spec, judge_run, read_run
 from tests.exporters.monitor_study import sources
@@ -17,6 +16,7 @@ from tests.exporters.programs import (
     compiler,
     emulated,
     run,
+    write_formats,
 )
 from tests.identification import runs
 
@@ -198,8 +198,7 @@ def test_cppcheck_with_misra_is_content(tmp_path, sampled_export):
 def test_a_compiler_that_knows_no_nan_is_refused(tmp_path, sampled_export, flag):
     """It would leave out that a torque is no number: nothing would ever be left."""
     gcc = compiler()
-    for ending, text in {**render_c(sampled_export), **render(sampled_export)}.items():
-        (tmp_path / f"{sampled_export.record.spec.name}{ending}").write_bytes(text)
+    write_formats(tmp_path, sampled_export, ("c", "monitor"))
     (source,) = tmp_path.glob("*_monitor.c")
     built(gcc, *STRICT, "-c", source, "-o", tmp_path / "o")
     done = run(gcc, "-std=c99", flag, "-c", source, "-o", tmp_path / "o")

@@ -12,9 +12,8 @@ import numpy as np
 import pytest
 
 from nrs_design.controllers.replica import step
-from nrs_design.exporters.formats.c import render as render_c
-from nrs_design.exporters.formats.vectors import csv_text, make_vectors, render, vectors_text
-from tests.exporters.programs import LAWS, compiler, run
+from nrs_design.exporters.formats.vectors import csv_text, make_vectors, vectors_text
+from tests.exporters.programs import LAWS, compiler, run, write_formats
 
 # An implementation that has nothing in common with the package but the formulas: each operation in
 # double precision, then rounded once to single precision.
@@ -44,12 +43,6 @@ def step(mode, inputs, states):
     }}
     return {{"command": u}}, True, after
 """
-
-
-def exported(folder, export):
-    for files in (render_c(export), render(export)):
-        for ending, content in files.items():
-            (folder / f"{export.record.spec.name}{ending}").write_bytes(content)
 
 
 @pytest.mark.parametrize("shape", LAWS)
@@ -110,7 +103,7 @@ def test_json_and_csv_hold_the_same():
 @pytest.mark.slow
 def test_exported_tests_pass_as_they_are(tmp_path, sampled_export):
     compiler("cc")
-    exported(tmp_path, sampled_export)
+    write_formats(tmp_path, sampled_export, ("c", "vectors"))
     assert "3 passed, 1 skipped" in pytest_in(tmp_path, "test")
     source = tmp_path / f"{sampled_export.record.spec.name}.c"
     source.write_text(source.read_text().replace("proportional + ", "proportional - "))
@@ -119,7 +112,7 @@ def test_exported_tests_pass_as_they_are(tmp_path, sampled_export):
 
 @pytest.mark.slow
 def test_any_implementation_in_python_can_be_tested(tmp_path, sampled_export, monkeypatch):
-    exported(tmp_path, sampled_export)
+    write_formats(tmp_path, sampled_export, ("c", "vectors"))
     header = tmp_path / f"{sampled_export.record.spec.name}.h"
     own = f"NRS_{sampled_export.record.spec.name.replace('-', '_').upper()}_"
     found = re.findall(rf"#define {own}(\w+) (\S+)F ", header.read_text())

@@ -8,6 +8,7 @@ import pytest
 from nrs_design.gating.find_specs import find_specs
 from nrs_design.gating.renew import make_lock, write_lock
 from nrs_design.gating.run import Files, run_gate
+from tests.support import SOFT_TISSUE, replaced
 
 STABLE = """\
 kind: switched-system
@@ -42,7 +43,6 @@ HARD = GROWING.replace("growing", "hard").replace("[[-1, 10], [-100, -1]]", "[[-
 HARD = HARD.replace("[[-1, 100], [-10, -1]]", "[[-1, -11.2], [5/56, -1]]")
 HARD += "certification: {max_degree: 8}\n"
 BROKEN = STABLE.replace("time: continuous", "time: sideways")
-SOFT_TISSUE = Path(__file__).parents[2] / "specs/neuroboscope/soft-tissue.nrs.yaml"
 
 
 @pytest.fixture(scope="session")
@@ -66,6 +66,10 @@ def project(gated: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Pat
     shutil.copytree(gated, root)
     monkeypatch.chdir(root)
     return root
+
+
+def edit(path: Path, old: str, new: str) -> None:
+    path.write_text(replaced(path.read_text(encoding="utf-8"), (old, new)), encoding="utf-8")
 
 
 @pytest.fixture

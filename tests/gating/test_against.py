@@ -14,7 +14,7 @@ from nrs_design.gating.lock import read_lock
 from nrs_design.gating.locked import run_locked
 from tests.support import run
 
-from .conftest import BROKEN, GROWING, STABLE
+from .conftest import BROKEN, GROWING, STABLE, edit
 
 LOCK = Path("nrs.lock")
 
@@ -36,12 +36,6 @@ def against(base, *names):
 
 def weaker(outcome):
     return [item for item in outcome.broken if item.rule.id == "NRS110"]
-
-
-def edit(path, old, new):
-    text = path.read_text()
-    assert old in text
-    path.write_text(text.replace(old, new))
 
 
 def test_the_same_is_not_weaker(folders):

@@ -7,6 +7,8 @@ import pytest
 from nrs_design.spec.templates import TASK_SPACE, TEMPLATES
 from tests.support import run
 
+from .conftest import edit
+
 QUICK = ("--no-reports",)
 
 
@@ -16,12 +18,6 @@ def folder(tmp_path):
         (tmp_path / name).mkdir()
         (tmp_path / name / "two.nrs.yaml").write_text(TEMPLATES[TASK_SPACE], encoding="utf-8")
     return tmp_path
-
-
-def edit(file, old, new):
-    text = file.read_text(encoding="utf-8")
-    assert old in text
-    file.write_text(text.replace(old, new), encoding="utf-8")
 
 
 def test_every_axis_is_locked_and_examined_again(folder):

@@ -38,12 +38,6 @@ def re_check(project):
     return run_locked(specs, read_lock(file), file, named=[project / "specs"])
 
 
-def test_lock_is_the_same_on_repeat(project):
-    before = (project / "nrs.lock").read_bytes()
-    gate(project, "specs")
-    assert (project / "nrs.lock").read_bytes() == before
-
-
 def test_lock_elsewhere_names_the_same_files(project):
     outcome = outcome_of(project, "specs")
     lock = make_lock(outcome.specs, project / "reports/nrs.lock")

@@ -5,13 +5,12 @@ import pytest
 from nrs_design.gating.lock import read_lock
 from nrs_design.gating.required import find_missing
 from nrs_design.spec import read_spec
-from tests.support import ROOT
+from tests.support import ROOT, SOFT_TISSUE
 
 GOALS = "goals: {max_sensitivity_peak: 9, transparency: {max_impedance: 9 N*m*s/rad, band: BAND}}"
 RUN = """scenarios:
   hit: {command: {constant: 8 deg/s}, duration: 1 s, limits: {torque: 1 N*m, velocity: 9 deg/s}}
 """
-SOFT_TISSUE = ROOT / "specs/neuroboscope/soft-tissue.nrs.yaml"
 
 
 def asked(tmp_path, text, locked=(), status="missed"):

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
+from nrs_design.identification.facts.finding import estimate_numbers
 from nrs_design.identification.statistics import (
     Estimate,
     independent,
@@ -29,6 +30,11 @@ def test_an_interval_is_shown_rounded_outwards():
     assert str(Estimate(399.948, 399.776, 400.1211)) == "399.95 [399.77, 400.13]"
     assert str(Estimate(2.0, 0.0, math.inf)) == "2 [0, inf]"
     assert str(Estimate(0.25, -1.000001, 1.0)) == "0.25 [-1.0001, 1]"
+
+
+def test_unlimited_is_null_in_json():
+    assert estimate_numbers(Estimate(2.0, 1.0, 3.0)) == {"value": 2.0, "low": 1.0, "high": 3.0}
+    assert estimate_numbers(Estimate(2.0, 1.0, math.inf))["high"] is None
 
 
 def test_a_range_of_one_number_is_written_once():

@@ -23,7 +23,7 @@ from nrs_design.spec.changes import spec_changes
 from nrs_design.spec.environment import KelvinBoltzmannSpec
 from tests.identification import motors, signals, synthetic
 from tests.identification.support import MOTOR, quick, record, sinusoids, slow
-from tests.support import COMMUTING, ROBOT, SOFT_TISSUE
+from tests.support import COMMUTING, ROBOT, SOFT_TISSUE, replaced
 
 SAMPLED = ROBOT / "soft-tissue-sampled.nrs.yaml"
 
@@ -190,8 +190,7 @@ STATED = """  zero: 56.9706 1/s
 def test_intervals_where_no_proof_covers_ranges(tmp_path, motor, old, new):
     """A motor may not change during a dwell time, and is no part of a loop that is stated."""
     plain = SOFT_TISSUE.read_text().replace(", range: [720.56 N/m, 768.17 N/m]", "")
-    assert old in plain
-    text = merge_actuator(merged(tmp_path, plain.replace(old, new)), motor)
+    text = merge_actuator(merged(tmp_path, replaced(plain, (old, new))), motor)
     assert ("intervals" in text, "range_covers" in text) == (True, False)
     # Once a proof does, they give way to ranges.
     again = merge_actuator(merged(tmp_path, text.replace(new, old)), motor)

@@ -148,8 +148,12 @@ switching: arbitrary
 ALIKE = {"steps", "resets", "value", "blocks-refuted", "dwell-refuted"}
 
 
+def slow(case: str) -> Any:
+    return pytest.param(case, marks=pytest.mark.slow)
+
+
 def cases(names: Iterable[str]) -> list[Any]:
-    return [pytest.param(n, marks=[pytest.mark.slow] if n in ALIKE else []) for n in names]
+    return [slow(name) if name in ALIKE else name for name in names]
 
 
 def report_of(path: Path) -> Report:

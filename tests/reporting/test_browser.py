@@ -26,10 +26,10 @@ from tests.certificates.attacks import (
     named,
     shipped,
 )
-from tests.reporting.conftest import KINDS
+from tests.reporting.conftest import KINDS, slow
 
 CASES = ["proved", "dwell"]
-MORE = [pytest.param(name, marks=pytest.mark.slow) for name in ("force", "refuted", "discrete")]
+MORE = [slow(name) for name in ("force", "refuted", "discrete")]
 ALL = [
     *CASES,
     *MORE,
@@ -37,10 +37,6 @@ ALL = [
 ]
 
 pytestmark = pytest.mark.browser
-
-
-def slow(case):
-    return pytest.param(case, marks=pytest.mark.slow)
 
 
 def open_page(browser, text, folder, width, scheme="light"):

@@ -6,7 +6,7 @@ from nrs_design.reporting.document import Paragraph, Table
 from nrs_design.reporting.sections.impedance import impedance_section
 from nrs_design.spec import LoadedSpec
 from nrs_design.spec.load import parse_spec
-from tests.support import ROOT
+from tests.support import ROOT, replaced
 
 LABELS = (
     "Displayed admittance passive up to [Hz], exact",
@@ -27,10 +27,7 @@ RANGED = (
 
 
 def rows_of(name, *replacements):
-    text = (ROOT / f"specs/neuroboscope/{name}.nrs.yaml").read_text()
-    for old, new in replacements:
-        assert old in text
-        text = text.replace(old, new)
+    text = replaced((ROOT / f"specs/neuroboscope/{name}.nrs.yaml").read_text(), *replacements)
     designed = run_design(LoadedSpec(path=name, sha256="", text=text, spec=parse_spec(text)))
     section = impedance_section(designed, run_analysis(designed).impedance)
     (table,) = (block for block in section.blocks if isinstance(block, Table))

@@ -9,9 +9,7 @@ from nrs_design.reporting.next_steps import next_steps
 from nrs_design.search.certification import Limits
 from nrs_design.spec import read_spec
 from tests.reporting.conftest import KINDS
-from tests.support import COMMUTING, ROOT, run
-
-PRINT_ERROR = ROOT / "docs/examples/thesis-print-error.nrs.yaml"
+from tests.support import COMMUTING, PRINT_ERROR, ROOT, run
 
 
 def steps_of(tmp_path, case):

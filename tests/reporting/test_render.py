@@ -12,13 +12,8 @@ import pytest
 from nrs_design.printable import visible
 from nrs_design.reporting import render_html
 from nrs_design.reporting.document import Section, Table
-from tests.reporting.conftest import KINDS, report_of
+from tests.reporting.conftest import KINDS, report_of, slow
 from tests.support import COMMUTING, SOFT_TISSUE
-
-
-def slow(case):
-    return pytest.param(case, marks=pytest.mark.slow)
-
 
 # Each makes another figure of the run, or another sentence, than those before it.
 SHORT = ["proved", "refuted", "discrete", "polynomial", "dwell", "mixture"]

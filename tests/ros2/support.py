@@ -6,7 +6,7 @@ from nrs_design.ros2.axis import Surroundings
 from nrs_design.ros2.law import AXES, AdmittanceLaw, Axis
 from nrs_design.ros2.parameters import RosNode
 from nrs_design.spec.document import Position
-from tests.support import ROOT
+from tests.support import ROOT, replaced
 
 EXAMPLE = ROOT / "docs" / "examples" / "admittance.ros2.yaml"
 PLACE = Position(1, 1)
@@ -31,12 +31,8 @@ def around(period, ages, stiffness, lag=(0, 0)):
     return Surroundings(F(period), ages, ends, ends, (F(lag[0]), F(lag[1])))
 
 
-def changed(tmp_path, *changes):
-    """Write the example with some of its text replaced."""
-    text = EXAMPLE.read_text()
-    for old, new in changes:
-        assert old in text
-        text = text.replace(old, new)
+def changed(tmp_path, *changes, more=""):
+    """Write the example with some of its text replaced, and more of it."""
     file = tmp_path / "controllers.yaml"
-    file.write_text(text)
+    file.write_text(replaced(EXAMPLE.read_text(), *changes) + more)
     return file

@@ -47,11 +47,9 @@ BROADCASTER = "force_torque_sensor_broadcaster/ForceTorqueSensorBroadcaster"
 def with_node(tmp_path, name, parameters, kind=None, changes=()):
     """Write the example with one more node, whose type the manager says."""
     listed = "    admittance_controller: {type:"
-    more = f"    {name}: {{type: {kind}}}\n" if kind else ""
-    file = changed(tmp_path, (listed, more + listed), *changes)
-    with file.open("a") as stream:
-        stream.write(f"{name}:\n  ros__parameters: {{{parameters}}}\n")
-    return file
+    told = f"    {name}: {{type: {kind}}}\n" if kind else ""
+    more = f"{name}:\n  ros__parameters: {{{parameters}}}\n"
+    return changed(tmp_path, (listed, told + listed), *changes, more=more)
 
 
 def test_a_filter_chain_is_one_of_the_broadcaster(tmp_path):
@@ -142,9 +140,7 @@ def test_a_rate_of_its_own_that_does_not_divide_the_rate_of_the_loop(tmp_path):
 )
 def test_what_other_nodes_of_the_file_say_of_the_law_is_not_passed_over(tmp_path, more):
     """ROS 2 gives a node the parameters of wildcards, too; a default was taken for them."""
-    file = changed(tmp_path, ("      filter_coefficient: 0.5\n", ""))
-    with file.open("a") as stream:
-        stream.write(more)
+    file = changed(tmp_path, ("      filter_coefficient: 0.5\n", ""), more=more)
     found, status, _ = statuses(file, Question((0, 0), SOFT, None))
     assert found.verdict is None
     assert Status.ERROR in status
@@ -153,22 +149,18 @@ def test_what_other_nodes_of_the_file_say_of_the_law_is_not_passed_over(tmp_path
 
 def test_a_wildcard_is_no_controller_beside_those_that_it_means(tmp_path):
     """Each parameter was to be moved to the other of the two; and no controller is called `**`."""
-    file = changed(tmp_path)
-    with file.open("a") as stream:
-        stream.write("/**:\n  ros__parameters: {admittance: {joint_damping: 3.0}}\n")
+    more = "/**:\n  ros__parameters: {admittance: {joint_damping: 3.0}}\n"
+    file = changed(tmp_path, more=more)
     found, _, _ = statuses(file, Question((0, 2), SOFT, None))
     (only,) = [item for item in found.obligations if item.status is Status.ERROR]
     assert "write it at admittance_controller alone" in only.message
 
 
 def test_a_wildcard_that_says_nothing_of_the_law_and_other_nodes(tmp_path):
-    file = changed(tmp_path)
-    with file.open("a") as stream:
-        stream.write(
-            "/**:\n  ros__parameters: {use_sim_time: true}\n"
-            "/other/*:\n  ros__parameters: {update_rate: 100}\n"
-            "/other/**:\n  ros__parameters: {update_rate: 100}\n"
-        )
+    more = "/**:\n  ros__parameters: {use_sim_time: true}\n"
+    for other in ("/other/*", "/other/**"):
+        more += f"{other}:\n  ros__parameters: {{update_rate: 100}}\n"
+    file = changed(tmp_path, more=more)
     assert statuses(file, Question((0, 2), SOFT, None))[0].verdict == "proved"
 
 
@@ -193,12 +185,8 @@ def test_every_controller_runs_at_the_rate_of_its_own_manager(tmp_path):
 def test_a_type_counts_whichever_of_several_managers_says_it(tmp_path):
     """One that is known by its type only, with its mass missing, must not vanish."""
     kind = "admittance_controller/AdmittanceController"
-    file = changed(tmp_path)
-    with file.open("a") as stream:
-        stream.write(
-            f"/b/controller_manager:\n  ros__parameters: {{second: {{type: {kind}}}}}\n"
-            "/**/second:\n  ros__parameters: {joints: [x]}\n"
-        )
+    more = f"/b/controller_manager:\n  ros__parameters: {{second: {{type: {kind}}}}}\n"
+    file = changed(tmp_path, more=f"{more}/**/second:\n  ros__parameters: {{joints: [x]}}\n")
     found, status, _ = statuses(file, Question((0, 2), SOFT, None, Fraction(500)))
     assert Status.ERROR in status
     assert any("second" in item.message for item in found.obligations)

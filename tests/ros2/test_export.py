@@ -18,7 +18,7 @@ from nrs_design.ros2.parameters import parse_nodes
 from nrs_design.ros2.traps import find_traps
 from nrs_design.search.certification import Limits
 from nrs_design.spec import parse_spec, read_spec
-from tests.support import ROOT
+from tests.support import ROOT, replaced
 
 SPEC = ROOT / "specs/neuroboscope/soft-tissue-sampled.nrs.yaml"
 LAG = (Fraction(5, 1000), Fraction(20, 1000))
@@ -27,10 +27,7 @@ LAG = (Fraction(5, 1000), Fraction(20, 1000))
 def designed(*changes):
     """The soft-tissue design at one age of the force, with some of its text replaced."""
     loaded = read_spec(SPEC)
-    text = loaded.text.replace("delay: [0, 1]", "delay: 1")
-    for old, new in changes:
-        assert old in text
-        text = text.replace(old, new)
+    text = replaced(loaded.text, ("delay: [0, 1]", "delay: 1"), *changes)
     return run_design(replace(loaded, text=text, spec=parse_spec(text)))
 
 

@@ -54,19 +54,18 @@ def test_what_keeps_the_controller_from_starting(tmp_path, old, new, message):
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "line", "wanted"),
+    ("old", "new", "line"),
     [
-        ("mass: [5.0, 5.0, 5.0, 0.1, 0.1, 0.1]", "mass: {x: 5.0, y: 5.0}", 30, "a list of 6"),
-        ("mass: [5.0, 5.0, 5.0, 0.1, 0.1, 0.1]", "mass: {}", 30, "a list of 6"),
+        ("mass: [5.0, 5.0, 5.0, 0.1, 0.1, 0.1]", "mass: {x: 5.0, y: 5.0}", 30),
+        ("mass: [5.0, 5.0, 5.0, 0.1, 0.1, 0.1]", "mass: {}", 30),
         # A default was taken in its place.
-        ("filter_coefficient: 0.5", "filter_coefficient: {value: 0.5}", 22, "one value"),
+        ("filter_coefficient: 0.5", "filter_coefficient: {value: 0.5}", 22),
     ],
 )
-def test_a_map_in_the_place_of_a_value_is_told_at_its_key(tmp_path, old, new, line, wanted):
-    with pytest.raises(SpecError) as caught:
+def test_a_map_in_the_place_of_a_value_is_told_at_its_key(tmp_path, old, new, line):
+    wanted = "one value" if "filter" in old else "a list of 6 values"
+    with pytest.raises(SpecError, match=f"expected {wanted}, found a map") as caught:
         read_law(controller(changed(tmp_path, (old, new))))
-    assert f"expected {wanted}" in str(caught.value)
-    assert "found a map" in str(caught.value)
     assert caught.value.line == line
 
 

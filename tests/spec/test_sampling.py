@@ -7,7 +7,7 @@ import pytest
 from nrs_design.errors import SpecError
 from nrs_design.spec import InteractionDesignSpec, parse_spec
 from tests.spec.samples import assert_refused, refusal
-from tests.support import SOFT_TISSUE
+from tests.support import SOFT_TISSUE, replaced
 
 TEXT = SOFT_TISSUE.read_text(encoding="utf-8")
 
@@ -102,10 +102,7 @@ OUTER = "\nsampling: {period: 2 ms, outer_period: 0.1 ms, delay: 0}\n"
 
 
 def read(text, *changes):
-    for old, new in changes:
-        assert old in text
-        text = text.replace(old, new)
-    return parse_spec(text)
+    return parse_spec(replaced(text, *changes))
 
 
 @pytest.mark.parametrize(

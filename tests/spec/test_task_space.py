@@ -6,6 +6,7 @@ from nrs_design.errors import SpecError
 from nrs_design.spec import read_spec
 from nrs_design.spec.load import axes_at, is_there, read_axes
 from nrs_design.spec.task_space import file_of
+from tests.support import replaced
 
 TEXT = """\
 kind: task-space
@@ -31,12 +32,8 @@ axes:
 @pytest.fixture
 def write(tmp_path):
     def written(*changes):
-        text = TEXT
-        for old, new in changes:
-            assert old in text
-            text = text.replace(old, new)
         path = tmp_path / "two.nrs.yaml"
-        path.write_text(text, encoding="utf-8")
+        path.write_text(replaced(TEXT, *changes), encoding="utf-8")
         return path
 
     return written

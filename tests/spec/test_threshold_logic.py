@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from nrs_design.errors import SpecError
 from nrs_design.spec import load_spec, parse_spec
 from nrs_design.spec.threshold_logic import ThresholdLogicSpec, values_at_switch
-from tests.support import FORCE_LIMIT, ROOT
+from tests.support import FORCE_LIMIT, ROOT, replaced
 
 BY_SIGN = ROOT / "docs/examples/insertion-by-sign.nrs.yaml"
 SIGNALS = {
@@ -26,9 +26,7 @@ def logic(*switches, **others):
 
 
 def text(old, new):
-    written = BY_SIGN.read_text()
-    assert old in written
-    return written.replace(old, new)
+    return replaced(BY_SIGN.read_text(), (old, new))
 
 
 def test_the_time_between_switches_by_hand():

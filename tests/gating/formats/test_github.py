@@ -27,9 +27,6 @@ def test_at_most_ten_and_a_notice():
     assert [line.split("::")[1].split()[0] for line in lines] == ["error"] * 10 + ["notice"]
     assert all(": refuted." in line for line in lines[:3])
     assert lines[-1] == "::notice title=nrs-design::2 more not shown; see the log of this step"
-
-
-def test_ten_need_no_notice():
     assert "notice" not in to_github(outcome_of(*[obligation()] * 10))
 
 

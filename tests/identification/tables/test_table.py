@@ -60,22 +60,18 @@ def test_files_that_cannot_be_read(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("entry", "message"),
+    ("entries", "message"),
     [
-        ("force_N", "is not a pair"),
-        ("force_N=", "is not a pair"),
-        ("weight_kg=w", "no column of ours"),
-        ("force_dyn=Fz", "has the unit 'dyn'"),
+        (["force_N"], "is not a pair"),
+        (["force_N="], "is not a pair"),
+        (["weight_kg=w"], "no column of ours"),
+        (["force_dyn=Fz"], "has the unit 'dyn'"),
+        (["force_N=a", "force_N=b"], "mapped twice"),
     ],
 )
-def test_wrong_mappings(entry, message):
+def test_wrong_mappings(entries, message):
     with pytest.raises(DataError, match=message):
-        parse_mapping([entry])
-
-
-def test_a_column_is_mapped_once():
-    with pytest.raises(DataError, match="mapped twice"):
-        parse_mapping(["force_N=a", "force_N=b"])
+        parse_mapping(entries)
 
 
 def test_mapping_of_a_column_that_is_not_there(tmp_path):

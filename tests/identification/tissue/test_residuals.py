@@ -29,19 +29,17 @@ def doubts(kind, force, motion=None):
     return "; ".join(fit_record(kind, TissueRecord(source("a"), motion, force, False)).doubts)
 
 
-def test_a_tissue_that_stiffens():
-    said = doubts(Elastic, lambda m: 3.0 * np.expm1(m.deflection / 0.002))
-    assert "follow the deflection: the tissue is not linear" in said
-
-
-def test_a_damper_that_the_law_does_not_have():
-    said = doubts(Elastic, KelvinVoigt(400.0, 60.0).simulate)
-    assert "follow the velocity: the law has another damping" in said
-
-
-def test_a_tare_that_wanders():
-    said = doubts(Elastic, lambda m: 400.0 * m.deflection + 0.3 * np.sin(m.time))
-    assert "not white but wander with time" in said
+@pytest.mark.parametrize(
+    ("force", "said"),
+    [
+        (lambda m: 3.0 * np.expm1(m.deflection / 0.002), "deflection: the tissue is not linear"),
+        (KelvinVoigt(400.0, 60.0).simulate, "follow the velocity: the law has another damping"),
+        (lambda m: 400.0 * m.deflection + 0.3 * np.sin(m.time), "not white but wander with time"),
+    ],
+    ids=["stiffens", "damped", "tare wanders"],
+)
+def test_what_the_law_does_not_have_is_named(force, said):
+    assert said in doubts(Elastic, force)
 
 
 @pytest.mark.slow

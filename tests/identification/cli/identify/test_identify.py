@@ -3,7 +3,7 @@
 import pytest
 
 from tests.identification.cli.identify.records import NOSE, SINUSOIDS, SOFT
-from tests.support import COMMUTING, run
+from tests.support import run
 
 
 @pytest.mark.slow
@@ -23,7 +23,6 @@ def test_a_report_has_the_date_that_is_given_and_no_other(tmp_path, dates, count
         (["tissue", SOFT[0], NOSE[0]], "linear and rotational records are mixed"),
         (["tissue", SOFT[0], "--lever-arm", "24 N"], "is not a length"),
         (["tissue", SOFT[0], "--map", "Fz"], "is not a pair"),
-        (["tissue", SOFT[0], "--write", COMMUTING], "has no place for identified values"),
         (["tissue", SINUSOIDS[0]], "are missing"),
         (["actuator", SOFT[0]], "are missing"),
     ],

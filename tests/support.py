@@ -35,6 +35,11 @@ ROBOT = ROOT / "specs" / "neuroboscope"
 SOFT_TISSUE = ROBOT / "soft-tissue.nrs.yaml"
 FORCE_LIMIT = ROBOT / "force-limit.nrs.yaml"
 COMMUTING = ROOT / "specs" / "examples" / "commuting.nrs.yaml"
+# Edits of it: the gains of its withdrawal, given for what is designed.
+GIVEN = (
+    ("Mt: {min: 0.01 kg*m^2, max: 1 kg*m^2}", "Mt: 0.01 kg*m^2"),
+    ("Bt: {min: 0.1 N*m*s/rad, max: 20 N*m*s/rad}", "Bt: 1.04 N*m*s/rad"),
+)
 PRINT_ERROR = ROOT / "docs" / "examples" / "thesis-print-error.nrs.yaml"
 
 

@@ -5,7 +5,7 @@ import re
 import pytest
 
 from tests.simulation.interactions import text_of
-from tests.support import FORCE_LIMIT, ROOT, SOFT_TISSUE, document_of, replaced, run
+from tests.support import FORCE_LIMIT, GIVEN, ROOT, SOFT_TISSUE, document_of, replaced, run
 
 
 def write(tmp_path, text):
@@ -116,12 +116,6 @@ def spec_with(tmp_path, goals, *replacements):
     text = replaced(SOFT_TISSUE.read_text(), wanted, *replacements)
     (tmp_path / "goals.nrs.yaml").write_text(text)
     return "goals.nrs.yaml"
-
-
-GIVEN = (
-    ("Mt: {min: 0.01 kg*m^2, max: 1 kg*m^2}", "Mt: 0.01 kg*m^2"),
-    ("Bt: {min: 0.1 N*m*s/rad, max: 20 N*m*s/rad}", "Bt: 1.04 N*m*s/rad"),
-)
 
 
 def test_goals_are_respected_and_shown(tmp_path):

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from nrs_design.controllers.float32 import exact_decimal
+from nrs_design.controllers.shipped import shipped_law
 from nrs_design.errors import CertificateError
 from nrs_design.exporters.build import build_record
 from nrs_design.exporters.export import export_design
@@ -33,6 +34,16 @@ def test_the_same_motor_in_volts(continuous_export):
     Kp, Kd = build_record(found.design, found.certificate, found.designed.spec).motion.gains
     assert (Kd.name, Kd.exact, Kd.unit) == ("Kd", "8.046875", "V*s/rad")
     assert (Kp.exact, Kp.unit) == (exact_decimal(Fraction(117359.4375) / 256), "V/rad")
+    limited = text.replace("bandwidth: 2 Hz", "bandwidth: 2 Hz\n  command: 12 V")
+    for spec, unit in ((parse_spec(limited), "V"), (continuous_export.spec, "rpm")):
+        design = found.design if unit == "V" else continuous_export.design
+        law = shipped_law(spec, design, Fraction(1, 500))
+        assert law.units == {"command": unit}
+        assert {law.coefficient[name].unit for name in ("Kp", "Kd_over_T")} == {f"{unit}/rad"}
+        assert law.coefficient["b"].unit == "rad/(s*N*m)"
+        if unit == "V":
+            limit = law.coefficient["command_limit"]
+            assert (limit.unit, limit.values) == ("V", (12,))
 
 
 def test_proof_is_that_of_the_certificate(record, continuous_export):

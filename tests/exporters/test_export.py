@@ -8,6 +8,8 @@ import pytest
 
 from nrs_design.certificates.certificate import dump
 from nrs_design.certificates.verify import Verification
+from nrs_design.controllers.float32 import exact_decimal
+from nrs_design.controllers.shipped import shipped_law
 from nrs_design.errors import DesignError
 from nrs_design.exporters.export import Execution, export_design
 from nrs_design.exporters.header import header_lines
@@ -92,6 +94,15 @@ def test_a_certificate_that_proves_nothing_is_inconclusive(sampled, sampled_expo
     assert refused.reason == "a.cert.json proves nothing"
     asked = export_design(sampled, Path("a.cert.json"), execution=Execution(unproved=True))
     assert (asked.verdict, asked.record.verdict) == ("inconclusive", "unproved")
+
+
+def test_every_coefficient_is_in_what_the_proof_takes_for_granted(sampled, sampled_export):
+    """To the last digit, as the certificate lists them."""
+    texts = " ".join(sampled_export.certificate.system.assumptions)
+    law = shipped_law(sampled.spec, sampled_export.design, PERIOD)
+    numbers = [n for c in law.coefficients for n in c.values if not c.name.endswith("_limit")]
+    assert len(numbers) == 5
+    assert all(f"= {exact_decimal(number)}" in texts for number in numbers)
 
 
 def test_a_law_of_two_periods_is_not_exported(sampled):

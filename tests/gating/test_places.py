@@ -14,12 +14,6 @@ def text_and_places(project):
     return read
 
 
-def test_modes_of_given_matrices_stand_in_their_list(text_and_places):
-    lines, places = text_and_places("stable.nrs.yaml")
-    place = places.mode("b")
-    assert lines[place.line - 1][place.column - 1 :].startswith("{name: b")
-
-
 def test_assembled_modes_stand_at_their_controller(text_and_places):
     lines, places = text_and_places("soft-tissue.nrs.yaml")
     place = places.mode("withdrawal/soft/k-min")

@@ -13,7 +13,7 @@ from nrs_design.spec import read_spec
 from nrs_design.spec.templates import TEMPLATES
 from tests.pipeline.test_blocked import PAIR
 from tests.simulation.interactions import text_of
-from tests.support import FORCE_LIMIT
+from tests.support import FORCE_LIMIT, GIVEN, replaced
 
 from .conftest import BROKEN, SOFT_TISSUE, STABLE, UNSTABLE
 
@@ -205,9 +205,7 @@ class TestGoals:
     def given(self):
         text = SOFT_TISSUE.read_text().replace("switching: arbitrary", GOALS)
         head, tail = text.split("  withdrawal:")
-        tail = tail.replace("Bt: {min: 0.1 N*m*s/rad, max: 20 N*m*s/rad}", "Bt: 1.04 N*m*s/rad")
-        tail = tail.replace("Mt: {min: 0.01 kg*m^2, max: 1 kg*m^2}", "Mt: 0.01 kg*m^2")
-        return f"{head}  withdrawal:{tail}"
+        return f"{head}  withdrawal:{replaced(tail, *GIVEN)}"
 
     def test_each_goal_of_each_controller_is_an_obligation(self, examine):
         text = self.given()
@@ -263,12 +261,8 @@ def test_contact_that_must_be_kept_is_told_unless_the_spec_says_so(examine):
 
 
 def test_fixed_gains_that_are_unstable_are_refuted_not_an_error(examine):
-    text = SOFT_TISSUE.read_text().replace("name: soft-tissue", "name: stiff")
-    text = text.replace("nominal: 747.1461 N/m", "nominal: 2000 N/m")
-    text = text.replace("range: [720.56 N/m, 768.17 N/m]", "range: [2000 N/m, 2000 N/m]")
-    text = text.replace("Mt: {min: 0.01 kg*m^2, max: 1 kg*m^2}", "Mt: 0.01 kg*m^2")
-    text = text.replace("Bt: {min: 0.1 N*m*s/rad, max: 20 N*m*s/rad}", "Bt: 1.04 N*m*s/rad")
-    (spec,) = examine(text).specs
+    stiff = ("{nominal: 747.1461 N/m, range: [720.56 N/m, 768.17 N/m]}", "2000 N/m")
+    (spec,) = examine(replaced(SOFT_TISSUE.read_text(), stiff, *GIVEN)).specs
     assert spec.verdict == "refuted"
     assert ("NRS103", "controllers", "missed") in found(spec)
 

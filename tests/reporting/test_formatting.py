@@ -5,6 +5,8 @@ import math
 import pytest
 
 from nrs_design.reporting.formatting import number, plural, polynomial_text, root, roots, shortened
+from nrs_design.reporting.simulation import four_digits_up
+from nrs_design.reporting.text import drawable, wrapped_label
 
 
 @pytest.mark.parametrize(
@@ -35,3 +37,37 @@ def test_lists():
     assert shortened(["a", "b", "c"], 2) == "a, b and 1 more"
     assert plural(1, "mode") == "1 mode"
     assert plural(2, "mode") == "2 modes"
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (0.0, "0"),
+        (0.3, "0.3"),
+        (0.1, "0.1"),
+        (0.30001, "0.3001"),
+        (0.99999, "1"),
+        (3.2e-10, "3.2e-10"),
+        (1234567.0, "1.235e+06"),
+    ],
+)
+def test_a_torque_above_its_limit_is_never_shown_at_it(value, text):
+    assert four_digits_up(value) == text
+
+
+def test_drawable_has_letters_of_the_font_only():
+    assert drawable("αβ שלום ≤ 中") == "αβ שלום ≤ \\u4e2d"
+
+
+@pytest.mark.parametrize(
+    ("text", "width", "lines"),
+    [
+        ("short", 20, ["short"]),
+        ("insertion-slow/silicone/k-min", 20, ["insertion-slow/", "silicone/k-min"]),
+        ("x" * 30, 12, ["x" * 12, "x" * 12, "x" * 6]),
+        ("one two three", 8, ["one two", "three"]),
+        ("", 8, [""]),
+    ],
+)
+def test_wrapped_keeps_every_letter(text, width, lines):
+    assert wrapped_label(text, width).split("\n") == lines

@@ -1,0 +1,129 @@
+"""One period of a sampled loop in floating point, written from the pages of `docs` alone.
+
+Nothing of the package is imported. Every quantity is a row: how it depends on the states before.
+"""
+
+from itertools import pairwise
+
+import numpy as np
+from scipy.linalg import expm
+
+
+def single(value):
+    return float(np.float32(value))
+
+
+def step(loop, names, drawn):
+    """Return the matrix from the states before a period to those after it.
+
+    `loop` says what the spec says, `drawn` the numbers of this period.
+    """
+    before = dict(zip(names, np.eye(len(names)), strict=True))
+    old = before.get
+    none = np.zeros(len(names))
+    delta, omega, drive = before["delta"], old("omega", none), loop["drive"]
+    force = drawn["k at sample"] * delta + drawn["b at sample"] * omega
+    forces = [force, *(old(f"F {j} before", none) for j in range(1, loop["delay"][1] + 1))]
+    after, u = _law(loop, before, forces[drawn["age"]], none)
+    commands = [u, *(old(f"u {j} before", none) for j in range(1, drawn["waiting"] + 1))]
+    if drawn["missed"]:
+        held = old("u 1 before", old("u held", none))
+        after = {name: old(name, none) for name in after}
+        commands[0] = none if loop["misses"] == "zero" else held
+    motion, omega = _motion(loop, drawn, commands, omega, delta)
+    shift = motion if drive == "position" else none
+    after |= {"delta": delta + motion, "omega": omega}
+    if "e" in after:
+        after["e"] = after["e"] - motion
+    after["u held"] = commands[0] - shift
+    after |= {f"F {j + 1} before": row for j, row in enumerate(forces)}
+    after |= {f"u {j + 1} before": row - shift for j, row in enumerate(commands)}
+    return np.array([after[name] for name in names])
+
+
+def _law(loop, before, force, none):
+    """Return the states of the law after a sample, and the command."""
+    T, law, drive = loop["period"], loop["law"], loop["drive"]
+    after = {}
+    if drive == "torque":
+        R = law["R"]
+        e = -before["delta"]
+        D = single(law["damping"] / T / R)
+        u = single(law["stiffness"] / R) * e + D * (e - before["e before"])
+        return {"e before": e}, u + single(1 - 1 / R) * force
+    p = single(np.exp(-2 * np.pi * loop["cutoff"] * T)) if loop["lags"] else 0.0
+    for j in range(1, loop["lags"] + 1):
+        force = p * before[f"filtered {j} before"] + single(1 - p) * force
+        after[f"filtered {j} before"] = force
+    Mt, Bt = law["Mt"], law["Bt"]
+    a = np.exp(-Bt * T / Mt) if Mt else 0.0
+    vm = single(a) * before.get("vm", none) + single((1 - a) / Bt) * force
+    after["vm"] = vm
+    if drive == "velocity":
+        return after, -vm
+    e = before["e"]
+    moved = e - single(T) * (before["vm"] if Mt else vm)
+    after["e"] = moved
+    if drive == "position":
+        return after, moved
+    after["e before"] = e
+    D = single(law["Kd"] / T)
+    return after, single(law["Kd"] * law["zero"]) * e + D * (e - before["e before"])
+
+
+def _motion(loop, drawn, commands, omega, delta):
+    """Return by how far the joint moves in the period, and its velocity at the end."""
+    drive, length = loop["drive"], drawn["length"]
+    begin = delta if drive == "torque" else np.zeros_like(delta)
+    events = [*drawn["effects"], *(t for t, _ in drawn["loads"])]
+    times = sorted({0.0, length, *(t for t in events if 0 < t < length)})
+    z = np.array([omega, begin])
+    for start, end in pairwise(times):
+        # The newest of those that have taken effect.
+        u = commands[next(j for j, t in enumerate(drawn["effects"]) if t <= start)]
+        load = [k for t, k in drawn["loads"] if t <= start][-1]
+        A, B = _matrices(drive, drawn, load)
+        E = expm(np.block([[A, B], [np.zeros((1, 3))]]) * (end - start))
+        z = E[:2, :2] @ z + np.outer(E[:2, 2], u)
+        if drive == "position":
+            z[0] = (u - z[1]) / drawn["tau"]
+    return z[1] - begin, z[0]
+
+
+def _matrices(drive, drawn, load):
+    """Return A and B of (velocity, position)."""
+    if drive == "torque":
+        J, (k, b) = drawn["inertia"], load
+        return np.array([[-(drawn["friction"] + b) / J, -k / J], [1, 0]]), np.array([[1 / J], [0]])
+    tau = drawn["tau"]
+    if drive == "position":
+        return np.array([[0, 0], [0, -1 / tau]]), np.array([[0], [1 / tau]])
+    return np.array([[-1 / tau, 0], [1, 0]]), np.array([[drawn["gain"] / tau], [0]])
+
+
+def draw(loop, rng, contact):
+    """Return admissible numbers of one period: ends of ranges, or values inside."""
+
+    def one(low, high):
+        return float([low, high, rng.uniform(low, high)][rng.integers(3)])
+
+    def any_of(name):
+        return one(*loop.get(name, (1, 1)))
+
+    T, jitter, (least, most) = loop["period"], loop["jitter"], loop["wait"]
+    waiting = int(np.ceil(most / (T - jitter) - 1e-9))
+    starts = [0.0, *-np.cumsum([one(T - jitter, T + jitter) for _ in range(waiting)])]
+    drawn = {n: any_of(n) for n in ("tau", "gain", "inertia", "friction")}
+    drawn |= {"length": one(T - jitter, T + jitter), "waiting": waiting}
+    # The oldest has taken effect when the period begins, whatever the rest do.
+    drawn["effects"] = [s + one(least, most) for s in starts[:-1] or starts]
+    drawn["effects"] += [-np.inf] if waiting else []
+    drawn["missed"] = bool(loop["misses"]) and rng.random() < 0.5
+    drawn["age"] = int(rng.integers(loop["delay"][0], loop["delay"][1] + 1))
+    drawn["k at sample"] = any_of("k") if contact else 0.0
+    drawn["b at sample"] = one(*loop["b"]) if contact else 0.0
+    loads = [(0.0, (drawn["k at sample"], drawn["b at sample"]))]
+    for t in sorted(rng.uniform(0, drawn["length"], rng.integers(3))):
+        lost = loop["losable"] and rng.random() < 0.5
+        loads.append((t, (0.0, 0.0) if lost else (any_of("k"), one(*loop["b"]))))
+    return drawn | {"loads": loads}

@@ -1,0 +1,223 @@
+"""The map of a period at admissible numbers lies between the modes of the package."""
+
+import contextlib
+
+import numpy as np
+import pytest
+from scipy.optimize import linprog
+
+from nrs_design.errors import NrsDesignError
+from tests.oracle.plant import draw, step
+from tests.switched.support import assembled
+
+# Shares of an entry: what single precision and enclosures are off, and what an error makes.
+CLOSE, SEEN = 1e-6, 1e-4
+HEAD = """kind: interaction-design
+name: drawn
+title: Drawn
+limits: {velocity: 8 deg/s, torque: 0.3 N*m, bandwidth: 2 Hz}
+switching: arbitrary
+"""
+
+
+def written(pair, unit):
+    low, high = pair
+    middle = f"{float(f'{(low + high) / 2:.6g}')!r} {unit}"
+    return (
+        middle
+        if low == high
+        else f"{{nominal: {middle}, range: [{low!r} {unit}, {high!r} {unit}]}}"
+    )
+
+
+def drives(loop):
+    law, tau = loop["law"], written(loop.get("tau", (1, 1)), "s")
+    if loop["drive"] == "torque":
+        J, b = written(loop["inertia"], "kg*m^2"), written(loop["friction"], "N*m*s/rad")
+        return f"torque_interface: {{inertia: {J}, friction: {b}}}"
+    if loop["drive"] != "actuator":
+        return f"{loop['drive']}_interface: {{time_constant: {tau}}}"
+    motion = f"derivative_gain: {law['Kd']!r} rpm*s/rad, zero: {law['zero']!r} 1/s"
+    settling = f"damping_ratio: 0.707, settling_time: {2 * sum(loop['tau']):.6g} s"
+    return f"""actuator: {{gain: {written(loop["gain"], "rad/s/rpm")}, time_constant: {tau}}}
+motion_loop: {{{settling}, {motion}}}"""
+
+
+def span(low, high, unit=""):
+    return f"{low!r}{unit}" if low == high else f"[{low!r}{unit}, {high!r}{unit}]"
+
+
+def spec_of(loop):
+    """Return the text of a spec."""
+    law, keys = loop["law"], f"period: {loop['period']!r} s, delay: {span(*loop['delay'])}"
+    keys += f", jitter: {loop['jitter']!r} s" * bool(loop["jitter"])
+    keys += f", latency: {span(*loop['wait'], ' s')}" * bool(loop["wait"][1])
+    keys += f", misses: {{consecutive: 1, command: {loop['misses']}}}" * bool(loop["misses"])
+    damped = bool(loop["b"][1])
+    tissue = f"model: {'kelvin-voigt' if damped else 'elastic'}"
+    tissue += f", stiffness: {written(loop['k'], 'N*m/rad')}"
+    tissue += f", damping: {written(loop['b'], 'N*m*s/rad')}" * damped
+    if loop["drive"] == "torque":
+        gains = f"torque-impedance, stiffness: {law['stiffness']!r} N*m/rad"
+        gains += f", damping: {law['damping']!r} N*m*s/rad"
+        gains += f", inertia_ratio: {law['R']!r}" * (law["R"] != 1)
+    else:
+        gains = f"impedance, Mt: {law['Mt']!r} kg*m^2, Bt: {law['Bt']!r} N*m*s/rad"
+    sensor = f"sensor: {{filter: {{order: {loop['lags']}, cutoff: {loop['cutoff']!r} Hz}}}}\n"
+    return f"""{HEAD}{drives(loop)}
+{sensor * bool(loop["lags"])}environments: {{soft: {{{tissue}}}}}
+controllers: {{a: {{type: {gains}, environment: soft}}}}
+sampling: {{{keys}}}
+contact: {"losable" if loop["losable"] else "kept"}
+"""
+
+
+def some_loop(rng):
+    """Return a loop with a few of the features that a spec may have, and up to two ranges."""
+    drive = str(rng.choice(["actuator", "velocity", "position", "torque"]))
+    torque, damped = drive == "torque", bool(rng.random() < 0.4)
+    own = {"actuator": ["tau", "gain"], "torque": ["inertia", "friction"]}.get(drive, ["tau"])
+    can = [*own, "k", "wait", "jitter", "delay", *["b"] * damped]
+    wide = set(rng.choice(can, min(len(can), int(rng.integers(1, 3))), replace=False))
+
+    def some(share):
+        return bool(rng.random() < share)
+
+    def size(low, high):
+        return float(f"{np.exp(rng.uniform(np.log(low), np.log(high))):.3g}")
+
+    def around(name, low, high, ratio):
+        first = size(low, high)
+        return (first, float(f"{first * rng.uniform(1, ratio):.3g}") if name in wide else first)
+
+    T = size(0.001, 0.01)
+    longest = size(0.05 * T, 2 * T) if "wait" in wide or some(0.3) else 0.0
+    gains = {"stiffness": size(5, 100), "damping": size(1, 5), "R": [1, 0.7, 1.5][rng.integers(3)]}
+    law = {"Mt": size(1e-4, 0.1) * some(0.7), "Bt": size(0.5, 5), "Kd": 2060.0, "zero": 56.9706}
+    oldest, lags = int(rng.integers("delay" in wide, 3)), max(0, int(rng.integers(-3, 3)))
+    # These would have thousands of modes.
+    if drive == "position" and "jitter" in wide:
+        longest = min(longest, float(f"{0.4 * T:.3g}"))
+    misses = "" if torque or some(0.6) else str(rng.choice(["hold", "zero"]))
+    return {
+        "drive": drive, "law": gains if torque else law, "period": T,
+        "wait": (size(longest / 9, longest) if "wait" in wide else longest, longest),
+        "jitter": size(0.02 * T, 0.45 * T) if "jitter" in wide else 0.0,
+        "delay": (0 if "delay" in wide else oldest, oldest),
+        "lags": 0 if torque else lags, "cutoff": size(20, 200),
+        "misses": "hold" if misses and drive == "position" else misses,
+        "tau": around("tau", 0.001, 0.05, 4),
+        "gain": around("gain", 4e-4, 5e-4, 1.2) if drive == "actuator" else (1.0, 1.0),
+        "inertia": around("inertia", 0.1, 0.5, 3), "friction": around("friction", 0.2, 1, 2),
+        "k": around("k", 10, 200, 3), "b": around("b", 0.1, 2, 3) if damped else (0.0, 0.0),
+        "losable": some(0.3) and not damped and not (torque and len(wide) > 1),
+    }  # fmt: skip
+
+
+def chosen(system, drawn, contact):
+    """Return the modes of this controller, contact and age."""
+    modes = system.modes if contact or not system.free else system.free
+    first, age = "miss/" if drawn["missed"] else "a/", f"/delay-{drawn['age']}/"
+    modes = [mode for mode in modes if mode.name.startswith(first)]
+    aged = any("/delay-" in mode.name for mode in modes)
+    return [np.array(m.A.floats()) for m in modes if not aged or age in m.name + "/"]
+
+
+def beside(matrices, found):
+    """Return how far a matrix is from the hull of others, in shares of the size of each entry."""
+    modes = np.array([A.ravel() for A in matrices]).T
+    size = np.maximum(np.abs(modes).max(axis=1), np.abs(found.ravel()))
+    size = np.maximum(size, 1e-12 * size.max())
+    A, b = modes / size[:, None], found.ravel() / size
+    one = -np.ones((len(b), 1))
+    done = linprog(
+        [*np.zeros(A.shape[1]), 1],
+        A_ub=np.block([[A, one], [-A, one]]),
+        b_ub=[*b, *-b],
+        A_eq=[[*np.ones(A.shape[1]), 0]],
+        b_eq=[1],
+        options={"primal_feasibility_tolerance": 1e-10, "dual_feasibility_tolerance": 1e-10},
+    )
+    assert done.status == 0, done.message
+    return done.fun
+
+
+def moving(names, matrices):
+    """Return which states move the joint, sooner or later; a force that nothing reads does not."""
+    reads = np.any(matrices, axis=0)
+    read = np.array([name == "delta" for name in names])
+    for _ in names:
+        read = read | reads[read].any(axis=0)
+    return read
+
+
+def worst(loop, system, rng, times):
+    """Return the largest distance of drawn maps from the hull, and its numbers."""
+    names = [name.partition(" [")[0] for name in system.states]
+    worst = (0.0, None)
+    for _ in range(times):
+        contact = not (loop["losable"] and rng.random() < 0.3)
+        drawn = draw(loop, rng, contact)
+        found = step(loop, names, drawn)
+        read = moving(names, [found, *(np.array(mode.A.floats()) for mode in system.modes)])
+        far = beside([A[read] for A in chosen(system, drawn, contact)], found[read])
+        worst = max(worst, (far, (contact, drawn)), key=lambda pair: pair[0])
+    return worst
+
+
+def plain(drive):
+    """Return a loop without ranges, every number of which counts."""
+    law = {"stiffness": 20.0, "damping": 2.0, "R": 0.7}
+    if drive != "torque":
+        law = {"Mt": 0.01, "Bt": 2.0, "Kd": 2060.0, "zero": 56.9706}
+    return {
+        "drive": drive, "law": law, "period": 0.002, "wait": (0.0007, 0.0007), "jitter": 0.0,
+        "delay": (1, 1), "lags": int(drive != "torque"), "cutoff": 60.0, "misses": "",
+        "tau": (0.01, 0.01), "gain": (4.8e-4, 4.8e-4) if drive == "actuator" else (1.0, 1.0),
+        "inertia": (0.2, 0.2), "friction": (0.5, 0.5), "k": (80.0, 80.0), "b": (0.5, 0.5),
+        "losable": False,
+    }  # fmt: skip
+
+
+SLOW = pytest.param(range(6, 40), marks=pytest.mark.slow)
+NIGHTLY = pytest.param(range(40, 300), marks=pytest.mark.nightly)
+
+
+@pytest.mark.parametrize("seeds", [range(6), SLOW, NIGHTLY], ids=str)
+def test_maps_of_drawn_loops_lie_between_the_modes(seeds):
+    accepted = 0
+    for seed in seeds:
+        rng = np.random.default_rng(seed)
+        loop = some_loop(rng)
+        with contextlib.suppress(NrsDesignError):
+            system = assembled(spec_of(loop))
+            accepted += 1
+            far, numbers = worst(loop, system, rng, 5)
+            assert far <= CLOSE, (spec_of(loop), numbers)
+    assert accepted >= len(seeds) / 2
+
+
+OF_DRIVE = {"actuator": ["Mt", "Bt", "Kd", "zero", "tau", "gain"]}
+OF_DRIVE["torque"] = ["stiffness", "damping", "R", "inertia", "friction", "loads"]
+
+
+@pytest.mark.parametrize("drive", ["actuator", "velocity", "position", "torque"])
+def test_an_error_of_two_percent_is_seen(drive):
+    loop, rng = plain(drive), np.random.default_rng(0)
+    system, right = assembled(spec_of(loop)), draw(loop, rng, True)
+    names = [name.partition(" [")[0] for name in system.states]
+    modes, law = chosen(system, right, True), loop["law"]
+
+    def far(law=law, **other):
+        return beside(modes, step(loop | {"law": law} | other, names, right | other))
+
+    assert far() <= CLOSE
+    for name in OF_DRIVE.get(drive, ["Mt", "Bt", "tau"]):
+        wrong = {name: 1.02 * law[name]} if name in law else {}
+        number = [(0.0, (81.6, 0.5))] if name == "loads" else 1.02 * right.get(name, 0)
+        assert far(law | wrong, **({} if wrong else {name: number})) > SEEN, name
+    late = {"effects": [right["effects"][0] + 1e-4, *right["effects"][1:]]}
+    wrongs = [late, {"length": right["length"] + 1e-4}, {"age": 0}, {"k at sample": -80.0}]
+    wrongs += [{"k at sample": 81.6}, {"b at sample": 1.0}]
+    for wrong in [*wrongs, *[{"cutoff": 61.2}] * loop["lags"]]:
+        assert far(**wrong) > SEEN, wrong

@@ -113,6 +113,8 @@ def test_slips_of_the_pen(tmp_path, old, new, said):
         (("certify-switching", COMMUTING, "--margin"), "commuting.nrs.yaml:8:1"),
         (("certify-switching", "a.nrs.yaml", "b.nrs.yaml"), "one spec at a time"),
         (("explain", "NRS111"), "NRS111 is retired"),
+        # What has no document has no such option.
+        (("schema", "--json"), "No such option"),
     ],
 )
 def test_wrong_use_says_what_is_meant(tmp_path, arguments, said):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from nrs_design.design.pattern_search import Points, local_minima, refine, snap
+from nrs_design.design.pattern_search import Points, local_minima, refine
 
 
 def start_at(u, v, slope=0.0, step=(0.05, 0.05)):
@@ -20,11 +20,6 @@ def test_sheared_pattern_follows_a_valley_with_kinked_walls():
     assert found.u[0] == pytest.approx(0, abs=1e-6)
     stalled = refine(valley, start_at(0.9, 0.2 + 0.437 * 0.9), 1e-6)
     assert stalled.u[0] > 0.5
-
-
-def test_snap_moves_onto_an_edge_only_where_it_costs_nothing():
-    u, v, costs = snap(lambda u, v: u**9 + (v - 0.995) ** 2, np.array([0.005]), np.array([0.995]))
-    assert (u[0], v[0], costs[0]) == (0.0, 0.995, 0.0)
 
 
 def test_local_minima_of_a_small_table():

@@ -88,17 +88,20 @@ def test_overshoot_of_a_second_order_loop_with_a_zero(zeta, wn, ratio):
     assert step_overshoot(tf) == pytest.approx(second_order_overshoot(zeta, wn, zero), rel=1e-7)
 
 
-def test_overshoot_with_repeated_poles():
-    # (4 s + 1)/(s + 1)^2: y = 1 + (3 t - 1) exp(-t), highest at t = 4/3.
-    tf = TransferFunction((4.0, 1.0), (1.0, 2.0, 1.0))
-    assert step_overshoot(tf) == pytest.approx(3 * math.exp(-4 / 3), rel=1e-9)
-
-
-def test_overshoot_of_monotone_static_and_direct_loops():
-    assert step_overshoot(TransferFunction((1.0,), (1.0, 3.0, 3.0, 1.0))) == pytest.approx(0)
-    assert step_overshoot(TransferFunction((3.0,), (2.0,))) == 0.0
-    # (2 s + 1)/(s + 1) starts at 2 and falls to 1.
-    assert step_overshoot(TransferFunction((2.0, 1.0), (1.0, 1.0))) == pytest.approx(1.0)
+@pytest.mark.parametrize(
+    ("numerator", "denominator", "overshoot"),
+    [
+        ((1.0,), (1.0, 3.0, 3.0, 1.0), 0.0),
+        ((3.0,), (2.0,), 0.0),
+        # (2 s + 1)/(s + 1) starts at 2 and falls to 1.
+        ((2.0, 1.0), (1.0, 1.0), 1.0),
+        # (4 s + 1)/(s + 1)^2: y = 1 + (3 t - 1) exp(-t), highest at t = 4/3.
+        ((4.0, 1.0), (1.0, 2.0, 1.0), 3 * math.exp(-4 / 3)),
+    ],
+)
+def test_overshoot_by_hand(numerator, denominator, overshoot):
+    found = step_overshoot(TransferFunction(numerator, denominator))
+    assert found == pytest.approx(overshoot, rel=1e-9)
 
 
 def test_overshoot_of_a_negative_gain_is_measured_towards_its_final_value():

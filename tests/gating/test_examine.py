@@ -11,7 +11,6 @@ from nrs_design.certificates.certificate import Certificate
 from nrs_design.design.goals import Achieved
 from nrs_design.design.laws.law import AbstractControllerAnalysis
 from nrs_design.design.measures import GAIN_MARGIN
-from nrs_design.errors import DesignError
 from nrs_design.gating.examine import Examiner, certified_rate
 from nrs_design.gating.obligations import Status
 from nrs_design.pipeline.runs import run_certification
@@ -136,12 +135,6 @@ def test_a_range_that_touches_the_limit_is_missed(limit, status, verb):
     assert found.status is status
     assert verb in found.message
     assert "not a proof" in found.message
-
-
-def test_an_unstable_design_has_no_margins_and_misses(examiner):
-    found = examiner.no_margins(DesignError("it oscillates"))
-    assert found.status is Status.MISSED
-    assert "it oscillates" in found.message
 
 
 @pytest.mark.parametrize(

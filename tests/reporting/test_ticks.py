@@ -54,13 +54,11 @@ def test_no_axis_has_an_offset_or_a_common_factor(values):
 
 
 def test_labels_of_a_logarithmic_axis_are_no_formulas():
+    """A short axis has labels between the powers."""
     (axes,) = drawn(np.array([1e-6, 1e6]), "log").axes
     labels = [label.get_text() for label in axes.get_xticklabels()]
     assert "10⁻⁶" in labels
     assert not any("$" in label for label in labels)
-
-
-def test_a_short_logarithmic_axis_has_labels_between_the_powers():
     (axes,) = drawn(np.array([1.5, 7.0]), "log").axes
     shown = [t.get_text() for t in axes.get_xticklabels(which="both") if t.get_text()]
     assert sorted(set(shown) - {"1", "10"}) == ["2", "3", "4", "6"]

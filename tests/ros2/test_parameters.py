@@ -16,32 +16,30 @@ def test_an_integer_is_no_double(text):
     assert caught.value.remedy == f"write {text}.0"
 
 
-def test_doubles():
-    assert [read_double(t) * 1000 for t in ("5.0", ".5", "5.", "1e3", "2.5e-1")] == [
-        5000,
-        500,
-        5000,
-        10**6,
-        250,
-    ]
-    for text in ("1/2", "nan", ".inf", "five", "0x10", "010.0", ""):
-        with pytest.raises(SpecError):
-            read_double(text)
-
-
-def test_truth_values():
-    assert [int(read_bool(t)) for t in ("true", "Yes", "ON", "y")] == [1, 1, 1, 1]
-    assert [int(read_bool(t)) for t in ("false", "No", "OFF", "n")] == [0, 0, 0, 0]
-    for text in ("tRUE", "1", "0", ""):
-        with pytest.raises(SpecError, match="truth value"):
-            read_bool(text)
-
-
-def test_integers():
-    assert read_integer("500") == 500
-    for text in ("500.0", "5e2", "x"):
-        with pytest.raises(SpecError, match="no integer"):
-            read_integer(text)
+@pytest.mark.parametrize(
+    ("read", "right", "wrong", "said"),
+    [
+        (
+            read_double,
+            {"5.0": 5, ".5": 0.5, "5.": 5, "1e3": 1000, "2.5e-1": 0.25},
+            ("1/2", "nan", ".inf", "five", "0x10", "010.0", ""),
+            None,
+        ),
+        (
+            read_bool,
+            dict.fromkeys(("true", "Yes", "ON", "y"), True)
+            | dict.fromkeys(("false", "No", "OFF", "n"), False),
+            ("tRUE", "1", "0", ""),
+            "truth value",
+        ),
+        (read_integer, {"500": 500}, ("500.0", "5e2", "x"), "no integer"),
+    ],
+)
+def test_one_value(read, right, wrong, said):
+    assert {text: read(text) for text in right} == right
+    for text in wrong:
+        with pytest.raises(SpecError, match=said):
+            read(text)
 
 
 def test_nodes_by_name_and_dots_as_levels(tmp_path):

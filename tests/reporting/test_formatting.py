@@ -1,12 +1,14 @@
 from __future__ import annotations
 
 import math
+from math import pi
 
 import pytest
 
 from nrs_design.reporting.formatting import number, plural, polynomial_text, root, roots, shortened
 from nrs_design.reporting.simulation import four_digits_up
 from nrs_design.reporting.text import drawable, wrapped_label
+from nrs_design.reporting.worst_case import scale_of
 
 
 @pytest.mark.parametrize(
@@ -71,3 +73,17 @@ def test_drawable_has_letters_of_the_font_only():
 )
 def test_wrapped_keeps_every_letter(text, width, lines):
     assert wrapped_label(text, width).split("\n") == lines
+
+
+@pytest.mark.parametrize(
+    ("name", "unit", "arm", "shown"),
+    [
+        ("force", "N*m", 0.24, (1.0, "N m")),
+        ("velocity", "rad/s", None, (180 / pi, "deg/s")),
+        ("deflection", "rad", 0.24, (240.0, "mm")),
+        ("deflection", "rad", None, (180 / pi, "deg")),
+        ("motor command", "rpm", 0.24, (1.0, "rpm")),
+    ],
+)
+def test_units(name, unit, arm, shown):
+    assert scale_of(name, unit, arm) == shown

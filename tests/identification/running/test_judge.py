@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from nrs_design.errors import DataError, DesignError
-from nrs_design.identification.running import BoundStatus, judge_run, read_run_bounds
+from nrs_design.identification.running import BoundStatus, judge_run, read_run, read_run_bounds
 from nrs_design.identification.running.bounds import Stiffness
 from nrs_design.identification.running.stiffness import cut_windows, stiffness_of
 from nrs_design.spec import read_spec
@@ -331,3 +331,15 @@ def test_the_spec_may_say_where_the_driver_saturates(tmp_path):
     assert check(judged(log(tmp_path), known), "saturation").status == "outside"
     found = check(judged(log(tmp_path), known, command_limit=3000.0), "saturation")
     assert (found.status, found.allowed) == ("inside", "below 3000 rpm")
+
+
+@pytest.mark.parametrize("names", ["iw", "37"])
+def test_modes_have_names(tmp_path, names):
+    t, angle, torque, command, mode = runs.run(duration=6.0)
+    mode = np.where(mode == "insertion", *names)
+    path = tmp_path / "run.csv"
+    path.write_text(runs.text(t, angle, torque, command, mode))
+    log = read_run(path)
+    assert log.labels == tuple(names)
+    assert [log.labels[i] for i in log.modes] == mode.tolist()
+    assert log.command_unit == "rpm"

@@ -43,8 +43,8 @@ def step(loop, names, drawn):
 
 def _law(loop, before, force, none):
     """Return the states of the law after a sample, and the command."""
-    T, law, drive = loop["period"], loop["law"], loop["drive"]
-    after = {}
+    T, drive, after = loop["period"], loop["drive"], {}
+    law = {name: single(value) for name, value in loop["law"].items()}
     if drive == "torque":
         R = law["R"]
         e = -before["delta"]

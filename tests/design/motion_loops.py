@@ -12,6 +12,8 @@ from nrs_design.switched.cut_loop import ContinuousAxis, Place
 # Thesis 6.1 as printed, and with the exact coefficients of Kd = 2060, z = 56.9706.
 PRINTED = TransferFunction((0.99, 56.82), (0.0351, 1.99, 56.82))
 EXACT = TransferFunction((0.9974, 56.822), (0.0351, 1.9974, 56.822))
+GAIN, TAU = 2060 * 4.8417e-4, 0.0351  # thesis 4.1 and 4.3
+LOOP = TransferFunction((GAIN, GAIN * 56.9706), (TAU, 1 + GAIN, GAIN * 56.9706))
 SOFT = 43.0356
 PD = ProportionalDerivative(Fraction("117359.436"), Fraction(2060))
 LAG = MotionLoop((Fraction(1),), (Fraction(1), Fraction(1)))

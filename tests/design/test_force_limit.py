@@ -11,9 +11,8 @@ from scipy.integrate import solve_ivp
 from nrs_design.design.force_limit import Approach, peak_force, steady_force_error
 from nrs_design.design.transfer import TransferFunction
 from nrs_design.errors import DesignError
+from tests.design.motion_loops import GAIN, LOOP, TAU
 
-GAIN, LAG = 2060 * 4.8417e-4, 0.0351  # thesis 4.1 and 4.3
-LOOP = TransferFunction((GAIN, GAIN * 56.9706), (LAG, 1 + GAIN, GAIN * 56.9706))
 SOFT, KP, FD = 43.0356, 0.02, 0.3
 
 
@@ -61,10 +60,10 @@ def test_run_of_motor_and_law_with_a_memory(speed, k, gain, offset):
         # The command moves with the force only: u' = -Kp k omega.
         error = X_i + gain * (FD - k * position) - position
         drive = Kp * error + Kd * (-gain * k * omega - omega)
-        return [omega, (km * drive - omega) / LAG]
+        return [omega, (km * drive - omega) / TAU]
 
     # What the PD makes of the step of the command from theta + lead to X_i.
-    kick = GAIN / LAG * (X_i - theta - lead)
+    kick = GAIN / TAU * (X_i - theta - lead)
     run = solve_ivp(
         rate, (0, 1), (theta, v + kick), rtol=1e-9, atol=1e-12, t_eval=np.linspace(0, 1, 4001)
     )

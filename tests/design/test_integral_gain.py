@@ -10,14 +10,12 @@ from nrs_design.design.analysis import analyze_design
 from nrs_design.design.design import design_controllers
 from nrs_design.design.force_limit import Approach, peak_force
 from nrs_design.design.laws.pi_force import integral_gain, with_integral
-from nrs_design.design.transfer import TransferFunction
 from nrs_design.errors import DesignError
 from nrs_design.spec import parse_spec
 from nrs_design.spec.build_plant import build_plant
+from tests.design.motion_loops import GAIN, LOOP, TAU
 from tests.simulation.interactions import POSITION, text_of
 
-GAIN, LAG = 2060 * 4.8417e-4, 0.0351  # thesis 4.1 and 4.3
-LOOP = TransferFunction((GAIN, GAIN * 56.9706), (LAG, 1 + GAIN, GAIN * 56.9706))
 SOFT, FD = 43.0356, 0.3
 
 
@@ -51,7 +49,7 @@ def test_the_open_loop_with_an_integral():
 def test_the_peak_is_that_of_the_run():
     """Motor, PD and PI as they are, from a ramp on; X waits from the switch on."""
     k, Kp, Ki, v = SOFT, 0.02, 0.5, np.radians(8)
-    c, a0, a1 = GAIN / LAG, GAIN * 56.9706 / LAG, (1 + GAIN) / LAG
+    c, a0, a1 = GAIN / TAU, GAIN * 56.9706 / TAU, (1 + GAIN) / TAU
     # States theta, w = omega - c u, the integral, and 1; u = X + Kp (Fd - k theta) + integral.
     X = FD / k + v / (GAIN * 56.9706)
     u = np.array([-Kp * k, 0, 1, X + Kp * FD])

@@ -3,7 +3,6 @@
 import re
 import resource
 import subprocess
-import sys
 from dataclasses import replace
 from fractions import Fraction
 from functools import cache
@@ -12,7 +11,6 @@ from pathlib import Path
 import pytest
 
 from nrs_design.certificates.verify import verify
-from nrs_design.cli import main
 from nrs_design.errors import DesignError
 from nrs_design.exporters import format_of, rendered
 from nrs_design.exporters.export import Export
@@ -21,7 +19,7 @@ from nrs_design.proof.evidence.graph import Arc
 from nrs_design.proof.mode import Time
 from nrs_design.search.certify import Limits, certify
 from tests.search.support import thesis_robot
-from tests.support import ROOT, program_named
+from tests.support import ROOT, program_named, run
 
 SHIPPED = sorted(path.name.removesuffix(".cert.json") for path in ROOT.glob("reports/*.cert.json"))
 # A constant parameter has no theorem.
@@ -164,18 +162,12 @@ def test_kinds_and_shapes_without_a_theorem_are_refused():
         text_of(with_evidence(certificate, edges=arcs))
 
 
-def test_matrices_are_exported_as_typed(tmp_path, monkeypatch, capsys):
+def test_matrices_are_exported_as_typed(tmp_path):
     spec = ROOT / "specs/examples/failing-controller.nrs.yaml"
-    command = ["nrs-design", "export", str(spec), "--format", "coq", "--out", str(tmp_path)]
-    monkeypatch.setattr(sys, "argv", command)
-    with pytest.raises(SystemExit) as caught:
-        main()
-    assert not caught.value.code
-    assert sorted(path.name for path in tmp_path.iterdir()) == [
-        "failing-controller.cert.json",
-        "failing_controller.v",
-    ]
-    assert "PROVED, exported" in capsys.readouterr().out
+    asked = ("export", spec, "--format", "coq", "--out", tmp_path)
+    assert "PROVED, exported" in run(*asked, cwd=tmp_path, code=0).stdout
+    names = ["failing-controller.cert.json", "failing_controller.v"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == names
     text = (tmp_path / "failing_controller.v").read_text()
     assert "not in the theorem: what happens within a stay of a mode that must be left" in text
 

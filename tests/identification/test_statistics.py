@@ -87,13 +87,11 @@ def test_a_parameter_without_effect_is_unknown():
     assert known.errors[1] > 1e3
 
 
-def test_whiteness_is_uniform_for_white_noise():
+def test_whiteness_is_uniform_for_white_noise_only():
     p = [ljung_box(np.random.default_rng(seed).normal(size=500)) for seed in range(200)]
     assert 0.4 < np.mean(p) < 0.6
     assert np.mean(np.array(p) < 0.05) < 0.1
-
-
-def test_whiteness_sees_a_drift():
+    # And a drift is seen.
     assert ljung_box(np.linspace(-1, 1, 100)) < 1e-6
     assert ljung_box(np.zeros(100)) == 1.0
 
@@ -111,9 +109,7 @@ def test_the_ends_of_a_quotient_are_those_that_the_data_just_reject():
     for end in quotients(tuple(found), covariance, 1.9):
         contrast = np.array([-end, 1.0])
         assert (contrast @ found) ** 2 == pytest.approx(1.9**2 * contrast @ covariance @ contrast)
-
-
-def test_a_quotient_by_what_may_be_zero_has_no_ends():
+    # By what may be zero there are none.
     assert quotients((1.0, 2.0), np.eye(2), 1.96) == (-math.inf, math.inf)
 
 

@@ -1,4 +1,11 @@
-from nrs_design.gating.formats import to_text
+import re
+from html import unescape
+from xml.etree import ElementTree
+
+import pytest
+
+from nrs_design.gating.formats import to_badge, to_markdown, to_text
+from nrs_design.gating.obligations import Status
 from tests.gating.formats.support import GAINS, HOSTILE, obligation, outcome_of
 
 
@@ -33,3 +40,35 @@ def test_hostile_text_steers_no_terminal():
     text = to_text(outcome_of(obligation(path=f"specs/{HOSTILE}", message=HOSTILE)))
     assert all(line.isprintable() for line in text.split("\n"))
     assert text.count("\n") == to_text(outcome_of(obligation())).count("\n")
+
+
+def test_the_sum_comes_first_and_every_spec_has_a_row(mixed):
+    lines = to_markdown(mixed).splitlines()
+    assert unescape(lines[0]).startswith("### ❌ nrs-design: 3 specs: 1 refuted, 1 proved")
+    assert unescape(lines[2]).startswith("- specs/c.nrs.yaml: NRS900 error")
+    assert sum(line.startswith("| specs/") for line in lines) == 3
+
+
+def test_what_strangers_wrote_is_no_markup():
+    text = to_markdown(outcome_of(obligation(path=f"specs/{HOSTILE}", message="<b> @all [x](y)")))
+    shown = text.replace("<details><summary>every spec</summary>", "").replace("</details>", "")
+    assert not re.search(r"<|@|\]\(", shown)
+    assert "<b> @all [x](y)" in unescape(text)
+
+
+@pytest.mark.parametrize(
+    ("outcome", "said", "colour"),
+    [
+        (outcome_of(obligation(Status.PROVED), verdict="proved"), "1 proved", "#00664b"),
+        (outcome_of(obligation(), verdict="refuted"), "1 refuted", "#a63603"),
+        (outcome_of(obligation(), verdict="inconclusive"), "1 inconclusive", "#6b5b00"),
+        # A proof beside a goal that is missed is not green, nor is nothing at all.
+        (outcome_of(obligation(Status.MISSED), verdict="proved"), "1 not fulfilled", "#a63603"),
+        (outcome_of(), "0 proved", "#6b5b00"),
+    ],
+)
+def test_it_says_the_worst(outcome, said, colour):
+    root = ElementTree.fromstring(to_badge(outcome))
+    space = "{http://www.w3.org/2000/svg}"
+    assert root.find(f"{space}title").text == f"switching: {said}"
+    assert root.findall(f"{space}rect")[1].get("fill") == colour

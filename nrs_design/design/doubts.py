@@ -12,20 +12,28 @@ from nrs_design.design.measures import DISK_MARGIN, MARGINS, SENSITIVITY_PEAK, M
 from nrs_design.spec import Doubt, ImpedanceControllerSpec, InteractionDesignSpec
 
 
-def doubt_values(name: str, achieved: tuple[Achieved, ...]) -> Iterator[Doubt]:
+def doubt_values(name: str, achieved: tuple[Achieved, ...], *, provable: bool) -> Iterator[Doubt]:
     """Yield what is beyond the usual limits, and no goal speaks of it: one line a controller.
 
-    A goal for Ms or for the disk margin limits gain and phase together, so it speaks of both.
+    A goal for Ms or for the disk margin limits gain and phase together, so it speaks of both. It is
+    advised only where it can be met: of values that are `provable`, or the worst of all ranges.
     """
     found = [item for item in achieved if is_unusual(item.measure, achieved)]
-    if found:
-        bad = (
-            f"{item.measure.title} {item.measure.text(item.value)} (usual: {item.measure.usual})"
-            for item in found
-        )
-        keys = ", ".join(item.measure.goal for item in found)
-        text = f"{name}: {', '.join(bad)}; a goal says what is accepted: {keys}"
-        yield Doubt(("controllers", name), text, beyond=max(map(_beyond, found)))
+    if not found:
+        return
+    beyond = max(map(_beyond, found))
+    peak = next((item for item in found if item.measure is SENSITIVITY_PEAK), None)
+    if peak is not None and math.isinf(peak.value):
+        text = f"{name}: the loop is unstable at {peak.where}"
+        yield Doubt(("controllers", name), text, beyond=beyond)
+        return
+    bad = (
+        f"{item.measure.title} {item.measure.text(item.value)} (usual: {item.measure.usual})"
+        for item in found
+    )
+    keys = [item.measure.goal for item in found if provable or item.everywhere]
+    advice = f"; a goal says what is accepted: {', '.join(keys)}" if keys else ""
+    yield Doubt(("controllers", name), f"{name}: {', '.join(bad)}{advice}", beyond=beyond)
 
 
 def is_unusual(measure: Measure, achieved: tuple[Achieved, ...]) -> bool:

@@ -69,8 +69,9 @@ def _write_lock(outcome: GateOutcome, file: Path, *, prune: bool) -> GateOutcome
     kept = [entry for entry in old if entry.path not in dropped]
     if kept or fresh or file.exists():
         entries = sorted([*kept, *fresh], key=lambda entry: entry.path)
-        write_output(file, dump_lock(Lock(specs=entries)), replaces=LOCK)
-        outcome = outcome.with_note(f"{file} written")
+        if (lock := Lock(specs=entries)) != read_lock_if_any(file) or not file.exists():
+            write_output(file, dump_lock(lock), replaces=LOCK)
+            outcome = outcome.with_note(f"{file} written")
     pending = [s.path for s in outcome.specs if s.certifiable and s.verdict is None]
     names = {entry.path for entry in kept}
     missing = [str(path) for path in pending if relative_to_lock(path, file) not in names]

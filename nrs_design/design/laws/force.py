@@ -45,6 +45,11 @@ class ForceAnalysis(AbstractControllerAnalysis):
     # ranges.
     loops: tuple[RangedLoop, ...] = ()
 
+    @property
+    def is_provable(self) -> bool:
+        """Whether margins can be proved over all values of the ranges."""
+        return bool(self.loops)
+
     def prove(self, achieved: Sequence[Achieved]) -> tuple[Achieved, ...]:
         """Return worst values with what is proved of them over all values of the ranges."""
         return with_proofs(achieved, self.loops)

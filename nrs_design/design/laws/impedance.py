@@ -83,6 +83,11 @@ class ImpedanceAnalysis(AbstractControllerAnalysis):
     # once.
     loops: tuple[RangedLoop, ...] = ()
 
+    @property
+    def is_provable(self) -> bool:
+        """Whether margins can be proved over all values of the ranges."""
+        return bool(self.loops)
+
     def prove(self, achieved: Sequence[Achieved]) -> tuple[Achieved, ...]:
         """Return worst values with what is proved of them over all values of the ranges."""
         home, loop = self.given.environment, self.requirement

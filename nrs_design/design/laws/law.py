@@ -114,13 +114,18 @@ class AbstractControllerAnalysis(ABC):
         return tuple(achieved)
 
     @property
+    def is_provable(self) -> bool:
+        """Whether margins can be proved over all values of the ranges."""
+        return False
+
+    @property
     def proved_titles(self) -> tuple[str, ...]:
         """What is proved over all values of the ranges."""
         return tuple(found.measure.title for found in self.judged if found.proved is not None)
 
     def doubts(self) -> Iterator[Doubt]:
         """Yield what is doubtful about the gains, and no goal speaks of it."""
-        yield from doubt_values(self.name, self.achieved)
+        yield from doubt_values(self.name, self.achieved, provable=self.is_provable)
 
 
 # The law with the gains that ship, and what they were rounded from, if a search found them.

@@ -110,7 +110,7 @@ def some_loop(rng):
         "gain": around("gain", 4e-4, 5e-4, 1.2) if drive == "actuator" else (1.0, 1.0),
         "inertia": around("inertia", 0.1, 0.5, 3), "friction": around("friction", 0.2, 1, 2),
         "k": around("k", 10, 200, 3), "b": around("b", 0.1, 2, 3) if damped else (0.0, 0.0),
-        "losable": some(0.3) and not damped and not (torque and len(wide) > 1),
+        "losable": some(0.3) and not (torque and (damped or len(wide) > 1)),
     }  # fmt: skip
 
 

@@ -1,10 +1,10 @@
 """What each test takes, measured on an idle machine: it says in which session a test runs.
 
 ``python -m tests.costs`` runs all tests but the nightly ones in one process and writes `COSTS`, a
-line for each test that takes longer than `SLOW`. A test that is not there is in the default
-session; one of more than `NIGHTLY` seconds is in the nightly session only, beside those that mark
-themselves, unless it is of what CI holds whatever that takes. Nothing is measured while tests run
-otherwise: how fast a machine is decides nothing.
+line for each test that is dear: that takes longer than `LIMIT`, or of what decides, `MORE`. A test
+that is not there is in the default session and in CI. A dear one is in the nightly session, beside
+those that mark themselves, and in CI if it is of what CI holds whatever that takes. Nothing is
+measured while tests run otherwise: how fast a machine is decides nothing.
 """
 
 import os
@@ -16,16 +16,17 @@ from time import perf_counter
 import pytest
 
 COSTS = Path(__file__).with_name("costs.tsv")
-# Seconds. The default session has thousands of tests; CI has all but studies.
-SLOW, NIGHTLY = 0.1, 0.25
+# Seconds. The default session has thousands of tests.
+LIMIT, MORE = 0.07, 0.25
+DECIDES = tuple(f"tests/{name}/" for name in ("proof", "certificates", "literature", "pipeline"))
 # What is published, every page prints what it shows; what the house is, with an addition and
 # without a wing; and what commands load and begin with.
 IN_CI = (
     *("tests/docs/", "tests/test_wings.py", "tests/test_additions.py", "tests/test_structure.py"),
     *("tests/cli/test_app.py", "tests/cli/test_init.py"),
     # That commands agree, checkers agree, and nothing that lies beside a spec is run.
-    *("tests/gating/test_agreement.py", "tests/certificates/test_mutated.py"),
-    "tests/hostile/test_planted.py",
+    "tests/gating/test_agreement.py::test_all_commands_agree_on_any_design",
+    *("tests/certificates/test_mutated.py", "tests/hostile/test_planted.py", "tests/oracle/"),
 )
 
 
@@ -44,11 +45,18 @@ def seconds_of(item: pytest.Item) -> float:
     return known_costs().get(name_of(item), 0.0)
 
 
+def is_dear(name: str, seconds: float) -> bool:
+    return seconds > (MORE if name.startswith(DECIDES) else LIMIT)
+
+
 def mark_by_cost(items: Sequence[pytest.Item]) -> None:
     for item in items:
-        if seconds_of(item) > NIGHTLY and not item.nodeid.startswith(IN_CI):
-            item.add_marker(pytest.mark.nightly)
-        if seconds_of(item) > SLOW or item.get_closest_marker("nightly"):
+        name = name_of(item)
+        if is_dear(name, seconds_of(item)):
+            item.add_marker(pytest.mark.slow)
+            if not name.startswith(IN_CI):
+                item.add_marker(pytest.mark.nightly)
+        if item.get_closest_marker("nightly"):
             item.add_marker(pytest.mark.slow)
 
 
@@ -69,9 +77,8 @@ def main() -> int:
     measurement = Measurement()
     os.environ["CI"] = "true"
     code = pytest.main(["-q", "-m", "not nightly"], plugins=[measurement])
-    kept = {name: cost for name, cost in known_costs().items() if cost > NIGHTLY}
-    dear = {name: cost for name, cost in measurement.costs.items() if cost > SLOW}
-    lines = [f"{cost:.2f}\t{name}" for name, cost in sorted({**kept, **dear}.items())]
+    costs = known_costs() | measurement.costs
+    lines = [f"{cost:.2f}\t{name}" for name, cost in sorted(costs.items()) if is_dear(name, cost)]
     COSTS.write_text("\n".join([*lines, ""]), encoding="utf-8")
     return int(code)
 

@@ -31,6 +31,8 @@ EQUIVALENT = Path(__file__).with_name("equivalent.toml")
 SHARED = {"abstract", "fields", "__init__"}
 # What decides for a kind in a file of its own, and the kind that tests it.
 DECIDES_FOR = {"growth": "growing_sequence"}
+# What decides for several kinds is held by their tests, too.
+BESIDE = {"steps": (KINDS / "test_graph.py", TESTS / "test_offset.py", TESTS / "test_stays.py")}
 # A mutant may loop for ever, or count to the end of memory. A test gets so many times what it
 # takes without a change, and so many seconds more.
 TIMES, SECONDS, BYTES = 5, 5, 4 << 30
@@ -179,7 +181,8 @@ def own_tests(path: Path) -> list[str]:
     path = path.with_stem(DECIDES_FOR.get(path.stem, path.stem))
     mirror = TESTS / path.relative_to(PROOF).with_name(f"test_{path.name}")
     if path.parent == PROOF or path.stem in SHARED:
-        return [str(mirror if mirror.exists() else KINDS / "test_tampering.py")]
+        own = mirror if mirror.exists() else KINDS / "test_tampering.py"
+        return [str(own), *map(str, BESIDE.get(path.stem, ()))]
     facts = f"{KINDS}/test_abstract.py::test_facts_of_the_kinds"
     kind = path.stem.replace("_", "-")
     return [str(mirror), facts, f"{KINDS}/test_tampering.py", "-k", f"not tampering or {kind}"]

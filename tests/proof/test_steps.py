@@ -227,3 +227,17 @@ def test_a_map_and_a_flow_by_hand():
     flow = flow_step("", "m0", "a", A).form(F, F, keeps)
     wanted = combine((-1, half), (-1, transpose(half)), (-keeps, F))
     assert is_positive_multiple(flow, wanted)
+
+
+def test_a_product_that_is_zero_by_hand():
+    """``-2 m (l z) (r z)``, of which nothing is left without a multiplier."""
+    A, F, keeps = matrix([["1/2", "1/3"], [0, "2/5"]]), ((3, 1), (1, 2)), Fraction(3, 7)
+    step = map_step("", "m0", ("a", "b"), A, 7)
+    known = replace(step, products=(("p", (1, 2), (3, -1)),))
+    plain = step.form(F, F, keeps)
+    assert known.form(F, F, keeps) == plain
+    form = known.form(F, F, keeps, {"p": 5}.__getitem__)
+    more = combine((1, form), (-1, plain))
+    assert more == [[-5 * 6, -5 * 5], [-5 * 5, -5 * -4]]
+    assert known.facts == ("p",)
+    assert not Acting().rounding

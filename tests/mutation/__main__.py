@@ -32,7 +32,11 @@ SHARED = {"abstract", "fields", "__init__"}
 # What decides for a kind in a file of its own, and the kind that tests it.
 DECIDES_FOR = {"growth": "growing_sequence"}
 # What decides for several kinds is held by their tests, too.
-BESIDE = {"steps": (KINDS / "test_graph.py", TESTS / "test_offset.py", TESTS / "test_stays.py")}
+BESIDE = {
+    "steps": (KINDS / "test_graph.py", TESTS / "test_offset.py", TESTS / "test_stays.py"),
+    "stays": (KINDS / "test_graph.py",),
+    "contradiction": (TESTS / "test_cases.py", TESTS / "test_saturation.py"),
+}
 # A mutant may loop for ever, or count to the end of memory. A test gets so many times what it
 # takes without a change, and so many seconds more.
 TIMES, SECONDS, BYTES = 5, 5, 4 << 30

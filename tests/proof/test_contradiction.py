@@ -23,6 +23,7 @@ from tests.proof.systems import (
     matrix,
     pushed,
     saturating,
+    saturating_in_steps,
 )
 
 HALF = Fraction(1, 2)
@@ -349,6 +350,7 @@ def test_signals_that_saturate_fit_every_mode_of_one_size():
 
 
 SIGNALS = saturating().saturation.signals
+RAGGED = RationalMatrix(((1,), (1, 2)))
 
 
 @pytest.mark.parametrize(
@@ -366,12 +368,48 @@ SIGNALS = saturating().saturation.signals
         ),
         ({"start": Start("force", "N", ())}, "force does not have the size of the state"),
         ({"start": Start("force", "N", (ONE,))}, "force does not have the size of the state"),
+        *(
+            ({"start": Start("force", "N", (matrix([[0], [1]]), state))}, reason)
+            for state, reason in (
+                (RAGGED, "force does not have the size of the state"),
+                (matrix([[0], [0]]), "force stands for a state that is zero"),
+                (matrix([[1], [-1]]), "force stands for a state without contact"),
+                (matrix([["1", 0]]), "force does not have the size of the state"),
+                (matrix([[-1], [0]]), "None"),
+            )
+        ),
     ],
 )
 def test_signals_that_make_no_sense(changes, reason):
     system = saturating()
     odd = replace(system, saturation=replace(system.saturation, **changes))
     assert reason in str(find_contradiction(odd))
+
+
+def test_where_contact_is_kept_a_motion_may_begin_anywhere():
+    system = kept(saturating())
+    start = replace(system.saturation.start, states=(matrix([[1], [-1]]),))
+    assert (
+        find_contradiction(replace(system, saturation=replace(system.saturation, start=start)))
+        is None
+    )
+
+
+@pytest.mark.parametrize(
+    ("errors", "reason"),
+    [
+        ((ONE,) * 2, "has not one row of what acts on it for every mode"),
+        ((ONE,) * 4, "has not one row of what acts on it for every mode"),
+        ((ONE, ONE, matrix([[1, 1]])), "does not know what the arithmetic rounds"),
+        ((ONE, ONE, RationalMatrix(((1,),), 0)), "does not know what the arithmetic rounds"),
+        ((), "None"),
+    ],
+)
+def test_what_is_rounded_of_a_signal_is_said_for_every_mode(errors, reason):
+    system = saturating_in_steps()
+    (signal,) = system.saturation.signals
+    odd = replace(system.saturation, signals=(replace(signal, errors=errors),))
+    assert reason in str(find_contradiction(replace(system, saturation=odd)))
 
 
 @pytest.mark.parametrize(

@@ -80,6 +80,9 @@ def test_what_are_no_cases(change, reason):
     assert reason in find_contradiction(replace(CASES, **change))
     losable = replace(bouncing_in_steps(), cases=(("m0", "free"), ("m1",)))
     assert "a case has no mode, in contact or free" in find_contradiction(losable)
+    assert find_contradiction(replace(CASES, enclosures=(("m0",),))) is None
+    unlike = replace(family([[-1]], [[-1, 0], [0, -1]]), cases=CASES.cases)
+    assert "modes of unlike size" in find_contradiction(unlike)
 
 
 @pytest.mark.parametrize(

@@ -398,6 +398,7 @@ def test_where_contact_is_kept_a_motion_may_begin_anywhere():
 @pytest.mark.parametrize(
     ("errors", "reason"),
     [
+        ((ONE,) * 3, "None"),
         ((ONE,) * 2, "has not one row of what acts on it for every mode"),
         ((ONE,) * 4, "has not one row of what acts on it for every mode"),
         ((ONE, ONE, matrix([[1, 1]])), "does not know what the arithmetic rounds"),

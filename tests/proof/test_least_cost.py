@@ -5,6 +5,8 @@ from math import log10
 
 import numpy as np
 import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
 
 from nrs_design.proof.least_cost import Frequency, cost_at_most, least_cost
 
@@ -67,6 +69,31 @@ def test_no_point_of_a_dense_grid_beats_the_bound(weights, Mt):
     assert found.below <= Fraction(least)
     # Between the points of the grid it may be a little less, but not here by a thousandth.
     assert found.below == enough
+
+
+PARTS = st.floats(-4, 4).filter(lambda x: abs(x) > 0.1)
+
+
+@settings(max_examples=60)
+@given(
+    st.lists(st.tuples(PARTS, PARTS, st.floats(0.05, 2), st.floats(0, 1)), min_size=1, max_size=3),
+    st.floats(0, 1),
+    st.floats(0.5, 5),
+    st.sampled_from([0.002, 0.05, 0.4]),
+    st.sampled_from([(HALF, HALF), (ONE, Fraction(0)), (Fraction(0), ONE), (ONE, ONE / 5)]),
+)
+def test_one_box_is_bounded_by_what_is_least_in_it(parts, M, B, width, weights):
+    """And the closer, the smaller it is."""
+    all_given = [frequency(k, complex(a, b), t, d) for k, (a, b, t, d) in enumerate(parts, 1)]
+    Mt, Bt = ((Fraction(low), Fraction(low + width)) for low in (M, B))
+    ends = (np.linspace(low, low + width, 41) for low in (M, B))
+    all_of_it = cost(all_given, tuple(map(float, weights)), *np.meshgrid(*ends))
+    least, most = all_of_it.min(), all_of_it.max()
+    assume(least > 0.05 and most < 20)
+    found = least_cost(all_given, weights, Mt, Bt, enough=Fraction(least * 1.02), most=1).below
+    assert found <= least + 1e-9
+    if width < 0.01:
+        assert found >= least - 4 * (most - least) - 1e-6
 
 
 def test_a_resonance_in_the_box_does_no_harm():

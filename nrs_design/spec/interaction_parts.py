@@ -26,6 +26,7 @@ from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import Digits, Label, Name, Title
 from nrs_design.spec.free import FreeGainsSpec
 from nrs_design.spec.goals import GoalsSpec
+from nrs_design.spec.misses import MISS
 from nrs_design.spec.model import ReadBefore, SpecModel, optional
 from nrs_design.spec.monitoring import MonitoringSpec
 from nrs_design.spec.motion import (
@@ -58,7 +59,7 @@ MOTION = "motion"
 # What stands in the place of a controller in names of modes, and what it is.
 NOT_CONTROLLERS = {
     MOTION: "the motion loop among the gains and the modes",
-    "miss": "the modes of a missed deadline",
+    MISS: "the modes of a missed deadline",
 }
 # What stands behind the contact in names of modes: ends of ranges, ages, and points.
 OF_CORNERS = re.compile(r"([A-Za-z]|tau|Km|[a-z]\d+)-(min|max)|(delay|hull|case)-\d+")

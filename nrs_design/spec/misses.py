@@ -20,6 +20,9 @@ MOST_STEPS = 1000
 MOST_STATES = 1000
 _Count = Annotated[int, whole(1, MOST_STEPS)]
 
+# What modes are called whose deadline is missed.
+MISS = "miss"
+
 
 def _checks(example: str, otherwise: str) -> tuple[Row[Any], ...]:
     """Return what a rule must be.

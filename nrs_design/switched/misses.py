@@ -11,8 +11,6 @@ from nrs_design.proof.switching import NOWHERE, Clock, Stay, Switching
 from nrs_design.spec.misses import MissAutomaton, MissesSpec, automaton_of
 
 MAX_TRANSITIONS = 200_000
-# What modes of a sampled loop are called whose deadline is missed.
-MISS = "miss"
 ONCE = Stay(Fraction(1), Fraction(1))
 
 

@@ -25,7 +25,7 @@ from nrs_design.proof.switching import Clock
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.spec import IdleStatesSpec
 from nrs_design.spec.interaction_parts import FREE
-from nrs_design.spec.misses import automaton_of
+from nrs_design.spec.misses import MISS, automaton_of
 from nrs_design.spec.operating import OperatingConditions
 from nrs_design.spec.sampling import SamplingSpec
 from nrs_design.switched.assumptions import at_once_texts
@@ -40,7 +40,7 @@ from nrs_design.switched.free_motion import (
 )
 from nrs_design.switched.held_drive import HeldDrive
 from nrs_design.switched.held_motor import HeldMotor, hold
-from nrs_design.switched.misses import MISS, clock_of
+from nrs_design.switched.misses import clock_of
 from nrs_design.switched.motor_command import motor_command
 from nrs_design.switched.parameter_box import Box
 from nrs_design.switched.sampled_assumptions import Loss, assume_sampled

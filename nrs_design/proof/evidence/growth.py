@@ -67,14 +67,11 @@ def monodromy(system: SwitchedSystem, steps: Steps, edges: Sequence[int] = ()) -
     modes, maps = {mode.name: mode.A for mode in system.every_mode}, system.switching.maps()
     names = [name for name, _ in steps]
     product: Any = None
-    whole = {*names} if system.time is Time.DISCRETE else {}
-    enclosed = {name: attained(system, name) for name in whole}
+    counted = system.time is Time.DISCRETE
+    enclosed = {name: attained(system, name) for name in {*names}} if counted else {}
     for k, (name, time) in enumerate(steps):
         switch = (name, names[(k + 1) % len(names)])
-        if name in enclosed:
-            factor = enclosed[name] ** int(time)
-        else:
-            factor = exponential(modes[name], time, time)
+        factor = enclosed[name] ** int(time) if counted else exponential(modes[name], time, time)
         product = factor if product is None else factor * product
         if switch in maps:
             product = balls(maps[switch][edges[k] if edges else 0]) * product

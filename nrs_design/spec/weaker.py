@@ -42,10 +42,11 @@ _ANOTHER = frozenset(
 _ANOTHER_BELOW = (("sensor", "filter"), ("sampling", "admittance"))
 # Words for people.
 _WORDS = frozenset({"accept_doubt", "range_covers", "linearized_about"})
-_ASKED = frozenset({"goals", "contacts", "environment"})
+_WANTED = frozenset({"desired_impedance", "desired_impedance_ratio"})
+_ASKED = _WANTED | {"goals", "contacts", "environment"}
 # Parts whose keys are names that somebody has given, and no words of ours.
 _NAMED = frozenset({"environments", "controllers", "parameters", "modes", "scenarios"})
-_OF_MODES = frozenset({"dwell_time", "longest_dwell_time"})
+_OF_MODES = frozenset({"dwell_time", "longest_dwell_time", "hold"})
 # Limits below which something must stay, and above which: of a goal, a scenario, an assumption.
 _AT_MOST = frozenset({"peak_torque", "dwell_time", "hold", "of"})
 # How many deadlines may be missed is what must be borne.
@@ -135,10 +136,12 @@ def find_changes(before: Data, after: Data) -> Iterator[Change]:
 def _written_out(said: Data, other: Data) -> Data:
     """Write out what holds unsaid, where the other spec says it or changes what it follows from.
 
-    A controller touches its own environment, and has the goals of the whole spec.
+    A controller touches its own environment, and has the goals of the whole spec. The first one is
+    in force in a run.
     """
     if not isinstance(said, dict) or not isinstance(other, dict):
         return said
+    said = _with_control(said)
     controllers, others = said.get("controllers"), other.get("controllers")
     if not isinstance(controllers, dict) or not isinstance(others, dict):
         return said
@@ -161,6 +164,26 @@ def _written_out(said: Data, other: Data) -> Data:
                 whole["goals"] = own | common
         found[name] = whole
     return said | {"controllers": found}
+
+
+def _with_control(said: dict[str, Data]) -> dict[str, Data]:
+    """Write out which controller is in force in every run; what contact brings about, in order."""
+    runs, controllers = said.get("scenarios"), said.get("controllers")
+    if not isinstance(runs, dict) or not isinstance(controllers, dict):
+        return said
+    first: Data = (
+        {"logic": "mode-logic"} if "mode_logic" in said else {"fixed": next(iter(controllers), "")}
+    )
+    found: dict[str, Data] = {}
+    for name, run in runs.items():
+        found[name] = run
+        if isinstance(run, dict):
+            control = run.get("control", first)
+            contact = control.get("contact") if isinstance(control, dict) else None
+            if isinstance(control, dict) and isinstance(contact, dict):
+                control = control | {"contact": tuple(contact.items())}
+            found[name] = run | {"control": control}
+    return said | {"scenarios": found}
 
 
 def _changes(before: Data, after: Data, at: Place) -> Iterator[Change]:
@@ -203,12 +226,23 @@ def _of_keys(before: dict[str, Data], after: dict[str, Data], at: Place) -> Iter
             keys = _keys(here)
             weaker = _is_assumed(keys)
             weaker |= _is_unsaid(keys) and _word(said) != _STRONGER[keys[-1]]
+            weaker |= _is_instead(keys)
             yield Change(here, f"{_name(here)} is new: {_said(said)}", weaker)
 
 
 def _is_unsaid(keys: Sequence[str]) -> bool:
     """Tell whether something holds where nothing is said; other keys may be named `contact`."""
     return keys[-1] in _UNSAID and keys not in (["sensor", "contact"],)
+
+
+def _is_instead(keys: Sequence[str]) -> bool:
+    """Tell whether something else holds where nothing is said, and nobody knows which asks more.
+
+    All but limits and errors makes another run; unsaid, a force is sampled with the motion loop.
+    """
+    run = keys[0] == "scenarios" and not {*keys[1:2]} <= {"limits", "errors", "title"}
+    goal = "goals" in keys and keys[-1] == "environment"
+    return run or goal or keys[-1] in _WANTED | {"outer_period"}
 
 
 def _is_assumed(keys: Sequence[str]) -> bool:
@@ -236,7 +270,8 @@ def _of_lists(
     for index, item in enumerate(before[len(after) :], len(after)):
         yield Change((*at, index), f"{_name((*at, index))} is gone, {_said(item)} before", True)
     for index, item in enumerate(after[len(before) :], len(before)):
-        yield Change((*at, index), f"{_name((*at, index))} is new: {_said(item)}", False)
+        weaker = _is_instead(_keys(at))
+        yield Change((*at, index), f"{_name((*at, index))} is new: {_said(item)}", weaker)
 
 
 def _named(items: tuple[Data, ...]) -> dict[str, Data]:

@@ -222,6 +222,29 @@ def test_specs_are_compared_by_what_they_mean(tmp_path, text, old, new, there, b
     assert any(change.weaker for change in find_changes(*reversed(said))) is back
 
 
+BEFORE = TEXT.replace("hold: 10 ms", "hold: {design: 10 ms}").replace(
+    "delay: 2 ms}", "delay: 2 ms, accuracy: {max_error: 0.1}}"
+)
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("duration: 3 s", "duration: 3 s, start: -9 deg"),
+        ("duration: 3 s", "duration: 3 s, wanted_torque: 1 N*mm"),
+        ("duration: 3 s", "duration: 3 s, control: {fixed: own}"),
+        ("controllers:\n", "controllers:\n  first: {environment: soft}\n"),
+        ("period: 2 ms", "period: 2 ms, outer_period: 1 ms"),
+        ("Bt: 2", "desired_impedance: 9 N*m*s/rad, Bt: 2"),
+        ("max_error: 0.1", "max_error: 0.1, environment: soft"),
+        ("design: 10 ms", "design: 1 s"),
+    ],
+)
+def test_what_takes_the_place_of_what_holds_unsaid_is_weaker(old, new):
+    before = BEFORE.replace("mode_logic:", "logic:") if "first" in new else BEFORE
+    assert any(change.weaker for change in changes(before, edited(before, old, new)))
+
+
 UNSAID_WEAKER = {
     "contact": (TEXT, "contact: losable\n", "contact: kept\n"),
     "varies": (SWITCHED, ", varies: true", ", varies: false"),

@@ -10,9 +10,19 @@ import os
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
+from functools import partial
 from pathlib import Path
 
 from nrs_design import __version__
+from nrs_design.certificates.certificate import Certificate, Verdict
+from nrs_design.certificates.goals import rate_per_second
+from nrs_design.certificates.prove import (
+    Verification,
+    held_system,
+    judged,
+    read_certificate,
+    read_document,
+)
 from nrs_design.errors import NrsDesignError
 from nrs_design.gating.find_specs import find_specs
 from nrs_design.gating.lock import LockedSpec, read_lock_if_any
@@ -27,6 +37,7 @@ from nrs_design.gating.obligations import (
 from nrs_design.gating.places import Places
 from nrs_design.gating.recorded import hash_recorded
 from nrs_design.gating.rules import NOT_WEAKER
+from nrs_design.proof.bounds import lower, upper
 from nrs_design.spec import LoadedSpec, read_spec
 from nrs_design.spec.load import is_there
 from nrs_design.spec.task_space import file_of
@@ -80,7 +91,7 @@ def compare_with_base(
             continue
         entry = entries.get(os.path.normpath(name))
         if os.path.lexists(now.path) or is_there(now.path):
-            found[now.path] = [*_of_spec(path, now), *_of_lock(entry, now)]
+            found[now.path] = [*_of_spec(path, now), *_of_lock(entry, now, (base / lock).parent)]
         else:
             # It is an outcome, since the lock file here names it still.
             found[now.path] = [Change((), _GONE, True)]
@@ -164,19 +175,69 @@ def _of_recorded(before: LoadedSpec, after: LoadedSpec) -> Iterator[Change]:
             yield Change(("scenarios",), f"the commands in {name} are others", True)
 
 
-def _of_lock(entry: LockedSpec | None, now: SpecOutcome) -> Iterator[Change]:
-    """Yield a lower verdict or rate than the base has locked, and another version."""
+def _of_lock(entry: LockedSpec | None, now: SpecOutcome, folder: Path) -> Iterator[Change]:
+    """Yield a lower verdict or a proof of less than the base has locked, and another version."""
     if entry is None:
         return
     if now.verdict is None or _VERDICTS.index(now.verdict) > _VERDICTS.index(entry.verdict):
         yield Change((), f"{entry.verdict} before, {now.verdict or 'without a verdict'} now", True)
-    if entry.rate is not None and now.rate is not None and entry.rate != now.rate:
-        change = Fraction(now.rate) - Fraction(entry.rate)
-        slower = change < 0 if now.rate_name == "alpha" else change > 0
-        yield Change((), f"certified rate {entry.rate} before, {now.rate} now", slower)
+    elif entry.certificate is not None and now.certificate is not None:
+        yield from _of_proof(folder / entry.certificate.file, now.certificate)
     if entry.version != __version__:
         message = f"designed by nrs-design {entry.version} before, {__version__} now"
         yield Change((), message, False)
+
+
+def _of_proof(before: Path, after: Path) -> Iterator[Change]:
+    """Yield what the certificate of the base shows and this one does not, and what is shown more.
+
+    That of the base is only read: whoever made it has checked it.
+    """
+    base = judged(partial(_read, before))
+    if base.fault is not None:
+        message = f"the certificate of the base cannot be compared: {base.fault}"
+        yield Change((), message, True)
+        return
+    was, now = (dict(_shown(one.certificate)) for one in (base, judged(partial(_read, after))))
+    for what in dict.fromkeys((*was, *now)):
+        number, text = was.get(what, (None, "not shown"))
+        other, said = now.get(what, (None, "not shown"))
+        if text != said:
+            weaker = number is not None and (other is None or other < number)
+            yield Change((), f"{what} {text} before, {said} now", weaker)
+
+
+def _read(file: Path) -> Verification:
+    document = read_document(file)
+    return Verification(read_certificate(document, held_system(document)), None)
+
+
+def _shown(certificate: Certificate | None) -> Iterator[tuple[str, tuple[Fraction, str]]]:
+    """Yield what a certificate shows by a name: a number, of which more is more, and in words."""
+    if certificate is None:
+        return
+    system, evidence = certificate.system, certificate.evidence
+    if evidence is not None and certificate.verdict == Verdict.PROVED:
+        rate = evidence.proved_rate(system)
+        seconds = rate_per_second(rate, system)
+        if seconds is not None:
+            yield "certified rate", (seconds, lower(seconds))
+        elif rate is not None:
+            yield "certified rate per step", (-rate, upper(rate))
+        for what, covers in (
+            ("loss of contact", evidence.covers_lost_contact),
+            ("rounding", evidence.covers_rounding),
+        ):
+            if covers:
+                yield what, (Fraction(1), "covered")
+    for item in certificate.statements:
+        if (bound := item.bound(system)) is not None:
+            under = ", ".join(channel.name for channel in bound.channels)
+            rounded = ", with rounding" * item.covers_rounding
+            what = f"bound on {bound.output.name} under {under}{rounded}"
+            yield what, (-bound.level, upper(bound.level))
+        if (size := item.start_size) is not None:
+            yield "decay although signals saturate, from", (size, lower(size))
 
 
 def _with(spec: SpecOutcome, changes: Sequence[Change]) -> SpecOutcome:

@@ -231,8 +231,9 @@ NOT_WEAKER = Rule(
     "Nothing is weaker than in the base",
     "With --against BASE, what the specs of BASE asked for is still asked for: no spec is gone, no "
     "range covers less, no goal, limit or disturbance is looser, nothing more is taken for granted "
-    "(a dwell time, contact that is kept, a doubt that is accepted), and no certified rate or "
-    "verdict is lower. What cannot be compared counts as weaker. A proof of a weaker spec is a "
+    "(a dwell time, contact that is kept, a doubt that is accepted), and the certificate shows all "
+    "that the one of BASE does: verdict, rate, bounds, what happens where contact is lost or "
+    "numbers are rounded. What cannot be compared counts as weaker. A proof of a weaker spec is a "
     "proof, so no other rule sees this. What makes another robot or law, and versions, are listed "
     "as other changes, and break nothing.",
     "If it is meant, let somebody who may decide that say so where the change is reviewed: there "

@@ -113,8 +113,9 @@ def gate(
     if against is not None:
         from nrs_design.gating.against import base_paths
 
-        # What cannot be compared is said before minutes of search.
-        base_paths(paths, against)
+        # What cannot be compared is said before minutes of search. A lock file that is elsewhere
+        # would be compared with itself.
+        base_paths([*paths, lock], against)
     outcome = (
         _re_check(paths, lock)
         if locked

@@ -178,6 +178,8 @@ def _of_recorded(before: LoadedSpec, after: LoadedSpec) -> Iterator[Change]:
 def _of_lock(entry: LockedSpec | None, now: SpecOutcome, folder: Path) -> Iterator[Change]:
     """Yield a lower verdict or a proof of less than the base has locked, and another version."""
     if entry is None:
+        if now.certifiable:
+            yield Change((), "the base has locked no verdict and no proof to compare with", False)
         return
     if now.verdict is None or _VERDICTS.index(now.verdict) > _VERDICTS.index(entry.verdict):
         yield Change((), f"{entry.verdict} before, {now.verdict or 'without a verdict'} now", True)

@@ -188,3 +188,8 @@ def test_the_command(folders):
     assert "NRS110" not in LOCK.read_text()
     run("gate", "specs", "--locked", cwd=head, code=0)
     run("gate", "specs", "--against", "nowhere", cwd=head, code=2)
+    beside = ("--lock", "../nrs.lock", "--against", str(base))
+    assert "not below the working folder" in run("gate", "specs", *beside, cwd=head, code=2).stderr
+    (base / LOCK).unlink()
+    done = run("gate", "specs", "--locked", "--against", str(base), cwd=head, code=1)
+    assert done.stdout.count("the base has locked no verdict and no proof to compare with") == 2

@@ -220,8 +220,11 @@ class GrowingSequence(AbstractEvidence):
                 return f"the trace is not that of a power up to {MAX_DOUBLINGS} doublings"
             if len(self.steps) * system.order**3 > MAX_WORK:
                 return "the sequence is too long for so many states"
-            if has_growing_trace(system, self.steps, self.edges, self.doublings):
-                return None
+            try:
+                if has_growing_trace(system, self.steps, self.edges, self.doublings):
+                    return None
+            except TooLargeError as error:
+                return str(error)
             return "the enclosure of the monodromy matrix does not show growth"
         enclosed = system.enclosure_of(self.steps[0][0])
         if len(enclosed) > 1:

@@ -8,6 +8,7 @@ from typing import Any
 
 from nrs_design.proof.contact import Flights
 from nrs_design.proof.enclosure import all_between, balls, eigenvector, exponential, precision
+from nrs_design.proof.exact import TooLargeError
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
@@ -15,6 +16,8 @@ from nrs_design.proof.system import SwitchedSystem
 # Each mode with its time in s, or number of steps.
 Steps = tuple[tuple[str, Fraction], ...]
 MAX_DOUBLINGS = 60
+# Longer numbers in an exponential would keep a check in Python integers busy for ever.
+MAX_GROWTH = 2 ** (2**16)
 
 
 def has_growing_trace(
@@ -62,7 +65,7 @@ def monodromy(system: SwitchedSystem, steps: Steps, edges: Sequence[int] = ()) -
 
     Steps are modes with times in s, or steps. Every step is followed by the reset of the switch to
     the next mode, the last one by that of the switch back to the first; `edges` says which of
-    several, by default the first.
+    several, by default the first. A `TooLargeError` if a mode grows too far in its time.
     """
     modes, maps = {mode.name: mode.A for mode in system.every_mode}, system.switching.maps()
     names = [name for name, _ in steps]
@@ -72,6 +75,8 @@ def monodromy(system: SwitchedSystem, steps: Steps, edges: Sequence[int] = ()) -
     for k, (name, time) in enumerate(steps):
         switch = (name, names[(k + 1) % len(names)])
         factor = enclosed[name] ** int(time) if counted else exponential(modes[name], time, time)
+        if not counted and not all(abs(entry) < MAX_GROWTH for entry in factor.entries()):
+            raise TooLargeError(f"mode {name} grows too far to check")
         product = factor if product is None else factor * product
         if switch in maps:
             product = balls(maps[switch][edges[k] if edges else 0]) * product

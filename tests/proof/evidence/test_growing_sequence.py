@@ -260,6 +260,11 @@ def test_a_radius_barely_above_one_needs_many_doublings():
     assert all(signal((0, 1), doublings=k).find_fault(below) for k in range(61))
 
 
+def test_growth_that_a_second_opinion_would_never_end_with_is_refused():
+    assert signal((0, 1)).find_fault(family([[1000]])) is None
+    assert signal((0, 1)).find_fault(family([[10**20]])) == "mode m0 grows too far to check"
+
+
 def test_the_order_of_time_is_that_of_the_steps():
     # From m0 to m1 the state is swapped, back it is left: only the order tells which is first.
     resets = resets_between(("m0", "m1", [[0, 1], [0, 0]]))

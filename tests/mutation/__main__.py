@@ -36,6 +36,10 @@ BESIDE = {
     "steps": (KINDS / "test_graph.py", TESTS / "test_offset.py", TESTS / "test_stays.py"),
     "stays": (KINDS / "test_graph.py",),
     "contradiction": (TESTS / "test_cases.py", TESTS / "test_saturation.py"),
+    "enclosure": (KINDS / "test_growing_sequence.py", TESTS / "test_stays.py"),
+    "saturation": (KINDS / "test_saturated_ellipsoid.py",),
+    "switching": (TESTS / "test_clock.py", KINDS / "test_growing_sequence.py"),
+    "system": (TESTS / "test_clock.py", TESTS / "test_contact.py"),
 }
 # A mutant may loop for ever, or count to the end of memory. A test gets so many times what it
 # takes without a change, and so many seconds more.

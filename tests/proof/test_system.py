@@ -3,8 +3,9 @@ from fractions import Fraction
 
 import pytest
 
+from nrs_design.proof.contact import Flights
 from nrs_design.proof.mode import Time
-from nrs_design.proof.switching import Stay, Switching
+from nrs_design.proof.switching import Clock, Stay, Switching
 from tests.proof.systems import bouncing_in_steps, family, matrix, pushed, resets_between
 
 HALF = Fraction(1, 2)
@@ -71,6 +72,23 @@ def test_other_modes_leave_contact_and_channels_behind():
         other.modes, other.states, other.switching
     )
     assert changed == replace(other, time=Time.DISCRETE, assumptions=("rigid",))
+
+
+def test_what_a_statement_must_cover():
+    """Contact that is lost, anywhere or on the surface; and free motion that may last."""
+    drops = bouncing_in_steps()
+    kept, needed = (
+        replace(drops, contact=replace(drops.contact, required=r)) for r in (False, True)
+    )
+    anywhere, in_turns = (
+        replace(kept, flights=Flights(("m0",), ())),
+        replace(needed, clock=Clock(2, ("m0",))),
+    )
+    systems = family([[1]]), kept, needed, anywhere, in_turns
+    assert [s.is_losable for s in systems] == [False, False, True, True, True]
+    assert [len(s.free_motions()) for s in systems] == [0, 0, 1, 0, 0]
+    constant = replace(kept, switching=Switching(fixed_ends=(("m0",),)))
+    assert [s.has_constants for s in (kept, constant, replace(kept, cases=(kept,)))] == [0, 1, 1]
 
 
 def test_uniform_is_of_the_order():

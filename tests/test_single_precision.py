@@ -9,7 +9,7 @@ from benchmarks.bounded_runs import CASES, hold_against_bound
 from benchmarks.single_precision import Choices, simulate_single_precision
 from nrs_design.controllers.laws import Admittance
 from nrs_design.controllers.step_law import StepFrame, build_law
-from tests.switched.frames import frame_of
+from tests.loop.frames import frame_of
 
 TAU, KM, PERIOD = Fraction("0.0351"), Fraction("4.8417e-4"), Fraction(1, 500)
 MOTION = StepFrame(Fraction(117359), Fraction(1_030_000))

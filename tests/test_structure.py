@@ -35,7 +35,7 @@ REACHED = {
     # A recorded command is a record.
     ("nrs_design.simulation.build_scenario", "identification", "tables.table"),
 }
-STAGES = {"models", "design", "switched", "search"}
+STAGES = {"models", "design", "loop", "search"}
 # What a command may use of a stage: its door, or a module of nouns and words.
 DOORS = {
     "nrs_design.models.contact",
@@ -252,12 +252,12 @@ def test_stages_are_known_to_the_pipeline_only(above):
 def test_a_report_assembles_and_searches_nothing():
     """It shows what the pipeline gives it, and draws the curves of a design."""
     read = {item.target for item in ours() if role(item.source) == "reporting"}
-    assert {name for name in read if floor(name) in ("switched", "search")} == {
+    assert {name for name in read if floor(name) in ("loop", "search")} == {
         "nrs_design.search.certification",
         "nrs_design.search.gradient_settings",
         "nrs_design.search.loop_margin",
         "nrs_design.search.method_run",
-        "nrs_design.switched.assumption",
+        "nrs_design.loop.assumption",
     }
 
 
@@ -265,8 +265,8 @@ VERBS = {
     ("nrs_design.spec.build_plant", "build_plant"),
     ("nrs_design.design.design", "design_controllers"),
     ("nrs_design.design.analysis", "analyze_design"),
-    ("nrs_design.switched.assemble", "assemble"),
-    ("nrs_design.switched.assemble", "assemble_matrices"),
+    ("nrs_design.loop.assemble", "assemble"),
+    ("nrs_design.loop.assemble", "assemble_matrices"),
     ("nrs_design.search.certify", "certify"),
 }
 
@@ -291,7 +291,7 @@ def test_only_the_pipeline_calls_the_stages():
     assert {verb for name, verb in callers if name == "nrs_design.pipeline"} == VERBS
     assert {name for name, _ in callers} == {
         "nrs_design.pipeline",
-        "nrs_design.switched.assemble",
+        "nrs_design.loop.assemble",
         "nrs_design.thesis.switching",
         "nrs_design.ros2.check",
         "nrs_design.ros2.export",

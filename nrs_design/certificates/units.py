@@ -15,7 +15,7 @@ def gain_units(certificate: Certificate) -> dict[str, dict[str, str]]:
     # Controllers are slow to load, and a certificate of given matrices has none.
     from nrs_design.axis import axis_with
     from nrs_design.controllers.gains import units_of
-    from nrs_design.switched.assumptions import command_in
+    from nrs_design.loop.assumptions import command_in
 
     system = certificate.system
     return units_of(certificate.gains, command_in(system.assumptions), axis_with(system.states))

@@ -90,7 +90,7 @@ def _verify(
     if (foreign := find_foreign(document, spec)) is not None:
         return Verification(None, foreign)
     from nrs_design.certificates.ages import declaring_more
-    from nrs_design.switched.assemble import assemble_from_text
+    from nrs_design.loop.assemble import assemble_from_text
 
     ages = read_ages(document)
     said = spec.spec if ages is None else declaring_more(spec.spec, ages)

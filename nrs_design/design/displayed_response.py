@@ -36,10 +36,10 @@ from nrs_design.design.affine_family import (
 )
 from nrs_design.design.passivity import root_below
 from nrs_design.errors import InternalError
+from nrs_design.loop.cut_loop import ContinuousAxis, Place, multiply
 from nrs_design.models.contact import KelvinVoigt
 from nrs_design.models.interval import Interval
 from nrs_design.proof.largest_ratio import largest_ratio
-from nrs_design.switched.cut_loop import ContinuousAxis, Place, multiply
 
 # Digits of a root.
 _DIGITS = 20

@@ -47,9 +47,9 @@ from nrs_design.design.measures import (
 from nrs_design.design.polynomials import multiply
 from nrs_design.design.transfer import BoolArray, ComplexArray, FloatArray, TransferFunction
 from nrs_design.errors import DesignError
+from nrs_design.loop.cut_loop import AbstractAxis, Place
 from nrs_design.models.contact import AbstractLinearLaw
 from nrs_design.models.contact.environment import Environment
-from nrs_design.switched.cut_loop import AbstractAxis, Place
 
 # In the place of a corner.
 NOT_COMPUTED = "not computed: the force is sampled more often than the motion loop"

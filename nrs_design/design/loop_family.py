@@ -1,6 +1,6 @@
 """The open loops of many admittances in one contact, from a few assembled modes.
 
-`nrs_design.switched.cut_loop` gives the polynomials of a mode exactly. They are affine in the
+`nrs_design.loop.cut_loop` gives the polynomials of a mode exactly. They are affine in the
 stiffness of the contact, and in two coordinates of the law, so those of three admittances at two
 stiffnesses are those of all. From here on it is floating point.
 """
@@ -18,8 +18,8 @@ from numpy.typing import NDArray
 from nrs_design.design.loops import Loops
 from nrs_design.design.polynomials import frequencies, product_parts, ratio
 from nrs_design.design.transfer import FloatArray, hurwitz
+from nrs_design.loop.cut_loop import AbstractAxis, Place, ProcessorAxis
 from nrs_design.models.contact import AbstractLinearLaw
-from nrs_design.switched.cut_loop import AbstractAxis, Place, ProcessorAxis
 
 # What the polynomials of a mode are called.
 _OPENED, _CLOSED, _FREE = "opened", "closed", "free"

@@ -1,6 +1,6 @@
 """The open loops whose margins a design has, as A, B and C: what other programs take margins of.
 
-`nrs_design.switched.cut_loop` cuts the modes of a proof where the law takes the force. Two such
+`nrs_design.loop.cut_loop` cuts the modes of a proof where the law takes the force. Two such
 modes, with the force and without it, differ by a column times a row, exactly: ``-B C``. With A of
 the mode without it, ``L = C (s I - A)^-1 B``, and ``A - B C`` is the mode that is proved.
 """
@@ -18,9 +18,9 @@ from nrs_design.controllers.controller_design import Controller, ControllerDesig
 from nrs_design.design.goals import ContactCorner
 from nrs_design.design.laws.law import Task
 from nrs_design.design.loops import Loops
+from nrs_design.loop.cut_loop import AbstractAxis
 from nrs_design.models.plant import Plant
 from nrs_design.spec import InteractionDesignSpec
-from nrs_design.switched.cut_loop import AbstractAxis
 
 Matrix = NDArray[np.float64]
 Rows = Sequence[Sequence[Fraction]]

@@ -25,12 +25,12 @@ from math import isqrt, lcm
 from typing import TYPE_CHECKING, Any
 
 from nrs_design.controllers.laws import CompliantLaw
+from nrs_design.loop.cut_loop import ContinuousAxis, Place, multiply
 from nrs_design.models.contact import KelvinVoigt
 from nrs_design.models.interval import Interval
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Time
 from nrs_design.proof.spectrum import is_stable
-from nrs_design.switched.cut_loop import ContinuousAxis, Place, multiply
 
 if TYPE_CHECKING:
     from flint import arb

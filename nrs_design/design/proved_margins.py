@@ -3,7 +3,7 @@
 The worst margin at the corners of all ranges is floating point, and says nothing of values in
 between. Here it is only a proposal: rounded to its unfavorable side, it is proved for every
 stiffness and motor in their ranges, each unknown but constant. With the open loop ``N/D`` and
-``C = D + N``, of which `nrs_design.switched.cut_loop` gives D and C exactly, everywhere on the
+``C = D + N``, of which `nrs_design.loop.cut_loop` gives D and C exactly, everywhere on the
 imaginary axis:
 
 - ``|S| <= Ms`` is ``|D| <= Ms |C|``, and the disk margin d is ``|D - N| <= 2/d |C|``;
@@ -60,12 +60,12 @@ from nrs_design.design.measures import (
     Measure,
 )
 from nrs_design.design.polynomials import frequencies, squared
+from nrs_design.loop.cut_loop import ContinuousAxis, multiply
 from nrs_design.models.contact import Elastic, KelvinVoigt
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.interval import Interval
 from nrs_design.proof.enclosure import ball_around, fraction_of, precision
 from nrs_design.proof.largest_ratio import largest_ratio
-from nrs_design.switched.cut_loop import ContinuousAxis, multiply
 
 # Bernstein coefficients that are looked at for one question, and ranges at once.
 _MOST, _RANGES = 40_000, 4

@@ -14,13 +14,13 @@ from nrs_design.design.displayed_response import (
     largest_tracking_error,
 )
 from nrs_design.design.sampled_response import SampledAdmittance, largest_sampled_impedance
+from nrs_design.loop.cut_loop import AbstractAxis, ContinuousAxis, ProcessorAxis
 from nrs_design.models.actuator import ActuatorRanges
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.interval import Interval
 from nrs_design.proof.bounds import rounded_down, rounded_up
 from nrs_design.spec import InteractionDesignSpec
 from nrs_design.spec.goals import GoalsSpec, ResponseGoal
-from nrs_design.switched.cut_loop import AbstractAxis, ContinuousAxis, ProcessorAxis
 
 # Keys of the goals.
 TRANSPARENCY, ACCURACY = "transparency", "accuracy"

@@ -43,9 +43,9 @@ def find_cases(designed: Designed, constants: Sequence[FixedParameter], limits: 
 
     With a goal for the decay, until each decays so; where that cannot be, at any rate.
     """
+    from nrs_design.loop.assemble import closed_part
     from nrs_design.search.certify import prove_together
     from nrs_design.spec.build_plant import build_conditions
-    from nrs_design.switched.assemble import closed_part
 
     conditions = build_conditions(designed.spec)
     (drive,) = designed.spec.drives

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from nrs_design import __version__
 from nrs_design.certificates.certificate import Certificate, Gains, Verdict, common_quadratic_of
 from nrs_design.errors import AssemblyError, DesignError
+from nrs_design.loop.assumption import omitted
 from nrs_design.models.cut import RangeCut
 from nrs_design.pipeline.design import Designed, placed
 from nrs_design.pipeline.goal_ranges import for_goal
@@ -19,7 +20,6 @@ from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.certification import Attempt, Certification, Limits
 from nrs_design.search.method import Method
 from nrs_design.spec import LoadedSpec
-from nrs_design.switched.assumption import omitted
 from nrs_design.work import GIGABYTE
 
 if TYPE_CHECKING:
@@ -159,9 +159,9 @@ def _in_cases(
 
     Under arbitrary switching; a constant is in one part for ever.
     """
+    from nrs_design.loop.assemble import assemble
     from nrs_design.pipeline.cases import CASES, find_cases
     from nrs_design.search.certify import certify_cases
-    from nrs_design.switched.assemble import assemble
 
     switching = known.system.switching
     if designed is None or not switching.fixed_parameters or switching.resets:
@@ -188,8 +188,8 @@ def _at_points(
     progress: Progress,
 ) -> tuple[str, Certification]:
     """Look for growth at points of the ranges, which a wide enclosure of them does not refute."""
+    from nrs_design.loop.assemble import POINTS, assemble
     from nrs_design.search.certify import certify
-    from nrs_design.switched.assemble import POINTS, assemble
 
     if designed is None or designed.spec.sampling is None:
         return "", known
@@ -269,7 +269,7 @@ def assemble_spec(
     scale: Fraction = Fraction(1),
 ) -> SwitchedSystem:
     """Assemble either kind of spec, with its ranges stretched by a scale."""
-    from nrs_design.switched.assemble import assemble, assemble_matrices
+    from nrs_design.loop.assemble import assemble, assemble_matrices
 
     if designed is not None:
         return assemble(designed.spec, designed.plant, designed.design, scale)

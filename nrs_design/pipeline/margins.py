@@ -103,7 +103,7 @@ def _run_misses(rule: MissRuleSpec, result: Result, limits: Limits, progress: Pr
 
 def _with_rule(result: Result, rule: MissRuleSpec) -> SwitchedSystem:
     """Return the system of a spec, undisturbed, under another rule for misses."""
-    from nrs_design.switched.assemble import assemble_matrices
+    from nrs_design.loop.assemble import assemble_matrices
 
     designed, spec = result.designed, result.loaded.spec
     if designed is None:

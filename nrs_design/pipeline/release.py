@@ -7,6 +7,7 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
+from nrs_design.loop.joint import Joint
 from nrs_design.models.linear_form import coordinates
 from nrs_design.models.motion_loop import realize
 from nrs_design.pipeline.certification import Result
@@ -15,7 +16,6 @@ from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.spec.interaction_parts import FREE
-from nrs_design.switched.joint import Joint
 
 if TYPE_CHECKING:
     from nrs_design.simulation.release import Outputs
@@ -63,7 +63,7 @@ def _find_obstacle(designed: Designed, system: SwitchedSystem) -> str | None:
 
 def _sampled(designed: Designed, system: SwitchedSystem) -> Outputs:
     """Return what a sampled loop shows; its state holds velocity and deflection."""
-    from nrs_design.switched.free_motion import force_rows
+    from nrs_design.loop.free_motion import force_rows
 
     touched = designed.plant.among(designed.design.contacts)
     states = system.states
@@ -80,7 +80,7 @@ def _sampled(designed: Designed, system: SwitchedSystem) -> Outputs:
 
 def _following_velocities(designed: Designed, system: SwitchedSystem) -> Outputs:
     """Return what a loop shows whose controllers command velocities."""
-    from nrs_design.switched.free_motion import force_rows
+    from nrs_design.loop.free_motion import force_rows
 
     plant, motion = designed.plant, designed.design.motion
     touched = plant.among(designed.design.contacts)

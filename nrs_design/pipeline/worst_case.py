@@ -96,9 +96,9 @@ def _commanded(designed: Designed) -> SwitchedSystem:
     if spec.sampling is not None:
         return assemble_spec(designed.loaded, replace(designed, spec=spec))
     # In continuous time a run may be on tissue for which no bound is stated.
+    from nrs_design.loop.assemble import state_of
+    from nrs_design.loop.commanded import with_command
     from nrs_design.spec.build_plant import build_conditions
-    from nrs_design.switched.assemble import state_of
-    from nrs_design.switched.commanded import with_command
 
     conditions = build_conditions(spec)
     state = state_of(conditions, designed.plant, designed.design)

@@ -1,6 +1,6 @@
 """The assumptions of a system as a register: bound, consequence if false, and test of each.
 
-An `nrs_design.switched.assumption.Assumption` knows them. One that was read from a certificate is
+An `nrs_design.loop.assumption.Assumption` knows them. One that was read from a certificate is
 a plain string, and the register says that they are unknown.
 """
 
@@ -10,7 +10,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from nrs_design.switched.assumption import Assumption, AssumptionKind, Standing
+from nrs_design.loop.assumption import Assumption, AssumptionKind, Standing
 
 if TYPE_CHECKING:
     from nrs_design.spec import InteractionDesignSpec

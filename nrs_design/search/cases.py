@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from itertools import accumulate
 
+from nrs_design.loop.cases import name_in_case
 from nrs_design.proof.evidence import FormsOnGraph
 from nrs_design.proof.evidence.graph import Multiplier, Node, at_place
 from nrs_design.proof.mode import Time
 from nrs_design.proof.steps import ROUNDING
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.switched.cases import name_in_case
 
 # The system of a case with what proves it.
 ProvedCase = tuple[SwitchedSystem, FormsOnGraph]

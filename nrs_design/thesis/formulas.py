@@ -10,6 +10,7 @@ import numpy as np
 
 from nrs_design.design.root_locus import motion_loop_response
 from nrs_design.design.transfer import TransferFunction
+from nrs_design.loop.modes import Rows
 from nrs_design.models.actuator import armature_resistance, speed_torque_gradient, voltage_gain
 from nrs_design.models.motion_loop import close_motion_loop
 from nrs_design.proof.mode import Time
@@ -20,7 +21,6 @@ from nrs_design.robot.models.geometry import direction
 from nrs_design.robot.models.neuroboscope import robot, robot_spec
 from nrs_design.robot.models.vectors import Array
 from nrs_design.search.balance import own_norm
-from nrs_design.switched.modes import Rows
 from nrs_design.thesis import thesis
 from nrs_design.thesis.comparison import Found
 from nrs_design.thesis.matrices import family, impedance_rows, printed_rows

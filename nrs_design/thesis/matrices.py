@@ -5,17 +5,17 @@ from __future__ import annotations
 from fractions import Fraction
 
 from nrs_design.controllers.laws import Admittance, ProportionalForce
-from nrs_design.models.contact import Elastic
-from nrs_design.models.motion_loop import realize
-from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.mode import Mode, Time
-from nrs_design.proof.system import SwitchedSystem
-from nrs_design.switched.modes import (
+from nrs_design.loop.modes import (
     Rows,
     position_mode,
     to_force_coordinates,
     velocity_mode,
 )
+from nrs_design.models.contact import Elastic
+from nrs_design.models.motion_loop import realize
+from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.mode import Mode, Time
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.thesis import thesis
 
 MOTION = realize(thesis.REALIZED_LOOP)

@@ -6,9 +6,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from nrs_design.loop.modes import Rows
 from nrs_design.models.linear_form import LinearForm
 from nrs_design.proof.spectrum import is_stable
-from nrs_design.switched.modes import Rows
 from nrs_design.thesis import thesis
 from nrs_design.thesis.comparison import Found, Number, Recomputed, format_number
 from nrs_design.thesis.matrices import MOTION, family, impedance_rows, printed_rows

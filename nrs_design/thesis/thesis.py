@@ -7,10 +7,10 @@ from fractions import Fraction
 
 from nrs_design.design.loop_family import LoopFamily
 from nrs_design.design.transfer import TransferFunction
+from nrs_design.loop.cut_loop import ContinuousAxis, Place
 from nrs_design.models.actuator import Actuator, MotorConstants
 from nrs_design.models.contact import Elastic
 from nrs_design.models.motion_loop import MotionLoop, close_motion_loop, realize
-from nrs_design.switched.cut_loop import ContinuousAxis, Place
 
 # Thesis 4.1: table 4.1, gearhead 181:1, break frequency and low-frequency gain of figure 4.3.
 MOTOR_INERTIA, GEARHEAD_INERTIA = 14.5e-7, 0.31e-7

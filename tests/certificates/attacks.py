@@ -6,8 +6,8 @@ from fractions import Fraction
 from typing import Any
 
 from nrs_design.certificates.certificate import Certificate, to_document
+from nrs_design.loop.cases import in_cases
 from nrs_design.search.cases import joined
-from nrs_design.switched.cases import in_cases
 from tests.proof.systems import genuine
 from tests.support import ROOT
 

@@ -33,13 +33,13 @@ from nrs_design.certificates.certificate import content_id, dump
 from nrs_design.certificates.verify import Verification, read_document, verify, verify_document
 from nrs_design.controllers.float32 import exact_decimal
 from nrs_design.errors import CertificateError
+from nrs_design.loop.assemble import assemble_from_text
 from nrs_design.pipeline.runs import run_certification
 from nrs_design.proof.evidence.fields import system_fields
 from nrs_design.proof.evidence.growing_sequence import staying
 from nrs_design.search.certify import Limits
 from nrs_design.search.method import Method
 from nrs_design.spec import LoadedSpec, read_spec
-from nrs_design.switched.assemble import assemble_from_text
 from tests.proof.graphs import common_quadratic
 from tests.support import COMMUTING, FORCE_LIMIT, PRINT_ERROR, ROOT, SOFT_TISSUE, holds, write_spec
 

@@ -1,6 +1,6 @@
 """The list of operations: how often its terms are rounded, counted by hand, and its limits.
 
-`tests/switched/test_sampled_frame.py` holds the loops that are made of it against simulations step
+`tests/loop/test_sampled_frame.py` holds the loops that are made of it against simulations step
 by step.
 """
 

@@ -9,8 +9,8 @@ from nrs_design.controllers.laws.torque_impedance import TorqueImpedance
 from nrs_design.controllers.replica import step
 from nrs_design.controllers.step_law import StepFrame, StepLimits, build_law
 from nrs_design.errors import DesignError
+from nrs_design.loop.sampled_law import kinds_of, list_law
 from nrs_design.models.drive import Takes
-from nrs_design.switched.sampled_law import kinds_of, list_law
 
 F = Fraction
 T = F(1, 1000)

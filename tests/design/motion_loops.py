@@ -4,10 +4,10 @@ from fractions import Fraction
 
 from nrs_design.controllers.laws import ProportionalDerivative
 from nrs_design.design.transfer import TransferFunction
+from nrs_design.loop.cut_loop import ContinuousAxis, Place
 from nrs_design.models.actuator import Actuator
 from nrs_design.models.interval import Interval
 from nrs_design.models.motion_loop import MotionLoop, realize
-from nrs_design.switched.cut_loop import ContinuousAxis, Place
 
 # Thesis 6.1 as printed, and with the exact coefficients of Kd = 2060, z = 56.9706.
 PRINTED = TransferFunction((0.99, 56.82), (0.0351, 1.99, 56.82))

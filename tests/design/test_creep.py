@@ -8,12 +8,12 @@ import pytest
 from nrs_design.controllers.step_law import StepFrame
 from nrs_design.design.measures import CREEP, CREEP_ANGLE, GoalStanding
 from nrs_design.errors import DesignError
+from nrs_design.loop.program import INPUTS
 from nrs_design.pipeline.analysis import run_analysis
 from nrs_design.pipeline.runs import run_design
 from nrs_design.spec import read_spec
-from nrs_design.switched.sampled_frame import INPUTS
+from tests.loop.frames import frame_of
 from tests.support import SOFT_TISSUE, replaced
-from tests.switched.frames import frame_of
 
 TEXT = SOFT_TISSUE.read_text(encoding="utf-8")
 SENSOR = """

@@ -15,10 +15,10 @@ from nrs_design.design.displayed_response import (
     largest_tracking_error,
 )
 from nrs_design.errors import InternalError
+from nrs_design.loop.cut_loop import ContinuousAxis
+from nrs_design.loop.joint import Joint
 from nrs_design.models.actuator import ActuatorRanges
 from nrs_design.models.motion_loop import MotionLoop, realize
-from nrs_design.switched.cut_loop import ContinuousAxis
-from nrs_design.switched.joint import Joint
 from nrs_design.thesis import thesis
 from tests.design.motion_loops import LAG, PD, PLACE, interval
 

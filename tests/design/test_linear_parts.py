@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from nrs_design.design.linear_parts import linear_parts
+from nrs_design.loop.assemble import assemble
 from nrs_design.pipeline.runs import run_design
 from nrs_design.spec import read_spec
-from nrs_design.switched.assemble import assemble
 from tests.support import ROOT, SOFT_TISSUE
 
 FILTER = "sensor: {filter: {order: 2, cutoff: 60 Hz}}\n"

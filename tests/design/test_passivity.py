@@ -13,10 +13,10 @@ from nrs_design.controllers.laws import Admittance
 from nrs_design.controllers.sensor import LowPass
 from nrs_design.design.passivity import first_root, real_part
 from nrs_design.design.passivity import passive_band as band_of
+from nrs_design.loop.cut_loop import ContinuousAxis
+from nrs_design.loop.joint import Joint
 from nrs_design.models.actuator import ActuatorRanges
 from nrs_design.models.motion_loop import MotionLoop, realize
-from nrs_design.switched.cut_loop import ContinuousAxis
-from nrs_design.switched.joint import Joint
 from nrs_design.thesis import thesis
 from tests.design.motion_loops import LAG, PD, PLACE, interval
 

@@ -10,10 +10,10 @@ from nrs_design.controllers.float32 import to_float32
 from nrs_design.controllers.laws import Admittance, DiscreteLaw, ProportionalDerivative
 from nrs_design.controllers.step_law import StepFrame
 from nrs_design.design.sampled_passivity import sampled_bands
+from nrs_design.loop.program import INPUTS
 from nrs_design.models.actuator import Actuator
-from nrs_design.switched.sampled_frame import INPUTS
+from tests.loop.frames import frame_of
 from tests.support import thinned
-from tests.switched.frames import frame_of
 
 MOTOR = Actuator(Fraction("4.8417e-4"), Fraction("0.0351"))
 MOTION = ProportionalDerivative(to_float32(Fraction("117359.436")), Fraction(2060))

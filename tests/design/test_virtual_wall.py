@@ -10,12 +10,12 @@ from hypothesis import strategies as st
 from nrs_design.controllers.laws import LAWS
 from nrs_design.controllers.step_law import StepFrame
 from nrs_design.design.virtual_wall import Wall, passivity_margin
+from nrs_design.loop.command_timing import CommandTiming
+from nrs_design.loop.held_drive import HeldDrive
 from nrs_design.models.drive import Takes, torque_drive
 from nrs_design.models.interval import Interval
-from nrs_design.switched.command_timing import CommandTiming
-from nrs_design.switched.held_drive import HeldDrive
-from nrs_design.switched.sampled_frame import Frame
 from tests.literature.test_colgate_schenkel import is_passive
+from tests.loop.frames import Frame
 
 F = Fraction
 

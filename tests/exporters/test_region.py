@@ -19,7 +19,7 @@ from nrs_design.spec import read_spec
 from nrs_design.spec.sampling import SamplingSpec
 from tests.exporters.monitored import Input, Monitor
 from tests.exporters.programs import STRICT, built, compiler
-from tests.switched.test_sampled_saturation import IMPEDANCE, KM, TAU
+from tests.loop.test_sampled_saturation import IMPEDANCE, KM, TAU
 
 STIFFNESS = 747.1461 * 0.24**2
 

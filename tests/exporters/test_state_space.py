@@ -10,9 +10,9 @@ import pytest
 import nrs_design as nrs
 from nrs_design.errors import DesignError
 from nrs_design.exporters.state_space import design_state_spaces, mode_state_spaces
+from nrs_design.loop.assemble import assemble
 from nrs_design.pipeline.runs import run_design
 from nrs_design.spec import parse_spec
-from nrs_design.switched.assemble import assemble
 from tests.exporters.conftest import CONTINUOUS
 from tests.support import ROOT
 

@@ -8,6 +8,8 @@ from pathlib import Path
 from ruamel.yaml import YAML
 
 from nrs_design.controllers.laws import Admittance
+from nrs_design.loop.assemble import GIVEN_MATRICES, assemble_from_text
+from nrs_design.loop.modes import to_force_coordinates, velocity_mode
 from nrs_design.models.contact import KelvinVoigt
 from nrs_design.models.motion_loop import MotionLoop, realize
 from nrs_design.proof.matrix import RationalMatrix
@@ -15,8 +17,6 @@ from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.certify import Certification, Verdict, certify
 from nrs_design.spec import parse_exact, parse_spec
-from nrs_design.switched.assemble import GIVEN_MATRICES, assemble_from_text
-from nrs_design.switched.modes import to_force_coordinates, velocity_mode
 from tests.support import holds
 
 DATA = Path(__file__).parents[1] / "data" / "known_answers.yaml"

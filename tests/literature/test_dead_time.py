@@ -14,13 +14,13 @@ import pytest
 
 from nrs_design.controllers.laws import Admittance
 from nrs_design.controllers.step_law import StepFrame
+from nrs_design.loop.command_timing import CommandTiming
+from nrs_design.loop.held_drive import HeldDrive
+from nrs_design.loop.held_motor import hold
 from nrs_design.models.actuator import Actuator, ActuatorRanges
 from nrs_design.models.drive import Takes, velocity_drive
 from nrs_design.models.motion_loop import close_motion_loop
-from nrs_design.switched.command_timing import CommandTiming
-from nrs_design.switched.held_drive import HeldDrive
-from nrs_design.switched.held_motor import hold
-from nrs_design.switched.sampled_frame import Frame
+from tests.loop.frames import Frame
 
 KM, TAU, KD = Fraction("4.8417e-4"), Fraction("0.0351"), Fraction(2060)
 KP, MT = KD * Fraction("56.9706"), Fraction("0.01")

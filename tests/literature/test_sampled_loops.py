@@ -13,7 +13,7 @@ from scipy.optimize import brentq
 from nrs_design.certificates.certificate import Verdict
 from nrs_design.search.certification import Limits
 from nrs_design.search.certify import certify
-from tests.switched.timed_loop import floats, sampled, timed
+from tests.loop.timed_loop import floats, sampled, timed
 
 # Zhang, Branicky and Phillips, IEEE Control Systems Magazine 21(1), 2001; since then of Fridman,
 # Seuret and Richard, Automatica 40(8), 2004; Naghshtabrizi, Hespanha and Teel, Systems and Control

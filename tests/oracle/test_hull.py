@@ -7,8 +7,8 @@ import pytest
 from scipy.optimize import linprog
 
 from nrs_design.errors import NrsDesignError
+from tests.loop.support import assembled
 from tests.oracle.plant import draw, step
-from tests.switched.support import assembled
 
 # Shares of an entry: what single precision and enclosures are off, and what an error makes.
 CLOSE, SEEN = 1e-6, 1e-4

@@ -19,6 +19,8 @@ from nrs_design.certificates.goals import certified_goals
 from nrs_design.certificates.prove import prove
 from nrs_design.certificates.verify import verify_document
 from nrs_design.errors import AssemblyError
+from nrs_design.loop.assemble import assemble, assemble_from_text
+from nrs_design.loop.cases import in_cases
 from nrs_design.models.cut import MAX_PARTS, RangeCut
 from nrs_design.pipeline.cases import CASES, find_cases
 from nrs_design.pipeline.certification import assemble_spec, gains_text
@@ -29,8 +31,6 @@ from nrs_design.proof.switching import Reset, Switching
 from nrs_design.search.certification import Limits
 from nrs_design.search.certify import ENCLOSURE
 from nrs_design.spec import LoadedSpec, load_spec, parse_spec, read_spec
-from nrs_design.switched.assemble import assemble, assemble_from_text
-from nrs_design.switched.cases import in_cases
 from tests.proof.graphs import common_quadratic
 from tests.support import ROOT, matrix
 

@@ -8,6 +8,7 @@ from itertools import product
 from random import Random
 
 from nrs_design.controllers.laws import Admittance
+from nrs_design.loop.modes import velocity_mode
 from nrs_design.models.contact import KelvinVoigt
 from nrs_design.models.motion_loop import Realization
 from nrs_design.proof.channels import Channel, Output, Rounding
@@ -22,7 +23,6 @@ from nrs_design.search.certify import Limits, certify, first_accepted
 from nrs_design.search.family import floats_in_silence
 from nrs_design.search.invariant_ellipsoid import search_ellipsoid
 from nrs_design.search.method import Method
-from nrs_design.switched.modes import velocity_mode
 from nrs_design.work import Allowance
 from tests.proof.graphs import shape_of
 

@@ -7,6 +7,7 @@ import pytest
 
 from nrs_design.certificates.certificate import Certificate, content_id, to_document
 from nrs_design.certificates.prove import prove
+from nrs_design.loop.cases import in_cases
 from nrs_design.proof.contact import Flights
 from nrs_design.proof.contradiction import find_contradiction
 from nrs_design.proof.evidence import FormsOnGraph
@@ -19,7 +20,6 @@ from nrs_design.search.cases import joined
 from nrs_design.search.certification import Attempt
 from nrs_design.search.certify import certify_cases, prove_together
 from nrs_design.search.rate_limit import rate_limit
-from nrs_design.switched.cases import in_cases
 from nrs_design.work import Allowance
 from tests.proof.systems import (
     bouncing,

@@ -5,6 +5,7 @@ from fractions import Fraction
 
 import pytest
 
+from nrs_design.loop.assemble import assemble_from_text
 from nrs_design.proof.constant import (
     find_odd_shares,
     name_between,
@@ -14,7 +15,6 @@ from nrs_design.proof.constant import (
 )
 from nrs_design.proof.switching import ARBITRARY, FixedParameter, Stay, Switching
 from nrs_design.spec import parse_spec
-from nrs_design.switched.assemble import assemble_from_text
 from tests.proof.systems import PAIR, family, hidden_value
 
 TEXT = """\

@@ -4,10 +4,10 @@ import re
 
 import pytest
 
+from nrs_design.loop.assumption import kinds
 from nrs_design.reporting.document import Linked, Sentence, Table, parts_of
 from nrs_design.reporting.sections.places import assumed_at, contact_at, linked, mode_at, with_line
 from nrs_design.spec import read_spec
-from nrs_design.switched.assumption import kinds
 from tests.support import COMMUTING, SOFT_TISSUE
 
 

@@ -2,10 +2,10 @@
 
 import pytest
 
+from nrs_design.loop.assumption import Standing, say
 from nrs_design.pipeline.runs import run_certification
 from nrs_design.reporting.register import register_of
 from nrs_design.spec import read_spec
-from nrs_design.switched.assumption import Standing, say
 from tests.reporting.conftest import recorded
 from tests.support import SOFT_TISSUE
 

@@ -12,13 +12,13 @@ import pytest
 from scipy.linalg import expm
 
 from nrs_design.certificates.certificate import Verdict
+from nrs_design.loop.misses import modes_with_misses
 from nrs_design.pipeline.radius import bound_radius
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.switching import Stay, Switching
 from nrs_design.search.certification import Limits
 from nrs_design.search.certify import certify
 from nrs_design.spec.misses import MissesSpec
-from nrs_design.switched.misses import modes_with_misses
 from tests.proof.systems import family
 from tests.search.test_pieces import timed
 

@@ -11,13 +11,13 @@ from scipy.integrate import solve_ivp
 
 from nrs_design.design.design import design_controllers
 from nrs_design.errors import DesignError
+from nrs_design.loop.assemble import assemble
 from nrs_design.simulation.build_scenario import build_scenario, default_scenario
 from nrs_design.simulation.exact import simulate_exactly
 from nrs_design.simulation.loop import Loop
 from nrs_design.simulation.scenario import Condition, Control, Switch
 from nrs_design.spec import parse_spec
 from nrs_design.spec.build_plant import build_plant
-from nrs_design.switched.assemble import assemble
 from tests.simulation.interactions import FORCE, IMPEDANCE, PLACED, SOFT, simulated, text_of
 
 KM, TAU, KD = 4.8417e-4, 0.0351, 2060.0

@@ -3,8 +3,8 @@
 import pytest
 
 from nrs_design.spec import parse_spec
+from tests.loop.test_sampled_saturation import FORCE, IMPEDANCE
 from tests.spec.samples import refusal
-from tests.switched.test_sampled_saturation import FORCE, IMPEDANCE
 
 CLAMP = "anti_windup: {clamp: 0.1 deg}\n"
 SAMPLED = "sampling: {period: 2 ms, delay: [0, 1]}\n"

@@ -3,12 +3,12 @@
 import pytest
 
 from nrs_design.errors import SpecError
+from nrs_design.loop.assumptions import identified_texts
 from nrs_design.pipeline.runs import run_design
 from nrs_design.spec import doubt_spec, parse_spec, read_spec
 from nrs_design.spec.describe import describe
 from nrs_design.spec.plausible import doubt_size, doubt_sizes, size_of, sizes
 from nrs_design.spec.units import parse_unit
-from nrs_design.switched.assumptions import identified_texts
 from tests.spec.samples import IMPEDANCE, spoiled
 from tests.support import ROOT, SOFT_TISSUE
 

@@ -23,9 +23,9 @@ from nrs_design.design.laws.law import (
 from nrs_design.design.measures import FORCE_MEASURES
 from nrs_design.design.proved_margins import RangedLoop, ranged_loops, with_proofs
 from nrs_design.design.transfer import TransferFunction
+from nrs_design.loop.cut_loop import ContinuousAxis
 from nrs_design.spec import ForceControllerSpec
 from nrs_design.spec.controllers import IntegralControllerSpec
-from nrs_design.switched.cut_loop import ContinuousAxis
 
 
 @dataclass(frozen=True)

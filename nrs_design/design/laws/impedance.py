@@ -41,13 +41,13 @@ from nrs_design.design.response_cost import ResponseCost, response_cost
 from nrs_design.design.response_goals import JudgedResponse, judged_responses, response_goals
 from nrs_design.design.sampled_passivity import SampledBand, sampled_bands
 from nrs_design.errors import DesignError
+from nrs_design.loop.cut_loop import ContinuousAxis
 from nrs_design.models.interval import Interval
 from nrs_design.proof.bounds import lower, upper_float
 from nrs_design.spec import Doubt, GainSpec, ImpedanceControllerSpec, InteractionDesignSpec
 from nrs_design.spec.controllers import contact_names, names_in, touched_in
 from nrs_design.spec.quantity import Quantity
 from nrs_design.spec.response_goals import AccuracySpec
-from nrs_design.switched.cut_loop import ContinuousAxis
 
 
 @dataclass(frozen=True)

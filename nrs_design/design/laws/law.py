@@ -19,13 +19,13 @@ from nrs_design.design.goals import Achieved, ContactCorner, corners_of
 from nrs_design.design.measures import Measure
 from nrs_design.design.transfer import TransferFunction
 from nrs_design.errors import DesignError
+from nrs_design.loop.cut_loop import AbstractAxis, Place, axis_of
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.motion_loop import MotionLoop
 from nrs_design.models.plant import Plant
 from nrs_design.spec import ControllerSpec, Doubt, GainSpec, InteractionDesignSpec, Quantity
 from nrs_design.spec.controllers import contact_names
 from nrs_design.spec.quantity import exact_number
-from nrs_design.switched.cut_loop import AbstractAxis, Place, axis_of
 
 
 @dataclass(frozen=True)

@@ -9,8 +9,8 @@ from nrs_design.reporting.document import Linked, Sentence
 from nrs_design.spec import InteractionDesignSpec, SwitchedSystemSpec
 
 if TYPE_CHECKING:
+    from nrs_design.loop.assumption import AssumptionKind
     from nrs_design.spec import LoadedSpec
-    from nrs_design.switched.assumption import AssumptionKind
 
 At = tuple[str | int, ...]
 

@@ -1,0 +1,1 @@
+"""The closed loop: blocks wired by name, a calendar of events, and its modes, exactly."""

@@ -1,0 +1,269 @@
+"""From a spec, its plant and the designed gains to the exact switched system they describe."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+from fractions import Fraction
+from itertools import chain
+from typing import TYPE_CHECKING
+
+from nrs_design.axis import AxisType
+from nrs_design.errors import AssemblyError
+from nrs_design.loop.assumption import say
+from nrs_design.loop.assumptions import (
+    GIVEN_MATRICES,
+    assume_matrices,
+    constant_texts,
+    identified_texts,
+    logic_texts,
+    points_texts,
+    preload_texts,
+    scale_texts,
+    sensor_texts,
+)
+from nrs_design.loop.cases import in_cases
+from nrs_design.loop.constant_parameters import (
+    constant_lateness,
+    constants_of,
+    corners_by_name,
+    with_constants,
+    within,
+)
+from nrs_design.loop.constraints import assemble_switching
+from nrs_design.loop.parameters import (
+    constant_parameters,
+    corner_modes,
+    read_parameters,
+)
+from nrs_design.models.cut import Ends, RangeCut, cut_ranges
+from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.mode import Time
+from nrs_design.proof.system import SwitchedSystem
+
+if TYPE_CHECKING:
+    from nrs_design.controllers.controller_design import ControllerDesign
+    from nrs_design.loop.constant_parameters import ConstantParameter, Corner
+    from nrs_design.loop.shared_state import SharedState
+    from nrs_design.models.plant import Plant
+    from nrs_design.spec import InteractionDesignSpec, Spec, SwitchedSystemSpec
+    from nrs_design.spec.operating import OperatingConditions
+
+__all__ = ["GIVEN_MATRICES", "assemble", "assemble_from_text", "assemble_matrices"]
+
+DECLARED = Fraction(1)
+# Points of the ranges of a sampled loop.
+ENDS, NOMINAL = "ends", "nominal"
+POINTS = (ENDS, NOMINAL)
+
+
+def assemble_from_text(
+    spec: Spec,
+    gains: Mapping[str, Mapping[str, str]],
+    scale: Fraction = DECLARED,
+    plant: Plant | None = None,
+    points: str = "",
+    cuts: Sequence[RangeCut] = (),
+) -> SwitchedSystem:
+    """Assemble the switched system of a spec from the gains that a certificate quotes.
+
+    This is the way of a re-check, where gains are a stranger's text, named as in `gains_of`: they
+    are read, and held against the spec. Who has the design in hand calls `assemble`, whose errors
+    these are, beside a `CertificateError` for gains that do not fit the spec. Every declared range
+    is stretched by the scale about its nominal value; 0 leaves the nominal values only.
+    """
+    if spec.kind == "switched-system":
+        if gains:
+            raise AssemblyError("given matrices have no gains")
+        if points or cuts:
+            raise AssemblyError("the ranges of given matrices are not cut, and have no points")
+        return assemble_matrices(spec, scale)
+    if spec.kind == "robot":
+        raise AssemblyError("a robot spec has no modes")
+    from nrs_design.controllers.gains import design_from_gains
+    from nrs_design.spec.build_plant import build_plant
+
+    design = design_from_gains(spec, gains)
+    plant = plant or build_plant(spec)
+    return assemble(spec, plant, design, scale, points=points, cuts=cuts)
+
+
+def assemble_matrices(spec: SwitchedSystemSpec, scale: Fraction = DECLARED) -> SwitchedSystem:
+    """Return the system of a spec of given matrices, one mode for each corner of its boxes.
+
+    An `AssemblyError` if the scale is negative, or the rules of switching make too many switches.
+    """
+    _check_scale(scale)
+    parameters = read_parameters(spec, scale)
+    resets = ((r.source, r.target, RationalMatrix.from_rows(r.map)) for r in spec.resets)
+    corners = {mode.name: corner_modes(mode, parameters) for mode in spec.modes}
+    if spec.misses is not None:
+        from nrs_design.loop.misses import modes_with_misses
+
+        modes, switching = modes_with_misses(corners, spec.misses)
+    else:
+        groups = {name: tuple(mode.name for mode in modes) for name, modes in corners.items()}
+        modes = tuple(chain.from_iterable(corners.values()))
+        switching = assemble_switching(spec.switching, groups, resets)
+    system = SwitchedSystem(
+        name=spec.name,
+        time=Time(spec.time),
+        states=tuple(f"x{i + 1}" for i in range(spec.dimension)),
+        modes=modes,
+        assumptions=assume_matrices(spec, parameters, scale),
+        switching=switching,
+    )
+    constants = tuple(constant_parameters(parameters))
+    return with_constants(system, constants, _corners(system, constants))
+
+
+def assemble(
+    spec: InteractionDesignSpec,
+    plant: Plant,
+    design: ControllerDesign,
+    scale: Fraction = DECLARED,
+    *,
+    points: str = "",
+    cuts: Sequence[RangeCut] = (),
+    parts: Sequence[SwitchedSystem] = (),
+) -> SwitchedSystem:
+    """Return the closed loop of an interaction design, one mode for each corner of its boxes.
+
+    Every declared range is stretched by the scale, not negative, about its nominal value. Those of
+    constants are cut in parts, each a case, as `closed_part` returns it if `parts` does not hold
+    it. An `AssemblyError` if a stiffness or a gain does not stay positive, or if the rules of
+    switching make too many switches.
+    """
+    from nrs_design.spec.build_plant import build_conditions
+
+    _check_scale(scale)
+    conditions = build_conditions(spec)
+    if points and (points not in POINTS or conditions.sampling is None or cuts):
+        raise AssemblyError(f"there is no system at the points {points!r} of the ranges")
+    scale = Fraction(0) if points == NOMINAL else scale
+    plant = plant.scaled(scale, conditions.touched)
+    (drive,) = spec.drives
+    constants = tuple(
+        constants_of(
+            plant,
+            conditions.touched,
+            drive,
+            sampled=conditions.sampling is not None,
+            points=bool(points),
+        )
+    )
+    if conditions.sampling is not None and conditions.constant_late is not None:
+        said = conditions.constant_late, conditions.late, conditions.sampling.step
+        constants = (*constants, constant_lateness(*said))
+    unit = spec.axis.unit
+    constants = tuple(replace(c, said=replace(c.said, unit=unit(c.said.unit))) for c in constants)
+    system, corners = _closed(conditions, plant, design, constants, points)
+    system = with_constants(system, constants, corners)
+    constant = tuple(constant_texts(system.switching))
+    if cuts:
+        whole = {c.said.name: (c.said.low, c.said.high) for c in constants}
+        each = cut_ranges(whole, cuts)
+        parts = parts or [closed_part(conditions, plant, design, drive, part) for part in each]
+        system = in_cases(system, parts)
+        constant = (*constant, say("constant.cases", cases=len(system.cases)))
+    period = None if conditions.sampling is None else conditions.sampling.outer
+    sensed = sensor_texts(
+        design.sensor,
+        period,
+        disturbed=bool(system.channels) and period is not None,
+        axis=spec.axis,
+    )
+    texts = (
+        *system.assumptions,
+        *sensed,
+        *logic_texts(spec),
+        *identified_texts(spec),
+        *preload_texts(conditions.preloads, scale),
+        *scale_texts(scale),
+        *points_texts(points),
+        *constant,
+    )
+    return _on_axis(replace(system, assumptions=texts), spec.axis)
+
+
+def closed_part(
+    conditions: OperatingConditions,
+    plant: Plant,
+    design: ControllerDesign,
+    drive: str,
+    part: Ends,
+) -> SwitchedSystem:
+    """Return the closed loop with constants in a part of their ranges, where they may change.
+
+    `drive` is the part of the spec that the motor is.
+    """
+    late = part.get(conditions.constant_late or "", conditions.late)
+    system, _ = _closed(replace(conditions, late=late), within(plant, drive, part), design)
+    return system
+
+
+def _closed(
+    conditions: OperatingConditions,
+    plant: Plant,
+    design: ControllerDesign,
+    constants: Sequence[ConstantParameter] = (),
+    points: str = "",
+) -> tuple[SwitchedSystem, Iterable[Corner]]:
+    """Return the closed loop as if no range were constant, and where its modes are in them."""
+    if conditions.sampling is None:
+        system = _assemble_continuous(conditions, plant, state_of(conditions, plant, design))
+        return system, _corners(system, constants)
+    from nrs_design.loop.system import close_sampled_loop
+
+    sampling = conditions.sampling
+    return close_sampled_loop(conditions, sampling, plant, design, constants, points=bool(points))
+
+
+def _corners(system: SwitchedSystem, constants: Sequence[ConstantParameter]) -> Iterable[Corner]:
+    return corners_by_name((mode.name for mode in system.modes), constants)
+
+
+def _on_axis(system: SwitchedSystem, axis: AxisType) -> SwitchedSystem:
+    """Name the units of an axis in the place of those of one that turns; no number changes."""
+    if axis is AxisType.ROTARY:
+        return system
+    channels = tuple(replace(c, unit=axis.unit(c.unit)) for c in system.channels)
+    outputs = tuple(replace(o, unit=axis.unit(o.unit)) for o in system.outputs)
+    states = tuple(map(axis.named, system.states))
+    return replace(system, states=states, channels=channels, outputs=outputs)
+
+
+def _assemble_continuous(
+    conditions: OperatingConditions, plant: Plant, state: SharedState
+) -> SwitchedSystem:
+    from nrs_design.loop.close_loop import close_loop
+
+    system = close_loop(conditions.name, state, conditions.switching, conditions.contact)
+    if conditions.disturbances is not None:
+        from nrs_design.loop.commanded import check_memory, with_command
+
+        check_memory(state.environments)
+        system = with_command(system, state, conditions.disturbances, conditions.torque)
+    if conditions.initial_force is not None:
+        from nrs_design.loop.saturation import with_saturation
+
+        system = with_saturation(system, conditions, plant.actuator, state)
+    return system
+
+
+def state_of(
+    conditions: OperatingConditions,
+    plant: Plant,
+    design: ControllerDesign,
+) -> SharedState:
+    """Return the state that the modes of an interaction design share in continuous time."""
+    from nrs_design.loop.shared_state import shared_state
+
+    loop = plant.motion_loop(design.motion.Kp, design.motion.Kd)
+    idle, offset = conditions.idle, conditions.offset
+    return shared_state(plant, loop, design, idle=idle, offset=offset)
+
+
+def _check_scale(scale: Fraction) -> None:
+    if scale < 0:
+        raise AssemblyError(f"ranges cannot be scaled by {scale}", remedy="give a scale >= 0")

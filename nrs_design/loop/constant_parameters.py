@@ -1,0 +1,242 @@
+"""Parameters that are unknown but constant: which modes are one mode at their corners."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from itertools import product
+from math import prod
+from typing import TYPE_CHECKING, NamedTuple
+
+from nrs_design.errors import AssemblyError, InternalError
+from nrs_design.models.cut import Ends
+from nrs_design.models.interval import Interval
+from nrs_design.proof.switching import FixedParameter
+from nrs_design.proof.system import SwitchedSystem
+
+if TYPE_CHECKING:
+    from nrs_design.models.drive import Drive
+    from nrs_design.models.plant import Plant
+
+MAX_CORNERS = 50_000
+# Corners of what encloses exp(-T/tau) and tau (1 - exp(-T/tau)), in the order of a box.
+_ENCLOSED = ("E-min/s-min", "E-min/s-max", "E-max/s-max")
+
+
+@dataclass(frozen=True, slots=True)
+class ConstantParameter:
+    """One parameter that does not change while the robot runs."""
+
+    said: FixedParameter  # Its name and range
+    # How the name of a mode says at which of its corners the mode is, low before high: one label
+    # such as ``k-min``, or several such as ``E-min/s-max``.
+    labels: tuple[str, ...]
+    contact: str | None = None  # The one contact that it is of; None if it is in all modes
+
+    @property
+    def first_label(self) -> int:
+        """Where its labels begin in a name: a contact, too, may be called like one of them."""
+        return 1 if self.contact is None else 2
+
+    def is_at(self, mode: Sequence[str]) -> str | None:
+        """Return at which corner a mode is, by its name and labels; None if it is not in it."""
+        if self.contact is not None and self.contact not in mode[1:2]:
+            return None
+        said = set(mode[self.first_label :])
+        return next((label for label in self.labels if said.issuperset(label.split("/"))), None)
+
+
+def constant_lateness(
+    name: str, late: tuple[Fraction, Fraction], period: Fraction
+) -> ConstantParameter:
+    """Return the time from a sample to its command, in s, as a constant parameter.
+
+    It is within one period, so one command takes effect in each, and a mode is at an end of what is
+    left of the period then: the longer it is, the earlier the command.
+    """
+    symbol = f"h{late[0] // period}"
+    said = FixedParameter(name, *late, "s", enclosed=True)
+    return ConstantParameter(said, (f"{symbol}-max", f"{symbol}-min"))
+
+
+def constants_of(
+    plant: Plant, touched: Collection[str], drive: str, *, sampled: bool, points: bool = False
+) -> Iterator[ConstantParameter]:
+    """Yield the constant parameters of a plant; `drive` is the part of the spec that the motor is.
+
+    Numbers of a sampled loop enclose those of a constant time constant, so their corners are none
+    of its values.
+    """
+    if plant.drive is not None and sampled:
+        tissue = tuple(_of_tissue(plant, touched))
+        if tissue and plant.drive.loaded and len(touched) > 1:
+            raise AssemblyError(
+                f"{tissue[0].said.name} is constant, but within a period the drive may go from one "
+                "contact to another, and their ends are not told apart",
+                remedy="leave out `varies: false` of what is touched, or touch one environment",
+            )
+        yield from _enclosed((*_of_drive(plant.drive, drive), *tissue))
+        return
+    ranges = plant.actuator_ranges
+    if ranges.gain.is_constant:
+        unit = f"rad/s/{ranges.command}"
+        yield _between_ends(f"{drive}.gain", ranges.gain, "Km", unit)
+    if ranges.time_constant.is_constant:
+        name, tau = f"{drive}.time_constant", ranges.time_constant
+        said = FixedParameter(name, tau.low, tau.high, "s", enclosed=points)
+        yield (
+            ConstantParameter(said, ("tau-min", "tau-max") if points else _ENCLOSED)
+            if sampled
+            else _between_ends(name, tau, "tau", "s", inverse=True)
+        )
+    yield from _of_tissue(plant, touched)
+
+
+# Of a drive of its own: the symbols of its numbers, their keys in a spec, and their units.
+_DRIVEN = {
+    "J": ("inertia", "kg*m^2"),
+    "B": ("friction", "N*m*s/rad"),
+    "tau": ("time_constant", "s"),
+}
+
+
+def _enclosed(found: Iterable[ConstantParameter]) -> Iterator[ConstantParameter]:
+    """Yield parameters whose corners enclose what the modes are."""
+    return (replace(one, said=replace(one.said, enclosed=True)) for one in found)
+
+
+def _of_drive(drive: Drive, part: str) -> Iterator[ConstantParameter]:
+    for symbol, interval in drive.ranges.items():
+        if interval.is_constant:
+            key, unit = _DRIVEN[symbol]
+            inverse = symbol in drive.inverse
+            yield _between_ends(f"{part}.{key}", interval, symbol, unit, inverse=inverse)
+
+
+def _of_tissue(plant: Plant, touched: Collection[str]) -> Iterator[ConstantParameter]:
+    for environment in plant.environments:
+        if environment.parts or environment.name not in touched:
+            continue
+        law = environment.law
+        keys = zip(law.keys, law.parameters(), law.units(rotational=True), strict=True)
+        for (key, symbol, unit), interval in zip(keys, environment.ranges, strict=True):
+            if interval.is_constant:
+                name, inverse = f"environments.{environment.name}.{key}", symbol in law.inverse
+                found = _between_ends(name, interval, symbol, unit, inverse=inverse)
+                yield replace(found, contact=environment.name)
+
+
+def within(plant: Plant, drive: str, part: Ends) -> Plant:
+    """Return a plant with constant parameters in a part of their ranges, named as they are here."""
+    ranges = plant.actuator_ranges
+    return replace(
+        plant,
+        environments=tuple(
+            replace(
+                e,
+                ranges=tuple(
+                    interval.within(part.get(f"environments.{e.name}.{key}"))
+                    for key, interval in zip(e.law.keys, e.ranges, strict=True)
+                ),
+            )
+            for e in plant.environments
+        ),
+        actuator_ranges=replace(
+            ranges,
+            gain=ranges.gain.within(part.get(f"{drive}.gain")),
+            time_constant=ranges.time_constant.within(part.get(f"{drive}.time_constant")),
+        ),
+        drive=plant.drive
+        and replace(
+            plant.drive,
+            ranges={
+                symbol: interval.within(part.get(f"{drive}.{_DRIVEN[symbol][0]}"))
+                for symbol, interval in plant.drive.ranges.items()
+            },
+        ),
+    )
+
+
+def _between_ends(
+    name: str, interval: Interval, symbol: str, unit: str, *, inverse: bool = False
+) -> ConstantParameter:
+    said = FixedParameter(name, interval.low, interval.high, unit, inverse)
+    return ConstantParameter(said, (f"{symbol}-min", f"{symbol}-max"))
+
+
+class Corner(NamedTuple):
+    """At which ends of its ranges a mode is."""
+
+    mode: str
+    varying: tuple[str, ...]  # What its name says, but for the ends of constant parameters
+    ends: Mapping[str, int]  # At which end each constant parameter of it is, low before high
+
+
+def corners_by_name(
+    names: Iterable[str], parameters: Sequence[ConstantParameter]
+) -> Iterator[Corner]:
+    """Yield at which ends modes are, as their names say it."""
+    for name in names:
+        mode = name.split("/")
+        ends = {parameter: parameter.is_at(mode) for parameter in parameters}
+        constant = {
+            (label, place)
+            for parameter, end in ends.items()
+            if end is not None
+            for place, label in enumerate(mode)
+            if place >= parameter.first_label and label in end.split("/")
+        }
+        varying = tuple(label for k, label in enumerate(mode) if (label, k) not in constant)
+        corner = {p.said.name: p.labels.index(end) for p, end in ends.items() if end is not None}
+        yield Corner(name, varying, corner)
+
+
+def constant_sets(
+    corners: Iterable[Corner], parameters: Sequence[ConstantParameter]
+) -> Iterator[tuple[str, ...]]:
+    """Yield, for each mode, what it is at the corners of the constant parameters.
+
+    A mode that a parameter is not in is the same at both of its ends. The last parameter turns
+    fastest.
+    """
+    if not parameters:
+        return
+    # By what is not constant, and the corner of what is.
+    known: dict[tuple[tuple[str, ...], tuple[int | None, ...]], str] = {}
+    first: dict[tuple[tuple[str, ...], tuple[bool, ...]], None] = {}
+    for at in corners:
+        ends = tuple(at.ends.get(parameter.said.name) for parameter in parameters)
+        known[at.varying, ends] = at.mode
+        first[at.varying, tuple(end is not None for end in ends)] = None
+    for varying, has in first:
+        every = product(*(range(len(parameter.labels)) for parameter in parameters))
+        keys = [tuple(c if h else None for c, h in zip(at, has, strict=True)) for at in every]
+        if any((varying, key) not in known for key in keys):
+            raise InternalError(f"a corner of {varying[0]} has no mode")
+        yield tuple(known[varying, key] for key in keys)
+
+
+def with_constants(
+    system: SwitchedSystem,
+    parameters: Sequence[ConstantParameter],
+    corners: Iterable[Corner],
+) -> SwitchedSystem:
+    """Return the system, with a mode for each corner, with parameters that do not change.
+
+    An `AssemblyError` if they have too many corners.
+    """
+    if not parameters:
+        return system
+    count = prod(len(parameter.labels) for parameter in parameters) * len(system.modes)
+    if count > MAX_CORNERS:
+        raise AssemblyError(
+            f"the modes at all corners of the constant parameters are up to {count}, at most "
+            f"{MAX_CORNERS} are looked at",
+            remedy="leave out `varies: false` for some of the ranges",
+        )
+    sets = tuple(constant_sets(corners, parameters))
+    said = tuple(parameter.said for parameter in parameters)
+    return replace(
+        system, switching=replace(system.switching, fixed_ends=sets, fixed_parameters=said)
+    )

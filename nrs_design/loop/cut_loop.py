@@ -1,0 +1,369 @@
+"""The loop of one controller in one contact, cut where its law takes the force.
+
+With the share g of the force that reaches the law, the characteristic polynomial of an assembled
+mode is ``D + g N``: the force enters the law at one place, so its determinant is affine in g. D
+is that of the mode with ``g = 0``, ``D + N`` that of the mode which is proved, and ``L = N/D`` the
+open loop, whatever is in it. Exact; in continuous time polynomials in s, sampled in
+``w = (2/T) (z - 1)/(z + 1)``, which is on the imaginary axis where z is on the unit circle: at
+``(2/T) tan(omega T/2)``, near omega while that is small.
+
+The determinant is also affine in the stiffness of the contact and, times Mt in continuous time, in
+Mt, Bt and Kt; sampled in the coefficients a and b of the law. So a few modes give those of all
+gains.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import lru_cache
+from itertools import product
+
+from nrs_design.axis import unit
+from nrs_design.controllers.float32 import to_float32
+from nrs_design.controllers.laws import (
+    Admittance,
+    CompliantLaw,
+    DiscreteLaw,
+    ProportionalDerivative,
+)
+from nrs_design.controllers.sensor import LowPass, Sensor
+from nrs_design.controllers.step_law import StepFrame
+from nrs_design.loop.calendar import Calendar, Turn
+from nrs_design.loop.command_timing import CommandTiming
+from nrs_design.loop.held import flow_rows
+from nrs_design.loop.held_drive import HeldDrive
+from nrs_design.loop.held_motor import hold
+from nrs_design.loop.joint import Joint
+from nrs_design.loop.modes import ForceShare, position_mode, velocity_mode
+from nrs_design.loop.program import SampledProgram
+from nrs_design.loop.sampled import Rows, SampledLoop
+from nrs_design.models.actuator import Actuator, ActuatorRanges
+from nrs_design.models.contact.law import AbstractLinearLaw
+from nrs_design.models.drive import Drive, Takes
+from nrs_design.models.linear_form import LinearForm
+from nrs_design.models.motion_loop import JointMotionLoop, Realization, realize
+from nrs_design.models.plant import Plant
+from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.matrix import multiply as multiply_matrices
+from nrs_design.spec import InteractionDesignSpec
+from nrs_design.spec.sampling import SamplingSpec
+
+Polynomial = tuple[Fraction, ...]
+ZERO, ONE = Fraction(0), Fraction(1)
+_KEPT = 512
+# Shares of the force that reach the law and a motor with a load.
+_CLOSED, _OPENED, _FREE = ForceShare(), ForceShare(sensed=ZERO), ForceShare(ZERO, ZERO)
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """Where a loop is looked at, beside its contact and its gains."""
+
+    motor: Actuator  # A corner of its ranges, or the nominal one
+    age: int = 0  # Of the force sample, always the same; zero in continuous time
+    late: Fraction = ZERO  # From a sample to its command in s, always the same
+    texts: tuple[str, ...] = ()  # What is not nominal, and the age where there are several
+
+
+@dataclass(frozen=True, slots=True)
+class CutLoop:
+    """Characteristic polynomials of one mode, highest power first, of one length."""
+
+    opened: Polynomial  # Where the law takes no force; a motor with a load carries it all the same
+    closed: Polynomial  # Of the mode as it is proved
+    free: Polynomial  # Where the force does not act at all
+
+
+@dataclass(frozen=True, slots=True)
+class AbstractAxis(ABC):
+    """One axis, from which the modes of each of its controllers follow."""
+
+    places: tuple[Place, ...]
+
+    @property
+    @abstractmethod
+    def period(self) -> Fraction | None:
+        """Time between two force samples in s; None in continuous time."""
+
+    @abstractmethod
+    def cut(self, law: CompliantLaw, contact: AbstractLinearLaw, place: Place) -> CutLoop:
+        """Return the loop of a controller at fixed parameters of the contact and a place."""
+
+    @abstractmethod
+    def modes(
+        self, law: CompliantLaw, contact: AbstractLinearLaw, place: Place
+    ) -> tuple[Sequence[LinearForm], Sequence[LinearForm]]:
+        """Return the mode without the force in the law, and the one that is proved.
+
+        They differ by one column times one row; sampled, they are steps.
+        """
+
+    @abstractmethod
+    def admittances(
+        self, contact: AbstractLinearLaw, spring: Fraction, place: Place, *, inert: bool
+    ) -> tuple[CutLoop, CutLoop, CutLoop]:
+        """Return the loops of three admittances, at (2, 2), (3, 2) and (2, 3) in two coordinates.
+
+        They are Mt and Bt, and the polynomials are times Mt; sampled, they are a and b, and without
+        inertia there is no a. All polynomials are affine in both. The spring Kt is in N m/rad; zero
+        is none.
+        """
+
+
+# Neither zero nor one, with which a law has fewer operations.
+COORDINATES = ((Fraction(2), Fraction(2)), (Fraction(3), Fraction(2)), (Fraction(2), Fraction(3)))
+
+
+@dataclass(frozen=True, slots=True)
+class ContinuousAxis(AbstractAxis):
+    """An axis whose law is never sampled; the nominal place is the first one.
+
+    `joint` is the motor in its physical state, where it has ranges or a load.
+    """
+
+    realization: Realization
+    joint: Joint | None = None
+    low_pass: LowPass | None = None
+
+    @property
+    def period(self) -> None:
+        """There is none."""
+        return
+
+    def motion_at(self, motor: Actuator) -> Realization | JointMotionLoop:
+        """Return the motion loop with a motor."""
+        if self.joint is None:
+            return self.realization
+        return self.joint.at({"Km": motor.gain, "tau": motor.time_constant})
+
+    def cut(self, law: CompliantLaw, contact: AbstractLinearLaw, place: Place) -> CutLoop:
+        """Return the loop of a controller."""
+        return CutLoop(
+            *(
+                characteristic(self.rows(law, contact, place, cut))
+                for cut in (_OPENED, _CLOSED, _FREE)
+            )
+        )
+
+    def modes(
+        self, law: CompliantLaw, contact: AbstractLinearLaw, place: Place
+    ) -> tuple[Sequence[LinearForm], Sequence[LinearForm]]:
+        """Return the mode without the force in the law, and the one that is proved."""
+        opened, closed = (self.rows(law, contact, place, cut) for cut in (_OPENED, _CLOSED))
+        return opened, closed
+
+    def rows(
+        self, law: CompliantLaw, contact: AbstractLinearLaw, place: Place, cut: ForceShare = _CLOSED
+    ) -> list[LinearForm]:
+        """Return a mode, of the states of this controller and contact alone.
+
+        `cut` is how much of the force acts.
+        """
+        if law.commands == "position":
+            return position_mode(self.realization, law, contact, cut=cut)
+        return velocity_mode(self.motion_at(place.motor), law, contact, self.low_pass, cut)
+
+    def admittances(
+        self, contact: AbstractLinearLaw, spring: Fraction, place: Place, *, inert: bool
+    ) -> tuple[CutLoop, CutLoop, CutLoop]:
+        """Return the loops of three admittances; without inertia is a limit of the same."""
+        first, second, third = (
+            _times(Mt, self.cut(Admittance(Mt, Bt, spring), contact, place))
+            for Mt, Bt in COORDINATES
+        )
+        return first, second, third
+
+
+@dataclass(frozen=True, slots=True)
+class ProcessorAxis(AbstractAxis):
+    """An axis whose law a processor computes.
+
+    The first place is the nominal motor at the youngest force sample. `takes` and `drive` are there
+    where the robot takes no commands of a motor, and no motor moves its joint.
+    """
+
+    motion: ProportionalDerivative
+    sampling: SamplingSpec
+    low_pass: LowPass | None = None
+    takes: Takes | None = None
+    drive: Drive | None = None
+
+    @property
+    def period(self) -> Fraction:
+        """Time between two force samples in s."""
+        return self.sampling.outer
+
+    def cut(self, law: CompliantLaw, contact: AbstractLinearLaw, place: Place) -> CutLoop:
+        """Return the loop of a controller."""
+        return self._cut(self._held(law), contact, place)
+
+    def modes(
+        self, law: CompliantLaw, contact: AbstractLinearLaw, place: Place
+    ) -> tuple[Sequence[LinearForm], Sequence[LinearForm]]:
+        """Return the step without the force in the law, and the one that is proved."""
+        return self._modes(self._held(law), contact, place)
+
+    def _held(self, law: CompliantLaw) -> DiscreteLaw:
+        return law.discretize(self.sampling.outer, self.sampling.admittance)
+
+    def admittances(
+        self, contact: AbstractLinearLaw, spring: Fraction, place: Place, *, inert: bool
+    ) -> tuple[CutLoop, CutLoop, CutLoop]:
+        """Return the loops of three admittances."""
+        T = to_float32(self.sampling.outer)
+        first, second, third = (
+            self._cut(Admittance.discrete(a if inert else None, b, T, spring), contact, place)
+            for a, b in COORDINATES
+        )
+        return first, second, third
+
+    def _cut(self, law: DiscreteLaw, contact: AbstractLinearLaw, place: Place) -> CutLoop:
+        # One place is asked for, and the hash of all takes as long as the loop.
+        alone = replace(self, places=())
+        opened, closed = (_of_step(alone, law, place, *touch) for touch in _touches(contact))
+        while opened[-1] == closed[-1] == 0:  # A force sample that leaves its last place.
+            opened, closed = opened[:-1], closed[:-1]
+        opened, closed = (on_the_axis(p, self.period) for p in (opened, closed))
+        return CutLoop(opened, closed, opened)
+
+    def _modes(
+        self, law: DiscreteLaw, contact: AbstractLinearLaw, place: Place
+    ) -> tuple[Sequence[LinearForm], Sequence[LinearForm]]:
+        """Close the loop over a period of the force; what is touched does not load the motor."""
+        opened, closed = (self.step(law, place, *touch) for touch in _touches(contact))
+        return opened, closed
+
+    def step(
+        self, law: DiscreteLaw, place: Place, k: Fraction, b: Fraction
+    ) -> Sequence[LinearForm]:
+        """Return what a period makes of the states, in contact of a stiffness and damping."""
+        loop, flow = _loop(self, law, place)
+        n = len(loop.states)
+
+        def rows(turn: Turn, age: int) -> list[LinearForm]:
+            period = loop.period(loop.sample(law, age, (k, b), turn), flow)
+            return [row[:n] for row in period.moves]
+
+        whole, between = rows(Turn.BOTH, place.age), self.sampling.round - 1
+        for motion in [rows(Turn.MOTION, 0)] * between if between else ():
+            whole = [*multiply_matrices(motion, whole)]
+        return whole
+
+
+def _touches(contact: AbstractLinearLaw) -> tuple[tuple[Fraction, Fraction], ...]:
+    """Return stiffness and damping of nothing, and of a contact."""
+    return (ZERO, ZERO), (contact.exact[0], (*contact.exact, ZERO)[1])
+
+
+# Laws and contacts of a spec share what touches nothing, and the motor.
+@lru_cache(maxsize=_KEPT)
+def _of_step(
+    axis: ProcessorAxis, law: DiscreteLaw, place: Place, k: Fraction, b: Fraction
+) -> Polynomial:
+    return characteristic(axis.step(law, place, k, b))
+
+
+@lru_cache(maxsize=_KEPT)
+def _loop(axis: ProcessorAxis, law: DiscreteLaw, place: Place) -> tuple[SampledLoop, Rows]:
+    """Return the loop of a law, and what flows in a period: the middle of what encloses it."""
+    T = axis.sampling.outer
+    low_pass = None if axis.low_pass is None else axis.low_pass.discretize(T)
+    D = axis.motion.over(axis.sampling.period.exact)
+    step = StepFrame(axis.motion.Kp, D, low_pass, takes=axis.takes)
+    timing = CommandTiming(axis.sampling.step, place.late, place.late)
+    motor = hold(ActuatorRanges.point(place.motor), timing)
+    if axis.drive is not None:
+        motor = HeldDrive.of(axis.drive.at({"tau": place.motor.time_constant}), timing)
+    middle = {symbol: interval.middle for symbol, interval in motor.box.ranges.items()}
+    middle |= {**dict.fromkeys(motor.box.hull[0], ZERO), "Km": place.motor.gain}
+    calendar = Calendar(timing, (place.age, place.age))
+    loop = SampledLoop(SampledProgram(step, (law,)), axis.takes, motor.states, calendar)
+    return loop, flow_rows(motor, len(timing.within), middle)
+
+
+def axis_of(
+    spec: InteractionDesignSpec, plant: Plant, motion: ProportionalDerivative, sensor: Sensor
+) -> AbstractAxis | None:
+    """Return the axis of a spec, at its nominal motor and at every corner of its ranges.
+
+    None where the force is sampled more often than the motion loop: it then enters a round at
+    several samples, and there is no one place to cut.
+    """
+    sampling, low_pass = spec.sampling, sensor.filter
+    ranges = plant.actuator_ranges
+    if sampling is None:
+        loop = plant.motion_loop(motion.Kp, motion.Kd)
+        joint = Joint.of(plant, motion)
+        return ContinuousAxis(tuple(_places(ranges, (0, 0))), realize(loop), joint, low_pass)
+    if sampling.outer < sampling.period.exact:
+        return None
+    places = tuple(_places(ranges, sampling.delay, spec.late))
+    return ProcessorAxis(places, motion, sampling, low_pass, spec.takes, plant.drive)
+
+
+def _places(
+    ranges: ActuatorRanges, ages: tuple[int, int], lates: tuple[Fraction, ...] = (ZERO,)
+) -> Iterator[Place]:
+    nominal = ranges.nominal
+    motors: dict[Actuator, tuple[str, ...]] = {nominal: ()}
+    ends = (interval.ends for interval in (ranges.gain, ranges.time_constant))
+    for (_, gain), (_, tau) in product(*ends):
+        texts: tuple[str, ...] = (
+            f"Km = {float(gain):.6g} {unit('rad/s')}/{ranges.command}",
+            f"tau = {float(tau):.6g} s",
+        )
+        motors.setdefault(replace(nominal, gain=gain, time_constant=tau), texts)
+    every = product(motors.items(), range(ages[0], ages[1] + 1), dict.fromkeys(lates))
+    for (motor, texts), age, late in every:
+        aged = () if ages[0] == ages[1] else (f"delay {age}",)
+        told = () if len({*lates}) == 1 else (f"command {float(late):.6g} s late",)
+        yield Place(motor, age, late, (*texts, *aged, *told))
+
+
+def characteristic(rows: Sequence[LinearForm]) -> Polynomial:
+    """Return ``det(s I - A)`` exactly, highest power first."""
+    from flint import fmpz_mat
+
+    A = RationalMatrix.from_rows(rows)
+    found = fmpz_mat([[*row] for row in A.numerators]).charpoly().coeffs()
+    n = len(found) - 1
+    return tuple(
+        Fraction(int(c), A.denominator ** (n - i)) for i, c in reversed([*enumerate(found)])
+    )
+
+
+def _times(factor: Fraction, loop: CutLoop) -> CutLoop:
+    opened, closed, free = (
+        tuple(factor * c for c in p) for p in (loop.opened, loop.closed, loop.free)
+    )
+    return CutLoop(opened, closed, free)
+
+
+def on_the_axis(polynomial: Sequence[Fraction], period: Fraction) -> Polynomial:
+    """Put ``z = (1 + w T/2)/(1 - w T/2)`` in, times ``(1 - w T/2)^n``.
+
+    The polynomial is in z, of degree n, highest power first; T is the period.
+    """
+    from flint import fmpq, fmpq_poly
+
+    half = fmpq(period.numerator, 2 * period.denominator)
+    first, *others = (fmpq(c.numerator, c.denominator) for c in polynomial)
+    total, power = fmpq_poly([first]), fmpq_poly([1])
+    rising, falling = fmpq_poly([1, half]), fmpq_poly([1, -half])
+    for c in others:
+        power *= falling
+        total = total * rising + c * power
+    found = [Fraction(int(c.p), int(c.q)) for c in total.coeffs()]
+    return (*[ZERO] * (len(polynomial) - len(found)), *reversed(found))
+
+
+def multiply(a: Sequence[Fraction], b: Sequence[Fraction]) -> list[Fraction]:
+    """Multiply two polynomials."""
+    found = [ZERO] * (len(a) + len(b) - 1)
+    for i, x in enumerate(a):
+        for j, y in enumerate(b):
+            found[i + j] += x * y
+    return found

@@ -1,0 +1,162 @@
+"""How contact is lost in continuous time, and the motion of an axis that touches nothing."""
+
+from __future__ import annotations
+
+from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
+from fractions import Fraction
+from itertools import chain
+
+from nrs_design.controllers.controller_design import Controller
+from nrs_design.errors import AssemblyError
+from nrs_design.loop.assumption import say
+from nrs_design.loop.modes import Rows, velocity_mode
+from nrs_design.loop.shared_state import SharedState
+from nrs_design.models.contact.environment import Environment
+from nrs_design.models.contact.kelvin_voigt import KelvinVoigt
+from nrs_design.models.linear_form import LinearForm, coordinates
+from nrs_design.proof.channels import Output
+from nrs_design.proof.contact import Contact, Flights
+from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.mode import Mode
+from nrs_design.spec import SwitchingSpec
+from nrs_design.spec.interaction_parts import FREE
+
+# What is touched where nothing is.
+NOTHING = KelvinVoigt(Fraction(0), Fraction(0))
+
+
+def lost_contact(state: SharedState, contact: str | None) -> Contact | None:
+    """Return how contact is lost, or None where that is not modelled.
+
+    An `AssemblyError` if the spec asks for it then.
+    """
+    if not _can_be_free(state):
+        if contact == "losable":
+            raise _not_losable("")
+        return None
+    free = chain.from_iterable(free_modes(c, state) for c in state.design.controllers)
+    return lost_on_surface(free, pulls_of(state), contact)
+
+
+def lost_on_surface(
+    free: Iterable[Mode], pulls: Iterable[RationalMatrix], contact: str | None
+) -> Contact:
+    """Return that contact is lost where the tissue ends, or would have to pull."""
+    losable, loss = contact == "losable", say("contact-lost.surface")
+    return Contact(tuple(free), tuple(pulls), required=losable, loss=loss)
+
+
+def adds_free_motion(state: SharedState, contact: str | None, rules: SwitchingSpec) -> bool:
+    """Tell whether free motion is one of the modes: with springs, it ends at rest in one place.
+
+    That contact is lost at any deflection is more than happens, and is covered on demand only. An
+    `AssemblyError` if the spec asks for it, and it is not modelled or the rules exclude it.
+    """
+    if contact != "losable":
+        return False
+    if not all(controller.law.spring for controller in state.design.controllers):
+        raise _not_losable(", where some controllers have a spring Kt, for all that have one")
+    if not _can_be_free(state):
+        raise _not_losable("")
+    if rules.names_contacts or next(rules.dwell_times(), None) is not None:
+        raise AssemblyError(
+            "where an admittance has a spring Kt, free motion is a mode like others, and contact "
+            "is lost whatever the rules of switching say",
+            remedy="use `contact: kept`, or rules with transitions between controllers alone",
+            at=("switching",),
+        )
+    return True
+
+
+def _can_be_free(state: SharedState) -> bool:
+    return (
+        state.idle is None
+        and state.law.commands == "velocity"
+        and not any(e.law.remembers or e.law.has_mass or e.preloaded for e in state.environments)
+        and not any(e.parts and not e.each_losable for e in state.environments)
+        and bool(state.environments)
+    )
+
+
+def _not_losable(which: str) -> AssemblyError:
+    return AssemblyError(
+        "loss of contact is modelled for impedance controllers on elastic and damped environments"
+        f"{which}",
+        remedy="use `contact: kept`; for position and force controllers on elastic environments, "
+        "or prove the sampled loop: add `sampling: {period: 2 ms, delay: 0}`",
+        at=("contact",),
+    )
+
+
+def free_modes(controller: Controller, state: SharedState) -> Iterator[Mode]:
+    """Yield the modes of a controller that touches nothing, at every corner of the motor."""
+
+    def rows_at(values: Mapping[str, Fraction]) -> Rows:
+        return velocity_mode(state.motion_at(values), controller.law, NOTHING, state.low_pass)
+
+    for corner, rows in state.motor_box.corners(rows_at, f"{controller.name}/{FREE}"):
+        yield Mode(corner, RationalMatrix.from_rows(rows))
+
+
+def flights_among(
+    names: Iterable[str],
+    environments: Iterable[Environment],
+    pulls: Iterable[RationalMatrix],
+    controllers: Container[str] = (),
+) -> Flights:
+    """Tell which modes are free motion, where it is among them.
+
+    `pulls` are forces of what could pull; modes of `controllers` without contact are free motion,
+    too.
+    """
+    known = {environment.name for environment in environments}
+    touching, flying = [], []
+    for name in names:
+        controller, where = (*name.split("/"), "")[:2]
+        if where in known:
+            touching.append(name)
+        elif where == FREE or controller in controllers:
+            flying.append(name)
+    return Flights(tuple(touching), tuple(flying), tuple(pulls))
+
+
+def pulls_of(state: SharedState) -> Iterator[RationalMatrix]:
+    """Yield the forces of what could pull, at the corners of their ranges."""
+    velocity = state.motion.output(len(state.names))
+    return force_rows(velocity, state.names, could_pull(state.environments))
+
+
+def could_pull(environments: Iterable[Environment]) -> tuple[Environment, ...]:
+    """Return whose forces tell where nothing pushes at a positive deflection.
+
+    Without damping nothing lags, and there are none. Beside damped environments springs count, too:
+    what flies because every force would pull must not be pushed by a spring instead.
+    """
+    environments = tuple(environments)
+    return environments if any("b" in e.parameters for e in environments) else ()
+
+
+def force_rows(
+    velocity: LinearForm, states: Sequence[str], environments: Iterable[Environment]
+) -> Iterator[RationalMatrix]:
+    """Yield the force, as a row over the states, of each corner of each contact."""
+    unit = coordinates(len(states))
+    for environment in environments:
+        shared, *memories = environment.law.states
+        names = [shared, *(f"{environment.name}: {memory}" for memory in memories)]
+        own = [unit[states.index(name)] for name in names]
+        for law in environment.corners:
+            force, _ = law.react(velocity, own)
+            yield RationalMatrix.from_rows([force])
+
+
+def outputs_of(
+    velocity: LinearForm,
+    states: Sequence[str],
+    environments: Iterable[Environment],
+    limit: Fraction,
+) -> tuple[Output, ...]:
+    """Return the force at the corners of its ranges, with its limit in N m, and the velocity."""
+    rows = tuple(force_rows(velocity, states, environments))
+    force = (Output("force", "N*m", rows, limit),) if rows else ()
+    return (*force, Output("velocity", "rad/s", (RationalMatrix.from_rows([velocity]),)))

@@ -1,0 +1,62 @@
+"""The motion loop of a motor that is known to within ranges, or that the environment slows."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+
+from nrs_design.axis import AxisType
+from nrs_design.controllers.laws import ProportionalDerivative
+from nrs_design.loop.assumption import Assumption, say
+from nrs_design.loop.assumptions import motor_text
+from nrs_design.loop.parameter_box import Box
+from nrs_design.models.actuator import ActuatorRanges
+from nrs_design.models.motion_loop import JointMotionLoop
+from nrs_design.models.plant import Plant
+from nrs_design.proof.text import exact_text
+
+
+@dataclass(frozen=True, slots=True)
+class Joint:
+    """The motion loop in its physical state, wherever gain and time constant of the motor are."""
+
+    motion: ProportionalDerivative  # The PD gains that ship
+    ranges: ActuatorRanges  # Where the motor may be
+    load_inertia: Fraction | None  # The J of `nrs_design.models.motion_loop.JointMotionLoop`
+
+    @classmethod
+    def of(cls, plant: Plant, motion: ProportionalDerivative) -> Joint | None:
+        """Return the joint of a plant, or None where its motor is a point and carries no load."""
+        ranges = plant.actuator_ranges
+        if ranges.fixed and plant.load_inertia is None:
+            return None
+        return cls(motion, ranges, plant.load_inertia)
+
+    @property
+    def box(self) -> Box:
+        """The box in which the loop is affine in the gain, and in one over the time constant."""
+        return Box({"Km": self.ranges.gain, "tau": self.ranges.time_constant}, frozenset({"tau"}))
+
+    @property
+    def nominal(self) -> JointMotionLoop:
+        """The loop that the design uses."""
+        motor = self.ranges.nominal
+        return self.at({"Km": motor.gain, "tau": motor.time_constant})
+
+    def at(self, values: Mapping[str, Fraction]) -> JointMotionLoop:
+        """Return the loop at the values of ``Km`` and ``tau``."""
+        gains = self.motion.Kp, self.motion.Kd
+        return JointMotionLoop(*gains, values["Km"], values["tau"], self.load_inertia)
+
+    def texts(self, axis: AxisType) -> Iterator[Assumption]:
+        """Say what is taken for granted about the motor."""
+        moving = self.ranges.may_change("arbitrarily fast")
+        motor = motor_text(self.ranges, axis)
+        which = "nominal-motor.joint" if self.ranges.fixed else "motor.joint"
+        yield say(which, motor, motor=motor, moving=moving)
+        if self.load_inertia is None:
+            yield say("unloaded.continuous")
+        else:
+            inertia = f"{exact_text(self.load_inertia)} {axis.unit('kg*m^2')}"
+            yield say("load.inertia", inertia, inertia=inertia)

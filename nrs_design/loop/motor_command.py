@@ -1,0 +1,88 @@
+"""How large the command of a sampled motion loop gets, so that a driver with a limit takes it.
+
+While the command stays below the limit of the driver, the driver does nothing but what the model
+says. So a bound on the command from rest, below the limit, shows that the limit is not met from
+rest under the same disturbances: saturation is then not left out of the bounds, but excluded.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import product
+
+from nrs_design.controllers.float32 import float32_not_above
+from nrs_design.loop.assumption import Assumption, say
+from nrs_design.loop.program import INPUTS
+from nrs_design.loop.sampled import NOTHING, SampledLoop
+from nrs_design.models.linear_form import LinearForm
+from nrs_design.proof.bounds import rounded_down, rounded_up
+from nrs_design.proof.channels import Channel, Output
+from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.spec.motion import MOTOR_COMMAND
+
+
+@dataclass(frozen=True, slots=True)
+class MotorCommand:
+    """The command as an output, and what it leaves out."""
+
+    output: Output  # What the states make of the command, with all that is rounded in it
+    # By how much more the disturbances of a sample change the command of the same sample.
+    at_once: Fraction
+    limit: Fraction  # Of the driver, as a single-precision number
+
+    @property
+    def text(self) -> Assumption:
+        """What a bound on it says of saturation."""
+        unit = self.output.unit
+        less = ""
+        if self.at_once:
+            less = (
+                f", less {rounded_up(self.at_once, unit)} that errors of a sample may add to its "
+                "own command"
+            )
+        limit = rounded_down(self.limit, unit)
+        return say("not-quantized.command", limit=limit, less=less, output=self.output.name)
+
+
+def motor_command(
+    largest: Fraction | None,
+    unit: str,
+    loop: SampledLoop,
+    channels: Sequence[Channel],
+) -> MotorCommand | None:
+    """Return the command under disturbances, or None.
+
+    Impedance controllers change the reference after the command, so it is one and the same form of
+    the states in all modes, in contact and free. A rounding is at most a share of other forms, so
+    the command is a mixture of rows in which every share is added or subtracted. None without
+    disturbances or a limit, or where it is not of this form.
+    """
+    moving = all(law.law.commands == "velocity" for law in loop.program.laws)
+    if largest is None or not channels or not moving or loop.calendar.holds:
+        return None
+    sample = loop.sample(loop.program.laws[0], loop.calendar.ages[0], NOTHING)
+    form, n = sample.command, len(loop.states)
+    end = n + len(INPUTS)
+    bounds = {channel.name: channel.bound for channel in channels}
+    shares = list(zip(form[end:], sample.sizes, strict=True))
+    at_once = _largest(form[n:end], bounds) + sum(
+        (abs(c) * _largest(size[n:end], bounds) for c, size in shares), Fraction(0)
+    )
+    rounded = [[c * v for v in size[:n]] for c, size in shares if c and any(size[:n])]
+    rows = tuple(
+        RationalMatrix.from_rows([[sum(column) for column in zip(form[:n], *signed, strict=True)]])
+        for signed in product(*([row, [-v for v in row]] for row in rounded))
+    )
+    limit = float32_not_above(largest)
+    left = limit - at_once
+    name = f"{MOTOR_COMMAND} before errors of its sample" if at_once else MOTOR_COMMAND
+    output = Output(name, unit, rows, left if left > 0 else None)
+    return MotorCommand(output, at_once, limit)
+
+
+def _largest(form: LinearForm, bounds: dict[str, Fraction]) -> Fraction:
+    """Return how large a form of the inputs gets; those that nothing is said of are zero."""
+    sizes = (abs(c) * bounds.get(name, Fraction(0)) for name, c in zip(INPUTS, form, strict=True))
+    return sum(sizes, Fraction(0))

@@ -1,0 +1,180 @@
+"""One period of a sampled loop, exactly: a sample of the program, and the flow until the next.
+
+The state is ``[reference or e, drive, e before, u held, commands sent, other states of the law,
+force samples, deflection]``, as far as a loop has them (docs/certificates/drives.md). A command
+that is a position counts from the deflection, as the reference of impedance controllers does.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+from functools import cached_property
+
+from nrs_design.controllers.laws import DiscreteLaw
+from nrs_design.loop.calendar import Calendar, Turn
+from nrs_design.loop.program import (
+    BEFORE,
+    CUT_OFF,
+    ENCODER,
+    FORCE_ERROR,
+    FRICTION,
+    INPUTS,
+    REFERENCE,
+    ROUNDED_ANGLE,
+    SampledProgram,
+)
+from nrs_design.loop.wires import Wires
+from nrs_design.models.drive import OMEGA, Takes
+from nrs_design.models.linear_form import ONE, ZERO, LinearForm
+
+DELTA, HELD = "delta [rad]", "u held"
+# A row for each state of a drive, and for how far its joint goes: over these states, the
+# deflection, the command in force when a period begins, and its changes within the period.
+Rows = Mapping[str, tuple[Fraction, ...]]
+# Stiffness and damping of what a force sample shows.
+Contact = tuple[Fraction, Fraction]
+NOTHING: Contact = (ZERO, ZERO)
+
+
+@dataclass(frozen=True, slots=True)
+class Period:
+    """What one period does, as forms over states, inputs and roundings."""
+
+    moves: tuple[LinearForm, ...]  # The states after it
+    sizes: tuple[LinearForm, ...]  # How large each rounding is at most
+    command: LinearForm  # Before it is cut off
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Sample:
+    """What a sample makes of a state, before anything moves."""
+
+    wires: Wires
+    after: Mapping[str, LinearForm]  # States that are known then
+    # What is sent, the newest first; the last one is in force when the period begins.
+    sent: Sequence[LinearForm]
+    sizes: tuple[LinearForm, ...]
+    command: LinearForm
+    # Rows that corners of a flow share, as one object.
+    moved: dict[tuple[str, tuple[Fraction, ...]], LinearForm] = field(default_factory=dict)
+
+    def does(self, other: Sample) -> bool:
+        """Tell whether another sample does the same."""
+        mine = self.after, self.sent, self.sizes
+        return mine == (other.after, other.sent, other.sizes)
+
+
+@dataclass(frozen=True, eq=False)
+class SampledLoop:
+    """Program, drive and calendar, wired; what is touched, and what flows, comes with a period."""
+
+    program: SampledProgram
+    takes: Takes | None  # What the drive takes; None for the commands of a motor
+    moving: tuple[str, ...]  # States of the drive, the speed first and the deflection left out
+    calendar: Calendar
+
+    @cached_property
+    def states(self) -> tuple[str, ...]:
+        """Names and units of the states."""
+        stored, calendar = self.program.stored, self.calendar
+        place = [stored[name] for name in self.program.places]
+        before = [stored[BEFORE]] if BEFORE in stored else []
+        held = [HELD] if calendar.holds else []
+        others = [text for text in stored.values() if text not in (*place, *before)]
+        sent = (*self.moving, *before, *held, *calendar.sent)
+        return (*place, *sent, *others, *calendar.samples, DELTA)
+
+    @cached_property
+    def from_deflection(self) -> frozenset[str]:
+        """The states that count from the deflection."""
+        stored, placed = self.program.stored, self.takes is Takes.POSITION
+        held = (HELD,) if self.calendar.holds else ()
+        commands = (*held, *self.calendar.sent) if placed else ()
+        return frozenset((*commands, *([stored[REFERENCE]] if REFERENCE in stored else [])))
+
+    @property
+    def takes_force(self) -> bool:
+        """Whether a law takes the force of a sample: no other needs a sample that is on its way."""
+        felt = ONE, ZERO
+        return not all(
+            self.sample(law, 0, felt).does(self.sample(law, 0, NOTHING))
+            for law in self.program.laws
+        )
+
+    @property
+    def shown_later(self) -> tuple[str, ...]:
+        """The states that show a force later: samples on their way, and the lags of its filter."""
+        return (*self.calendar.samples, *self.program.lags)
+
+    @property
+    def remembers(self) -> bool:
+        """Whether a force sample outlasts its period."""
+        return bool(self.shown_later)
+
+    def sample(
+        self, law: DiscreteLaw, age: int, touched: Contact, turn: Turn = Turn.BOTH
+    ) -> Sample:
+        """Return what a sample makes of the state while something is touched.
+
+        `age` is that of the force sample. What `turn` does not compute holds what it had.
+        """
+        w, calendar, stored = self._wires(), self.calendar, self.program.stored
+        k, b = touched
+        w.rule("now", lambda: w.sum((k, w[DELTA]), (b, w[OMEGA]), (ONE, w[FORCE_ERROR])))
+        w.rule("felt", lambda: w[calendar.samples[age - 1]] if age else w["now"])
+        w.rule("measured", lambda: w.sum(*((ONE, w[s]) for s in (DELTA, ENCODER, ROUNDED_ANGLE))))
+        sizes = {} if turn.is_miss else self.program.wire(w, law, turn)
+        if turn is Turn.ZEROED:
+            w.set({"command": w.nothing})
+        elif not w.has("command"):
+            # Of commands that are on their way, the newest is sent again.
+            w.rule("command", lambda: w[HELD if calendar.holds else calendar.sent[0]])
+        limited = ZERO if turn.is_miss or turn is Turn.ADMITTANCE else ONE
+        sent = [
+            w.sum((ONE, w["command"]), (limited, w[CUT_OFF])),
+            *(w[name] for name in calendar.sent),
+        ]
+        ages = [
+            *([] if turn is Turn.MOTION else [w["now"]]),
+            *(w[name] for name in calendar.samples),
+        ]
+        after = {s: w[f"{n}+"] if w.has(f"{n}+") else w[n] for n, s in stored.items()}
+        after |= dict(zip(calendar.samples, ages, strict=False))
+        after |= dict(zip(calendar.sent, sent, strict=False))
+        after |= {HELD: sent[0]} if calendar.holds else {}
+        bounds = tuple(sizes.get(name, w.nothing) for name in self.program.roundings)
+        return Sample(w, after, sent, bounds, w["command"])
+
+    def period(self, sample: Sample, rows: Rows) -> Period:
+        """Return a sample and what flows until the next one; `rows` are those of the drive."""
+        w, sent, within = sample.wires, sample.sent, self.calendar.timing.within
+        columns = [
+            *(w[name] for name in self.moving),
+            w[DELTA],
+            w.sum((ONE, sent[-1]), (ONE, w[FRICTION])),
+            *(w.sum((ONE, sent[age]), (-ONE, sent[age + 1])) for age in within),
+        ]
+
+        def moved(name: str) -> LinearForm:
+            key = name, rows[name]
+            if key not in sample.moved:
+                own = [(ONE, w[DELTA])] if name == DELTA else []
+                sample.moved[key] = w.sum(*own, *zip(rows[name], columns, strict=True))
+            return sample.moved[key]
+
+        after = {**sample.after, **{name: moved(name) for name in (*self.moving, DELTA)}}
+        delta = after[DELTA]
+        moves = (
+            w.sum((ONE, after[s]), (-ONE, delta)) if s in self.from_deflection else after[s]
+            for s in self.states
+        )
+        return Period(tuple(moves), sample.sizes, sample.command)
+
+    def _wires(self) -> Wires:
+        """Return the wires of a sample: states as they are, inputs and roundings."""
+        w = Wires((*self.states, *INPUTS, *self.program.roundings))
+        w.set({s: w.sum((ONE, w[s]), (ONE, w[DELTA])) for s in self.from_deflection})
+        w.set({name: w[text] for name, text in self.program.stored.items()})
+        return w

@@ -1,0 +1,244 @@
+"""The modes of a sampled loop: one for each controller, contact, age and end of every range."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import product
+
+from nrs_design.controllers.controller_design import Controller
+from nrs_design.controllers.laws import DiscreteLaw
+from nrs_design.controllers.parts import FORCE_GAIN
+from nrs_design.loop.calendar import Turn
+from nrs_design.loop.constant_parameters import ConstantParameter, Corner
+from nrs_design.loop.held import HeldPoint, Label, Spot, points_of, spot_of, spots_of
+from nrs_design.loop.held_motor import HeldMotor
+from nrs_design.loop.parameter_box import Box
+from nrs_design.loop.sampled import Contact, Period, SampledLoop
+from nrs_design.models.contact.environment import Environment
+from nrs_design.models.interval import Interval
+from nrs_design.models.linear_form import ZERO
+from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.mode import Mode
+from nrs_design.spec.interaction_parts import FREE
+from nrs_design.spec.misses import MISS
+
+NOWHERE = Spot()
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SampledMode:
+    """One mode, with what it is a corner of: nobody reads that from its name."""
+
+    group: str  # The name that rules of switching know: a controller, or what is done instead
+    spot: Spot
+    touches: str  # The environment of the force sample; `FREE`; or nothing, where none matters
+    begins: bool  # Whether a round begins with it
+    period: Period
+
+    @property
+    def name(self) -> str:
+        """Its name in certificates."""
+        return "/".join(label.text for label in self.spot.labels)
+
+    @property
+    def point(self) -> tuple[str, ...]:
+        """What it is a corner of, with others: of them all, one map is attained."""
+        return tuple(label.text for label in self.spot.labels if label.attained)
+
+    @property
+    def corner(self) -> Corner:
+        """At which ends of the constant numbers it is, and what else its name says."""
+        varying = (label.text for label in self.spot.labels if not label.constant)
+        return Corner(self.name, tuple(varying), dict(self.spot.corner))
+
+    @property
+    def mode(self) -> Mode:
+        """Its map, as a proof is about it."""
+        n = len(self.period.moves)
+        rows = [row[:n] for row in self.period.moves]
+        return Mode(self.name, RationalMatrix.from_rows(rows))
+
+    def column(self, i: int) -> RationalMatrix:
+        """Return what the i-th of inputs and, after them, roundings does to the states."""
+        moves = self.period.moves
+        return RationalMatrix.from_rows([[row[len(moves) + i]] for row in moves])
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TouchedDrive:
+    """What a force sample shows, and what flows, while something is touched."""
+
+    spot: Spot  # Of a drive and a load that there are, where these are looked at
+    seen: Sequence[tuple[Spot, Contact]]
+    points: Sequence[HeldPoint]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Modes:
+    """What the modes of a loop have in common."""
+
+    loop: SampledLoop
+    motor: HeldMotor
+    environments: tuple[Environment, ...]
+    constants: tuple[ConstantParameter, ...]
+    loses: bool  # Whether contact may be lost anywhere, and so within a period
+    # Drives that there are, each with its labels, instead of what encloses them all.
+    motors: tuple[tuple[tuple[str, ...], HeldMotor], ...]
+    _known: dict[object, tuple[HeldPoint, ...]] = field(default_factory=dict)
+
+    def of_controller(self, c: Controller, law: DiscreteLaw) -> Iterator[SampledMode]:
+        """Yield the modes of a controller in all its contacts, or in the air if it has none.
+
+        A controller that takes no force touches what others do, where the sample outlasts it.
+        """
+        contacts = tuple(e for name in c.contacts for e in self.environments if e.name == name)
+        if not contacts:
+            # It is the same there as in contact, unless a force sample outlasts its period.
+            touches = FREE if self.loop.remembers else ""
+            yield from self._of(c.name, (c.name,), law, touches=touches)
+            contacts = self.environments if touches else ()
+        for e in contacts:
+            yield from self._of(c.name, (c.name, e.name), law, e, contacts)
+
+    def in_the_air(self, c: Controller, law: DiscreteLaw) -> Iterator[SampledMode]:
+        """Yield the modes of a controller that has contacts and touches nothing."""
+        yield from self._of(c.name, (c.name, FREE), law, touches=FREE)
+
+    def between(self, law: DiscreteLaw, *where: str) -> Iterator[SampledMode]:
+        """Yield the modes at samples of the motion loop alone, which no force reaches."""
+        turn = Turn.MOTION
+        yield from self._of(f"/{turn}", (str(turn), *where), law, turns=(turn,))
+
+    def missed(self, law: DiscreteLaw, contacts: Sequence[Environment]) -> Iterator[SampledMode]:
+        """Yield the modes of a period whose deadline is missed, in all contacts or in none."""
+        turns = self.loop.calendar.turns[-1:]
+        for e in contacts:
+            yield from self._of(f"/{MISS}", (MISS, e.name), law, e, contacts, turns)
+        if not contacts:
+            yield from self._of(f"/{MISS}", (MISS, FREE), law, turns=turns, touches=FREE)
+
+    def _of(
+        self,
+        group: str,
+        names: tuple[str, ...],
+        law: DiscreteLaw,
+        e: Environment | None = None,
+        contacts: Sequence[Environment] = (),
+        turns: Sequence[Turn] = (),
+        touches: str = "",
+    ) -> Iterator[SampledMode]:
+        """Yield the modes of a law while something is touched, or of turns that have none."""
+        turns = turns or tuple(turn for turn in self.loop.calendar.turns if turn.has_law)
+        head = Spot(tuple(Label(name, attained=True, constant=False) for name in names))
+        # The force of a sample that no law takes matters where it is still on its way.
+        sampled = turns[0].has_law or self.loop.calendar.ages[1] > 0
+        for touched in self._touching(e, contacts, sampled=sampled):
+            for turn, age, said in self._samples(law, turns, touched):
+                where = head + touched.spot + said
+                for spot, contact in touched.seen:
+                    sample = self.loop.sample(law, age, contact, turn)
+                    for point in touched.points:
+                        yield SampledMode(
+                            group,
+                            where + spot + point.spot,
+                            touches if e is None else e.name,
+                            turn is Turn.BOTH,
+                            self.loop.period(sample, point.rows),
+                        )
+
+    def _samples(
+        self, law: DiscreteLaw, turns: Sequence[Turn], touched: TouchedDrive
+    ) -> Iterator[tuple[Turn, int, Spot]]:
+        """Yield what is computed with a force sample of what age, and how that is said."""
+        first, last = self.loop.calendar.ages
+        if not turns[0].has_law:
+            yield from ((turn, 0, NOWHERE) for turn in turns)
+            return
+        _, contact = touched.seen[0]
+        # A law that takes no force does the same at every age of its sample.
+        if self.loop.sample(law, first, contact).does(self.loop.sample(law, last, contact)):
+            last = first
+        for turn, age in product(turns, range(first, last + 1)):
+            said = [f"delay-{age}"] if last > first else []
+            said += [str(turn)] if turn is Turn.ADMITTANCE else []
+            yield turn, age, Spot(tuple(Label(text, True, False) for text in said))
+
+    def _touching(
+        self, e: Environment | None, contacts: Sequence[Environment], *, sampled: bool
+    ) -> Iterator[TouchedDrive]:
+        """Yield what flows with every drive, and what is sampled, while something is touched."""
+        for labels, motor in self.motors or (((), self.motor),):
+            loaded = motor.drive is not None and motor.drive.loaded
+            for load, own in self._loads(e, contacts, loaded=loaded):
+                texts = (*load, *labels)
+                spot = spot_of(texts, [t.rpartition("-")[0] for t in texts], self._constants(e))
+                yield self._with(spot, motor, own, e, loaded=loaded, sampled=sampled)
+
+    def _loads(
+        self, e: Environment | None, contacts: Sequence[Environment], *, loaded: bool
+    ) -> Iterator[tuple[tuple[str, ...], Mapping[str, Interval]]]:
+        """Yield labels of a load, and where its stiffness and damping are."""
+        own = {} if e is None else {"k": e.stiffness, "b": damping_of(e)}
+        if e is None or not loaded or (self.motors and e.depends):
+            yield (), own
+        elif not self.motors:
+            # It may be another one within a period, too, or nothing where contact is lost.
+            yield (), anything_of(contacts, lost=self.loses)
+        else:
+            for ends in product(*(interval.ends for interval in own.values())):
+                named = [(symbol, *end) for symbol, end in zip(own, ends, strict=True)]
+                labels = tuple(f"{symbol}-{end}" for symbol, end, _ in named if end)
+                yield labels, {symbol: Interval.point(value) for symbol, _, value in named}
+
+    def _with(
+        self,
+        spot: Spot,
+        motor: HeldMotor,
+        own: Mapping[str, Interval],
+        e: Environment | None,
+        *,
+        loaded: bool,
+        sampled: bool,
+    ) -> TouchedDrive:
+        constants, nothing = self._constants(e), Box({})
+        forced = any(FORCE_GAIN in law.numbers for law in self.loop.program.laws)
+        seen, load = (Box(own), nothing) if not loaded or forced else (nothing, Box(own))
+        depends = loaded or (e is not None and e.depends)
+        spots = spots_of(seen if sampled else nothing, "" if depends else "kb", constants)
+        key = motor, tuple(own.items()), forced
+        if not loaded:
+            key = motor, (), forced
+        if key not in self._known:
+            held = motor.touching(own, forced=forced) if own else motor
+            changes = len(self.loop.calendar.timing.within)
+            self._known[key] = points_of(held, changes, load, constants)
+        contacts = ((at, (v.get("k", ZERO), v.get("b", ZERO))) for at, v in spots)
+        return TouchedDrive(spot, tuple(contacts), self._known[key])
+
+    def _constants(self, e: Environment | None) -> tuple[ConstantParameter, ...]:
+        """Return the constant numbers of the drive and of what is touched."""
+        known = (None, e and e.name)
+        return tuple(c for c in self.constants if c.contact in known)
+
+
+def anything_of(environments: Iterable[Environment], *, lost: bool) -> dict[str, Interval]:
+    """Return where stiffness and damping are of any of some environments, or of nothing.
+
+    `lost`: nothing may be touched, too. What is constant stays so where nothing else is touched.
+    """
+    each = [(e.stiffness, damping_of(e)) for e in environments]
+    return {
+        symbol: Interval(
+            ranges[0].nominal,
+            ZERO if lost else min(r.low for r in ranges),
+            max(r.high for r in ranges),
+            lost or len(ranges) > 1 or ranges[0].varies,
+        )
+        for symbol, ranges in zip(("k", "b"), zip(*each, strict=True), strict=True)
+    }
+
+
+def damping_of(environment: Environment) -> Interval:
+    """Return the range of the damping beside the spring; zero for a spring."""
+    return environment.parameters.get("b", Interval.point(ZERO))

@@ -1,0 +1,240 @@
+"""The state that all modes of one robot axis share, and the rows of a mode in it.
+
+While another environment is touched, the memory of an environment decays as it does without force.
+
+Impedance controllers may stand beside position and force controllers. These give the motion loop a
+position; impedance controllers give it a velocity, which the robot integrates to a position
+``r' = vc - vm``. The loop from r to the position theta is the same G, so with its states xi every
+mode is written in ``[xi, vm, r]`` (without virtual inertia ``[xi, r]``): ``xi' = Ap xi + Bp r``,
+``theta = Cp xi``. Where another controller is active, vm and r are idle.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+
+from nrs_design.controllers.controller_design import (
+    SHARED_STATES,
+    Controller,
+    ControllerDesign,
+)
+from nrs_design.controllers.gains import idle_decay
+from nrs_design.controllers.laws import CompliantLaw
+from nrs_design.controllers.sensor import LowPass
+from nrs_design.errors import AssemblyError
+from nrs_design.loop.joint import Joint
+from nrs_design.loop.modes import (
+    Rows,
+    lead,
+    position_mode,
+    velocity_mode,
+    with_idle,
+    with_last,
+)
+from nrs_design.loop.parameter_box import Box
+from nrs_design.models.contact.environment import Environment
+from nrs_design.models.contact.law import AbstractLinearLaw
+from nrs_design.models.interval import Interval
+from nrs_design.models.motion_loop import JointMotionLoop, MotionLoop, Realization, realize
+from nrs_design.models.plant import Plant
+from nrs_design.spec import IdleStatesSpec
+from nrs_design.spec.controllers import Offset
+
+# What impedance controllers in a mixture integrate their velocity to.
+REFERENCE = "reference [rad]"
+
+
+@dataclass(frozen=True, slots=True)
+class SharedState:
+    """All controllers of an axis in one state."""
+
+    design: ControllerDesign  # Gains that ship
+    environments: tuple[Environment, ...]
+    realization: Realization  # Of the motion loop
+    given: bool  # Whether the spec states the motion loop
+    joint: Joint | None  # The motion loop in physical states, where its motor has ranges or a load
+    law: CompliantLaw  # Whose states the modes share
+    # What the states of impedance controllers do while another kind of controller is active; None
+    # where there is one kind only.
+    idle: IdleStatesSpec | None = None
+    offset: Offset = "none"  # Where force controllers take it from
+    bleeding: tuple[str, ...] = ()  # States of an integral that bleeds
+
+    @property
+    def low_pass(self) -> LowPass | None:
+        """The filter of the force."""
+        return self.design.sensor.filter
+
+    @property
+    def motion(self) -> Realization | JointMotionLoop:
+        """The motion loop at its nominal values."""
+        return self.realization if self.joint is None else self.joint.nominal
+
+    def contacts(self, controller: Controller) -> Iterator[Environment]:
+        """Yield what a controller touches."""
+        by_name = {environment.name: environment for environment in self.environments}
+        return (by_name[name] for name in controller.contacts)
+
+    @property
+    def motor_box(self) -> Box:
+        """Where the motor may be."""
+        return Box({}) if self.joint is None else self.joint.box
+
+    def motion_at(self, values: Mapping[str, Fraction]) -> Realization | JointMotionLoop:
+        """Return the motion loop at the values of the motor."""
+        return self.realization if self.joint is None else self.joint.at(values)
+
+    @property
+    def memories(self) -> tuple[Environment, ...]:
+        """The environments that have a memory of their own."""
+        return tuple(e for e in self.environments if e.creep is not None)
+
+    @property
+    def beside(self) -> tuple[str, ...]:
+        """In a mixture, the states beside those of the motion loop."""
+        moving = (*self.law.states, REFERENCE) if self.law.commands == "velocity" else ()
+        return (*moving, *self.bleeding)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the states, with units where there are any."""
+        order = self.realization.order
+        if self.offset != "none":
+            return (*(f"dxp{i + 1}" for i in range(order - 1)), "lead [rad]")
+        if self.idle is not None:
+            return (*(f"xi{i + 1}" for i in range(order)), *self.beside)
+        loop = (*self.motion.states, *self.law.states)
+        if self.law.commands == "position":
+            return loop
+        # Continuous when the stiffness changes in contact.
+        contact = self.environments[0].law.states[0]
+        memories = (f"{e.name}: {name}" for e in self.environments for name in e.law.states[1:])
+        sensed = () if self.low_pass is None else self.low_pass.states
+        return (*loop, *sensed, contact, *memories)
+
+    @property
+    def kept(self) -> int:
+        """How many of the states, from the first on, a switch that resets leaves alone."""
+        return self.realization.order - (self.offset == "measured")
+
+    def contact_box(self, environment: Environment) -> Box:
+        """Return the parameters of a contact, and the rates of the memories that it leaves alone.
+
+        A rate is a ratio of parameters, but they occur nowhere else in this mode: it is one axis.
+        """
+        creeps: dict[str, Interval] = {
+            _rate(other): other.creep
+            for other in self.memories
+            if other != environment and other.creep is not None
+        }
+        return Box(environment.parameters, environment.law.inverse).beside(Box(creeps))
+
+    def rows(
+        self, law: CompliantLaw, environment: Environment, values: Mapping[str, Fraction]
+    ) -> Rows:
+        """Return A under a law at the given parameters of the contact."""
+        contact = environment.at(values)
+        if self.idle is not None or law.commands == "position":
+            return self.placed(law, contact, environment.name)
+        rows = velocity_mode(self.motion_at(values), law, contact, self.low_pass)
+        first = len(self.names) - len(self.memories)
+        memories = enumerate(self.memories, first)
+        return with_idle(rows, {i: values[_rate(e)] for i, e in memories if e != environment})
+
+    def placed(
+        self, law: CompliantLaw, contact: AbstractLinearLaw | None = None, environment: str = ""
+    ) -> Rows:
+        """Return a mode with the idle states that it leaves alone, or in coordinates of motion.
+
+        Without a contact nothing is touched.
+        """
+        others = self.bleeding if self.idle is not None and not law.bleeds else ()
+        decay = Fraction(0) if self.idle is None else idle_decay(self.idle)
+        bleeding = decay if others else None
+        rows = position_mode(self.realization, law, contact, environment, bleeding)
+        if self.offset != "none":
+            return with_last(rows, lead(self.realization))
+        integrated = (REFERENCE,) if law.commands == "velocity" else ()
+        own = (*law.states, *integrated, *others)
+        beside = enumerate(self.beside if self.idle is not None else (), self.realization.order)
+        return with_idle(rows, {i: decay for i, name in beside if name not in own})
+
+
+def _rate(environment: Environment) -> str:
+    return f"r-{environment.name}"
+
+
+def shared_state(
+    plant: Plant,
+    loop: MotionLoop,
+    design: ControllerDesign,
+    *,
+    idle: IdleStatesSpec | None = None,
+    offset: Offset = "none",
+) -> SharedState:
+    """Return what the modes of an interaction design share; an `AssemblyError` if nothing."""
+    laws = [controller.law for controller in design.controllers]
+    leading = design.leading_laws(mixed=idle is not None)
+    state = SharedState(
+        design,
+        plant.among(design.contacts),
+        realize(loop),
+        loop.given,
+        Joint.of(plant, design.motion),
+        leading[0],
+        idle,
+        offset,
+        next((law.states for law in laws if law.bleeds), ()),
+    )
+    fault = next(_faults(state), None)
+    if fault is not None:
+        raise fault
+    return state
+
+
+def _faults(state: SharedState) -> Iterator[AssemblyError]:
+    """Yield what is not modelled in one state."""
+    mixed = state.idle is not None
+    for environment in state.environments:
+        law, at = environment.law, ("environments", environment.name)
+        if not law.has_rest and len(state.environments) > 1:
+            yield AssemblyError(
+                f"environment {environment.name} has no rest position ({law.name}), so it shares "
+                "no deflection with another environment",
+                remedy="let the controllers touch no other environment, or write a spec for each",
+                at=at,
+            )
+        if mixed and law.remembers:
+            yield AssemblyError(
+                f"environment {environment.name}, which is {law.name}, is not modelled "
+                "for impedance controllers beside others",
+                remedy="use elastic or Kelvin-Voigt environments, or one kind of controller",
+                at=at,
+            )
+    yield from _faults_of_springs(state)
+    if (odd := state.design.find_odd_states(mixed=mixed)) is not None:
+        yield AssemblyError(
+            f"{odd}, so their modes share no state", remedy=SHARED_STATES, at=("controllers",)
+        )
+    if state.joint is not None and (mixed or state.law.commands != "velocity"):
+        yield AssemblyError(
+            "ranges of the motor, or its load, are modelled for impedance controllers alone",
+            remedy="give nominal values of the actuator and no load_inertia",
+            at=("actuator",),
+        )
+
+
+def _faults_of_springs(state: SharedState) -> Iterator[AssemblyError]:
+    """Yield why the state does not tell the displacement of a spring in an admittance."""
+    name = next((c.name for c in state.design.controllers if c.law.spring), None)
+    restless = next((e for e in state.environments if not e.law.has_rest), None)
+    at = ("controllers", str(name), "Kt")
+    if name is not None and restless is not None:
+        yield AssemblyError(
+            f"an admittance with a spring Kt is not modelled in contact with {restless.name}, "
+            f"which has no rest position ({restless.law.name})",
+            remedy="leave Kt out, or give the environment a law that has a rest position",
+            at=at,
+        )

@@ -1,0 +1,262 @@
+"""The switched system of a sampled loop: its modes, what disturbs it, and how contact is lost."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
+from fractions import Fraction
+
+from nrs_design.controllers.controller_design import SHARED_STATES, ControllerDesign
+from nrs_design.controllers.gains import idle_share
+from nrs_design.controllers.laws import DiscreteLaw
+from nrs_design.controllers.step_analysis import rounding_share
+from nrs_design.controllers.step_law import StepFrame
+from nrs_design.errors import AssemblyError
+from nrs_design.loop.assumptions import at_once_texts
+from nrs_design.loop.calendar import Calendar, Turn, turns_of
+from nrs_design.loop.command_timing import timing_of
+from nrs_design.loop.constant_parameters import ConstantParameter, Corner
+from nrs_design.loop.constraints import assemble_switching, leaving_impedance, zeroing
+from nrs_design.loop.free_motion import could_pull, force_rows, lost_on_surface, outputs_of
+from nrs_design.loop.held_drive import HeldDrive
+from nrs_design.loop.held_motor import hold
+from nrs_design.loop.misses import clock_of
+from nrs_design.loop.motor_command import motor_command
+from nrs_design.loop.program import INPUTS, SampledProgram
+from nrs_design.loop.sampled import SampledLoop
+from nrs_design.loop.sampled_assumptions import Loss, assume_sampled
+from nrs_design.loop.sampled_modes import Modes, SampledMode
+from nrs_design.loop.saturation import with_sampled_saturation
+from nrs_design.models.contact.environment import Environment
+from nrs_design.models.linear_form import LinearForm, coordinates
+from nrs_design.models.plant import Plant
+from nrs_design.proof.channels import Channel, Output, Rounding
+from nrs_design.proof.contact import Flights
+from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.mode import Time
+from nrs_design.proof.switching import Clock
+from nrs_design.proof.system import SwitchedSystem
+from nrs_design.spec import IdleStatesSpec
+from nrs_design.spec.interaction_parts import FREE
+from nrs_design.spec.misses import automaton_of
+from nrs_design.spec.operating import OperatingConditions
+from nrs_design.spec.sampling import SamplingSpec
+
+
+def close_sampled_loop(
+    conditions: OperatingConditions,
+    sampling: SamplingSpec,
+    plant: Plant,
+    design: ControllerDesign,
+    constants: Sequence[ConstantParameter] = (),
+    *,
+    points: bool = False,
+) -> tuple[SwitchedSystem, tuple[Corner, ...]]:
+    """Return the system of a sampled loop, and at which ends of constant numbers its modes are.
+
+    `points`: of drives that there are, at the ends of their ranges, instead of what encloses all.
+    """
+    if (odd := sampling.find_odd_periods()) is not None:
+        raise AssemblyError(odd, remedy="change both periods", at=("sampling", "outer_period"))
+    laws = {
+        c.name: c.law.discretize(sampling.outer, sampling.admittance) for c in design.controllers
+    }
+    timing = timing_of(sampling, conditions.late)
+    motor = hold(plant.actuator_ranges, timing)
+    if plant.drive is not None:
+        motor = HeldDrive.of(plant.drive, timing)
+    program = sampled_program(conditions.idle, sampling, design, tuple(laws.values()))
+    calendar = Calendar(timing, turns=turns_of(sampling))
+    loop = SampledLoop(program, design.takes, motor.states, calendar)
+    if loop.takes_force:
+        loop = replace(loop, calendar=replace(calendar, ages=sampling.delay))
+    environments = plant.among(design.contacts)
+    loss = _loss_of_contact(conditions.contact, environments, design)
+    every = Modes(
+        loop,
+        motor,
+        environments,
+        tuple(constants),
+        loss.startswith("anywhere"),
+        tuple(motor.points()) if points else (),
+    )
+    modes, free = _modes(every, design, laws, loss)
+    items = (*modes, *free)
+    groups: dict[str, list[str]] = {}
+    for item in modes:
+        groups.setdefault(item.group, []).append(item.name)
+    channels = tuple(_channels(conditions, design.sensor.lasting, items))
+    velocity = coordinates(len(loop.states))[loop.states.index(motor.states[0])]
+    pulls = tuple(force_rows(velocity, loop.states, could_pull(environments)))
+    outputs: tuple[Output, ...] = ()
+    if channels:
+        outputs = outputs_of(velocity, loop.states, environments, conditions.torque)
+        if motor.drive is not None and motor.drive.speed is not None:
+            # It jumps after the sample, and the force of what is damped with it.
+            outputs = () if pulls else outputs[:1]
+    driven = motor_command(conditions.largest_command, conditions.command, loop, channels)
+    resets: Iterable[tuple[str, str, RationalMatrix]] = ()
+    if conditions.idle is not None and conditions.idle.reset:
+        map_ = zeroing(loop.states, ("reference [rad]", "vm [rad/s]"))
+        resets = ((*pair, map_) for pair in leaving_impedance(design.controllers))
+    system = SwitchedSystem(
+        name=conditions.name,
+        time=Time.DISCRETE,
+        states=loop.states,
+        modes=tuple(item.mode for item in modes),
+        assumptions=(
+            *assume_sampled(conditions, sampling, plant, loop, laws, design, loss),
+            *at_once_texts(environments),
+            *(() if driven is None else (driven.text,)),
+        ),
+        switching=assemble_switching(conditions.switching, groups, resets),
+        contact=lost_on_surface((item.mode for item in free), pulls, conditions.contact)
+        if free
+        else None,
+        sample_time=sampling.longest_step,
+        channels=channels,
+        outputs=(*outputs, *(() if driven is None else (driven.output,))),
+        roundings=tuple(_roundings(loop, channels, items)),
+        clock=_clock(sampling, items),
+        flights=_flights(modes, environments, pulls) if loss.startswith("anywhere") else None,
+        enclosures=tuple(_enclosures(items)),
+    )
+    if conditions.initial_force is not None and not points:
+        system = with_sampled_saturation(system, conditions, loop, items, environments)
+    return system, tuple(item.corner for item in modes)
+
+
+def sampled_program(
+    idle: IdleStatesSpec | None,
+    sampling: SamplingSpec,
+    design: ControllerDesign,
+    laws: tuple[DiscreteLaw, ...],
+) -> SampledProgram:
+    """Return the program of all controllers; an `AssemblyError` if they share no state."""
+    if (odd := design.find_odd_states(mixed=idle is not None)) is not None:
+        raise AssemblyError(
+            f"{odd}, so their modes share no state", remedy=SHARED_STATES, at=("controllers",)
+        )
+    low_pass, motion, outer = design.sensor.filter, design.motion, sampling.outer
+    filtered = None if low_pass is None else low_pass.discretize(outer)
+    damping = motion.over(sampling.period.exact)
+    return SampledProgram(
+        StepFrame(motion.Kp, damping, filtered, takes=design.takes),
+        laws,
+        None if idle is None else idle_share(idle, outer),
+    )
+
+
+def _modes(
+    every: Modes, design: ControllerDesign, laws: dict[str, DiscreteLaw], loss: Loss
+) -> tuple[tuple[SampledMode, ...], tuple[SampledMode, ...]]:
+    """Return the modes, and those of free motion beside them.
+
+    Where contact is lost anywhere, a controller moves freely as it does in one more contact.
+    """
+    modes: list[SampledMode] = []
+    beside: list[SampledMode] = []
+    where = {"on the surface": beside}.get(loss, modes)
+    for c in design.controllers:
+        modes += every.of_controller(c, laws[c.name])
+        if c.contacts and (loss == "on the surface" or loss.startswith("anywhere")):
+            where += every.in_the_air(c, laws[c.name])
+    law, turns = next(iter(laws.values())), every.loop.calendar.turns
+    if turns[-1].is_miss:
+        modes += every.missed(law, every.environments)
+        if loss == "on the surface" or loss.startswith("anywhere"):
+            where += every.missed(law, ())
+    if Turn.MOTION in turns:
+        modes += every.between(law)
+        beside += every.between(law, FREE) if beside else ()
+    return tuple(modes), tuple(beside)
+
+
+def _loss_of_contact(
+    contact: str | None, environments: Iterable[Environment], design: ControllerDesign
+) -> Loss:
+    """Tell how contact is lost; with springs everywhere, free motion is a mode like others."""
+    if any(c.law.commands == "position" for c in design.controllers):
+        # Force control rests in the air where it does in contact: at what is commanded.
+        lost = contact == "losable"
+        return "anywhere under force control" if lost else "not under force control"
+    sprung = {c.law.spring != 0 for c in design.controllers}
+    if contact == "kept" or (True in sprung and contact is None):
+        return "never"
+    if any(e.preloaded or (e.parts and not e.each_losable) for e in environments):
+        return "not modelled"
+    return "anywhere" if sprung == {True} else "on the surface"
+
+
+def _flights(
+    modes: Iterable[SampledMode],
+    environments: Iterable[Environment],
+    pulls: tuple[RationalMatrix, ...],
+) -> Flights:
+    """Tell which modes are in contact, and which are free motion."""
+    known = {e.name for e in environments}
+    modes = tuple(modes)
+    return Flights(
+        tuple(m.name for m in modes if m.touches in known),
+        tuple(m.name for m in modes if m.touches == FREE),
+        pulls,
+    )
+
+
+def _clock(sampling: SamplingSpec, items: Iterable[SampledMode]) -> Clock | None:
+    """Return which modes may be in force: some begin a round, or are those in time."""
+    begins = tuple(item.name for item in items if item.begins)
+    if sampling.misses is not None:
+        return clock_of(automaton_of(*sampling.misses.window), begins)
+    return Clock(sampling.round, begins) if sampling.round > 1 else None
+
+
+def _enclosures(items: Iterable[SampledMode]) -> Iterator[tuple[str, ...]]:
+    """Yield the modes that enclose one map together."""
+    found: dict[tuple[str, ...], list[str]] = {}
+    for item in items:
+        found.setdefault(item.point, []).append(item.name)
+    yield from (tuple(names) for names in found.values() if len(names) > 1)
+
+
+def _channels(
+    conditions: OperatingConditions, off: Fraction, items: Sequence[SampledMode]
+) -> Iterator[Channel]:
+    """Yield the disturbances of the spec, and the errors of its sensor, with their columns.
+
+    `off`, in N m, is how far the force signal may be off for long.
+    """
+    if conditions.disturbances is None:
+        return
+    bounds = dict(conditions.disturbances)
+    if (angle := conditions.largest_angle) is not None:
+        # An angle of the law is read from a count, times a coefficient.
+        for name, n in (("rounding of the reference", 1), ("rounding of the angle", 3)):
+            bounds[name] = (rounding_share(n) * angle, "rad")
+    if off:
+        bounds["force error"] = (off, "N*m")
+    for i, name in enumerate(INPUTS):
+        if name in bounds:
+            bound, unit = bounds[name]
+            yield Channel(name, unit, bound, tuple(item.column(i) for item in items))
+
+
+def _roundings(
+    loop: SampledLoop, channels: Sequence[Channel], items: Sequence[SampledMode]
+) -> Iterator[Rounding]:
+    """Yield what the arithmetic adds, with rows over the states and the declared disturbances."""
+    n, named = len(loop.states), {channel.name for channel in channels}
+    kept = [*range(n), *(n + i for i, name in enumerate(INPUTS) if name in named)]
+    for j, name in enumerate(loop.program.roundings):
+        rows = _rows_over(kept, (item.period.sizes[j] for item in items))
+        columns = (item.column(len(INPUTS) + j) for item in items)
+        yield Rounding(name, tuple(columns), tuple(rows))
+
+
+def _rows_over(kept: Sequence[int], forms: Iterable[LinearForm]) -> Iterator[RationalMatrix]:
+    """Yield some entries of forms as rows; where corners share a form, it is one row."""
+    made: dict[int, RationalMatrix] = {}
+    for form in forms:
+        if id(form) not in made:
+            made[id(form)] = RationalMatrix.from_rows([[form[i] for i in kept]])
+        yield made[id(form)]

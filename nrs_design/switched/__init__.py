@@ -1,1 +1,0 @@
-"""Switched systems with exact matrices."""

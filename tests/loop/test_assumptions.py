@@ -1,0 +1,112 @@
+"""What a statement takes for granted, and what its words cover."""
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from nrs_design.loop.assemble import assemble
+from nrs_design.models.contact import HuntCrossley
+from nrs_design.models.motion_loop import realize
+from nrs_design.pipeline.runs import run_certification, run_design
+from nrs_design.spec import LoadedSpec, parse_spec, read_spec
+from nrs_design.spec.build_plant import build_plant
+from tests.support import ROBOT
+
+CONCHA = ROBOT / "concha.nrs.yaml"
+LOW, HIGH, ABOUT = 0.1, 0.3, 0.2
+
+
+@pytest.fixture(scope="module")
+def proved():
+    result = run_certification(read_spec(CONCHA))
+    assert result.certification.verdict == "proved"
+    return result
+
+
+def test_what_the_range_of_a_motor_holds_is_assumed():
+    text = (ROBOT / "soft-tissue.nrs.yaml").read_text()
+    gain = "gain: {nominal: 4.8e-4 rad/s/rpm, range: [4.7e-4 rad/s/rpm, 4.9e-4 rad/s/rpm]}"
+    text = text.replace("gain: 4.8417e-4 rad/s/rpm", f"{gain}\n  range_covers: prediction")
+    said = "The range of the actuator was identified to hold the next record with 95 % probability"
+    known = f"range_covers: prediction\n  range_id: {parse_spec(text).actuator.values_id()}"
+    for written, end in (
+        (text, ", unless it has been changed by hand since."),
+        (text.replace("range_covers: prediction", known), "."),
+    ):
+        designed = run_design(
+            LoadedSpec(path=ROBOT, sha256="", text=written, spec=parse_spec(written))
+        )
+        system = assemble(designed.spec, designed.plant, designed.design)
+        assert said + end in system.assumptions
+
+
+def hunt_crossley(rng):
+    """Any law within the ranges of the spec."""
+    k, b, phi = rng.uniform(0.825, 1.009), rng.uniform(1.98, 2.42), rng.uniform(1.1, 1.3)
+    return HuntCrossley(k / phi / ABOUT ** (phi - 1), b / ABOUT**phi, phi)
+
+
+class Loop:
+    """The loop around a nonlinear law, at a command that lets every controller rest there."""
+
+    def __init__(self, result, law, rest):
+        plant, design = result.designed.plant, result.design
+        motion = realize(plant.motion_loop(design.motion.Kp, design.motion.Kd))
+        self.A, self.C = np.array(motion.A, float), np.array(motion.C, float)
+        self.gains = [
+            (float(c.law.gains["Mt"]), float(c.law.gains["Bt"])) for c in design.controllers
+        ]
+        self.law, self.rest = law, rest
+
+    def force(self, delta, velocity):
+        return (self.law.rho + self.law.lam * velocity) * delta**self.law.phi
+
+    def rate(self, x, controller):
+        """x' of [xp1, xp2, vm, delta], all but xp counted from the rest."""
+        Mt, Bt = self.gains[controller]
+        delta, velocity = x[3] + self.rest, self.C @ x[:2]
+        force = self.force(delta, velocity) - self.force(self.rest, 0.0)
+        xp = self.A @ x[:2]
+        xp[1] -= x[2]
+        return np.array([*xp, (force - Bt * x[2]) / Mt, velocity])
+
+
+def lyapunov(result):
+    evidence = result.certification.evidence
+    return np.array(evidence.nodes[0].form, dtype=float), float(
+        evidence.proved_rate(result.certification.system)
+    )
+
+
+def test_power_law_decays_about_any_rest_however_far_and_fast(proved):
+    """V' <= -2 alpha V at any state whose deflection is in the preload, with any law and rest."""
+    Q, rate = lyapunov(proved)
+    rng = np.random.default_rng(7)
+    worst = -np.inf
+    for _ in range(4000):
+        rest = rng.choice([0.0, rng.uniform(0, HIGH)])
+        loop = Loop(proved, hunt_crossley(rng), rest)
+        scale = 10.0 ** rng.uniform(-4, 4, size=3)
+        x = np.array([*(rng.normal(size=3) * scale), rng.uniform(LOW, HIGH) - rest])
+        for controller in (0, 1):
+            slope = 2 * x @ Q @ loop.rate(x, controller)
+            worst = max(worst, slope / (x @ Q @ x) + 2 * rate)
+    assert worst <= 1e-9
+
+
+@pytest.mark.parametrize(("scale", "covered"), [("1/2", False), ("1", True), ("11/10", True)])
+def test_ranges_scaled_below_one_do_not_cover_the_law(scale, covered):
+    loaded = read_spec(CONCHA)
+    designed = run_design(loaded)
+    system = assemble(loaded.spec, designed.plant, designed.design, Fraction(scale))
+    texts = " ".join(system.assumptions)
+    assert ("motions need not be small" in texts) is covered
+    assert ("that law is not covered" in texts) is not covered
+
+
+def test_contact_is_kept_by_default_where_there_is_a_preload():
+    text = CONCHA.read_text().replace("contact: kept\n", "")
+    spec = parse_spec(text)
+    design = run_design(read_spec(CONCHA)).design
+    assert assemble(spec, build_plant(spec), design).contact is None

@@ -1,0 +1,170 @@
+"""Corners of a box: enough for the whole box, or the assembly stops."""
+
+from fractions import Fraction
+from functools import cache
+from itertools import product
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from nrs_design.errors import InternalError
+from nrs_design.loop.parameter_box import Box, Triangle
+from nrs_design.models.interval import Interval
+
+F = Fraction
+UNIT = Interval(F(1), F(1), F(3))
+X, Y = Box({"x": UNIT}), Box({"y": Interval(F(2), F(-1), F(4))})
+INVERSE = Box({"x": UNIT}, frozenset({"x"}))
+BOTH = X.beside(Y)
+shares = st.fractions(0, 1, max_denominator=20)
+
+
+def corners(box, entry):
+    return list(box.corners(lambda values: [[F(entry(**values))]], "m"))
+
+
+def test_names_and_order():
+    found = corners(BOTH, lambda x, y: 10 * x + y)
+    assert [name for name, _ in found] == [
+        "m/x-min/y-min",
+        "m/x-min/y-max",
+        "m/x-max/y-min",
+        "m/x-max/y-max",
+    ]
+    assert [rows[0][0] for _, rows in found] == [9, 14, 29, 34]
+
+
+def test_a_point_has_one_corner_by_the_name_of_the_mode():
+    point = Box({"x": Interval.point(F(2))})
+    assert corners(point, lambda x: x**5) == [("m", [[32]])]
+
+
+def test_middle_of_an_inverse_axis():
+    # One over it is halfway between 1 and 1/3.
+    assert (X.middle("x"), INVERSE.middle("x")) == (2, F(3, 2))
+
+
+@given(st.lists(st.fractions(-9, 9), min_size=4, max_size=4), shares, shares)
+def test_every_value_in_the_box_is_the_same_average_of_corners(c, s, t):
+    """With x in the inverse: a + b/x + c y + d y/x."""
+
+    def entry(x, y):
+        return c[0] + c[1] / x + c[2] * y + c[3] * y / x
+
+    found = corners(INVERSE.beside(Y), entry)
+    inverse = (1 - s) * 1 + s * F(1, 3)
+    y = (1 - t) * F(-1) + t * F(4)
+    weights = [a * b for a, b in product((1 - s, s), (1 - t, t))]
+    mean = sum(w * rows[0][0] for w, (_, rows) in zip(weights, found, strict=True))
+    assert mean == entry(1 / inverse, y)
+
+
+@pytest.mark.parametrize(
+    ("box", "entry"),
+    [
+        (X, lambda x: x**2),
+        (X, lambda x: 1 / x),
+        (INVERSE, lambda x: x),
+        (BOTH, lambda x, y: x * y**2),
+        (BOTH, lambda x, y: x**2 - 4 * x),
+        # Affine along every edge, but not inside.
+        (BOTH, lambda x, y: (x - 1) * (x - 3) * (y + 1) * (y - 4)),
+        # Odd about the middle, so that the middle of the box alone would not show it.
+        (BOTH, lambda x, y: (x - 2) * (y - F(3, 2)) ** 2),
+    ],
+)
+def test_anything_else_stops_the_assembly(box, entry):
+    with pytest.raises(InternalError, match="mode m is not affine in each parameter"):
+        corners(box, entry)
+
+
+@pytest.mark.parametrize("power", [1, 2])
+def test_rows_that_corners_share_are_compared_too(power):
+    """A row that depends on one parameter alone may be one object along the axis of the other."""
+
+    @cache
+    def shared(x):
+        return [x**power]
+
+    def rows_at(values):
+        return [shared(values["x"]), [values["x"] * values["y"]]]
+
+    if power == 1:
+        assert len(list(BOTH.corners(rows_at, "m"))) == 4
+    else:
+        with pytest.raises(InternalError, match="mode m is not affine in each parameter"):
+            list(BOTH.corners(rows_at, "m"))
+
+
+TRIANGLE = Box(
+    {"x": UNIT, "y": Interval(F(2), F(-1), F(4))}, triangle=Triangle("x", "y", (F(2), F(7, 2)))
+)
+
+
+def test_a_triangle_has_three_corners():
+    found = {name: (v["x"], v["y"]) for name, v in TRIANGLE.named_values("m")}
+    assert found == {
+        "m/x-min/y-min": (1, -1),
+        "m/x-min/y-max": (2, F(7, 2)),
+        "m/x-max/y-max": (3, 4),
+    }
+    assert [name for name, _ in corners(TRIANGLE, lambda x, y: x + y)] == [*found]
+
+
+def test_what_is_beside_a_triangle_has_its_own_corners():
+    beside = Box({"z": UNIT}).beside(TRIANGLE)
+    assert len(corners(beside, lambda x, y, z: z * (x + y))) == 6
+    assert len(corners(TRIANGLE.beside(Box({"z": UNIT})), lambda x, y, z: z * (x - y))) == 6
+
+
+@given(st.lists(st.fractions(-9, 9), min_size=6, max_size=6), shares, shares, shares)
+def test_every_value_in_a_triangle_is_the_same_average_of_corners(c, s, t, u):
+    """With z beside: (a + b x + c y) (1 + d z), say, and more of the kind."""
+
+    def entry(x, y, z):
+        return c[0] + c[1] * x + c[2] * y + z * (c[3] + c[4] * x + c[5] * y)
+
+    found = corners(TRIANGLE.beside(Box({"z": UNIT})), entry)
+    # Shares of the three corners, so a point of the triangle.
+    first, second = s * t, s * (1 - t)
+    weights = (first, second, 1 - first - second)
+    points = ((1, -1), (2, F(7, 2)), (3, 4))
+    x, y = (sum(w * p[i] for w, p in zip(weights, points, strict=True)) for i in (0, 1))
+    mean = sum(
+        w * v * rows[0][0]
+        for (w, v), (_, rows) in zip(product(weights, (1 - u, u)), found, strict=True)
+    )
+    assert mean == entry(x, y, (1 - u) * 1 + u * 3)
+
+
+@pytest.mark.parametrize(
+    "entry",
+    [
+        # Affine in each, but not together: what is between three corners would not be covered.
+        lambda x, y, z: x * y,
+        lambda x, y, z: z * x * y,
+        lambda x, y, z: (z - 1) * (z - 3) * x,
+        lambda x, y, z: x**2,
+        lambda x, y, z: y**2,
+        # Zero along one side each, or at all corners and middles but one.
+        lambda x, y, z: (y - F(7, 2) - F(x - 2) / 2) * x,
+        lambda x, y, z: (y + 1 - F(9, 2) * (x - 1)) * y,
+        lambda x, y, z: (5 * (x - 1) - 2 * (y + 1)) ** 2,
+        lambda x, y, z: (5 * (x - 1) - 2 * (y + 1)) * (y - F(7, 2) - F(x - 2) / 2),
+    ],
+)
+def test_what_is_not_affine_together_stops_at_a_triangle(entry):
+    with pytest.raises(InternalError, match="mode m is not affine in each parameter"):
+        corners(TRIANGLE.beside(Box({"z": UNIT})), entry)
+
+
+def test_a_box_has_one_triangle():
+    other = Box({"v": UNIT, "w": UNIT}, triangle=Triangle("v", "w", (F(1), F(2))))
+    with pytest.raises(InternalError, match="two triangles"):
+        TRIANGLE.beside(other)
+
+
+def test_a_symbol_stands_for_one_parameter():
+    with pytest.raises(InternalError, match="the symbol x stands for two parameters"):
+        BOTH.beside(INVERSE)

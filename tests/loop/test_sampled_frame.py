@@ -1,0 +1,224 @@
+"""One period of the sampled loop: step by step, and in single precision."""
+
+from dataclasses import replace
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from scipy.linalg import expm
+
+from nrs_design.controllers.float32 import to_float32
+from nrs_design.controllers.laws import (
+    Admittance,
+    DiscreteLaw,
+    IntegralForce,
+    PositionControl,
+    ProportionalForce,
+)
+from nrs_design.controllers.replica import step
+from nrs_design.controllers.sensor import DiscreteLowPass
+from nrs_design.controllers.step_analysis import UNIT, rounding_share
+from nrs_design.controllers.step_law import StepFrame, build_law
+from nrs_design.loop.calendar import Turn
+from tests.loop.frames import Frame, frame_of
+
+PERIOD = Fraction(1, 500)
+TAU, KM = Fraction("0.0351"), Fraction("4.8417e-4")
+MOTION = StepFrame(Fraction("117359.43"), Fraction(1_030_000))
+
+
+def _frame(delay: int, *laws: DiscreteLaw) -> Frame:
+    return frame_of(PERIOD, MOTION, laws or (_law("1.04"),), delay, TAU)
+
+
+def _force(Kf: Fraction) -> DiscreteLaw:
+    return DiscreteLaw(ProportionalForce, {"Kf": Kf})
+
+
+POSITION = DiscreteLaw(PositionControl, {})
+
+
+def _law(Bt: str) -> DiscreteLaw:
+    a = np.exp(-float(Bt) * 0.002 / 0.01)
+    return Admittance.discrete(Fraction(a), Fraction((1 - a) / float(Bt)), PERIOD)
+
+
+@pytest.mark.parametrize("faster", [True, False])
+@pytest.mark.parametrize("cases", [8, pytest.param(60, marks=pytest.mark.slow)])
+def test_maps_agree_with_a_simulation_step_by_step(faster, cases):
+    """One period or two, contact lost and lagging, everything else at random.
+
+    The motor is followed from sample to sample by a matrix exponential, and every loop counts its
+    own samples; what the maps say of the same choices is at most 1e-9 off.
+    """
+    rng = np.random.default_rng(17 + faster)
+    situations = set()
+    for case in range(cases):
+        count, tick = (
+            int(rng.integers(2, 8)) if case % 3 else 1,
+            float(rng.choice([1e-4, 5e-4, 2e-3])),
+        )
+        Kp, D = rng.uniform(1e3, 1e5), rng.uniform(0, 1e5)
+        tau, Km, Kt = rng.uniform(0.01, 0.1), rng.uniform(1e-5, 2e-4), rng.choice([0.0, 2.0])
+        longest, inertia = int(rng.integers(0, 4)), bool(rng.integers(0, 2))
+        order, p, q = int(rng.integers(0, 3)), rng.uniform(), rng.uniform()
+        low_pass = DiscreteLowPass(order, Fraction(p), Fraction(q)) if order else None
+        T = tick * (1 if faster else count)
+
+        def law_of(a, b, inertia=inertia, T=T, Kt=Kt):
+            kept = Fraction(a) if inertia else None
+            return Admittance.discrete(kept, Fraction(b), Fraction(T), Fraction(Kt))
+
+        step = StepFrame(Fraction(Kp), Fraction(D), low_pass)
+        other = Turn.ADMITTANCE if faster else Turn.MOTION
+        turns = (Turn.BOTH, other) if count > 1 else (Turn.BOTH,)
+        frame = frame_of(
+            Fraction(tick), step, (law_of(0.5, 0.5),), longest, Fraction(tau), turns=turns
+        )
+        n, E = len(frame.states), float(np.exp(-tick / tau))
+        x = rng.normal(size=n)
+        names = [name.split(" [")[0] for name in frame.states]
+        at = dict(zip(names, x, strict=True))
+        theta, omega, before = at["delta"], at["omega"], at["e before"]
+        reference, held = at["e"] + theta, at.get("u held", 0.0)
+        velocity = at.get("vm", 0.0)
+        lags = [at[f"filtered {i} before"] for i in range(1, order + 1)]
+        samples = [at[f"F {j} before"] for j in range(1, longest + 1)]
+        flow = np.zeros((3, 3))
+        flow[:2] = [[0, 1, 0], [0, -1 / tau, Km / tau]]
+        for t in range(2 * count + 1):
+            k, b = rng.uniform(0, 60), rng.uniform(0, 20)
+            delay, a, gain = int(rng.integers(0, longest + 1)), rng.uniform(), rng.uniform(0, 0.2)
+            push = k * theta + b * omega
+            touches = bool(theta > 0 and push > 0)
+            situations.add((touches, bool(theta > 0)))
+            moves = t % count == 0 if faster else True
+            admits = True if faster else t % count == 0
+            if moves:
+                e = reference - theta
+                held, before = Kp * e + D * (e - before), e
+            if admits:
+                samples = [push if touches else 0.0, *samples]
+                felt = samples[delay]
+                for i, lag in enumerate(lags):
+                    felt = lags[i] = p * lag + q * felt
+                felt += Kt * reference
+                if inertia:
+                    reference, velocity = reference - T * velocity, a * velocity + gain * felt
+                else:
+                    reference -= T * gain * felt
+                samples = samples[:longest]
+            theta, omega = (expm(flow * tick) @ [theta, omega, held])[:2]
+            turn = Turn.BOTH if moves and admits else Turn.MOTION if moves else Turn.ADMITTANCE
+            law = law_of(a, gain)
+            values = {"Km": Km, "E": E} | ({"k": k, "b": b} if touches else {})
+            exact = {key: Fraction(value) for key, value in values.items()}
+            rows = frame.rows(law, delay, exact, turn)
+            x = np.array(rows, dtype=float)[:n, :n] @ x
+            if not moves:
+                assert rows[names.index("u held")][names.index("u held")] == 1
+        found = dict(zip(names, x, strict=True))
+        wanted = {"delta": theta, "omega": omega, "e before": before, "e": reference - theta}
+        wanted |= {"u held": held} if frame.holds else {}
+        wanted |= {"vm": velocity} if inertia else {}
+        wanted |= {f"filtered {i} before": lag for i, lag in enumerate(lags, 1)}
+        wanted |= {f"F {j} before": sample for j, sample in enumerate(samples, 1)}
+        assert found == pytest.approx(wanted, rel=1e-9, abs=1e-9)
+    # Touched, in the air, and deflected without a force.
+    assert situations == {(True, True), (False, False), (False, True)}
+
+
+SINGLE = (
+    (_law("1.04"),),
+    (Admittance.discrete(None, Fraction(3, 8), PERIOD), _force(Fraction(1, 50))),
+    (Admittance.discrete(Fraction(5, 8), Fraction(3, 16), PERIOD, Fraction(3, 2)),),
+    (Admittance.discrete(Fraction(5, 8), Fraction(3, 16), PERIOD, Fraction(3, 2)), POSITION),
+    (_force(Fraction(1, 50)), POSITION),
+    (DiscreteLaw(IntegralForce, {"Kf": Fraction(1, 50), "Ki_T": Fraction(1, 900)}), POSITION),
+)
+
+
+def rounded(law: DiscreteLaw) -> DiscreteLaw:
+    return DiscreteLaw(law.law, {name: to_float32(n) for name, n in law.numbers.items()})
+
+
+STREAMED = ((_law("1.04"),), (Admittance.discrete(None, Fraction(3, 8), PERIOD),))
+
+
+@pytest.mark.parametrize("order", [0, 2])
+@pytest.mark.parametrize(
+    ("laws", "motion"),
+    [
+        *((laws, MOTION) for laws in SINGLE),
+        # A robot that takes velocities.
+        *((laws, StepFrame(Fraction(0), Fraction(0))) for laws in STREAMED),
+    ],
+)
+def test_single_precision_never_leaves_the_roundings(laws, motion, order):
+    """One step of the list in float32, from random states: no state is off by more than is allowed.
+
+    The rows of the frame say what exact arithmetic makes of the same numbers, and how far rounding
+    leads; angles are rounded by shares of the largest one. Controllers change at every step.
+    """
+    rng, idle, nearest = np.random.default_rng(14), Fraction(15, 16), Fraction(0)
+    laws = tuple(map(rounded, laws))
+    p, q = Fraction(3, 5), Fraction(2, 5)
+    low_pass = DiscreteLowPass(order, to_float32(p), to_float32(q)) if order else None
+    step_frame = replace(motion, Kp=to_float32(motion.Kp), low_pass=low_pass)
+    frame = frame_of(PERIOD, step_frame, laws, 1, TAU, idle)
+    law = build_law(step_frame, {str(i): one for i, one in enumerate(laws)}, idle)
+    n, values = len(frame.states), {"Km": KM, "E": Fraction(94, 100)}
+    for _ in range(60):
+        mode = int(rng.integers(len(laws)))
+        held = {v.name: np.float32(0.1 * rng.normal()) for v in law.values}
+        held |= dict.fromkeys(("position", "wanted_torque", "commanded"), np.float32(0))
+        made = step(law, np.array([mode], np.uint32), {k: np.array([v]) for k, v in held.items()})
+        exact = {name: Fraction(float(value)) for name, value in held.items()}
+        x = {text: exact[name] for name, text in frame.stored.items()}
+        x |= {"delta [rad]": exact.get("angle", Fraction(0)), "omega [rad/s]": Fraction(0)}
+        # What is read is the nearest number to the force.
+        x["F 1 before [N*m]"] = exact["torque"] * (1 + Fraction(rng.uniform(-1, 1)) * UNIT)
+        if "reference" in exact:
+            x["e [rad]"] -= exact["angle"]
+        state = [*map(x.get, frame.states), exact.get("velocity_command", Fraction(0))]
+        rows = frame.rows(laws[mode], 1, values)[:-1]
+        after = [sum(c * v for c, v in zip(row, state, strict=False)) for row in rows]
+        angles = exact.keys() & {"angle", "reference", "offset"}
+        largest = 2 * max((abs(exact[k]) for k in angles), default=Fraction(0))
+        sizes = [0, 0, 0, 0, rounding_share(1) * largest, rounding_share(3) * largest, 0]
+        sizes += [abs(size) for size in after[n:]]
+        found = {
+            frame.stored[name]: Fraction(float(value[0]))
+            for name, value in made.states.items()
+            if name in frame.stored
+        }
+        command = Fraction(float(made.outputs["command"][0]))
+        found["omega [rad/s]"] = KM * (1 - values["E"]) * command
+        if "reference" in exact:
+            found["e [rad]"] -= after[n - 1]
+        for name, value in found.items():
+            i = frame.states.index(name)
+            allowed = sum(abs(c) * s for c, s in zip(rows[i][n:], sizes, strict=True))
+            assert abs(value - after[i]) <= allowed, name
+            if allowed:
+                nearest = max(nearest, abs(value - after[i]) / allowed)
+    assert nearest > Fraction(1, 5)
+
+
+def test_the_share_of_many_roundings():
+    """Not below n u / (1 - n u), of which no product of n factors 1 + u has more."""
+    for n in range(1, 16):
+        assert (1 + UNIT) ** n - 1 <= n * UNIT / (1 - n * UNIT) <= rounding_share(n)
+        assert rounding_share(n) < n * UNIT * (1 + Fraction(1, 10**6))
+    for n in (0, 16):
+        with pytest.raises(ValueError, match="not counted"):
+            rounding_share(n)
+
+
+def test_what_rounds_an_error_again_is_counted():
+    """The command takes the rounded error, so a rounded reference changes what u rounds, too."""
+    frame = _frame(1, _force(Fraction(1, 2)))
+    assert [*frame.counts] == ["e", "Kp e", "D (e - e before)", "Kp F"]
+    assert [*frame.roundings] == [*frame.counts, "u of Kp F"]
+    shares = frame.roundings
+    assert shares["u of Kp F"] >= shares["Kp F"] * rounding_share(3)

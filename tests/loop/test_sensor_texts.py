@@ -1,0 +1,70 @@
+"""What a statement says of the force signal."""
+
+from fractions import Fraction
+
+from nrs_design.controllers.float32 import exact_decimal
+from nrs_design.controllers.sensor import LowPass, Sensor
+from nrs_design.loop.assemble import assemble
+from nrs_design.loop.assumptions import sensor_texts
+from nrs_design.pipeline.runs import run_design
+from nrs_design.spec import read_spec
+from tests.support import SOFT_TISSUE
+
+SENSOR = Sensor({"bias": Fraction(1, 3), "drift": Fraction(1, 2)}, LowPass(2, Fraction(200)), 1e-8)
+
+
+def test_without_a_sensor_nothing_is_said():
+    assert not list(sensor_texts(Sensor(), None, disturbed=False))
+
+
+def test_errors_are_summed_rounded_up_and_left_out():
+    filtered, errors, noise = sensor_texts(SENSOR, None, disturbed=False)
+    assert "2 equal lags in a row, x' = w (F - x) with w = 200 rad/s" in filtered
+    assert "at most 0.833334 N*m (rounded up) (bias: 0.333334 N*m (rounded up); " in errors
+    assert "drift: 0.5 N*m)" in errors
+    assert "The statement leaves it out" in errors
+    assert "it has no bound" in noise
+
+
+def test_the_inertia_of_a_tool_is_left_out():
+    (text,) = sensor_texts(Sensor(carries=True), None, disturbed=False)
+    assert "not by its acceleration" in text
+
+
+def test_bounds_on_disturbances_take_them_up():
+    step, errors, _ = sensor_texts(SENSOR, Fraction(1, 500), disturbed=True)
+    assert "x+ = p x + q F with the single-precision numbers p = 0.67" in step
+    assert "It is the force error of the statements that name one" in errors
+
+
+def sensed(folder, more):
+    """Design and assemble soft tissue, in contact that is kept, with what is sampled and sensed."""
+    path = folder / "sensed.nrs.yaml"
+    text = f"{SOFT_TISSUE.read_text(encoding='utf-8')}contact: kept\n{more}"
+    path.write_text(text, encoding="utf-8")
+    designed = run_design(read_spec(path))
+    return designed, assemble(designed.spec, designed.plant, designed.design)
+
+
+def test_the_filter_runs_with_the_outer_loop(tmp_path):
+    sampling = "sampling: {period: 2 ms, outer_period: 0.5 ms, delay: 0}\n"
+    designed, system = sensed(tmp_path, f"{sampling}sensor: {{filter: {{cutoff: 60 Hz}}}}\n")
+    step = designed.design.sensor.filter.discretize(Fraction(1, 2000))
+    (text,) = (text for text in system.assumptions if "through one lag" in text)
+    assert f"p = {exact_decimal(step.p)} and" in text
+    kept = {mode.A.fractions()[5][5] for mode in system.modes}
+    assert kept == {step.p}
+
+
+def test_the_sampled_loop_takes_the_errors_for_its_force_error(tmp_path):
+    _, system = sensed(
+        tmp_path,
+        "sampling: {period: 2 ms, delay: 0}\ndisturbances: {encoder_step: 1e-5 rad}\n"
+        "sensor: {bias: 5e-3 N*m, filter: {cutoff: 60 Hz}}\n",
+    )
+    assert system.states[4] == "filtered 1 before [N*m]"
+    bounds = {channel.name: channel.bound for channel in system.channels}
+    assert bounds["force error"] == Fraction("0.005")
+    texts = " ".join(system.assumptions)
+    assert "force sensor, friction" not in texts
+    assert "the force error of the statements" in texts

@@ -1,0 +1,126 @@
+"""Impedance, position and force controllers in one state."""
+
+from dataclasses import replace
+from fractions import Fraction
+from itertools import product
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from nrs_design.controllers.laws import Admittance
+from nrs_design.loop.assemble import assemble
+from nrs_design.loop.modes import position_mode, velocity_mode
+from nrs_design.models.actuator import Actuator
+from nrs_design.models.contact import KelvinVoigt
+from nrs_design.models.motion_loop import close_motion_loop, realize
+from nrs_design.pipeline.runs import run_design
+from nrs_design.spec import parse_spec, read_spec
+from nrs_design.spec.build_plant import build_plant
+from tests.loop.support import polynomial
+from tests.support import ROOT
+
+F = Fraction
+MIXED = ROOT / "docs" / "examples" / "mixed-controllers.nrs.yaml"
+# Thesis 4.1 and 4.3.
+GAIN, TAU, KD, KP = F("4.8417e-4"), F("0.0351"), F(2060), F("117359.43")
+MOTION = realize(close_motion_loop(Actuator(GAIN, TAU), KP, KD))
+positive = st.fractions("1/100", 100, max_denominator=100)
+
+
+def mixed(**changes):
+    text = MIXED.read_text()
+    for old, new in changes.values():
+        assert old in text
+        text = text.replace(old, new)
+    spec = parse_spec(text)
+    loaded = read_spec(MIXED)
+    design = run_design(loaded).design
+    return assemble(spec, build_plant(spec), design)
+
+
+@given(k=positive, b=positive, Mt=positive, Bt=positive, massless=st.booleans())
+def test_impedance_mode_has_the_poles_that_it_has_alone(k, b, Mt, Bt, massless):
+    law, contact = Admittance(F(0) if massless else Mt, Bt), KelvinVoigt(k, b)
+    shared = position_mode(MOTION, law, contact)
+    assert polynomial(shared) == polynomial(velocity_mode(MOTION, law, contact))
+
+
+def test_the_example_has_one_state_for_all():
+    system = mixed()
+    names = ["approach", "insertion/soft/k-min", "insertion/soft/k-max"]
+    assert [mode.name for mode in system.modes][:3] == names
+    assert system.states == ("xi1", "xi2", "vm [rad/s]", "reference [rad]")
+    approach = system.modes[0].A.fractions()
+    assert [row[:2] for row in approach[:2]] == [list(row) for row in system_motion(system)]
+    assert approach[2:] == [[0, 0, -20, 0], [0, 0, 0, -20]]
+    assert not system.switching.resets
+    texts = " ".join(system.assumptions)
+    assert "act on nothing and decay at 20 1/s" in texts
+    assert "States are continuous at a switch" in texts
+
+
+def system_motion(system):
+    """Motion loop of the example, from its own gains."""
+    plant = build_plant(read_spec(MIXED).spec)
+    design = run_design(read_spec(MIXED)).design
+    return realize(plant.motion_loop(design.motion.Kp, design.motion.Kd)).A
+
+
+def test_resets_lead_from_impedance_controllers_to_the_others():
+    system = mixed(reset=("decay: 20 1/s", "decay: 20 1/s, reset: true"))
+    found = {(reset.source, reset.target) for reset in system.switching.resets}
+    ends = [f"insertion/soft/k-{end}" for end in ("min", "max")]
+    others = ["approach", "hold/soft/k-min", "hold/soft/k-max"]
+    assert found == set(product(ends, others))
+    kept = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 0, 0], [0, 0, 0, 0]]
+    assert all(reset.map.fractions() == kept for reset in system.switching.resets)
+    texts = " ".join(system.assumptions)
+    assert "they are set to zero" in texts
+    assert "start from the rest position, with vm = 0." in texts
+    assert "All other states are continuous" in texts
+
+
+def test_what_is_held_is_said_to_be():
+    texts = " ".join(mixed(held=("decay: 20 1/s", "decay: 0 1/s")).assumptions)
+    assert "act on nothing and are held" in texts
+
+
+def test_without_inertia_no_velocity_is_said_to_start_at_zero(tmp_path):
+    text = MIXED.read_text().replace("decay: 20 1/s", "decay: 20 1/s, reset: true")
+    path = tmp_path / "mixed-controllers.nrs.yaml"
+    path.write_text(text.replace("Mt: 0.01 kg*m^2", "Mt: 0 kg*m^2"))
+    designed = run_design(read_spec(path))
+    system = assemble(designed.spec, designed.plant, designed.design)
+    texts = " ".join(system.assumptions)
+    assert "impedance controllers start from the rest position." in texts
+    assert "vm" not in texts
+
+
+def test_only_controllers_of_the_spec_are_named():
+    spec = parse_spec(MIXED.read_text())
+    design = run_design(read_spec(MIXED)).design
+    without = replace(design, controllers=design.controllers[:2])
+    texts = " ".join(assemble(spec, build_plant(spec), without).assumptions)
+    assert "Impedance controllers integrate" in texts
+    assert "While a position controller is active" in texts
+    assert "force controller" not in texts
+
+
+def test_decay_is_the_single_precision_number_that_the_robot_holds():
+    system = mixed(slow=("decay: 20 1/s", "decay: 0.1 1/s"))
+    held = F(13421773, 2**27)
+    assert abs(held - F("0.1")) < F(1, 10**8)
+    assert system.modes[0].A.fractions()[2][2] == -held
+    assert "decay at 0.100000001490116119384765625 1/s" in " ".join(system.assumptions)
+
+
+def test_a_spring_acts_on_the_reference_that_others_leave_idle(tmp_path):
+    text = MIXED.read_text(encoding="utf-8")
+    sprung = text.replace("    Bt:", "    Kt: 0.5 N*m/rad\n    Bt:", 1)
+    path = tmp_path / "mixed.nrs.yaml"
+    path.write_text(sprung, encoding="utf-8")
+    designed = run_design(read_spec(path))
+    system = assemble(designed.spec, designed.plant, designed.design)
+    texts = " ".join(system.assumptions)
+    assert "draws it to zero" in texts
+    assert "which no switch resets" not in texts

@@ -51,7 +51,7 @@ class Calendar:
     @property
     def holds(self) -> bool:
         """Whether a command outlasts a sample, and is not on its way anyway."""
-        return Turn.ADMITTANCE in self.turns or (Turn.HELD in self.turns and not self.sent)
+        return not self.sent and not {Turn.ADMITTANCE, Turn.HELD}.isdisjoint(self.turns)
 
 
 def turns_of(sampling: SamplingSpec) -> tuple[Turn, ...]:

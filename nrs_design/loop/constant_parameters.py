@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from nrs_design.errors import AssemblyError, InternalError
 from nrs_design.models.cut import Ends
+from nrs_design.models.drive import GAIN
 from nrs_design.models.interval import Interval
 from nrs_design.proof.switching import FixedParameter
 from nrs_design.proof.system import SwitchedSystem
@@ -68,17 +69,17 @@ def constants_of(
     Numbers of a sampled loop enclose those of a constant time constant, so their corners are none
     of its values.
     """
-    if plant.drive is not None and sampled:
+    moved, ranges = plant.held, plant.actuator_ranges
+    if moved is not None and sampled:
         tissue = tuple(_of_tissue(plant, touched))
-        if tissue and plant.drive.loaded and len(touched) > 1:
+        if tissue and moved.loaded and len(touched) > 1:
             raise AssemblyError(
                 f"{tissue[0].said.name} is constant, but within a period the drive may go from one "
                 "contact to another, and their ends are not told apart",
                 remedy="leave out `varies: false` of what is touched, or touch one environment",
             )
-        yield from _enclosed((*_of_drive(plant.drive, drive), *tissue))
+        yield from _enclosed((*_of_drive(moved, drive, ranges.command), *tissue))
         return
-    ranges = plant.actuator_ranges
     if ranges.gain.is_constant:
         unit = f"rad/s/{ranges.command}"
         yield _between_ends(f"{drive}.gain", ranges.gain, "Km", unit)
@@ -98,6 +99,7 @@ _DRIVEN = {
     "J": ("inertia", "kg*m^2"),
     "B": ("friction", "N*m*s/rad"),
     "tau": ("time_constant", "s"),
+    GAIN: ("gain", "rad/s/"),
 }
 
 
@@ -106,10 +108,11 @@ def _enclosed(found: Iterable[ConstantParameter]) -> Iterator[ConstantParameter]
     return (replace(one, said=replace(one.said, enclosed=True)) for one in found)
 
 
-def _of_drive(drive: Drive, part: str) -> Iterator[ConstantParameter]:
+def _of_drive(drive: Drive, part: str, command: str) -> Iterator[ConstantParameter]:
     for symbol, interval in drive.ranges.items():
         if interval.is_constant:
             key, unit = _DRIVEN[symbol]
+            unit = f"{unit}{command}" if symbol == GAIN else unit
             inverse = symbol in drive.inverse
             yield _between_ends(f"{part}.{key}", interval, symbol, unit, inverse=inverse)
 

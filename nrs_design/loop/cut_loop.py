@@ -39,10 +39,11 @@ from nrs_design.loop.held_motor import hold
 from nrs_design.loop.joint import Joint
 from nrs_design.loop.modes import ForceShare, position_mode, velocity_mode
 from nrs_design.loop.program import SampledProgram
-from nrs_design.loop.sampled import Rows, SampledLoop
+from nrs_design.loop.sampled import NOTHING, Contact, Rows, SampledLoop
 from nrs_design.models.actuator import Actuator, ActuatorRanges
 from nrs_design.models.contact.law import AbstractLinearLaw
-from nrs_design.models.drive import Drive, Takes
+from nrs_design.models.drive import GAIN, LOAD, Drive, Takes
+from nrs_design.models.interval import Interval
 from nrs_design.models.linear_form import LinearForm
 from nrs_design.models.motion_loop import JointMotionLoop, Realization, realize
 from nrs_design.models.plant import Plant
@@ -190,6 +191,7 @@ class ProcessorAxis(AbstractAxis):
     low_pass: LowPass | None = None
     takes: Takes | None = None
     drive: Drive | None = None
+    loaded: bool = False  # Whether what is touched slows the motor
 
     @property
     def period(self) -> Fraction:
@@ -223,28 +225,30 @@ class ProcessorAxis(AbstractAxis):
     def _cut(self, law: DiscreteLaw, contact: AbstractLinearLaw, place: Place) -> CutLoop:
         # One place is asked for, and the hash of all takes as long as the loop.
         alone = replace(self, places=())
-        opened, closed = (_of_step(alone, law, place, *touch) for touch in _touches(contact))
-        while opened[-1] == closed[-1] == 0:  # A force sample that leaves its last place.
-            opened, closed = opened[:-1], closed[:-1]
-        opened, closed = (on_the_axis(p, self.period) for p in (opened, closed))
-        return CutLoop(opened, closed, opened)
+        loops = [_of_step(alone, law, place, *touch) for touch in _touches(contact)]
+        while all(p[-1] == 0 for p in loops):  # A force sample that leaves its last place.
+            loops = [p[:-1] for p in loops]
+        return CutLoop(*(on_the_axis(p, self.period) for p in loops))
 
     def _modes(
         self, law: DiscreteLaw, contact: AbstractLinearLaw, place: Place
     ) -> tuple[Sequence[LinearForm], Sequence[LinearForm]]:
-        """Close the loop over a period of the force; what is touched does not load the motor."""
-        opened, closed = (self.step(law, place, *touch) for touch in _touches(contact))
+        """Close the loop over a period of the force."""
+        opened, closed, _ = (self.step(law, place, *touch) for touch in _touches(contact))
         return opened, closed
 
     def step(
-        self, law: DiscreteLaw, place: Place, k: Fraction, b: Fraction
+        self, law: DiscreteLaw, place: Place, sensed: Contact, carried: Contact
     ) -> Sequence[LinearForm]:
-        """Return what a period makes of the states, in contact of a stiffness and damping."""
-        loop, flow = _loop(self, law, place)
+        """Return what a period makes of the states.
+
+        `sensed` is what the force sample shows, `carried` what slows a motor with a load.
+        """
+        loop, flow = _loop(self, law, place, carried if self.loaded else NOTHING)
         n = len(loop.states)
 
         def rows(turn: Turn, age: int) -> list[LinearForm]:
-            period = loop.period(loop.sample(law, age, (k, b), turn), flow)
+            period = loop.period(loop.sample(law, age, sensed, turn), flow)
             return [row[:n] for row in period.moves]
 
         whole, between = rows(Turn.BOTH, place.age), self.sampling.round - 1
@@ -253,21 +257,24 @@ class ProcessorAxis(AbstractAxis):
         return whole
 
 
-def _touches(contact: AbstractLinearLaw) -> tuple[tuple[Fraction, Fraction], ...]:
-    """Return stiffness and damping of nothing, and of a contact."""
-    return (ZERO, ZERO), (contact.exact[0], (*contact.exact, ZERO)[1])
+def _touches(contact: AbstractLinearLaw) -> tuple[tuple[Contact, Contact], ...]:
+    """Return what is sensed and carried of a contact: opened, closed, and where it does not act."""
+    touched = contact.exact[0], (*contact.exact, ZERO)[1]
+    return (NOTHING, touched), (touched, touched), (NOTHING, NOTHING)
 
 
 # Laws and contacts of a spec share what touches nothing, and the motor.
 @lru_cache(maxsize=_KEPT)
 def _of_step(
-    axis: ProcessorAxis, law: DiscreteLaw, place: Place, k: Fraction, b: Fraction
+    axis: ProcessorAxis, law: DiscreteLaw, place: Place, sensed: Contact, carried: Contact
 ) -> Polynomial:
-    return characteristic(axis.step(law, place, k, b))
+    return characteristic(axis.step(law, place, sensed, carried))
 
 
 @lru_cache(maxsize=_KEPT)
-def _loop(axis: ProcessorAxis, law: DiscreteLaw, place: Place) -> tuple[SampledLoop, Rows]:
+def _loop(
+    axis: ProcessorAxis, law: DiscreteLaw, place: Place, carried: Contact
+) -> tuple[SampledLoop, Rows]:
     """Return the loop of a law, and what flows in a period: the middle of what encloses it."""
     T = axis.sampling.outer
     low_pass = None if axis.low_pass is None else axis.low_pass.discretize(T)
@@ -276,7 +283,9 @@ def _loop(axis: ProcessorAxis, law: DiscreteLaw, place: Place) -> tuple[SampledL
     timing = CommandTiming(axis.sampling.step, place.late, place.late)
     motor = hold(ActuatorRanges.point(place.motor), timing)
     if axis.drive is not None:
-        motor = HeldDrive.of(axis.drive.at({"tau": place.motor.time_constant}), timing)
+        known = axis.drive.at({"tau": place.motor.time_constant, GAIN: place.motor.gain})
+        touched = {s: Interval.point(v) for s, v in zip(LOAD, carried, strict=True)}
+        motor = HeldDrive.of(known, timing, touched)
     middle = {symbol: interval.middle for symbol, interval in motor.box.ranges.items()}
     middle |= {**dict.fromkeys(motor.box.hull[0], ZERO), "Km": place.motor.gain}
     calendar = Calendar(timing, (place.age, place.age))
@@ -301,7 +310,8 @@ def axis_of(
     if sampling.outer < sampling.period.exact:
         return None
     places = tuple(_places(ranges, sampling.delay, spec.late))
-    return ProcessorAxis(places, motion, sampling, low_pass, spec.takes, plant.drive)
+    loaded = plant.drive is None and plant.held is not None
+    return ProcessorAxis(places, motion, sampling, low_pass, spec.takes, plant.held, loaded)
 
 
 def _places(

@@ -80,7 +80,7 @@ def assume_sampled(
         *_jump_texts(plant.drive),
         _delay_text(*sampling.delay),
         _motor_text(plant, loop, conditions.axis, environments),
-        *([] if design.takes is Takes.TORQUE else [say("unloaded.sampled")]),
+        *_load_texts(plant, conditions.axis, environments),
         *(map(say, ("friction.period", "at-samples.force")) if disturbed else ()),
         say(f"inputs.{inputs}{but}", rest=REST[loss == "on the surface"]),
         *_spring_texts(program, design),
@@ -109,16 +109,21 @@ def assume_sampled(
 def _period_texts(sampling: SamplingSpec, design: ControllerDesign) -> Iterator[Assumption]:
     """Say when what is computed."""
     period, outer = exact_text(sampling.period.exact), exact_text(sampling.outer)
-    if sampling.jitter is not None:
-        jitter = exact_text(sampling.unsteady)
-        yield say("period.jitter", f"{period} s +- {jitter} s", period=period, jitter=jitter)
-        return
+    jitter = exact_text(sampling.unsteady)
     if sampling.round == 1:
-        yield say("period.single", f"{period} s, exactly", period=period)
+        if sampling.jitter is None:
+            yield say("period.single", f"{period} s, exactly", period=period)
+        else:
+            yield say("period.jitter", f"{period} s +- {jitter} s", period=period, jitter=jitter)
         return
     filtered = "" if design.sensor.filter is None else ", the filter of the force"
-    bound = f"{period} s and {outer} s, exactly"
-    yield say("period.double", bound, period=period, outer=outer, filtered=filtered)
+    steady, exactly = "Neither has jitter", "exactly"
+    if sampling.jitter is not None:
+        steady = f"A period of the faster one lasts up to {jitter} s more or less at every sample"
+        exactly = f"+- {jitter} s at a sample"
+    bound = f"{period} s and {outer} s, {exactly}"
+    said = {"period": period, "outer": outer, "filtered": filtered, "steady": steady}
+    yield say("period.double", bound, **said)
     yield say("period.order", "the order that is named")
 
 
@@ -158,6 +163,8 @@ def _motor_text(
     elif tau.low == tau.high:
         corner = f"an end, less than 2^-{EXPONENTIAL_BITS - 1} away"
     moving = ranges.may_change("at every sample, not in between")
+    if plant.load_inertia is not None and plant.drive is None:
+        return say("motor.loaded", motor, motor=motor, moving=moving)
     if plant.drive is not None:
         return _drive_text(plant.drive, axis, environments)
     if loop.program.step.streams:
@@ -172,6 +179,22 @@ def _motor_text(
     )
 
 
+def _load_texts(
+    plant: Plant, axis: AxisType, environments: Sequence[Environment]
+) -> Iterator[Assumption]:
+    """Say what loads the motor, unless that is what a drive says of itself."""
+    if plant.held is None or not plant.held.loaded:
+        yield say("unloaded.sampled")
+    elif plant.drive is None and plant.load_inertia is not None:
+        inertia = f"{exact_text(plant.load_inertia)} {axis.unit('kg*m^2')}"
+        yield say("load.sampled", inertia, inertia=inertia, but=_but_constant(environments))
+
+
+def _but_constant(environments: Sequence[Environment]) -> str:
+    touched = chain.from_iterable(environment.ranges for environment in environments)
+    return ", but for what is constant" * any(number.is_constant for number in touched)
+
+
 def _drive_text(drive: Drive, axis: AxisType, environments: Sequence[Environment]) -> Assumption:
     """Say how a robot moves that has no motor of the user's."""
     moving = may_change(drive.ranges.values(), "at every sample, not in between")
@@ -179,8 +202,7 @@ def _drive_text(drive: Drive, axis: AxisType, environments: Sequence[Environment
         inertia = f"{interval_text(drive.ranges['J'])} {axis.unit('kg*m^2')}"
         friction = f"{interval_text(drive.ranges['B'])} {axis.unit('N*m*s/rad')}"
         bound = f"J {inertia}, B {friction}"
-        touched = chain.from_iterable(environment.ranges for environment in environments)
-        but = ", but for what is constant" * any(number.is_constant for number in touched)
+        but = _but_constant(environments)
         said = {"inertia": inertia, "friction": friction, "moving": moving, "but": but}
         return say("motor.torque", bound, **said)
     if "tau" in drive.ranges:

@@ -8,7 +8,6 @@ from itertools import product
 
 from nrs_design.controllers.controller_design import Controller
 from nrs_design.controllers.laws import DiscreteLaw
-from nrs_design.controllers.parts import FORCE_GAIN
 from nrs_design.loop.calendar import Turn
 from nrs_design.loop.constant_parameters import ConstantParameter, Corner
 from nrs_design.loop.held import HeldPoint, Label, Spot, points_of, spot_of, spots_of
@@ -87,6 +86,11 @@ class Modes:
     motors: tuple[tuple[tuple[str, ...], HeldMotor], ...]
     _known: dict[object, tuple[HeldPoint, ...]] = field(default_factory=dict)
 
+    @property
+    def _loaded(self) -> bool:
+        """Whether what is touched acts on the motor."""
+        return self.motor.drive is not None and self.motor.drive.loaded
+
     def of_controller(self, c: Controller, law: DiscreteLaw) -> Iterator[SampledMode]:
         """Yield the modes of a controller in all its contacts, or in the air if it has none.
 
@@ -94,8 +98,8 @@ class Modes:
         """
         contacts = tuple(e for name in c.contacts for e in self.environments if e.name == name)
         if not contacts:
-            # It is the same there as in contact, unless a force sample outlasts its period.
-            touches = FREE if self.loop.remembers else ""
+            # It is the same there as in contact, unless a sample or the motor feels the force.
+            touches = FREE if self.loop.remembers or self._loaded else ""
             yield from self._of(c.name, (c.name,), law, touches=touches)
             contacts = self.environments if touches else ()
         for e in contacts:
@@ -106,9 +110,11 @@ class Modes:
         yield from self._of(c.name, (c.name, FREE), law, touches=FREE)
 
     def between(self, law: DiscreteLaw, *where: str) -> Iterator[SampledMode]:
-        """Yield the modes at samples of the motion loop alone, which no force reaches."""
-        turn = Turn.MOTION
-        yield from self._of(f"/{turn}", (str(turn), *where), law, turns=(turn,))
+        """Yield the modes at samples of the motion loop alone, which no force sample reaches."""
+        turn, group = Turn.MOTION, f"/{Turn.MOTION}"
+        for e in self.environments if self._loaded else ():
+            yield from self._of(group, (str(turn), e.name), law, e, self.environments, (turn,))
+        yield from self._of(group, (str(turn), *where), law, turns=(turn,))
 
     def missed(self, law: DiscreteLaw, contacts: Sequence[Environment]) -> Iterator[SampledMode]:
         """Yield the modes of a period whose deadline is missed, in all contacts or in none."""
@@ -132,7 +138,7 @@ class Modes:
         turns = turns or tuple(turn for turn in self.loop.calendar.turns if turn.has_law)
         head = Spot(tuple(Label(name, attained=True, constant=False) for name in names))
         # The force of a sample that no law takes matters where it is still on its way.
-        sampled = turns[0].has_law or self.loop.calendar.ages[1] > 0
+        sampled = turns[0].has_law or (turns[0].is_miss and self.loop.calendar.ages[1] > 0)
         for touched in self._touching(e, contacts, sampled=sampled):
             for turn, age, said in self._samples(law, turns, touched):
                 where = head + touched.spot + said
@@ -202,7 +208,7 @@ class Modes:
         sampled: bool,
     ) -> TouchedDrive:
         constants, nothing = self._constants(e), Box({})
-        forced = any(FORCE_GAIN in law.numbers for law in self.loop.program.laws)
+        forced = self.loop.takes_force
         seen, load = (Box(own), nothing) if not loaded or forced else (nothing, Box(own))
         depends = loaded or (e is not None and e.depends)
         spots = spots_of(seen if sampled else nothing, "" if depends else "kb", constants)

@@ -63,15 +63,16 @@ def close_sampled_loop(
     }
     timing = timing_of(sampling, conditions.late)
     motor = hold(plant.actuator_ranges, timing)
-    if plant.drive is not None:
-        motor = HeldDrive.of(plant.drive, timing)
+    if plant.held is not None:
+        motor = HeldDrive.of(plant.held, timing)
     program = sampled_program(conditions.idle, sampling, design, tuple(laws.values()))
     calendar = Calendar(timing, turns=turns_of(sampling))
     loop = SampledLoop(program, design.takes, motor.states, calendar)
     if loop.takes_force:
         loop = replace(loop, calendar=replace(calendar, ages=sampling.delay))
     environments = plant.among(design.contacts)
-    loss = _loss_of_contact(conditions.contact, environments, design)
+    slowed = plant.drive is None and plant.load_inertia is not None
+    loss = _loss_of_contact(conditions.contact, environments, design, slowed=slowed)
     every = Modes(
         loop,
         motor,
@@ -173,15 +174,22 @@ def _modes(
 
 
 def _loss_of_contact(
-    contact: str | None, environments: Iterable[Environment], design: ControllerDesign
+    contact: str | None,
+    environments: Iterable[Environment],
+    design: ControllerDesign,
+    *,
+    slowed: bool,
 ) -> Loss:
-    """Tell how contact is lost; with springs everywhere, free motion is a mode like others."""
+    """Tell how contact is lost; with springs everywhere, free motion is a mode like others.
+
+    A motor that is `slowed` by what it touches would lose it within a period, too.
+    """
     if any(c.law.commands == "position" for c in design.controllers):
         # Force control rests in the air where it does in contact: at what is commanded.
         lost = contact == "losable"
         return "anywhere under force control" if lost else "not under force control"
     sprung = {c.law.spring != 0 for c in design.controllers}
-    if contact == "kept" or (True in sprung and contact is None):
+    if contact == "kept" or ((slowed or True in sprung) and contact is None):
         return "never"
     if any(e.preloaded or (e.parts and not e.each_losable) for e in environments):
         return "not modelled"

@@ -21,6 +21,8 @@ Rows = tuple[tuple[Fraction, ...], ...]
 OMEGA = "omega [rad/s]"
 # Symbols of the stiffness and the damping of what a joint touches.
 LOAD = ("k", "b")
+# Symbol of the gain of a motor.
+GAIN = "Km"
 
 
 class Takes(StrEnum):
@@ -72,7 +74,7 @@ class Drive:
 
     __eq__, __hash__ = object.__eq__, object.__hash__
 
-    takes: Takes
+    takes: Takes | None  # None for the commands of a motor
     states: tuple[str, ...]  # Names and units; the velocity first, the deflection left out
     # A and B in a row, of the states and the deflection: of as many columns and one more. Where the
     # velocity jumps with the command, it is not among them.
@@ -102,6 +104,23 @@ class Drive:
                 remedy="scale the ranges by less",
             )
         return replace(self, ranges=ranges)
+
+
+def loaded_motor(gain: Interval, time_constant: Interval, load: Fraction) -> Drive:
+    """Return a motor that is slowed: ``tau omega' = Km u - omega - tau (k delta + b omega)/J``.
+
+    tau is in s, Km in rad/s per unit of the command, the load J at the joint in kg m^2.
+    """
+    nothing = (ZERO, ZERO, ZERO)
+    rows = {
+        ("tau",): ((-ONE, ZERO, ZERO), nothing),
+        (GAIN, "tau"): ((ZERO, ZERO, ONE), nothing),
+        (LOAD[0],): ((ZERO, -1 / load, ZERO), nothing),
+        (LOAD[1],): ((-1 / load, ZERO, ZERO), nothing),
+        (): (nothing, (ONE, ZERO, ZERO)),
+    }
+    ranges = {GAIN: gain, "tau": time_constant}
+    return Drive(None, (OMEGA,), MultiAffine(rows), ranges, frozenset({"tau"}), loaded=True)
 
 
 def torque_drive(inertia: Interval, friction: Interval) -> Drive:

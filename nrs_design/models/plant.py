@@ -8,7 +8,7 @@ from fractions import Fraction
 
 from nrs_design.models.actuator import Actuator, ActuatorRanges
 from nrs_design.models.contact.environment import Environment
-from nrs_design.models.drive import Drive
+from nrs_design.models.drive import Drive, loaded_motor
 from nrs_design.models.motion_loop import MotionLoop, close_motion_loop
 
 
@@ -26,6 +26,14 @@ class Plant:
     load_inertia: Fraction | None = None
     # What moves the joint, where that is no first-order motor whose velocity is commanded.
     drive: Drive | None = None
+
+    @property
+    def held(self) -> Drive | None:
+        """What moves the joint between samples, but for a motor that nothing slows."""
+        if self.drive is not None or self.load_inertia is None:
+            return self.drive
+        motor = self.actuator_ranges
+        return loaded_motor(motor.gain, motor.time_constant, self.load_inertia)
 
     def motion_loop(self, Kp: Fraction, Kd: Fraction) -> MotionLoop:
         """Return G: the one that the spec states, else the one that the PD gains make.

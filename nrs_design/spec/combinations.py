@@ -75,19 +75,21 @@ COMBINATIONS: tuple[Row[Spec], ...] = (
     *_beside(HAND, LOSABLE, SAMPLED, DISTURBED, IDLE, LOADED),
     *_beside(PRELOADED, LOSABLE, DISTURBED),
     *_beside(MEMORY, SAMPLED, IDLE),
-    not_together(DAMPED_FORCE),
+    # Its command would depend on itself.
+    not_together(DAMPED_FORCE, CONTINUOUS),
     not_together(HEAVY_AT_ONCE),
     not_together(LOSABLE, LAGGING_AT_ONCE),
     not_together(OFFSET, IDLE),
     not_together(IDLE_RESET, BLEEDING),
-    not_together(FILTER, OTHERS),
+    not_together(FILTER, OTHERS, CONTINUOUS),
     # The motor. Under a preload, one that carries what is touched rests elsewhere for every gain.
     *_beside(GIVEN_LOOP, MOTOR_RANGE, LOADED),
     not_together(LOADED, MOTOR_RANGE, PRELOADED),
+    # It would lose what slows it within a period, too.
+    not_together(LOADED, LOSABLE, SAMPLED),
+    not_together(LOADED, SATURATED, SAMPLED),
     not_together(MOTOR_RANGE, OTHERS, CONTINUOUS),
-    not_together(LOADED, OTHERS),
-    # Without this row a sampled loop would be proved with the motor that nothing loads.
-    not_together(LOADED, SAMPLED),
+    not_together(LOADED, OTHERS, CONTINUOUS),
     # No proof that rests on constants knows these, or they hold what is not constant.
     *_beside(CONSTANT_MOTOR, LOSABLE, TWO_PERIODS),
     *_beside(CONSTANT_TISSUE, LOSABLE, TWO_PERIODS, AT_ONCE, MEMORY, PRELOADED),
@@ -99,7 +101,7 @@ COMBINATIONS: tuple[Row[Spec], ...] = (
     *(not_together(DWELL, *features) for features in CHANGING),
     *_beside(TWO_PERIODS, OTHERS, RULES),
     # The rule for misses decides what may follow what.
-    *_beside(MISSES, TWO_PERIODS, RULES, OTHERS, CONSTANT_MOTOR, CONSTANT_TISSUE),
+    *_beside(MISSES, TWO_PERIODS, RULES, CONSTANT_MOTOR, CONSTANT_TISSUE),
     # A position of zero is a place of the robot, and nothing says where the contact is from there.
     not_together(ZEROED, PLACED),
     # Its command is a velocity, and nothing stands where a reference would.
@@ -107,8 +109,7 @@ COMBINATIONS: tuple[Row[Spec], ...] = (
     not_together(STREAMED, MOTOR_RANGE, CONTINUOUS),
     # Its law makes the torque, and what is touched brakes the joint between two samples.
     *_beside(TORQUES, TWO_PERIODS, CONTINUOUS),
-    # When a command takes effect within a period is known to a loop of one period alone.
-    *_beside(TIMED, CONTINUOUS, TWO_PERIODS),
+    not_together(TIMED, CONTINUOUS),
     # What is about a pivot, or has units of a rotation in its words.
     *_beside(SLIDING, MODE_LOGIC, TOOL),
     not_together(COMMAND, OTHERS, SAMPLED),

@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.linalg import expm
 
-from nrs_design.controllers.laws import LAWS, Admittance
+from nrs_design.controllers.laws import Admittance
 from nrs_design.controllers.step_law import StepFrame
 from nrs_design.errors import AssemblyError
 from nrs_design.loop.command_timing import CommandTiming
@@ -23,6 +23,7 @@ from nrs_design.models.contact.environment import Environment
 from nrs_design.models.drive import (
     Takes,
     lagging_drive,
+    loaded_motor,
     position_drive,
     torque_drive,
     velocity_drive,
@@ -36,6 +37,9 @@ T = F(1, 500)
 SECOND = MotionLoop((F(900),), (F(1), F(60), F(900)))
 ZEROED = MotionLoop((F(28), F(1619)), (F(1), F(57), F(1619)))
 TORQUE = torque_drive(Interval(F(1, 5), F(3, 20), F(3, 10)), Interval(F(1, 2), F(2, 5), F(3, 5)))
+MOTOR = loaded_motor(
+    Interval(F(1), F(9, 10), F(11, 10)), Interval(F(3, 100), F(1, 50), F(1, 25)), F(1, 5)
+)
 TOUCHED = {"k": Interval(F(40), F(20), F(60)), "b": Interval(F(1, 10), F(0), F(1, 5))}
 CONSTANT = {s: replace(interval, varies=False) for s, interval in TOUCHED.items()}
 DRIVES = {
@@ -46,6 +50,7 @@ DRIVES = {
     "torque": (TORQUE, TOUCHED),
     "torque, constant load": (TORQUE, CONSTANT),
     "torque in the air": (TORQUE, None),
+    "loaded motor": (MOTOR, TOUCHED),
 }
 
 
@@ -174,38 +179,6 @@ def floats_of(frame, law, delay=0, **values):
     held = dict.fromkeys(frame.motor.box.hull[0], F(0))
     rows = frame.rows(law, delay, held | values)[:n]
     return np.array([[float(v) for v in row[:n]] for row in rows])
-
-
-@pytest.mark.parametrize("late", [F(0), T / 3, T, F(5, 2) * T])
-@pytest.mark.parametrize("touched", [0, 40])
-def test_a_torque_loop_has_the_roots_of_the_split_period(late, touched):
-    """By hand, with the command of a sample in force from its latency on."""
-    J, B, K, D, step = 0.2, 0.5, 30.0, 3.0, float(T)
-    law = LAWS["torque-impedance"](F(30), F(3)).discretize(T, "exact")
-    drive = torque_drive(Interval.point(F(1, 5)), Interval.point(F(1, 2)))
-    timing = CommandTiming(T, late, late)
-    motor = HeldDrive.of(drive, timing, {"k": Interval.point(F(touched))})
-    frame = Frame(timing, motor, StepFrame(F(0), F(0), takes=Takes.TORQUE), (law,), 0)
-    assert frame.states[:2] == ("omega [rad/s]", "e before [rad]")
-    A = np.array([[-B / J, -touched / J, 1 / J], [1, 0, 0], [0, 0, 0]])
-    rng = np.random.default_rng(2)
-    theta, omega, before = rng.normal(size=3)
-    sent = [*rng.normal(size=4)]
-    x = {"omega [rad/s]": omega, "e before [rad]": before, "delta [rad]": theta}
-    x |= {f"u {i} before": u for i, u in enumerate(sent, 1)}
-    u = K * -theta + D / step * (-theta - before)
-    whole = int(late // T)
-    part = float(late - whole * T)
-    every = [u, *sent]
-    z = np.array([omega, theta, every[whole + (part > 0)]])
-    z = expm(A * part) @ z
-    z[2] = every[whole]
-    z = expm(A * (step - part)) @ z
-    after = floats_of(frame, law, k=F(touched)) @ [x[name] for name in frame.states]
-    wanted = {"omega [rad/s]": z[0], "delta [rad]": z[1], "e before [rad]": -theta}
-    for name, value in zip(frame.states, after, strict=True):
-        if name in wanted:
-            assert value == pytest.approx(wanted[name], rel=1e-6, abs=1e-9)
 
 
 @pytest.mark.parametrize("inert", [True, False])

@@ -24,12 +24,18 @@ def step(loop, names, drawn):
     delta, omega, drive = before["delta"], old("omega", none), loop["drive"]
     force = drawn["k at sample"] * delta + drawn["b at sample"] * omega
     forces = [force, *(old(f"F {j} before", none) for j in range(1, loop["delay"][1] + 1))]
-    after, u = _law(loop, before, forces[drawn["age"]], none)
+    held, turn = old("u 1 before", old("u held", none)), drawn["turn"]
+    after, u = _law(loop, before, forces[drawn["age"]], none, drawn["active"])
     commands = [u, *(old(f"u {j} before", none) for j in range(1, drawn["waiting"] + 1))]
     if drawn["missed"]:
-        held = old("u 1 before", old("u held", none))
         after = {name: old(name, none) for name in after}
         commands[0] = none if loop["misses"] == "zero" else held
+    if turn == "motion":
+        # The law rests, and no sample of the force comes in.
+        after = {n: after[n] if n == "e before" else old(n, none) for n in after}
+        forces = forces[1:]
+    if turn == "admittance":
+        after["e before"], commands[0] = old("e before"), held
     motion, omega = _motion(loop, drawn, commands, omega, delta)
     shift = motion if drive == "position" else none
     after |= {"delta": delta + motion, "omega": omega}
@@ -41,9 +47,11 @@ def step(loop, names, drawn):
     return np.array([after[name] for name in names])
 
 
-def _law(loop, before, force, none):
+def _law(loop, before, force, none, active):
     """Return the states of the law after a sample, and the command."""
     T, drive, after = loop["period"], loop["drive"], {}
+    outer = T * loop["round"] if loop["turns"] == "motion" else T
+    inner = T * loop["round"] if loop["turns"] == "admittance" else T
     law = {name: single(value) for name, value in loop["law"].items()}
     if drive == "torque":
         R = law["R"]
@@ -51,30 +59,41 @@ def _law(loop, before, force, none):
         D = single(law["damping"] / T / R)
         u = single(law["stiffness"] / R) * e + D * (e - before["e before"])
         return {"e before": e}, u + single(1 - 1 / R) * force
-    p = single(np.exp(-2 * np.pi * loop["cutoff"] * T)) if loop["lags"] else 0.0
+    p = single(np.exp(-2 * np.pi * loop["cutoff"] * outer)) if loop["lags"] else 0.0
     for j in range(1, loop["lags"] + 1):
         force = p * before[f"filtered {j} before"] + single(1 - p) * force
         after[f"filtered {j} before"] = force
     Mt, Bt = law["Mt"], law["Bt"]
-    a = np.exp(-Bt * T / Mt) if Mt else 0.0
+    if active == "force":
+        after["e before"] = e = -single(loop["force"]) * force - before["delta"]
+        left = single(np.exp(-loop["decay"] * T))
+        after |= {name: left * before.get(name, none) for name in ("vm", "reference")}
+        return after, _motor(law, inner, e, before)
+    a = np.exp(-Bt * outer / Mt) if Mt else 0.0
     vm = single(a) * before.get("vm", none) + single((1 - a) / Bt) * force
     after["vm"] = vm
     if drive == "velocity":
         return after, -vm
-    e = before["e"]
-    moved = e - single(T) * (before["vm"] if Mt else vm)
-    after["e"] = moved
+    # Beside force controllers the reference is a state, and alone the error of motion.
+    e = before["reference"] - before["delta"] if loop["decay"] else before["e"]
+    moved = e - single(outer) * (before["vm"] if Mt else vm)
+    after |= {"e": moved, "reference": moved + before["delta"]}
     if drive == "position":
         return after, moved
     after["e before"] = e
+    return after, _motor(law, inner, e, before)
+
+
+def _motor(law, T, e, before):
+    """Return the command of the motion controller."""
     D = single(law["Kd"] / T)
-    return after, single(law["Kd"] * law["zero"]) * e + D * (e - before["e before"])
+    return single(law["Kd"] * law["zero"]) * e + D * (e - before["e before"])
 
 
 def _motion(loop, drawn, commands, omega, delta):
     """Return by how far the joint moves in the period, and its velocity at the end."""
     drive, length = loop["drive"], drawn["length"]
-    begin = delta if drive == "torque" else np.zeros_like(delta)
+    begin = delta if drive == "torque" or loop["load"] else np.zeros_like(delta)
     events = [*drawn["effects"], *(t for t, _ in drawn["loads"])]
     times = sorted({0.0, length, *(t for t in events if 0 < t < length)})
     z = np.array([omega, begin])
@@ -82,7 +101,7 @@ def _motion(loop, drawn, commands, omega, delta):
         # The newest of those that have taken effect.
         u = commands[next(j for j, t in enumerate(drawn["effects"]) if t <= start)]
         load = [k for t, k in drawn["loads"] if t <= start][-1]
-        A, B = _matrices(drive, drawn, load)
+        A, B = _matrices(drive, drawn, load, loop["load"])
         E = expm(np.block([[A, B], [np.zeros((1, 3))]]) * (end - start))
         z = E[:2, :2] @ z + np.outer(E[:2, 2], u)
         if drive == "position":
@@ -90,7 +109,7 @@ def _motion(loop, drawn, commands, omega, delta):
     return z[1] - begin, z[0]
 
 
-def _matrices(drive, drawn, load):
+def _matrices(drive, drawn, load, against):
     """Return A and B of (velocity, position)."""
     if drive == "torque":
         J, (k, b) = drawn["inertia"], load
@@ -98,7 +117,8 @@ def _matrices(drive, drawn, load):
     tau = drawn["tau"]
     if drive == "position":
         return np.array([[0, 0], [0, -1 / tau]]), np.array([[0], [1 / tau]])
-    return np.array([[-1 / tau, 0], [1, 0]]), np.array([[drawn["gain"] / tau], [0]])
+    k, b = [x / against if against else 0.0 for x in load]
+    return np.array([[-1 / tau - b, -k], [1, 0]]), np.array([[drawn["gain"] / tau], [0]])
 
 
 def draw(loop, rng, contact):
@@ -119,6 +139,9 @@ def draw(loop, rng, contact):
     drawn["effects"] = [s + one(least, most) for s in starts[:-1] or starts]
     drawn["effects"] += [-np.inf] if waiting else []
     drawn["missed"] = bool(loop["misses"]) and rng.random() < 0.5
+    both = ["a", "force"] if loop["decay"] else ["force"] if loop["force"] else ["a"]
+    drawn["active"] = str(rng.choice(both))
+    drawn["turn"] = str(rng.choice(["both", loop["turns"]])) if loop["turns"] else "both"
     drawn["age"] = int(rng.integers(loop["delay"][0], loop["delay"][1] + 1))
     drawn["k at sample"] = any_of("k") if contact else 0.0
     drawn["b at sample"] = one(*loop["b"]) if contact else 0.0

@@ -30,6 +30,10 @@ def written(pair, unit):
     )
 
 
+# What a sample may compute beside both: with an outer period that is shorter, and longer.
+OTHER_TURNS = ("admittance", "motion")
+
+
 def drives(loop):
     law, tau = loop["law"], written(loop.get("tau", (1, 1)), "s")
     if loop["drive"] == "torque":
@@ -39,7 +43,9 @@ def drives(loop):
         return f"{loop['drive']}_interface: {{time_constant: {tau}}}"
     motion = f"derivative_gain: {law['Kd']!r} rpm*s/rad, zero: {law['zero']!r} 1/s"
     settling = f"damping_ratio: 0.707, settling_time: {2 * sum(loop['tau']):.6g} s"
-    return f"""actuator: {{gain: {written(loop["gain"], "rad/s/rpm")}, time_constant: {tau}}}
+    gain = written(loop["gain"], "rad/s/rpm")
+    load = f", load_inertia: {loop['load']!r} kg*m^2" * bool(loop["load"])
+    return f"""actuator: {{gain: {gain}, time_constant: {tau}{load}}}
 motion_loop: {{{settling}, {motion}}}"""
 
 
@@ -49,7 +55,10 @@ def span(low, high, unit=""):
 
 def spec_of(loop):
     """Return the text of a spec."""
-    law, keys = loop["law"], f"period: {loop['period']!r} s, delay: {span(*loop['delay'])}"
+    law, T = loop["law"], loop["period"]
+    inner, outer = (T * (loop["round"] if loop["turns"] == t else 1) for t in OTHER_TURNS)
+    keys = f"period: {inner:.9g} s, delay: {span(*loop['delay'])}"
+    keys += f", outer_period: {outer:.9g} s" * bool(loop["turns"])
     keys += f", jitter: {loop['jitter']!r} s" * bool(loop["jitter"])
     keys += f", latency: {span(*loop['wait'], ' s')}" * bool(loop["wait"][1])
     keys += f", misses: {{consecutive: 1, command: {loop['misses']}}}" * bool(loop["misses"])
@@ -63,11 +72,15 @@ def spec_of(loop):
         gains += f", inertia_ratio: {law['R']!r}" * (law["R"] != 1)
     else:
         gains = f"impedance, Mt: {law['Mt']!r} kg*m^2, Bt: {law['Bt']!r} N*m*s/rad"
+    each = f"  a: {{type: {gains}, environment: soft}}\n" * (loop["decay"] > 0 or not loop["force"])
+    gain = f"{{type: force, proportional_gain: {loop['force']!r} rad/(N*m), environment: soft}}"
+    each += f"  force: {gain}\n" * bool(loop["force"])
+    each += f"idle_states: {{decay: {loop['decay']!r} 1/s}}\n" * bool(loop["decay"])
     sensor = f"sensor: {{filter: {{order: {loop['lags']}, cutoff: {loop['cutoff']!r} Hz}}}}\n"
     return f"""{HEAD}{drives(loop)}
 {sensor * bool(loop["lags"])}environments: {{soft: {{{tissue}}}}}
-controllers: {{a: {{type: {gains}, environment: soft}}}}
-sampling: {{{keys}}}
+controllers:
+{each}sampling: {{{keys}}}
 contact: {"losable" if loop["losable"] else "kept"}
 """
 
@@ -98,7 +111,13 @@ def some_loop(rng):
     # These would have thousands of modes.
     if drive == "position" and "jitter" in wide:
         longest = min(longest, float(f"{0.4 * T:.3g}"))
-    misses = "" if torque or some(0.6) else str(rng.choice(["hold", "zero"]))
+    misses = "" if some(0.6) else str(rng.choice(["hold", "zero"]))
+    motor = drive == "actuator"
+    load, force = size(0.01, 1) * (motor and some(0.5)), size(0.001, 0.1) * (motor and some(0.3))
+    decay = size(1, 100) if force and some(0.5) else 0.0
+    turns = str(rng.choice(OTHER_TURNS)) if motor and not force and some(0.3) else ""
+    if turns:
+        misses = ""
     return {
         "drive": drive, "law": gains if torque else law, "period": T,
         "wait": (size(longest / 9, longest) if "wait" in wide else longest, longest),
@@ -110,15 +129,21 @@ def some_loop(rng):
         "gain": around("gain", 4e-4, 5e-4, 1.2) if drive == "actuator" else (1.0, 1.0),
         "inertia": around("inertia", 0.1, 0.5, 3), "friction": around("friction", 0.2, 1, 2),
         "k": around("k", 10, 200, 3), "b": around("b", 0.1, 2, 3) if damped else (0.0, 0.0),
-        "losable": some(0.3) and not (torque and (damped or len(wide) > 1)),
+        "losable": some(0.3) and not (load or decay or (torque and (damped or len(wide) > 1))),
+        "load": load, "force": force,
+        "decay": decay,
+        "turns": turns, "round": int(rng.integers(2, 4)),
     }  # fmt: skip
 
 
 def chosen(system, drawn, contact):
     """Return the modes of this controller, contact and age."""
     modes = system.modes if contact or not system.free else system.free
-    first, age = "miss/" if drawn["missed"] else "a/", f"/delay-{drawn['age']}/"
+    first, age = "miss/" if drawn["missed"] else f"{drawn['active']}/", f"/delay-{drawn['age']}/"
+    first = "motion" if drawn["turn"] == "motion" else first
     modes = [mode for mode in modes if mode.name.startswith(first)]
+    alone = drawn["turn"] == "admittance"
+    modes = [mode for mode in modes if ("/admittance" in mode.name) is alone]
     aged = any("/delay-" in mode.name for mode in modes)
     return [np.array(m.A.floats()) for m in modes if not aged or age in m.name + "/"]
 
@@ -167,15 +192,21 @@ def worst(loop, system, rng, times):
 
 def plain(drive):
     """Return a loop without ranges, every number of which counts."""
-    law = {"stiffness": 20.0, "damping": 2.0, "R": 0.7}
+    law, motor = (
+        {"stiffness": 20.0, "damping": 2.0, "R": 0.7},
+        drive in ("actuator", "loaded", "mixed"),
+    )
     if drive != "torque":
         law = {"Mt": 0.01, "Bt": 2.0, "Kd": 2060.0, "zero": 56.9706}
     return {
-        "drive": drive, "law": law, "period": 0.002, "wait": (0.0007, 0.0007), "jitter": 0.0,
+        "drive": "actuator" if motor else drive, "law": law, "period": 0.002, "jitter": 0.0,
+        "wait": (0.0007, 0.0007),
         "delay": (1, 1), "lags": int(drive != "torque"), "cutoff": 60.0, "misses": "",
-        "tau": (0.01, 0.01), "gain": (4.8e-4, 4.8e-4) if drive == "actuator" else (1.0, 1.0),
+        "tau": (0.01, 0.01), "gain": (4.8e-4, 4.8e-4) if motor else (1.0, 1.0),
         "inertia": (0.2, 0.2), "friction": (0.5, 0.5), "k": (80.0, 80.0), "b": (0.5, 0.5),
-        "losable": False,
+        "losable": False, "load": 0.3 if drive == "loaded" else 0.0,
+        "force": 0.02 * (drive == "mixed"), "decay": 20.0 * (drive == "mixed"),
+        "turns": "", "round": 1,
     }  # fmt: skip
 
 
@@ -198,13 +229,16 @@ def test_maps_of_drawn_loops_lie_between_the_modes(seeds):
 
 
 OF_DRIVE = {"actuator": ["Mt", "Bt", "Kd", "zero", "tau", "gain"]}
+OF_DRIVE["loaded"] = [*OF_DRIVE["actuator"], "load", "loads"]
+OF_DRIVE["mixed"] = ["force", "decay", "Kd", "zero"]
 OF_DRIVE["torque"] = ["stiffness", "damping", "R", "inertia", "friction", "loads"]
 
 
-@pytest.mark.parametrize("drive", ["actuator", "velocity", "position", "torque"])
+@pytest.mark.parametrize("drive", [*OF_DRIVE, "velocity", "position"])
 def test_an_error_of_two_percent_is_seen(drive):
     loop, rng = plain(drive), np.random.default_rng(0)
-    system, right = assembled(spec_of(loop)), draw(loop, rng, True)
+    active = {"active": "force" if drive == "mixed" else "a"}
+    system, right = assembled(spec_of(loop)), draw(loop, rng, True) | active
     names = [name.partition(" [")[0] for name in system.states]
     modes, law = chosen(system, right, True), loop["law"]
 
@@ -214,7 +248,7 @@ def test_an_error_of_two_percent_is_seen(drive):
     assert far() <= CLOSE
     for name in OF_DRIVE.get(drive, ["Mt", "Bt", "tau"]):
         wrong = {name: 1.02 * law[name]} if name in law else {}
-        number = [(0.0, (81.6, 0.5))] if name == "loads" else 1.02 * right.get(name, 0)
+        number = [(0.0, (81.6, 0.5))] if name == "loads" else 1.02 * (loop | right).get(name, 0)
         assert far(law | wrong, **({} if wrong else {name: number})) > SEEN, name
     late = {"effects": [right["effects"][0] + 1e-4, *right["effects"][1:]]}
     wrongs = [late, {"length": right["length"] + 1e-4}, {"age": 0}, {"k at sample": -80.0}]

@@ -38,6 +38,8 @@ class Feature(Generic[S]):
     without: str
     # False, None or "" where a spec has none; a text, or more, names what has it.
     find: Callable[[S], object]
+    # The spec that does without it, where other rows may refuse that.
+    undo: Callable[[S], S] | None = None
 
 
 @dataclass(frozen=True)
@@ -59,7 +61,20 @@ class Row(Generic[S]):
     # Those that do not combine, where the condition is that a spec has all of them.
     features: tuple[Feature[Any], ...] = ()
 
-    def faults(self, said: Any) -> Iterator[PydanticCustomError]:
+    def holds(self, said: Any) -> bool:
+        """Tell whether the condition holds in a part."""
+        try:
+            return any(self.find(part) for _, part in self.parts(said))
+        except PydanticCustomError:
+            return True
+
+    def _remedies(self, said: Any, beside: Sequence[Row[Any]]) -> str:
+        """Return the ways out, less those into what rows beside this one refuse."""
+        ways = {_filled(item.without, i): item.undo for i, item in enumerate(self.features)}
+        closed = {way for way, undo in ways.items() if undo and _leads_on(undo, said, beside)}
+        return ", or ".join(way for way in ways if way not in closed) or self.remedy
+
+    def faults(self, said: Any, beside: Sequence[Row[Any]] = ()) -> Iterator[PydanticCustomError]:
         """Yield a fault for each part in which the condition holds."""
         for place, part in self.parts(said):
             if found := self.find(part):
@@ -70,8 +85,24 @@ class Row(Generic[S]):
                     for key in _DOT.split(self.at)
                     if key
                 )
-                texts = (text.format(*values, s=part) for text in (self.message, self.remedy))
+                remedy = self._remedies(said, beside)
+                texts = (text.format(*values, s=part) for text in (self.message, remedy))
                 yield fault(*texts, *place, *at)
+
+
+def _filled(text: str, number: int) -> str:
+    """Return a text of a feature for the place that it has among several."""
+    return text.replace("{0", f"{{{number}")
+
+
+def _leads_on(undo: Callable[[S], S], said: S, rows: Sequence[Row[Any]]) -> bool:
+    """Tell whether a row refuses what a spec becomes, and not what it is."""
+    try:
+        changed = undo(said)
+        return any(row.holds(changed) and not row.holds(said) for row in rows)
+    except AttributeError:
+        # A part is missing, since it is not valid.
+        return False
 
 
 def each(parts: Callable[[S], Iterable[tuple[Location, T]]], *checks: Row[T]) -> tuple[Row[S], ...]:
@@ -90,11 +121,8 @@ def not_together(*features: Feature[S], form: str = "{}: not modelled") -> Row[S
         found = tuple(feature.find(said) for feature in features)
         return found if all(found) else ()
 
-    def filled(text: str, number: int) -> str:
-        return text.replace("{0", f"{{{number}")
-
-    phrases = [filled(feature.phrase, i) for i, feature in enumerate(features)]
-    ways = dict.fromkeys(filled(feature.without, i) for i, feature in enumerate(features))
+    phrases = [_filled(feature.phrase, i) for i, feature in enumerate(features)]
+    ways = dict.fromkeys(_filled(feature.without, i) for i, feature in enumerate(features))
     first, *beside = phrases
     together = f"{first} beside {' and '.join(beside)}" if beside else first
     together = together.removesuffix(",")
@@ -112,7 +140,7 @@ def find_faults(
     found: list[dict[str, Any]] = []
     for check in checks:
         try:
-            found += [error.context or {} for error in check.faults(said)]
+            found += [error.context or {} for error in check.faults(said, checks)]
         except PydanticCustomError as error:
             context = error.context or {}
             found += context.get("all", [context])

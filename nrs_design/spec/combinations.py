@@ -26,6 +26,7 @@ from nrs_design.spec.features import (
     IDLE,
     IDLE_RESET,
     LAGGING_AT_ONCE,
+    LIMITED,
     LOADED,
     LOSABLE,
     MEMORY,
@@ -107,8 +108,9 @@ COMBINATIONS: tuple[Row[Spec], ...] = (
     # Its command is a velocity, and nothing stands where a reference would.
     *_beside(STREAMED, OTHERS, SPRUNG, IDLE, TWO_PERIODS, SATURATED),
     not_together(STREAMED, MOTOR_RANGE, CONTINUOUS),
+    not_together(LIMITED, STREAMED),
     # Its law makes the torque, and what is touched brakes the joint between two samples.
-    *_beside(TORQUES, TWO_PERIODS, CONTINUOUS),
+    *_beside(TORQUES, TWO_PERIODS, CONTINUOUS, COMMAND),
     not_together(TIMED, CONTINUOUS),
     # What is about a pivot, or has units of a rotation in its words.
     *_beside(SLIDING, MODE_LOGIC, TOOL),

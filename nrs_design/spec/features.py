@@ -15,6 +15,7 @@ from nrs_design.spec.check import Feature
 from nrs_design.spec.controllers import ControllerSpec, contact_name, names_in
 from nrs_design.spec.environment import AbstractEnvironmentSpec
 from nrs_design.spec.interaction_parts import AbstractInteractionSpec as Spec
+from nrs_design.spec.sampling import SamplingSpec
 
 
 class Touched(NamedTuple):
@@ -127,14 +128,24 @@ def _constant(
     return find
 
 
+# What is advised where a loop is not sampled.
+_SAMPLES = SamplingSpec.model_validate({"period": "2 ms", "delay": 0})
+
 # Every one of them is asked of an interaction design.
 _F = Feature[Spec]
-SAMPLED = _F("a sampled loop", "sampling", "leave sampling out", _given("sampling"))
+SAMPLED = _F(
+    "a sampled loop",
+    "sampling",
+    "leave sampling out",
+    _given("sampling"),
+    lambda s: s.model_copy(update={"sampling": None}),
+)
 CONTINUOUS = _F(
     "continuous time",
     "",
     "add `sampling: {{period: 2 ms, delay: 0}}`",
     lambda s: s.sampling is None,
+    lambda s: s.model_copy(update={"sampling": _SAMPLES}),
 )
 TWO_PERIODS = _F(
     "an outer_period",
@@ -185,7 +196,7 @@ PLACED = _F(
 TORQUES = _F(
     "a torque_interface",
     "torque_interface",
-    "write actuator and motion_loop",
+    "write actuator and motion_loop, with controllers of type impedance",
     _given("torque_interface"),
 )
 MOTOR_RANGE = _F(
@@ -288,7 +299,7 @@ OTHERS = _F(
     "{0!r}, which is not of type impedance,",
     "controllers.{0}.type",
     "use controllers of type impedance",
-    _controller(lambda c: c.commands != "velocity"),
+    _controller(lambda c: c.commands != "velocity" and not c.makes_torques),
 )
 DAMPED_FORCE = _F(
     "force control by {0[0]!r} in contact with {0[1]!r}, which has damping or remembers",
@@ -374,6 +385,12 @@ SLIDING = _F(
     "axis",
     "write `axis: rotary`",
     lambda s: s.axis is AxisType.PRISMATIC,
+)
+LIMITED = _F(
+    "a largest command of a motor",
+    "limits.command",
+    "leave command out of the limits",
+    _given("limits.command"),
 )
 MODE_LOGIC = _F("mode_logic", "mode_logic", "leave mode_logic out", _given("mode_logic"))
 TOOL = _F("a tool on the sensor", "sensor.tool", "leave tool out", _given("sensor.tool"))

@@ -293,7 +293,8 @@ def _commands(spec: Spec) -> Iterator[tuple[Location, AboutCommands]]:
     disturbances = spec.disturbances
     written: dict[Location, Quantity | None] = {
         ("motion_loop", "derivative_gain"): getattr(spec.motion_loop, "derivative_gain", None),
-        ("limits", "command"): spec.limits.command,
+        # A robot that follows what is streamed has no such limit.
+        ("limits", "command"): None if spec.followed else spec.limits.command,
         ("disturbances", "friction"): None if disturbances is None else disturbances.friction,
     }
     for name, run in spec.scenarios.items():
@@ -540,7 +541,7 @@ INTERACTION_CHECKS: tuple[Row[Spec], ...] = (
     ),
     Row(
         "goals.initial_force",
-        lambda s: SATURATED.find(s) and s.limits.command is None,
+        lambda s: SATURATED.find(s) and not (s.followed or s.limits.command),
         "nothing says where the command of the motor saturates",
         "add `command` to the limits, in {s.command}, for the error that the gains are for",
     ),

@@ -52,9 +52,8 @@ def _late_threshold(spec: Spec) -> tuple[object, ...]:
 
 def _slow(spec: Spec) -> str | None:
     """Return the speed at the limit of the command, if the axis has to be faster."""
-    if spec.limits.command is None:
+    if spec.limits.command is None or spec.actuator is None:
         return None
-    assert spec.actuator is not None  # A limit is about the commands of a motor.
     reached = spec.actuator.gain.range[1].not_above * spec.limits.command.not_above
     return rounded_up(reached) if reached < spec.limits.velocity.not_below else None
 

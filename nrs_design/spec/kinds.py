@@ -223,15 +223,22 @@ ANGULAR_ACCELERATION = QuantityKind(
     rational=False,
     sliding=_sliding("an acceleration", ("m/s^2",), "2 m/s^2", "rad/s^2"),
 )
+_DRIVERS_OWN = (
+    "the driver's command has a unit of its own that is never converted: write "
+    f"{written_as(COMMAND_UNITS)}; a robot that follows a streamed velocity or position has none: "
+    "leave it out"
+)
 COMMAND = QuantityKind(
     "a command of the motor",
     (*COMMAND_UNITS, "N*m"),
     "276.575 rpm",
-    {
-        "rad/s": "the driver's command has a unit of its own that is never converted: write "
-        f"{written_as(COMMAND_UNITS)}"
-    },
-    sliding=QuantityKind("a command of the motor", (*COMMAND_UNITS, "N"), "276.575 rpm"),
+    dict.fromkeys(("rad/s", "rad"), _DRIVERS_OWN),
+    sliding=QuantityKind(
+        "a command of the motor",
+        (*COMMAND_UNITS, "N"),
+        "276.575 rpm",
+        dict.fromkeys(("m/s", "m"), _DRIVERS_OWN),
+    ),
 )
 # What any drive takes: a motor, or an interface to velocities or positions.
 DRIVE_COMMAND = QuantityKind(

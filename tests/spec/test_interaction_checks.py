@@ -69,7 +69,7 @@ MOTOR = "actuator: {gain: 1 rad/s/V, time_constant: 0.1 s, command: V}\n"
         ("[3 ms, 4 ms]", "20 ms", "more than 10 periods"),
         ("[0.027 s, 0.033 s]}", "[0.033 s, 0.027 s]}", "below its start"),
         ("nominal: 0.03 s", "nominal: -0.03 s", "must be positive"),
-        ("  bandwidth", "  command: 100 rpm\n  bandwidth", "the motor takes rad/s"),
+        ("  bandwidth", "  command: 100 rpm\n  bandwidth", "a motor beside a velocity_interface"),
         ("sampling: {period: 2 ms, delay: 1, latency: 1 ms}\n", "", "beside continuous time"),
         ("contact: losable\n", "disturbances: {friction: 100 rpm}\n", "the motor takes rad/s"),
     ],

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import replace
 from itertools import product
+from math import isclose
 
 import numpy as np
 
@@ -27,6 +28,8 @@ from nrs_design.errors import DesignError
 
 # Above every cost: what misses a goal is worse than all that meets it.
 _MISSED = 1e6
+# How near, relative to it, a gain is to a bound that holds it.
+_ON_A_BOUND = 1e-3
 
 
 def optimize_with_goals(problem: ImpedanceProblem, requirement: Requirement) -> ImpedanceOptimum:
@@ -115,7 +118,7 @@ def _unreachable(
             return DesignError(
                 f"the goal {measure.goal}, {measure.goal_text(goal)}, cannot be met with {bounds}: "
                 f"the best is {_reached(alone, measure, best_Mt, best_Bt)}",
-                remedy="relax this goal, widen the bounds, or narrow the ranges of the contacts",
+                remedy=_remedy("this goal", problem, best_Mt, best_Bt),
             )
     values = requirement.goals
     missed = [
@@ -128,8 +131,20 @@ def _unreachable(
         f"the goals cannot be met together ({wanted}) with {bounds}: the nearest gains, "
         f"Mt = {Mt:.4g} {unit('kg m^2')} and Bt = {Bt:.4g} {unit('N m s/rad')}, have "
         f"{', '.join(missed)}",
-        remedy="relax one of these goals, widen the bounds, or narrow the ranges of the contacts",
+        remedy=_remedy("one of these goals", problem, Mt, Bt),
     )
+
+
+def _remedy(goals: str, problem: ImpedanceProblem, Mt: float, Bt: float) -> str:
+    """Say what may help: other bounds, where the best gains lie on one."""
+    gains = {"Mt": (Mt, problem.mass_bounds), "Bt": (Bt, problem.damping_bounds)}
+    held = [
+        name
+        for name, (value, ends) in gains.items()
+        if any(isclose(value, end, rel_tol=_ON_A_BOUND) for end in ends)
+    ]
+    widen = f", widen the bounds of {' and '.join(held)}" if held else ""
+    return f"relax {goals}{widen}, or narrow the ranges of the contacts"
 
 
 def _reached(requirement: Requirement, measure: Measure, Mt: float, Bt: float) -> str:

@@ -81,10 +81,11 @@ def omitted(granted: Iterable[str]) -> tuple[str, ...]:
 
 
 def _omits(assumption: Assumption) -> str:
-    words = assumption.kind.omits
-    # What `disturbances` bound is modelled; the sentence begins with "Otherwise".
-    bounded = words and "-disturbed" in assumption.id
-    return f"{words} beyond the bounds that are declared" if bounded else words
+    words, beside = assumption.kind.omits, ", saturation"
+    if not words or "-disturbed" not in assumption.id:
+        return words
+    # What `disturbances` bound is modelled, and saturation is not among it.
+    return f"{words.removesuffix(beside)} beyond what disturbances bound{beside}"
 
 
 @cache

@@ -319,11 +319,16 @@ def _places(
 ) -> Iterator[Place]:
     nominal = ranges.nominal
     motors: dict[Actuator, tuple[str, ...]] = {nominal: ()}
-    ends = (interval.ends for interval in (ranges.gain, ranges.time_constant))
-    for (_, gain), (_, tau) in product(*ends):
-        texts: tuple[str, ...] = (
-            f"Km = {float(gain):.6g} {unit('rad/s')}/{ranges.command}",
-            f"tau = {float(tau):.6g} s",
+    # What has no range is the same at every corner.
+    numbers = (
+        ("Km", f"{unit('rad/s')}/{ranges.command}", ranges.gain),
+        ("tau", "s", ranges.time_constant),
+    )
+    for (_, gain), (_, tau) in product(*(r.ends for _, _, r in numbers)):
+        texts = tuple(
+            f"{name} = {float(value):.6g} {measured}"
+            for (name, measured, r), value in zip(numbers, (gain, tau), strict=True)
+            if r.low < r.high
         )
         motors.setdefault(replace(nominal, gain=gain, time_constant=tau), texts)
     every = product(motors.items(), range(ages[0], ages[1] + 1), dict.fromkeys(lates))

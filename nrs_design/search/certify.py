@@ -195,6 +195,8 @@ def _ellipsoids(
     system: SwitchedSystem, channels: Sequence[Channel], output: Output, allowance: Allowance
 ) -> Candidates[AbstractEvidence]:
     """Yield ellipsoids off the origin, where contact may be lost, before those around it."""
+    if not any(any(map(any, B.numerators)) for channel in channels for B in channel.columns):
+        return "it moves nothing in any mode"
     from nrs_design.search.invariant_ellipsoid import search_ellipsoid
 
     if system.contact is not None:

@@ -172,6 +172,7 @@ def test_goals_that_exclude_each_other_are_said_to():
         optimize_with_goals(problem(), both)
     assert "max_sensitivity_peak at most 1.3" in caught.value.message
     assert "max_impedance_error at most 1.2" in caught.value.message
+    assert "widen the bounds of Mt, or" in caught.value.remedy
 
 
 def test_bounds_without_a_stable_point_are_said_to_be_so():

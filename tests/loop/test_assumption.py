@@ -94,4 +94,4 @@ def test_what_disturbances_bound_is_not_said_to_be_left_out():
     plain, disturbed = say("not-quantized.sampled"), say("not-quantized.sampled-disturbed")
     assert omitted([plain]) == ("quantization, friction, saturation",)
     (words,) = omitted([disturbed])
-    assert words == "quantization, friction, saturation beyond the bounds that are declared"
+    assert words == "quantization, friction beyond what disturbances bound, saturation"

@@ -106,7 +106,7 @@ def test_lights_of_a_design(report):
     found = lights(report("proved"))
     assert found["Proof"][0] == "good"
     assert found["Goals"] == ("unknown", "no goals set")
-    assert found["Margins"] == ("doubtful", "3 warnings (worst corner)")
+    assert found["Design"] == ("doubtful", "3 warnings (no part of the proof)")
     assert found["Data"][0] == "unknown"
     first, worst = report("proved").key[0]
     assert first == "Worst of it"

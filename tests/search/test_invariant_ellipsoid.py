@@ -112,6 +112,16 @@ def test_equal_modes_may_be_disturbed_unequally():
     assert float(found.statements[-1].level) > 3
 
 
+def test_what_moves_nothing_is_not_called_beyond_floating_point():
+    columns = (matrix([[0]]),)
+    outputs = (Output("z", "", (matrix([[1]]),)),)
+    system = replace(
+        family([[-1]]), channels=(Channel("d", "", Fraction(1), columns),), outputs=outputs
+    )
+    found = certify(system, limits=Limits(optimize_rate=False))
+    assert found.attempts[-1].outcome == "it moves nothing in any mode"
+
+
 def test_nothing_is_found_where_no_quadratic_function_exists():
     """Stable, but by a polynomial only."""
     system = pushed(dayawansa_martin(6))

@@ -54,8 +54,9 @@ CURVES = 6
 _PASSIVE = (
     "Passive: the admittance from the torque of a hand to the velocity of the tool, as it is "
     "assembled: with the load of the motor, the filter and the spring, wherever the numbers of the "
-    "motor are in their ranges, each of them constant. Decided by rigorous isolation of roots. At "
-    "the frequency at which it is said not to be passive, it is not at a corner of the ranges."
+    "motor are in their ranges, each of them constant. Decided by rigorous isolation of roots. "
+    "Where a frequency is named near which it is not passive, that is shown at one corner of the "
+    "ranges."
 )
 _SUDDEN = (
     "Viscoelastic contact: the stiffness is that which a sudden motion meets, and up to the "

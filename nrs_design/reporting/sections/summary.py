@@ -155,7 +155,7 @@ def _rate(system: SwitchedSystem, evidence: AbstractEvidence) -> str:
 
 
 def lights_of(result: Result, analysis: DesignAnalysis | None) -> tuple[Light, ...]:
-    """Return the lights for proof, goals, margins, doubts of the data and open assumptions."""
+    """Return the lights for proof, goals, design, doubts of the data and open assumptions."""
     state, text = _PROOF[Verdict(result.certification.verdict)]
     if (where := result.certification.refuted_in) is not None:
         text = f"{text}; refuted {where}"
@@ -164,16 +164,16 @@ def lights_of(result: Result, analysis: DesignAnalysis | None) -> tuple[Light, .
     if not isinstance(spec, InteractionDesignSpec):
         return (proof, _open(result))
     goals = Light("Goals", *judged_goals(result, analysis), GOALS)
-    return (proof, goals, _margins(spec, analysis), _data(spec), _open(result))
+    return (proof, goals, _warnings(spec, analysis), _data(spec), _open(result))
 
 
-def _margins(spec: InteractionDesignSpec, analysis: DesignAnalysis | None) -> Light:
+def _warnings(spec: InteractionDesignSpec, analysis: DesignAnalysis | None) -> Light:
     if analysis is None:
-        return Light("Margins", State.BAD, "none: a nominal loop is unstable")
-    state, text = State.GOOD, "no warning in any corner (floating point, no part of the proof)"
+        return Light("Design", State.BAD, "a nominal loop is unstable")
+    state, text = State.GOOD, "no warning (floating point, no part of the proof)"
     if count := len(analysis.warnings):
-        state, text = State.DOUBTFUL, f"{plural(count, 'warning')} (worst corner)"
-    return Light("Margins", state, text, GOALS)
+        state, text = State.DOUBTFUL, f"{plural(count, 'warning')} (no part of the proof)"
+    return Light("Design", state, text, GOALS)
 
 
 def _data(spec: InteractionDesignSpec) -> Light:

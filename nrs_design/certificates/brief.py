@@ -83,10 +83,14 @@ def _scope(evidence: AbstractEvidence, system: SwitchedSystem) -> str:
 
 
 def _contact(evidence: AbstractEvidence, system: SwitchedSystem) -> str:
-    if evidence.covers_lost_contact:
-        lost = system.contact is not None or system.flights is not None
-        return ", contact may be lost" if lost else ""
-    return ", as long as contact is kept" if system.contact is not None else ""
+    # Where free motion is among the modes, what holds for all of them covers it.
+    if system.flights is not None:
+        return ", contact may be lost"
+    if system.contact is None:
+        return ""
+    return (
+        ", contact may be lost" if evidence.covers_lost_contact else ", as long as contact is kept"
+    )
 
 
 def _growing_contact(evidence: AbstractEvidence, system: SwitchedSystem) -> str:

@@ -48,7 +48,8 @@ def optimize(
 
     Goals of the spec are respected. With decay_rate, peak_torque or delay among them, the gains of
     all controllers are chosen together, and those that design.free names, and come with their
-    proof. The exit code is 1 if gains that are given miss a goal, or if one is not proved.
+    proof. The exit code is 1 if gains that are given miss a goal, or if one of a proof is
+    not proved, and 3 if one is not judged.
 
     Example: nrs-design optimize specs/neuroboscope/soft-tissue.nrs.yaml
     """

@@ -18,7 +18,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from itertools import product
-from math import pi, tan
+from math import isclose, pi, tan
 
 import numpy as np
 
@@ -51,6 +51,8 @@ from nrs_design.loop.cut_loop import AbstractAxis, Place
 from nrs_design.models.contact import AbstractLinearLaw
 from nrs_design.models.contact.environment import Environment
 
+# How far what is proved may be from the worst that was found, and be shown in its place.
+_NEAR = 0.02
 # In the place of a corner.
 NOT_COMPUTED = "not computed: the force is sampled more often than the motion loop"
 
@@ -74,9 +76,15 @@ class Achieved:
     everywhere: bool = False
 
     @property
+    def bound(self) -> Fraction | None:
+        """What is proved, if that is the worst that was found but for a little."""
+        near = self.proved is not None and isclose(self.proved, self.value, rel_tol=_NEAR)
+        return self.proved if near else None
+
+    @property
     def text(self) -> str:
-        """The value as it is shown: what is proved, else the worst that was found."""
-        return self.measure.text(self.value if self.proved is None else self.proved)
+        """The value as it is shown: a bound that is proved, else the worst that was found."""
+        return self.measure.text(self.value if self.bound is None else self.bound)
 
     @property
     def standing(self) -> GoalStanding:

@@ -10,6 +10,7 @@ from scipy.linalg import expm
 
 from nrs_design.certificates.certificate import Verdict
 from nrs_design.loop.assemble import assemble
+from nrs_design.loop.assumption import omitted
 from nrs_design.pipeline.certification import assemble_spec
 from nrs_design.pipeline.runs import run_design
 from nrs_design.proof.contradiction import find_contradiction
@@ -350,7 +351,7 @@ def test_contact_lost_under_force_control_is_a_mode_without_force(tmp_path):
     assert [row[2] for row in late] != [row[2] for row in pushed]
     assert [row[:2] + row[3:] for row in late] == [row[:2] + row[3:] for row in pushed]
     texts = " ".join(system.assumptions)
-    assert "free motion under force control, whose sample is zero then" in texts
+    assert "free motion, in which a force sample is zero" in texts
     assert "environment would pull" not in texts
     found = certify(system)
     assert found.verdict is Verdict.PROVED
@@ -539,6 +540,15 @@ def test_another_tissue_may_be_touched_within_a_period(tmp_path):
     system = system_of(tmp_path, "{period: 1 ms, delay: 0}", text=TWO_TISSUES)
     worst = max(radius(system, mode.name) for mode in system.modes)
     assert 0 <= worst - grows < 5e-4
+
+
+@pytest.mark.parametrize(
+    ("contact", "kept"), [("contact: kept", True), ("", True), ("contact: losable", False)]
+)
+def test_torques_that_take_contact_for_granted_say_so(tmp_path, contact, kept):
+    text = TWO_TISSUES.replace("contact: kept", contact)
+    system = system_of(tmp_path, "{period: 1 ms, delay: 0}", text=text)
+    assert ("loss of contact" in omitted(system.assumptions)) is kept
 
 
 @pytest.mark.parametrize(

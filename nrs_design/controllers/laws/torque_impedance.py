@@ -78,8 +78,9 @@ class TorqueImpedance(AbstractCompliantLaw[TorqueImpedanceSpec]):
         return (StepPart("torque", gains, (POSITION,)),)
 
     @classmethod
-    def contact_text(cls, *, alone: bool) -> None:
-        """Take nothing for granted: contact and free motion are modes."""
+    def contact_text(cls, *, alone: bool) -> str:
+        """Say that contact is not lost."""
+        return "Contact is not lost: free motion is not one of the modes."
 
 
 LAW = TorqueImpedance

@@ -121,7 +121,7 @@ class AbstractControllerAnalysis(ABC):
     @property
     def proved_titles(self) -> tuple[str, ...]:
         """What is proved over all values of the ranges."""
-        return tuple(found.measure.title for found in self.judged if found.proved is not None)
+        return tuple(found.measure.title for found in self.judged if found.bound is not None)
 
     def doubts(self) -> Iterator[Doubt]:
         """Yield what is doubtful about the gains, and no goal speaks of it."""

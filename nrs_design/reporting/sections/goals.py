@@ -173,7 +173,7 @@ def _row(designed: Designed, name: str, found: Achieved) -> tuple[str, ...]:
         name,
         measure.title,
         goal,
-        linked(loaded, measure.text(found.value), "controllers", name),
+        linked(loaded, found.text, "controllers", name),
         linked(loaded, _pretty(found.where), *contact_at(loaded, found.where)),
         result,
     )

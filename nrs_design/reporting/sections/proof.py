@@ -40,7 +40,7 @@ _NOT_COVERED_BY_A_DESIGN: tuple[str, ...] = (
     "Tissue that does not follow the linear law of the spec, such as a creep of another kind or a "
     "stiffness that depends on depth.",
     "Parameter values outside the declared ranges, and motor constants other than those given.",
-    "Cost, margins, pole positions and tracking quality: design values in floating point.",
+    "Cost, pole positions and tracking, and margins that no goal calls proved: floating point.",
 )
 _ILLUSTRATIONS = (
     "The figures and the numbers in the tables are floating-point illustrations and no part of "

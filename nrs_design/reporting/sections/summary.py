@@ -130,9 +130,9 @@ def _signals(system: SwitchedSystem) -> str:
 
 
 def _contact(system: SwitchedSystem, evidence: AbstractEvidence) -> tuple[str, ...]:
-    if system.contact is None:
+    if system.contact is None and system.flights is None:
         return ()
-    if evidence.covers_lost_contact:
+    if evidence.covers_lost_contact or system.flights is not None:
         return (
             "with contact lost and made again at any time (where free motion ends is not claimed)",
         )

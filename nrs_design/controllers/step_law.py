@@ -248,8 +248,10 @@ def _coefficients(
 
 
 def _measured(limits: StepLimits) -> tuple[Value, ...]:
-    angle = Value("angle", "theta", "rad", BEYOND, "measured angle of the joint", "angle")
-    torque = Value("torque", "F", "N*m", BEYOND, "measured torque of the contact", "term")
+    angle = Value("angle", "theta", "rad", BEYOND, "measured position of the joint", "angle")
+    torque = Value(
+        "torque", "F", "N*m", BEYOND, "measured torque, or force, of the contact", "term"
+    )
     return limits.within(angle), torque
 
 

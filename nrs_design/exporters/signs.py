@@ -9,16 +9,16 @@ from nrs_design.controllers.operations import StepLaw
 
 SIGNS: Mapping[str, str] = MappingProxyType(
     {
-        "angle": "rotation about the axis of the joint, behind the gear; positive the way in which "
-        "a positive command turns it; zero anywhere, but the same place for all angles",
-        "torque": "torque about the same axis (force times lever arm), measured between joint and "
-        "tissue; positive where the tissue pushes the joint towards smaller angles, that is where "
-        "the joint pushes towards larger ones",
-        "velocity_command": "rate of `angle` that the hand commands; positive towards larger "
-        "angles",
+        "angle": "where the joint is on its axis, behind the gear: turned or, where it slides, "
+        "moved; positive the way in which a positive command moves it; zero anywhere, but the same "
+        "place for all angles",
+        "torque": "torque (force times lever arm) or, where the axis slides, force, measured on "
+        "the axis of the joint between joint and tissue; positive where the tissue pushes the "
+        "joint towards smaller angles, that is where the joint pushes towards larger ones",
+        "velocity_command": "rate that the hand commands; positive towards larger angles",
         "position": "wanted `angle`: of the same axis, sign and zero",
         "wanted_torque": "wanted `torque`: of the same axis and sign",
-        "command": "speed command of the motor before its drive; positive towards larger angles",
+        "command": "what the drive takes, before it; positive towards larger angles",
     }
 )
 WRONG = (

@@ -86,7 +86,7 @@ def _header_lines(record: ExportRecord, law: StepLaw, names: CNames) -> Iterator
         "Saturation of the command of the motor, at COMMAND_LIMIT below: outside the proof, but "
         "for a region in which it may say that motions decay all the same."
         if "command_limit" in law.coefficient
-        else "The command of the motor does not saturate: the spec has no `limits: command`."
+        else "The command does not saturate: the spec has no `limits: command`."
     )
     if INTEGRAL_LIMIT in law.coefficient:
         yield (

@@ -20,6 +20,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import lru_cache
 from itertools import product
+from typing import TYPE_CHECKING
 
 from nrs_design.axis import unit
 from nrs_design.controllers.float32 import to_float32
@@ -31,15 +32,8 @@ from nrs_design.controllers.laws import (
 )
 from nrs_design.controllers.sensor import LowPass, Sensor
 from nrs_design.controllers.step_law import StepFrame
-from nrs_design.loop.calendar import Calendar, Turn
-from nrs_design.loop.command_timing import CommandTiming
-from nrs_design.loop.held import flow_rows
-from nrs_design.loop.held_drive import HeldDrive
-from nrs_design.loop.held_motor import hold
 from nrs_design.loop.joint import Joint
 from nrs_design.loop.modes import ForceShare, position_mode, velocity_mode
-from nrs_design.loop.program import SampledProgram
-from nrs_design.loop.sampled import NOTHING, Contact, Rows, SampledLoop
 from nrs_design.models.actuator import Actuator, ActuatorRanges
 from nrs_design.models.contact.law import AbstractLinearLaw
 from nrs_design.models.drive import GAIN, LOAD, Drive, Takes
@@ -52,8 +46,13 @@ from nrs_design.proof.matrix import multiply as multiply_matrices
 from nrs_design.spec import InteractionDesignSpec
 from nrs_design.spec.sampling import SamplingSpec
 
+if TYPE_CHECKING:
+    from nrs_design.loop.calendar import Turn
+    from nrs_design.loop.sampled import Contact, Rows, SampledLoop
+
 Polynomial = tuple[Fraction, ...]
 ZERO, ONE = Fraction(0), Fraction(1)
+NOTHING: Contact = (ZERO, ZERO)
 _KEPT = 512
 # Shares of the force that reach the law and a motor with a load.
 _CLOSED, _OPENED, _FREE = ForceShare(), ForceShare(sensed=ZERO), ForceShare(ZERO, ZERO)
@@ -244,6 +243,8 @@ class ProcessorAxis(AbstractAxis):
 
         `sensed` is what the force sample shows, `carried` what slows a motor with a load.
         """
+        from nrs_design.loop.calendar import Turn
+
         loop, flow = _loop(self, law, place, carried if self.loaded else NOTHING)
         n = len(loop.states)
 
@@ -276,6 +277,15 @@ def _loop(
     axis: ProcessorAxis, law: DiscreteLaw, place: Place, carried: Contact
 ) -> tuple[SampledLoop, Rows]:
     """Return the loop of a law, and what flows in a period: the middle of what encloses it."""
+    # Not loaded for a design in continuous time.
+    from nrs_design.loop.calendar import Calendar
+    from nrs_design.loop.command_timing import CommandTiming
+    from nrs_design.loop.held import flow_rows
+    from nrs_design.loop.held_drive import HeldDrive
+    from nrs_design.loop.held_motor import hold
+    from nrs_design.loop.program import SampledProgram
+    from nrs_design.loop.sampled import SampledLoop
+
     T = axis.sampling.outer
     low_pass = None if axis.low_pass is None else axis.low_pass.discretize(T)
     D = axis.motion.over(axis.sampling.period.exact)

@@ -143,13 +143,6 @@ class HeldDrive(HeldMotor):
             return self
         return HeldDrive.of(self.drive, self.timing, touched, AGAIN if forced else LOAD)
 
-    def symbols_of(self, result: str) -> frozenset[str]:
-        """Return the symbols of the numbers that a result depends on."""
-        row = self._row(result)
-        named = dict(zip(LOAD, self.load, strict=True))
-        found = (e for (_, i, _), e in self.entries.items() if i == row)
-        return frozenset(named.get(s, s) for e in found for s in (*e.depends, e.symbol))
-
     def result(self, name: str, given: Commands, values: Mapping[str, Fraction]) -> LinearForm:
         """Return a state after the period, or how far the joint goes in it."""
         row, drive = self._row(name), self.drive

@@ -82,10 +82,6 @@ class HeldMotor(ABC):
         """Yield motors that there are, at the ends of the ranges, with the labels of each."""
 
     @abstractmethod
-    def symbols_of(self, result: str) -> frozenset[str]:
-        """Return the symbols of the numbers that a result, a state or `WAY`, depends on."""
-
-    @abstractmethod
     def result(self, name: str, given: Commands, values: Mapping[str, Fraction]) -> LinearForm:
         """Return a state after the period, or how far the joint goes in it (`WAY`)."""
 
@@ -113,10 +109,6 @@ class MotorAtOnce(HeldMotor):
         """Yield motors that there are, at the ends of the ranges, with the labels of each."""
         for labels, at in _ends_of(self.ranges):
             yield labels, MotorAtOnce.of(at, self.period)
-
-    def symbols_of(self, result: str) -> frozenset[str]:
-        """Return the symbols of the numbers that a result depends on."""
-        return frozenset({"Km", "s" if result == WAY and self.time_constant is None else "E"})
 
     def result(self, name: str, given: Commands, values: Mapping[str, Fraction]) -> LinearForm:
         """Return the speed after the period, or how far the joint turns in it."""
@@ -155,10 +147,6 @@ class MotorInTime(HeldMotor):
         for labels, at in _ends_of(self.ranges):
             for times, timing in self.timing.points():
                 yield (*labels, *times), MotorInTime.of(at, timing)
-
-    def symbols_of(self, result: str) -> frozenset[str]:
-        """Return the symbols of the numbers that a result depends on."""
-        return frozenset(self.box.ranges) - ({"g"} if result == WAY else set())
 
     def result(self, name: str, given: Commands, values: Mapping[str, Fraction]) -> LinearForm:
         """Return the speed after the period, or how far the joint turns in it."""

@@ -81,7 +81,7 @@ class Modes:
     motor: HeldMotor
     environments: tuple[Environment, ...]
     constants: tuple[ConstantParameter, ...]
-    loses: bool  # Whether contact may be lost anywhere, and so within a period
+    loses: bool  # Whether contact may come and go within a period
     # Drives that there are, each with its labels, instead of what encloses them all.
     motors: tuple[tuple[tuple[str, ...], HeldMotor], ...]
     _known: dict[object, tuple[HeldPoint, ...]] = field(default_factory=dict)
@@ -112,9 +112,11 @@ class Modes:
     def between(self, law: DiscreteLaw, *where: str) -> Iterator[SampledMode]:
         """Yield the modes at samples of the motion loop alone, which no force sample reaches."""
         turn, group = Turn.MOTION, f"/{Turn.MOTION}"
-        for e in self.environments if self._loaded else ():
-            yield from self._of(group, (str(turn), e.name), law, e, self.environments, (turn,))
-        yield from self._of(group, (str(turn), *where), law, turns=(turn,))
+        contacts = self.environments if self._loaded else ()
+        for e in contacts:
+            yield from self._of(group, (str(turn), e.name), law, e, contacts, (turn,))
+        if not contacts:
+            yield from self._of(group, (str(turn), *where), law, turns=(turn,))
 
     def missed(self, law: DiscreteLaw, contacts: Sequence[Environment]) -> Iterator[SampledMode]:
         """Yield the modes of a period whose deadline is missed, in all contacts or in none."""

@@ -542,6 +542,17 @@ def test_another_tissue_may_be_touched_within_a_period(tmp_path):
     assert 0 <= worst - grows < 5e-4
 
 
+def test_contact_comes_within_a_period_of_a_controller_that_names_none(tmp_path):
+    """A motor with a load feels any share of it, from nothing on."""
+    load = TOLERANCE[1][0], f"{TOLERANCE[1][0]}\n  load_inertia: 0.02 kg*m^2"
+    text = FORCE_LIMIT.read_text(encoding="utf-8")
+    system = system_of(tmp_path, "{period: 2 ms, delay: 0}", load, text=text)
+    i, j = (system.states.index(name) for name in ("omega [rad/s]", "delta [rad]"))
+    own = [(m.name, m.A.floats()[i][j]) for m in system.modes if m.name.startswith("position/")]
+    touched, air = ([v for n, v in own if ("/soft" in n) is soft] for soft in (True, False))
+    assert min(touched) < min(air) <= max(touched)
+
+
 @pytest.mark.parametrize(
     ("contact", "kept"), [("contact: kept", True), ("", True), ("contact: losable", False)]
 )

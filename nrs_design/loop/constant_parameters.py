@@ -99,7 +99,7 @@ _DRIVEN = {
     "J": ("inertia", "kg*m^2"),
     "B": ("friction", "N*m*s/rad"),
     "tau": ("time_constant", "s"),
-    GAIN: ("gain", "rad/s/"),
+    GAIN: ("gain", "rad/s/{command}"),
 }
 
 
@@ -112,8 +112,7 @@ def _of_drive(drive: Drive, part: str, command: str) -> Iterator[ConstantParamet
     for symbol, interval in drive.ranges.items():
         if interval.is_constant:
             key, unit = _DRIVEN[symbol]
-            unit = f"{unit}{command}" if symbol == GAIN else unit
-            inverse = symbol in drive.inverse
+            inverse, unit = symbol in drive.inverse, unit.format(command=command)
             yield _between_ends(f"{part}.{key}", interval, symbol, unit, inverse=inverse)
 
 

@@ -320,8 +320,9 @@ def axis_of(
     if sampling.outer < sampling.period.exact:
         return None
     places = tuple(_places(ranges, sampling.delay, spec.late))
-    loaded = plant.drive is None and plant.held is not None
-    return ProcessorAxis(places, motion, sampling, low_pass, spec.takes, plant.held, loaded)
+    return ProcessorAxis(
+        places, motion, sampling, low_pass, spec.takes, plant.held, loaded=plant.slowed
+    )
 
 
 def _places(

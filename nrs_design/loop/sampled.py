@@ -94,7 +94,7 @@ class SampledLoop:
         commands = (*held, *self.calendar.sent) if placed else ()
         return frozenset((*commands, *([stored[REFERENCE]] if REFERENCE in stored else [])))
 
-    @property
+    @cached_property
     def takes_force(self) -> bool:
         """Whether a law takes the force of a sample: no other needs a sample that is on its way."""
         felt = ONE, ZERO

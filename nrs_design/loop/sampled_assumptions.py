@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
 from itertools import chain
-from types import MappingProxyType
-from typing import Literal
 
 from nrs_design.axis import AxisType
 from nrs_design.controllers.controller_design import ControllerDesign
@@ -25,6 +23,7 @@ from nrs_design.loop.assumptions import (
 )
 from nrs_design.loop.command_timing import CommandTiming
 from nrs_design.loop.loop_assumptions import kept_by_laws
+from nrs_design.loop.loss import Loss
 from nrs_design.loop.program import SampledProgram
 from nrs_design.loop.sampled import SampledLoop
 from nrs_design.loop.sampled_motor import EXPONENTIAL_BITS
@@ -37,24 +36,6 @@ from nrs_design.proof.text import exact_text
 from nrs_design.spec.misses import DeadlinesSpec
 from nrs_design.spec.operating import OperatingConditions
 from nrs_design.spec.sampling import SamplingSpec
-
-# Where contact is lost: only where the spring of the tissue ends, or whatever the deflection.
-Loss = Literal[
-    "never",
-    "not modelled",
-    "not under force control",
-    "anywhere",
-    "anywhere under force control",
-    "on the surface",
-]
-_LOST: Mapping[str, str] = MappingProxyType(
-    {
-        "never": "contact-kept.never",
-        "not modelled": "contact-kept.not-modelled",
-        "anywhere": "contact-lost.anywhere",
-        "anywhere under force control": "contact-lost.force-control",
-    }
-)
 
 
 def assume_sampled(
@@ -72,7 +53,7 @@ def assume_sampled(
     environments, program = plant.among(design.contacts), loop.program
     # Sentences that do not hold for the disturbances of the spec begin with that.
     but = "-disturbed" if disturbed else ""
-    inputs = "sampled-position" if "under force control" in loss else "sampled"
+    inputs = "sampled-position" if loss in (Loss.BY_LAWS, Loss.UNDER_FORCE_CONTROL) else "sampled"
     return (
         *_period_texts(sampling, design),
         *_deadline_texts(sampling.misses),
@@ -82,7 +63,7 @@ def assume_sampled(
         _motor_text(plant, loop, conditions.axis, environments),
         *_load_texts(plant, conditions.axis, environments),
         *(map(say, ("friction.period", "at-samples.force")) if disturbed else ()),
-        say(f"inputs.{inputs}{but}", rest=REST[loss == "on the surface"]),
+        say(f"inputs.{inputs}{but}", rest=REST[loss is Loss.SURFACE]),
         *_spring_texts(program, design),
         *_placed_texts(program, design, reset=reset),
         UNCOUPLED,
@@ -163,7 +144,7 @@ def _motor_text(
     elif tau.low == tau.high:
         corner = f"an end, less than 2^-{EXPONENTIAL_BITS - 1} away"
     moving = ranges.may_change("at every sample, not in between")
-    if plant.load_inertia is not None and plant.drive is None:
+    if plant.slowed:
         return say("motor.loaded", motor, motor=motor, moving=moving)
     if plant.drive is not None:
         return _drive_text(plant.drive, axis, environments)
@@ -247,10 +228,10 @@ def _loss_texts(
     loss: Loss, design: ControllerDesign, program: SampledProgram
 ) -> Iterator[Assumption]:
     """Say how contact is lost; on the surface, a statement that covers it says so."""
-    if loss == "not under force control":
+    if loss is Loss.BY_LAWS:
         yield from kept_by_laws(design, alone=program.idle is None)
-    elif loss != "on the surface":
-        yield say(_LOST[loss])
+    elif loss is not Loss.SURFACE:
+        yield say(loss.value)
 
 
 def _angle_text(angle: Fraction | None, axis: AxisType) -> Assumption:

@@ -214,9 +214,7 @@ class Modes:
         seen, load = (Box(own), nothing) if not loaded or forced else (nothing, Box(own))
         depends = loaded or (e is not None and e.depends)
         spots = spots_of(seen if sampled else nothing, "" if depends else "kb", constants)
-        key = motor, tuple(own.items()), forced
-        if not loaded:
-            key = motor, (), forced
+        key = motor, tuple(own.items()) if loaded else ()
         if key not in self._known:
             held = motor.touching(own, forced=forced) if own else motor
             changes = len(self.loop.calendar.timing.within)

@@ -20,11 +20,12 @@ from nrs_design.loop.constraints import assemble_switching, leaving_impedance, z
 from nrs_design.loop.free_motion import could_pull, force_rows, lost_on_surface, outputs_of
 from nrs_design.loop.held_drive import HeldDrive
 from nrs_design.loop.held_motor import hold
+from nrs_design.loop.loss import Loss
 from nrs_design.loop.misses import clock_of
 from nrs_design.loop.motor_command import motor_command
 from nrs_design.loop.program import INPUTS, SampledProgram
 from nrs_design.loop.sampled import SampledLoop
-from nrs_design.loop.sampled_assumptions import Loss, assume_sampled
+from nrs_design.loop.sampled_assumptions import assume_sampled
 from nrs_design.loop.sampled_modes import Modes, SampledMode
 from nrs_design.loop.saturation import with_sampled_saturation
 from nrs_design.models.contact.environment import Environment
@@ -71,15 +72,14 @@ def close_sampled_loop(
     if loop.takes_force:
         loop = replace(loop, calendar=replace(calendar, ages=sampling.delay))
     environments = plant.among(design.contacts)
-    slowed = plant.drive is None and plant.load_inertia is not None
-    loss = _loss_of_contact(conditions.contact, environments, design, slowed=slowed)
+    loss = Loss.of(conditions.contact, environments, design, slowed=plant.slowed)
     every = Modes(
         loop,
         motor,
         environments,
         tuple(constants),
         # A controller that has no contacts takes them as they come.
-        loss.startswith("anywhere") or not all(c.contacts for c in design.controllers),
+        loss.anywhere or not all(c.contacts for c in design.controllers),
         tuple(motor.points()) if points else (),
     )
     modes, free = _modes(every, design, laws, loss)
@@ -120,7 +120,7 @@ def close_sampled_loop(
         outputs=(*outputs, *(() if driven is None else (driven.output,))),
         roundings=tuple(_roundings(loop, channels, items)),
         clock=_clock(sampling, items),
-        flights=_flights(modes, environments, pulls) if loss.startswith("anywhere") else None,
+        flights=_flights(modes, environments, pulls) if loss.anywhere else None,
         enclosures=tuple(_enclosures(items)),
     )
     if conditions.initial_force is not None and not points:
@@ -158,43 +158,20 @@ def _modes(
     """
     modes: list[SampledMode] = []
     beside: list[SampledMode] = []
-    where = {"on the surface": beside}.get(loss, modes)
+    where = modes if loss.anywhere else beside if loss is Loss.SURFACE else None
     for c in design.controllers:
         modes += every.of_controller(c, laws[c.name])
-        if c.contacts and (loss == "on the surface" or loss.startswith("anywhere")):
+        if c.contacts and where is not None:
             where += every.in_the_air(c, laws[c.name])
     law, turns = next(iter(laws.values())), every.loop.calendar.turns
     if turns[-1].is_miss:
         modes += every.missed(law, every.environments)
-        if loss == "on the surface" or loss.startswith("anywhere"):
+        if where is not None:
             where += every.missed(law, ())
     if Turn.MOTION in turns:
         modes += every.between(law)
         beside += every.between(law, FREE) if beside else ()
     return tuple(modes), tuple(beside)
-
-
-def _loss_of_contact(
-    contact: str | None,
-    environments: Iterable[Environment],
-    design: ControllerDesign,
-    *,
-    slowed: bool,
-) -> Loss:
-    """Tell how contact is lost; with springs everywhere, free motion is a mode like others.
-
-    A motor that is `slowed` by what it touches would lose it within a period, too.
-    """
-    if any(c.law.commands == "position" for c in design.controllers):
-        # Force control rests in the air where it does in contact: at what is commanded.
-        lost = contact == "losable"
-        return "anywhere under force control" if lost else "not under force control"
-    sprung = {c.law.spring != 0 for c in design.controllers}
-    if contact == "kept" or ((slowed or True in sprung) and contact is None):
-        return "never"
-    if any(e.preloaded or (e.parts and not e.each_losable) for e in environments):
-        return "not modelled"
-    return "anywhere" if sprung == {True} else "on the surface"
 
 
 def _flights(

@@ -28,6 +28,11 @@ class Plant:
     drive: Drive | None = None
 
     @property
+    def slowed(self) -> bool:
+        """Whether what is touched slows a motor of the user's."""
+        return self.drive is None and self.load_inertia is not None
+
+    @property
     def held(self) -> Drive | None:
         """What moves the joint between samples, but for a motor that nothing slows."""
         if self.drive is not None or self.load_inertia is None:

@@ -116,10 +116,10 @@ class Admittance(AbstractCompliantLaw[ImpedanceControllerSpec]):
         return (_admittance(sprung="Kt" in used, inert="a" in used, beside=beside),)
 
     @classmethod
-    def contact_text(cls, *, alone: bool) -> str:
+    def contact_text(cls, *, alone: bool) -> str | None:
         """Say that contact is not lost."""
         if alone:
-            return "Contact is not lost: free motion is not one of the modes."
+            return AbstractCompliantLaw.contact_text(alone=alone)
         return (
             "Contact is not lost while an impedance controller is active: free motion under one is "
             "not one of the modes."

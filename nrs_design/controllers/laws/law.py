@@ -126,12 +126,13 @@ class AbstractCompliantLaw(AbstractLaw, Generic[S]):
         return None
 
     @classmethod
-    @abstractmethod
     def contact_text(cls, *, alone: bool) -> str | None:
         """Say what is taken for granted about contact while it is active; None for nothing.
 
-        `alone`: all controllers give the motion loop the same kind of command.
+        By default that it is kept, which no law forgets. `alone`: all controllers give the motion
+        loop the same kind of command.
         """
+        return "Contact is not lost: free motion is not one of the modes."
 
 
 # A law that fits its spec: who takes both from one controller need not ask which.

@@ -77,10 +77,5 @@ class TorqueImpedance(AbstractCompliantLaw[TorqueImpedanceSpec]):
         gains = (StepGain("Kp", "Kp", "N*m/rad"), StepGain("Kd_over_T", "D", "N*m/rad"), *force)
         return (StepPart("torque", gains, (POSITION,)),)
 
-    @classmethod
-    def contact_text(cls, *, alone: bool) -> str:
-        """Say that contact is not lost."""
-        return "Contact is not lost: free motion is not one of the modes."
-
 
 LAW = TorqueImpedance

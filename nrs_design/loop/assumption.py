@@ -24,6 +24,10 @@ class Standing(StrEnum):
     OPEN = "open"
 
 
+# The kind that says that contact is kept.
+KEPT = "contact-kept"
+
+
 @dataclass(frozen=True, slots=True)
 class AssumptionKind:
     """What is common to the sentences that take one thing for granted."""

@@ -17,7 +17,7 @@ from nrs_design.spec import read_spec
 from tests.proof.graphs import common_quadratic
 from tests.proof.systems import bouncing, pushed
 from tests.reporting.conftest import cases, recorded
-from tests.support import ROOT, SOFT_TISSUE
+from tests.support import FORCE_LIMIT, ROOT, SOFT_TISSUE
 
 
 @pytest.mark.parametrize(
@@ -53,6 +53,8 @@ def test_free_motion_is_named_only_where_its_loss_is_covered():
     said = "among 4 modes in contact and 2 of free motion, with contact lost"
     assert said in summary_of(result)[0]
     assert "among 4 modes, as long as contact is kept" in summary_of(without)[0]
+    # Where it is no mode at all, too.
+    assert "as long as contact is kept" in summary_of(run_certification(read_spec(FORCE_LIMIT)))[0]
 
 
 def test_disturbances_without_a_proved_bound_are_said_in_the_lead(soft_tissue):

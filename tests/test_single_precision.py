@@ -22,8 +22,7 @@ LAW = Admittance.discrete(Fraction(5, 8), Fraction(3, 16), T)
 def test_it_follows_the_exact_model_up_to_rounding(law, delay):
     """A step of the command, in contact: the same as the rows of a frame, step after step."""
     frame = frame_of(PERIOD, MOTION, (law,), delay, TAU)
-    n, E = len(frame.states), np.exp(-float(PERIOD / TAU))
-    values = {"Km": KM, "E": Fraction(E), "k": Fraction(43), "b": Fraction(0)}
+    n, values = len(frame.states), {"Km": KM, "k": Fraction(43), "b": Fraction(0)}
     rows = np.array(frame.rows(law, delay, values), dtype=float)
     x, expected = np.zeros(n), [0.0]
     for _ in range(200):

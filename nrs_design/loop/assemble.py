@@ -149,7 +149,6 @@ def assemble(
             conditions.touched,
             drive,
             sampled=conditions.sampling is not None,
-            points=bool(points),
         )
     )
     if conditions.sampling is not None and conditions.constant_late is not None:

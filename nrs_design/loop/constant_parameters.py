@@ -6,7 +6,6 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import product
-from math import prod
 from typing import TYPE_CHECKING, NamedTuple
 
 from nrs_design.errors import AssemblyError, InternalError
@@ -17,12 +16,9 @@ from nrs_design.proof.switching import FixedParameter
 from nrs_design.proof.system import SwitchedSystem
 
 if TYPE_CHECKING:
-    from nrs_design.models.drive import Drive
     from nrs_design.models.plant import Plant
 
 MAX_CORNERS = 50_000
-# Corners of what encloses exp(-T/tau) and tau (1 - exp(-T/tau)), in the order of a box.
-_ENCLOSED = ("E-min/s-min", "E-min/s-max", "E-max/s-max")
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,10 +26,14 @@ class ConstantParameter:
     """One parameter that does not change while the robot runs."""
 
     said: FixedParameter  # Its name and range
-    # How the name of a mode says at which of its corners the mode is, low before high: one label
-    # such as ``k-min``, or several such as ``E-min/s-max``.
-    labels: tuple[str, ...]
+    # How the name of a mode says at which of its ends the mode is, low before high, as ``k-min``.
+    labels: tuple[str, str]
     contact: str | None = None  # The one contact that it is of; None if it is in all modes
+
+    @property
+    def symbol(self) -> str:
+        """What labels call it."""
+        return self.labels[0].rpartition("-")[0]
 
     @property
     def first_label(self) -> int:
@@ -44,8 +44,7 @@ class ConstantParameter:
         """Return at which corner a mode is, by its name and labels; None if it is not in it."""
         if self.contact is not None and self.contact not in mode[1:2]:
             return None
-        said = set(mode[self.first_label :])
-        return next((label for label in self.labels if said.issuperset(label.split("/"))), None)
+        return next((label for label in self.labels if label in mode[self.first_label :]), None)
 
 
 def constant_lateness(
@@ -62,36 +61,29 @@ def constant_lateness(
 
 
 def constants_of(
-    plant: Plant, touched: Collection[str], drive: str, *, sampled: bool, points: bool = False
+    plant: Plant, touched: Collection[str], part: str, *, sampled: bool
 ) -> Iterator[ConstantParameter]:
-    """Yield the constant parameters of a plant; `drive` is the part of the spec that the motor is.
+    """Yield the constant parameters of a plant; `part` is the part of the spec that its drive is.
 
-    Numbers of a sampled loop enclose those of a constant time constant, so their corners are none
-    of its values.
+    What a drive does in a period encloses its numbers, but for the gain of a motor, and those of
+    the load that acts on it: their corners are none of their values.
     """
-    moved, ranges = plant.held, plant.actuator_ranges
-    if moved is not None and sampled:
-        tissue = tuple(_of_tissue(plant, touched))
-        if tissue and moved.loaded and len(touched) > 1:
-            raise AssemblyError(
-                f"{tissue[0].said.name} is constant, but within a period the drive may go from one "
-                "contact to another, and their ends are not told apart",
-                remedy="leave out `varies: false` of what is touched, or touch one environment",
-            )
-        yield from _enclosed((*_of_drive(moved, drive, ranges.command), *tissue))
-        return
-    if ranges.gain.is_constant:
-        unit = f"rad/s/{ranges.command}"
-        yield _between_ends(f"{drive}.gain", ranges.gain, "Km", unit)
-    if ranges.time_constant.is_constant:
-        name, tau = f"{drive}.time_constant", ranges.time_constant
-        said = FixedParameter(name, tau.low, tau.high, "s", enclosed=points)
-        yield (
-            ConstantParameter(said, ("tau-min", "tau-max") if points else _ENCLOSED)
-            if sampled
-            else _between_ends(name, tau, "tau", "s", inverse=True)
+    drive, tissue = plant.held, tuple(_of_tissue(plant, touched))
+    if sampled and tissue and drive.loaded and len(touched) > 1:
+        raise AssemblyError(
+            f"{tissue[0].said.name} is constant, but within a period the drive may go from one "
+            "contact to another, and their ends are not told apart",
+            remedy="leave out `varies: false` of what is touched, or touch one environment",
         )
-    yield from _of_tissue(plant, touched)
+    for symbol, interval in drive.ranges.items():
+        if interval.is_constant:
+            key, unit = _DRIVEN[symbol]
+            unit = unit.format(command=plant.actuator_ranges.command)
+            found = _between_ends(
+                f"{part}.{key}", interval, symbol, unit, inverse=symbol in drive.inverse
+            )
+            yield _enclosed(found) if sampled and symbol != GAIN else found
+    yield from map(_enclosed, tissue) if sampled and drive.loaded else tissue
 
 
 # Of a drive of its own: the symbols of its numbers, their keys in a spec, and their units.
@@ -103,17 +95,9 @@ _DRIVEN = {
 }
 
 
-def _enclosed(found: Iterable[ConstantParameter]) -> Iterator[ConstantParameter]:
-    """Yield parameters whose corners enclose what the modes are."""
-    return (replace(one, said=replace(one.said, enclosed=True)) for one in found)
-
-
-def _of_drive(drive: Drive, part: str, command: str) -> Iterator[ConstantParameter]:
-    for symbol, interval in drive.ranges.items():
-        if interval.is_constant:
-            key, unit = _DRIVEN[symbol]
-            inverse, unit = symbol in drive.inverse, unit.format(command=command)
-            yield _between_ends(f"{part}.{key}", interval, symbol, unit, inverse=inverse)
+def _enclosed(found: ConstantParameter) -> ConstantParameter:
+    """Return a parameter whose corners enclose what the modes are."""
+    return replace(found, said=replace(found.said, enclosed=True))
 
 
 def _of_tissue(plant: Plant, touched: Collection[str]) -> Iterator[ConstantParameter]:
@@ -187,7 +171,7 @@ def corners_by_name(
             for parameter, end in ends.items()
             if end is not None
             for place, label in enumerate(mode)
-            if place >= parameter.first_label and label in end.split("/")
+            if place >= parameter.first_label and label == end
         }
         varying = tuple(label for k, label in enumerate(mode) if (label, k) not in constant)
         corner = {p.said.name: p.labels.index(end) for p, end in ends.items() if end is not None}
@@ -211,8 +195,10 @@ def constant_sets(
         ends = tuple(at.ends.get(parameter.said.name) for parameter in parameters)
         known[at.varying, ends] = at.mode
         first[at.varying, tuple(end is not None for end in ends)] = None
+    # Around the curve of a constant number there may be more than two.
+    counts = [1 + max(1, *(c[i] or 0 for _, c in known)) for i in range(len(parameters))]
     for varying, has in first:
-        every = product(*(range(len(parameter.labels)) for parameter in parameters))
+        every = product(*map(range, counts))
         keys = [tuple(c if h else None for c, h in zip(at, has, strict=True)) for at in every]
         if any((varying, key) not in known for key in keys):
             raise InternalError(f"a corner of {varying[0]} has no mode")
@@ -230,7 +216,7 @@ def with_constants(
     """
     if not parameters:
         return system
-    count = prod(len(parameter.labels) for parameter in parameters) * len(system.modes)
+    count = 2 ** len(parameters) * len(system.modes)
     if count > MAX_CORNERS:
         raise AssemblyError(
             f"the modes at all corners of the constant parameters are up to {count}, at most "

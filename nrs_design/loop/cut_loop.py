@@ -187,9 +187,9 @@ class ProcessorAxis(AbstractAxis):
 
     motion: ProportionalDerivative
     sampling: SamplingSpec
+    drive: Drive
     low_pass: LowPass | None = None
     takes: Takes | None = None
-    drive: Drive | None = None
     loaded: bool = False  # Whether what is touched slows the motor
 
     @property
@@ -276,13 +276,11 @@ def _of_step(
 def _loop(
     axis: ProcessorAxis, law: DiscreteLaw, place: Place, carried: Contact
 ) -> tuple[SampledLoop, Rows]:
-    """Return the loop of a law, and what flows in a period: the middle of what encloses it."""
+    """Return the loop of a law, and what flows in a period: a point of what encloses it."""
     # Not loaded for a design in continuous time.
     from nrs_design.loop.calendar import Calendar
     from nrs_design.loop.command_timing import CommandTiming
-    from nrs_design.loop.held import flow_rows
-    from nrs_design.loop.held_drive import HeldDrive
-    from nrs_design.loop.held_motor import hold
+    from nrs_design.loop.flow import HeldDrive
     from nrs_design.loop.program import SampledProgram
     from nrs_design.loop.sampled import SampledLoop
 
@@ -291,16 +289,12 @@ def _loop(
     D = axis.motion.over(axis.sampling.period.exact)
     step = StepFrame(axis.motion.Kp, D, low_pass, takes=axis.takes)
     timing = CommandTiming(axis.sampling.step, place.late, place.late)
-    motor = hold(ActuatorRanges.point(place.motor), timing)
-    if axis.drive is not None:
-        known = axis.drive.at({"tau": place.motor.time_constant, GAIN: place.motor.gain})
-        touched = {s: Interval.point(v) for s, v in zip(LOAD, carried, strict=True)}
-        motor = HeldDrive.of(known, timing, touched)
-    middle = {symbol: interval.middle for symbol, interval in motor.box.ranges.items()}
-    middle |= {**dict.fromkeys(motor.box.hull[0], ZERO), "Km": place.motor.gain}
+    known = axis.drive.at({"tau": place.motor.time_constant, GAIN: place.motor.gain})
+    touched = {s: Interval.point(v) for s, v in zip(LOAD, carried, strict=True)}
+    flow = HeldDrive(known, timing).flow(touched)[0].rows
     calendar = Calendar(timing, (place.age, place.age))
-    loop = SampledLoop(SampledProgram(step, (law,)), axis.takes, motor.states, calendar)
-    return loop, flow_rows(motor, len(timing.within), middle)
+    loop = SampledLoop(SampledProgram(step, (law,)), axis.takes, known.states, calendar)
+    return loop, flow
 
 
 def axis_of(
@@ -321,7 +315,7 @@ def axis_of(
         return None
     places = tuple(_places(ranges, sampling.delay, spec.late))
     return ProcessorAxis(
-        places, motion, sampling, low_pass, spec.takes, plant.held, loaded=plant.slowed
+        places, motion, sampling, plant.held, low_pass, spec.takes, loaded=plant.slowed
     )
 
 

@@ -44,7 +44,7 @@ def constant_parameters(
     return tuple(
         ConstantParameter(
             FixedParameter(p.name, p.interval.low, p.interval.high),
-            tuple(f"{p.name}-{end}" for end, _ in p.interval.ends),
+            (f"{p.name}-min", f"{p.name}-max"),
         )
         for p in parameters
         if not p.varies and p.interval.low != p.interval.high

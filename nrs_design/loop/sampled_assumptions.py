@@ -22,11 +22,11 @@ from nrs_design.loop.assumptions import (
     rule_texts,
 )
 from nrs_design.loop.command_timing import CommandTiming
+from nrs_design.loop.hull import APART
 from nrs_design.loop.loop_assumptions import kept_by_laws
 from nrs_design.loop.loss import Loss
 from nrs_design.loop.program import SampledProgram
 from nrs_design.loop.sampled import SampledLoop
-from nrs_design.loop.sampled_motor import EXPONENTIAL_BITS
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.drive import Drive, Takes
 from nrs_design.models.interval import may_change
@@ -142,7 +142,7 @@ def _motor_text(
     if timing.varies:
         corner = "a corner of that, of no motor and no times of the ranges"
     elif tau.low == tau.high:
-        corner = f"an end, less than 2^-{EXPONENTIAL_BITS - 1} away"
+        corner = f"an end, less than 2^-{APART} away"
     moving = ranges.may_change("at every sample, not in between")
     if plant.slowed:
         return say("motor.loaded", motor, motor=motor, moving=moving)
@@ -164,7 +164,7 @@ def _load_texts(
     plant: Plant, axis: AxisType, environments: Sequence[Environment]
 ) -> Iterator[Assumption]:
     """Say what loads the motor, unless that is what a drive says of itself."""
-    if plant.held is None or not plant.held.loaded:
+    if not plant.held.loaded:
         yield say("unloaded.sampled")
     elif plant.drive is None and plant.load_inertia is not None:
         inertia = f"{exact_text(plant.load_inertia)} {axis.unit('kg*m^2')}"

@@ -10,11 +10,11 @@ from nrs_design.controllers.controller_design import Controller
 from nrs_design.controllers.laws import DiscreteLaw
 from nrs_design.loop.calendar import Turn
 from nrs_design.loop.constant_parameters import ConstantParameter, Corner
-from nrs_design.loop.held import HeldPoint, Label, Spot, points_of, spot_of, spots_of
-from nrs_design.loop.held_motor import HeldMotor
-from nrs_design.loop.parameter_box import Box
-from nrs_design.loop.sampled import Contact, Period, SampledLoop
+from nrs_design.loop.flow import AGAIN, HeldDrive
+from nrs_design.loop.sampled import Contact, Period, Rows, SampledLoop
+from nrs_design.loop.spot import Label, Spot, labelled_ends, spot_of
 from nrs_design.models.contact.environment import Environment
+from nrs_design.models.drive import GAIN, LOAD
 from nrs_design.models.interval import Interval
 from nrs_design.models.linear_form import ZERO
 from nrs_design.proof.matrix import RationalMatrix
@@ -70,7 +70,7 @@ class TouchedDrive:
 
     spot: Spot  # Of a drive and a load that there are, where these are looked at
     seen: Sequence[tuple[Spot, Contact]]
-    points: Sequence[HeldPoint]
+    flows: Sequence[tuple[Spot, Rows]]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -78,18 +78,18 @@ class Modes:
     """What the modes of a loop have in common."""
 
     loop: SampledLoop
-    motor: HeldMotor
+    held: HeldDrive
     environments: tuple[Environment, ...]
     constants: tuple[ConstantParameter, ...]
     loses: bool  # Whether contact may come and go within a period
     # Drives that there are, each with its labels, instead of what encloses them all.
-    motors: tuple[tuple[tuple[str, ...], HeldMotor], ...]
-    _known: dict[object, tuple[HeldPoint, ...]] = field(default_factory=dict)
+    drives: tuple[tuple[tuple[str, ...], HeldDrive], ...]
+    _known: dict[object, tuple[tuple[Spot, Rows], ...]] = field(default_factory=dict)
 
     @property
     def _loaded(self) -> bool:
         """Whether what is touched acts on the motor."""
-        return self.motor.drive is not None and self.motor.drive.loaded
+        return self.held.drive.loaded
 
     def of_controller(self, c: Controller, law: DiscreteLaw) -> Iterator[SampledMode]:
         """Yield the modes of a controller in all its contacts, or in the air if it has none.
@@ -146,13 +146,13 @@ class Modes:
                 where = head + touched.spot + said
                 for spot, contact in touched.seen:
                     sample = self.loop.sample(law, age, contact, turn)
-                    for point in touched.points:
+                    for at, rows in touched.flows:
                         yield SampledMode(
                             group,
-                            where + spot + point.spot,
+                            where + spot + at,
                             touches if e is None else e.name,
                             turn is Turn.BOTH,
-                            self.loop.period(sample, point.rows),
+                            self.loop.period(sample, rows),
                         )
 
     def _samples(
@@ -176,51 +176,50 @@ class Modes:
         self, e: Environment | None, contacts: Sequence[Environment], *, sampled: bool
     ) -> Iterator[TouchedDrive]:
         """Yield what flows with every drive, and what is sampled, while something is touched."""
-        for labels, motor in self.motors or (((), self.motor),):
-            loaded = motor.drive is not None and motor.drive.loaded
-            for load, own in self._loads(e, contacts, loaded=loaded):
+        for labels, held in self.drives or (((), self.held),):
+            for load, own in self._loads(e, contacts):
                 texts = (*load, *labels)
                 spot = spot_of(texts, [t.rpartition("-")[0] for t in texts], self._constants(e))
-                yield self._with(spot, motor, own, e, loaded=loaded, sampled=sampled)
+                yield self._with(spot, held, own, e, sampled=sampled)
 
     def _loads(
-        self, e: Environment | None, contacts: Sequence[Environment], *, loaded: bool
+        self, e: Environment | None, contacts: Sequence[Environment]
     ) -> Iterator[tuple[tuple[str, ...], Mapping[str, Interval]]]:
         """Yield labels of a load, and where its stiffness and damping are."""
         own = {} if e is None else {"k": e.stiffness, "b": damping_of(e)}
-        if e is None or not loaded or (self.motors and e.depends):
+        if e is None or not self._loaded or (self.drives and e.depends):
             yield (), own
-        elif not self.motors:
+        elif not self.drives:
             # It may be another one within a period, too, or nothing where contact is lost.
             yield (), anything_of(contacts, lost=self.loses)
         else:
-            for ends in product(*(interval.ends for interval in own.values())):
-                named = [(symbol, *end) for symbol, end in zip(own, ends, strict=True)]
-                labels = tuple(f"{symbol}-{end}" for symbol, end, _ in named if end)
-                yield labels, {symbol: Interval.point(value) for symbol, _, value in named}
+            for labels, values in labelled_ends(own):
+                yield labels, {symbol: Interval.point(value) for symbol, value in values.items()}
 
     def _with(
         self,
         spot: Spot,
-        motor: HeldMotor,
+        held: HeldDrive,
         own: Mapping[str, Interval],
         e: Environment | None,
         *,
-        loaded: bool,
         sampled: bool,
     ) -> TouchedDrive:
-        constants, nothing = self._constants(e), Box({})
-        forced = self.loop.takes_force
-        seen, load = (Box(own), nothing) if not loaded or forced else (nothing, Box(own))
-        depends = loaded or (e is not None and e.depends)
-        spots = spots_of(seen if sampled else nothing, "" if depends else "kb", constants)
-        key = motor, tuple(own.items()) if loaded else ()
+        constants, loaded, forced = self._constants(e), self._loaded, self.loop.takes_force
+        # What acts on a drive is told from what is sampled, if a law takes that.
+        ends = labelled_ends(own if sampled and (forced or not loaded) else {})
+        real = "" if loaded or (e is not None and e.depends) else LOAD
+        seen = [
+            (spot_of(texts, real, constants), (at.get("k", ZERO), at.get("b", ZERO)))
+            for texts, at in ends
+        ]
+        key = held, tuple(own.items()) if loaded else ()
         if key not in self._known:
-            held = motor.touching(own, forced=forced) if own else motor
-            changes = len(self.loop.calendar.timing.within)
-            self._known[key] = points_of(held, changes, load, constants)
-        contacts = ((at, (v.get("k", ZERO), v.get("b", ZERO))) for at, v in spots)
-        return TouchedDrive(spot, tuple(contacts), self._known[key])
+            self._known[key] = tuple(
+                (spot_of(point.labels, {GAIN}, constants, point.curve), point.rows)
+                for point in held.flow(own if loaded else {}, AGAIN if forced else LOAD)
+            )
+        return TouchedDrive(spot, seen, self._known[key])
 
     def _constants(self, e: Environment | None) -> tuple[ConstantParameter, ...]:
         """Return the constant numbers of the drive and of what is touched."""

@@ -17,9 +17,8 @@ from nrs_design.loop.calendar import Calendar, Turn, turns_of
 from nrs_design.loop.command_timing import timing_of
 from nrs_design.loop.constant_parameters import ConstantParameter, Corner
 from nrs_design.loop.constraints import assemble_switching, leaving_impedance, zeroing
+from nrs_design.loop.flow import HeldDrive
 from nrs_design.loop.free_motion import could_pull, force_rows, lost_on_surface, outputs_of
-from nrs_design.loop.held_drive import HeldDrive
-from nrs_design.loop.held_motor import hold
 from nrs_design.loop.loss import Loss
 from nrs_design.loop.misses import clock_of
 from nrs_design.loop.motor_command import motor_command
@@ -63,24 +62,23 @@ def close_sampled_loop(
         c.name: c.law.discretize(sampling.outer, sampling.admittance) for c in design.controllers
     }
     timing = timing_of(sampling, conditions.late)
-    motor = hold(plant.actuator_ranges, timing)
-    if plant.held is not None:
-        motor = HeldDrive.of(plant.held, timing)
+    drive = plant.held
+    held = HeldDrive(drive, timing)
     program = sampled_program(conditions.idle, sampling, design, tuple(laws.values()))
     calendar = Calendar(timing, turns=turns_of(sampling))
-    loop = SampledLoop(program, design.takes, motor.states, calendar)
+    loop = SampledLoop(program, design.takes, drive.states, calendar)
     if loop.takes_force:
         loop = replace(loop, calendar=replace(calendar, ages=sampling.delay))
     environments = plant.among(design.contacts)
     loss = Loss.of(conditions.contact, environments, design, slowed=plant.slowed)
     every = Modes(
         loop,
-        motor,
+        held,
         environments,
         tuple(constants),
         # A controller that has no contacts takes them as they come.
         loss.anywhere or not all(c.contacts for c in design.controllers),
-        tuple(motor.points()) if points else (),
+        tuple(held.points()) if points else (),
     )
     modes, free = _modes(every, design, laws, loss)
     items = (*modes, *free)
@@ -88,12 +86,12 @@ def close_sampled_loop(
     for item in modes:
         groups.setdefault(item.group, []).append(item.name)
     channels = tuple(_channels(conditions, design.sensor.lasting, items))
-    velocity = coordinates(len(loop.states))[loop.states.index(motor.states[0])]
+    velocity = coordinates(len(loop.states))[loop.states.index(drive.states[0])]
     pulls = tuple(force_rows(velocity, loop.states, could_pull(environments)))
     outputs: tuple[Output, ...] = ()
     if channels:
         outputs = outputs_of(velocity, loop.states, environments, conditions.torque)
-        if motor.drive is not None and motor.drive.speed is not None:
+        if drive.speed is not None:
             # It jumps after the sample, and the force of what is damped with it.
             outputs = () if pulls else outputs[:1]
     driven = motor_command(conditions.largest_command, conditions.command, loop, channels)

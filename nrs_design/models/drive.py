@@ -106,21 +106,24 @@ class Drive:
         return replace(self, ranges=ranges)
 
 
-def loaded_motor(gain: Interval, time_constant: Interval, load: Fraction) -> Drive:
-    """Return a motor that is slowed: ``tau omega' = Km u - omega - tau (k delta + b omega)/J``.
+def motor_drive(gain: Interval, time_constant: Interval, load: Fraction | None = None) -> Drive:
+    """Return a motor ``tau omega' = Km u - omega - tau (k delta + b omega)/J``.
 
-    tau is in s, Km in rad/s per unit of the command, the load J at the joint in kg m^2.
+    tau is in s, Km in rad/s per unit of the command, the load J at the joint in kg m^2; without
+    one, the last term is left out.
     """
     nothing = (ZERO, ZERO, ZERO)
-    rows = {
+    rows: dict[tuple[str, ...], Rows] = {
         ("tau",): ((-ONE, ZERO, ZERO), nothing),
         (GAIN, "tau"): ((ZERO, ZERO, ONE), nothing),
-        (LOAD[0],): ((ZERO, -1 / load, ZERO), nothing),
-        (LOAD[1],): ((-1 / load, ZERO, ZERO), nothing),
         (): (nothing, (ONE, ZERO, ZERO)),
     }
+    if load is not None:
+        rows[LOAD[:1]] = (ZERO, -1 / load, ZERO), nothing
+        rows[LOAD[1:]] = (-1 / load, ZERO, ZERO), nothing
     ranges = {GAIN: gain, "tau": time_constant}
-    return Drive(None, (OMEGA,), MultiAffine(rows), ranges, frozenset({"tau"}), loaded=True)
+    loaded = load is not None
+    return Drive(None, (OMEGA,), MultiAffine(rows), ranges, frozenset({"tau"}), loaded)
 
 
 def torque_drive(inertia: Interval, friction: Interval) -> Drive:

@@ -8,7 +8,7 @@ from fractions import Fraction
 
 from nrs_design.models.actuator import Actuator, ActuatorRanges
 from nrs_design.models.contact.environment import Environment
-from nrs_design.models.drive import Drive, loaded_motor
+from nrs_design.models.drive import Drive, motor_drive
 from nrs_design.models.motion_loop import MotionLoop, close_motion_loop
 
 
@@ -33,12 +33,10 @@ class Plant:
         return self.drive is None and self.load_inertia is not None
 
     @property
-    def held(self) -> Drive | None:
-        """What moves the joint between samples, but for a motor that nothing slows."""
-        if self.drive is not None or self.load_inertia is None:
-            return self.drive
+    def held(self) -> Drive:
+        """What moves the joint between samples."""
         motor = self.actuator_ranges
-        return loaded_motor(motor.gain, motor.time_constant, self.load_inertia)
+        return self.drive or motor_drive(motor.gain, motor.time_constant, self.load_inertia)
 
     def motion_loop(self, Kp: Fraction, Kd: Fraction) -> MotionLoop:
         """Return G: the one that the spec states, else the one that the PD gains make.

@@ -62,7 +62,7 @@ NOT_CONTROLLERS = {
     MISS: "the modes of a missed deadline",
 }
 # What stands behind the contact in names of modes: ends of ranges, ages, and points.
-OF_CORNERS = re.compile(r"([A-Za-z]|tau|Km|[a-z]\d+)-(min|max)|(delay|hull|case)-\d+")
+OF_CORNERS = re.compile(r"([A-Za-z]|tau|Km|(h|in)\d+)-(min|max)|(delay|flow|case)-\d+")
 
 
 class DesignSpec(SpecModel):

@@ -45,7 +45,7 @@ def test_a_gate_fails_closed(spec, tmp_path):
     status = {item["subject"]: item for item in found["obligations"] if item["rule"] < "NRS103"}
     assert {item["status"] for item in status.values()} == {"inconclusive"}
     assert status["system"]["message"].startswith(f"refuted {KEPT}, which decides nothing")
-    assert "would have to pull" in status["withdrawal/tissue/E-min"]["message"]
+    assert "would have to pull" in status["withdrawal/tissue/flow-0"]["message"]
 
 
 def test_the_library_the_words_and_the_page_say_it(spec):

@@ -31,7 +31,7 @@ def real_part(omega, law, period, age):
     held = DiscreteLaw(Admittance, law)
     step = StepFrame(MOTION.Kp, MOTION.over(period))
     frame = frame_of(period, step, (held,), age, MOTOR.time_constant)
-    rows = frame.rows(held, age, {"Km": MOTOR.gain, "E": E})
+    rows = frame.rows(held, age, {"Km": MOTOR.gain})
     n = len(frame.states)
     # The velocity that the command holds on to; the last state only counts the angle.
     A = np.array([[float(v) for v in row[:n]] for row in rows[:n]])

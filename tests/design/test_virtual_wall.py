@@ -11,7 +11,6 @@ from nrs_design.controllers.laws import LAWS
 from nrs_design.controllers.step_law import StepFrame
 from nrs_design.design.virtual_wall import Wall, passivity_margin
 from nrs_design.loop.command_timing import CommandTiming
-from nrs_design.loop.held_drive import HeldDrive
 from nrs_design.models.drive import Takes, torque_drive
 from nrs_design.models.interval import Interval
 from tests.literature.test_colgate_schenkel import is_passive
@@ -28,10 +27,9 @@ def proved_radius(wall, K, B, late):
     drive = torque_drive(
         Interval.point(F(str(wall.inertia))), Interval.point(F(str(wall.friction)))
     )
-    motor = HeldDrive.of(drive, timing)
-    frame = Frame(timing, motor, StepFrame(F(0), F(0), takes=Takes.TORQUE), (law,), 0)
+    frame = Frame(timing, drive, StepFrame(F(0), F(0), takes=Takes.TORQUE), (law,), 0)
     n = len(frame.states)
-    rows = frame.rows(law, 0, dict.fromkeys(motor.box.hull[0], F(0)))[:n]
+    rows = frame.rows(law, 0, {})[:n]
     A = np.array([[float(v) for v in row[:n]] for row in rows])
     return abs(np.linalg.eigvals(A)).max()
 

@@ -15,10 +15,9 @@ import pytest
 from nrs_design.controllers.laws import Admittance
 from nrs_design.controllers.step_law import StepFrame
 from nrs_design.loop.command_timing import CommandTiming
-from nrs_design.loop.held_drive import HeldDrive
-from nrs_design.loop.held_motor import hold
-from nrs_design.models.actuator import Actuator, ActuatorRanges
-from nrs_design.models.drive import Takes, velocity_drive
+from nrs_design.models.actuator import Actuator
+from nrs_design.models.drive import Takes, motor_drive, velocity_drive
+from nrs_design.models.interval import Interval
 from nrs_design.models.motion_loop import close_motion_loop
 from tests.loop.frames import Frame
 
@@ -40,12 +39,11 @@ def delay_margin(Bt, *, at_motor):
 def held_in(timing, *, closed):
     """The motor, or a robot that closes the loop around it by itself and takes velocities."""
     if not closed:
-        return hold(ActuatorRanges.point(Actuator(KM, TAU)), timing), StepFrame(
-            KP, KD / timing.period
-        )
+        motor = motor_drive(Interval.point(KM), Interval.point(TAU))
+        return motor, StepFrame(KP, KD / timing.period)
     drive = velocity_drive(close_motion_loop(Actuator(KM, TAU), KP, KD))
     step = StepFrame(Fraction(0), Fraction(0), takes=Takes.VELOCITY)
-    return HeldDrive.of(drive, timing), step
+    return drive, step
 
 
 def border(Bt, T, *, closed=False):
@@ -58,12 +56,10 @@ def border(Bt, T, *, closed=False):
 
     def is_stable(late):
         timing = CommandTiming(T, late, late)
-        motor, step = held_in(timing, closed=closed)
-        frame = Frame(timing, motor, step, (law,), 0)
-        numbers = {symbol: interval.middle for symbol, interval in frame.motor.box.ranges.items()}
-        numbers |= dict.fromkeys(frame.motor.box.hull[0], Fraction(0))
+        drive, step = held_in(timing, closed=closed)
+        frame = Frame(timing, drive, step, (law,), 0)
         n = len(frame.states)
-        rows = frame.rows(law, 0, {**numbers, "k": K})[:n]
+        rows = frame.rows(law, 0, {"k": K})[:n]
         A = np.array([[float(v) for v in row[:n]] for row in rows])
         return abs(np.linalg.eigvals(A)).max() < 1
 

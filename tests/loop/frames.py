@@ -6,11 +6,11 @@ from fractions import Fraction
 from nrs_design.controllers.step_law import StepFrame
 from nrs_design.loop.calendar import Calendar, Turn
 from nrs_design.loop.command_timing import CommandTiming
-from nrs_design.loop.held import flow_rows
-from nrs_design.loop.held_motor import HeldMotor, hold
+from nrs_design.loop.flow import HeldDrive
 from nrs_design.loop.program import SampledProgram
 from nrs_design.loop.sampled import SampledLoop
-from nrs_design.models.actuator import Actuator, ActuatorRanges
+from nrs_design.models.drive import Drive, motor_drive
+from nrs_design.models.interval import Interval
 
 
 @dataclass(frozen=True)
@@ -18,7 +18,7 @@ class Frame:
     """A loop, and what moves it."""
 
     timing: CommandTiming
-    motor: HeldMotor
+    drive: Drive
     step: StepFrame
     laws: tuple
     longest_delay: int
@@ -36,12 +36,15 @@ class Frame:
     def loop(self):
         calendar = Calendar(self.timing, (0, self.longest_delay), self.turns)
         program = SampledProgram(self.step, self.laws, self.idle)
-        return SampledLoop(program, self.step.takes, self.motor.states, calendar)
+        return SampledLoop(program, self.step.takes, self.drive.states, calendar)
 
     def rows(self, law, delay, values, turn=Turn.BOTH):
-        """Return the map of a period, below it the sizes of roundings, and the command."""
+        """Return the map of a period, below it the sizes of roundings, and the command.
+
+        Of a drive that is known, at the gain that is given, to 2^-55.
+        """
         contact = values.get("k", Fraction(0)), values.get("b", Fraction(0))
-        flow = flow_rows(self.motor, len(self.timing.within), values)
+        flow = HeldDrive(self.drive.at(values), self.timing).flow()[0].rows
         period = self.loop.period(self.loop.sample(law, delay, contact, turn), flow)
         return [*period.moves, *period.sizes, period.command]
 
@@ -49,5 +52,5 @@ class Frame:
 def frame_of(period, step, laws, delay, tau, *others, **named):
     """Return a loop whose commands take effect at once, with a motor that is known."""
     timing = CommandTiming(Fraction(period))
-    motor = hold(ActuatorRanges.point(Actuator(Fraction(1, 2000), Fraction(tau))), timing)
-    return Frame(timing, motor, step, laws, delay, *others, **named)
+    drive = motor_drive(Interval.point(Fraction(1, 2000)), Interval.point(Fraction(tau)))
+    return Frame(timing, drive, step, laws, delay, *others, **named)

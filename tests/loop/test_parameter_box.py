@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from nrs_design.errors import InternalError
-from nrs_design.loop.parameter_box import Box, Triangle
+from nrs_design.loop.parameter_box import Box
 from nrs_design.models.interval import Interval
 
 F = Fraction
@@ -95,74 +95,6 @@ def test_rows_that_corners_share_are_compared_too(power):
     else:
         with pytest.raises(InternalError, match="mode m is not affine in each parameter"):
             list(BOTH.corners(rows_at, "m"))
-
-
-TRIANGLE = Box(
-    {"x": UNIT, "y": Interval(F(2), F(-1), F(4))}, triangle=Triangle("x", "y", (F(2), F(7, 2)))
-)
-
-
-def test_a_triangle_has_three_corners():
-    found = {name: (v["x"], v["y"]) for name, v in TRIANGLE.named_values("m")}
-    assert found == {
-        "m/x-min/y-min": (1, -1),
-        "m/x-min/y-max": (2, F(7, 2)),
-        "m/x-max/y-max": (3, 4),
-    }
-    assert [name for name, _ in corners(TRIANGLE, lambda x, y: x + y)] == [*found]
-
-
-def test_what_is_beside_a_triangle_has_its_own_corners():
-    beside = Box({"z": UNIT}).beside(TRIANGLE)
-    assert len(corners(beside, lambda x, y, z: z * (x + y))) == 6
-    assert len(corners(TRIANGLE.beside(Box({"z": UNIT})), lambda x, y, z: z * (x - y))) == 6
-
-
-@given(st.lists(st.fractions(-9, 9), min_size=6, max_size=6), shares, shares, shares)
-def test_every_value_in_a_triangle_is_the_same_average_of_corners(c, s, t, u):
-    """With z beside: (a + b x + c y) (1 + d z), say, and more of the kind."""
-
-    def entry(x, y, z):
-        return c[0] + c[1] * x + c[2] * y + z * (c[3] + c[4] * x + c[5] * y)
-
-    found = corners(TRIANGLE.beside(Box({"z": UNIT})), entry)
-    # Shares of the three corners, so a point of the triangle.
-    first, second = s * t, s * (1 - t)
-    weights = (first, second, 1 - first - second)
-    points = ((1, -1), (2, F(7, 2)), (3, 4))
-    x, y = (sum(w * p[i] for w, p in zip(weights, points, strict=True)) for i in (0, 1))
-    mean = sum(
-        w * v * rows[0][0]
-        for (w, v), (_, rows) in zip(product(weights, (1 - u, u)), found, strict=True)
-    )
-    assert mean == entry(x, y, (1 - u) * 1 + u * 3)
-
-
-@pytest.mark.parametrize(
-    "entry",
-    [
-        # Affine in each, but not together: what is between three corners would not be covered.
-        lambda x, y, z: x * y,
-        lambda x, y, z: z * x * y,
-        lambda x, y, z: (z - 1) * (z - 3) * x,
-        lambda x, y, z: x**2,
-        lambda x, y, z: y**2,
-        # Zero along one side each, or at all corners and middles but one.
-        lambda x, y, z: (y - F(7, 2) - F(x - 2) / 2) * x,
-        lambda x, y, z: (y + 1 - F(9, 2) * (x - 1)) * y,
-        lambda x, y, z: (5 * (x - 1) - 2 * (y + 1)) ** 2,
-        lambda x, y, z: (5 * (x - 1) - 2 * (y + 1)) * (y - F(7, 2) - F(x - 2) / 2),
-    ],
-)
-def test_what_is_not_affine_together_stops_at_a_triangle(entry):
-    with pytest.raises(InternalError, match="mode m is not affine in each parameter"):
-        corners(TRIANGLE.beside(Box({"z": UNIT})), entry)
-
-
-def test_a_box_has_one_triangle():
-    other = Box({"v": UNIT, "w": UNIT}, triangle=Triangle("v", "w", (F(1), F(2))))
-    with pytest.raises(InternalError, match="two triangles"):
-        TRIANGLE.beside(other)
 
 
 def test_a_symbol_stands_for_one_parameter():

@@ -233,9 +233,9 @@ def test_a_slower_outer_loop_holds_the_reference(tmp_path):
     assert (system.clock.length, system.sample_time) == (3, Fraction(1, 500))
     assert "u held" not in system.states
     between = [m for m in system.modes if m.name not in system.clock.first]
-    assert [m.name for m in between] == ["motion/E-min", "motion/E-max"]
+    assert [m.name for m in between] == ["motion/flow-0", "motion/flow-1"]
     free = [m.name for m in system.contact.free if m.name not in system.clock.first]
-    assert free == ["motion/free/E-min", "motion/free/E-max"]
+    assert free == ["motion/free/flow-0", "motion/free/flow-1"]
     n = system.order
     for mode in between:
         A = mode.A.fractions()
@@ -322,7 +322,7 @@ def test_what_position_control_touches_is_sampled(tmp_path):
     """With the sample of the moment nobody uses it; an older one acts after a switch to force."""
     system = system_of(tmp_path, "{period: 2 ms, delay: 1}", text=FORCE)
     modes = {mode.name: mode.A.fractions() for mode in system.modes}
-    touching, free = modes["position/soft/k-max/E-min"], modes["position/E-min"]
+    touching, free = modes["position/soft/k-max/flow-0"], modes["position/flow-0"]
     assert [row for i, row in enumerate(touching) if i != 2] == [
         row for i, row in enumerate(free) if i != 2
     ]
@@ -331,8 +331,8 @@ def test_what_position_control_touches_is_sampled(tmp_path):
     assert "any of the environments may be touched" in " ".join(system.assumptions)
     at_once = system_of(tmp_path, "{period: 2 ms, delay: 0}", text=FORCE)
     assert [m.name for m in at_once.modes if "position" in m.name] == [
-        "position/E-min",
-        "position/E-max",
+        "position/flow-0",
+        "position/flow-1",
     ]
 
 
@@ -346,8 +346,8 @@ def test_contact_lost_under_force_control_is_a_mode_without_force(tmp_path):
     assert len(free) == 4
     assert len(modes) == 2 + 4 + 8 + 4
     # With the sample of the moment, it is position control; with an older one, that still acts.
-    assert modes["force/free/delay-0/E-min"] == modes["position/E-min"]
-    late, pushed = modes["force/free/delay-1/E-min"], modes["position/E-min"]
+    assert modes["force/free/delay-0/flow-0"] == modes["position/flow-0"]
+    late, pushed = modes["force/free/delay-1/flow-0"], modes["position/flow-0"]
     assert [row[2] for row in late] != [row[2] for row in pushed]
     assert [row[:2] + row[3:] for row in late] == [row[:2] + row[3:] for row in pushed]
     texts = " ".join(system.assumptions)

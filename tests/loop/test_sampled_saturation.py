@@ -99,7 +99,7 @@ def ways(system):
     """Yield every mode in contact with the controller, stiffness and age that it stands for."""
     for k, mode in enumerate(system.modes):
         parts = mode.name.split("/")
-        if parts[-1] != "E-min":
+        if parts[-1] != "flow-0":
             continue
         stiffness = {"k-min": SOFTEST, "k-max": HARDEST}.get(parts[-2])
         late = "delay-0" not in parts

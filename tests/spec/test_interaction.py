@@ -312,7 +312,9 @@ def test_no_controller_is_called_like_other_modes(name):
         parse_spec(text.replace("  insertion:", f"  {name}:"))
 
 
-@pytest.mark.parametrize("name", ["free", "tau-min", "s-max", "h0-min", "k-max", "delay-1"])
+@pytest.mark.parametrize(
+    "name", ["free", "tau-min", "flow-2", "h0-min", "in1-max", "k-max", "delay-1"]
+)
 def test_no_environment_is_called_like_what_names_of_modes_end_with(name):
     text = SOFT_TISSUE.read_text()
     with pytest.raises(SpecError, match=f"cannot be called '{name}'"):

@@ -1,0 +1,209 @@
+"""The entries of ``exp([[A, B], [0, 0]] h)`` in balls: how a drive moves its states in a time h.
+
+Below them is a row for the velocity where it jumps with the command. The deflection counts from
+where it is when the time begins.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from math import prod
+from typing import TYPE_CHECKING, Any
+
+from nrs_design.errors import AssemblyError
+from nrs_design.models.drive import GAIN, Drive, MultiAffine
+
+if TYPE_CHECKING:
+    from flint import arb, arb_mat
+
+ONE, ZERO = Fraction(1), Fraction(0)
+# Of a period, in time constants of the drive: far beyond, nothing is left of where it began.
+LONGEST = Fraction(2000)
+
+
+@dataclass(frozen=True, slots=True)
+class Entries:
+    """What a drive makes of its states and of a command of one; its gain is left out."""
+
+    drive: Drive
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Rows and columns: the last column is that of the command."""
+        n = self.drive.order
+        return n + (self.drive.speed is not None), n + 1
+
+    def rates(self, at: Mapping[str, Any], by: str = "") -> arb_mat:
+        """Return ``G = [[A, B], [0, 0]]`` at some numbers, or its derivative by one of them."""
+        return _filled(self.drive.rates, at, by, self.drive.order + 1)
+
+    def at(self, at: Mapping[str, Any], h: arb) -> arb_mat:
+        """Return the entries at some numbers and a time."""
+        return self.jet(at, h, "", h, 0)[0]
+
+    def jet(self, at: Mapping[str, Any], h: arb, by: str, width: arb, order: int) -> list[arb_mat]:
+        """Return the entries and their Taylor coefficients along the range of a number.
+
+        In shares of a range of that width, from the numbers on that are given; `by` is the number,
+        or empty for the time. With ``G = G0 + t D``, the coefficients of ``exp(G h)`` are the first
+        row of blocks of the exponential of the block matrix with ``G0 h`` on the diagonal and
+        ``D h`` beside it. Those by the time are ``G^k exp(G h)/k!``.
+        """
+        from flint import arb_mat
+
+        G = self.rates(at)
+        if by:
+            D = self.rates(at, by) * (h * width)
+            blocks = _first_blocks(G * h, D, order)
+        else:
+            blocks = [(G * h).exp()]
+            for k in range(order):
+                blocks.append(G * blocks[-1] * (width / (k + 1)))
+        n, m = self.drive.order, self.drive.order + 1
+        found = [[[M[i, j] for j in range(m)] for i in range(n)] for M in blocks]
+        found[0][n - 1][n - 1] -= 1
+        if (speed := self.drive.speed) is not None:
+            L = _filled(speed, at, "", 1, m)
+            slope = _filled(speed, at, by, 1, m) * width if by else arb_mat(1, m)
+            for k, M in enumerate(blocks):
+                row = L * M + (slope * blocks[k - 1] if k else arb_mat(1, m))
+                found[k].append([row[0, j] for j in range(m)])
+        return [arb_mat(rows) for rows in found]
+
+    def moved(self, at: Mapping[str, Any], h: arb, widths: Mapping[str, arb]) -> arb_mat:
+        """Return by how much entries are off at most where the load changes within the time.
+
+        `widths` are those of the ranges of numbers of the load. Let A be the generator at the
+        moment, with entries of at most M by size, and k a number of the load, which acts by N:
+        ``A(s) = A + (k(s) - k) N`` with k the mean over the time. What the state becomes is off by
+        the integral of ``(k(s) - k) g(s)`` with ``g = exp(A (T - s)) N E(s)``, E what the changing
+        A makes of the state until s. The first factor has the mean zero and a range of some width,
+        so that is at most ``T^2/8`` times the width and the largest derivative of g (Ostrowski
+        1970), which is at most ``exp(M T) (|N| M + M |N|) exp(M T)``. What commands add is off by
+        at most the integral of ``exp(M (h - s)) |N| exp(M s)``, which is the corner block of the
+        exponential of ``[[M, |N|], [0, M]] h``.
+        """
+        from flint import arb_mat
+
+        m = self.drive.order + 1
+        M, total = _sizes(self.rates(at)), arb_mat(m, m)
+        grown = (M * h).exp()
+        for symbol, width in widths.items():
+            N = _sizes(self.rates(at, symbol))
+            states = grown * (N * M + M * N) * grown * (width * h * h / 8)
+            _, commands = _first_blocks(M * h, N * h, 1)
+            total += arb_mat(
+                [
+                    [width * commands[i, j] if j == m - 1 else states[i, j] for j in range(m)]
+                    for i in range(m)
+                ]
+            )
+        return total
+
+    def check_length(self, at: Mapping[str, Any], longest: Fraction) -> None:
+        """Refuse a period of so many time constants that its exponential is out of reach."""
+        M, n = _sizes(self.rates(at)), self.drive.order
+        # States may be in any units: powers hardly notice.
+        for _ in range(3):
+            M = M * M
+        if (
+            sum((highest(M[i, j]) for i in range(n) for j in range(n)), ZERO)
+            > (LONGEST / longest) ** 8
+        ):
+            raise too_long()
+
+
+def too_long() -> AssemblyError:
+    """Return what is said of a period that no enclosure is good for."""
+    return AssemblyError(
+        "a period is too long for the drive and what it touches: it is too many of their time "
+        "constants, or their ranges are too wide to enclose what they do in it",
+        remedy="sample with a shorter period, or narrow the ranges",
+        at=("sampling", "period"),
+    )
+
+
+def exact_rows(M: MultiAffine, at: Mapping[str, Fraction], columns: int) -> list[list[Fraction]]:
+    """Return a matrix at exact numbers, where the gain is one."""
+    at = {**at, GAIN: ONE}
+    total: list[list[Fraction]] = []
+    for symbols, rows in M.terms.items():
+        factor = prod((at[s] for s in symbols), start=ONE)
+        total = total or [[ZERO] * columns for _ in rows]
+        total = [
+            [a + factor * c for a, c in zip(sums, row, strict=True)]
+            for sums, row in zip(total, rows, strict=True)
+        ]
+    return total
+
+
+def ball(number: Fraction) -> arb:
+    """Return a number as a ball."""
+    from flint import arb, fmpq
+
+    return arb(fmpq(number.numerator, number.denominator))
+
+
+def highest(x: arb) -> Fraction:
+    """Return a number that is not below any of a ball; an `OverflowError` if there is none."""
+    return exact(_finite(x).upper())
+
+
+def lowest(x: arb) -> Fraction:
+    """Return a number that is not above any of a ball; an `OverflowError` if there is none."""
+    return exact(_finite(x).lower())
+
+
+def middle(x: arb) -> Fraction:
+    """Return the middle of a ball; an `OverflowError` if there is none."""
+    return exact(_finite(x).mid())
+
+
+def exact(point: arb) -> Fraction:
+    """Return a ball of no width as a number."""
+    mantissa, exponent = point.man_exp()
+    return Fraction(int(mantissa)) * Fraction(2) ** int(exponent)
+
+
+def _finite(x: arb) -> arb:
+    if not x.is_finite():
+        raise OverflowError
+    return x
+
+
+def _first_blocks(diagonal: arb_mat, beside: arb_mat, order: int) -> list[arb_mat]:
+    """Return the first row of blocks of the exponential of a matrix of two diagonals of blocks."""
+    from flint import arb_mat
+
+    m = diagonal.nrows()
+    whole = arb_mat(m * (order + 1), m * (order + 1))
+    for b, i, j in ((b, i, j) for b in range(order + 1) for i in range(m) for j in range(m)):
+        whole[m * b + i, m * b + j] = diagonal[i, j]
+        if b < order:
+            whole[m * b + i, m * (b + 1) + j] = beside[i, j]
+    E = whole.exp()
+    return [
+        arb_mat([[E[i, m * b + j] for j in range(m)] for i in range(m)]) for b in range(order + 1)
+    ]
+
+
+def _filled(M: MultiAffine, at: Mapping[str, Any], by: str, height: int, width: int = 0) -> arb_mat:
+    """Return a matrix of balls, or its derivative by a number, with zeros below."""
+    from flint import arb, arb_mat
+
+    width = width or height
+    total = arb_mat(height, width)
+    for symbols, rows in (M.slope(by) if by else M).terms.items():
+        factor = prod((at[s] for s in symbols), start=arb(1))
+        filled = [[factor * ball(c) for c in row] for row in rows]
+        total += arb_mat([*filled, *[[0] * width] * (height - len(filled))])
+    return total
+
+
+def _sizes(M: arb_mat) -> arb_mat:
+    """Return the largest sizes of the entries of a matrix of balls."""
+    from flint import arb_mat
+
+    return arb_mat([[M[i, j].abs_upper() for j in range(M.ncols())] for i in range(M.nrows())])

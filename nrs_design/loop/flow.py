@@ -1,0 +1,369 @@
+"""What a drive does in a period under commands that are held: few points that enclose it.
+
+All entries are enclosed together, as numbers have ranges (docs/certificates/drives.md):
+
+- none: entries are known but for their last digits, and a few give the others exactly;
+- one: they run through a curve, around which there is a simplex;
+- several: between the ends of the ranges is what interpolates, one number after the other, but for
+  the sum of ``(length of a range)^2/8`` times the second derivative by that number. What is touched
+  may change within a period, too, but for what is constant: its mean takes the place of a constant.
+
+The gain of a motor multiplies commands, exactly.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import partial
+from itertools import product
+from typing import TYPE_CHECKING, Any
+
+from nrs_design.loop.command_timing import CommandTiming
+from nrs_design.loop.entries import Entries, ball, exact_rows, highest, lowest, too_long
+from nrs_design.loop.hull import (
+    EntryCurve,
+    Key,
+    Point,
+    Tie,
+    around,
+    nodes,
+    rational,
+    rounded,
+    simplex,
+    ties,
+)
+from nrs_design.loop.sampled import DELTA, Rows
+from nrs_design.loop.spot import labelled_ends
+from nrs_design.models.drive import GAIN, LOAD, Drive, Takes
+from nrs_design.models.interval import Interval
+from nrs_design.proof.enclosure import precision
+
+if TYPE_CHECKING:
+    from flint import arb, arb_mat, fmpq, fmpq_mat
+
+ONE, ZERO = Fraction(1), Fraction(0)
+BITS = 240
+# The numbers are read where the period begins and hold until it ends.
+AGAIN = ("k held", "b held")
+NOTHING = Interval.point(ZERO)
+
+
+@dataclass(frozen=True, slots=True)
+class FlowPoint:
+    """One point of the hull in which all that a drive does in a period is."""
+
+    labels: tuple[str, ...]  # At which ends of ranges it is, and which point of a simplex
+    curve: tuple[str, int] | None  # Of the only number with a range: its name, and which point
+    rows: Rows
+
+
+@dataclass(frozen=True, slots=True)
+class HeldDrive:
+    """A drive, and when its commands take effect."""
+
+    __eq__, __hash__ = object.__eq__, object.__hash__
+
+    drive: Drive
+    timing: CommandTiming
+
+    def points(self) -> Iterator[tuple[tuple[str, ...], HeldDrive]]:
+        """Yield drives that there are, at the ends of the ranges, with the labels of each."""
+        for labels, values in labelled_ends(self.drive.ranges):
+            drive = self.drive.at(values)
+            for times, timing in self.timing.points():
+                yield (*labels, *times), HeldDrive(drive, timing)
+
+    def flow(
+        self, touched: Mapping[str, Interval] | None = None, load: tuple[str, str] = LOAD
+    ) -> tuple[FlowPoint, ...]:
+        """Return the points while something is touched, or nothing.
+
+        `touched` are stiffness and damping by the symbols of `LOAD`; `load` is how labels name
+        them. An `AssemblyError` if a period is so long for the ranges that an entry is not
+        enclosed.
+        """
+        with precision(BITS):
+            try:
+                return tuple(_Flow(self.drive, self.timing, touched or {}, load).points())
+            except OverflowError:
+                raise too_long() from None
+
+
+@dataclass(frozen=True, slots=True)
+class _Number:
+    """A number that has a range: one of the drive, of what it touches, or a time."""
+
+    symbol: str  # Empty for a time
+    name: str  # As labels say it
+    low: arb  # Of the coordinate in which rates are affine: the number, or one over it
+    high: arb
+    span: int | None = None  # Of a time: which of those that are left of the period
+
+
+class _Flow:
+    """A drive over a period, as it is enclosed."""
+
+    def __init__(
+        self,
+        drive: Drive,
+        timing: CommandTiming,
+        touched: Mapping[str, Interval],
+        load: tuple[str, str],
+    ) -> None:
+        self.drive, self.entries = drive, Entries(drive)
+        self.spans = [timing.steps, *(timing.left(age) for age in timing.within)]
+        own = {s: touched.get(s, NOTHING) for s in LOAD} if drive.loaded else {}
+        own |= {s: i for s, i in drive.ranges.items() if s != GAIN}
+        names = dict(zip(LOAD, load, strict=True))
+        self.known = {GAIN: (ONE, ONE)}
+        self.known |= {
+            s: (1 / i.low, 1 / i.high) if s in drive.inverse else (i.low, i.high)
+            for s, i in own.items()
+        }
+        self.low = {s: ball(low) for s, (low, _) in self.known.items()}
+        self.whole = {s: _hull(*ends) for s, ends in self.known.items()}
+        self.numbers = [
+            _Number(s, names.get(s, s), ball(low), ball(high))
+            for s, (low, high) in self.known.items()
+            if low != high
+        ]
+        self.changing = [n for n in self.numbers if n.symbol in LOAD and own[n.symbol].varies]
+        times = ["T", *(f"h{age}" for age in timing.within)]
+        for s, (time, i) in enumerate(zip(times, self.spans, strict=True)):
+            if i.low != i.high:
+                self.numbers.append(_Number("", time, ball(i.low), ball(i.high), s))
+        # Where a command takes effect in the period or later, a velocity has jumped or has not.
+        self.jumps = {
+            s: f"in{age}"
+            for s, age in enumerate(timing.within, 1)
+            if drive.speed is not None and self.spans[s].low == 0
+        }
+        self.entries.check_length(self.whole, self.spans[0].high)
+        self.lasting = self._lasting()
+        self.keys = self._keys()
+        self.ties = self._ties()
+
+    # Which entries there are, and which of them others give.
+
+    def _lasting(self) -> tuple[list[Fraction], Fraction] | None:
+        """Return the states that a lasting command of one leads to, and the speed of the joint.
+
+        They are the same for all numbers: what has to be zero there is affine in each number, and
+        zero at all ends. So ``exp([[A, B], [0, 0]] T)`` maps ``(v, 1)`` to ``(v + T w, 1)``, which
+        gives the column of the command. None where there are none, or the period has a range.
+        """
+        from flint import fmpq_mat
+
+        n, period = self.drive.order, self.spans[0]
+        if self.drive.takes is Takes.POSITION or period.low != period.high:
+            return None
+        found: tuple[list[Fraction], Fraction] | None = None
+        for values in product(*({*ends} for ends in self.known.values())):
+            G = exact_rows(self.drive.rates, dict(zip(self.known, values, strict=True)), n + 1)
+            if found is None:
+                A = fmpq_mat([[rational(c) for c in row[: n - 1]] for row in G[:-1]])
+                try:
+                    rest = A.solve(fmpq_mat([[-rational(row[n])] for row in G[:-1]]))
+                except ZeroDivisionError:
+                    return None
+                v = [Fraction(int(c.p), int(c.q)) for c in rest.entries()]
+                found = [*v, ZERO, ONE], _dot(G[-1], [*v, ZERO, ONE])
+            v, speed = found
+            if [_dot(row, v) for row in G] != [*[ZERO] * (n - 1), speed]:
+                return None
+            if speed and any(row[n - 1] for row in G):
+                return None
+        return found
+
+    def _keys(self) -> list[Key]:
+        """Return the entries that are not zero; of later commands those of the command alone.
+
+        The deflection counts if it acts on the joint: a position that is commanded counts from it.
+        """
+        n, (rows, columns) = self.drive.order, self.entries.shape
+        touched = self.drive.loaded and self.known[LOAD[0]] != (ZERO, ZERO)
+        first = [j for j in range(columns) if j != n - 1 or touched]
+        first = first if self.lasting is None else first[:-1]
+        found: list[Key] = []
+        for s, span in enumerate(self.spans):
+            M = self.entries.at(self.whole, _hull(span.low, span.high))
+            places = product(range(rows), [n] if s else first)
+            found += [(s, i, j) for i, j in places if not bool(M[i, j] == 0)]
+        return found
+
+    def _ties(self) -> dict[Key, Tie]:
+        """Return which entries others of a known drive give, over times that are known."""
+        from flint import fmpq, fmpq_mat
+
+        if any(number.symbol for number in self.numbers):
+            return {}
+        at, n = {s: low for s, (low, _) in self.known.items()}, self.drive.order
+        rows = [*exact_rows(self.drive.rates, at, n + 1), [ZERO] * (n + 1)]
+        G = fmpq_mat([[rational(c) for c in row] for row in rows])
+        (L,) = [[]] if self.drive.speed is None else exact_rows(self.drive.speed, at, n + 1)
+
+        def entry(M: fmpq_mat, key: Key) -> fmpq:
+            _, i, j = key
+            if i < n:
+                return M[i, j]
+            return sum((rational(c) * M[k, j] for k, c in enumerate(L)), fmpq(0))
+
+        found: dict[Key, Tie] = {}
+        for s, span in enumerate(self.spans):
+            own = [key for key in self.keys if key[0] == s]
+            if own and span.low == span.high:
+                M = self.entries.at(self.low, ball(span.low))
+                sizes = {(s, i, j): highest(abs(M[i, j])) for _, i, j in own}
+                found |= ties(G, span.low, entry, sizes)
+        return found
+
+    # Points.
+
+    def points(self) -> Iterator[FlowPoint]:
+        """Yield the points, each at the ends of the gain; velocities have jumped, or have not."""
+        gain = {GAIN: self.drive.ranges.get(GAIN, Interval.point(ONE))}
+        for labels, curve, point in self._hull():
+            for jumped, entries in self._jumped(self._completed(point)):
+                for ends, at in labelled_ends(gain):
+                    yield FlowPoint((*labels, *ends, *jumped), curve, self._rows(entries, at[GAIN]))
+
+    def _hull(self) -> Iterator[tuple[tuple[str, ...], tuple[str, int] | None, Point]]:
+        """Yield points of entries: around a curve, or else at the ends of all ranges."""
+        # With a load, a constant has as many ends in the air as in contact.
+        found = self._simplex() if len(self.numbers) <= (not self.drive.loaded) else None
+        for k, point in enumerate(found or ()):
+            curve = (self.numbers[0].name, k) if self.numbers else None
+            yield (f"flow-{k}",), curve, point
+        if found is None:
+            yield from self._interpolated()
+
+    def _simplex(self) -> list[Point] | None:
+        """Return the points around the curve of the only number that has a range, if any."""
+        try:
+            return simplex(partial(self._curves, self.numbers[0] if self.numbers else None))
+        except OverflowError:
+            return None
+
+    def _curves(self, number: _Number | None, order: int) -> dict[Key, EntryCurve]:
+        """Return the entries that no others give, as functions of a number."""
+        found: dict[Key, EntryCurve] = {}
+        for s, span in enumerate(self.spans):
+            if number is None or number.span not in (None, s):
+                values, far = [self._at({}, s)] * (order + 1), None
+            else:
+                width = number.high - number.low
+                places = [number.low + share * width for share in nodes(order)]
+                values = [self._at({number.name: x}, s) for x in places]
+                anywhere = _hull(span.low, span.high)
+                far = self.entries.jet(self.whole, anywhere, number.symbol, width, order + 1)[-1]
+            for key in self._own(s):
+                _, i, j = key
+                found[key] = EntryCurve([M[i, j] for M in values], 0 if far is None else far[i, j])
+        return found
+
+    def _interpolated(self) -> Iterator[tuple[tuple[str, ...], None, Point]]:
+        """Yield what interpolates at the ends of ranges, each beside what it is off."""
+        errors: dict[Key, Fraction] = {}
+        names = [n.name for n in self.numbers]
+        corners = [
+            dict(zip(names, ends, strict=True)) for ends in product((0, 1), repeat=len(names))
+        ]
+        points: list[Point] = [{} for _ in corners]
+        for s in range(len(self.spans)):
+            for key, values, off in self._between(s, corners):
+                errors[key] = off
+                for point, value in zip(points, values, strict=True):
+                    point[key] = value
+        for corner, middle in zip(corners, points, strict=True):
+            labels = tuple(f"{name}-{('min', 'max')[end]}" for name, end in corner.items())
+            for k, point in enumerate(around(middle, errors)):
+                yield (*labels, f"flow-{k}"), None, point
+
+    def _between(
+        self, s: int, corners: Sequence[Mapping[str, int]]
+    ) -> Iterator[tuple[Key, list[Fraction], Fraction]]:
+        """Yield the entries over one time at the ends of all numbers, and how far they are off.
+
+        What is convex in a number is not above what interpolates, what is concave not below.
+        """
+        mine = [n for n in self.numbers if n.span in (None, s)]
+        span, moved = self.spans[s], None
+        anywhere = _hull(span.low, span.high)
+        bends = [
+            self.entries.jet(self.whole, anywhere, n.symbol, n.high - n.low, 2)[2] for n in mine
+        ]
+        if self.changing:
+            widths = {n.symbol: n.high - n.low for n in self.changing}
+            moved = self.entries.moved(self.whole, ball(span.high), widths)
+        made: dict[tuple[int, ...], Any] = {}
+        for corner in corners:
+            ends = tuple(corner[n.name] for n in mine)
+            if ends not in made:
+                made[ends] = self._at({n.name: (n.low, n.high)[corner[n.name]] for n in mine}, s)
+        for key in self._own(s):
+            _, i, j = key
+            below = sum((max(highest(B[i, j]), ZERO) for B in bends), ZERO) / 4
+            above = sum((max(-lowest(B[i, j]), ZERO) for B in bends), ZERO) / 4
+            off = (below + above) / 2 + (ZERO if moved is None else highest(moved[i, j]))
+            shift = ball((above - below) / 2)
+            found, error = rounded((M[i, j] + shift for M in made.values()), off)
+            values = dict(zip(made, found, strict=True))
+            yield key, [values[tuple(corner[n.name] for n in mine)] for corner in corners], error
+
+    def _own(self, s: int) -> Iterator[Key]:
+        """Yield the entries over one time that no others give."""
+        return (key for key in self.keys if key[0] == s and key not in self.ties)
+
+    def _at(self, values: Mapping[str, arb], s: int) -> arb_mat:
+        """Return the entries over one time where numbers are, by their names."""
+        at = {n.symbol: values[n.name] for n in self.numbers if n.symbol and n.name in values}
+        h = next((values[n.name] for n in self.numbers if n.span == s and n.name in values), None)
+        return self.entries.at(self.low | at, ball(self.spans[s].low) if h is None else h)
+
+    def _completed(self, point: Point) -> Point:
+        """Return a point with the entries that others give."""
+        whole = point | {key: tie.at(point) for key, tie in self.ties.items()}
+        if self.lasting is not None:
+            n, T, (v, speed) = self.drive.order, self.spans[0].low, self.lasting
+            for i in range(n):
+                own = sum((whole.get((0, i, j), ZERO) * v[j] for j in range(n - 1)), ZERO)
+                whole[0, i, n] = v[i] + (T * speed if i == n - 1 else ZERO) - own
+        return whole
+
+    def _jumped(self, point: Point) -> Iterator[tuple[list[str], Point]]:
+        """Yield what a point is where velocities have jumped with late commands, or have not."""
+        n = self.drive.order
+        for has in product((0, 1), repeat=len(self.jumps)):
+            late = dict(zip(self.jumps, has, strict=True))
+            labels = [f"{self.jumps[s]}-{('min', 'max')[come]}" for s, come in late.items()]
+            still = {(s, n, n) for s, come in late.items() if not come}
+            yield labels, {k: ZERO if k in still else x for k, x in point.items()}
+
+    def _rows(self, entries: Point, gain: Fraction) -> Rows:
+        """Return the rows of the states and of the deflection, over what acts on the drive.
+
+        These are the states, the deflection, the command in force when the period begins, and its
+        changes. A position is commanded from the deflection on.
+        """
+        n, jumps = self.drive.order, self.drive.speed is not None
+
+        def row(i: int) -> tuple[Fraction, ...]:
+            commands = [gain * entries.get((s, i, n), ZERO) for s in range(len(self.spans))]
+            states = [entries.get((0, i, j), ZERO) for j in range(n)]
+            if self.drive.takes is Takes.POSITION:
+                states[-1] -= commands[0]
+            return (*[ZERO] * jumps, *states, *commands)
+
+        # A velocity that jumps is the first state, and the last row.
+        places = {name: k - jumps for k, name in enumerate(self.drive.states)} | {DELTA: n - 1}
+        return {name: row(i % (n + 1)) for name, i in places.items()}
+
+
+def _hull(low: Fraction, high: Fraction) -> arb:
+    return ball(low).union(ball(high))
+
+
+def _dot(row: Sequence[Fraction], v: Sequence[Fraction]) -> Fraction:
+    return sum((c * x for c, x in zip(row, v, strict=True)), ZERO)

@@ -1,0 +1,381 @@
+"""What a drive does in a period: true maps lie between the points of its flow."""
+
+import random
+from dataclasses import replace
+from fractions import Fraction
+from itertools import pairwise
+
+import mpmath as mp
+import numpy as np
+import pytest
+from scipy.linalg import expm
+from scipy.optimize import linprog
+
+from nrs_design.controllers.laws import Admittance
+from nrs_design.controllers.step_law import StepFrame
+from nrs_design.errors import AssemblyError
+from nrs_design.loop.command_timing import CommandTiming
+from nrs_design.loop.flow import AGAIN, HeldDrive
+from nrs_design.loop.hull import APART, around
+from nrs_design.loop.sampled import DELTA
+from nrs_design.loop.sampled_modes import anything_of
+from nrs_design.models.contact.elastic import Elastic
+from nrs_design.models.contact.environment import Environment
+from nrs_design.models.drive import (
+    LOAD,
+    Takes,
+    lagging_drive,
+    motor_drive,
+    position_drive,
+    torque_drive,
+    velocity_drive,
+)
+from nrs_design.models.interval import Interval
+from nrs_design.models.motion_loop import MotionLoop
+from tests.loop.frames import Frame
+
+F = Fraction
+T = F(1, 500)
+SECOND = MotionLoop((F(900),), (F(1), F(60), F(900)))
+ZEROED = MotionLoop((F(28), F(1619)), (F(1), F(57), F(1619)))
+THIRD = MotionLoop((F(10**5),), (F(1), F(160), F(8500), F(10**5)))
+KNOWN, AIR = Interval.point, {}
+
+
+def some(rng, low, high, wide):
+    """Return a number, and a narrow or wide range around it."""
+    first = F(f"{10 ** rng.uniform(np.log10(low), np.log10(high)):.4g}")
+    last = first * F(rng.choice(["1.0001", "1.02", "1.3", "3"]) if wide else "1")
+    return Interval((first + last) / 2, first, last, rng.random() < 0.7)
+
+
+def draw(rng):
+    """Return a drive, its timing and what it touches, with a few ranges."""
+
+    def wide():
+        return rng.random() < 0.5
+
+    kind = rng.choice(["motor", "loaded", "torque", "lag", SECOND, ZEROED, THIRD, "velocity"])
+    if kind in ("motor", "loaded"):
+        load = F(f"{rng.uniform(0.01, 1):.3g}") if kind == "loaded" else None
+        drive = motor_drive(some(rng, 1e-4, 10, wide()), some(rng, 1e-3, 0.1, wide()), load)
+    elif kind == "torque":
+        drive = torque_drive(some(rng, 0.05, 0.5, wide()), some(rng, 0.05, 2, wide()))
+    elif kind == "lag":
+        drive = lagging_drive(some(rng, 1e-3, 0.1, wide()))
+    else:
+        drive = velocity_drive(ZEROED) if kind == "velocity" else position_drive(kind)
+    period = F(f"{10 ** rng.uniform(-3.3, -1.7):.3g}")
+    first = rng.choice([0, period * F(rng.randint(0, 20), 10)])
+    last = first + rng.choice([0, period * F(rng.randint(0, 10), 10)])
+    timing = CommandTiming(period, first, last, rng.choice([0, 0, 0, F(1, 5)]) * period)
+    touched = {}
+    if drive.loaded and rng.random() < 0.8:
+        damping = some(rng, 0.05, 2, wide()) if wide() else KNOWN(F(0))
+        touched = {"k": some(rng, 5, 200, wide()), "b": damping}
+    return drive, timing, touched
+
+
+def inside(rng, interval):
+    """Return a number of an interval, often an end."""
+    share = rng.choice([0, 1]) if rng.random() < 0.4 else mp.mpf(rng.random())
+    low, high = (mp.mpf(end.numerator) / end.denominator for end in (interval.low, interval.high))
+    return low + share * (high - low)
+
+
+def matrix(M, values, inverse, shape):
+    total = mp.zeros(*shape)
+    for symbols, rows in M.terms.items():
+        factor = mp.fprod(1 / values[s] if s in inverse else values[s] for s in symbols)
+        for i, row in enumerate(rows):
+            for j, c in enumerate(row):
+                total[i, j] += factor * c.numerator / c.denominator
+    return total
+
+
+def true_rows(drive, lefts, come, loads):
+    """What a period makes of states, deflection, command and its changes, to 50 digits.
+
+    `lefts` are what is left of the period at each change, `come` whether it has taken effect at
+    all. `loads` are shares of the period with the numbers that are then in force.
+    """
+    n, size = drive.order, drive.order + len(lefts)
+    ends = [sum(share for share, _ in loads[: i + 1]) * lefts[0] for i in range(len(loads))]
+    ends[-1] = lefts[0]
+    z = mp.zeros(n, size)
+    for i in range(n):
+        z[i, i] = 1
+    for begin, end in pairwise(sorted({mp.mpf(0), *ends, *(lefts[0] - h for h in lefts)})):
+        middle = (begin + end) / 2
+        values = next(v for (_, v), last in zip(loads, ends, strict=True) if middle < last)
+        G = matrix(drive.rates, values, drive.inverse, (n + 1, n + 1))
+        E = mp.expm(G * (end - begin))
+        z = E[:n, :n] * z
+        for s, left in enumerate(lefts):
+            if s == 0 or middle > lefts[0] - left:
+                z[:, n + s] += E[:n, n]
+    rows = [[z[i, j] for j in range(size)] for i in range(n)]
+    rows[n - 1][n - 1] -= 1
+    if drive.speed is None:
+        return dict(zip((*drive.states, DELTA), rows, strict=True))
+    L = matrix(drive.speed, loads[-1][1], drive.inverse, (1, n + 1))
+    speed = L[:, :n] * z
+    for s in range(len(lefts)):
+        speed[0, n + s] += L[0, n] * come[s]
+    every = ([speed[0, j] for j in range(size)], *rows)
+    return {n: [mp.mpf(0), *r] for n, r in zip((*drive.states, DELTA), every, strict=True)}
+
+
+def draw_rows(rng, drive, timing, touched):
+    """Return what a drive of the ranges does in some period."""
+    spans = [timing.steps, *(timing.left(age) for age in timing.within)]
+    values = {s: inside(rng, interval) for s, interval in drive.ranges.items()}
+    values |= {s: inside(rng, touched.get(s, KNOWN(F(0)))) for s in LOAD}
+    period, *lefts = (inside(rng, span) for span in spans)
+    lefts = [period, *(min(left, period) for left in lefts)]
+    come = [True] * len(lefts)
+    for s, span in enumerate(spans[1:], 1):
+        if span.low == 0 and (lefts[s] == 0 or rng.random() < 0.3):
+            lefts[s], come[s] = mp.mpf(0), rng.random() < 0.3
+    shares = [rng.random() for _ in range(rng.randint(1, 4))]
+    changing = [s for s, interval in touched.items() if interval.varies]
+    loads = [
+        (mp.mpf(share) / sum(shares), values | {s: inside(rng, touched[s]) for s in changing})
+        for share in shares
+    ]
+    return true_rows(drive, lefts, come, loads)
+
+
+def far(points, rows):
+    """Return how far rows are from the hull of points, in shares of the points' spread.
+
+    What has no spread is exact.
+    """
+    places = [(name, j) for name, row in rows.items() for j in range(len(row))]
+    A, b = [], []
+    for name, j in places:
+        column = [point.rows[name][j] for point in points]
+        low, spread = min(column), max(column) - min(column)
+        gap = rows[name][j] - mp.mpf(low.numerator) / low.denominator
+        if spread:
+            A.append([float((value - low) / spread) for value in column])
+            b.append(float(gap * spread.denominator / spread.numerator))
+        elif abs(gap) > mp.mpf(10) ** -40 * (1 + abs(rows[name][j])):
+            return float("inf")
+    if not A:
+        return 0.0
+    one, count = -np.ones((len(b), 1)), len(points)
+    done = linprog(
+        [*np.zeros(count), 1],
+        A_ub=np.block([[np.array(A), one], [-np.array(A), one]]),
+        b_ub=[*b, *(-x for x in b)],
+        A_eq=[[*np.ones(count), 0]],
+        b_eq=[1],
+        options={"primal_feasibility_tolerance": 1e-10, "dual_feasibility_tolerance": 1e-10},
+    )
+    return done.fun if done.status == 0 else float("inf")
+
+
+SLOW = pytest.param(range(40, 300), marks=pytest.mark.slow)
+NIGHTLY = pytest.param(range(300, 3000), marks=pytest.mark.nightly)
+
+
+@pytest.mark.parametrize("seeds", [range(40), SLOW, NIGHTLY], ids=str)
+def test_every_period_is_between_the_points(seeds):
+    with mp.workdps(60):
+        for seed in seeds:
+            rng = random.Random(seed)
+            drive, timing, touched = draw(rng)
+            points = HeldDrive(drive, timing).flow(touched)
+            for _ in range(5):
+                rows = draw_rows(rng, drive, timing, touched)
+                assert far(points, rows) < 1e-7, (seed, drive, timing, touched)
+
+
+TORQUE = torque_drive(KNOWN(F(1, 5)), KNOWN(F(1, 2)))
+TOUCHED = {"k": Interval(F(40), F(20), F(60)), "b": Interval(F(1, 10), F(0), F(1, 5))}
+# A period of a drive at the ends of its ranges, and a number beyond one of them by a hundredth.
+BEYOND = {
+    "motor": (motor_drive(KNOWN(F(1)), Interval(F(3), F(2, 100), F(4, 100))), AIR, "tau", 1.01),
+    "gain": (motor_drive(Interval(F(3), F(2), F(4)), KNOWN(F(1, 30))), AIR, "Km", 1.01),
+    "lag": (lagging_drive(Interval(F(3), F(2, 100), F(4, 100))), AIR, "tau", 1.01),
+    "torque": (torque_drive(Interval(F(1), F(1, 5), F(3, 10)), KNOWN(F(1))), AIR, "J", 1.01),
+    "load": (TORQUE, TOUCHED, "k", 1.01),
+}
+
+
+@pytest.mark.parametrize("name", BEYOND)
+def test_what_is_a_hundredth_beyond_a_range_is_beyond_the_points(name):
+    drive, touched, symbol, beyond = BEYOND[name]
+    points = HeldDrive(drive, CommandTiming(T)).flow(touched)
+    highest = {**drive.ranges, **{s: touched.get(s, KNOWN(F(0))) for s in LOAD}}
+    with mp.workdps(60):
+        values = {s: mp.mpf(i.high.numerator) / i.high.denominator for s, i in highest.items()}
+        period = [mp.mpf(T.numerator) / T.denominator]
+        assert far(points, true_rows(drive, period, [True], [(1, values)])) < 1e-7
+        values[symbol] *= beyond
+        assert far(points, true_rows(drive, period, [True], [(1, values)])) > 1e-4
+
+
+COUNTS = {
+    "known motor": (motor_drive(KNOWN(F(2)), KNOWN(F(1, 30))), CommandTiming(T), AIR, 2),
+    "motor": (BEYOND["motor"][0], CommandTiming(T), AIR, 3),
+    "motor and its gain": (motor_drive(TOUCHED["k"], KNOWN(F(1, 30))), CommandTiming(T), AIR, 4),
+    "late motor": (BEYOND["motor"][0], CommandTiming(T, T / 3, T / 3), AIR, 5),
+    "known lag": (lagging_drive(KNOWN(F(1, 30))), CommandTiming(T), AIR, 2),
+    "lag": (BEYOND["lag"][0], CommandTiming(T), AIR, 3),
+    "second order": (position_drive(SECOND), CommandTiming(T), AIR, 3),
+    "torque in the air": (TORQUE, CommandTiming(T), AIR, 2),
+    "torque": (TORQUE, CommandTiming(T), TOUCHED, 4 * 7),
+}
+
+
+@pytest.mark.parametrize("name", COUNTS)
+def test_there_are_few_points(name):
+    """A simplex around a curve, and a point more than entries that are off at each corner."""
+    drive, timing, touched, count = COUNTS[name]
+    assert len(HeldDrive(drive, timing).flow(touched)) == count
+
+
+@pytest.mark.parametrize("name", [name for name in COUNTS if "known" in name])
+def test_a_drive_that_is_known_is_one_number_in_doubles(name):
+    drive, timing, touched, _ = COUNTS[name]
+    points = HeldDrive(drive, timing).flow(touched)
+    for state, row in points[0].rows.items():
+        for j, first in enumerate(row):
+            assert all(abs(p.rows[state][j] - first) * 2**APART <= abs(first) for p in points)
+
+
+def test_no_corner_is_far_from_a_motor():
+    """So what is refuted there is hardly refuted wrongly: a share of T - s, the way of the motor.
+
+    The corner of a box, at the E of the fastest and the s of the slowest, is 18 % off at 2 ms.
+    """
+    tau = Interval(F("0.0351"), F("0.0351") * F(9, 10), F("0.0351") * F(11, 10))
+    for point in HeldDrive(motor_drive(KNOWN(F(1)), tau), CommandTiming(T)).flow():
+        E, s = (float(point.rows[name][0]) for name in ("omega [rad/s]", DELTA))
+        motor = float(T) * (1 - E) / -np.log(E)
+        assert abs(s - motor) <= 0.002 * (float(T) - motor)
+
+
+def test_points_of_a_curve_are_those_of_its_number():
+    """Of a constant number they are the corners; beside others, its ends are."""
+    motor, timing = BEYOND["motor"][0], CommandTiming(T)
+    assert [p.curve for p in HeldDrive(motor, timing).flow()] == [("tau", k) for k in range(3)]
+    shaken = HeldDrive(motor, replace(timing, jitter=T / 5)).flow()
+    assert {p.curve for p in shaken} == {None}
+    assert {p.labels[:2] for p in shaken} == {
+        (f"tau-{a}", f"T-{b}") for a in ("min", "max") for b in ("min", "max")
+    }
+
+
+def test_labels_tell_a_load_that_is_felt_again():
+    points = HeldDrive(TORQUE, CommandTiming(T)).flow(TOUCHED, AGAIN)
+    assert {p.labels[0] for p in points} == {"k held-min", "k held-max"}
+
+
+def test_a_simplex_holds_its_box():
+    points = around({0: F(0), 1: F(5, 2), 2: F(5)}, {0: F(1), 1: F(1, 2), 2: F(0)})
+    assert points == [{0: -1, 1: 2, 2: 5}, {0: 3, 1: 2, 2: 5}, {0: -1, 1: 4, 2: 5}]
+    # The far corner of the box is halfway between the two far points.
+    assert [(points[1][s] + points[2][s]) / 2 for s in range(3)] == [1, 3, 5]
+
+
+def test_a_period_that_is_too_long_for_its_ranges_is_refused():
+    wide = torque_drive(Interval(F(1), F(1, 10**6), F(10**6)), Interval.point(F(1)))
+    with pytest.raises(AssemblyError, match="a period is too long"):
+        HeldDrive(wide, CommandTiming(F(10**5))).flow({"k": Interval.point(F(10**9))})
+
+
+@pytest.mark.parametrize("changing", [set(), {"k"}, {"b"}, {"k", "b"}])
+def test_what_is_constant_does_not_change_within_a_period(changing):
+    """It adds nothing to the change of what is not."""
+
+    def width(touched):
+        points = [p.rows[DELTA][0] for p in HeldDrive(TORQUE, CommandTiming(T)).flow(touched)]
+        return max(points) - min(points)
+
+    some, none, every = (
+        width({s: replace(i, varies=s in which) for s, i in TOUCHED.items()})
+        for which in (changing, set(), set(LOAD))
+    )
+    assert none <= some <= every
+    assert (some == none) is (not changing)
+    assert (some == every) is (changing == {"k", "b"})
+
+
+@pytest.mark.parametrize(
+    ("contacts", "lost", "constant"), [(1, False, True), (1, True, False), (2, False, False)]
+)
+def test_a_contact_is_constant_where_nothing_else_is_touched(contacts, lost, constant):
+    interval = Interval(F(40), F(20), F(60), varies=False)
+    each = [Environment(str(i), Elastic, (interval,)) for i in range(contacts)]
+    assert anything_of(each, lost=lost)["k"].is_constant is constant
+
+
+def floats_of(frame, law, delay=0, **values):
+    n = len(frame.states)
+    rows = frame.rows(law, delay, values)[:n]
+    return np.array([[float(v) for v in row[:n]] for row in rows])
+
+
+@pytest.mark.parametrize("inert", [True, False])
+@pytest.mark.parametrize("late", [F(0), T / 3, F(3, 2) * T])
+@pytest.mark.parametrize("loop", [SECOND, ZEROED])
+def test_a_streamed_position_moves_as_by_hand(inert, late, loop):
+    """The reference is sent once it has moved on; what is felt is the contact of the sample."""
+    a, b, k, step = 0.65, 0.16, 43.0, float(T)
+    law = Admittance.discrete(F(a) if inert else None, F(b), F(step))
+    timing = CommandTiming(T, late, late)
+    drive = position_drive(loop)
+    frame = Frame(timing, drive, StepFrame(F(0), F(0), takes=Takes.POSITION), (law,), 0)
+    n = drive.order
+    (rates,) = drive.rates.terms.values()
+    G = np.zeros((n + 1, n + 1))
+    G[:n] = np.array(rates, float)
+    rng = np.random.default_rng(3)
+    own, theta, reference, vm = rng.normal(size=n - 1), *rng.normal(size=3)
+    sent = rng.normal(size=3)
+    jumps = drive.speed is not None
+    names = [*drive.states[jumps:]]
+    x = dict.fromkeys(frame.states, 0.0) | dict(zip(names, own, strict=True))
+    x |= {"delta [rad]": theta, "e [rad]": reference - theta, "vm [rad/s]": vm}
+    x |= {f"u {i} before": u - theta for i, u in enumerate(sent, 1)}
+    force = k * theta
+    velocity = a * vm + b * force if inert else b * force
+    moved = reference - step * (vm if inert else velocity)
+    every = [moved, *sent]
+    whole = int(late // T)
+    part = float(late - whole * T)
+    z = np.array([*own, theta, every[whole + (part > 0)]])
+    z = expm(G * part) @ z
+    z[-1] = every[whole]
+    z = expm(G * (step - part)) @ z
+    after = dict(
+        zip(
+            frame.states,
+            floats_of(frame, law, k=F(43)) @ [x[name] for name in frame.states],
+            strict=True,
+        )
+    )
+    assert after["delta [rad]"] == pytest.approx(z[-2], rel=1e-6, abs=1e-9)
+    assert after["e [rad]"] == pytest.approx(moved - z[-2], rel=1e-6, abs=1e-9)
+    assert [after[name] for name in names] == pytest.approx(z[: n - 1], rel=1e-6, abs=1e-7)
+    if jumps:
+        (speed,) = drive.speed.terms.values()
+        assert after["omega [rad/s]"] == pytest.approx(np.array(speed[0], float) @ z, rel=1e-6)
+
+
+def test_free_motion_is_the_same_wherever_it_is():
+    """No state but the deflection sees it: a robot in the air has no place."""
+    law = Admittance.discrete(F(65, 100), F(16, 100), T)
+    for drive, takes in (
+        (position_drive(SECOND), Takes.POSITION),
+        (lagging_drive(Interval(F(3, 100), F(1, 50), F(1, 25))), Takes.POSITION),
+        (velocity_drive(ZEROED), Takes.VELOCITY),
+    ):
+        timing = CommandTiming(T, T / 3, F(4, 3) * T)
+        frame = Frame(timing, drive, StepFrame(F(0), F(0), takes=takes), (law,), 1)
+        n = len(frame.states)
+        rows = frame.rows(law, 1, {})[:n]
+        assert [row[n - 1] for row in rows] == [*(0,) * (n - 1), 1]

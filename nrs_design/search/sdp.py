@@ -225,14 +225,17 @@ def find_maximum(
     settings.max_threads = 1
     settings.max_iter = begun.most_steps
     settings.time_limit = begun.seconds
-    solution: Any = clarabel.DefaultSolver(
-        Sparse.of_dense(np.zeros((variables, variables))),
-        objective,
-        rows if isinstance(rows, Sparse) else Sparse.of_dense(rows),
-        offset,
-        cones,
-        settings,
-    ).solve()
+    quadratic = Sparse.of_dense(np.zeros((variables, variables)))
+    rows = rows if isinstance(rows, Sparse) else Sparse.of_dense(rows)
+
+    def solve() -> Any:
+        return clarabel.DefaultSolver(quadratic, objective, rows, offset, cones, settings).solve()
+
+    solution = solve()
+    if solution.status == clarabel.SolverStatus.NumericalError and solution.iterations < 2:
+        # It fails at once on a few programs that it has scaled, and solves them unscaled.
+        settings.equilibrate_enable = False
+        solution = solve()
     begun.end(solution.iterations)
     x, z = (np.asarray(part, dtype=float) for part in (solution.x, solution.z))
     found = x.shape == (variables,) and np.isfinite(x).all() and np.isfinite(z).all()

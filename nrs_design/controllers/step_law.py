@@ -179,15 +179,16 @@ def build_law(
             *(Coefficient(name, "", unit, (edge,)) for name, (edge, unit) in edges.items()),
         ),
         tuple(_with_force(operation, _lagged(frame.order)) for operation in operations),
-        {"command": _command(frame, takes_force=takes_force)},
+        {"command": _command(frame, to_follow if placed else "", takes_force=takes_force)},
         {**first, **({} if frame.streams else {"error_before": "error"}), **lagging, **following},
         UNITS,
     )
 
 
-def _command(frame: StepFrame, *, takes_force: bool) -> str:
+def _command(frame: StepFrame, placed: str, *, takes_force: bool) -> str:
+    """Return what is sent; `placed` is the position where laws are given one, else empty."""
     if frame.streams:
-        return "relative" if frame.takes is Takes.VELOCITY else "next_reference"
+        return "relative" if frame.takes is Takes.VELOCITY else placed or "next_reference"
     if frame.limits.command is not None:
         return "limited_command"
     return "eased" if takes_force else "command"

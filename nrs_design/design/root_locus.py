@@ -84,7 +84,7 @@ def motion_loop_response(tf: TransferFunction) -> MotionLoopResponse:
     A pole that is alone counts as a pair of two that are alike.
     """
     found = poles(tf)
-    zeta, wn = dominant_pair(np.repeat(found, 2) if len(found) == 1 else found)
+    zeta, wn = dominant_pair(found)
     return MotionLoopResponse(
         poles=tuple(complex(p) for p in poles(tf)),
         damping_ratio=zeta,
@@ -98,10 +98,11 @@ def dominant_pair(roots: ComplexArray) -> tuple[float, float]:
     """Return damping ratio and natural frequency (rad/s) of the dominant pair of stable poles.
 
     The dominant pair is the rightmost complex pair; without one, the two rightmost real poles,
-    whose damping ratio is at least 1.
+    whose damping ratio is at least 1. A single pole counts twice.
     """
-    if len(roots) < 2:
-        raise DesignError("a damping ratio needs a loop with at least two poles")
+    if not len(roots):
+        raise DesignError("a loop without poles has no damping ratio")
+    roots = np.repeat(roots, 2) if len(roots) == 1 else roots
     ordered = sorted((complex(p) for p in roots), key=lambda p: -p.real)
     upper = next((p for p in ordered if p.imag > 1e-9 * abs(p)), None)
     first, second = ordered[:2] if upper is None else (upper, upper.conjugate())

@@ -10,7 +10,6 @@ from nrs_design.spec.features import (
     AT_ONCE,
     BLEEDING,
     COMMAND,
-    CONSTANT_LAG,
     CONSTANT_MOTOR,
     CONSTANT_TISSUE,
     CONTACT_RULES,
@@ -52,6 +51,7 @@ from nrs_design.spec.features import (
     TORQUES,
     TWO_PERIODS,
     UNSPRUNG,
+    VELOCITIES,
     ZEROED,
 )
 from nrs_design.spec.interaction_parts import AbstractInteractionSpec as Spec
@@ -94,7 +94,6 @@ COMBINATIONS: tuple[Row[Spec], ...] = (
     # No proof that rests on constants knows these, or they hold what is not constant.
     *_beside(CONSTANT_MOTOR, LOSABLE, TWO_PERIODS),
     *_beside(CONSTANT_TISSUE, LOSABLE, TWO_PERIODS, AT_ONCE, MEMORY, PRELOADED),
-    not_together(CONSTANT_LAG, TIMED),
     # The sampled loop.
     not_together(OFFSET, SAMPLED),
     not_together(GIVEN_LOOP, SAMPLED),
@@ -106,7 +105,8 @@ COMBINATIONS: tuple[Row[Spec], ...] = (
     # A position of zero is a place of the robot, and nothing says where the contact is from there.
     not_together(ZEROED, PLACED),
     # Its command is a velocity, and nothing stands where a reference would.
-    *_beside(STREAMED, OTHERS, SPRUNG, IDLE, TWO_PERIODS, SATURATED),
+    *_beside(VELOCITIES, OTHERS, SPRUNG, IDLE),
+    *_beside(STREAMED, TWO_PERIODS, SATURATED),
     not_together(STREAMED, MOTOR_RANGE, CONTINUOUS),
     not_together(LIMITED, STREAMED),
     # Its law makes the torque, and what is touched brakes the joint between two samples.

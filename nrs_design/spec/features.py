@@ -187,6 +187,12 @@ STREAMED = _F(
     "write actuator and motion_loop",
     lambda s: _first(k for k in s.drives if s.followed),
 )
+VELOCITIES = _F(
+    "a velocity_interface",
+    "velocity_interface",
+    "write actuator and motion_loop",
+    _given("velocity_interface"),
+)
 PLACED = _F(
     "a position_interface",
     "position_interface",
@@ -216,12 +222,6 @@ CONSTANT_MOTOR = _F(
     "{0[0]}.{0[1]}.varies",
     "leave varies out of {0[1]}",
     _constant(lambda at: at[0] != "environments"),
-)
-CONSTANT_LAG = _F(
-    "the constant {0[1]} of the {0[0]}",
-    "{0[0]}.{0[1]}.varies",
-    "leave varies out of {0[1]}",
-    _constant(lambda at: at[-1] == "time_constant"),
 )
 LOADED = _F(
     "a load of the motor",

@@ -72,13 +72,19 @@ def test_unreachable_damping_names_what_is_reachable(zeta):
     assert caught.value.remedy == "gains reach 0.70717 to 1"
 
 
+def test_a_single_pole_counts_twice():
+    lag = TransferFunction((1.0,), (0.1, 1.0))
+    found = force_loop_response(lag, SOFT, 0.02)
+    assert found.damping_ratio == pytest.approx(1.0)
+    assert found.natural_frequency == pytest.approx((1 + 0.02 * SOFT) / 0.1)
+
+
 @pytest.mark.parametrize(
     ("motion", "stiffness", "gain", "message"),
     [
         (THIRD_ORDER, SOFT, 10.0, "unstable with Kp = 10"),
         (EXACT, 0.0, 0.1, "must"),
         (EXACT, SOFT, -0.1, "must"),
-        (TransferFunction((1.0,), (0.1, 1.0)), SOFT, 0.02, "two poles"),
     ],
 )
 def test_what_has_no_response_is_refused(motion, stiffness, gain, message):

@@ -68,18 +68,20 @@ def _law(loop, before, force, none, active):
         after["e before"] = e = -single(loop["force"]) * force - before["delta"]
         left = single(np.exp(-loop["decay"] * T))
         after |= {name: left * before.get(name, none) for name in ("vm", "reference")}
-        return after, _motor(law, inner, e, before)
+        return after, e if drive == "position" else _motor(law, inner, e, before)
+    if drive != "velocity":
+        # Beside force controllers the reference is a state, and alone the error of motion.
+        e = before["reference"] - before["delta"] if loop["decay"] else before["e"]
+        force = force + single(loop["spring"]) * (e + before["delta"])
     a = np.exp(-Bt * outer / Mt) if Mt else 0.0
     vm = single(a) * before.get("vm", none) + single((1 - a) / Bt) * force
     after["vm"] = vm
     if drive == "velocity":
         return after, -vm
-    # Beside force controllers the reference is a state, and alone the error of motion.
-    e = before["reference"] - before["delta"] if loop["decay"] else before["e"]
     moved = e - single(outer) * (before["vm"] if Mt else vm)
     after |= {"e": moved, "reference": moved + before["delta"]}
     if drive == "position":
-        return after, moved
+        return after, e if loop["decay"] else moved
     after["e before"] = e
     return after, _motor(law, inner, e, before)
 

@@ -72,6 +72,7 @@ def spec_of(loop):
         gains += f", inertia_ratio: {law['R']!r}" * (law["R"] != 1)
     else:
         gains = f"impedance, Mt: {law['Mt']!r} kg*m^2, Bt: {law['Bt']!r} N*m*s/rad"
+        gains += f", Kt: {loop['spring']!r} N*m/rad" * bool(loop["spring"])
     each = f"  a: {{type: {gains}, environment: soft}}\n" * (loop["decay"] > 0 or not loop["force"])
     gain = f"{{type: force, proportional_gain: {loop['force']!r} rad/(N*m), environment: soft}}"
     each += f"  force: {gain}\n" * bool(loop["force"])
@@ -113,7 +114,8 @@ def some_loop(rng):
         longest = min(longest, float(f"{0.4 * T:.3g}"))
     misses = "" if some(0.6) else str(rng.choice(["hold", "zero"]))
     motor = drive == "actuator"
-    load, force = size(0.01, 1) * (motor and some(0.5)), size(0.001, 0.1) * (motor and some(0.3))
+    moved = drive in ("actuator", "position")
+    load, force = size(0.01, 1) * (motor and some(0.5)), size(0.001, 0.1) * (moved and some(0.3))
     decay = size(1, 100) if force and some(0.5) else 0.0
     turns = str(rng.choice(OTHER_TURNS)) if motor and not force and some(0.3) else ""
     if turns:
@@ -130,8 +132,8 @@ def some_loop(rng):
         "inertia": around("inertia", 0.1, 0.5, 3), "friction": around("friction", 0.2, 1, 2),
         "k": around("k", 10, 200, 3), "b": around("b", 0.1, 2, 3) if damped else (0.0, 0.0),
         "losable": some(0.3) and not (load or decay or (torque and (damped or len(wide) > 1))),
-        "load": load, "force": force,
-        "decay": decay,
+        "load": load, "force": force, "decay": decay,
+        "spring": size(1, 100) * (moved and some(0.3)),
         "turns": turns, "round": int(rng.integers(2, 4)),
     }  # fmt: skip
 
@@ -192,20 +194,20 @@ def worst(loop, system, rng, times):
 
 def plain(drive):
     """Return a loop without ranges, every number of which counts."""
-    law, motor = (
-        {"stiffness": 20.0, "damping": 2.0, "R": 0.7},
-        drive in ("actuator", "loaded", "mixed"),
-    )
+    law = {"stiffness": 20.0, "damping": 2.0, "R": 0.7}
+    motor, placed = drive in ("actuator", "loaded", "mixed"), drive.startswith("position")
+    mixed = "mixed" in drive
     if drive != "torque":
         law = {"Mt": 0.01, "Bt": 2.0, "Kd": 2060.0, "zero": 56.9706}
     return {
-        "drive": "actuator" if motor else drive, "law": law, "period": 0.002, "jitter": 0.0,
-        "wait": (0.0007, 0.0007),
+        "drive": "actuator" if motor else "position" if placed else drive, "law": law,
+        "period": 0.002, "jitter": 0.0, "wait": (0.0007, 0.0007),
         "delay": (1, 1), "lags": int(drive != "torque"), "cutoff": 60.0, "misses": "",
         "tau": (0.01, 0.01), "gain": (4.8e-4, 4.8e-4) if motor else (1.0, 1.0),
         "inertia": (0.2, 0.2), "friction": (0.5, 0.5), "k": (80.0, 80.0), "b": (0.5, 0.5),
         "losable": False, "load": 0.3 if drive == "loaded" else 0.0,
-        "force": 0.02 * (drive == "mixed"), "decay": 20.0 * (drive == "mixed"),
+        "force": 0.02 * mixed, "decay": 20.0 * mixed,
+        "spring": 30.0 * (drive in ("actuator", "position, sprung")),
         "turns": "", "round": 1,
     }  # fmt: skip
 
@@ -228,8 +230,10 @@ def test_maps_of_drawn_loops_lie_between_the_modes(seeds):
     assert accepted >= len(seeds) / 2
 
 
-OF_DRIVE = {"actuator": ["Mt", "Bt", "Kd", "zero", "tau", "gain"]}
-OF_DRIVE["loaded"] = [*OF_DRIVE["actuator"], "load", "loads"]
+OF_DRIVE = {"actuator": ["Mt", "Bt", "Kd", "zero", "tau", "gain", "spring"]}
+OF_DRIVE["loaded"] = [*OF_DRIVE["actuator"][:-1], "load", "loads"]
+OF_DRIVE["position, sprung"] = ["Mt", "Bt", "tau", "spring"]
+OF_DRIVE["position, mixed"] = ["force", "decay", "tau"]
 OF_DRIVE["mixed"] = ["force", "decay", "Kd", "zero"]
 OF_DRIVE["torque"] = ["stiffness", "damping", "R", "inertia", "friction", "loads"]
 
@@ -237,7 +241,7 @@ OF_DRIVE["torque"] = ["stiffness", "damping", "R", "inertia", "friction", "loads
 @pytest.mark.parametrize("drive", [*OF_DRIVE, "velocity", "position"])
 def test_an_error_of_two_percent_is_seen(drive):
     loop, rng = plain(drive), np.random.default_rng(0)
-    active = {"active": "force" if drive == "mixed" else "a"}
+    active = {"active": "force" if "mixed" in drive else "a"}
     system, right = assembled(spec_of(loop)), draw(loop, rng, True) | active
     names = [name.partition(" [")[0] for name in system.states]
     modes, law = chosen(system, right, True), loop["law"]

@@ -140,6 +140,13 @@ CHANGES = {
     f.STREAMED: {
         "actuator": None,
         "motion_loop": None,
+        "position_interface": {
+            "time_constant": {"nominal": "0.03 s", "range": ["0.029 s", "0.031 s"]}
+        },
+    },
+    f.VELOCITIES: {
+        "actuator": None,
+        "motion_loop": None,
         "velocity_interface": {
             "time_constant": {"nominal": "0.03 s", "range": ["0.029 s", "0.031 s"]}
         },
@@ -176,7 +183,6 @@ CHANGES = {
         "environments": {"soft": {"stiffness": CONSTANT | {"nominal": "43 N*m/rad"}}}
     },
     f.CONSTANT_MOTOR: {"actuator": {"time_constant": CONSTANT_LAG}},
-    f.CONSTANT_LAG: {"actuator": {"time_constant": CONSTANT_LAG}},
 }
 
 

@@ -110,11 +110,13 @@ def each(parts: Callable[[S], Iterable[tuple[Location, T]]], *checks: Row[T]) ->
     return tuple(replace(check, parts=parts) for check in checks)  # type: ignore[misc]
 
 
-def not_together(*features: Feature[S], form: str = "{}: not modelled") -> Row[S]:
+def not_together(
+    *features: Feature[S], form: str = "{}: not modelled", because: str = ""
+) -> Row[S]:
     """Return the row that refuses features which are not modelled together.
 
     A spec that has all of them is refused at the place of the first; `form` has a place for what it
-    has.
+    has, and `because` is a clause that says why.
     """
 
     def find(said: S) -> tuple[object, ...]:
@@ -127,6 +129,7 @@ def not_together(*features: Feature[S], form: str = "{}: not modelled") -> Row[S
     together = f"{first} beside {' and '.join(beside)}" if beside else first
     together = together.removesuffix(",")
     message, remedy = form.replace("{}", together), ", or ".join(ways)
+    message += f", because {because}" if because else ""
     return Row(features[0].at, find, message, remedy, features=features)
 
 

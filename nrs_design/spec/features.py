@@ -316,6 +316,12 @@ UNSPRUNG = _F(
     "give all of them a spring",
     _controller(lambda c: not c.sprung),
 )
+RELAXED = _F(
+    "{0!r}, an impedance controller without a spring,",
+    "controllers.{0}.Kt",
+    "give {0} a spring Kt",
+    _controller(lambda c: c.type == "impedance" and not c.sprung),
+)
 BLEEDING = _F(
     "{0!r}, whose integral bleeds,",
     "controllers.{0}.type",

@@ -117,6 +117,7 @@ def some_loop(rng):
     moved = drive in ("actuator", "position")
     load, force = size(0.01, 1) * (motor and some(0.5)), size(0.001, 0.1) * (moved and some(0.3))
     decay = size(1, 100) if force and some(0.5) else 0.0
+    spring = size(1, 100) * (moved and some(0.3))
     turns = str(rng.choice(OTHER_TURNS)) if motor and not force and some(0.3) else ""
     if turns:
         misses = ""
@@ -131,9 +132,10 @@ def some_loop(rng):
         "gain": around("gain", 4e-4, 5e-4, 1.2) if drive == "actuator" else (1.0, 1.0),
         "inertia": around("inertia", 0.1, 0.5, 3), "friction": around("friction", 0.2, 1, 2),
         "k": around("k", 10, 200, 3), "b": around("b", 0.1, 2, 3) if damped else (0.0, 0.0),
-        "losable": some(0.3) and not (load or decay or (torque and (damped or len(wide) > 1))),
+        "losable": some(0.3) and (not load or spring > 0 or force > 0)
+        and not (decay or (torque and (damped or len(wide) > 1))),
         "load": load, "force": force, "decay": decay,
-        "spring": size(1, 100) * (moved and some(0.3)),
+        "spring": spring,
         "turns": turns, "round": int(rng.integers(2, 4)),
     }  # fmt: skip
 

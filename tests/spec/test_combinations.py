@@ -156,6 +156,7 @@ CHANGES = {
         "motion_loop": None,
         "position_interface": {"time_constant": "0.03 s"},
     },
+    f.RELAXED: {},
     f.LIMITED: {"limits": {"command": "2000 rpm"}},
     f.SLIDING: {"axis": "prismatic"},
     f.MODE_LOGIC: {
@@ -223,7 +224,7 @@ def test_every_feature_has_its_change():
 def test_the_plainest_spec_has_no_feature_that_needs_a_change():
     plain = parse_spec(spec_with())
     found = {feature for feature in CHANGES if feature.find(plain)}
-    assert found == {f.CONTINUOUS, f.UNSPRUNG}
+    assert found == {f.CONTINUOUS, f.UNSPRUNG, f.RELAXED}
 
 
 @pytest.mark.parametrize("row", COMBINATIONS, ids=lambda row: row.message)

@@ -10,6 +10,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
+from itertools import chain
 from math import exp, inf, isfinite
 
 import numpy as np
@@ -845,12 +846,17 @@ def _distinct(edges: list[Inequality]) -> tuple[list[Inequality], list[int]]:
         sizes = len(edge.kept), len(edge.left)
         key = edge.before, edge.after, sizes, facts, edge.is_flow, edge.lasts, edge.is_strict
         numbers = np.concatenate([edge.M.ravel(), *(form.ravel() for _, form in edge.facts)])
-        group = groups.setdefault(key, [])
         near = NEARLY * np.abs(numbers).max(initial=0.0)
-        k = next((k for k, other in group if np.abs(other - numbers).max() <= near), len(kept))
+        # Edges that are near have nearly the same sum, so they are looked for in three places only.
+        width = np.ldexp(1.0, int(np.frexp(near)[1])) * max(len(numbers), 1)
+        place = int(numbers @ np.cos(np.arange(len(numbers))) // width)
+        beside = (groups.get((key, width, place + i), ()) for i in (-1, 0, 1))
+        others = chain.from_iterable(beside)
+        same = (k for k, other in others if np.abs(other - numbers).max() <= near)
+        k = min(same, default=len(kept))
         if k == len(kept):
             kept.append(edge)
-            group.append((k, numbers))
+            groups.setdefault((key, width, place), []).append((k, numbers))
         found.append(k)
     return kept, found
 

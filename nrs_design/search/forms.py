@@ -849,7 +849,8 @@ def _distinct(edges: list[Inequality]) -> tuple[list[Inequality], list[int]]:
         near = NEARLY * np.abs(numbers).max(initial=0.0)
         # Edges that are near have nearly the same sum, so they are looked for in three places only.
         width = np.ldexp(1.0, int(np.frexp(near)[1])) * max(len(numbers), 1)
-        place = int(numbers @ np.cos(np.arange(len(numbers))) // width)
+        share = float(numbers @ np.cos(np.arange(len(numbers))) / width)
+        place = int(share // 1) if isfinite(share) else 0
         beside = (groups.get((key, width, place + i), ()) for i in (-1, 0, 1))
         others = chain.from_iterable(beside)
         same = (k for k, other in others if np.abs(other - numbers).max() <= near)

@@ -51,7 +51,6 @@ from nrs_design.spec.features import (
     TOOL,
     TORQUES,
     TWO_PERIODS,
-    UNSPRUNG,
     VELOCITIES,
     ZEROED,
 )
@@ -142,8 +141,12 @@ COMBINATIONS: tuple[Row[Spec], ...] = (
         COMMAND, SPRUNG, SAMPLED, because="it would move the position that the spring draws to"
     ),
     not_together(LOSABLE, BLEEDING, SAMPLED, because="an integral has to be balanced by a force"),
-    not_together(LOSABLE, IDLE, SAMPLED),
-    not_together(LOSABLE, SPRUNG, UNSPRUNG),
+    not_together(
+        LOSABLE, IDLE, RELAXED, SAMPLED, because="in the air its reference stays where it is"
+    ),
+    not_together(
+        LOSABLE, SPRUNG, RELAXED, because="in the air one rests in its place, the other anywhere"
+    ),
     not_together(
         ANGLE,
         IDLE,

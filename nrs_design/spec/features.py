@@ -310,12 +310,6 @@ DAMPED_FORCE = _F(
 SPRUNG = _F(
     "the spring Kt of {0}", "controllers.{0}.Kt", "leave Kt out", _controller(lambda c: c.sprung)
 )
-UNSPRUNG = _F(
-    "{0!r}, which has none,",
-    "controllers.{0}",
-    "give all of them a spring",
-    _controller(lambda c: not c.sprung),
-)
 RELAXED = _F(
     "{0!r}, an impedance controller without a spring,",
     "controllers.{0}.Kt",

@@ -133,7 +133,7 @@ def some_loop(rng):
         "inertia": around("inertia", 0.1, 0.5, 3), "friction": around("friction", 0.2, 1, 2),
         "k": around("k", 10, 200, 3), "b": around("b", 0.1, 2, 3) if damped else (0.0, 0.0),
         "losable": some(0.3) and (not load or spring > 0 or force > 0)
-        and not (decay or (torque and (damped or len(wide) > 1))),
+        and not ((decay and not spring) or (torque and (damped or len(wide) > 1))),
         "load": load, "force": force, "decay": decay,
         "spring": spring,
         "turns": turns, "round": int(rng.integers(2, 4)),

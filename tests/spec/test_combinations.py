@@ -71,7 +71,7 @@ def first(**more):
 # What a spec must say to have a feature, merged into the plainest one, in this order.
 CHANGES = {
     f.SPRUNG: {"controllers": {name: {"Kt": "0.5 N*m/rad"} for name in ("first", "second")}},
-    f.UNSPRUNG: {"controllers": {"second": IMPEDANCE}},
+    f.RELAXED: {"controllers": {"second": IMPEDANCE}},
     f.OTHERS: {"controllers": {"second": FORCE}},
     f.BLEEDING: {"controllers": {"second": PI}, "idle_states": {"decay": "20 1/s"}},
     f.OFFSET: {"controllers": {"second": FORCE | {"offset": "measured"}}},
@@ -156,7 +156,6 @@ CHANGES = {
         "motion_loop": None,
         "position_interface": {"time_constant": "0.03 s"},
     },
-    f.RELAXED: {},
     f.LIMITED: {"limits": {"command": "2000 rpm"}},
     f.SLIDING: {"axis": "prismatic"},
     f.MODE_LOGIC: {
@@ -224,7 +223,7 @@ def test_every_feature_has_its_change():
 def test_the_plainest_spec_has_no_feature_that_needs_a_change():
     plain = parse_spec(spec_with())
     found = {feature for feature in CHANGES if feature.find(plain)}
-    assert found == {f.CONTINUOUS, f.UNSPRUNG, f.RELAXED}
+    assert found == {f.CONTINUOUS, f.RELAXED}
 
 
 @pytest.mark.parametrize("row", COMBINATIONS, ids=lambda row: row.message)

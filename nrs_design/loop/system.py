@@ -30,7 +30,7 @@ from nrs_design.loop.saturation import with_sampled_saturation
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.linear_form import LinearForm, coordinates
 from nrs_design.models.plant import Plant
-from nrs_design.proof.channels import Channel, Output, Rounding
+from nrs_design.proof.channels import Channel, Rounding
 from nrs_design.proof.contact import Flights
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Time
@@ -61,14 +61,8 @@ def close_sampled_loop(
     laws = {
         c.name: c.law.discretize(sampling.outer, sampling.admittance) for c in design.controllers
     }
-    timing = timing_of(sampling, conditions.late)
-    drive = plant.held
-    held = HeldDrive(drive, timing)
-    program = sampled_program(conditions.idle, sampling, design, tuple(laws.values()))
-    calendar = Calendar(timing, turns=turns_of(sampling))
-    loop = SampledLoop(program, design.takes, drive.states, calendar)
-    if loop.takes_force:
-        loop = replace(loop, calendar=replace(calendar, ages=sampling.delay))
+    loop = _wired(conditions, sampling, plant, design, tuple(laws.values()))
+    held = HeldDrive(plant.held, loop.calendar.timing)
     environments = plant.among(design.contacts)
     loss = Loss.of(conditions.contact, environments, design, slowed=plant.slowed)
     every = Modes(
@@ -86,19 +80,13 @@ def close_sampled_loop(
     for item in modes:
         groups.setdefault(item.group, []).append(item.name)
     channels = tuple(_channels(conditions, design.sensor.lasting, items))
-    velocity = coordinates(len(loop.states))[loop.states.index(drive.states[0])]
+    velocity = coordinates(len(loop.states))[loop.states.index(plant.held.states[0])]
     pulls = tuple(force_rows(velocity, loop.states, could_pull(environments)))
-    outputs: tuple[Output, ...] = ()
-    if channels:
-        outputs = outputs_of(velocity, loop.states, environments, conditions.torque)
-        if drive.speed is not None:
-            # It jumps after the sample, and the force of what is damped with it.
-            outputs = () if pulls else outputs[:1]
+    outputs = outputs_of(velocity, loop.states, environments, conditions.torque) if channels else ()
+    if plant.held.speed is not None:
+        # It jumps after the sample, and the force of what is damped with it.
+        outputs = () if pulls else outputs[:1]
     driven = motor_command(conditions.largest_command, conditions.command, loop, channels)
-    resets: Iterable[tuple[str, str, RationalMatrix]] = ()
-    if conditions.idle is not None and conditions.idle.reset:
-        map_ = zeroing(loop.states, ("reference [rad]", "vm [rad/s]"))
-        resets = ((*pair, map_) for pair in leaving_impedance(design.controllers))
     system = SwitchedSystem(
         name=conditions.name,
         time=Time.DISCRETE,
@@ -109,7 +97,9 @@ def close_sampled_loop(
             *at_once_texts(environments),
             *(() if driven is None else (driven.text,)),
         ),
-        switching=assemble_switching(conditions.switching, groups, resets),
+        switching=assemble_switching(
+            conditions.switching, groups, _resets(conditions.idle, loop, design)
+        ),
         contact=lost_on_surface((item.mode for item in free), pulls, conditions.contact)
         if free
         else None,
@@ -124,6 +114,31 @@ def close_sampled_loop(
     if conditions.initial_force is not None and not points:
         system = with_sampled_saturation(system, conditions, loop, items, environments)
     return system, tuple(item.corner for item in modes)
+
+
+def _wired(
+    conditions: OperatingConditions,
+    sampling: SamplingSpec,
+    plant: Plant,
+    design: ControllerDesign,
+    laws: tuple[DiscreteLaw, ...],
+) -> SampledLoop:
+    """Return program, drive and calendar of a loop; force samples are kept if a law takes them."""
+    calendar = Calendar(timing_of(sampling, conditions.late), turns=turns_of(sampling))
+    program = sampled_program(conditions.idle, sampling, design, laws)
+    loop = SampledLoop(program, design.takes, plant.held.states, calendar)
+    if not loop.takes_force:
+        return loop
+    return replace(loop, calendar=replace(calendar, ages=sampling.delay))
+
+
+def _resets(
+    idle: IdleStatesSpec | None, loop: SampledLoop, design: ControllerDesign
+) -> Iterator[tuple[str, str, RationalMatrix]]:
+    """Yield the switches at which impedance controllers leave no state behind."""
+    if idle is not None and idle.reset:
+        map_ = zeroing(loop.states, ("reference [rad]", "vm [rad/s]"))
+        yield from ((*pair, map_) for pair in leaving_impedance(design.controllers))
 
 
 def sampled_program(

@@ -87,6 +87,8 @@ class Entries:
         """
         from flint import arb_mat
 
+        # A velocity that jumps would have a row of its own.
+        assert self.drive.speed is None
         m = self.drive.order + 1
         M, total = _sizes(self.rates(at)), arb_mat(m, m)
         grown = (M * h).exp()

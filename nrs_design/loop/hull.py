@@ -23,9 +23,10 @@ CURVE_BITS = range(20, 400, 12)
 NARROW, WIDEST = Fraction(1, 2**12), Fraction(1, 4)
 # How much of a mixture the points of known numbers are at most, which are so much further away.
 SHARE = Fraction(1, 2**20)
-# By how much more a tied number may be off, over its size, than those that give it; so that all
-# points around known numbers are less than 2^-55 of each number apart.
-LOOSE, APART = 2**7, 55
+# By how much more a tied number may be off, over its size, than those that give it.
+LOOSE = 2**7
+# Curves of so many numbers are given up: few of them bend on their own, and all are nearly flat.
+MOST_BENT = 16
 
 # A number by how long is left (an index), row and column.
 Key = tuple[int, int, int]
@@ -72,6 +73,8 @@ def simplex(curves_of: Callable[[int], Mapping[Key, EntryCurve]]) -> list[Point]
     beyond.
     """
     bent = [key for key, curve in curves_of(0).items() if not bool(curve.far == 0)]
+    if len(bent) > MOST_BENT:
+        return None
     curves, still, errors = curves_of(len(bent)), {}, {}
     for key, curve in curves.items():
         if key not in bent:

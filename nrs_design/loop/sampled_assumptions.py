@@ -22,7 +22,6 @@ from nrs_design.loop.assumptions import (
     rule_texts,
 )
 from nrs_design.loop.command_timing import CommandTiming
-from nrs_design.loop.hull import APART
 from nrs_design.loop.loop_assumptions import kept_by_laws
 from nrs_design.loop.loss import Loss
 from nrs_design.loop.program import SampledProgram
@@ -142,7 +141,7 @@ def _motor_text(
     if timing.varies:
         corner = "a corner of that, of no motor and no times of the ranges"
     elif tau.low == tau.high:
-        corner = f"an end, less than 2^-{APART} away"
+        corner = "a point of that, which differs in what is rounded to 64 binary digits"
     moving = ranges.may_change("at every sample, not in between")
     if plant.slowed:
         return say("motor.loaded", motor, motor=motor, moving=moving)

@@ -41,7 +41,7 @@ class Frame:
     def rows(self, law, delay, values, turn=Turn.BOTH):
         """Return the map of a period, below it the sizes of roundings, and the command.
 
-        Of a drive that is known, at the gain that is given, to 2^-55.
+        Of a drive that is known, at the gain that is given, but for the last digits.
         """
         contact = values.get("k", Fraction(0)), values.get("b", Fraction(0))
         flow = HeldDrive(self.drive.at(values), self.timing).flow()[0].rows

@@ -16,7 +16,7 @@ from nrs_design.controllers.step_law import StepFrame
 from nrs_design.errors import AssemblyError
 from nrs_design.loop.command_timing import CommandTiming
 from nrs_design.loop.flow import AGAIN, HeldDrive
-from nrs_design.loop.hull import APART, around
+from nrs_design.loop.hull import around
 from nrs_design.loop.sampled import DELTA
 from nrs_design.loop.sampled_modes import anything_of
 from nrs_design.models.contact.elastic import Elastic
@@ -243,7 +243,7 @@ def test_a_drive_that_is_known_is_one_number_in_doubles(name):
     points = HeldDrive(drive, timing).flow(touched)
     for state, row in points[0].rows.items():
         for j, first in enumerate(row):
-            assert all(abs(p.rows[state][j] - first) * 2**APART <= abs(first) for p in points)
+            assert all(abs(p.rows[state][j] - first) * 2**55 <= abs(first) for p in points)
 
 
 def test_no_corner_is_far_from_a_motor():

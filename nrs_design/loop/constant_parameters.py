@@ -145,7 +145,7 @@ def within(plant: Plant, drive: str, part: Ends) -> Plant:
 
 
 def _between_ends(
-    name: str, interval: Interval, symbol: str, unit: str, *, inverse: bool = False
+    name: str, interval: Interval, symbol: str, unit: str, *, inverse: bool
 ) -> ConstantParameter:
     said = FixedParameter(name, interval.low, interval.high, unit, inverse)
     return ConstantParameter(said, (f"{symbol}-min", f"{symbol}-max"))
@@ -156,7 +156,7 @@ class Corner(NamedTuple):
 
     mode: str
     varying: tuple[str, ...]  # What its name says, but for the ends of constant parameters
-    ends: Mapping[str, int]  # At which end each constant parameter of it is, low before high
+    ends: Mapping[str, int]  # Of each constant parameter: low before high, or which curve point
 
 
 def corners_by_name(

@@ -9,11 +9,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import product
 from math import prod
 from typing import TYPE_CHECKING, Any
 
 from nrs_design.errors import AssemblyError
-from nrs_design.models.drive import GAIN, Drive, MultiAffine
+from nrs_design.models.drive import Drive, MultiAffine
+from nrs_design.proof.enclosure import fraction_of
 
 if TYPE_CHECKING:
     from flint import arb, arb_mat
@@ -29,12 +31,6 @@ class Entries:
 
     drive: Drive
 
-    @property
-    def shape(self) -> tuple[int, int]:
-        """Rows and columns: the last column is that of the command."""
-        n = self.drive.order
-        return n + (self.drive.speed is not None), n + 1
-
     def rates(self, at: Mapping[str, Any], by: str = "") -> arb_mat:
         """Return ``G = [[A, B], [0, 0]]`` at some numbers, or its derivative by one of them."""
         return _filled(self.drive.rates, at, by, self.drive.order + 1)
@@ -49,7 +45,7 @@ class Entries:
         In shares of a range of that width, from the numbers on that are given; `by` is the number,
         or empty for the time. With ``G = G0 + t D``, the coefficients of ``exp(G h)`` are the first
         row of blocks of the exponential of the block matrix with ``G0 h`` on the diagonal and
-        ``D h`` beside it. Those by the time are ``G^k exp(G h)/k!``.
+        ``D h`` beside it. Those by the time are ``(width G)^k exp(G h)/k!``.
         """
         from flint import arb_mat
 
@@ -78,10 +74,10 @@ class Entries:
         `widths` are those of the ranges of numbers of the load. Let A be the generator at the
         moment, with entries of at most M by size, and k a number of the load, which acts by N:
         ``A(s) = A + (k(s) - k) N`` with k the mean over the time. What the state becomes is off by
-        the integral of ``(k(s) - k) g(s)`` with ``g = exp(A (T - s)) N E(s)``, E what the changing
+        the integral of ``(k(s) - k) g(s)`` with ``g = exp(A (h - s)) N E(s)``, E what the changing
         A makes of the state until s. The first factor has the mean zero and a range of some width,
-        so that is at most ``T^2/8`` times the width and the largest derivative of g (Ostrowski
-        1970), which is at most ``exp(M T) (|N| M + M |N|) exp(M T)``. What commands add is off by
+        so that is at most ``h^2/8`` times the width and the largest derivative of g (Ostrowski
+        1970), which is at most ``exp(M h) (|N| M + M |N|) exp(M h)``. What commands add is off by
         at most the integral of ``exp(M (h - s)) |N| exp(M s)``, which is the corner block of the
         exponential of ``[[M, |N|], [0, M]] h``.
         """
@@ -110,10 +106,8 @@ class Entries:
         # States may be in any units: powers hardly notice.
         for _ in range(3):
             M = M * M
-        if (
-            sum((highest(M[i, j]) for i in range(n) for j in range(n)), ZERO)
-            > (LONGEST / longest) ** 8
-        ):
+        size = sum((highest(M[i, j]) for i in range(n) for j in range(n)), ZERO)
+        if size > (LONGEST / longest) ** 8:
             raise too_long()
 
 
@@ -127,13 +121,12 @@ def too_long() -> AssemblyError:
     )
 
 
-def exact_rows(M: MultiAffine, at: Mapping[str, Fraction], columns: int) -> list[list[Fraction]]:
-    """Return a matrix at exact numbers, where the gain is one."""
-    at = {**at, GAIN: ONE}
+def exact_rows(M: MultiAffine, at: Mapping[str, Fraction]) -> list[list[Fraction]]:
+    """Return a matrix at exact numbers."""
     total: list[list[Fraction]] = []
     for symbols, rows in M.terms.items():
         factor = prod((at[s] for s in symbols), start=ONE)
-        total = total or [[ZERO] * columns for _ in rows]
+        total = total or [[ZERO] * len(row) for row in rows]
         total = [
             [a + factor * c for a, c in zip(sums, row, strict=True)]
             for sums, row in zip(total, rows, strict=True)
@@ -150,23 +143,17 @@ def ball(number: Fraction) -> arb:
 
 def highest(x: arb) -> Fraction:
     """Return a number that is not below any of a ball; an `OverflowError` if there is none."""
-    return exact(_finite(x).upper())
+    return fraction_of(_finite(x).upper())
 
 
 def lowest(x: arb) -> Fraction:
     """Return a number that is not above any of a ball; an `OverflowError` if there is none."""
-    return exact(_finite(x).lower())
+    return fraction_of(_finite(x).lower())
 
 
 def middle(x: arb) -> Fraction:
     """Return the middle of a ball; an `OverflowError` if there is none."""
-    return exact(_finite(x).mid())
-
-
-def exact(point: arb) -> Fraction:
-    """Return a ball of no width as a number."""
-    mantissa, exponent = point.man_exp()
-    return Fraction(int(mantissa)) * Fraction(2) ** int(exponent)
+    return fraction_of(_finite(x).mid())
 
 
 def _finite(x: arb) -> arb:
@@ -181,7 +168,7 @@ def _first_blocks(diagonal: arb_mat, beside: arb_mat, order: int) -> list[arb_ma
 
     m = diagonal.nrows()
     whole = arb_mat(m * (order + 1), m * (order + 1))
-    for b, i, j in ((b, i, j) for b in range(order + 1) for i in range(m) for j in range(m)):
+    for b, i, j in product(range(order + 1), range(m), range(m)):
         whole[m * b + i, m * b + j] = diagonal[i, j]
         if b < order:
             whole[m * b + i, m * (b + 1) + j] = beside[i, j]

@@ -16,9 +16,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import partial
 from itertools import product
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from nrs_design.loop.command_timing import CommandTiming
 from nrs_design.loop.entries import Entries, ball, exact_rows, highest, lowest, too_long
@@ -28,6 +27,7 @@ from nrs_design.loop.hull import (
     Point,
     Tie,
     around,
+    fraction,
     nodes,
     rational,
     rounded,
@@ -45,7 +45,7 @@ if TYPE_CHECKING:
 
 ONE, ZERO = Fraction(1), Fraction(0)
 BITS = 240
-# The numbers are read where the period begins and hold until it ends.
+# How labels name the load in a period where its symbols already name that of the force sample.
 AGAIN = ("k held", "b held")
 NOTHING = Interval.point(ZERO)
 
@@ -78,11 +78,12 @@ class HeldDrive:
     def flow(
         self, touched: Mapping[str, Interval] | None = None, load: tuple[str, str] = LOAD
     ) -> tuple[FlowPoint, ...]:
-        """Return the points while something is touched, or nothing.
+        """Return the points that enclose what the drive does in a period.
 
-        `touched` are stiffness and damping by the symbols of `LOAD`; `load` is how labels name
-        them. An `AssemblyError` if a period is so long for the ranges that an entry is not
-        enclosed.
+        `touched` are stiffness and damping by the symbols of `LOAD`; what is left out is zero. A
+        drive that is not loaded ignores them. `load` is how labels name them. A point alone need
+        not be a drive of the ranges. An `AssemblyError` if a period is so long for the ranges that
+        an entry is not enclosed.
         """
         with precision(BITS):
             try:
@@ -97,7 +98,9 @@ class _Number:
 
     symbol: str  # Empty for a time
     name: str  # As labels say it
-    low: arb  # Of the coordinate in which rates are affine: the number, or one over it
+    # At its least and its greatest value, in the coordinate in which rates are affine: the number,
+    # or one over it.
+    low: arb
     high: arb
     span: int | None = None  # Of a time: which of those that are left of the period
 
@@ -117,16 +120,16 @@ class _Flow:
         own = {s: touched.get(s, NOTHING) for s in LOAD} if drive.loaded else {}
         own |= {s: i for s, i in drive.ranges.items() if s != GAIN}
         names = dict(zip(LOAD, load, strict=True))
-        self.known = {GAIN: (ONE, ONE)}
-        self.known |= {
+        self.ends = {GAIN: (ONE, ONE)}
+        self.ends |= {
             s: (1 / i.low, 1 / i.high) if s in drive.inverse else (i.low, i.high)
             for s, i in own.items()
         }
-        self.low = {s: ball(low) for s, (low, _) in self.known.items()}
-        self.whole = {s: _hull(*ends) for s, ends in self.known.items()}
+        self.low = {s: ball(low) for s, (low, _) in self.ends.items()}
+        self.whole = {s: _ball_over(*ends) for s, ends in self.ends.items()}
         self.numbers = [
             _Number(s, names.get(s, s), ball(low), ball(high))
-            for s, (low, high) in self.known.items()
+            for s, (low, high) in self.ends.items()
             if low != high
         ]
         self.changing = [n for n in self.numbers if n.symbol in LOAD and own[n.symbol].varies]
@@ -160,15 +163,15 @@ class _Flow:
         if self.drive.takes is Takes.POSITION or period.low != period.high:
             return None
         found: tuple[list[Fraction], Fraction] | None = None
-        for values in product(*({*ends} for ends in self.known.values())):
-            G = exact_rows(self.drive.rates, dict(zip(self.known, values, strict=True)), n + 1)
+        for values in product(*({*ends} for ends in self.ends.values())):
+            G = exact_rows(self.drive.rates, dict(zip(self.ends, values, strict=True)))
             if found is None:
                 A = fmpq_mat([[rational(c) for c in row[: n - 1]] for row in G[:-1]])
                 try:
                     rest = A.solve(fmpq_mat([[-rational(row[n])] for row in G[:-1]]))
                 except ZeroDivisionError:
                     return None
-                v = [Fraction(int(c.p), int(c.q)) for c in rest.entries()]
+                v = [fraction(c) for c in rest.entries()]
                 found = [*v, ZERO, ONE], _dot(G[-1], [*v, ZERO, ONE])
             v, speed = found
             if [_dot(row, v) for row in G] != [*[ZERO] * (n - 1), speed]:
@@ -182,14 +185,14 @@ class _Flow:
 
         The deflection counts if it acts on the joint: a position that is commanded counts from it.
         """
-        n, (rows, columns) = self.drive.order, self.entries.shape
-        touched = self.drive.loaded and self.known[LOAD[0]] != (ZERO, ZERO)
-        first = [j for j in range(columns) if j != n - 1 or touched]
+        n = self.drive.order
+        touched = self.drive.loaded and self.ends[LOAD[0]] != (ZERO, ZERO)
+        first = [j for j in range(n + 1) if j != n - 1 or touched]
         first = first if self.lasting is None else first[:-1]
         found: list[Key] = []
         for s, span in enumerate(self.spans):
-            M = self.entries.at(self.whole, _hull(span.low, span.high))
-            places = product(range(rows), [n] if s else first)
+            M = self.entries.at(self.whole, _ball_over(span.low, span.high))
+            places = product(range(M.nrows()), [n] if s else first)
             found += [(s, i, j) for i, j in places if not bool(M[i, j] == 0)]
         return found
 
@@ -199,10 +202,10 @@ class _Flow:
 
         if any(number.symbol for number in self.numbers):
             return {}
-        at, n = {s: low for s, (low, _) in self.known.items()}, self.drive.order
-        rows = [*exact_rows(self.drive.rates, at, n + 1), [ZERO] * (n + 1)]
+        at, n = {s: low for s, (low, _) in self.ends.items()}, self.drive.order
+        rows = [*exact_rows(self.drive.rates, at), [ZERO] * (n + 1)]
         G = fmpq_mat([[rational(c) for c in row] for row in rows])
-        (L,) = [[]] if self.drive.speed is None else exact_rows(self.drive.speed, at, n + 1)
+        (L,) = [[]] if self.drive.speed is None else exact_rows(self.drive.speed, at)
 
         def entry(M: fmpq_mat, key: Key) -> fmpq:
             _, i, j = key
@@ -231,8 +234,9 @@ class _Flow:
 
     def _hull(self) -> Iterator[tuple[tuple[str, ...], tuple[str, int] | None, Point]]:
         """Yield points of entries: around a curve, or else at the ends of all ranges."""
-        # With a load, a constant has as many ends in the air as in contact.
-        found = self._simplex() if len(self.numbers) <= (not self.drive.loaded) else None
+        # With a load, a constant needs as many corners in the air as in contact: no curve.
+        most = 0 if self.drive.loaded else 1
+        found = self._simplex() if len(self.numbers) <= most else None
         for k, point in enumerate(found or ()):
             curve = (self.numbers[0].name, k) if self.numbers else None
             yield (f"flow-{k}",), curve, point
@@ -242,12 +246,13 @@ class _Flow:
     def _simplex(self) -> list[Point] | None:
         """Return the points around the curve of the only number that has a range, if any."""
         try:
-            return simplex(partial(self._curves, self.numbers[0] if self.numbers else None))
+            return simplex(self._curves)
         except OverflowError:
             return None
 
-    def _curves(self, number: _Number | None, order: int) -> dict[Key, EntryCurve]:
-        """Return the entries that no others give, as functions of a number."""
+    def _curves(self, order: int) -> dict[Key, EntryCurve]:
+        """Return the entries that no others give, as functions of the number with a range."""
+        number = self.numbers[0] if self.numbers else None
         found: dict[Key, EntryCurve] = {}
         for s, span in enumerate(self.spans):
             if number is None or number.span not in (None, s):
@@ -256,7 +261,7 @@ class _Flow:
                 width = number.high - number.low
                 places = [number.low + share * width for share in nodes(order)]
                 values = [self._at({number.name: x}, s) for x in places]
-                anywhere = _hull(span.low, span.high)
+                anywhere = _ball_over(span.low, span.high)
                 far = self.entries.jet(self.whole, anywhere, number.symbol, width, order + 1)[-1]
             for key in self._own(s):
                 _, i, j = key
@@ -290,18 +295,18 @@ class _Flow:
         """
         mine = [n for n in self.numbers if n.span in (None, s)]
         span, moved = self.spans[s], None
-        anywhere = _hull(span.low, span.high)
+        anywhere = _ball_over(span.low, span.high)
         bends = [
             self.entries.jet(self.whole, anywhere, n.symbol, n.high - n.low, 2)[2] for n in mine
         ]
         if self.changing:
             widths = {n.symbol: n.high - n.low for n in self.changing}
             moved = self.entries.moved(self.whole, ball(span.high), widths)
-        made: dict[tuple[int, ...], Any] = {}
-        for corner in corners:
-            ends = tuple(corner[n.name] for n in mine)
-            if ends not in made:
-                made[ends] = self._at({n.name: (n.low, n.high)[corner[n.name]] for n in mine}, s)
+        places = [tuple(corner[n.name] for n in mine) for corner in corners]
+        made = {
+            ends: self._at({n.name: (n.low, n.high)[e] for n, e in zip(mine, ends, strict=True)}, s)
+            for ends in dict.fromkeys(places)
+        }
         for key in self._own(s):
             _, i, j = key
             below = sum((max(highest(B[i, j]), ZERO) for B in bends), ZERO) / 4
@@ -310,7 +315,7 @@ class _Flow:
             shift = ball((above - below) / 2)
             found, error = rounded((M[i, j] + shift for M in made.values()), off)
             values = dict(zip(made, found, strict=True))
-            yield key, [values[tuple(corner[n.name] for n in mine)] for corner in corners], error
+            yield key, [values[ends] for ends in places], error
 
     def _own(self, s: int) -> Iterator[Key]:
         """Yield the entries over one time that no others give."""
@@ -361,7 +366,7 @@ class _Flow:
         return {name: row(i % (n + 1)) for name, i in places.items()}
 
 
-def _hull(low: Fraction, high: Fraction) -> arb:
+def _ball_over(low: Fraction, high: Fraction) -> arb:
     return ball(low).union(ball(high))
 
 

@@ -25,7 +25,7 @@ NARROW, WIDEST = Fraction(1, 2**12), Fraction(1, 4)
 SHARE = Fraction(1, 2**20)
 # By how much more a tied number may be off, over its size, than those that give it.
 LOOSE = 2**7
-# Curves of so many numbers are given up: few of them bend on their own, and all are nearly flat.
+# More curves than this are given up: few of them bend on their own, and all are nearly flat.
 MOST_BENT = 16
 
 # A number by how long is left (an index), row and column.
@@ -65,7 +65,7 @@ def rounded(balls: Iterable[arb], off: Fraction = ZERO) -> tuple[list[Fraction],
 
 
 def simplex(curves_of: Callable[[int], Mapping[Key, EntryCurve]]) -> list[Point] | None:
-    """Return points around curves that are run through together; None where they are too flat.
+    """Return points around curves that are run through together; None if too flat or too many.
 
     `curves_of` returns them for an order. The Bezier points of polynomials of degree m, with m
     curves, are a simplex that holds these polynomials. It is widened by what the curves are off,
@@ -102,7 +102,9 @@ def _widened(
     still: Mapping[Key, Fraction],
     errors: Mapping[Key, Fraction],
 ) -> tuple[Fraction, list[Point]] | None:
-    """Return a simplex that holds all near another one, and by which share it is wider.
+    """Return by which share a simplex that holds all near another is wider, and its points.
+
+    None where the other one is flat.
 
     A point off by e has weights of at least -w at its corners, by the inverse of their matrix. In
     the simplex whose corners are ``(1 + sum w) p_i - sum w_j p_j`` they are not negative. A far
@@ -121,17 +123,15 @@ def _widened(
     loose = [key for key in still if errors[key]]
     wider = []
     for i in range(size):
-        own = (abs(_fraction(inverse[i, j])) * errors[key] for j, key in enumerate(bent, 1))
+        own = (abs(fraction(inverse[i, j])) * errors[key] for j, key in enumerate(bent, 1))
         w = (sum(own, ZERO) + SHARE * len(loose) / size) / (1 - SHARE * len(loose))
         wider.append(-(-w // _power(w, 3)) * _power(w, 3) if w else ZERO)
     total = 1 + sum(wider, ZERO)
     low = {key: value - errors[key] for key, value in still.items()}
-    points, centre = [], {}
     shift = [
         sum((w * p[j] for w, p in zip(wider, corners, strict=True)), ZERO) for j in range(size - 1)
     ]
-    for p in corners:
-        points.append({k: total * p[j] - shift[j] for j, k in enumerate(bent)} | low)
+    points = [{k: total * p[j] - shift[j] for j, k in enumerate(bent)} | low for p in corners]
     centre = {k: sum((p[j] for p in corners), ZERO) / size for j, k in enumerate(bent)} | low
     far = [centre | {k: low[k] + 2 * errors[k] / SHARE} for k in loose]
     return max(wider), [*points, *far]
@@ -183,7 +183,8 @@ def ties(
 
     With m rows, the exponential is its Taylor polynomial of degree m - 1 and a mixture of m powers
     of G from the m-th on (Cayley and Hamilton): as many entries give it as these powers differ in.
-    None where the digits of few entries are too few for the others; `sizes` are those of all.
+    There are none where the digits of few entries are too few for the others. `sizes` are those of
+    all.
     """
     from flint import fmpq, fmpq_mat
 
@@ -205,7 +206,7 @@ def ties(
         if c not in free:
             weights = {keys[f]: reduced[r, c] for r, f in enumerate(free) if reduced[r, c] != 0}
             constant = known[key] - sum((w * known[k] for k, w in weights.items()), fmpq(0))
-            tie = Tie(_fraction(constant), {k: _fraction(w) for k, w in weights.items()})
+            tie = Tie(fraction(constant), {k: fraction(w) for k, w in weights.items()})
             if sum((abs(w) * sizes[k] for k, w in tie.weights.items()), ZERO) > LOOSE * sizes[key]:
                 return {}
             found[key] = tie
@@ -218,11 +219,12 @@ def _power(size: Fraction, bits: int) -> Fraction:
 
 
 def rational(x: Fraction) -> fmpq:
-    """Return a fraction as another library has it."""
+    """Return a fraction as a rational number of flint."""
     from flint import fmpq
 
     return fmpq(x.numerator, x.denominator)
 
 
-def _fraction(x: fmpq) -> Fraction:
+def fraction(x: fmpq) -> Fraction:
+    """Return a rational number of flint as a fraction."""
     return Fraction(int(x.p), int(x.q))

@@ -208,16 +208,17 @@ class Modes:
         constants, loaded, forced = self._constants(e), self._loaded, self.loop.takes_force
         # What acts on a drive is told from what is sampled, if a law takes that.
         ends = labelled_ends(own if sampled and (forced or not loaded) else {})
-        real = "" if loaded or (e is not None and e.depends) else LOAD
+        real = () if loaded or (e is not None and e.depends) else LOAD
         seen = [
             (spot_of(texts, real, constants), (at.get("k", ZERO), at.get("b", ZERO)))
             for texts, at in ends
         ]
+        # Not by what is touched: a flow names constants of a contact only where there is just one.
         key = held, tuple(own.items()) if loaded else ()
         if key not in self._known:
             self._known[key] = tuple(
                 (spot_of(point.labels, {GAIN}, constants, point.curve), point.rows)
-                for point in held.flow(own if loaded else {}, AGAIN if forced else LOAD)
+                for point in held.flow(own, AGAIN if forced else LOAD)
             )
         return TouchedDrive(spot, seen, self._known[key])
 

@@ -25,7 +25,7 @@ class Spot:
     """Where in its ranges something is."""
 
     labels: tuple[Label, ...] = ()
-    # At which end each constant number is, low before high, by the names of the numbers.
+    # At which end each constant number is, low before high, by its name; or which curve point.
     corner: tuple[tuple[str, int], ...] = ()
 
     def __add__(self, other: Spot) -> Spot:

@@ -85,7 +85,7 @@ def close_sampled_loop(
     outputs = outputs_of(velocity, loop.states, environments, conditions.torque) if channels else ()
     if plant.held.speed is not None:
         # It jumps after the sample, and the force of what is damped with it.
-        outputs = () if pulls else outputs[:1]
+        outputs = () if pulls else tuple(one for one in outputs if one.name == "force")
     driven = motor_command(conditions.largest_command, conditions.command, loop, channels)
     system = SwitchedSystem(
         name=conditions.name,
@@ -125,7 +125,7 @@ def _wired(
 ) -> SampledLoop:
     """Return program, drive and calendar of a loop; force samples are kept if a law takes them."""
     calendar = Calendar(timing_of(sampling, conditions.late), turns=turns_of(sampling))
-    program = sampled_program(conditions.idle, sampling, design, laws)
+    program = _program(conditions.idle, sampling, design, laws)
     loop = SampledLoop(program, design.takes, plant.held.states, calendar)
     if not loop.takes_force:
         return loop
@@ -141,7 +141,7 @@ def _resets(
         yield from ((*pair, map_) for pair in leaving_impedance(design.controllers))
 
 
-def sampled_program(
+def _program(
     idle: IdleStatesSpec | None,
     sampling: SamplingSpec,
     design: ControllerDesign,
@@ -188,13 +188,12 @@ def _modes(
 
 
 def _flights(
-    modes: Iterable[SampledMode],
+    modes: Sequence[SampledMode],
     environments: Iterable[Environment],
     pulls: tuple[RationalMatrix, ...],
 ) -> Flights:
-    """Tell which modes are in contact, and which are free motion."""
+    """Return which modes are in contact, which are free motion, and what could pull."""
     known = {e.name for e in environments}
-    modes = tuple(modes)
     return Flights(
         tuple(m.name for m in modes if m.touches in known),
         tuple(m.name for m in modes if m.touches == FREE),

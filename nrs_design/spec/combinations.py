@@ -73,7 +73,6 @@ CHANGING: tuple[tuple[Feature[Spec], ...], ...] = (
 _DWELLS = "a dwell time holds for a mode that stays as it is, and environments obey no rule of ours"
 _CONSTANTS = "proofs that rest on constants do not know it"
 _MISSES = "the rule for misses decides what may follow what"
-_PIVOT = "it is about a pivot"
 
 COMBINATIONS: tuple[Row[Spec], ...] = (
     *_beside(HAND, LOSABLE, SAMPLED, DISTURBED, IDLE, LOADED),
@@ -135,7 +134,7 @@ COMBINATIONS: tuple[Row[Spec], ...] = (
     ),
     not_together(TORQUES, CONTINUOUS),
     not_together(TIMED, CONTINUOUS),
-    *_beside(SLIDING, MODE_LOGIC, TOOL, because=_PIVOT),
+    *_beside(SLIDING, MODE_LOGIC, TOOL, because="it is about a pivot"),
     not_together(COMMAND, OTHERS, SAMPLED),
     not_together(
         COMMAND, SPRUNG, SAMPLED, because="it would move the position that the spring draws to"

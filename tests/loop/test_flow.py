@@ -176,8 +176,8 @@ def far(points, rows):
     return done.fun if done.status == 0 else float("inf")
 
 
-SLOW = pytest.param(range(40, 300), marks=pytest.mark.slow)
-NIGHTLY = pytest.param(range(300, 3000), marks=pytest.mark.nightly)
+SLOW = pytest.param(range(40, 150), marks=pytest.mark.slow)
+NIGHTLY = pytest.param(range(150, 3000), marks=pytest.mark.nightly)
 
 
 @pytest.mark.parametrize("seeds", [range(40), SLOW, NIGHTLY], ids=str)

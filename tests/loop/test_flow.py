@@ -171,7 +171,7 @@ def far(points, rows):
         b_ub=[*b, *(-x for x in b)],
         A_eq=[[*np.ones(count), 0]],
         b_eq=[1],
-        options={"primal_feasibility_tolerance": 1e-10, "dual_feasibility_tolerance": 1e-10},
+        options={"primal_feasibility_tolerance": 1e-9, "dual_feasibility_tolerance": 1e-9},
     )
     return done.fun if done.status == 0 else float("inf")
 

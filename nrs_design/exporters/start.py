@@ -16,11 +16,23 @@ PLACED = (
     "`position` of the first step be the angle of the joint, or the PD differentiates all that "
     "lies between them, and the joint moves there at once."
 )
+STREAMED = (
+    "The command is a position, and `position` goes into it as it is: let that of the first step "
+    "be the angle of the joint, or the robot moves there at once."
+)
+TWICE = (
+    "What the hand commands goes in once: move `position` and leave `velocity_command` zero, or "
+    "hold `position` while an impedance controller takes `velocity_command`."
+)
 
 
 def start_lines(law: StepLaw) -> Iterator[str]:
     """Yield the start-up requirements of a program other than starting at rest."""
-    if any(value.name == "position" for value in law.inputs):
-        yield PLACED
-    if any(state.name == "commanded" for state in law.states):
+    inputs = {value.name for value in law.inputs}
+    if "position" in inputs:
+        differentiates = any(state.name == "error_before" for state in law.states)
+        yield PLACED if differentiates else STREAMED
+    if {"position", "velocity_command"} <= inputs:
+        yield TWICE
+    if "Kt" in law.coefficient:
         yield SPRUNG

@@ -114,7 +114,7 @@ def assemble_matrices(spec: SwitchedSystemSpec, scale: Fraction = DECLARED) -> S
         switching=switching,
     )
     constants = tuple(constant_parameters(parameters))
-    return with_constants(system, constants, _corners(system, constants))
+    return with_constants(system, constants, tuple(_corners(system, constants)))
 
 
 def assemble(
@@ -157,7 +157,7 @@ def assemble(
     unit = spec.axis.unit
     constants = tuple(replace(c, said=replace(c.said, unit=unit(c.said.unit))) for c in constants)
     system, corners = _closed(conditions, plant, design, constants, points)
-    system = with_constants(system, constants, corners)
+    system = with_constants(system, constants, tuple(corners))
     constant = tuple(constant_texts(system.switching))
     if cuts:
         whole = {c.said.name: (c.said.low, c.said.high) for c in constants}

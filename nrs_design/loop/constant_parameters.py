@@ -6,6 +6,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import product
+from math import prod
 from typing import TYPE_CHECKING, NamedTuple
 
 from nrs_design.errors import AssemblyError, InternalError
@@ -178,8 +179,14 @@ def corners_by_name(
         yield Corner(name, varying, corner)
 
 
+def corner_counts(corners: Sequence[Corner], parameters: Iterable[ConstantParameter]) -> list[int]:
+    """Return how many corners each constant parameter has: two, or more around its curve."""
+    names = [parameter.said.name for parameter in parameters]
+    return [1 + max(1, *(at.ends.get(name, 0) for at in corners)) for name in names]
+
+
 def constant_sets(
-    corners: Iterable[Corner], parameters: Sequence[ConstantParameter]
+    corners: Sequence[Corner], parameters: Sequence[ConstantParameter]
 ) -> Iterator[tuple[str, ...]]:
     """Yield, for each mode, what it is at the corners of the constant parameters.
 
@@ -195,8 +202,7 @@ def constant_sets(
         ends = tuple(at.ends.get(parameter.said.name) for parameter in parameters)
         known[at.varying, ends] = at.mode
         first[at.varying, tuple(end is not None for end in ends)] = None
-    # Around the curve of a constant number there may be more than two.
-    counts = [1 + max(1, *(c[i] or 0 for _, c in known)) for i in range(len(parameters))]
+    counts = corner_counts(corners, parameters)
     for varying, has in first:
         every = product(*map(range, counts))
         keys = [tuple(c if h else None for c, h in zip(at, has, strict=True)) for at in every]
@@ -208,7 +214,7 @@ def constant_sets(
 def with_constants(
     system: SwitchedSystem,
     parameters: Sequence[ConstantParameter],
-    corners: Iterable[Corner],
+    corners: Sequence[Corner],
 ) -> SwitchedSystem:
     """Return the system, with a mode for each corner, with parameters that do not change.
 
@@ -216,7 +222,7 @@ def with_constants(
     """
     if not parameters:
         return system
-    count = 2 ** len(parameters) * len(system.modes)
+    count = prod(corner_counts(corners, parameters)) * len(system.modes)
     if count > MAX_CORNERS:
         raise AssemblyError(
             f"the modes at all corners of the constant parameters are up to {count}, at most "

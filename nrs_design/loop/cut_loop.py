@@ -190,7 +190,6 @@ class ProcessorAxis(AbstractAxis):
     drive: Drive
     low_pass: LowPass | None = None
     takes: Takes | None = None
-    loaded: bool = False  # Whether what is touched slows the motor
 
     @property
     def period(self) -> Fraction:
@@ -245,7 +244,7 @@ class ProcessorAxis(AbstractAxis):
         """
         from nrs_design.loop.calendar import Turn
 
-        loop, flow = _loop(self, law, place, carried if self.loaded else NOTHING)
+        loop, flow = _loop(self, law, place, carried if self.drive.loaded else NOTHING)
         n = len(loop.states)
 
         def rows(turn: Turn, age: int) -> list[LinearForm]:
@@ -314,9 +313,7 @@ def axis_of(
     if sampling.outer < sampling.period.exact:
         return None
     places = tuple(_places(ranges, sampling.delay, spec.late))
-    return ProcessorAxis(
-        places, motion, sampling, plant.held, low_pass, spec.takes, loaded=plant.slowed
-    )
+    return ProcessorAxis(places, motion, sampling, plant.held, low_pass, spec.takes)
 
 
 def _places(

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from nrs_design.errors import AssemblyError
 from nrs_design.models.drive import Drive, MultiAffine
-from nrs_design.proof.enclosure import fraction_of
+from nrs_design.proof.enclosure import ball_around, fraction_of
 
 if TYPE_CHECKING:
     from flint import arb, arb_mat
@@ -134,13 +134,6 @@ def exact_rows(M: MultiAffine, at: Mapping[str, Fraction]) -> list[list[Fraction
     return total
 
 
-def ball(number: Fraction) -> arb:
-    """Return a number as a ball."""
-    from flint import arb, fmpq
-
-    return arb(fmpq(number.numerator, number.denominator))
-
-
 def highest(x: arb) -> Fraction:
     """Return a number that is not below any of a ball; an `OverflowError` if there is none."""
     return fraction_of(_finite(x).upper())
@@ -186,7 +179,7 @@ def _filled(M: MultiAffine, at: Mapping[str, Any], by: str, height: int, width: 
     total = arb_mat(height, width)
     for symbols, rows in (M.slope(by) if by else M).terms.items():
         factor = prod((at[s] for s in symbols), start=arb(1))
-        filled = [[factor * ball(c) for c in row] for row in rows]
+        filled = [[factor * ball_around(c) for c in row] for row in rows]
         total += arb_mat([*filled, *[[0] * width] * (height - len(filled))])
     return total
 

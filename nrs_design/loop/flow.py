@@ -20,7 +20,7 @@ from itertools import product
 from typing import TYPE_CHECKING
 
 from nrs_design.loop.command_timing import CommandTiming
-from nrs_design.loop.entries import Entries, ball, exact_rows, highest, lowest, too_long
+from nrs_design.loop.entries import Entries, exact_rows, highest, lowest, too_long
 from nrs_design.loop.hull import (
     EntryCurve,
     Key,
@@ -38,7 +38,7 @@ from nrs_design.loop.sampled import DELTA, Rows
 from nrs_design.loop.spot import labelled_ends
 from nrs_design.models.drive import GAIN, LOAD, Drive, Takes
 from nrs_design.models.interval import Interval
-from nrs_design.proof.enclosure import precision
+from nrs_design.proof.enclosure import ball_around, precision
 
 if TYPE_CHECKING:
     from flint import arb, arb_mat, fmpq, fmpq_mat
@@ -125,10 +125,10 @@ class _Flow:
             s: (1 / i.low, 1 / i.high) if s in drive.inverse else (i.low, i.high)
             for s, i in own.items()
         }
-        self.low = {s: ball(low) for s, (low, _) in self.ends.items()}
+        self.low = {s: ball_around(low) for s, (low, _) in self.ends.items()}
         self.whole = {s: _ball_over(*ends) for s, ends in self.ends.items()}
         self.numbers = [
-            _Number(s, names.get(s, s), ball(low), ball(high))
+            _Number(s, names.get(s, s), ball_around(low), ball_around(high))
             for s, (low, high) in self.ends.items()
             if low != high
         ]
@@ -136,10 +136,10 @@ class _Flow:
         times = ["T", *(f"h{age}" for age in timing.within)]
         for s, (time, i) in enumerate(zip(times, self.spans, strict=True)):
             if i.low != i.high:
-                self.numbers.append(_Number("", time, ball(i.low), ball(i.high), s))
+                self.numbers.append(_Number("", time, ball_around(i.low), ball_around(i.high), s))
         # Where a command takes effect in the period or later, a velocity has jumped or has not.
         self.jumps = {
-            s: f"in{age}"
+            s: str(age)
             for s, age in enumerate(timing.within, 1)
             if drive.speed is not None and self.spans[s].low == 0
         }
@@ -217,7 +217,7 @@ class _Flow:
         for s, span in enumerate(self.spans):
             own = [key for key in self.keys if key[0] == s]
             if own and span.low == span.high:
-                M = self.entries.at(self.low, ball(span.low))
+                M = self.entries.at(self.low, ball_around(span.low))
                 sizes = {(s, i, j): highest(abs(M[i, j])) for _, i, j in own}
                 found |= ties(G, span.low, entry, sizes)
         return found
@@ -228,7 +228,7 @@ class _Flow:
         """Yield the points, each at the ends of the gain; velocities have jumped, or have not."""
         gain = {GAIN: self.drive.ranges.get(GAIN, Interval.point(ONE))}
         for labels, curve, point in self._hull():
-            for jumped, entries in self._jumped(self._completed(point)):
+            for jumped, entries in self._jumped(labels, self._completed(point)):
                 for ends, at in labelled_ends(gain):
                     yield FlowPoint((*labels, *ends, *jumped), curve, self._rows(entries, at[GAIN]))
 
@@ -301,7 +301,7 @@ class _Flow:
         ]
         if self.changing:
             widths = {n.symbol: n.high - n.low for n in self.changing}
-            moved = self.entries.moved(self.whole, ball(span.high), widths)
+            moved = self.entries.moved(self.whole, ball_around(span.high), widths)
         places = [tuple(corner[n.name] for n in mine) for corner in corners]
         made = {
             ends: self._at({n.name: (n.low, n.high)[e] for n, e in zip(mine, ends, strict=True)}, s)
@@ -312,7 +312,7 @@ class _Flow:
             below = sum((max(highest(B[i, j]), ZERO) for B in bends), ZERO) / 4
             above = sum((max(-lowest(B[i, j]), ZERO) for B in bends), ZERO) / 4
             off = (below + above) / 2 + (ZERO if moved is None else highest(moved[i, j]))
-            shift = ball((above - below) / 2)
+            shift = ball_around((above - below) / 2)
             found, error = rounded((M[i, j] + shift for M in made.values()), off)
             values = dict(zip(made, found, strict=True))
             yield key, [values[ends] for ends in places], error
@@ -325,7 +325,7 @@ class _Flow:
         """Return the entries over one time where numbers are, by their names."""
         at = {n.symbol: values[n.name] for n in self.numbers if n.symbol and n.name in values}
         h = next((values[n.name] for n in self.numbers if n.span == s and n.name in values), None)
-        return self.entries.at(self.low | at, ball(self.spans[s].low) if h is None else h)
+        return self.entries.at(self.low | at, ball_around(self.spans[s].low) if h is None else h)
 
     def _completed(self, point: Point) -> Point:
         """Return a point with the entries that others give."""
@@ -337,14 +337,18 @@ class _Flow:
                 whole[0, i, n] = v[i] + (T * speed if i == n - 1 else ZERO) - own
         return whole
 
-    def _jumped(self, point: Point) -> Iterator[tuple[list[str], Point]]:
-        """Yield what a point is where velocities have jumped with late commands, or have not."""
+    def _jumped(self, labels: Sequence[str], point: Point) -> Iterator[tuple[list[str], Point]]:
+        """Yield what a point is where velocities have jumped with late commands, or have not.
+
+        A command that has not come has nothing left of the period: that is at the low end alone.
+        """
         n = self.drive.order
-        for has in product((0, 1), repeat=len(self.jumps)):
-            late = dict(zip(self.jumps, has, strict=True))
-            labels = [f"{self.jumps[s]}-{('min', 'max')[come]}" for s, come in late.items()]
+        ages = {s: age for s, age in self.jumps.items() if f"h{age}-max" not in labels}
+        for has in product((0, 1), repeat=len(ages)):
+            late = dict(zip(ages, has, strict=True))
+            texts = [f"in{ages[s]}-{('min', 'max')[come]}" for s, come in late.items()]
             still = {(s, n, n) for s, come in late.items() if not come}
-            yield labels, {k: ZERO if k in still else x for k, x in point.items()}
+            yield texts, {k: ZERO if k in still else x for k, x in point.items()}
 
     def _rows(self, entries: Point, gain: Fraction) -> Rows:
         """Return the rows of the states and of the deflection, over what acts on the drive.
@@ -367,7 +371,8 @@ class _Flow:
 
 
 def _ball_over(low: Fraction, high: Fraction) -> arb:
-    return ball(low).union(ball(high))
+    whole: arb = ball_around(low).union(ball_around(high))
+    return whole
 
 
 def _dot(row: Sequence[Fraction], v: Sequence[Fraction]) -> Fraction:

@@ -8,7 +8,8 @@ from fractions import Fraction
 from math import comb, factorial
 from typing import TYPE_CHECKING, Any
 
-from nrs_design.loop.entries import ball, highest, middle
+from nrs_design.loop.entries import highest, middle
+from nrs_design.proof.enclosure import ball_around
 
 if TYPE_CHECKING:
     from flint import arb, fmpq, fmpq_mat
@@ -60,7 +61,7 @@ def rounded(balls: Iterable[arb], off: Fraction = ZERO) -> tuple[list[Fraction],
     if off > unit:
         unit = _power(off, RANGED_BITS)
     found = [round(middle(value) / unit) * unit for value in balls]
-    error = off + max(highest(abs(v - ball(p))) for v, p in zip(balls, found, strict=True))
+    error = off + max(highest(abs(v - ball_around(p))) for v, p in zip(balls, found, strict=True))
     return found, -(-error // (unit / 4)) * (unit / 4)
 
 
@@ -90,7 +91,7 @@ def simplex(curves_of: Callable[[int], Mapping[Key, EntryCurve]]) -> list[Point]
             unit = _power(length, bits)
             at[key] = [round(middle(value) / unit) * unit for value in values]
             pairs = zip(values, at[key], strict=True)
-            errors[key] = rests[key] + max(highest(abs(v - ball(p))) for v, p in pairs)
+            errors[key] = rests[key] + max(highest(abs(v - ball_around(p))) for v, p in pairs)
         found = _widened(at, still, errors)
         if found is not None and found[0] <= (NARROW if bits < CURVE_BITS[5] else WIDEST):
             return found[1]

@@ -203,7 +203,10 @@ def _placed_texts(
     """Say what position and force controllers do, and what the others do meanwhile."""
     if all(c.law.commands == "velocity" for c in design.controllers):
         return
-    yield say(f"rest-position.{'streamed' if program.step.streams else 'sampled'}")
+    streams = program.step.streams
+    yield say(f"rest-position.{'streamed' if streams else 'sampled'}")
+    if streams and program.idle is not None:
+        yield say("rest-position.streamed-beside")
     if not all(c.contacts for c in design.controllers):
         yield say("contacts.in-position", "the environments of the spec")
     for text in dict.fromkeys(c.law.sampled_text for c in design.controllers):

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from nrs_design.simulation.worst_case import WorstRun
     from nrs_design.spec import InteractionDesignSpec
 
-_REMEDY = "use `simulate` without --worst-case, which runs every controller"
+_REMEDY = "use `simulate` without --worst-case, with a scenario for each controller"
 
 
 @dataclass(frozen=True, slots=True)

@@ -203,7 +203,8 @@ class SampledAxis:
         seen = {
             "angle": _coarse(self.theta, errors.encoder_step),
             "torque": felt,
-            "velocity_command": hand,
+            # Where there is a position, it moves with the hand: it goes in once.
+            "velocity_command": 0.0 if "position" in self.inputs else hand,
             "position": self.commanded,
             "wanted_torque": self.scenario.wanted_torque,
         }

@@ -134,16 +134,20 @@ def not_together(
 
 
 def find_faults(
-    checks: Sequence[Row[Any]], said: object, *, partial: bool = False
+    checks: Sequence[Row[Any]],
+    said: object,
+    beside: Sequence[Row[Any]] = (),
+    *,
+    partial: bool = False,
 ) -> list[dict[str, Any]]:
-    """Return the faults that a table of checks finds.
+    """Return the faults that a table of checks finds; no advice leads to others, or to `beside`.
 
     `partial`: parts that are not valid may be missing; checks that ask for them are left out.
     """
     found: list[dict[str, Any]] = []
     for check in checks:
         try:
-            found += [error.context or {} for error in check.faults(said, checks)]
+            found += [error.context or {} for error in check.faults(said, (*checks, *beside))]
         except PydanticCustomError as error:
             context = error.context or {}
             found += context.get("all", [context])
@@ -153,9 +157,9 @@ def find_faults(
     return found
 
 
-def run_checks(checks: Sequence[Row[Any]], said: object) -> None:
+def run_checks(checks: Sequence[Row[Any]], said: object, beside: Sequence[Row[Any]] = ()) -> None:
     """Raise the faults that a table of checks finds, all of them as one error."""
-    if found := find_faults(checks, said):
+    if found := find_faults(checks, said, beside):
         raise as_error(found)
 
 

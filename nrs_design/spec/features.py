@@ -131,6 +131,16 @@ def _constant(
 # What is advised where a loop is not sampled.
 _SAMPLES = SamplingSpec.model_validate({"period": "2 ms", "delay": 0})
 
+
+def _relaxed(spec: Spec) -> Spec:
+    """Return a spec whose controllers have no springs."""
+    controllers = {
+        name: c.model_copy(update={"Kt": None}) if c.sprung else c
+        for name, c in spec.controllers.items()
+    }
+    return spec.model_copy(update={"controllers": controllers})
+
+
 # Every one of them is asked of an interaction design.
 _F = Feature[Spec]
 SAMPLED = _F(
@@ -190,7 +200,7 @@ STREAMED = _F(
 VELOCITIES = _F(
     "a velocity_interface",
     "velocity_interface",
-    "write actuator and motion_loop",
+    "write position_interface, or actuator and motion_loop",
     _given("velocity_interface"),
 )
 PLACED = _F(
@@ -308,12 +318,16 @@ DAMPED_FORCE = _F(
     _damped_force,
 )
 SPRUNG = _F(
-    "the spring Kt of {0}", "controllers.{0}.Kt", "leave Kt out", _controller(lambda c: c.sprung)
+    "the spring Kt of {0}",
+    "controllers.{0}.Kt",
+    "leave Kt out",
+    _controller(lambda c: c.sprung),
+    _relaxed,
 )
 RELAXED = _F(
     "{0!r}, an impedance controller without a spring,",
     "controllers.{0}.Kt",
-    "give {0} a spring Kt",
+    "give every impedance controller a spring Kt",
     _controller(lambda c: c.type == "impedance" and not c.sprung),
 )
 BLEEDING = _F(

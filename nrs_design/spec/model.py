@@ -27,7 +27,7 @@ class SpecModel(BaseModel):
 
     @model_validator(mode="after")
     def _run_checks(self) -> Self:
-        run_checks(self.checks, self)
+        run_checks(self.checks, self, self.warnings)
         return self
 
 

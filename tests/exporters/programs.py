@@ -23,6 +23,7 @@ from nrs_design.exporters.export import Export
 from nrs_design.exporters.formats.c import header_text, source_text
 from nrs_design.exporters.header import header_lines
 from nrs_design.exporters.self_test import program_macro, self_test
+from nrs_design.models.drive import Takes
 from tests.support import program_named
 
 PERIOD = Fraction(1, 500)
@@ -38,8 +39,8 @@ MACHINE = ("-M", "netduinoplus2", "-nographic", "-monitor", "none", "-serial", "
 SEMIHOSTING = ("-semihosting-config", "enable=on,target=native")
 
 
-def frame(low_pass=None, limits=None) -> StepFrame:
-    return StepFrame(MOTION.Kp, MOTION.over(PERIOD), low_pass, limits or StepLimits())
+def frame(low_pass=None, limits=None, takes=None) -> StepFrame:
+    return StepFrame(MOTION.Kp, MOTION.over(PERIOD), low_pass, limits or StepLimits(), takes)
 
 
 def law(*, Mt="0.01", Kt=("0", "0"), order=0, method="exact", limits=None) -> StepLaw:
@@ -62,13 +63,14 @@ INTEGRAL = IntegralForce(to_float32(Fraction("0.02")), Fraction(1, 2))
 LAG = LowPass(1, Fraction(200)).discretize(PERIOD)
 
 
-def mixture(low_pass=None, limits=None, **others) -> StepLaw:
+def mixture(low_pass=None, limits=None, takes=None, **others) -> StepLaw:
     """Build controllers of position and force with others beside them."""
     laws = {name: one.discretize(PERIOD, "exact") for name, one in {**PLACED, **others}.items()}
     idle = (to_float32(Fraction("0.96")),) if others else ()
-    return build_law(frame(low_pass, limits), laws, *idle)
+    return build_law(frame(low_pass, limits, takes), laws, *idle)
 
 
+SPRUNG = replace(ADMITTANCE, Kt=Fraction(1, 2))
 CLAMPED = StepLimits(Fraction(3), command=Fraction(4000), integral=Fraction(1, 128))
 LAWS = {
     "force and position": mixture(LAG),
@@ -79,7 +81,9 @@ LAWS = {
     "mixed": mixture(insertion=ADMITTANCE),
     "integral": mixture(insertion=ADMITTANCE, hold=INTEGRAL),
     "clamped": mixture(limits=CLAMPED, hold=INTEGRAL),
-    "mixed, spring": mixture(LAG, insertion=replace(ADMITTANCE, Kt=Fraction(1, 2))),
+    "mixed, spring": mixture(LAG, insertion=SPRUNG),
+    "positions": mixture(takes=Takes.POSITION),
+    "positions, mixed": mixture(takes=Takes.POSITION, insertion=SPRUNG),
     "limits": law(limits=StepLimits(Fraction(1, 2), to_float32(Fraction("0.13")), Fraction(4000))),
 }
 

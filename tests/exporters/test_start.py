@@ -9,7 +9,7 @@ from nrs_design.controllers.replica import step
 from nrs_design.exporters.c_names import CNames
 from nrs_design.exporters.formats.c import header_text
 from nrs_design.exporters.signs import sign_lines
-from nrs_design.exporters.start import PLACED, SPRUNG, start_lines
+from nrs_design.exporters.start import PLACED, SPRUNG, STREAMED, TWICE, start_lines
 from nrs_design.simulation.step_program import StepProgram
 from tests.exporters.programs import LAWS, law
 
@@ -66,8 +66,10 @@ def test_a_position_away_from_the_joint_is_differentiated_at_the_first_sample():
         ("inertia", ()),
         ("filter and spring", (SPRUNG,)),
         ("force and position", (PLACED,)),
-        ("integral", (PLACED,)),
-        ("mixed, spring", (PLACED,)),
+        ("integral", (PLACED, TWICE)),
+        ("mixed, spring", (PLACED, TWICE, SPRUNG)),
+        ("positions", (STREAMED,)),
+        ("positions, mixed", (STREAMED, TWICE, SPRUNG)),
     ],
 )
 def test_the_header_says_where_to_start(sampled_export, shape, said):

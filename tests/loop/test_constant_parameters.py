@@ -51,7 +51,7 @@ def constant(*ranges):
 
 
 def sets_of(names, *parameters):
-    return [*constant_sets(corners_by_name(names, parameters), parameters)]
+    return [*constant_sets([*corners_by_name(names, parameters)], parameters)]
 
 
 def test_a_mode_is_the_same_at_the_ends_of_what_it_does_not_touch():

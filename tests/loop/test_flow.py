@@ -39,6 +39,7 @@ T = F(1, 500)
 SECOND = MotionLoop((F(900),), (F(1), F(60), F(900)))
 ZEROED = MotionLoop((F(28), F(1619)), (F(1), F(57), F(1619)))
 THIRD = MotionLoop((F(10**5),), (F(1), F(160), F(8500), F(10**5)))
+FOURTH = MotionLoop((F(10**7),), (F(1), F(260), F(24500), F(950000), F(10**7)))
 KNOWN, AIR = Interval.point, {}
 
 
@@ -217,6 +218,7 @@ def test_what_is_a_hundredth_beyond_a_range_is_beyond_the_points(name):
         assert far(points, true_rows(drive, period, [True], [(1, values)])) > 1e-4
 
 
+SHAKEN = CommandTiming(T, jitter=T / 5)
 COUNTS = {
     "known motor": (motor_drive(KNOWN(F(2)), KNOWN(F(1, 30))), CommandTiming(T), AIR, 2),
     "motor": (BEYOND["motor"][0], CommandTiming(T), AIR, 3),
@@ -225,6 +227,8 @@ COUNTS = {
     "known lag": (lagging_drive(KNOWN(F(1, 30))), CommandTiming(T), AIR, 2),
     "lag": (BEYOND["lag"][0], CommandTiming(T), AIR, 3),
     "second order": (position_drive(SECOND), CommandTiming(T), AIR, 3),
+    "third order, jitter": (position_drive(THIRD), SHAKEN, AIR, 20),
+    "fourth order, jitter": (position_drive(FOURTH), SHAKEN, AIR, 2 * 17),
     "torque in the air": (TORQUE, CommandTiming(T), AIR, 2),
     "torque": (TORQUE, CommandTiming(T), TOUCHED, 4 * 7),
 }

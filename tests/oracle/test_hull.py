@@ -1,6 +1,7 @@
 """The map of a period at admissible numbers lies between the modes of the package."""
 
 import contextlib
+from itertools import count, islice
 
 import numpy as np
 import pytest
@@ -230,6 +231,28 @@ def test_maps_of_drawn_loops_lie_between_the_modes(seeds):
             far, numbers = worst(loop, system, rng, 5)
             assert far <= CLOSE, (spec_of(loop), numbers)
     assert accepted >= len(seeds) / 2
+
+
+# What was refused once: features of a loop that may lose contact.
+TOGETHER = {
+    "load": ["load"],
+    "load, force": ["load", "force"],
+    "load, mixture": ["load", "decay"],
+    "positions, mixture": ["placed", "decay"],
+}
+
+
+@pytest.mark.parametrize("name", TOGETHER)
+def test_maps_of_what_loses_contact_lie_between_the_modes(name):
+    def has_all(loop):
+        loop = loop | {"placed": loop["drive"] == "position"}
+        return all(loop[key] for key in ["losable", *TOGETHER[name]])
+
+    loops = ((seed, some_loop(np.random.default_rng(seed))) for seed in count())
+    for seed, loop in islice((item for item in loops if has_all(item[1])), 3):
+        system = assembled(spec_of(loop))
+        far, numbers = worst(loop, system, np.random.default_rng(seed), 5)
+        assert far <= CLOSE, (spec_of(loop), numbers)
 
 
 OF_DRIVE = {"actuator": ["Mt", "Bt", "Kd", "zero", "tau", "gain", "spring"]}

@@ -69,7 +69,8 @@ def source_text(record: ExportRecord, law: StepLaw, names: CNames) -> str:
 def _header_lines(record: ExportRecord, law: StepLaw, names: CNames) -> Iterator[str]:
     yield from header_lines(record)
     yield ""
-    yield f"Call {names.lower}_init once, then {names.lower}_step at every sample. Compile with"
+    init = f"{names.lower}_init once, then " if law.states else ""
+    yield f"Call {init}{names.lower}_step at every sample. Compile with"
     yield FLAGS
     yield "and keep rounding to nearest, and subnormal numbers as they are."
     yield from start_lines(law)

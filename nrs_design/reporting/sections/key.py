@@ -49,7 +49,7 @@ def tests_section(result: Result) -> Section | None:
     tests = tuple(f"{kind.name}: {kind.test}" for kind in kinds if kind.id)
     if not tests:
         return None
-    text = f"{len(tests)} assumptions are neither tested nor argued. Each has a test:"
+    text = f"{len(tests)} kinds of assumptions are neither tested nor argued. Each has a test:"
     return Section(TESTS, (Paragraph(text), Bullets("", tests)))
 
 

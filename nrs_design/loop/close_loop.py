@@ -24,6 +24,7 @@ from nrs_design.loop.free_motion import (
 )
 from nrs_design.loop.loop_assumptions import assume_loop
 from nrs_design.loop.shared_state import SharedState
+from nrs_design.models.contact.environment import Environment
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.system import SwitchedSystem
@@ -110,13 +111,14 @@ def _by_contact(modes: Iterable[Mode]) -> dict[str, tuple[Mode, ...]]:
 
 def _all_modes(controller: Controller, state: SharedState, *, free: bool) -> Iterator[Mode]:
     """Yield the modes of a controller in all its contacts, and free ones if they are asked for."""
-    law = controller.law
-    if not controller.contacts:
-        yield Mode(controller.name, RationalMatrix.from_rows(state.placed(law)))
-    for environment in state.contacts(controller):
-        name = f"{controller.name}/{environment.name}"
+    touched: list[Environment | None] = [*state.contacts(controller)]
+    if not touched:
+        # What takes no force is the same everywhere, unless something else feels it.
+        touched = [None, *(state.environments if state.feels else ())]
+    for environment in touched:
+        name = controller.name if environment is None else f"{controller.name}/{environment.name}"
         box = state.contact_box(environment).beside(state.motor_box)
-        for corner, rows in box.corners(partial(state.rows, law, environment), name):
+        for corner, rows in box.corners(partial(state.rows, controller.law, environment), name):
             yield Mode(corner, RationalMatrix.from_rows(rows))
     if free:
         yield from free_modes(controller, state)

@@ -162,9 +162,11 @@ class ContinuousAxis(AbstractAxis):
 
         `cut` is how much of the force acts.
         """
+        motion = self.motion_at(place.motor)
         if law.commands == "position":
-            return position_mode(self.realization, law, contact, cut=cut)
-        return velocity_mode(self.motion_at(place.motor), law, contact, self.low_pass, cut)
+            placed = motion if isinstance(motion, Realization) else motion.placed
+            return position_mode(placed, law, contact, self.low_pass, cut=cut)
+        return velocity_mode(motion, law, contact, self.low_pass, cut)
 
     def admittances(
         self, contact: AbstractLinearLaw, spring: Fraction, place: Place, *, inert: bool

@@ -137,14 +137,20 @@ def could_pull(environments: Iterable[Environment]) -> tuple[Environment, ...]:
 
 
 def force_rows(
-    velocity: LinearForm, states: Sequence[str], environments: Iterable[Environment]
+    velocity: LinearForm,
+    states: Sequence[str],
+    environments: Iterable[Environment],
+    deflection: LinearForm | None = None,
 ) -> Iterator[RationalMatrix]:
-    """Yield the force, as a row over the states, of each corner of each contact."""
+    """Yield the force, as a row over the states, of each corner of each contact.
+
+    The deflection is a state, unless it is given.
+    """
     unit = coordinates(len(states))
     for environment in environments:
         shared, *memories = environment.law.states
-        names = [shared, *(f"{environment.name}: {memory}" for memory in memories)]
-        own = [unit[states.index(name)] for name in names]
+        own = [deflection or unit[states.index(shared)]]
+        own += [unit[states.index(f"{environment.name}: {memory}")] for memory in memories]
         for law in environment.corners:
             force, _ = law.react(velocity, own)
             yield RationalMatrix.from_rows([force])

@@ -29,11 +29,13 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from nrs_design.controllers.laws import CompliantLaw
+from nrs_design.controllers.laws.law import Response
 from nrs_design.controllers.sensor import LowPass
 from nrs_design.errors import AssemblyError
-from nrs_design.models.contact.law import AbstractLinearLaw
-from nrs_design.models.linear_form import LinearForm, combine, coordinates, zero
-from nrs_design.models.motion_loop import JointMotionLoop, Realization
+from nrs_design.loop.wires import Wires
+from nrs_design.models.contact.law import AbstractLinearLaw, Reaction
+from nrs_design.models.linear_form import ONE, LinearForm, combine, coordinates, zero
+from nrs_design.models.motion_loop import JointMotionLoop, LoadedMotionLoop, Realization
 from nrs_design.proof.matrix import multiply
 
 Rows = list[LinearForm]
@@ -138,10 +140,10 @@ def with_idle(rows: Rows, rates: Mapping[int, Fraction]) -> Rows:
 
 
 def position_mode(
-    motion: Realization,
+    motion: Realization | LoadedMotionLoop,
     law: CompliantLaw,
     contact: AbstractLinearLaw | None = None,
-    environment: str = "",
+    low_pass: LowPass | None = None,
     bleeding: Fraction | None = None,
     cut: ForceShare = WHOLE,
 ) -> Rows:
@@ -149,35 +151,52 @@ def position_mode(
 
     ``xi' = Ap xi + Bp u``, ``theta = Cp xi``, and the law from F to u. A velocity is integrated
     first, ``r' = -vm`` and ``u = r``. Where the integral w of another controller bleeds, at a rate
-    in 1/s, it is in u, and the last state. Without a contact, nothing is touched; `cut` is how much
-    of the force acts.
+    in 1/s, it is in u. States are those of loop and law, r, w, the low-pass and the memory of the
+    contact. Without a contact, nothing is touched; `cut` is how much of the force acts.
 
-    An `AssemblyError` if the law commands a position and the environment is no spring: with
-    damping, its force depends on the command itself; with a memory, on more than the position.
+    An `AssemblyError` if the command depends on itself at once.
     """
-    integrates = law.commands == "velocity"
-    own = motion.order + len(law.states)
-    state = coordinates(own + integrates + (bleeding is not None))
-    position, velocity, force = motion.output(len(state)), zero(len(state)), zero(len(state))
-    left = [] if bleeding is None else [(Fraction(1), state[-1])]
-    driven = combine((Fraction(1), state[own]), *left) if integrates else position
-    if integrates:
-        velocity = combine(*zip(motion.C, motion.rates(driven), strict=True))
-    elif contact is not None and not contact.is_spring:
-        raise AssemblyError(
-            f"force control in contact with {environment}, which has damping, is not modelled",
-            remedy="use an elastic environment for force controllers",
-            at=("environments", environment, "damping"),
+    moves = law.commands == "velocity"
+    lags = () if low_pass is None else low_pass.states
+    memory = () if contact is None else contact.states[1:]
+    w = Wires(
+        (
+            *motion.states,
+            *law.states,
+            *["r"] * moves,
+            *["w"] * (bleeding is not None),
+            *lags,
+            *memory,
         )
-    if contact is not None:
-        force = combine((cut.sensed, contact.react(velocity, [position])[0]))
-    if law.spring:
-        force = combine((Fraction(1), force), (law.spring, state[own]))
-    command, rates = law.respond(force, state[motion.order : own])
-    last = [] if bleeding is None else [combine((-bleeding, state[-1]))]
-    if integrates:
-        return [*motion.rates(driven), *rates, command, *last]
-    return [*motion.rates(combine((Fraction(1), command), *left)), *rates, *last]
+    )
+    left = [] if bleeding is None else [(ONE, w["w"])]
+    pulled = [(law.spring, w["r"])] if moves else []
+    size, heard = len(w.nothing), lags[-1] if lags else "sensed"
+    w.rule("command", lambda: w.sum((ONE, w["r"] if moves else respond()[0]), *left))
+    w.rule("velocity", lambda: motion.velocity(w.nothing, lambda: w["command"]))
+    w.rule("force", lambda: react()[0])
+    w.rule("sensed", lambda: w.sum((cut.sensed, w["force"])))
+    w.rule("felt", lambda: w.sum((ONE, w[heard]), *pulled))
+
+    def react() -> Reaction:
+        if contact is None:
+            return w.nothing, []
+        takes = not (contact.is_spring or contact.remembers)
+        deflection = motion.output(size), *(w[name] for name in memory)
+        return contact.react(w["velocity"] if takes else w.nothing, deflection)
+
+    def respond() -> Response:
+        return law.respond(w["felt"], [w[name] for name in law.states])
+
+    command, rates = respond()
+    return [
+        *motion.rates(w["command"], w.sum((cut.carried, w["force"]))),
+        *rates,
+        *[command] * moves,
+        *([] if bleeding is None else [w.sum((-bleeding, w["w"]))]),
+        *([] if low_pass is None else low_pass.respond(w["sensed"], [w[name] for name in lags])[1]),
+        *react()[1][1:],
+    ]
 
 
 def lead(motion: Realization) -> list[Fraction]:

@@ -35,9 +35,14 @@ from nrs_design.loop.modes import (
 )
 from nrs_design.loop.parameter_box import Box
 from nrs_design.models.contact.environment import Environment
-from nrs_design.models.contact.law import AbstractLinearLaw
 from nrs_design.models.interval import Interval
-from nrs_design.models.motion_loop import JointMotionLoop, MotionLoop, Realization, realize
+from nrs_design.models.motion_loop import (
+    JointMotionLoop,
+    LoadedMotionLoop,
+    MotionLoop,
+    Realization,
+    realize,
+)
 from nrs_design.models.plant import Plant
 from nrs_design.spec import IdleStatesSpec
 from nrs_design.spec.controllers import Offset
@@ -72,6 +77,11 @@ class SharedState:
         """The motion loop at its nominal values."""
         return self.realization if self.joint is None else self.joint.nominal
 
+    @property
+    def placed(self) -> Realization | LoadedMotionLoop:
+        """The motion loop from position to position; its motor has no ranges."""
+        return self.realization if self.joint is None else self.joint.nominal.placed
+
     def contacts(self, controller: Controller) -> Iterator[Environment]:
         """Yield what a controller touches."""
         by_name = {environment.name: environment for environment in self.environments}
@@ -103,23 +113,32 @@ class SharedState:
         order = self.realization.order
         if self.offset != "none":
             return (*(f"dxp{i + 1}" for i in range(order - 1)), "lead [rad]")
-        if self.idle is not None:
-            return (*(f"xi{i + 1}" for i in range(order)), *self.beside)
-        loop = (*self.motion.states, *self.law.states)
-        if self.law.commands == "position":
-            return loop
-        # Continuous when the stiffness changes in contact.
-        contact = self.environments[0].law.states[0]
         memories = (f"{e.name}: {name}" for e in self.environments for name in e.law.states[1:])
         sensed = () if self.low_pass is None else self.low_pass.states
-        return (*loop, *sensed, contact, *memories)
+        # Continuous when the stiffness changes in contact.
+        contact = () if self.is_placed else self.environments[0].law.states[:1]
+        own = self.beside if self.idle is not None else self.law.states
+        moving = self.placed.states if self.is_placed else self.motion.states
+        if self.idle is not None and self.joint is None:
+            moving = tuple(f"xi{i + 1}" for i in range(order))
+        return (*moving, *own, *sensed, *contact, *memories)
+
+    @property
+    def is_placed(self) -> bool:
+        """Whether the motion loop is given positions, from which the deflection follows."""
+        return self.idle is not None or self.law.commands == "position"
+
+    @property
+    def feels(self) -> bool:
+        """Whether it matters to a controller that takes no force what it touches."""
+        return self.joint is not None or self.low_pass is not None or bool(self.memories)
 
     @property
     def kept(self) -> int:
         """How many of the states, from the first on, a switch that resets leaves alone."""
         return self.realization.order - (self.offset == "measured")
 
-    def contact_box(self, environment: Environment) -> Box:
+    def contact_box(self, environment: Environment | None) -> Box:
         """Return the parameters of a contact, and the rates of the memories that it leaves alone.
 
         A rate is a ratio of parameters, but they occur nowhere else in this mode: it is one axis.
@@ -129,37 +148,37 @@ class SharedState:
             for other in self.memories
             if other != environment and other.creep is not None
         }
+        if environment is None:
+            return Box(creeps)
         return Box(environment.parameters, environment.law.inverse).beside(Box(creeps))
 
     def rows(
-        self, law: CompliantLaw, environment: Environment, values: Mapping[str, Fraction]
+        self, law: CompliantLaw, environment: Environment | None, values: Mapping[str, Fraction]
     ) -> Rows:
-        """Return A under a law at the given parameters of the contact."""
-        contact = environment.at(values)
-        if self.idle is not None or law.commands == "position":
-            return self.placed(law, contact, environment.name)
-        rows = velocity_mode(self.motion_at(values), law, contact, self.low_pass)
-        first = len(self.names) - len(self.memories)
-        memories = enumerate(self.memories, first)
-        return with_idle(rows, {i: values[_rate(e)] for i, e in memories if e != environment})
+        """Return A under a law at the given parameters of the contact; None touches nothing.
 
-    def placed(
-        self, law: CompliantLaw, contact: AbstractLinearLaw | None = None, environment: str = ""
-    ) -> Rows:
-        """Return a mode with the idle states that it leaves alone, or in coordinates of motion.
-
-        Without a contact nothing is touched.
+        States that others leave alone decay, and so do memories of what is not touched.
         """
+        contact = None if environment is None else environment.at(values)
         others = self.bleeding if self.idle is not None and not law.bleeds else ()
         decay = Fraction(0) if self.idle is None else idle_decay(self.idle)
-        bleeding = decay if others else None
-        rows = position_mode(self.realization, law, contact, environment, bleeding)
+        if self.is_placed:
+            bleeding = decay if others else None
+            rows = position_mode(self.placed, law, contact, self.low_pass, bleeding)
+        else:
+            assert contact is not None
+            rows = velocity_mode(self.motion_at(values), law, contact, self.low_pass)
         if self.offset != "none":
             return with_last(rows, lead(self.realization))
         integrated = (REFERENCE,) if law.commands == "velocity" else ()
         own = (*law.states, *integrated, *others)
-        beside = enumerate(self.beside if self.idle is not None else (), self.realization.order)
-        return with_idle(rows, {i: decay for i, name in beside if name not in own})
+        beside = self.beside if self.idle is not None else ()
+        alone = {self.names.index(name): decay for name in beside if name not in own}
+        first = len(self.names) - len(self.memories)
+        memories = enumerate(self.memories, first)
+        return with_idle(
+            rows, alone | {i: values[_rate(e)] for i, e in memories if e != environment}
+        )
 
 
 def _rate(environment: Environment) -> str:
@@ -199,6 +218,13 @@ def _faults(state: SharedState) -> Iterator[AssemblyError]:
     mixed = state.idle is not None
     for environment in state.environments:
         law, at = environment.law, ("environments", environment.name)
+        if not law.has_rest and state.is_placed:
+            yield AssemblyError(
+                f"environment {environment.name} has no rest position ({law.name}), from which "
+                "positions of position and force controllers count",
+                remedy="use another environment, or impedance controllers alone",
+                at=at,
+            )
         if not law.has_rest and len(state.environments) > 1:
             yield AssemblyError(
                 f"environment {environment.name} has no rest position ({law.name}), so it shares "
@@ -206,22 +232,16 @@ def _faults(state: SharedState) -> Iterator[AssemblyError]:
                 remedy="let the controllers touch no other environment, or write a spec for each",
                 at=at,
             )
-        if mixed and law.remembers:
-            yield AssemblyError(
-                f"environment {environment.name}, which is {law.name}, is not modelled "
-                "for impedance controllers beside others",
-                remedy="use elastic or Kelvin-Voigt environments, or one kind of controller",
-                at=at,
-            )
     yield from _faults_of_springs(state)
     if (odd := state.design.find_odd_states(mixed=mixed)) is not None:
         yield AssemblyError(
             f"{odd}, so their modes share no state", remedy=SHARED_STATES, at=("controllers",)
         )
-    if state.joint is not None and (mixed or state.law.commands != "velocity"):
+    if state.joint is not None and not state.joint.ranges.fixed and state.is_placed:
         yield AssemblyError(
-            "ranges of the motor, or its load, are modelled for impedance controllers alone",
-            remedy="give nominal values of the actuator and no load_inertia",
+            "ranges of the motor are modelled for impedance controllers alone: where another one "
+            "takes over, the speed jumps by numbers of the motor that are not known",
+            remedy="give nominal values of the actuator, or add sampling",
             at=("actuator",),
         )
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -51,6 +52,17 @@ class Realization:
         """Return xp' under the command u; the load, a torque, does not act on this loop."""
         rows = [[*row, *zero(len(command) - self.order)] for row in self.A]
         return [*rows[:-1], combine((Fraction(1), rows[-1]), (Fraction(1), command))]
+
+    @property
+    def pressed(self) -> tuple[LinearForm, Fraction]:
+        """The state at rest with an output of one, and the command that lasts then."""
+        first = 1 / self.C[0]
+        return [first, *zero(self.order - 1)], -self.A[-1][0] * first
+
+    def velocity(self, nothing: LinearForm, command: Callable[[], LinearForm]) -> LinearForm:
+        """Return y'; `nothing` is the form zero, and `command` asks for u where y' depends on it."""
+        needed = command() if self.C[-1] else nothing
+        return combine(*zip(self.C, self.rates(needed), strict=True))
 
     def integral(self, output: LinearForm) -> LinearForm:
         """Return the integral of the command u, which follows from that of the output y.
@@ -114,9 +126,65 @@ class JointMotionLoop:
             turn = combine((Fraction(1), turn), (-1 / self.J, load))
         return [slip, turn]
 
+    @property
+    def placed(self) -> LoadedMotionLoop:
+        """The same loop, from position to position."""
+        return LoadedMotionLoop(self)
+
     def integral(self, output: LinearForm) -> LinearForm:
         """Return the integral of the command u: the error plus that of omega, which is given."""
         return combine((Fraction(1), coordinates(len(output))[0]), (Fraction(1), output))
+
+
+@dataclass(frozen=True, slots=True)
+class LoadedMotionLoop:
+    """PD loop around an actuator with a load, from position to position.
+
+    The states are the angle theta and ``w = theta' - (Km Kd/tau) u``, which is continuous where the
+    commanded position u jumps: ``tau w' = Km Kp (u - theta) - (1 + Km Kd) theta' - tau F/J``.
+    """
+
+    joint: JointMotionLoop
+
+    @property
+    def order(self) -> int:
+        """Number of states."""
+        return len(self.states)
+
+    @property
+    def states(self) -> tuple[str, ...]:
+        """Names and units of the states."""
+        return "theta [rad]", "w [rad/s]"
+
+    def output(self, size: int) -> LinearForm:
+        """Return theta as a linear form of a state of that size."""
+        return coordinates(size)[0]
+
+    @property
+    def pressed(self) -> tuple[LinearForm, Fraction]:
+        """The state at rest with an angle of one, and the command that lasts then."""
+        return [Fraction(1), -self._direct], Fraction(1)
+
+    @property
+    def _direct(self) -> Fraction:
+        """By how much the velocity jumps with the command, in 1/s."""
+        return self.joint.Km * self.joint.Kd / self.joint.tau
+
+    def velocity(self, nothing: LinearForm, command: Callable[[], LinearForm]) -> LinearForm:
+        """Return theta'; `nothing` is the form zero, `command` asks for u."""
+        return combine((Fraction(1), coordinates(len(nothing))[1]), (self._direct, command()))
+
+    def rates(self, command: LinearForm, load: LinearForm) -> list[LinearForm]:
+        """Return theta' and w' under the commanded position and the torque of the environment."""
+        joint, velocity = self.joint, self.velocity(command, lambda: command)
+        error = combine((Fraction(1), command), (Fraction(-1), self.output(len(command))))
+        turn = combine(
+            (joint.Km * joint.Kp / joint.tau, error),
+            (-(1 + joint.Km * joint.Kd) / joint.tau, velocity),
+        )
+        if joint.J is not None:
+            turn = combine((Fraction(1), turn), (-1 / joint.J, load))
+        return [velocity, turn]
 
 
 def realize(loop: MotionLoop) -> Realization:

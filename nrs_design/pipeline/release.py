@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from nrs_design.loop.joint import Joint
-from nrs_design.models.linear_form import coordinates
+from nrs_design.models.linear_form import coordinates, zero
 from nrs_design.models.motion_loop import realize
 from nrs_design.pipeline.certification import Result
 from nrs_design.pipeline.design import Designed
@@ -97,17 +96,16 @@ def _following_velocities(designed: Designed, system: SwitchedSystem) -> Outputs
 
 def _following_positions(designed: Designed, system: SwitchedSystem) -> Outputs | str:
     """Return what a loop shows in which the motion loop follows a position."""
+    from nrs_design.loop.free_motion import force_rows
+
     plant, motion = designed.plant, designed.design.motion
     touched = plant.among(designed.design.contacts)
-    if not all(environment.law.is_spring for environment in touched):
+    if not all(law.is_spring or law.remembers for e in touched for law in e.corners):
         return "a command moves the axis at once, and the torque of a damper with it"
-    loop = realize(plant.motion_loop(motion.Kp, motion.Kd))
-    position, size = loop.output(system.order), system.order
-    rows = [
-        RationalMatrix.from_rows([law.react([Fraction(0)] * size, [position])[0]])
-        for environment in touched
-        for law in environment.corners
-    ]
+    joint = Joint.of(plant, motion)
+    loop = realize(plant.motion_loop(motion.Kp, motion.Kd)) if joint is None else joint.nominal.placed
+    position = loop.output(system.order)
+    rows = list(force_rows(zero(system.order), system.states, touched, position))
     deflection = [float(x) for x in position]
     velocity = [
         [
@@ -116,11 +114,10 @@ def _following_positions(designed: Designed, system: SwitchedSystem) -> Outputs 
         ]
         for A in (mode.A.floats() for mode in system.modes)
     ]
-    # At rest, the first state of the canonical form alone is not zero, and a lasting command.
-    pressed = [0.0] * size
-    pressed[0] = 1 / deflection[0]
+    rest, command = loop.pressed
+    pressed = [*map(float, rest), *[0.0] * (system.order - loop.order)]
     if _REFERENCE in system.states:
-        pressed[system.states.index(_REFERENCE)] = -float(loop.A[-1][0]) * pressed[0]
+        pressed[system.states.index(_REFERENCE)] = float(command)
     return _outputs(designed, system, rows, velocity, deflection, pressed)
 
 

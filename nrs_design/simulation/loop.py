@@ -181,11 +181,12 @@ class _Closing:
         angle = row("theta") if loop._given is None else _padded(loop._given[1], n)
         still = LoopMode(A, angle, np.zeros(n), np.zeros(n), np.zeros(n))
         springs = self._torque(still)
-        if not moves and any(map(loop.is_damped, self.touched)):
+        if not moves and self._takes_at_once() and any(map(loop.is_damped, self.touched)):
             raise DesignError(
                 f"{self.controller.name} corrects the position by a force that depends on the "
                 "velocity: that is not modelled",
-                remedy="let it touch elastic environments only, or use --engine sampled",
+                remedy="let it touch elastic environments only, filter the force, or use --engine "
+                "sampled",
                 at=("controllers", self.controller.name),
             )
         reference = row("commanded position")
@@ -201,6 +202,12 @@ class _Closing:
         torque = self._torque(found)
         self._fill(A, found, torque)
         return LoopMode(A, angle, velocity, torque, reference)
+
+    def _takes_at_once(self) -> bool:
+        """Tell whether the command depends on the force of the moment."""
+        n = len(self.loop.states)
+        none, some = (self._respond(np.full(n, force))[0] for force in (0.0, 1.0))
+        return self.loop.design.sensor.filter is None and bool((none != some).any())
 
     def _torque(self, mode: LoopMode) -> Array:
         loop = self.loop

@@ -38,6 +38,7 @@ from nrs_design.spec.features import (
     PLACED,
     PRELOADED,
     RELAXED,
+    RESTLESS,
     RULES,
     SAMPLED,
     SAMPLED_DWELL,
@@ -51,6 +52,7 @@ from nrs_design.spec.features import (
     TOOL,
     TORQUES,
     TWO_PERIODS,
+    UNFILTERED,
     VELOCITIES,
     ZEROED,
 )
@@ -75,15 +77,42 @@ _CONSTANTS = "proofs that rest on constants do not know it"
 _MISSES = "the rule for misses decides what may follow what"
 
 COMBINATIONS: tuple[Row[Spec], ...] = (
-    *_beside(HAND, LOSABLE, SAMPLED, DISTURBED, IDLE, LOADED),
-    *_beside(PRELOADED, LOSABLE, DISTURBED),
-    *_beside(MEMORY, SAMPLED, IDLE),
-    not_together(DAMPED_FORCE, CONTINUOUS, because="the command would depend on itself at once"),
-    not_together(HEAVY_AT_ONCE),
-    not_together(LOSABLE, LAGGING_AT_ONCE),
-    not_together(OFFSET, IDLE),
-    not_together(IDLE_RESET, BLEEDING),
-    not_together(FILTER, OTHERS, CONTINUOUS),
+    not_together(HAND, LOSABLE, because="let go, its mass moves on by itself"),
+    not_together(
+        HAND, SAMPLED, because="a force sample would show the acceleration that its command makes"
+    ),
+    *_beside(
+        HAND, DISTURBED, IDLE, because="a command that jumps accelerates its mass without bound"
+    ),
+    not_together(HAND, LOADED, because="its mass and the load would move as one"),
+    not_together(PRELOADED, LOSABLE, because="without a force it is not what the spec knows of it"),
+    not_together(PRELOADED, DISTURBED, because="what disturbs may lead out of its preload"),
+    not_together(MEMORY, SAMPLED),
+    not_together(
+        RESTLESS, OTHERS, because="positions count from the place where it rests, and it has none"
+    ),
+    not_together(
+        DAMPED_FORCE,
+        CONTINUOUS,
+        UNFILTERED,
+        because="its command would depend on itself at once",
+    ),
+    not_together(
+        HEAVY_AT_ONCE,
+        because="what is touched at once has one deflection, and it has a motion of its own",
+    ),
+    not_together(
+        LOSABLE, LAGGING_AT_ONCE, because="what lags is lost at another moment than the others"
+    ),
+    *_beside(
+        OFFSET,
+        IDLE,
+        FILTER,
+        LOADED,
+        MEMORY,
+        because="what decays is the motion of the motion loop alone",
+    ),
+    not_together(IDLE_RESET, BLEEDING, because="what bleeds is not zero after a switch"),
     *_beside(GIVEN_LOOP, MOTOR_RANGE, LOADED, because="its motor is not known"),
     not_together(
         LOADED,
@@ -99,8 +128,13 @@ COMBINATIONS: tuple[Row[Spec], ...] = (
         because="what slows the motor is lost within a period, too",
     ),
     not_together(LOADED, SATURATED, SAMPLED),
-    not_together(MOTOR_RANGE, OTHERS, CONTINUOUS),
-    not_together(LOADED, OTHERS, CONTINUOUS),
+    not_together(
+        MOTOR_RANGE,
+        OTHERS,
+        CONTINUOUS,
+        because="at a switch the reference jumps, and with it the speed, by numbers of the motor "
+        "that are not known",
+    ),
     *_beside(CONSTANT_MOTOR, LOSABLE, TWO_PERIODS, because=_CONSTANTS),
     *_beside(CONSTANT_TISSUE, LOSABLE, TWO_PERIODS, because=_CONSTANTS),
     *_beside(

@@ -105,11 +105,11 @@ def _dwell(*, sampled: bool) -> Callable[[Spec], str | None]:
 
 
 def _damped_force(spec: Spec) -> tuple[str, str] | None:
-    """Return a controller of the force of what is no spring, and the first such environment."""
+    """Return a controller of a force that takes the velocity, and the first such environment."""
     for name, controller in spec.controllers.items():
         contacts = [key for contact in controller.contacts for key in names_in(contact)]
         laws = ((key, spec.environments.get(key)) for key in contacts)
-        damped = (key for key, law in laws if law is not None and not law.is_spring)
+        damped = (key for key, law in laws if law and not (law.is_spring or law.remembers))
         if controller.holds_force and (key := _first(damped)):
             return name, key
     return None
@@ -312,7 +312,7 @@ OTHERS = _F(
     _controller(lambda c: c.commands != "velocity" and not c.makes_torques),
 )
 DAMPED_FORCE = _F(
-    "force control by {0[0]!r} in contact with {0[1]!r}, which has damping or remembers",
+    "force control by {0[0]!r} in contact with {0[1]!r}, which has damping,",
     "controllers.{0[0]}",
     "use an elastic environment for force controllers",
     _damped_force,
@@ -356,6 +356,13 @@ FILTER = _F(
     "sensor.filter",
     "leave filter out",
     _given("sensor.filter"),
+)
+
+UNFILTERED = _F(
+    "a force without a filter",
+    "sensor.filter",
+    "add `sensor: {{filter: {{cutoff: 30 Hz}}}}`",
+    lambda s: s.sensor is None or s.sensor.filter is None,
 )
 
 DISTURBED = _F(

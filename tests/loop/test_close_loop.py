@@ -273,14 +273,11 @@ class TestViscoelastic:
         assert "nor that it stays bounded under a command" in gel
         assert "The deflection is continuous" not in gel
 
-    @pytest.mark.parametrize("name", ["nose", "gel"])
-    def test_what_is_not_modelled_is_refused(self, name):
-        with pytest.raises(AssemblyError, match="is not modelled"):
-            viscoelastic(name, law=ProportionalForce(F("0.02")))
-
-    def test_what_has_no_rest_position_is_touched_alone(self):
+    def test_what_has_no_rest_position_is_touched_alone_and_by_velocities(self):
         with pytest.raises(AssemblyError, match="gel has no rest position"):
             viscoelastic("tool", "gel")
+        with pytest.raises(AssemblyError, match="from which positions"):
+            viscoelastic("gel", law=ProportionalForce(F("0.02")))
 
 
 def test_things_touched_at_once():

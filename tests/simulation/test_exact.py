@@ -18,7 +18,15 @@ from nrs_design.simulation.loop import Loop
 from nrs_design.simulation.scenario import Condition, Control, Switch
 from nrs_design.spec import parse_spec
 from nrs_design.spec.build_plant import build_plant
-from tests.simulation.interactions import FORCE, IMPEDANCE, PLACED, SOFT, simulated, text_of
+from tests.simulation.interactions import (
+    FORCE,
+    IMPEDANCE,
+    INSERTION,
+    PLACED,
+    SOFT,
+    simulated,
+    text_of,
+)
 
 KM, TAU, KD = 4.8417e-4, 0.0351, 2060.0
 KP = KD * 56.9706
@@ -163,6 +171,40 @@ def test_what_runs_without_an_offset_is_what_is_proved():
     place = [signal.name for signal in loop.states].index("commanded position")
     assert A[0, place] or A[1, place]
     assert not A[place].any()
+
+
+DAMPED = "{model: kelvin-voigt, stiffness: 43 N*m/rad, damping: 0.3 N*m*s/rad}"
+CREEPING = (
+    "{model: kelvin-boltzmann, parallel_stiffness: 60 N*m/rad, series_stiffness: 80 N*m/rad, "
+    "damping: 5 N*m*s/rad}"
+)
+PI = FORCE.replace("{type: force", "{type: pi-force, integral_gain: 0.1 rad/(N*m*s)")
+FILTER = "sensor: {filter: {cutoff: 30 Hz, order: 2}}\n"
+
+
+@pytest.mark.parametrize("loaded", [False, True])
+@pytest.mark.parametrize(
+    ("tissue", "more"),
+    [(SOFT, ""), (SOFT, FILTER), (DAMPED, FILTER), (CREEPING, ""), (CREEPING, FILTER)],
+)
+def test_modes_have_the_poles_of_what_runs(tissue, more, loaded):
+    """Of any law, contact and filter; beside them are what a run commands, and what is idle."""
+    laws = {"insertion": INSERTION, **PLACED, "hold": PI}
+    text = text_of(laws, {"soft": tissue}, more=f"{more}idle_states: {{decay: 20 1/s}}\n")
+    if loaded:
+        text = text.replace("0.0351 s", "0.0351 s, load_inertia: 0.5 kg*m^2")
+    spec = parse_spec(text)
+    plant = build_plant(spec)
+    design = design_controllers(spec, plant)
+    loop = Loop(spec, plant, design, default_scenario(spec, plant))
+    swing = 1j * loop.scenario.profile.omega
+    for mode in assemble(spec, plant, design).modes:
+        name, *touched = mode.name.split("/")
+        left = [*np.linalg.eigvals(loop.mode(name, (0,) * len(touched)).A)]
+        for pole in np.linalg.eigvals(np.array(mode.A.floats())):
+            nearest = min(range(len(left)), key=lambda i: abs(left[i] - pole))
+            assert abs(left.pop(nearest) - pole) < 1e-4 * max(1, abs(pole))
+        assert all(min(abs(z - x) for x in (0, swing, -swing)) < 1e-4 for z in left)
 
 
 def test_a_pi_leaves_no_error_and_its_integral_bleeds():

@@ -79,6 +79,7 @@ CHANGES = {
     f.IDLE_RESET: {"idle_states": {"decay": "20 1/s", "reset": True}},
     f.SAMPLED: {"sampling": SAMPLING},
     f.CONTINUOUS: {},
+    f.UNFILTERED: {},
     f.TWO_PERIODS: {"sampling": SAMPLING | {"outer_period": "4 ms"}},
     f.MISSES: {"sampling": SAMPLING | {"misses": {"consecutive": 1, "command": "hold"}}},
     f.ZEROED: {"sampling": SAMPLING | {"misses": {"consecutive": 1, "command": "zero"}}},
@@ -223,7 +224,7 @@ def test_every_feature_has_its_change():
 def test_the_plainest_spec_has_no_feature_that_needs_a_change():
     plain = parse_spec(spec_with())
     found = {feature for feature in CHANGES if feature.find(plain)}
-    assert found == {f.CONTINUOUS, f.RELAXED}
+    assert found == {f.CONTINUOUS, f.RELAXED, f.UNFILTERED}
 
 
 @pytest.mark.parametrize("row", COMBINATIONS, ids=lambda row: row.message)

@@ -20,7 +20,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import lru_cache
 from itertools import product
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 from nrs_design.axis import unit
 from nrs_design.controllers.float32 import to_float32
@@ -53,6 +53,9 @@ if TYPE_CHECKING:
 Polynomial = tuple[Fraction, ...]
 ZERO, ONE = Fraction(0), Fraction(1)
 NOTHING: Contact = (ZERO, ZERO)
+# Rates at which a memory of what is touched decays and follows, and its state.
+Memory: TypeAlias = tuple[Fraction, Fraction] | None
+REMEMBERED = "damper deflection [rad]"
 _KEPT = 512
 # Shares of the force that reach the law and a motor with a load.
 _CLOSED, _OPENED, _FREE = ForceShare(), ForceShare(sensed=ZERO), ForceShare(ZERO, ZERO)
@@ -238,15 +241,21 @@ class ProcessorAxis(AbstractAxis):
         return opened, closed
 
     def step(
-        self, law: DiscreteLaw, place: Place, sensed: Contact, carried: Contact
+        self,
+        law: DiscreteLaw,
+        place: Place,
+        sensed: Contact,
+        carried: Contact,
+        memory: Memory = None,
     ) -> Sequence[LinearForm]:
         """Return what a period makes of the states.
 
-        `sensed` is what the force sample shows, `carried` what slows a motor with a load.
+        `sensed` is what the force sample shows, `carried` what slows a motor with a load, `memory`
+        the rates of what is touched.
         """
         from nrs_design.loop.calendar import Turn
 
-        loop, flow = _loop(self, law, place, carried if self.drive.loaded else NOTHING)
+        loop, flow = _loop(self, law, place, carried if self.drive.loaded else NOTHING, memory)
         n = len(loop.states)
 
         def rows(turn: Turn, age: int) -> list[LinearForm]:
@@ -259,23 +268,32 @@ class ProcessorAxis(AbstractAxis):
         return whole
 
 
-def _touches(contact: AbstractLinearLaw) -> tuple[tuple[Contact, Contact], ...]:
-    """Return what is sensed and carried of a contact: opened, closed, and where it does not act."""
-    touched = contact.exact[0], (*contact.exact, ZERO)[1]
-    return (NOTHING, touched), (touched, touched), (NOTHING, NOTHING)
+def _touches(contact: AbstractLinearLaw) -> tuple[tuple[Contact, Contact, Memory], ...]:
+    """Return what is sensed and carried of a contact, and its rates: opened, closed, not acting."""
+    if contact.creep is not None and contact.follow is not None:
+        front = contact.exact[contact.parameters().index(contact.front)]
+        touched, memory = (front, ZERO), (contact.creep, contact.follow)
+    else:
+        touched, memory = (contact.exact[0], (*contact.exact, ZERO)[1]), None
+    return (NOTHING, touched, memory), (touched, touched, memory), (NOTHING, NOTHING, memory)
 
 
 # Laws and contacts of a spec share what touches nothing, and the motor.
 @lru_cache(maxsize=_KEPT)
 def _of_step(
-    axis: ProcessorAxis, law: DiscreteLaw, place: Place, sensed: Contact, carried: Contact
+    axis: ProcessorAxis,
+    law: DiscreteLaw,
+    place: Place,
+    sensed: Contact,
+    carried: Contact,
+    memory: Memory,
 ) -> Polynomial:
-    return characteristic(axis.step(law, place, sensed, carried))
+    return characteristic(axis.step(law, place, sensed, carried, memory))
 
 
 @lru_cache(maxsize=_KEPT)
 def _loop(
-    axis: ProcessorAxis, law: DiscreteLaw, place: Place, carried: Contact
+    axis: ProcessorAxis, law: DiscreteLaw, place: Place, carried: Contact, memory: Memory
 ) -> tuple[SampledLoop, Rows]:
     """Return the loop of a law, and what flows in a period: a point of what encloses it."""
     # Not loaded for a design in continuous time.
@@ -291,10 +309,14 @@ def _loop(
     step = StepFrame(axis.motion.Kp, D, low_pass, takes=axis.takes)
     timing = CommandTiming(axis.sampling.step, place.late, place.late)
     known = axis.drive.at({"tau": place.motor.time_constant, GAIN: place.motor.gain})
+    if memory is not None:
+        known = known.remembering(REMEMBERED, [*map(Interval.point, memory)])
     touched = {s: Interval.point(v) for s, v in zip(LOAD, carried, strict=True)}
     flow = HeldDrive(known, timing).flow(touched)[0].rows
     calendar = Calendar(timing, (place.age, place.age))
-    loop = SampledLoop(SampledProgram(step, (law,)), axis.takes, known.states, calendar)
+    loop = SampledLoop(
+        SampledProgram(step, (law,)), axis.takes, known.states, known.memory, calendar
+    )
     return loop, flow
 
 

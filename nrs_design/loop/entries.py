@@ -39,6 +39,23 @@ class Entries:
         """Return the entries at some numbers and a time."""
         return self.jet(at, h, "", h, 0)[0]
 
+    def acting(self, at: Mapping[str, Any]) -> list[list[bool]]:
+        """Return which entries are not zero at all numbers and times: rows, as those of `at`."""
+        G = _sizes(self.rates(at))
+        n, m = self.drive.order, self.drive.order + 1
+        paths = step = G
+        for _ in range(m):
+            step = G * step
+            paths += step
+        found = [
+            [i == j != n - 1 or not bool(paths[i, j] == 0) for j in range(m)] for i in range(n)
+        ]
+        if (speed := self.drive.speed) is not None:
+            L = _sizes(_filled(speed, at, "", 1, m))
+            row = L + L * paths
+            found.append([not bool(row[0, j] == 0) for j in range(m)])
+        return found
+
     def jet(self, at: Mapping[str, Any], h: arb, by: str, width: arb, order: int) -> list[arb_mat]:
         """Return the entries and their Taylor coefficients along the range of a number.
 
@@ -83,8 +100,8 @@ class Entries:
         """
         from flint import arb_mat
 
-        # A velocity that jumps would have a row of its own.
-        assert self.drive.speed is None
+        # A velocity that jumps would have a row of its own; what remembers does not act on it.
+        assert self.drive.speed is None or not self.drive.loaded
         m = self.drive.order + 1
         M, total = _sizes(self.rates(at)), arb_mat(m, m)
         grown = (M * h).exp()

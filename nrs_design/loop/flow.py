@@ -36,7 +36,7 @@ from nrs_design.loop.hull import (
 )
 from nrs_design.loop.sampled import DELTA, Rows
 from nrs_design.loop.spot import labelled_ends
-from nrs_design.models.drive import GAIN, LOAD, Drive, Takes
+from nrs_design.models.drive import GAIN, LOAD, MEMORY, Drive, Takes
 from nrs_design.models.interval import Interval
 from nrs_design.proof.enclosure import ball_around, precision
 
@@ -132,7 +132,8 @@ class _Flow:
             for s, (low, high) in self.ends.items()
             if low != high
         ]
-        self.changing = [n for n in self.numbers if n.symbol in LOAD and own[n.symbol].varies]
+        of_tissue = (*LOAD, *MEMORY)
+        self.changing = [n for n in self.numbers if n.symbol in of_tissue and own[n.symbol].varies]
         times = ["T", *(f"h{age}" for age in timing.within)]
         for s, (time, i) in enumerate(zip(times, self.spans, strict=True)):
             if i.low != i.high:
@@ -183,18 +184,19 @@ class _Flow:
     def _keys(self) -> list[Key]:
         """Return the entries that are not zero; of later commands those of the command alone.
 
-        The deflection counts if it acts on the joint: a position that is commanded counts from it.
+        The position of a robot that takes positions acts as the command does, less it: it counts
+        for what remembers alone.
         """
-        n = self.drive.order
-        touched = self.drive.loaded and self.ends[LOAD[0]] != (ZERO, ZERO)
-        first = [j for j in range(n + 1) if j != n - 1 or touched]
-        first = first if self.lasting is None else first[:-1]
-        found: list[Key] = []
-        for s, span in enumerate(self.spans):
-            M = self.entries.at(self.whole, _ball_over(span.low, span.high))
-            places = product(range(M.nrows()), [n] if s else first)
-            found += [(s, i, j) for i, j in places if not bool(M[i, j] == 0)]
-        return found
+        n, acts = self.drive.order, self.entries.acting(self.whole)
+        own = {n - 2} if self.drive.memory else set()
+        first = [*range(n + 1)] if self.lasting is None else [*range(n)]
+        placed = self.drive.takes is Takes.POSITION
+        return [
+            (s, i, j)
+            for s in range(len(self.spans))
+            for i, j in product(range(len(acts)), [n] if s else first)
+            if acts[i][j] and not (placed and j == n - 1 and i not in own)
+        ]
 
     def _ties(self) -> dict[Key, Tie]:
         """Return which entries others of a known drive give, over times that are known."""
@@ -234,8 +236,9 @@ class _Flow:
 
     def _hull(self) -> Iterator[tuple[tuple[str, ...], tuple[str, int] | None, Point]]:
         """Yield points of entries: around a curve, or else at the ends of all ranges."""
-        # With a load, a constant needs as many corners in the air as in contact: no curve.
-        most = 0 if self.drive.loaded else 1
+        # What changes within a period is on no curve. With a load, a constant needs as many corners
+        # in the air as in contact.
+        most = 0 if self.drive.loaded or self.changing else 1
         found = self._simplex() if len(self.numbers) <= most else None
         for k, point in enumerate(found or ()):
             curve = (self.numbers[0].name, k) if self.numbers else None
@@ -361,8 +364,8 @@ class _Flow:
         def row(i: int) -> tuple[Fraction, ...]:
             commands = [gain * entries.get((s, i, n), ZERO) for s in range(len(self.spans))]
             states = [entries.get((0, i, j), ZERO) for j in range(n)]
-            if self.drive.takes is Takes.POSITION:
-                states[-1] -= commands[0]
+            if self.drive.takes is Takes.POSITION and (0, i, n - 1) not in entries:
+                states[-1] = -commands[0]
             return (*[ZERO] * jumps, *states, *commands)
 
         # A velocity that jumps is the first state, and the last row.

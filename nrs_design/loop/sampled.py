@@ -73,6 +73,7 @@ class SampledLoop:
     program: SampledProgram
     takes: Takes | None  # What the drive takes; None for the commands of a motor
     moving: tuple[str, ...]  # States of the drive, the speed first and the deflection left out
+    memory: str | None  # The state among them by which less the spring that is touched is pressed
     calendar: Calendar
 
     @cached_property
@@ -122,7 +123,8 @@ class SampledLoop:
         """
         w, calendar, stored = self._wires(), self.calendar, self.program.stored
         k, b = touched
-        w.rule("now", lambda: w.sum((k, w[DELTA]), (b, w[OMEGA]), (ONE, w[FORCE_ERROR])))
+        pressed = ((k, w[DELTA]), *([(-k, w[self.memory])] if self.memory else []))
+        w.rule("now", lambda: w.sum(*pressed, (b, w[OMEGA]), (ONE, w[FORCE_ERROR])))
         w.rule("felt", lambda: w[calendar.samples[age - 1]] if age else w["now"])
         w.rule("measured", lambda: w.sum(*((ONE, w[s]) for s in (DELTA, ENCODER, ROUNDED_ANGLE))))
         sizes = {} if turn.is_miss else self.program.wire(w, law, turn)

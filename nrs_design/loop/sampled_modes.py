@@ -246,5 +246,6 @@ def anything_of(environments: Iterable[Environment], *, lost: bool) -> dict[str,
 
 
 def damping_of(environment: Environment) -> Interval:
-    """Return the range of the damping beside the spring; zero for a spring."""
-    return environment.parameters.get("b", Interval.point(ZERO))
+    """Return the range of the damping beside the spring; zero where there is none."""
+    beside = not environment.law.remembers
+    return environment.parameters.get("b" if beside else "", Interval.point(ZERO))

@@ -28,6 +28,7 @@ from nrs_design.loop.sampled_assumptions import assume_sampled
 from nrs_design.loop.sampled_modes import Modes, SampledMode
 from nrs_design.loop.saturation import with_sampled_saturation
 from nrs_design.models.contact.environment import Environment
+from nrs_design.models.drive import Drive
 from nrs_design.models.linear_form import LinearForm, coordinates
 from nrs_design.models.plant import Plant
 from nrs_design.proof.channels import Channel, Rounding
@@ -61,9 +62,13 @@ def close_sampled_loop(
     laws = {
         c.name: c.law.discretize(sampling.outer, sampling.admittance) for c in design.controllers
     }
-    loop = _wired(conditions, sampling, plant, design, tuple(laws.values()))
-    held = HeldDrive(plant.held, loop.calendar.timing)
     environments = plant.among(design.contacts)
+    if points:
+        # The rates of a memory depend on its stiffness, so ends of them are none of a loop.
+        environments = tuple(e.scaled(Fraction(0)) if e.law.remembers else e for e in environments)
+    drive = plant.held_at(environments)
+    loop = _wired(conditions, sampling, drive, design, tuple(laws.values()))
+    held = HeldDrive(drive, loop.calendar.timing)
     loss = Loss.of(conditions.contact, environments, design, slowed=plant.slowed)
     every = Modes(
         loop,
@@ -80,10 +85,10 @@ def close_sampled_loop(
     for item in modes:
         groups.setdefault(item.group, []).append(item.name)
     channels = tuple(_channels(conditions, design.sensor.lasting, items))
-    velocity = coordinates(len(loop.states))[loop.states.index(plant.held.states[0])]
+    velocity = coordinates(len(loop.states))[loop.states.index(drive.states[0])]
     pulls = tuple(force_rows(velocity, loop.states, could_pull(environments)))
     outputs = outputs_of(velocity, loop.states, environments, conditions.torque) if channels else ()
-    if plant.held.speed is not None:
+    if drive.speed is not None:
         # It jumps after the sample, and the force of what is damped with it.
         outputs = () if pulls else tuple(one for one in outputs if one.name == "force")
     driven = motor_command(conditions.largest_command, conditions.command, loop, channels)
@@ -119,14 +124,14 @@ def close_sampled_loop(
 def _wired(
     conditions: OperatingConditions,
     sampling: SamplingSpec,
-    plant: Plant,
+    drive: Drive,
     design: ControllerDesign,
     laws: tuple[DiscreteLaw, ...],
 ) -> SampledLoop:
     """Return program, drive and calendar of a loop; force samples are kept if a law takes them."""
     calendar = Calendar(timing_of(sampling, conditions.late), turns=turns_of(sampling))
     program = _program(conditions.idle, sampling, design, laws)
-    loop = SampledLoop(program, design.takes, plant.held.states, calendar)
+    loop = SampledLoop(program, design.takes, drive.states, drive.memory, calendar)
     if not loop.takes_force:
         return loop
     return replace(loop, calendar=replace(calendar, ages=sampling.delay))

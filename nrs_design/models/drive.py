@@ -21,6 +21,8 @@ Rows = tuple[tuple[Fraction, ...], ...]
 OMEGA = "omega [rad/s]"
 # Symbols of the stiffness and the damping of what a joint touches.
 LOAD = ("k", "b")
+# Symbols of the rates in 1/s at which a memory of what it touches decays, and follows the joint.
+MEMORY = ("r1", "r2")
 # Symbol of the gain of a motor.
 GAIN = "Km"
 
@@ -84,11 +86,46 @@ class Drive:
     loaded: bool = False  # Whether what is touched acts on the joint, by the symbols of `LOAD`
     # The velocity by the same states and the command, where it jumps.
     speed: MultiAffine | None = None
+    # The last of the states, where it is what is touched that remembers.
+    memory: str | None = None
 
     @property
     def order(self) -> int:
         """How many states `rates` is about, the deflection counted."""
         return len(self.states) + (self.speed is None)
+
+    def remembering(self, memory: str, rates: Sequence[Interval]) -> Drive:
+        """Return the drive that moves what remembers a deflection d, at its rates r1 and r2.
+
+        ``d' = r2 (delta - d) - r1 d``, and the spring of what is touched has the length delta - d.
+        """
+        n = self.order
+
+        def widened(
+            M: MultiAffine, more: Mapping[tuple[str, ...], Sequence[Fraction]]
+        ) -> MultiAffine:
+            """Put in a column for d before that of delta, and a row before the last one."""
+            terms: dict[tuple[str, ...], Rows] = {}
+            for symbols, rows in M.terms.items():
+                pulled = -ONE if LOAD[0] in symbols else ZERO
+                full = [(*r[: n - 1], pulled * r[n - 1], *r[n - 1 :]) for r in rows]
+                terms[symbols] = (*full[:-1], (ZERO,) * (n + 2), full[-1]) if more else tuple(full)
+            for symbols, row in more.items():
+                blank = (ZERO,) * (n + 2)
+                terms[symbols] = (*[blank] * (n - 1), tuple(row), blank)
+            return MultiAffine(terms)
+
+        own = {name: [ZERO] * (n + 2) for name in MEMORY}
+        own[MEMORY[0]][n - 1] = own[MEMORY[1]][n - 1] = -ONE
+        own[MEMORY[1]][n] = ONE
+        return replace(
+            self,
+            states=(*self.states, memory),
+            rates=widened(self.rates, {(name,): row for name, row in own.items()}),
+            speed=None if self.speed is None else widened(self.speed, {}),
+            ranges={**self.ranges, **dict(zip(MEMORY, rates, strict=True))},
+            memory=memory,
+        )
 
     def at(self, values: Mapping[str, Fraction]) -> Drive:
         """Return the drive at values of its numbers, at their nominal ones by default."""

@@ -60,7 +60,7 @@ class Realization:
         return [first, *zero(self.order - 1)], -self.A[-1][0] * first
 
     def velocity(self, nothing: LinearForm, command: Callable[[], LinearForm]) -> LinearForm:
-        """Return y'; `nothing` is the form zero, and `command` asks for u where y' depends on it."""
+        """Return y'; `nothing` is the form zero, and `command` asks for u where that acts on it."""
         needed = command() if self.C[-1] else nothing
         return combine(*zip(self.C, self.rates(needed), strict=True))
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
@@ -37,6 +37,14 @@ class Plant:
         """What moves the joint between samples."""
         motor = self.actuator_ranges
         return self.drive or motor_drive(motor.gain, motor.time_constant, self.load_inertia)
+
+    def held_at(self, touched: Sequence[Environment]) -> Drive:
+        """Return what moves the joint between samples, and with it what remembers, if any does."""
+        remembering = next((e for e in touched if e.law.remembers), None)
+        if remembering is None or remembering.creep is None or remembering.follow is None:
+            return self.held
+        memory = f"{remembering.name}: {remembering.law.states[-1]}"
+        return self.held.remembering(memory, (remembering.creep, remembering.follow))
 
     def motion_loop(self, Kp: Fraction, Kd: Fraction) -> MotionLoop:
         """Return G: the one that the spec states, else the one that the PD gains make.

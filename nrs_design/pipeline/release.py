@@ -103,7 +103,9 @@ def _following_positions(designed: Designed, system: SwitchedSystem) -> Outputs 
     if not all(law.is_spring or law.remembers for e in touched for law in e.corners):
         return "a command moves the axis at once, and the torque of a damper with it"
     joint = Joint.of(plant, motion)
-    loop = realize(plant.motion_loop(motion.Kp, motion.Kd)) if joint is None else joint.nominal.placed
+    loop = (
+        realize(plant.motion_loop(motion.Kp, motion.Kd)) if joint is None else joint.nominal.placed
+    )
     position = loop.output(system.order)
     rows = list(force_rows(zero(system.order), system.states, touched, position))
     deflection = [float(x) for x in position]

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from nrs_design.spec.check import Feature, Row, not_together
 from nrs_design.spec.features import (
     ANGLE,
+    ANY_CONTACT,
     AT_ONCE,
     BLEEDING,
     COMMAND,
@@ -34,6 +35,7 @@ from nrs_design.spec.features import (
     MOTOR_RANGE,
     NOT_KEPT,
     OFFSET,
+    OTHER_TISSUE,
     OTHERS,
     PLACED,
     PRELOADED,
@@ -87,7 +89,18 @@ COMBINATIONS: tuple[Row[Spec], ...] = (
     not_together(HAND, LOADED, because="its mass and the load would move as one"),
     not_together(PRELOADED, LOSABLE, because="without a force it is not what the spec knows of it"),
     not_together(PRELOADED, DISTURBED, because="what disturbs may lead out of its preload"),
-    not_together(MEMORY, SAMPLED),
+    *(
+        not_together(
+            MEMORY,
+            comes,
+            SAMPLED,
+            because="it would remember a contact that comes and goes within a period",
+        )
+        for comes in (LOSABLE, OTHER_TISSUE, ANY_CONTACT)
+    ),
+    not_together(
+        RESTLESS, SAMPLED, because="positions count from the place where it rests, and it has none"
+    ),
     not_together(
         RESTLESS, OTHERS, because="positions count from the place where it rests, and it has none"
     ),

@@ -264,6 +264,18 @@ PRELOADED = _F(
     "use elastic or kelvin-voigt environments",
     _tissue(lambda law: law.preloaded),
 )
+OTHER_TISSUE = _F(
+    "several environments",
+    "environments",
+    "write a spec for each environment",
+    lambda s: len(s.touched) > 1,
+)
+ANY_CONTACT = _F(
+    "{0!r}, which takes contact as it comes,",
+    "controllers.{0}",
+    "leave {0} out",
+    _controller(lambda c: not c.contacts),
+)
 DAMPED = _F(
     "{0.name!r}, which has damping,",
     "environments.{0.name}.model",

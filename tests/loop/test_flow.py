@@ -23,6 +23,7 @@ from nrs_design.models.contact.elastic import Elastic
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.drive import (
     LOAD,
+    MEMORY,
     Takes,
     lagging_drive,
     motor_drive,
@@ -66,6 +67,8 @@ def draw(rng):
         drive = lagging_drive(some(rng, 1e-3, 0.1, wide()))
     else:
         drive = velocity_drive(ZEROED) if kind == "velocity" else position_drive(kind)
+    if rng.random() < 0.3:
+        drive = drive.remembering("d", [some(rng, 1, 50, wide()) for _ in MEMORY])
     period = F(f"{10 ** rng.uniform(-3.3, -1.7):.3g}")
     first = rng.choice([0, period * F(rng.randint(0, 20), 10)])
     last = first + rng.choice([0, period * F(rng.randint(0, 10), 10)])
@@ -139,9 +142,10 @@ def draw_rows(rng, drive, timing, touched):
         if span.low == 0 and (lefts[s] == 0 or rng.random() < 0.3):
             lefts[s], come[s] = mp.mpf(0), rng.random() < 0.3
     shares = [rng.random() for _ in range(rng.randint(1, 4))]
-    changing = [s for s, interval in touched.items() if interval.varies]
+    tissue = touched | {s: i for s, i in drive.ranges.items() if s in MEMORY}
+    changing = {s: interval for s, interval in tissue.items() if interval.varies}
     loads = [
-        (mp.mpf(share) / sum(shares), values | {s: inside(rng, touched[s]) for s in changing})
+        (mp.mpf(share) / sum(shares), values | {s: inside(rng, i) for s, i in changing.items()})
         for share in shares
     ]
     return true_rows(drive, lefts, come, loads)

@@ -22,7 +22,8 @@ def step(loop, names, drawn):
     old = before.get
     none = np.zeros(len(names))
     delta, omega, drive = before["delta"], old("omega", none), loop["drive"]
-    force = drawn["k at sample"] * delta + drawn["b at sample"] * omega
+    damper = old("soft: damper deflection", none)
+    force = drawn["k at sample"] * (delta - damper) + drawn["b at sample"] * omega
     forces = [force, *(old(f"F {j} before", none) for j in range(1, loop["delay"][1] + 1))]
     held, turn = old("u 1 before", old("u held", none)), drawn["turn"]
     after, u = _law(loop, before, forces[drawn["age"]], none, drawn["active"])
@@ -36,9 +37,9 @@ def step(loop, names, drawn):
         forces = forces[1:]
     if turn == "admittance":
         after["e before"], commands[0] = old("e before"), held
-    motion, omega = _motion(loop, drawn, commands, omega, delta)
+    motion, omega, damper = _motion(loop, drawn, commands, (omega, delta, damper))
     shift = motion if drive == "position" else none
-    after |= {"delta": delta + motion, "omega": omega}
+    after |= {"delta": delta + motion, "omega": omega, "soft: damper deflection": damper}
     if "e" in after:
         after["e"] = after["e"] - motion
     after["u held"] = commands[0] - shift
@@ -92,23 +93,30 @@ def _motor(law, T, e, before):
     return single(law["Kd"] * law["zero"]) * e + D * (e - before["e before"])
 
 
-def _motion(loop, drawn, commands, omega, delta):
-    """Return by how far the joint moves in the period, and its velocity at the end."""
-    drive, length = loop["drive"], drawn["length"]
-    begin = delta if drive == "torque" or loop["load"] else np.zeros_like(delta)
+def _motion(loop, drawn, commands, state):
+    """Return by how far the joint moves in the period, and its velocity and the damper at the end.
+
+    The deflection is that of the joint and, beside it, of where a position is commanded from.
+    """
+    drive, length, (omega, delta, damper) = loop["drive"], drawn["length"], state
+    begin = np.zeros_like(delta) if drive == "position" else delta
     events = [*drawn["effects"], *(t for t, _ in drawn["loads"])]
     times = sorted({0.0, length, *(t for t in events if 0 < t < length)})
-    z = np.array([omega, begin])
+    z = np.array([omega, begin, damper])
     for start, end in pairwise(times):
         # The newest of those that have taken effect.
         u = commands[next(j for j, t in enumerate(drawn["effects"]) if t <= start)]
-        load = [k for t, k in drawn["loads"] if t <= start][-1]
-        A, B = _matrices(drive, drawn, load, loop["load"])
-        E = expm(np.block([[A, B], [np.zeros((1, 3))]]) * (end - start))
-        z = E[:2, :2] @ z + np.outer(E[:2, 2], u)
+        k, b, r1, r2 = [numbers for t, numbers in drawn["loads"] if t <= start][-1]
+        A, B = np.zeros((3, 3)), np.zeros((3, 2))
+        A[:2, :2], B[:2, :1] = _matrices(drive, drawn, (k, b), loop["load"])
+        # The spring has the length of what is left of the deflection by the damper.
+        A[0, 2] = -A[0, 1] if drive != "position" else 0
+        A[2], B[2, 1] = [0, r2, -r1 - r2], r2 * (drive == "position")
+        E = expm(np.block([[A, B], [np.zeros((2, 5))]]) * (end - start))
+        z = E[:3, :3] @ z + E[:3, 3:] @ np.array([u, delta])
         if drive == "position":
             z[0] = (u - z[1]) / drawn["tau"]
-    return z[1] - begin, z[0]
+    return z[1] - begin, z[0], z[2]
 
 
 def _matrices(drive, drawn, load, against):
@@ -145,10 +153,18 @@ def draw(loop, rng, contact):
     drawn["active"] = str(rng.choice(both))
     drawn["turn"] = str(rng.choice(["both", loop["turns"]])) if loop["turns"] else "both"
     drawn["age"] = int(rng.integers(loop["delay"][0], loop["delay"][1] + 1))
-    drawn["k at sample"] = any_of("k") if contact else 0.0
-    drawn["b at sample"] = one(*loop["b"]) if contact else 0.0
-    loads = [(0.0, (drawn["k at sample"], drawn["b at sample"]))]
+
+    def touched(lost):
+        """Return stiffness and damping, and the rates of what remembers."""
+        k, b, creep = any_of("k"), one(*loop["b"]), loop["creep"]
+        if not creep:
+            return (0.0, 0.0, 0.0, 0.0) if lost else (k, b, 0.0, 0.0)
+        k1, damper = one(*creep[0]), one(*creep[1])
+        return k, 0.0, k1 / damper, k / damper
+
+    first = touched(not contact)
+    drawn["k at sample"], drawn["b at sample"], *_ = first
+    loads = [(0.0, first)]
     for t in sorted(rng.uniform(0, drawn["length"], rng.integers(3))):
-        lost = loop["losable"] and rng.random() < 0.5
-        loads.append((t, (0.0, 0.0) if lost else (any_of("k"), one(*loop["b"]))))
+        loads.append((t, touched(loop["losable"] and rng.random() < 0.5)))
     return drawn | {"loads": loads}

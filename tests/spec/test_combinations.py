@@ -98,6 +98,9 @@ CHANGES = {
     f.HAND: tissue("hand", damping="7 N*m*s/rad", mass="0.1 kg*m^2"),
     f.RESTLESS: tissue("maxwell", damping="10 N*m*s/rad"),
     f.MEMORY: tissue("maxwell", damping="10 N*m*s/rad"),
+    f.OTHER_TISSUE: {"environments": {"stiff": ELASTIC}}
+    | {"controllers": {"second": {"environment": "stiff"}}},
+    f.ANY_CONTACT: {"controllers": {"second": {"type": "position"}}},
     f.PRELOADED: tissue(
         "hunt-crossley",
         damping="1 N*m*s/rad",

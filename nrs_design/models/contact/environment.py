@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import product
@@ -66,7 +66,15 @@ class Environment:
     @property
     def creep(self) -> Interval | None:
         """Range of the rate in 1/s at which it creeps back without force; None if at once."""
-        rates = [rate for law in (self.nominal, *self.corners) if (rate := law.creep) is not None]
+        return self._rate(lambda law: law.creep)
+
+    @property
+    def follow(self) -> Interval | None:
+        """Range of the rate in 1/s at which its memory follows the deflection; None without one."""
+        return self._rate(lambda law: law.follow)
+
+    def _rate(self, of: Callable[[AbstractLinearLaw], Fraction | None]) -> Interval | None:
+        rates = [rate for law in (self.nominal, *self.corners) if (rate := of(law)) is not None]
         return Interval(rates[0], min(rates), max(rates)) if rates else None
 
     def scaled(self, scale: Fraction) -> Environment:

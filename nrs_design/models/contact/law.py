@@ -197,6 +197,11 @@ class AbstractLinearLaw(AbstractContactLaw):
         """Rate in 1/s at which a second state decays while no force acts; None without one."""
         return None
 
+    @property
+    def follow(self) -> Fraction | None:
+        """Rate in 1/s at which a second state follows the deflection; None without one."""
+        return None
+
     @classmethod
     def memory_texts(cls, environment: str, *, alone: bool) -> Iterator[str]:
         """Say what is taken for granted about an environment that remembers, or has a mass.

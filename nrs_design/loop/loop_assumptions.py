@@ -48,7 +48,7 @@ def assume_loop(
         UNCOUPLED,
         *_contact_texts(loop),
         *chain.from_iterable(
-            memories(e, alone=len(loop.environments) == 1) for e in loop.environments
+            tissue_texts(e, alone=len(loop.environments) == 1) for e in loop.environments
         ),
         *(_idle_texts(loop, loop.idle) if loop.idle is not None else ()),
         *_kept_texts(loop, losable=losable, free=free),
@@ -93,7 +93,7 @@ def _contact_texts(loop: SharedState) -> Iterator[Assumption]:
         yield say("at-a-switch.deflection")
 
 
-def memories(environment: Environment, *, alone: bool) -> Iterator[Assumption]:
+def tissue_texts(environment: Environment, *, alone: bool) -> Iterator[Assumption]:
     """Say what is taken for granted about an environment that remembers, or has a mass."""
     which = "tissue.law" if environment.law.has_mass else "memory.law"
     for text in environment.law.memory_texts(environment.name, alone=alone):

@@ -22,7 +22,7 @@ from nrs_design.loop.assumptions import (
     rule_texts,
 )
 from nrs_design.loop.command_timing import CommandTiming
-from nrs_design.loop.loop_assumptions import kept_by_laws, memories
+from nrs_design.loop.loop_assumptions import kept_by_laws, tissue_texts
 from nrs_design.loop.loss import Loss
 from nrs_design.loop.program import SampledProgram
 from nrs_design.loop.sampled import SampledLoop
@@ -68,7 +68,7 @@ def assume_sampled(
         UNCOUPLED,
         *contact_texts(design),
         say("tissue.linear", ranges_text(environments, conditions.axis)),
-        *chain.from_iterable(memories(e, alone=len(environments) == 1) for e in environments),
+        *chain.from_iterable(tissue_texts(e, alone=len(environments) == 1) for e in environments),
         *_loss_texts(loss, design, program),
         say("at-a-switch.sampled", states="All other states are" if reset else "States are"),
         *(

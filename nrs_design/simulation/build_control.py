@@ -28,9 +28,8 @@ def build_control(
     spec: InteractionDesignSpec, written: ControlSpec | None, surfaces: tuple[Surface, ...]
 ) -> Control:
     """Return who is in control when, by default what fits names and kinds of the controllers."""
-    first = next(iter(spec.controllers))
     if written is None:
-        return _usual(spec, first) if spec.mode_logic is None else by_logic(spec)
+        return _usual(spec) if spec.mode_logic is None else by_logic(spec)
     if written.fixed is not None:
         return Control(written.fixed)
     if written.schedule is not None:
@@ -47,7 +46,7 @@ def build_control(
     return by_logic(spec)
 
 
-def _usual(spec: InteractionDesignSpec, first: str) -> Control:
+def _usual(spec: InteractionDesignSpec) -> Control:
     """Return what fits names and kinds: signs, the threshold of the torque, or one controller."""
     controllers = spec.controllers.items()
     if {"insertion", "withdrawal"} <= spec.controllers.keys():
@@ -56,7 +55,7 @@ def _usual(spec: InteractionDesignSpec, first: str) -> Control:
     force = next((n for n, c in controllers if c.holds_force), None)
     if position and force:
         return by_threshold(position, force, spec.limits.torque.si)
-    return Control(first)
+    return Control(next(iter(spec.controllers)))
 
 
 def by_sign(insertion: str, withdrawal: str) -> Control:

@@ -38,7 +38,10 @@ def uncovered(
             yield f"the {name} is larger than the proof takes it for"
     if errors.friction:
         yield "friction may change its sign within a period"
-    yield from _large_angle(spec, run)
+    angles = None if spec.disturbances is None else spec.disturbances.largest_angle
+    held = (name for name in ("angle", "reference") if name in run.response.signals)
+    if angles is not None and any(abs(run.response[n]).max() > angles.si for n in held):
+        yield "the angle is larger than the proof takes it for"
     if errors.force_noise:
         yield "the noise of the torque has no bound"
     if errors.jitter:
@@ -88,7 +91,10 @@ def _differences(
         yield "the run is not one of impedance control alone"
     if run.engine != "exact" and (angles is None or not statement.covers_rounding):
         yield "the law is rounded to single precision, and the proof does not take up all of it"
-    yield from _irregular_steps(run)
+    if run.saturated:
+        yield "the motor's command met its limit, and the proof knows none"
+    if run.refused:
+        yield "the law refused samples, and the proof knows no such step"
     if system.contact is None or not statement.covers_lost_contact:
         # Each run begins in free motion.
         yield "contact is lost or made, and the proof takes it for kept"
@@ -110,21 +116,6 @@ def _largest_command(scenario: Scenario, run: Run) -> float:
         return seen
     (piece,) = profile.pieces
     return max(seen, abs(profile.mean) + abs(piece.slope / profile.omega))
-
-
-def _large_angle(spec: InteractionDesignSpec, run: Run) -> Iterator[str]:
-    """Yield it if joint angle or reference, which the law rounds, exceeded the largest angle."""
-    angles = None if spec.disturbances is None else spec.disturbances.largest_angle
-    held = (name for name in ("angle", "reference") if name in run.response.signals)
-    if angles is not None and any(abs(run.response[n]).max() > angles.si for n in held):
-        yield "the angle is larger than the proof takes it for"
-
-
-def _irregular_steps(run: Run) -> Iterator[str]:
-    if run.saturated:
-        yield "the motor's command met its limit, and the proof knows none"
-    if run.refused:
-        yield "the law refused samples, and the proof knows no such step"
 
 
 def _sampling(spec: InteractionDesignSpec, run: Run) -> Iterator[str]:

@@ -22,10 +22,12 @@ from nrs_design.simulation.loop import Loop
 from nrs_design.simulation.run import (
     ERRORS_LEFT_OUT,
     EVENT_STEPS,
+    INPUTS,
     LEFT_OUT,
     LEFT_OUT_EXACTLY,
     MAX_EVENTS,
     MAX_STEPS,
+    OUTPUTS,
     Run,
 )
 from nrs_design.simulation.scenario import Array, Errors, Scenario
@@ -36,15 +38,6 @@ from nrs_design.spec import InteractionDesignSpec
 _OFTEN = 20_000
 # Events at one instant, one after the other, after which a run does not come on.
 _STILL = 100
-
-OUTPUTS = (
-    Signal("angle", "rad"),
-    Signal("velocity", "rad/s"),
-    Signal("torque", "N*m"),
-    Signal("depth", "rad"),
-    Signal("reference", "rad"),
-)
-INPUTS = (Signal("hand", "rad/s"),)
 
 
 def simulate_exactly(
@@ -93,7 +86,6 @@ class _Engine:
         self.laws = {c.name: c.law for c in self.loop.design.controllers}
         self.damped = any(map(self.loop.is_damped, range(len(signs))))
         self.met: dict[tuple[int, int, int], bool] = {}
-        self.sides: dict[tuple[bool, ...], Array] = {}
         self.location = self._enter()
         # States so far, with the time of the first, the step between them, and the location.
         self.kept: list[tuple[float, float, int, Array]] = []
@@ -192,9 +184,7 @@ class _Engine:
             *(self.pushing[j] for j in location.damped),
             *(self.met.get(bound, False) for bound in location.bounds),
         )
-        if flags not in self.sides:
-            self.sides[flags] = np.where(flags, 1.0, -1.0)
-        return self.sides[flags]
+        return np.where(flags, 1.0, -1.0)
 
     def _advance(self, limit: float) -> bool:
         """Follow the flow up to the first event, or to a limit; tell whether there was an event."""
@@ -340,7 +330,7 @@ class _Engine:
             np.array([angle, velocity, torque, depth, reference]),
             states[:-3],
             states[-3:-2],
-            OUTPUTS,
+            (*OUTPUTS, Signal("reference", "rad")),
             loop.states[:-3],
             INPUTS,
             mode,

@@ -80,16 +80,6 @@ class Flow:
         return powers
 
     @cached_property
-    def _stacked_terms(self) -> Array:
-        """The same below each other: one product is faster than many small ones."""
-        return self._terms.reshape(-1, len(self.A))
-
-    @cached_property
-    def _stacked_powers(self) -> Array:
-        """The powers below each other."""
-        return self.powers.reshape(-1, len(self.A))
-
-    @cached_property
     def _rows(self) -> Array:
         """From a state to the Taylor coefficients of the signals over h; (e, K + 1, n)."""
         return np.asarray(np.einsum("en,knm->ekm", self.signals, self._terms))
@@ -110,13 +100,14 @@ class Flow:
         """Return ``exp(A t) z`` for a time from zero to h."""
         if not time:
             return z
-        terms = self._stacked_terms.dot(z).reshape(DEGREE + 1, -1)
+        # Below each other: one product is faster than many small ones.
+        terms = self._terms.reshape(-1, len(z)).dot(z).reshape(DEGREE + 1, -1)
         return np.asarray(((time / self.h) ** _POWERS).dot(terms))
 
     def chunk(self, z: Array, count: int) -> Array:
         """Return the states after 0 ... count steps of h; shape (count + 1, n)."""
         n = len(z)
-        return np.asarray(self._stacked_powers[: (count + 1) * n].dot(z).reshape(-1, n))
+        return np.asarray(self.powers[: count + 1].reshape(-1, n).dot(z).reshape(-1, n))
 
     def first_doubtful(self, states: Array, sides: Array) -> int:
         """Return the first step in which a signal may change its side, or how many steps there are.
@@ -129,12 +120,10 @@ class Flow:
         coefficients = (states @ self._bernstein_rows).reshape(len(states), e, DEGREE + 1)
         coefficients *= sides[:, None]
         # How far the signals stay on their sides, at least.
-        lowest = np.minimum.reduce(coefficients, axis=2) + self.tolerances
-        doubtful = lowest <= np.abs(states) @ self._remainder.T
-        if e > 1:
-            doubtful = np.logical_or.reduce(doubtful, axis=1)
+        lowest = coefficients.min(axis=2) + self.tolerances
+        doubtful = (lowest <= np.abs(states) @ self._remainder.T).any(axis=1)
         first = int(doubtful.argmax())
-        return first if doubtful.flat[first] else len(states)
+        return first if doubtful[first] else len(states)
 
     def first_crossing(self, z: Array, width: float, sides: Array) -> float | None:
         """Return the first time at which a signal has changed its side, or None.

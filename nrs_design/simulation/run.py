@@ -7,10 +7,19 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from nrs_design.simulation.time_response import TimeResponse
+from nrs_design.simulation.time_response import Signal, TimeResponse
 
 if TYPE_CHECKING:
     from nrs_design.spec import InteractionDesignSpec
+
+# What every engine shows first, and what acts on it.
+OUTPUTS = (
+    Signal("angle", "rad"),
+    Signal("velocity", "rad/s"),
+    Signal("torque", "N*m"),
+    Signal("depth", "rad"),
+)
+INPUTS = (Signal("hand", "rad/s"),)
 
 # A controller that is left sooner has chattered, in s.
 CHATTER = 0.01

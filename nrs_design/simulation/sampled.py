@@ -10,7 +10,7 @@ from nrs_design.errors import DesignError
 from nrs_design.models.plant import Plant
 from nrs_design.progress import Progress, silent
 from nrs_design.simulation.run import MAX_STEPS, Run
-from nrs_design.simulation.sampled_axis import SampledAxis, SampleInputs, Turns
+from nrs_design.simulation.sampled_axis import SampledAxis, SampleInputs
 from nrs_design.simulation.scenario import Scenario
 from nrs_design.simulation.step_program import StepProgram
 from nrs_design.spec import InteractionDesignSpec
@@ -29,11 +29,7 @@ def simulate_sampled(
     tell: Progress = silent,
 ) -> Run:
     """Simulate a scenario with the law that ships, at most so many of its samples."""
-    return _run_axis(sampled_axis(spec, plant, design, scenario), max_steps, tell)
-
-
-def _run_axis(axis: SampledAxis, max_steps: int, tell: Progress) -> Run:
-    """Run the law of an axis at the samples of its scenario, at most so many."""
+    axis = _axis(spec, plant, design, scenario)
     wanted = math.floor(axis.scenario.duration / axis.T + 1e-9) + 1
     count = min(wanted, max_steps)
     inputs = SampleInputs.of(axis.scenario, axis.T, axis.delay, axis.late, axis.misses, count)
@@ -52,7 +48,7 @@ def _run_axis(axis: SampledAxis, max_steps: int, tell: Progress) -> Run:
     return axis.finish(inputs, stopped)
 
 
-def sampled_axis(
+def _axis(
     spec: InteractionDesignSpec, plant: Plant, design: ControllerDesign, scenario: Scenario
 ) -> SampledAxis:
     """Return an axis with its law, at rest at the start of a scenario, its motor the nominal one.
@@ -100,14 +96,22 @@ def sampled_axis(
         program = StepProgram(shipped_law(spec, design, period, outer))
     except DesignError as error:
         raise DesignError(error.message, remedy="use --engine exact", at=error.at) from None
-    turns = Turns(int(period / sampling.step), int(outer / sampling.step))
-    shortest, longest = map(float, spec.late)
-    late = shortest, longest
     if sampling.misses is not None and outer != period:
         raise DesignError(
             "missed deadlines are simulated for one period of all loops",
             remedy="leave outer_period out",
             at=("sampling", "misses"),
         )
-    times, misses = (sampling.step, sampling.delay), sampling.misses
-    return SampledAxis(plant, design, scenario, program, *times, turns, late, misses)
+    shortest, longest = spec.late
+    return SampledAxis(
+        plant,
+        design,
+        scenario,
+        program,
+        sampling.step,
+        sampling.delay,
+        int(period / sampling.step),
+        int(outer / sampling.step),
+        (float(shortest), float(longest)),
+        sampling.misses,
+    )

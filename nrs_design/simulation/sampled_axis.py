@@ -21,15 +21,8 @@ from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.models.plant import Plant
 from nrs_design.simulation.driven import DrivenJoint
 from nrs_design.simulation.motor import Motor
-from nrs_design.simulation.run import Run
-from nrs_design.simulation.scenario import (
-    COMMAND,
-    DEPTH,
-    TORQUE,
-    Array,
-    Condition,
-    Scenario,
-)
+from nrs_design.simulation.run import INPUTS, OUTPUTS, Run
+from nrs_design.simulation.scenario import COMMAND, DEPTH, TORQUE, Array, Scenario
 from nrs_design.simulation.step_program import StepProgram
 from nrs_design.simulation.time_response import Signal, TimeResponse, on_axis
 from nrs_design.simulation.tissue import Tissue
@@ -41,22 +34,6 @@ PARTS = 8
 MISSED = 0.5
 # What the motion loop keeps from one of its samples to the next; all else is of the outer loop.
 _OF_MOTION = frozenset({"error_before"})
-_OUTPUTS = (
-    Signal("angle", "rad"),
-    Signal("velocity", "rad/s"),
-    Signal("torque", "N*m"),
-    Signal("depth", "rad"),
-)
-_INPUTS = (Signal("hand", "rad/s"),)
-
-
-@dataclass(frozen=True, slots=True)
-class Turns:
-    """Whose turn it is at a sample, where motion loop and outer loop have periods of their own."""
-
-    # motion, outer: their periods in samples; one of them is 1.
-    motion: int = 1
-    outer: int = 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,10 +91,12 @@ class SampledAxis:
     period: Fraction  # Between two samples, in s
     # Smallest and largest age of the force samples, counted in samples of the outer loop.
     delay: tuple[int, int]
-    turns: Turns = Turns()  # Which samples are those of the motion loop, and of the outer one
+    # Periods of motion loop and outer loop in samples; one of them is 1.
+    motion_turn: int
+    outer_turn: int
     # Shortest and longest time from a sample to where its command takes effect, in s.
-    late: tuple[float, float] = (0.0, 0.0)
-    misses: DeadlinesSpec | None = None  # How many deadlines are missed, and what happens then
+    late: tuple[float, float]
+    misses: DeadlinesSpec | None  # How many deadlines are missed, and what happens then
 
     def __post_init__(self) -> None:
         """Begin at rest, free of contact."""
@@ -139,7 +118,6 @@ class SampledAxis:
         self.buffer = deque([0.0] * (self.delay[1] + 1), self.delay[1] + 1)
         self.modes = {name: i for i, name in enumerate(law.modes)}
         self.holds = {c.name: c.law.holds_hand for c in self.design.controllers}
-        self.rules = {name: self._rules(name) for name in law.modes}
         self.controller, self.held = scenario.control.start, 0
         # What ships compares in single precision, and counts samples.
         self.logic = law.logic if scenario.control.ships else None
@@ -153,14 +131,6 @@ class SampledAxis:
         limit = law.coefficient.get("command_limit")
         self.largest = math.inf if limit is None else float(limit.of(0))
 
-    def _rules(self, source: str) -> list[tuple[str, tuple[tuple[str, int, float, float], ...]]]:
-        """Return the switches from a controller: the target, and bounds on signals."""
-        return [
-            (switch.target, tuple(_bounds(c) for c in switch.conditions))
-            for switch in self.scenario.control.switches
-            if switch.source == source
-        ]
-
     def finish(self, inputs: SampleInputs, stopped: str | None) -> Run:
         """Return the run up to now; `stopped` says why it ends before its time."""
         return Run(
@@ -170,11 +140,11 @@ class SampledAxis:
             tuple(self.switches),
             tuple(self.tissue.contacts),
             len(self.rows),
-            (float(self.turns.motion * self.period), *self.delay),
+            (float(self.motion_turn * self.period), *self.delay),
             self.refused,
             self.saturated,
             stopped,
-            outer=float(self.turns.outer * self.period),
+            outer=float(self.outer_turn * self.period),
             missed=None if self.misses is None else int(inputs.missed[: len(self.rows)].sum()),
         )
 
@@ -186,20 +156,31 @@ class SampledAxis:
         The hand is in rad/s, the noise of the torque in N m; `age` is that of the force sample.
         Where the deadline is missed, the law is not run, and the command is held or zero.
         """
-        tissue, errors = self.tissue, self.scenario.errors
+        tissue = self.tissue
         torque = tissue.torque(self.theta, self.omega)
         tissue.note(t)
         depths = tissue.depths(self.theta)
-        outer = self.turn % self.turns.outer == 0
+        outer = self.turn % self.outer_turn == 0
         if outer:
-            self.buffer.appendleft(_coarse(torque + noise, errors.force_step))
-        felt = self.buffer[age]
+            self.buffer.appendleft(_coarse(torque + noise, self.scenario.errors.force_step))
+        felt, before = self.buffer[age], self.states
         if missed:
             assert self.misses is not None
-            self._miss(hand, torque, depths, late, holds=self.misses.command == "hold")
-            return
-        if outer:
-            self._decide(t, hand, felt, depths)
+            self.command = self.command if self.misses.command == "hold" else 0.0
+        else:
+            if outer:
+                self._decide(t, hand, felt, depths)
+            self._compute(hand, felt, outer=outer)
+        self.turn += 1
+        now = (self.theta, self.omega, torque, max(0.0, *depths, 0.0), self.command)
+        self.rows.append((self.modes[self.controller], *now, *map(float, before)))
+        if not self.holds[self.controller]:
+            self.commanded += self.T * hand
+        self.sent.append((late, self.command))
+
+    def _compute(self, hand: float, felt: float, *, outer: bool) -> None:
+        """Run the law once; the loop whose turn it is not keeps what it has."""
+        errors, before = self.scenario.errors, self.states
         seen = {
             "angle": _coarse(self.theta, errors.encoder_step),
             "torque": felt,
@@ -208,38 +189,19 @@ class SampledAxis:
             "position": self.commanded,
             "wanted_torque": self.scenario.wanted_torque,
         }
-        mode, before = self.modes[self.controller], self.states
         given = [np.float32(seen[name]) for name in self.inputs]
+        mode = self.modes[self.controller]
         outputs, after, valid = self.program.step(mode, [*given, *before])
         self.refused += not valid
-        motion = self.turn % self.turns.motion == 0
+        motion = self.turn % self.motion_turn == 0
         if motion:
             self.command = float(outputs[0])
             self.saturated += abs(self.command) >= self.largest
         if motion and outer:
             self.states = after
         else:
-            # The loop whose turn it is not keeps what it has.
             each = zip(self.kept, before, after, strict=True)
             self.states = [new if of_motion == motion else old for of_motion, old, new in each]
-        self.turn += 1
-        now = (self.theta, self.omega, torque, max(0.0, *depths, 0.0), self.command)
-        self.rows.append((mode, *now, *map(float, before)))
-        if not self.holds[self.controller]:
-            self.commanded += self.T * hand
-        self.sent.append((late, self.command))
-
-    def _miss(
-        self, hand: float, torque: float, depths: list[float], late: float, *, holds: bool
-    ) -> None:
-        """Send what is sent in the place of a command that was not computed."""
-        self.command = self.command if holds else 0.0
-        now = (self.theta, self.omega, torque, max(0.0, *depths, 0.0), self.command)
-        self.rows.append((self.modes[self.controller], *now, *map(float, self.states)))
-        if not self.holds[self.controller]:
-            self.commanded += self.T * hand
-        self.sent.append((late, self.command))
-        self.turn += 1
 
     def _decide(self, t: float, hand: float, felt: float, depths: list[float]) -> None:
         """Let schedule and mode logic choose, by what they see at this sample."""
@@ -252,12 +214,11 @@ class SampledAxis:
             self._switch(t, self.program.law.modes[mode])
             self.held = held
             return
-        for target, bounds in self.rules[self.controller]:
-            for signal, j, low, high in bounds:
-                if not low <= (depths[j] if signal == DEPTH else signs[signal]) <= high:
-                    break
-            else:
-                self._switch(t, target)
+        signs |= {f"{DEPTH}{j}": depth for j, depth in enumerate(depths)}
+        for switch in self.scenario.control.switches:
+            holds = (c.low <= signs[c.signal] <= c.high for c in switch.conditions)
+            if switch.source == self.controller and all(holds):
+                self._switch(t, switch.target)
                 return
 
     def _switch(self, t: float, target: str) -> None:
@@ -302,7 +263,7 @@ class SampledAxis:
             self.tissue.creep(before, self.tissue.depths(self.theta), part)
 
     def _response(self, inputs: SampleInputs) -> TimeResponse:
-        law, last = self.program.law, len(_OUTPUTS) + 2
+        law, last = self.program.law, len(OUTPUTS) + 2
         rows = np.array(self.rows, dtype=float).T
         count = len(self.rows)
         return TimeResponse(
@@ -310,9 +271,9 @@ class SampledAxis:
             rows[1:last],
             rows[last:],
             inputs.hand[None, :count],
-            (*on_axis(_OUTPUTS, self.design.axis), Signal("command", self.design.command)),
+            (*on_axis(OUTPUTS, self.design.axis), Signal("command", self.design.command)),
             tuple(Signal(_named(value.name), value.unit) for value in law.states),
-            on_axis(_INPUTS, self.design.axis),
+            on_axis(INPUTS, self.design.axis),
             rows[0].astype(np.int64),
             law.modes,
         )
@@ -321,15 +282,8 @@ class SampledAxis:
 def _named(state: str) -> str:
     """Return the name of a state of the law; none is that of an output."""
     name = state.replace("_", " ")
-    taken = {signal.name for signal in (*_OUTPUTS, *_INPUTS)} | {"command"}
+    taken = {signal.name for signal in (*OUTPUTS, *INPUTS)} | {"command"}
     return f"state {name}" if name in taken else name
-
-
-def _bounds(condition: Condition) -> tuple[str, int, float, float]:
-    """Return signal, index of the surface (of a depth), and both bounds of a condition."""
-    if condition.signal.startswith(DEPTH):
-        return DEPTH, int(condition.signal.removeprefix(DEPTH)), condition.low, condition.high
-    return condition.signal, 0, condition.low, condition.high
 
 
 def _coarse(value: float, step: float) -> float:

@@ -14,10 +14,9 @@ from uuid import NAMESPACE_OID, uuid5
 
 from nrs_design.controllers.operations import StepLaw
 from nrs_design.exporters.c_names import block_comment
-from nrs_design.exporters.compiled import compiler, shared_library
-from nrs_design.exporters.export import Export
+from nrs_design.exporters.compiled import shared_library
 from nrs_design.exporters.formats.c import header_text, source_text
-from nrs_design.exporters.program import Program, program_of
+from nrs_design.exporters.program import Program
 from nrs_design.exporters.record import ExportRecord
 from nrs_design.exporters.start import start_lines
 from nrs_design.exporters.template import fill_template
@@ -86,22 +85,6 @@ def _rows(law: StepLaw) -> Iterator[tuple[str, str, str, str, str]]:
         yield name, f"out.{name}", "output", law.units[name], meaning
     for value in law.states:
         yield f"state.{value.name}", f"state.{value.name}", "local", value.unit, value.meaning
-
-
-def fmu_of(export: Export) -> bytes:
-    """Return the file of an export; a `DesignError` if the compiler of this system fails."""
-    return packed(contents(program_of(export), compiler()))
-
-
-def what_it_lacks(file: bytes) -> tuple[str, ...]:
-    """Say what a file lacks that `fmu_of` made."""
-    with zipfile.ZipFile(io.BytesIO(file)) as archive:
-        if any(name.startswith("binaries/") for name in archive.namelist()):
-            return ()
-    return (
-        "the FMU holds sources only: there is no compiler cc for 64-bit Linux on x86 here; an "
-        "importer that compiles sources takes it",
-    )
 
 
 def contents(program: Program, compile_with: str | None) -> dict[str, bytes]:

@@ -205,7 +205,7 @@ def test_the_guid_follows_from_spec_proof_and_period(sampled_export):
 
 
 def test_it_says_where_it_is_not_compiled(sampled_export, monkeypatch):
-    monkeypatch.setattr("nrs_design.exporters.cosimulation.compiler", lambda: None)
+    monkeypatch.setattr("nrs_design.exporters.formats.fmu.compiler", lambda: None)
     files = render(sampled_export)
     (remark,) = remarks(files)
     assert "sources only" in remark

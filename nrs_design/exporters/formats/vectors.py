@@ -8,7 +8,7 @@ and random bits, modes that there are not.
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -114,24 +114,17 @@ def vectors_text(law: StepLaw, vectors: Vectors, about: tuple[str, ...]) -> str:
         "numbers": "mode and valid as integers, all others as bits of IEEE 754 single precision, "
         "big end first, in hexadecimal",
         "modes": list(law.modes),
-        **law_document(law, vectors),
+        "inputs": [value.name for value in law.inputs],
+        "states": [value.name for value in law.states],
+        "outputs": list(law.outputs),
+        "units": {value.name: value.unit for value in law.values} | dict(law.units),
+        "columns": list(vectors.columns),
     }
     if law.logic is not None:
         head["logic"] = logic_document(law.logic)
     text = json.dumps(head, indent=2).removesuffix("\n}")
     rows = ",\n".join(f"    {json.dumps(row)}" for row in vector_rows(vectors))
     return f'{text},\n  "cases": [\n{rows}\n  ]\n}}\n'
-
-
-def law_document(law: StepLaw, vectors: Vectors) -> dict[str, Any]:
-    """Return what a document says of the columns of the cases of a law."""
-    return {
-        "inputs": [value.name for value in law.inputs],
-        "states": [value.name for value in law.states],
-        "outputs": list(law.outputs),
-        "units": _units(law),
-        "columns": list(vectors.columns),
-    }
 
 
 def csv_text(vectors: Vectors, about: tuple[str, ...]) -> str:
@@ -149,10 +142,6 @@ def vector_rows(vectors: Vectors) -> Iterator[list[int | str]]:
     whole = [name in ("mode", "valid") for name in vectors.columns]
     for row in vectors.rows.tolist():
         yield [n if plain else f"{n:08x}" for n, plain in zip(row, whole, strict=True)]
-
-
-def _units(law: StepLaw) -> Mapping[str, str]:
-    return {value.name: value.unit for value in law.values} | dict(law.units)
 
 
 def pytest_text(names: CNames, about: tuple[str, ...]) -> str:

@@ -6,11 +6,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import repeat
 
+from nrs_design.exporters.proof_assistant.statement import AbstractStatement
 from nrs_design.exporters.proof_assistant.text import (
     Definitions,
-    deflection_first,
     factor_of,
-    identifiers,
     listed,
     long_integer,
     symmetric,
@@ -27,22 +26,8 @@ LIBRARY = ("forms", "polynomials", "continuous")
 
 
 @dataclass(frozen=True)
-class FlowStatement:
-    """A system and its form; the first state is the deflection where contact is lost."""
-
-    system: SwitchedSystem
-    evidence: FormsOnGraph
-
-    @property
-    def lost(self) -> bool:
-        """Whether contact is lost and made again."""
-        return self.evidence.covers_lost_contact
-
-    @property
-    def order(self) -> list[int]:
-        """The states as they come."""
-        n = self.system.order
-        return deflection_first(n) if self.lost else list(range(n))
+class FlowStatement(AbstractStatement):
+    """A system in continuous time, and its form."""
 
     def basis(self, states: int) -> str:
         """Return the monomials of the first states, each as the list of its variables."""
@@ -53,8 +38,8 @@ class FlowStatement:
         ]
         return f"{listed(listed(map(str, term)) for term in terms)}%nat"
 
-    def flow(self, mode: Mode, definitions: Definitions) -> str:
-        """Return the text of a mode; the library lets inputs act on it, of which there are none."""
+    def mode(self, k: int, mode: Mode, definitions: Definitions) -> str:
+        """Return the flow of a mode; the library lets inputs act on it, of which there are none."""
         rows = [definitions.row([mode.A.numerators[i][j] for j in self.order]) for i in self.order]
         return f"Flow {listed(rows)} {mode.A.denominator} [] 1"
 
@@ -75,7 +60,7 @@ class FlowStatement:
 def flows_theorem(system: SwitchedSystem, evidence: FormsOnGraph) -> Theorem:
     """Return the theorem of a certificate in continuous time, with one form for all modes."""
     flows, definitions = FlowStatement(system, evidence), Definitions()
-    modes, others = _define_modes(flows, definitions)
+    modes, others = flows.define_modes(definitions)
     _define_form(flows, definitions)
     gives, free_gives = _define_witnesses(flows, definitions)
     rate, factor = evidence.rate, factor_of(evidence.nodes[0].form)
@@ -91,17 +76,6 @@ def flows_theorem(system: SwitchedSystem, evidence: FormsOnGraph) -> Theorem:
         f"conj (decays_sound {rest}checked eq_refl) (definite_sound {rest}checked)",
         tuple(system.states[i] for i in flows.order),
     )
-
-
-def _define_modes(flows: FlowStatement, definitions: Definitions) -> tuple[str, str]:
-    """Define every mode; return those in contact, and those of free motion."""
-    system = flows.system
-    free = system.free if flows.lost else ()
-    names = identifiers(mode.name for mode in (*system.modes, *free))
-    for mode in (*system.modes, *free):
-        definitions.define(names[mode.name], flows.flow(mode, definitions), mode.name)
-    touching, flying = (listed(names[mode.name] for mode in part) for part in (system.modes, free))
-    return touching, flying
 
 
 def _define_form(flows: FlowStatement, definitions: Definitions) -> None:

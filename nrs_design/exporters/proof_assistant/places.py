@@ -88,11 +88,11 @@ def _flowing(
     forms, stays, flows = dict(evidence.nodes), system.stays(), FlowStatement(system, evidence)
     grams = {place: (gram, factor) for place, gram, factor in flows.witnesses()}
     found = {}
-    for mode in system.modes:
+    for k, mode in enumerate(system.modes):
         gram, factor = grams[mode.name]
         dwell = stays[mode.name].shortest
         found[mode.name] = (
-            f"Place {len(mode.A.numerators)} ({flows.flow(mode, definitions)})\n"
+            f"Place {len(mode.A.numerators)} ({flows.mode(k, mode, definitions)})\n"
             f"  {symmetric(forms[mode.name])}\n  ({dwell.numerator}, {dwell.denominator})\n"
             f"  (Witness {symmetric(gram, long_integer)} {factor})"
         )

@@ -6,19 +6,16 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from math import gcd, lcm
 
+from nrs_design.exporters.proof_assistant.statement import AbstractStatement
 from nrs_design.exporters.proof_assistant.text import (
     Definitions,
-    deflection_first,
     factor_of,
-    identifiers,
     listed,
     reordered,
     symmetric,
 )
 from nrs_design.exporters.proof_assistant.theorem import Theorem
-from nrs_design.proof.channels import Rounding
 from nrs_design.proof.evidence.graph import FormsOnGraph
-from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode
 from nrs_design.proof.steps import FREE, LOST, ROUNDING
 from nrs_design.proof.system import SwitchedSystem
@@ -27,33 +24,20 @@ LIBRARY = ("forms", "steps", "sampled")
 
 
 @dataclass(frozen=True)
-class SampledStatement:
-    """A system and its forms; the first state is the deflection where contact is lost."""
+class SampledStatement(AbstractStatement):
+    """A system in discrete time, and its forms."""
 
-    system: SwitchedSystem
-    evidence: FormsOnGraph
-
-    @property
-    def lost(self) -> bool:
-        """Whether contact is lost and made again."""
-        return self.evidence.covers_lost_contact
-
-    @property
-    def order(self) -> list[int]:
-        """The states as they come."""
-        n = self.system.order
-        return deflection_first(n) if self.lost else list(range(n))
-
-    def mode(self, k: int, mode: Mode, definitions: Definitions, *, free: bool) -> str:
-        """Return the k-th mode of all: units, columns, and bounds of the errors, in integers.
+    def mode(self, k: int, mode: Mode, definitions: Definitions) -> str:
+        """Return the k-th mode: units, columns, and bounds of the errors, in integers.
 
         The unit of a state is the least multiple of the denominator of the rate in which its column
-        and the bounds are integers. Modes of free motion come after those in contact.
+        and the bounds are integers.
         """
-        before = self.order[1:] if free else self.order
+        before = self.order[1:] if k >= len(self.system.modes) else self.order
         rounded = self.system.roundings if self.evidence.covers_rounding else ()
         parts = [([row[j] for row in mode.A.numerators], mode.A.denominator) for j in before]
-        parts += [([row[0] for row in M.numerators], M.denominator) for M in _columns(rounded, k)]
+        added = (item.columns[k] for item in rounded)
+        parts += [([row[0] for row in M.numerators], M.denominator) for M in added]
         bounds = [
             ([item.rows[k].numerators[0][j] for j in before], item.rows[k].denominator)
             for item in rounded
@@ -116,7 +100,7 @@ class SampledStatement:
 def sampled_theorem(system: SwitchedSystem, evidence: FormsOnGraph) -> Theorem:
     """Return the theorem of a certificate in discrete time, with quadratic forms for all modes."""
     sampled, definitions = SampledStatement(system, evidence), Definitions()
-    modes, flying = _define_modes(sampled, definitions)
+    modes, flying = sampled.define_modes(definitions)
     nodes, free_nodes = sampled.nodes(free=False), sampled.nodes(free=True)
     definitions.define("nodes", listed(map(sampled.node, nodes)))
     definitions.define("free_nodes", f"{listed(map(sampled.node, free_nodes))} : list node")
@@ -145,19 +129,3 @@ def sampled_theorem(system: SwitchedSystem, evidence: FormsOnGraph) -> Theorem:
         "losable_sound _ _ _ _ _ _ _ _ _ _ _ checked",
         tuple(system.states[i] for i in sampled.order),
     )
-
-
-def _define_modes(sampled: SampledStatement, definitions: Definitions) -> tuple[str, str]:
-    """Define every mode; return those in contact, and those of free motion."""
-    system = sampled.system
-    free = system.free if sampled.lost else ()
-    names = identifiers(mode.name for mode in (*system.modes, *free))
-    for k, mode in enumerate((*system.modes, *free)):
-        text = sampled.mode(k, mode, definitions, free=k >= len(system.modes))
-        definitions.define(names[mode.name], text, mode.name)
-    touching, flying = (listed(names[mode.name] for mode in part) for part in (system.modes, free))
-    return touching, flying
-
-
-def _columns(rounded: Sequence[Rounding], k: int) -> list[RationalMatrix]:
-    return [item.columns[k] for item in rounded]

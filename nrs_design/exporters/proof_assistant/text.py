@@ -98,10 +98,5 @@ def reordered(form: IntegerMatrix, order: Sequence[int]) -> list[list[int]]:
     return [[form[i][j] for j in order] for i in order]
 
 
-def deflection_first(states: int) -> list[int]:
-    """Return the order of states in which the last one comes first."""
-    return [states - 1, *range(states - 1)]
-
-
 def _numbered(name: str, count: int) -> str:
     return name if count == 1 else f"{name}_{count}"

@@ -7,7 +7,6 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from nrs_design.axis import about, unit
 from nrs_design.errors import NrsDesignError
 from nrs_design.pipeline.design import Designed, placed
 from nrs_design.proof.bounds import upper
@@ -39,9 +38,7 @@ def _doubt_runs(designed: Designed) -> Iterator[Doubt]:
         runs = tuple(run_scenarios(designed))
     except NrsDesignError:
         return
-    limit = designed.spec.limits.torque
-    with about(designed.spec.axis):
-        of = unit("N*m")
+    limit, of = designed.spec.limits.torque, designed.spec.axis.unit("N*m")
     for one in runs:
         peak = one.metrics["peak_torque"]
         # A limit of the scenario itself is judged by the gate.

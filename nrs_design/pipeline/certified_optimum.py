@@ -32,7 +32,6 @@ from nrs_design.pipeline.free_gains import (
     FreeGains,
     RoundedGains,
     gain_branches,
-    in_order,
     with_problems,
 )
 from nrs_design.pipeline.goal_ranges import for_goal, wanted_age, wanting
@@ -42,8 +41,6 @@ from nrs_design.progress import Progress, silent
 from nrs_design.proof.bounds import rounded_down
 
 if TYPE_CHECKING:
-    # What was certified, and the gains.
-    Proved = tuple[Result, RoundedGains]
     from nrs_design.controllers.controller_design import ControllerDesign
     from nrs_design.design.analysis import DesignAnalysis
     from nrs_design.design.trust_region import ConstrainedOptimum, ConstrainedProblem, Evaluation
@@ -213,9 +210,17 @@ class _Search:
                 break
             self.progress("proof")
             if (proved := self._proved(found, problem, evaluations)) is not None:
-                bounds = self.gains.at_bounds(found.last.x)
-                prices = found.shadow_prices
-                return self._optimum(free, free_rate, proved, prices, evaluations, bounds)
+                result, one = proved
+                return CertifiedOptimum(
+                    result,
+                    one.written,
+                    self.gains.cost(one.x),
+                    self.gains.cost(free),
+                    free_rate,
+                    tuple(self._goals(found.shadow_prices)),
+                    evaluations,
+                    self.gains.at_bounds(found.last.x),
+                )
             start = found.last.x
         raise self._unreachable(found.last, in_floats=rooms != ROOMS[0])
 
@@ -250,27 +255,6 @@ class _Search:
             found = max(found, other, key=lambda one: float(one.last.values.min()))
         return problem, first, found
 
-    def _optimum(
-        self,
-        free: Array,
-        free_rate: float,
-        proved: Proved,
-        prices: Array,
-        evaluations: int,
-        at_bounds: tuple[tuple[str, str], ...] = (),
-    ) -> CertifiedOptimum:
-        result, one = proved
-        return CertifiedOptimum(
-            result,
-            one.written,
-            self.gains.cost(one.x),
-            self.gains.cost(free),
-            free_rate,
-            tuple(self._goals(prices)),
-            evaluations,
-            at_bounds,
-        )
-
     def _goals(self, prices: Array) -> Iterator[SteeredGoal]:
         """Yield the goals that steered, with what they cost."""
         found = {
@@ -284,14 +268,16 @@ class _Search:
 
     def _proved(
         self, found: ConstrainedOptimum, problem: ConstrainedProblem, evaluations: int
-    ) -> Proved | None:
+    ) -> tuple[Result, RoundedGains] | None:
         """Round to the digits that ship, the cheapest first, and prove one that meets the goals."""
         last, near = found.last, []
         for one in self.gains.roundings(last.x):
             missed = problem.penalty(last.values + found.jacobian @ (one.x - last.x))
             if problem.penalty(self.gains.spared(one.x)) == 0:
-                near.append(((missed > 0, problem.cost(one.x) + missed), one))
-        for one in in_order(near)[:MOST_ROUNDINGS]:
+                rank = missed > 0, problem.cost(one.x) + missed, *one.x.tolist()
+                near.append((rank, one))
+        near.sort(key=lambda pair: pair[0])
+        for _, one in near[:MOST_ROUNDINGS]:
             design = self.gains.shipping(one, last.x, evaluations)
             if (result := self._certified(design)) is not None:
                 return result, one

@@ -7,7 +7,7 @@ different laws.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
@@ -185,7 +185,8 @@ class FreeGains:
         zeros = {
             (item.name, gain): (Fraction(0), f"0 {unit('kg*m^2')}")
             for item in self.items
-            for gain in free_names(item)
+            for gain in BOUNDED
+            if not getattr(item.given, gain).fixed
         }
         pairs = zip(self.coordinates, x, strict=True)
         for near in product(*(one.near(float(value), digits) for one, value in pairs)):
@@ -351,11 +352,6 @@ class FreeGains:
         return spared
 
 
-def free_names(item: ImpedanceAnalysis) -> tuple[str, ...]:
-    """Return which gains of an impedance controller the spec leaves free by bounds."""
-    return tuple(name for name in BOUNDED if not getattr(item.given, name).fixed)
-
-
 def gain_branches(designed: Designed, analysis: DesignAnalysis) -> Iterator[FreeGains]:
     """Yield the sets of gains to choose from: without virtual masses, and with them."""
     bounds = tuple(item.problem.mass_bounds for item in analysis.impedance)
@@ -382,9 +378,3 @@ def with_problems(designed: Designed, analysis: DesignAnalysis) -> DesignAnalysi
         problem = impedance_problem(task, item.given, requirement)
         items.append(replace(item, problem=problem, requirement=requirement))
     return replace(analysis, measured=(*items, *analysis.tuned))
-
-
-def in_order(choices: Sequence[tuple[tuple[float, ...], RoundedGains]]) -> list[RoundedGains]:
-    """Return roundings, the best first."""
-    ranked = sorted(choices, key=lambda item: (*item[0], *map(float, item[1].x)))
-    return [one for _, one in ranked]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import partial
 from typing import TYPE_CHECKING
 
 from nrs_design.errors import DesignError, NrsDesignError
@@ -120,9 +121,7 @@ def _run_box(result: Result, limits: Limits, progress: Progress) -> BoxMargin:
     from nrs_design.search.certify import certify
     from nrs_design.search.margin import find_margin
 
-    def assemble_at(scale: Fraction) -> SwitchedSystem:
-        return assemble_spec(result.loaded, result.designed, scale)
-
+    assemble_at = partial(assemble_spec, result.loaded, result.designed)
     return find_margin(
         assemble_at, lambda system: certify(system, limits=limits), result.certification, progress
     )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 from math import exp, log
 from typing import TYPE_CHECKING
@@ -118,15 +118,12 @@ def constraints_of(
 
     So much more is asked for of a rate, as a share, and so much less of a bound.
     """
-
-    def listed() -> Iterator[ProofConstraint]:
-        rate = None if goals is None else goals.decay_rate
-        least = LEAST_RATE if rate is None else max(rate.si * (1 + room), LEAST_RATE)
-        yield rate_constraint(least, max(least, 1.0))
-        if goals is not None and goals.peak_torque is not None:
-            yield force_constraint(goals.peak_torque.si * (1 - room_of_bounds))
-
-    return tuple(listed())
+    rate = None if goals is None else goals.decay_rate
+    least = LEAST_RATE if rate is None else max(rate.si * (1 + room), LEAST_RATE)
+    decay = rate_constraint(least, max(least, 1.0))
+    if goals is None or goals.peak_torque is None:
+        return (decay,)
+    return decay, force_constraint(goals.peak_torque.si * (1 - room_of_bounds))
 
 
 @dataclass(frozen=True)

@@ -7,10 +7,11 @@ motion by s r: both are decided by the exact check of the divided system, stable
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import ceil
+from typing import TypeVar
 
 import numpy as np
 
@@ -27,7 +28,7 @@ from nrs_design.search.certification import Certification, Limits
 from nrs_design.search.certify import certify, first_accepted
 from nrs_design.search.extremal_words import least_growth, words_in_norms
 from nrs_design.search.family import floats_in_silence
-from nrs_design.search.forms import FormsProgram, Solution
+from nrs_design.search.forms import FormsProgram
 from nrs_design.search.memory import draw_memory, memories
 from nrs_design.search.method import Method
 from nrs_design.search.period import powers
@@ -35,6 +36,8 @@ from nrs_design.search.rounding import digits
 from nrs_design.search.rung import Facts
 from nrs_design.search.step_graph import StepGraph
 from nrs_design.work import Allowance, NotAffordableError
+
+E = TypeVar("E", bound=AbstractEvidence)
 
 # A word is claimed to grow by these shares of what it grows by in floating point, and forms by
 # these factors more than they show there.
@@ -118,19 +121,14 @@ def _with_words(
                 continue
             divided = _divided(system, claim)
             radius = (growth / float(claim)) ** len(word)
-            evidence, _ = first_accepted(_proposed(divided, steps, edges, radius), divided)
+            evidence, _ = first_accepted(_proposed(powers(divided, steps, edges, radius)), divided)
             if evidence is not None:
                 return replace(bounds, lower=claim, word=steps, evidence=evidence)
     return bounds
 
 
-def _proposed(
-    system: SwitchedSystem,
-    steps: Steps,
-    edges: tuple[int, ...],
-    radius: float,
-) -> Candidates[AbstractEvidence]:
-    yield from powers(system, steps, edges, radius)
+def _proposed(found: Iterable[Candidate[E]]) -> Candidates[E]:
+    yield from found
     return None
 
 
@@ -213,20 +211,13 @@ def _claimed(
             break
         if solution is None:
             continue
-        candidates = _rounded(program, solution, claim)
+        forms = program.roundings(solution, claim, digits(10))
+        candidates = _proposed(map(Candidate, forms))
         if first_accepted(candidates, program.drawing.system)[0] is not None:
             kind = "quadratic" if degree == 1 else "quartic"
             method = f"{kind} with a memory of {counted(length, 'step')}"
             return replace(bounds, upper=claim * by, method=method)
     return bounds
-
-
-def _rounded(
-    program: FormsProgram, solution: Solution, claim: Fraction
-) -> Candidates[AbstractEvidence]:
-    for evidence in program.roundings(solution, claim, digits(10)):
-        yield Candidate(evidence)
-    return None
 
 
 def _shown(system: SwitchedSystem, by: Fraction, limits: Limits) -> tuple[Fraction, str] | None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -53,7 +52,7 @@ def run_scenarios(
 
 
 def _simulate(
-    designed: Designed, scenario: Scenario, wanted: Runs, progress: Progress = silent
+    designed: Designed, scenario: Scenario, wanted: Runs, progress: Progress
 ) -> Simulated:
     """Simulate a scenario, and measure the run."""
     from nrs_design.simulation.exact import simulate_exactly
@@ -62,20 +61,17 @@ def _simulate(
     from nrs_design.simulation.summary import summarize
 
     spec, engine = designed.spec, wanted.engine or _usual(designed.spec, scenario)
-    given = designed.plant, designed.design, scenario
-    most, tell = wanted.max_steps or MAX_STEPS, partial(_tell, progress, scenario.name)
+    given, most = (designed.plant, designed.design, scenario), wanted.max_steps or MAX_STEPS
+
+    def tell(step: str) -> None:
+        progress(f"{scenario.name}, {step}")
+
     if engine == "exact":
         run = simulate_exactly(spec, *given, max_steps=most, tell=tell)
     else:
         timed = spec.model_copy(update={"sampling": _sampling(spec, wanted)})
         run = simulate_sampled(timed, *given, max_steps=most, tell=tell)
     return Simulated(scenario, run, summarize(spec, scenario, run))
-
-
-def folder_of(designed: Designed) -> Path:
-    """Return the folder of a spec, for files that it names."""
-    path = designed.loaded.path
-    return Path() if path is None else path.parent
 
 
 def _usual(spec: InteractionDesignSpec, scenario: Scenario) -> str:
@@ -99,15 +95,12 @@ def _sampling(spec: InteractionDesignSpec, wanted: Runs) -> SamplingSpec:
     return (spec.sampling or usual).model_copy(update=changes)
 
 
-def _tell(progress: Progress, name: str, step: str) -> None:
-    progress(f"{name}, {step}")
-
-
 def scenarios_of(designed: Designed, wanted: Runs) -> list[Scenario]:
     """Return the scenarios that are wanted, in SI."""
     from nrs_design.simulation.build_scenario import build_scenario, default_scenario
 
-    spec, plant, folder = designed.spec, designed.plant, folder_of(designed)
+    spec, plant, path = designed.spec, designed.plant, designed.loaded.path
+    folder = Path() if path is None else path.parent
     return [
         build_scenario(spec, plant, name, spec.scenarios[name], folder)
         if spec.scenarios

@@ -15,7 +15,6 @@ from nrs_design.progress import Progress, silent
 if TYPE_CHECKING:
     from nrs_design.proof.system import SwitchedSystem
     from nrs_design.simulation.worst_case import WorstRun
-    from nrs_design.spec import InteractionDesignSpec
 
 _REMEDY = "use `simulate` without --worst-case, with a scenario for each controller"
 
@@ -65,16 +64,11 @@ def run_worst_case(
     return WorstCase(
         system,
         runs,
-        _limits(spec, system),
+        {o.name: float(o.limit) for o in system.outputs if o.limit is not None}
+        | {"force": spec.limits.torque.si, "velocity": spec.limits.velocity.si},
         {} if certificate is None else certified_bounds(certificate.system, certificate.statements),
         spec.disturbances is not None,
     )
-
-
-def _limits(spec: InteractionDesignSpec, system: SwitchedSystem) -> dict[str, float]:
-    """Return what the spec or an output says that a quantity keeps."""
-    own = {o.name: float(o.limit) for o in system.outputs if o.limit is not None}
-    return own | {"force": spec.limits.torque.si, "velocity": spec.limits.velocity.si}
 
 
 def _commanded(designed: Designed) -> SwitchedSystem:

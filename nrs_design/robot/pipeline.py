@@ -9,13 +9,13 @@ from nrs_design.pipeline.design import placed, wrong_kind
 from nrs_design.spec import LoadedSpec, read_spec
 
 if TYPE_CHECKING:
-    from nrs_design.robot.models import Robot
+    from nrs_design.robot.models.robot import Robot
     from nrs_design.spec import RobotSpec
 
 
 def run_robot(path: Path) -> tuple[LoadedSpec, RobotSpec, Robot]:
     """Read a robot spec and build the robot."""
-    from nrs_design.robot.models import build_robot
+    from nrs_design.robot.models.robot import build_robot
 
     loaded = read_spec(path)
     if loaded.spec.kind != "robot":

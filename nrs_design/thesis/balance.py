@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
-from nrs_design.robot.models import design_balance
-from nrs_design.robot.models.balance import LegBalance
+from nrs_design.robot.models.balance import LegBalance, design_balance
 from nrs_design.robot.models.neuroboscope import robot, robot_spec
 from nrs_design.thesis.comparison import Found, Recomputed
 

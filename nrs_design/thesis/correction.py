@@ -6,8 +6,13 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from nrs_design.robot.models import Correction, correction_coefficients
-from nrs_design.robot.models.correction import DEPTH_SINES, TABLE_3_5, WHOLE_WORKSPACE
+from nrs_design.robot.models.correction import (
+    DEPTH_SINES,
+    TABLE_3_5,
+    WHOLE_WORKSPACE,
+    Correction,
+    correction_coefficients,
+)
 from nrs_design.robot.models.neuroboscope import robot
 from nrs_design.thesis.comparison import Recomputed, printed_rows_of
 

@@ -15,9 +15,9 @@ from nrs_design.models.actuator import armature_resistance, speed_torque_gradien
 from nrs_design.models.motion_loop import close_motion_loop
 from nrs_design.proof.mode import Time
 from nrs_design.proof.spectrum import is_stable
-from nrs_design.robot.models import inverse_kinematics
 from nrs_design.robot.models.dynamics import gravity_torque, potential_energy
 from nrs_design.robot.models.geometry import direction
+from nrs_design.robot.models.kinematics import inverse_kinematics
 from nrs_design.robot.models.neuroboscope import robot, robot_spec
 from nrs_design.robot.models.vectors import Array
 from nrs_design.search.balance import own_norm

@@ -6,19 +6,17 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from nrs_design.robot.models import (
-    Robot,
+from nrs_design.robot.models.geometry import direction
+from nrs_design.robot.models.kinematics import (
     inverse_jacobian,
     inverse_kinematics,
-    joint_peaks,
     orientation,
     orientation_jacobian,
-    pose_grid,
-    thesis_grid,
 )
-from nrs_design.robot.models.geometry import direction
 from nrs_design.robot.models.neuroboscope import robot
+from nrs_design.robot.models.robot import Robot
 from nrs_design.robot.models.vectors import Array
+from nrs_design.robot.models.workspace import joint_peaks, pose_grid, thesis_grid
 from nrs_design.thesis.comparison import Found, Recomputed
 
 POSE = (0.1, -0.2, 0.2)

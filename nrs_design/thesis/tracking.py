@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import pi
 
-from nrs_design.robot.simulation.tracking import MOTIONS
+from nrs_design.robot.simulation.tracking.experiment import MOTIONS
 from nrs_design.robot.simulation.tracking.measured import MEASURED
 from nrs_design.thesis.comparison import PrintedRow, Recomputed, ReproducedValue, judge
 

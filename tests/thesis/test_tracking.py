@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 
 from nrs_design.robot.models.neuroboscope import robot, robot_spec
-from nrs_design.robot.simulation.tracking import thesis_experiments
+from nrs_design.robot.simulation.tracking.experiment import thesis_experiments
 from nrs_design.robot.simulation.tracking.measured import measured_rmse
 from nrs_design.spec import parse_spec
 from nrs_design.spec.templates import TEMPLATES

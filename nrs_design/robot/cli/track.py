@@ -17,7 +17,7 @@ from nrs_design.robot.cli.options import Figures, Tilt, write_figures
 
 if TYPE_CHECKING:
     from nrs_design.robot.models import Robot
-    from nrs_design.robot.simulation.tracking import TrackingRecord
+    from nrs_design.robot.simulation.tracking.record import TrackingRecord
     from nrs_design.spec import RobotSpec
 
 ALL = "all"
@@ -78,6 +78,7 @@ def track(
     Example: nrs-design robot track specs/robots/neuroboscope.nrs.yaml --figures figures
     """
     from nrs_design.robot.pipeline import run_robot
+    from nrs_design.robot.simulation.tracking.simulate import LEFT_OUT
 
     loaded, robot_spec, robot = run_robot(spec)
     robot = _on_base(robot_spec, robot, tilt)
@@ -97,7 +98,9 @@ def track(
         _print_runs(runs)
         if ablation:
             _print_ablation(changes)
-        _print_left_out()
+        say("not modelled:")
+        for line in LEFT_OUT:
+            say(f"  - {line}")
 
     facts = spec_facts(loaded)
     return Answer(lambda: facts | _document(robot, runs, changes) | {"files": files}, show)
@@ -106,7 +109,7 @@ def track(
 def _on_base(spec: RobotSpec, robot: Robot, tilt: float | None) -> Robot:
     import math
 
-    from nrs_design.robot.simulation.tracking import experiment_tilt
+    from nrs_design.robot.simulation.tracking.track import experiment_tilt
 
     return robot.tilted(experiment_tilt(spec) if tilt is None else math.radians(tilt))
 
@@ -119,7 +122,8 @@ def _records(
     period: float | None,
     tell: Progress,
 ) -> list[TrackingRecord]:
-    from nrs_design.robot.simulation.tracking import CONTROLLERS, build_track, simulate
+    from nrs_design.robot.simulation.tracking.simulate import simulate
+    from nrs_design.robot.simulation.tracking.track import CONTROLLERS, build_track
 
     names: tuple[str, ...] = (controller.value,)
     if controller is ControllerOption.ALL:
@@ -135,7 +139,8 @@ def _ablation(
     period: float | None,
     tell: Progress,
 ) -> list[dict[str, Any]]:
-    from nrs_design.robot.simulation.tracking import ablation_tracks, simulate
+    from nrs_design.robot.simulation.tracking.ablation import ablation_tracks
+    from nrs_design.robot.simulation.tracking.simulate import simulate
 
     rows = []
     changed = [(name, one.only(moved)) for name, one in ablation_tracks(spec, robot, period)]
@@ -156,7 +161,7 @@ def _run(spec: RobotSpec, robot: Robot, record: TrackingRecord) -> dict[str, Any
 def _document(
     robot: Robot, runs: list[dict[str, Any]], changes: list[dict[str, Any]]
 ) -> dict[str, Any]:
-    from nrs_design.robot.simulation.tracking import LEFT_OUT
+    from nrs_design.robot.simulation.tracking.simulate import LEFT_OUT
 
     return {
         "base_tilt": robot.base_tilt,
@@ -189,7 +194,7 @@ def _print_runs(runs: list[dict[str, Any]]) -> None:
 
 def _print_ablation(changes: list[dict[str, Any]]) -> None:
     """Print the errors of what moves, d in mm and angles in deg."""
-    from nrs_design.robot.simulation.tracking import COORDINATE
+    from nrs_design.robot.simulation.tracking.experiment import COORDINATE
 
     moved = list(changes[0]["rmse"])
     units = ["mm" if name == "d" else "deg" for name in moved]
@@ -202,11 +207,3 @@ def _print_ablation(changes: list[dict[str, Any]]) -> None:
             for row in changes
         ],
     )
-
-
-def _print_left_out() -> None:
-    from nrs_design.robot.simulation.tracking import LEFT_OUT
-
-    say("not modelled:")
-    for line in LEFT_OUT:
-        say(f"  - {line}")

@@ -7,12 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from nrs_design.controllers.laws import ProportionalDerivative
-from nrs_design.robot.models import (
-    Robot,
-    direct_kinematics,
-    mass_and_bias,
-    simplified_dynamics,
-)
+from nrs_design.robot.models.dynamics import mass_and_bias
+from nrs_design.robot.models.kinematics import JointMotion, direct_kinematics
+from nrs_design.robot.models.robot import Robot
+from nrs_design.robot.models.simplified import simplified_dynamics
 from nrs_design.robot.models.vectors import Array
 
 
@@ -58,25 +56,6 @@ class LoadModel:
 
 
 @dataclass(frozen=True, slots=True)
-class JointReference:
-    """Wanted motion of the joints, at one tick or at many."""
-
-    # position, velocity, acceleration: of theta1, theta2, theta3 (not of the encoders), shape (...,
-    # 3), in rad and s.
-    position: Array
-    velocity: Array
-    acceleration: Array
-
-    def at(self, tick: int) -> JointReference:
-        """Return the reference of one tick of the first axis."""
-        return JointReference(self.position[tick], self.velocity[tick], self.acceleration[tick])
-
-    def of(self, rows: list[int]) -> JointReference:
-        """Return the reference of some robots of a batch, at one tick."""
-        return JointReference(self.position[rows], self.velocity[rows], self.acceleration[rows])
-
-
-@dataclass(frozen=True, slots=True)
 class LawState:
     """Memory of a law; empty before its first tick."""
 
@@ -111,9 +90,7 @@ class ComputedTorque:
     rotor_inertia: float = 0.0  # Of a motor at its joint, in kg m^2
     motor_damping: float = 0.0  # Torque per speed of the reference, at the joint, in N m s/rad
 
-    def step(
-        self, state: LawState, reference: JointReference, angle: Array
-    ) -> tuple[Array, LawState]:
+    def step(self, state: LawState, reference: JointMotion, angle: Array) -> tuple[Array, LawState]:
         """Compute the commands of one tick in rpm, shape (n, 3), and what the next tick needs.
 
         Encoder angles are in rad, shape (n, 3); the first state is `LawState()`.
@@ -144,9 +121,7 @@ class IndependentJoint:
     # Where the weight comes from. None feeds nothing forward, for the balanced robot (4.36).
     load: LoadModel | None
 
-    def step(
-        self, state: LawState, reference: JointReference, angle: Array
-    ) -> tuple[Array, LawState]:
+    def step(self, state: LawState, reference: JointMotion, angle: Array) -> tuple[Array, LawState]:
         """Compute the commands of one tick in rpm, shape (n, 3), and what the next tick needs.
 
         Encoder angles are in rad, shape (n, 3); the first state is `LawState()`.

@@ -9,9 +9,9 @@ from nrs_design.controllers.laws import ProportionalDerivative
 from nrs_design.design.root_locus import PdDesign, design_pd
 from nrs_design.errors import DesignError
 from nrs_design.robot.controllers.motion_laws import ComputedTorque, IndependentJoint, LoadModel
-from nrs_design.robot.models import Robot, correction_coefficients
-from nrs_design.robot.models.correction import DEPTH_SINES
+from nrs_design.robot.models.correction import DEPTH_SINES, correction_coefficients
 from nrs_design.robot.models.drive import build_drive
+from nrs_design.robot.models.robot import Robot
 from nrs_design.spec import RobotControlSpec, RobotSpec
 
 

@@ -1,13 +1,8 @@
 """The robot: geometry, kinematics, dynamics, simplified dynamics and balance (thesis 3 and 4)."""
 
-from nrs_design.robot.models.balance import (
-    Balance,
-    balanced_robot,
-    design_balance,
-    examine_balance,
-    residual_torque,
-    spring_torque,
-)
+from __future__ import annotations
+
+from nrs_design.robot.models.balance import design_balance, examine_balance
 from nrs_design.robot.models.correction import (
     DEPTH_SINES,
     TABLE_3_5,
@@ -25,36 +20,24 @@ from nrs_design.robot.models.dynamics import (
     coriolis_matrix,
     gravity_torque,
     inverse_dynamics,
-    mass_and_bias,
     mass_matrix,
-    potential_energy,
 )
-from nrs_design.robot.models.geometry import is_reachable, posture, reach, reach_margin
+from nrs_design.robot.models.geometry import posture
 from nrs_design.robot.models.kinematics import (
-    JointMotion,
-    SingularityMargins,
     direct_kinematics,
     inverse_jacobian,
     inverse_kinematics,
     jacobian,
-    joint_motion,
     orientation,
-    orientation_jacobian,
     singularity_margins,
 )
-from nrs_design.robot.models.robot import Leg, Robot, TaskLimits, Workspace, build_robot
-from nrs_design.robot.models.shares import TorqueShares, torque_shares
-from nrs_design.robot.models.simplified import (
-    SimplifiedDynamics,
-    simplified_dynamics,
-    simplified_torque,
-)
+from nrs_design.robot.models.robot import Leg, Robot, build_robot
+from nrs_design.robot.models.shares import torque_shares
+from nrs_design.robot.models.simplified import simplified_dynamics
 from nrs_design.robot.models.soundness import examine_inertia
 from nrs_design.robot.models.workspace import (
-    JointPeaks,
     WorkspaceSurvey,
     joint_peaks,
-    pose_grid,
     reachable_poses,
     survey_workspace,
     thesis_grid,
@@ -64,22 +47,13 @@ from nrs_design.robot.models.workspace import (
 __all__ = [
     "DEPTH_SINES",
     "TABLE_3_5",
-    "Balance",
     "Correction",
-    "JointMotion",
-    "JointPeaks",
     "Leg",
     "Robot",
     "SeparateCorrection",
-    "SimplifiedDynamics",
     "Sine",
-    "SingularityMargins",
-    "TaskLimits",
     "TiltTable",
-    "TorqueShares",
-    "Workspace",
     "WorkspaceSurvey",
-    "balanced_robot",
     "build_robot",
     "coriolis_matrix",
     "correct_separately",
@@ -92,25 +66,14 @@ __all__ = [
     "inverse_dynamics",
     "inverse_jacobian",
     "inverse_kinematics",
-    "is_reachable",
     "jacobian",
-    "joint_motion",
     "joint_peaks",
-    "mass_and_bias",
     "mass_matrix",
     "orientation",
-    "orientation_jacobian",
-    "pose_grid",
     "posture",
-    "potential_energy",
-    "reach",
-    "reach_margin",
     "reachable_poses",
-    "residual_torque",
     "simplified_dynamics",
-    "simplified_torque",
     "singularity_margins",
-    "spring_torque",
     "survey_workspace",
     "thesis_grid",
     "thesis_tilts",

@@ -18,7 +18,7 @@ from nrs_design.errors import DesignError
 from nrs_design.robot.models.body import MASSLESS, point_mass
 from nrs_design.robot.models.dynamics import gravity_torque
 from nrs_design.robot.models.robot import Leg, Robot
-from nrs_design.robot.models.vectors import Array
+from nrs_design.robot.models.vectors import Array, root_mean_square
 from nrs_design.robot.models.workspace import reachable_poses, workspace_grid
 from nrs_design.spec import BalancedLegSpec, RobotSpec
 
@@ -136,8 +136,10 @@ class BalanceTorques:
     @staticmethod
     def summary(torque: Array) -> dict[str, list[float]]:
         """Return root mean square and largest magnitude for each joint."""
-        rms = np.sqrt(np.mean(torque**2, axis=0))
-        return {"rms": rms.tolist(), "largest": np.abs(torque).max(axis=0).tolist()}
+        return {
+            "rms": root_mean_square(torque).tolist(),
+            "largest": np.abs(torque).max(axis=0).tolist(),
+        }
 
 
 def examine_balance(robot: Robot, balance: Balance) -> BalanceTorques:

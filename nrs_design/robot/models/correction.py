@@ -13,7 +13,7 @@ from nrs_design.robot.models.dynamics import gravity_torque, inverse_dynamics, m
 from nrs_design.robot.models.kinematics import joint_motion
 from nrs_design.robot.models.robot import Robot
 from nrs_design.robot.models.simplified import simplified_dynamics, simplified_torque
-from nrs_design.robot.models.vectors import Array
+from nrs_design.robot.models.vectors import Array, root_mean_square
 
 SAMPLES = 720
 
@@ -61,7 +61,7 @@ def correct(*torques: tuple[Array, Array]) -> Correction:
     mean_ratio = np.mean([(T / t).mean(axis=0) for T, t in torques], axis=0)
     least_squares = np.mean([(T * t).sum(axis=0) / (t * t).sum(axis=0) for T, t in torques], axis=0)
     T, t = (np.concatenate(parts) for parts in zip(*torques, strict=True))
-    errors = (_root_mean_square(T - K * t) for K in (mean_ratio, least_squares))
+    errors = (root_mean_square(T - K * t) for K in (mean_ratio, least_squares))
     return Correction(mean_ratio, least_squares, *errors)
 
 
@@ -132,10 +132,6 @@ def _torques(robot: Robot, sine: Sine) -> tuple[Array, Array]:
     full = inverse_dynamics(robot, pose, motion.velocity, motion.acceleration)
     simplified = simplified_torque(robot, pose, motion.acceleration)
     return full, simplified
-
-
-def _root_mean_square(error: Array) -> Array:
-    return np.asarray(np.sqrt(np.mean(error**2, axis=0)), dtype=np.float64)
 
 
 @dataclass(frozen=True, slots=True)

@@ -23,6 +23,10 @@ class JointMotion:
     velocity: Array
     acceleration: Array
 
+    def at(self, index: int | list[int]) -> JointMotion:
+        """Return the motion at one place of the first axis, or at some."""
+        return JointMotion(self.position[index], self.velocity[index], self.acceleration[index])
+
 
 def inverse_kinematics(robot: Robot, pose: ArrayLike) -> Array:
     """Return the joint angles of a pose in rad (thesis 3.8 to 3.10, the last one corrected)."""

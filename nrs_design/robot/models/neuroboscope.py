@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import cache
 
-from nrs_design.robot.models import Robot, build_robot
+from nrs_design.robot.models.robot import Robot, build_robot
 from nrs_design.spec import RobotSpec, parse_spec
 from nrs_design.spec.templates import TEMPLATES
 

@@ -44,6 +44,11 @@ def components(rows: Any) -> Vector:
     return array[..., 0], array[..., 1], array[..., 2]
 
 
+def root_mean_square(error: Array) -> Array:
+    """Return the root mean square over the first axis."""
+    return np.asarray(np.sqrt(np.mean(error**2, axis=0)), dtype=np.float64)
+
+
 def stacked(vector: Vector) -> Any:
     """Join three components to an array of shape (..., 3)."""
     return np.stack(np.broadcast_arrays(*vector), axis=-1)

@@ -27,21 +27,18 @@ from nrs_design.reporting.formatting import number
 from nrs_design.reporting.sections.places import linked
 from nrs_design.reporting.sections.tail import spec_section
 from nrs_design.reporting.sections.titles import SPEC
-from nrs_design.robot.models import (
+from nrs_design.robot.models.balance import design_balance, examine_balance
+from nrs_design.robot.models.correction import (
     DEPTH_SINES,
     TABLE_3_5,
     correct_separately,
     correction_coefficients,
-    design_balance,
-    examine_balance,
-    examine_inertia,
-    reachable_poses,
-    survey_workspace,
-    thesis_grid,
     thesis_tilts,
     tilt_tables,
 )
 from nrs_design.robot.models.robot import LEGS
+from nrs_design.robot.models.soundness import examine_inertia
+from nrs_design.robot.models.workspace import reachable_poses, survey_workspace, thesis_grid
 from nrs_design.robot.reporting.figures.robot import (
     JOINTS,
     draw_balance,
@@ -54,8 +51,9 @@ from nrs_design.robot.reporting.figures.robot import (
 if TYPE_CHECKING:
     import datetime
 
-    from nrs_design.robot.models import Robot, WorkspaceSurvey
+    from nrs_design.robot.models.robot import Robot
     from nrs_design.robot.models.vectors import Array
+    from nrs_design.robot.models.workspace import WorkspaceSurvey
     from nrs_design.spec import LoadedSpec, RobotSpec
 
 FOOTER = "Page of nrs-design. A model of rigid links in floating point, not a proof."

@@ -3,9 +3,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from nrs_design.robot.controllers.motion_laws import JointReference, LawState
+from nrs_design.robot.controllers.motion_laws import LawState
 from nrs_design.robot.design.motion_control import design_computed_torque
-from nrs_design.robot.models import inverse_kinematics
+from nrs_design.robot.models.kinematics import JointMotion, inverse_kinematics
 
 POSE = np.array([[0.05, -0.1, 0.2]])
 ACCELERATION = np.array([[0.3, -0.1, 0.2]])
@@ -24,7 +24,7 @@ def angle(tilted):
 
 def test_equation_4_18_with_acceleration_and_error_of_the_encoders(law, load, angle):
     error = np.array([[0.01, -0.02, 0.005]])
-    reference = JointReference((angle + error) / 5, VELOCITY, ACCELERATION)
+    reference = JointMotion((angle + error) / 5, VELOCITY, ACCELERATION)
     memory = LawState(error - 0.001)
     command, _ = law.step(memory, reference, angle)
     wanted = 5 * ACCELERATION + 56.9801 * 0.001 / 0.002 + 1623.85 * error
@@ -34,7 +34,7 @@ def test_equation_4_18_with_acceleration_and_error_of_the_encoders(law, load, an
 
 
 def test_rotor_and_motor_can_be_added(law, angle, load):
-    reference = JointReference(angle / 5, VELOCITY, ACCELERATION)
+    reference = JointMotion(angle / 5, VELOCITY, ACCELERATION)
     plain, _ = law.step(LawState(), reference, angle)
     more, _ = replace(law, rotor_inertia=1.2, motor_damping=34.0).step(LawState(), reference, angle)
     added = (more - plain) * 905 / 2.7044e5

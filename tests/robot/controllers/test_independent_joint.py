@@ -1,9 +1,10 @@
 import numpy as np
 import pytest
 
-from nrs_design.robot.controllers.motion_laws import JointReference, LawState
+from nrs_design.robot.controllers.motion_laws import LawState
 from nrs_design.robot.design.motion_control import design_independent_joint
-from nrs_design.robot.models import inverse_kinematics, simplified_dynamics
+from nrs_design.robot.models.kinematics import JointMotion, inverse_kinematics
+from nrs_design.robot.models.simplified import simplified_dynamics
 
 POSE = np.array([[0.05, -0.1, 0.2]])
 
@@ -14,7 +15,7 @@ def angle(tilted):
 
 
 def reference(angle, ahead):
-    return JointReference((angle + ahead) / 5, np.zeros((1, 3)), np.zeros((1, 3)))
+    return JointMotion((angle + ahead) / 5, np.zeros((1, 3)), np.zeros((1, 3)))
 
 
 def test_pd_in_encoder_coordinates_is_in_rpm_already(spec, angle):
@@ -40,8 +41,8 @@ def test_one_tick_of_many_robots_is_that_of_each(spec, load, angle):
     law = design_independent_joint(spec, load)
     both = np.concatenate([angle, angle + 0.3])
     ahead = np.array([[0.01, 0.0, -0.02], [0.0, 0.03, 0.0]])
-    wanted = JointReference((both + ahead) / 5, np.zeros((2, 3)), np.zeros((2, 3)))
+    wanted = JointMotion((both + ahead) / 5, np.zeros((2, 3)), np.zeros((2, 3)))
     together, _ = law.step(LawState(), wanted, both)
     for row in (0, 1):
-        alone, _ = law.step(LawState(), wanted.of([row]), both[[row]])
+        alone, _ = law.step(LawState(), wanted.at([row]), both[[row]])
         assert together[[row]] == pytest.approx(alone, rel=1e-12)

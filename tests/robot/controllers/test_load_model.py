@@ -4,12 +4,9 @@ import numpy as np
 import pytest
 
 from nrs_design.robot.controllers.motion_laws import LoadModel
-from nrs_design.robot.models import (
-    gravity_torque,
-    inverse_kinematics,
-    mass_matrix,
-    simplified_dynamics,
-)
+from nrs_design.robot.models.dynamics import gravity_torque, mass_matrix
+from nrs_design.robot.models.kinematics import inverse_kinematics
+from nrs_design.robot.models.simplified import simplified_dynamics
 
 POSES = np.array([[0.0, 0.0, 0.2], [0.1, -0.2, 0.2], [-0.2, 0.1, 0.16]])
 

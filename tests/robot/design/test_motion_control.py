@@ -4,8 +4,9 @@ import pytest
 from nrs_design.controllers.float32 import is_float32
 from nrs_design.errors import DesignError
 from nrs_design.robot.design.motion_control import design_computed_torque, design_independent_joint
-from nrs_design.robot.models import inverse_kinematics, mass_matrix
 from nrs_design.robot.models.drive import build_drive
+from nrs_design.robot.models.dynamics import mass_matrix
+from nrs_design.robot.models.kinematics import inverse_kinematics
 from nrs_design.spec import parse_spec
 from nrs_design.spec.templates import TEMPLATES
 

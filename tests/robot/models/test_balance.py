@@ -6,16 +6,12 @@ import numpy as np
 import pytest
 
 from nrs_design.errors import DesignError
-from nrs_design.robot.models import (
-    design_balance,
-    gravity_torque,
-    jacobian,
-    residual_torque,
-    spring_torque,
-    workspace_grid,
-)
+from nrs_design.robot.models.balance import design_balance, residual_torque, spring_torque
 from nrs_design.robot.models.body import MASSLESS, point_mass, rigid_body
+from nrs_design.robot.models.dynamics import gravity_torque
 from nrs_design.robot.models.geometry import posture
+from nrs_design.robot.models.kinematics import jacobian
+from nrs_design.robot.models.workspace import workspace_grid
 
 GRID_DEPTHS = 4
 

@@ -5,8 +5,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nrs_design.robot.models import Sine, correction, correction_coefficients, tilt_tables
-from nrs_design.robot.models.correction import DEPTH_SINES, TABLE_3_5, correct, to_csv
+from nrs_design.robot.models import correction
+from nrs_design.robot.models.correction import (
+    DEPTH_SINES,
+    TABLE_3_5,
+    Sine,
+    correct,
+    correction_coefficients,
+    tilt_tables,
+    to_csv,
+)
 
 
 def test_table_for_the_controller(robot):

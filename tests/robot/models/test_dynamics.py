@@ -4,15 +4,15 @@ import numpy as np
 import pytest
 from hypothesis import given
 
-from nrs_design.robot.models import (
+from nrs_design.robot.models.dynamics import (
     coriolis_matrix,
     gravity_torque,
     inverse_dynamics,
-    jacobian,
     mass_and_bias,
     mass_matrix,
     potential_energy,
 )
+from nrs_design.robot.models.kinematics import jacobian
 
 from .strategies import poses, rates, tilts
 

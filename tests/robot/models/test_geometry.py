@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given
 
 from nrs_design.errors import PoseError
-from nrs_design.robot.models import is_reachable, posture, reach, reach_margin
+from nrs_design.robot.models.geometry import is_reachable, posture, reach, reach_margin
 
 from .strategies import poses
 

@@ -5,7 +5,8 @@ import pytest
 from hypothesis import given
 
 from nrs_design.errors import PoseError
-from nrs_design.robot.models import (
+from nrs_design.robot.models.geometry import direction, posture, reach_margin
+from nrs_design.robot.models.kinematics import (
     direct_kinematics,
     inverse_jacobian,
     inverse_kinematics,
@@ -13,11 +14,8 @@ from nrs_design.robot.models import (
     joint_motion,
     orientation,
     orientation_jacobian,
-    posture,
-    reach_margin,
     singularity_margins,
 )
-from nrs_design.robot.models.geometry import direction
 
 from .strategies import poses, rates
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from benchmarks.pinocchio_tree import Tree
-from nrs_design.robot.models import inverse_dynamics
+from nrs_design.robot.models.dynamics import inverse_dynamics
 from tests.robot.models.crooked import crooked
 
 

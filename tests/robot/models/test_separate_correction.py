@@ -2,13 +2,10 @@
 
 import numpy as np
 
-from nrs_design.robot.models import (
-    correct_separately,
-    gravity_torque,
-    mass_matrix,
-    simplified_dynamics,
-    thesis_grid,
-)
+from nrs_design.robot.models.correction import correct_separately
+from nrs_design.robot.models.dynamics import gravity_torque, mass_matrix
+from nrs_design.robot.models.simplified import simplified_dynamics
+from nrs_design.robot.models.workspace import thesis_grid
 
 POSES = thesis_grid()[::7]
 

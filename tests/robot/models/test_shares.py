@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from nrs_design.robot.models import torque_shares
+from nrs_design.robot.models.shares import torque_shares
 
 
 def test_shares_add_up(robot):

@@ -4,15 +4,9 @@ import numpy as np
 import pytest
 from hypothesis import given
 
-from nrs_design.robot.models import (
-    gravity_torque,
-    jacobian,
-    mass_matrix,
-    orientation,
-    orientation_jacobian,
-    simplified_dynamics,
-    simplified_torque,
-)
+from nrs_design.robot.models.dynamics import gravity_torque, mass_matrix
+from nrs_design.robot.models.kinematics import jacobian, orientation, orientation_jacobian
+from nrs_design.robot.models.simplified import simplified_dynamics, simplified_torque
 
 from .strategies import poses, rates, tilts
 

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from nrs_design.errors import DesignError, PoseError
-from nrs_design.robot.models import examine_inertia, mass_matrix
 from nrs_design.robot.models.body import MASSLESS, point_mass
+from nrs_design.robot.models.dynamics import mass_matrix
 from nrs_design.robot.models.robot import Workspace
+from nrs_design.robot.models.soundness import examine_inertia
 
 
 def test_eigenvalues_of_the_robot(robot):

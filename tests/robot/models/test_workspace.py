@@ -5,9 +5,8 @@ import numpy as np
 import pytest
 
 from nrs_design.errors import PoseError
-from nrs_design.robot.models import (
-    inverse_kinematics,
-    joint_motion,
+from nrs_design.robot.models.kinematics import inverse_kinematics, joint_motion
+from nrs_design.robot.models.workspace import (
     joint_peaks,
     reachable_poses,
     survey_workspace,

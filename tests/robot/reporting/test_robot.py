@@ -6,7 +6,7 @@ import pytest
 
 from nrs_design.reporting import render_html
 from nrs_design.reporting.document import Illustration, Paragraph
-from nrs_design.robot.models import thesis_tilts
+from nrs_design.robot.models.correction import thesis_tilts
 from nrs_design.robot.pipeline import run_robot
 from nrs_design.robot.reporting.robot import robot_report
 from tests.support import ROOT, document_of, thinned

@@ -19,21 +19,16 @@ from nrs_design.reporting.style import (
     new_figure,
     styled,
 )
-from nrs_design.robot.models import (
-    Robot,
-    SeparateCorrection,
-    TiltTable,
-    pose_grid,
-    reach_margin,
-    reachable_poses,
-    thesis_grid,
-    torque_shares,
-)
+from nrs_design.robot.models.correction import SeparateCorrection, TiltTable
+from nrs_design.robot.models.geometry import reach_margin
+from nrs_design.robot.models.robot import Robot
+from nrs_design.robot.models.shares import torque_shares
+from nrs_design.robot.models.vectors import Array, root_mean_square
+from nrs_design.robot.models.workspace import pose_grid, reachable_poses, thesis_grid
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from nrs_design.robot.models.vectors import Array
 
 JOINTS = ("θ1 (left)", "θ2 (right)", "θ3 (middle)")
 _POINTS = 121
@@ -145,7 +140,7 @@ def draw_balance(gravity: Array, residual: Array) -> Figure:
     figure, axes = new_axes(3.6)
     where = np.arange(3)
     for index, (name, torque) in enumerate((("without", gravity), ("with balance", residual))):
-        rms = np.sqrt(np.mean(torque**2, axis=0))
+        rms = root_mean_square(torque)
         place = where + 0.4 * index - 0.2
         bars = axes.bar(place, rms, 0.36, color=CYCLE[index], label=f"{name}, root mean square")
         axes.bar_label(bars, fmt="%.2f", label_type="center", fontsize=9, color="white")

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from nrs_design.robot.controllers.motion_laws import ComputedTorque, IndependentJoint
-from nrs_design.robot.models import Robot
+from nrs_design.robot.models.robot import Robot
 from nrs_design.robot.simulation.tracking.track import Track, build_track
 from nrs_design.spec import RobotSpec
 

@@ -7,8 +7,8 @@ from math import pi
 
 import numpy as np
 
-from nrs_design.robot.controllers.motion_laws import JointReference
-from nrs_design.robot.models import Robot, joint_motion
+from nrs_design.robot.models.kinematics import JointMotion, joint_motion
+from nrs_design.robot.models.robot import Robot
 from nrs_design.robot.models.vectors import Array
 
 HOLD = 10.0
@@ -48,9 +48,9 @@ class Experiment:
             -(self.rate**2) * sine * swing,
         )
 
-    def reference(self, robot: Robot, time: Array) -> JointReference:
+    def reference(self, robot: Robot, time: Array) -> JointMotion:
         """Return the motion of the joints at times of shape (n,); shapes (n, 3)."""
-        return JointReference(*_joints(robot, *self.motion(time)))
+        return joint_motion(robot, *self.motion(time))
 
 
 def thesis_experiments(
@@ -77,8 +77,3 @@ def thesis_experiments(
         Experiment("phi", (0.0, 0.0, depth), space.phi, rates["phi"]),
         Experiment("psi", (0.0, 0.0, depth), space.psi, rates["psi"]),
     )
-
-
-def _joints(robot: Robot, pose: Array, velocity: Array, acceleration: Array) -> list[Array]:
-    motion = joint_motion(robot, pose, velocity, acceleration)
-    return [motion.position, motion.velocity, motion.acceleration]

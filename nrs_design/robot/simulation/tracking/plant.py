@@ -11,15 +11,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from nrs_design.robot.models import (
-    Balance,
-    Robot,
-    balanced_robot,
-    direct_kinematics,
-    mass_and_bias,
-    spring_torque,
-)
+from nrs_design.robot.models.balance import Balance, spring_torque
 from nrs_design.robot.models.drive import JointDrive
+from nrs_design.robot.models.dynamics import mass_and_bias
+from nrs_design.robot.models.kinematics import direct_kinematics
+from nrs_design.robot.models.robot import Robot
 from nrs_design.robot.models.vectors import Array
 from nrs_design.robot.simulation.tracking.friction import DryFriction
 
@@ -46,11 +42,6 @@ class Mechanism:
 
     robot: Robot  # On its base, with its counter-masses if it has any
     balance: Balance | None = None  # The balance whose springs act on it
-
-    @staticmethod
-    def balanced(robot: Robot, balance: Balance) -> Mechanism:
-        """Return the robot with counter-masses and springs."""
-        return Mechanism(balanced_robot(robot, balance), balance)
 
     @property
     def parts(self) -> tuple[Robot, Balance | None]:

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from nrs_design.robot.models.vectors import Array
+from nrs_design.robot.models.vectors import Array, root_mean_square
 from nrs_design.robot.simulation.tracking.experiment import Experiment
 
 # From rad and m to what the thesis prints of (phi, psi, d).
@@ -53,8 +53,3 @@ class TrackingRecord:
             "actual_rmse": (self.actual_rmse * DISPLAY).tolist(),
             "largest_command": np.abs(self.command).max(axis=0).tolist(),
         }
-
-
-def root_mean_square(error: Array) -> Array:
-    """Return the root mean square over the first axis."""
-    return np.asarray(np.sqrt(np.mean(error**2, axis=0)), dtype=np.float64)

@@ -9,8 +9,8 @@ import numpy as np
 
 from nrs_design.errors import DesignError, PoseError
 from nrs_design.progress import Progress, silent
-from nrs_design.robot.controllers.motion_laws import JointReference, LawState
-from nrs_design.robot.models import direct_kinematics
+from nrs_design.robot.controllers.motion_laws import LawState
+from nrs_design.robot.models.kinematics import JointMotion, direct_kinematics
 from nrs_design.robot.models.vectors import Array
 from nrs_design.robot.simulation.tracking.plant import DriveArrays, JointState, Stepper
 from nrs_design.robot.simulation.tracking.record import TrackingRecord
@@ -95,7 +95,7 @@ def _lockstep(batch: Sequence[Track], steps: int, held: int) -> list[TrackingRec
             for index, (track, rows) in enumerate(benches):
                 angles[tick, rows] = track.encoder.read(state.position[rows])
                 commands[tick, rows], memory[index] = track.law.step(
-                    memory[index], reference.of(rows), angles[tick, rows]
+                    memory[index], reference.at(rows), angles[tick, rows]
                 )
             for step in range(tick * steps, (tick + 1) * steps):
                 if seen is None or (step % held == 0 and not state.is_like(seen)):
@@ -136,9 +136,9 @@ def _mass_and_bias(plants: list[tuple[Track, list[int]]], state: JointState) -> 
     return mass, bias
 
 
-def _stacked(references: list[JointReference]) -> JointReference:
+def _stacked(references: list[JointMotion]) -> JointMotion:
     """Join the references of all rows; shapes (ticks, n, 3)."""
-    return JointReference(
+    return JointMotion(
         *(
             np.stack([getattr(one, name) for one in references], axis=1)
             for name in ("position", "velocity", "acceleration")

@@ -13,8 +13,9 @@ from nrs_design.robot.design.motion_control import (
     design_independent_joint,
     design_load_model,
 )
-from nrs_design.robot.models import Robot, design_balance
+from nrs_design.robot.models.balance import balanced_robot, design_balance
 from nrs_design.robot.models.drive import JointDrive, build_drive
+from nrs_design.robot.models.robot import Robot
 from nrs_design.robot.models.vectors import Array
 from nrs_design.robot.simulation.tracking.experiment import Experiment, thesis_experiments
 from nrs_design.robot.simulation.tracking.plant import Mechanism
@@ -87,7 +88,8 @@ def _mechanism_and_law(
     spec: RobotSpec, robot: Robot, controller: str
 ) -> tuple[Mechanism, MotionLaw]:
     if controller == "balanced":
-        mechanism = Mechanism.balanced(robot, design_balance(spec, robot))
+        balance = design_balance(spec, robot)
+        mechanism = Mechanism(balanced_robot(robot, balance), balance)
         return mechanism, design_independent_joint(spec, None)
     load = design_load_model(spec, robot)
     if controller == "computed-torque":

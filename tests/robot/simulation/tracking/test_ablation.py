@@ -1,6 +1,7 @@
 import pytest
 
-from nrs_design.robot.simulation.tracking import ablation_tracks, simulate
+from nrs_design.robot.simulation.tracking.ablation import ablation_tracks
+from nrs_design.robot.simulation.tracking.simulate import simulate
 from tests.support import ROOT
 
 

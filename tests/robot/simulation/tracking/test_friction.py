@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from nrs_design.robot.simulation.tracking import DryFriction
+from nrs_design.robot.simulation.tracking.friction import DryFriction
 
 ZERO = np.zeros((1, 3))
 

@@ -4,18 +4,13 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from nrs_design.robot.controllers.motion_laws import JointReference, LawState, LoadModel
+from nrs_design.robot.controllers.motion_laws import LawState, LoadModel
 from nrs_design.robot.design.motion_control import design_independent_joint
-from nrs_design.robot.models import (
-    design_balance,
-    direct_kinematics,
-    gravity_torque,
-    inverse_kinematics,
-    mass_matrix,
-    residual_torque,
-)
+from nrs_design.robot.models.balance import balanced_robot, design_balance, residual_torque
 from nrs_design.robot.models.body import MASSLESS
-from nrs_design.robot.simulation.tracking import DriveArrays, JointState, Mechanism, Stepper
+from nrs_design.robot.models.dynamics import gravity_torque, mass_matrix
+from nrs_design.robot.models.kinematics import JointMotion, direct_kinematics, inverse_kinematics
+from nrs_design.robot.simulation.tracking.plant import DriveArrays, JointState, Mechanism, Stepper
 
 HOME = np.array([[0.02, -0.05, 0.2]])
 
@@ -37,10 +32,10 @@ def test_step_response_of_the_linear_loop(spec, smooth):
     # -28.453 +- 28.448j: the answer to a step of the reference, by partial fractions.
     period = 5e-5
     law = replace(design_independent_joint(spec, None), period=period)
-    held = JointReference(*np.zeros((3, 1, 3)))
+    held = JointMotion(*np.zeros((3, 1, 3)))
     memory = law.step(LawState(), held, np.zeros((1, 3)))[1]
     state = JointState(*np.zeros((3, 1, 3)))
-    reference = JointReference(np.ones((1, 3)), *np.zeros((2, 1, 3)))
+    reference = JointMotion(np.ones((1, 3)), *np.zeros((2, 1, 3)))
     stepper = Stepper.at(
         DriveArrays.of([smooth]), period, *Weightless().mass_and_bias(state.position, None)
     )
@@ -68,7 +63,7 @@ def test_the_weight_deflects_the_joints_unless_it_is_fed_forward(spec, tilted, s
     law, mechanism = design_independent_joint(spec, known), Mechanism(tilted)
     state, memory = at_rest(tilted), LawState()
     wanted = state.position + 0.01
-    reference = JointReference(wanted, *np.zeros((2, 1, 3)))
+    reference = JointMotion(wanted, *np.zeros((2, 1, 3)))
     for _ in range(500):
         command, memory = law.step(memory, reference, law.encoder_ratio * state.position)
         matrices = mechanism.mass_and_bias(state.position, state.velocity)
@@ -163,7 +158,7 @@ def test_energy_is_exact_while_the_matrices_hold(drive):
 
 def test_balanced_mechanism_has_counter_masses_and_springs(spec, tilted):
     balance = design_balance(spec, tilted)
-    mechanism = Mechanism.balanced(tilted, balance)
+    mechanism = Mechanism(balanced_robot(tilted, balance), balance)
     position = inverse_kinematics(tilted, HOME)
     mass, bias = mechanism.mass_and_bias(position, np.zeros((1, 3)))
     assert bias == pytest.approx(residual_torque(tilted, balance, HOME), abs=1e-12)

@@ -1,7 +1,8 @@
 import numpy as np
 import pytest
 
-from nrs_design.robot.simulation.tracking import Experiment, TrackingRecord
+from nrs_design.robot.simulation.tracking.experiment import Experiment
+from nrs_design.robot.simulation.tracking.record import TrackingRecord
 
 ERROR = np.array([[0.01, 0.0, 1e-3], [-0.01, 0.02, -1e-3]])
 

@@ -6,7 +6,8 @@ import pytest
 
 from nrs_design.controllers.laws import ProportionalDerivative
 from nrs_design.errors import DesignError
-from nrs_design.robot.simulation.tracking import CONTROLLERS, build_track, simulate
+from nrs_design.robot.simulation.tracking.simulate import simulate
+from nrs_design.robot.simulation.tracking.track import CONTROLLERS, build_track
 from tests.support import ROOT
 
 # Fast, after a short hold, so that little simulated time shows everything.

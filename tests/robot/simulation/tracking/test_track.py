@@ -2,8 +2,8 @@ import pytest
 
 from nrs_design.errors import DesignError
 from nrs_design.robot.controllers.motion_laws import ComputedTorque, IndependentJoint
-from nrs_design.robot.models import build_robot
-from nrs_design.robot.simulation.tracking import CONTROLLERS, build_track, experiment_tilt
+from nrs_design.robot.models.robot import build_robot
+from nrs_design.robot.simulation.tracking.track import CONTROLLERS, build_track, experiment_tilt
 from nrs_design.spec import parse_spec
 from nrs_design.spec.templates import TEMPLATES
 

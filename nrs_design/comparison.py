@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from contextlib import suppress
+from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -22,7 +23,6 @@ from nrs_design.spec.document import Data, to_data
 
 if TYPE_CHECKING:
     from nrs_design.certificates.certificate import Certificate
-    from nrs_design.pipeline.design import Designed
 
 CERTIFICATE_SUFFIX = ".json"
 # What is longer is a sentence, not a value.
@@ -75,7 +75,7 @@ class Comparison:
     before: Side
     after: Side
     differences: tuple[Difference, ...]  # In the order of `Part`
-    compared: tuple[Part, ...] = field(default=())  # Those that both sides tell
+    compared: tuple[Part, ...]  # Those that both sides tell
 
     @property
     def same(self) -> tuple[Part, ...]:
@@ -90,18 +90,14 @@ class Comparison:
         if self.not_compared:
             parts = ", ".join(self.not_compared)
             texts.append(f"Not compared, since not both files tell it: {parts}.")
-        names = [self._rates(side) for side in (self.before, self.after)]
+        told = (side.parts.get(Part.VERDICT, {}) for side in (self.before, self.after))
+        names = [next((what for what in of if what.startswith(_RATES)), "") for of in told]
         if all(names) and names[0] != names[1]:
             texts.append(
                 f"The rates are not compared: {' and '.join(f'a {name}' for name in names)} are "
                 "numbers of different things."
             )
         return tuple(texts)
-
-    @staticmethod
-    def _rates(side: Side) -> str:
-        told = side.parts.get(Part.VERDICT, {})
-        return next((what for what in told if what.startswith(_RATES)), "")
 
     @property
     def not_compared(self) -> tuple[Part, ...]:
@@ -158,9 +154,13 @@ def _side_of_spec(loaded: LoadedSpec) -> Side:
     else:
         parts |= _proof_parts(result.certificate)
     if result.designed is not None:
-        margins = _margins(result.designed)
-        if margins is not None:
-            parts[Part.MARGINS] = margins
+        with suppress(DesignError):  # A nominal loop that is unstable has no margins.
+            analysis = run_analysis(result.designed)
+            parts[Part.MARGINS] = {
+                f"{item.name}: {found.measure.title}": found.measure.text(found.value)
+                for item in analysis.measured
+                for found in item.achieved
+            }
     return Side(loaded.path, loaded.spec.name, parts)
 
 
@@ -171,7 +171,8 @@ def _proof_parts(certificate: Certificate) -> dict[Part, Mapping[str, str]]:
     if certificate.refuted_in is not None:
         verdict["refuted"] = certificate.refuted_in
     if rate is not None:
-        verdict[_rate_name(system)] = f"{rate_text(rate, system.time)}{_rate_unit(system)}"
+        unit = " 1/s" if system.time is Time.CONTINUOUS else ""
+        verdict[_rate_name(system)] = f"{rate_text(rate, system.time)}{unit}"
     for number, statement in enumerate(certificate.statements, 1):
         verdict[f"statement {number}"] = statement.claim(system)
     units = gain_units(certificate)
@@ -193,23 +194,6 @@ def _rate_name(system: SwitchedSystem) -> str:
     if system.sample_time is None:
         return contraction
     return f"{contraction} of {exact_text(system.sample_time)} s"
-
-
-def _rate_unit(system: SwitchedSystem) -> str:
-    return " 1/s" if system.time is Time.CONTINUOUS else ""
-
-
-def _margins(designed: Designed) -> dict[str, str] | None:
-    """Return what the design achieves; None if a nominal loop is unstable, so that it has none."""
-    try:
-        analysis = run_analysis(designed)
-    except DesignError:
-        return None
-    return {
-        f"{item.name}: {found.measure.title}": found.measure.text(found.value)
-        for item in analysis.measured
-        for found in item.achieved
-    }
 
 
 def _flat(said: Data, where: str = "") -> Iterator[tuple[str, str]]:

@@ -163,7 +163,10 @@ def common_quadratic_of(
 
 def to_document(certificate: Certificate) -> dict[str, Any]:
     """Return the JSON document of a certificate, without its id."""
-    system = certificate.system
+    system, own = certificate.system, system_fields(certificate.system)
+    if not is_of_growth(certificate):
+        # Which modes are attained matters only where something grows.
+        own.pop("enclosures", None)
     return {
         "schema": SCHEMA,
         "verdict": certificate.verdict,
@@ -174,7 +177,7 @@ def to_document(certificate: Certificate) -> dict[str, Any]:
         **({} if not certificate.points else {"points": certificate.points}),
         **({} if not certificate.cuts else {"cuts": written(certificate.cuts)}),
         **({} if certificate.ages is None else {"ages": [*certificate.ages]}),
-        **_own_fields(certificate),
+        **own,
         "statements": [
             {"kind": item.kind, "claim": item.claim(system), **item.to_fields()}
             for item in certificate.statements
@@ -186,14 +189,6 @@ def to_document(certificate: Certificate) -> dict[str, Any]:
 def is_of_growth(certificate: Certificate) -> bool:
     """Tell whether a statement of a certificate is that some motion grows."""
     return any(item.shows in GROWTH for item in certificate.statements)
-
-
-def _own_fields(certificate: Certificate) -> dict[str, Any]:
-    """Return the fields of the system; which modes are attained, only where something grows."""
-    fields = system_fields(certificate.system)
-    if not is_of_growth(certificate):
-        fields.pop("enclosures", None)
-    return fields
 
 
 def canonical(document: Mapping[str, Any]) -> str:

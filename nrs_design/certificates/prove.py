@@ -147,10 +147,11 @@ def check_document(document: Mapping[str, Any], system: SwitchedSystem) -> Verif
 
 def read_certificate(document: Mapping[str, Any], system: SwitchedSystem) -> Certificate:
     """Read what a document states of a system; whether it holds is not asked."""
+    coordinates = document["coordinates"]
     return Certificate(
         spec_name=read_text(document["spec"]["name"]),
         spec_sha256=read_text(document["spec"]["sha256"]),
-        coordinates=_read_coordinates(document["coordinates"]),
+        coordinates=None if coordinates is None else read_text(coordinates),
         gains=read_gains(document),
         system=system,
         statements=_statements(document, system),
@@ -213,10 +214,6 @@ def read_gains(document: Mapping[str, Any]) -> dict[str, dict[str, str]]:
         name: {gain: read_text(value) for gain, value in _mapping(values).items()}
         for name, values in _mapping(document["gains"]).items()
     }
-
-
-def _read_coordinates(value: object) -> str | None:
-    return None if value is None else read_text(value)
 
 
 def _statements(

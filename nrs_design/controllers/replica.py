@@ -32,7 +32,8 @@ def step(law: StepLaw, mode: NDArray[np.uint32], given: Mapping[str, Single]) ->
     """
     valid = mode < len(law.modes)
     for value in law.values:
-        valid = valid & _is_within(given[value.name], float(value.limit))
+        most = np.float32(float(value.limit))
+        valid = valid & (given[value.name] >= -most) & (given[value.name] <= most)
     known: dict[str, Single] = {
         value.name: np.where(valid, given[value.name], np.float32(0)) for value in law.values
     }
@@ -45,11 +46,6 @@ def step(law: StepLaw, mode: NDArray[np.uint32], given: Mapping[str, Single]) ->
         name: np.where(valid, known[value], given[name]) for name, value in law.following.items()
     }
     return StepResult(outputs, states, valid)
-
-
-def _is_within(values: Single, limit: float) -> NDArray[np.bool_]:
-    most = np.float32(limit)
-    return np.asarray((values >= -most) & (values <= most))
 
 
 def _numbers(law: StepLaw, coefficient: Coefficient, mode: NDArray[np.uint32]) -> Single:

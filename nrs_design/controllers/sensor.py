@@ -19,7 +19,7 @@ from nrs_design.errors import DesignError
 from nrs_design.models.linear_form import LinearForm, combine
 from nrs_design.proof.taylor import exponential_between
 from nrs_design.spec.quantity_fields import RangedQuantity
-from nrs_design.spec.sensor import PointSpec, SensorSpec, ToolSpec
+from nrs_design.spec.sensor import SensorSpec, ToolSpec
 
 ZERO = Fraction(0)
 Vector = Sequence[Fraction]
@@ -104,7 +104,7 @@ def build_sensor(spec: SensorSpec | None) -> Sensor:
     """Convert what a spec says of the sensor; without it, the force is exact."""
     if spec is None:
         return Sensor()
-    pivot = _coordinates(spec.pivot)
+    pivot = (ZERO,) * 3 if spec.pivot is None else spec.pivot.exact
     low_pass = None
     if spec.filter is not None:
         low_pass = LowPass(spec.filter.order, to_float32(spec.filter.cutoff.not_below))
@@ -151,10 +151,6 @@ def _moments(tool: ToolSpec, pivot: Vector) -> tuple[Fraction, Fraction]:
 
 def _ends(written: RangedQuantity) -> tuple[Fraction, ...]:
     return tuple(end.exact for end in written.range)
-
-
-def _coordinates(point: PointSpec | None) -> Vector:
-    return (ZERO,) * 3 if point is None else point.exact
 
 
 def length_between(vector: Vector) -> tuple[Fraction, Fraction]:

@@ -17,7 +17,7 @@ from nrs_design.controllers.step_analysis import check_range
 from nrs_design.controllers.step_law import StepFrame, StepLimits, build_law
 from nrs_design.controllers.step_logic import StepLogic
 from nrs_design.errors import DesignError
-from nrs_design.spec import IdleStatesSpec, InteractionDesignSpec
+from nrs_design.spec import InteractionDesignSpec
 
 
 def shipped_law(
@@ -36,14 +36,9 @@ def shipped_law(
     laws = {c.name: c.law.discretize(outer or period, method) for c in design.controllers}
     law = _step_law(spec, design, laws, period, outer or period)
     check_range(law)
-    law = _in_commands(_on_axis(law, design.axis), design.command)
-    return replace(law, logic=_logic_of(spec, law, period))
-
-
-def _logic_of(spec: InteractionDesignSpec, law: StepLaw, period: Fraction) -> StepLogic | None:
-    """Return the mode logic that ships."""
+    law = _with_units(law, design.axis, design.command)
     logic = spec.mode_logic
-    return None if logic is None else StepLogic.of(logic, law.modes, period)
+    return replace(law, logic=None if logic is None else StepLogic.of(logic, law.modes, period))
 
 
 def _step_law(
@@ -66,39 +61,28 @@ def _step_law(
         )
     if (odd := design.find_odd_states(mixed=spec.idle_states is not None)) is not None:
         raise DesignError(odd, remedy=SHARED_STATES, at=("controllers",))
+    if spec.idle_states is None:
+        return build_law(frame, laws)
+    # A reset sets idle states to zero at the switch, and what decays from zero stays there: to
+    # leave nothing of them from the first sample on is the same.
     idle = spec.idle_states
-    return build_law(frame, laws, None if idle is None else _left(idle, period))
+    return build_law(frame, laws, Fraction(0) if idle.reset else idle_share(idle, period))
 
 
-def _left(idle: IdleStatesSpec, period: Fraction) -> Fraction:
-    """Return what a sample leaves of idle states.
+def _with_units(law: StepLaw, axis: AxisType, command: str) -> StepLaw:
+    """Name the units of an axis and of what the motor takes, where the law says rad and rpm."""
 
-    A reset sets them to zero at the switch, and what decays from zero stays there: to leave nothing
-    of them from the first sample on is the same.
-    """
-    return Fraction(0) if idle.reset else idle_share(idle, period)
+    def named(unit: str) -> str:
+        unit = axis.unit(unit)
+        return command + unit.removeprefix("rpm") if unit.startswith("rpm") else unit
 
-
-def _in_commands(law: StepLaw, command: str) -> StepLaw:
-    """Name the unit that the motor takes, where the law says rpm; its numbers are in it already."""
-    units = {name: _renamed(unit, command) for name, unit in law.units.items()}
-    coefficients = tuple(replace(c, unit=_renamed(c.unit, command)) for c in law.coefficients)
-    return replace(law, units=units, coefficients=coefficients)
-
-
-def _on_axis(law: StepLaw, axis: AxisType) -> StepLaw:
-    """Name the units of an axis where the law says those of one that turns."""
-    inputs, states = (
-        tuple(replace(v, unit=axis.unit(v.unit)) for v in values)
-        for values in (law.inputs, law.states)
+    return replace(
+        law,
+        inputs=tuple(replace(value, unit=named(value.unit)) for value in law.inputs),
+        states=tuple(replace(value, unit=named(value.unit)) for value in law.states),
+        coefficients=tuple(replace(c, unit=named(c.unit)) for c in law.coefficients),
+        units={name: named(unit) for name, unit in law.units.items()},
     )
-    coefficients = tuple(replace(c, unit=axis.unit(c.unit)) for c in law.coefficients)
-    units = {name: axis.unit(unit) for name, unit in law.units.items()}
-    return replace(law, inputs=inputs, states=states, coefficients=coefficients, units=units)
-
-
-def _renamed(unit: str, command: str) -> str:
-    return command + unit.removeprefix("rpm") if unit.startswith("rpm") else unit
 
 
 def step_limits(spec: InteractionDesignSpec) -> StepLimits:

@@ -163,6 +163,7 @@ def build_law(
         *motion,
         *(operation for part in reversed(parts) for operation in part.after),
     )
+    force = {FORCE: _lagged(frame.order)}
     return StepLaw(
         tuple(laws),
         (*_measured(limits)[frame.takes is Takes.VELOCITY :], *map(limits.within, inputs.values())),
@@ -178,7 +179,10 @@ def build_law(
             *_coefficients(laws.values(), parts, idle),
             *(Coefficient(name, "", unit, (edge,)) for name, (edge, unit) in edges.items()),
         ),
-        tuple(_with_force(operation, _lagged(frame.order)) for operation in operations),
+        tuple(
+            replace(o, left=force.get(o.left, o.left), right=force.get(o.right, o.right))
+            for o in operations
+        ),
         {"command": _command(frame, to_follow if placed else "", takes_force=takes_force)},
         {**first, **({} if frame.streams else {"error_before": "error"}), **lagging, **following},
         UNITS,
@@ -307,8 +311,3 @@ def _filtered(order: int) -> Iterator[Operation]:
         yield Operation(f"kept_{i}", "multiply", "p", f"filtered_{i}")
         yield Operation(f"added_{i}", "multiply", "q", _lagged(i - 1))
         yield Operation(_lagged(i), "add", f"kept_{i}", f"added_{i}")
-
-
-def _with_force(operation: Operation, force: str) -> Operation:
-    left, right = (force if n == FORCE else n for n in (operation.left, operation.right))
-    return replace(operation, left=left, right=right)

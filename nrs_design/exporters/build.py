@@ -11,7 +11,6 @@ from nrs_design.certificates.certificate import Certificate
 from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.controllers.float32 import exact_decimal
 from nrs_design.controllers.gains import gains_of, idle_decay
-from nrs_design.controllers.sensor import LowPass
 from nrs_design.errors import CertificateError
 from nrs_design.exporters.outside import NOTHING, outside_of
 from nrs_design.exporters.record import (
@@ -30,8 +29,7 @@ from nrs_design.exporters.record import (
 from nrs_design.proof.evidence.fields import rate_text
 from nrs_design.proof.mode import Time
 from nrs_design.proof.text import exact_text
-from nrs_design.spec import IdleStatesSpec, InteractionDesignSpec, LoadedSpec
-from nrs_design.spec.controllers import Offset
+from nrs_design.spec import InteractionDesignSpec, LoadedSpec
 
 
 def build_record(
@@ -51,7 +49,7 @@ def build_record(
     sampling = None if system.sample_time is None else spec.sampling
     rounded = evidence is not None and evidence.covers_rounding
     return ExportRecord(
-        **_contents(design, spec.idle_states, spec.offset),
+        **_contents(design, spec),
         spec=SpecReference(name=certificate.spec_name, sha256=certificate.spec_sha256),
         sample_time=_sample_time(None if sampling is None else sampling.step),
         delay=None if sampling is None else sampling.delay,
@@ -71,7 +69,7 @@ def build_unproved(
     spec = loaded.spec
     assert isinstance(spec, InteractionDesignSpec)
     return ExportRecord(
-        **_contents(design, spec.idle_states, spec.offset),
+        **_contents(design, spec),
         spec=SpecReference(name=spec.name, sha256=loaded.sha256),
         verdict="unproved",
         unproved=reason,
@@ -83,10 +81,9 @@ def build_unproved(
     )
 
 
-def _contents(
-    design: ControllerDesign, idle: IdleStatesSpec | None, offset: Offset
-) -> dict[str, Any]:
+def _contents(design: ControllerDesign, spec: InteractionDesignSpec) -> dict[str, Any]:
     """Return what ships, whatever is known of it."""
+    idle, low_pass = spec.idle_states, design.sensor.filter
     return {
         "package": Package(version=__version__),
         "motion": MotionController(gains=_gains(design, design.motion.name)),
@@ -102,9 +99,13 @@ def _contents(
             )
             for controller in design.controllers
         ),
-        "idle_states": None if idle is None else _idle_states(idle),
-        "offset": None if offset == "none" else offset,
-        "force_filter": _force_filter(design.sensor.filter),
+        "idle_states": None
+        if idle is None
+        else IdleStates(decay=_gain("decay", "1/s", idle_decay(idle)), reset=idle.reset),
+        "offset": None if spec.offset == "none" else spec.offset,
+        "force_filter": None
+        if low_pass is None
+        else ForceFilter(order=low_pass.order, pole=_gain("pole", "rad/s", low_pass.pole)),
     }
 
 
@@ -158,16 +159,6 @@ def _timing(spec: InteractionDesignSpec) -> str | None:
         instead = "the command before is held" if misses.command == "hold" else "the command is 0"
         said.append(f"at most {misses} may be missed: no step is made then, and {instead}")
     return "; ".join(said) or None
-
-
-def _idle_states(idle: IdleStatesSpec) -> IdleStates:
-    return IdleStates(decay=_gain("decay", "1/s", idle_decay(idle)), reset=idle.reset)
-
-
-def _force_filter(low_pass: LowPass | None) -> ForceFilter | None:
-    if low_pass is None:
-        return None
-    return ForceFilter(order=low_pass.order, pole=_gain("pole", "rad/s", low_pass.pole))
 
 
 def _gains(design: ControllerDesign, name: str) -> tuple[Gain, ...]:

@@ -56,7 +56,13 @@ def compare_deployed(
     files = sorted(path for path in place.iterdir() if path.is_file()) if whole else [place]
     known = [file for file in files if file.name in formats]
     if not (whole or known):
-        raise _something_else(place, formats)
+        names = ", ".join(sorted({*formats.values()}))
+        raise NrsDesignError(
+            "is none of the files that are compared",
+            path=place,
+            remedy=f"name the folder, or a file of one of the formats {names}, under the name that "
+            "it was exported with",
+        )
     export = _export(spec, certificate, place)
     # A folder has the law itself, whatever else it has.
     there = {formats[file.name] for file in known} | ({"c"} if whole else set())
@@ -131,16 +137,6 @@ def _around(content: bytes, at: int) -> str:
     end = content.find(b"\n", at)
     line = content[start : min(end if end >= 0 else len(content), at + _AFTER)]
     return repr(line.decode("ascii", "backslashreplace")) if line else "nothing"
-
-
-def _something_else(file: Path, formats: Mapping[str, str]) -> NrsDesignError:
-    names = ", ".join(sorted({*formats.values()}))
-    return NrsDesignError(
-        "is none of the files that are compared",
-        path=file,
-        remedy=f"name the folder, or a file of one of the formats {names}, under the name that it "
-        "was exported with",
-    )
 
 
 def _read(file: Path) -> bytes:

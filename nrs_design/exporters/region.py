@@ -12,7 +12,6 @@ more than Q by `ROOM`, which is kept for what single precision rounds.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -79,7 +78,9 @@ def region_of(export: Export, law: StepLaw) -> MonitoredRegion | str:
         return "single precision loses it"
     T, motor = system.sample_time, designed.plant.actuator_ranges
     ways = [
-        end for tau in (motor.time_constant.low, motor.time_constant.high) for end in _way(T, tau)
+        E / (tau * (1 - E))
+        for tau in (motor.time_constant.low, motor.time_constant.high)
+        for E in exponential_between(-T / tau)
     ]
     touched = {name for c in spec.controllers.values() for name in contact_names(c.contacts)}
     found = [e.stiffness for e in build_environments(spec) if e.name in touched]
@@ -93,11 +94,6 @@ def region_of(export: Export, law: StepLaw) -> MonitoredRegion | str:
         (float32_not_above(motor.gain.low), float32_not_below(motor.gain.high)),
         max(1, oldest[1]),
     )
-
-
-def _way(T: Fraction, tau: Fraction) -> Iterator[Fraction]:
-    """Yield numbers between which ``E/(tau (1 - E))`` is."""
-    yield from (E / (tau * (1 - E)) for E in exponential_between(-T / tau))
 
 
 def _factor(form: IntegerMatrix, power: int) -> tuple[tuple[Fraction, ...], ...] | None:

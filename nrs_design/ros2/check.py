@@ -10,7 +10,7 @@ from pathlib import Path
 
 from nrs_design.errors import Fault, SpecError
 from nrs_design.gating.obligations import Caution, GateOutcome, Obligation, SpecOutcome, Status
-from nrs_design.gating.rules import ROS_AXIS, ROS_OTHERS, ROS_PARAMETERS
+from nrs_design.gating.rules import ROS_AXIS, ROS_OTHERS, ROS_PARAMETERS, Rule
 from nrs_design.progress import Progress
 from nrs_design.proof.bounds import lower, nearly
 from nrs_design.proof.evidence.fields import rate_text
@@ -19,7 +19,6 @@ from nrs_design.ros2.axis import Surroundings, assumptions, close_axis
 from nrs_design.ros2.law import LAW, AdmittanceLaw, Axis, is_admittance, read_law
 from nrs_design.ros2.managers import (
     MANAGER,
-    PassedOver,
     find_undecided,
     kind_of,
     managers_of,
@@ -30,6 +29,7 @@ from nrs_design.ros2.traps import find_traps
 from nrs_design.search.certification import Certification, Limits
 from nrs_design.search.certify import certify
 from nrs_design.search.margin import find_margin
+from nrs_design.spec.document import Position
 
 # For each of the proofs by which a safe range is looked for.
 MARGIN_BUDGET = 2.0
@@ -69,10 +69,7 @@ class _Asker:
         """Return what holds for one axis."""
         status, message = self._decide(law, axis, around)
         name = f"{law.node.name}: axis {axis.name}"
-        place = axis.position
-        return Obligation(
-            ROS_AXIS, self.path, name, status, f"{name}: {message}", place.line, place.column
-        )
+        return _owed(ROS_AXIS, self.path, name, status, message, axis.position)
 
     def _decide(self, law: AdmittanceLaw, axis: Axis, around: Surroundings) -> tuple[Status, str]:
         if axis.selected and law.force_from is not None:
@@ -190,15 +187,21 @@ def check_file(path: Path, question: Question, limits: Limits, progress: Progres
         around = question.around(1 / rate)
         notes |= dict.fromkeys(assumptions(around))
         notes[_rate_note(law, manager, question.rate, rate)] = None
-        obligations.append(_readable(path, node))
+        read = "the parameters that the law depends on are read as written"
+        obligations.append(_owed(ROS_PARAMETERS, path, node.name, Status.MET, read, node.position))
         obligations += [asker.obligation(law, axis, around) for axis in law.axes]
         cautions += find_traps(law, path)
-    obligations += [_undecided(path, other) for other in beside if not other.silent]
+    for other in (other for other in beside if not other.silent):
+        why = f"passed over, so undecided: {other.why}"
+        owed = _owed(ROS_OTHERS, path, other.name, Status.INCONCLUSIVE, why, other.position)
+        obligations.append(owed)
     outcome = SpecOutcome(
         path, tuple(obligations), verdict=_verdict(obligations), cautions=tuple(cautions)
     )
-    granted = (f"taken for granted: {note}" for note in notes)
-    return GateOutcome((outcome,), (*granted, *_silent(beside)))
+    said = [f"taken for granted: {note}" for note in notes]
+    if names := ", ".join(other.name for other in beside if other.silent):
+        said.append(f"passed over, because they command nothing: {names}")
+    return GateOutcome((outcome,), tuple(said))
 
 
 def _shared_rate(manager: RosNode, nodes: tuple[RosNode, ...]) -> Iterator[Fault]:
@@ -226,18 +229,10 @@ def _shared(node: RosNode, nodes: tuple[RosNode, ...]) -> Iterator[Fault]:
                 )
 
 
-def _undecided(path: Path, other: PassedOver) -> Obligation:
-    message = f"{other.name}: passed over, so undecided: {other.why}"
-    place = other.position
-    return Obligation(
-        ROS_OTHERS, path, other.name, Status.INCONCLUSIVE, message, place.line, place.column
-    )
-
-
-def _silent(others: Iterable[PassedOver]) -> Iterator[str]:
-    """Say what was passed over because it commands nothing."""
-    if names := ", ".join(other.name for other in others if other.silent):
-        yield f"passed over, because they command nothing: {names}"
+def _owed(
+    rule: Rule, path: Path, name: str, status: Status, message: str, place: Position
+) -> Obligation:
+    return Obligation(rule, path, name, status, f"{name}: {message}", place.line, place.column)
 
 
 def _verdict(obligations: Iterable[Obligation]) -> str | None:
@@ -314,14 +309,6 @@ def _unreadable(path: Path, node: RosNode, fault: Fault) -> Obligation:
     message = f"{fault.message} ({fault.remedy})" if fault.remedy else fault.message
     return Obligation(
         ROS_PARAMETERS, path, node.name, Status.ERROR, message, fault.line, fault.column
-    )
-
-
-def _readable(path: Path, node: RosNode) -> Obligation:
-    message = f"{node.name}: the parameters that the law depends on are read as written"
-    place = node.position
-    return Obligation(
-        ROS_PARAMETERS, path, node.name, Status.MET, message, place.line, place.column
     )
 
 

@@ -8,8 +8,7 @@ import pytest
 from nrs_design.controllers.replica import step
 from nrs_design.exporters.c_names import CNames
 from nrs_design.exporters.formats.c import header_text
-from nrs_design.exporters.signs import sign_lines
-from nrs_design.exporters.start import PLACED, SPRUNG, STREAMED, TWICE, start_lines
+from nrs_design.exporters.start import PLACED, SPRUNG, STREAMED, TWICE, sign_lines, start_lines
 from nrs_design.simulation.step_program import StepProgram
 from tests.exporters.programs import LAWS, law
 

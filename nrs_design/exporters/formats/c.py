@@ -17,8 +17,7 @@ from nrs_design.exporters.export import Export
 from nrs_design.exporters.header import header_lines
 from nrs_design.exporters.program import program_of
 from nrs_design.exporters.record import ExportRecord
-from nrs_design.exporters.signs import sign_lines
-from nrs_design.exporters.start import start_lines
+from nrs_design.exporters.start import sign_lines, start_lines
 from nrs_design.exporters.template import fill_template
 from nrs_design.output import C_HEADER, C_SOURCE
 

@@ -10,8 +10,8 @@ from nrs_design.exporters import Format
 from nrs_design.exporters.export import Export
 from nrs_design.exporters.header import header_lines
 from nrs_design.exporters.proof_assistant.choose import choose_theorem
+from nrs_design.exporters.proof_assistant.statement import Theorem
 from nrs_design.exporters.proof_assistant.text import in_comment
-from nrs_design.exporters.proof_assistant.theorem import Theorem
 from nrs_design.output import COQ
 
 FORMAT = Format(
@@ -22,7 +22,6 @@ FORMAT = Format(
     alone=True,
 )
 _LIBRARY = Path(__file__).parent.parent / "proof_assistant"
-# What the statement leaves out against the claim of the certificate.
 # What no statement of the library covers of a claim.
 _LEFT_OUT = (
     "that these modes are those of the robot: what is taken for granted, below",
@@ -35,8 +34,10 @@ def render(export: Export) -> dict[str, bytes]:
     certificate = export.certificate
     assert certificate is not None, "what is proved has a certificate"
     theorem = choose_theorem(certificate)
+    lines = _head_lines(export, certificate, theorem)
+    head = "\n".join(f"   {in_comment(line)}" for line in lines)
     parts = [
-        _head(export, certificate, theorem),
+        f"{COQ.decode()}\n{head} *)\n",
         *((_LIBRARY / f"{name}.v").read_text(encoding="utf-8") for name in theorem.library),
         "(** * The system, and what proves its stability *)\n",
         "Open Scope Z_scope.\n",
@@ -46,13 +47,6 @@ def render(export: Export) -> dict[str, bytes]:
         "Print Assumptions stable.\n",
     ]
     return {".v": "\n".join(parts).encode()}
-
-
-def _head(export: Export, certificate: Certificate, theorem: Theorem) -> str:
-    lines = "\n".join(
-        f"   {in_comment(line)}" for line in _head_lines(export, certificate, theorem)
-    )
-    return f"{COQ.decode()}\n{lines} *)\n"
 
 
 def _head_lines(export: Export, certificate: Certificate, theorem: Theorem) -> Iterator[str]:

@@ -23,7 +23,6 @@ from nrs_design.output import MAT
 from nrs_design.pipeline.design import run_linear_parts, run_open_loops
 from nrs_design.proof.bounds import lower_float, upper_float
 from nrs_design.proof.mode import Mode, Time
-from nrs_design.proof.system import SwitchedSystem
 
 if TYPE_CHECKING:
     from nrs_design.design.linear_parts import LinearPart
@@ -114,7 +113,9 @@ def _open(loop: OpenLoop) -> dict[str, Any]:
 def _info(record: ExportRecord, certificate: Certificate) -> dict[str, Any]:
     proof, system = record.proof, certificate.system
     assert proof is not None, "only what is proved has a certificate of it"
-    period = system.sample_time
+    period, safe = system.sample_time, upper_float
+    if system.time is Time.CONTINUOUS:
+        safe = lower_float
     return {
         "header": _cells(header_lines(record)),
         "spec": record.spec.name,
@@ -123,17 +124,13 @@ def _info(record: ExportRecord, certificate: Certificate) -> dict[str, Any]:
         "verdict": record.verdict,
         "claim": proof.claim,
         "time": str(system.time),
-        "rate": _safe_rate(Fraction(proof.decay_rate.exact), system),
+        # A double that is proved, too: no faster than the exact rate.
+        "rate": safe(Fraction(proof.decay_rate.exact)),
         "rate_unit": proof.decay_rate.unit,
         "sample_time": np.empty((0, 0)) if period is None else float(period),
         "assumptions": _cells(proof.assumptions),
         "outside": _cells(record.outside),
     }
-
-
-def _safe_rate(rate: Fraction, system: SwitchedSystem) -> float:
-    """Return a double that is proved too: no faster than the exact rate."""
-    return lower_float(rate) if system.time is Time.CONTINUOUS else upper_float(rate)
 
 
 def _modes(modes: Iterable[Mode]) -> Any:

@@ -10,7 +10,7 @@ from nrs_design.errors import DesignError
 from nrs_design.exporters.proof_assistant.flows import flows_theorem
 from nrs_design.exporters.proof_assistant.places import places_theorem
 from nrs_design.exporters.proof_assistant.sampled import sampled_theorem
-from nrs_design.exporters.proof_assistant.theorem import Theorem
+from nrs_design.exporters.proof_assistant.statement import Theorem
 from nrs_design.proof.evidence.graph import FormsOnGraph
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem

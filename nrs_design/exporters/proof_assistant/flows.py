@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import repeat
 
-from nrs_design.exporters.proof_assistant.statement import AbstractStatement
+from nrs_design.exporters.proof_assistant.statement import AbstractStatement, Theorem
 from nrs_design.exporters.proof_assistant.text import (
     Definitions,
     factor_of,
@@ -14,7 +14,6 @@ from nrs_design.exporters.proof_assistant.text import (
     long_integer,
     symmetric,
 )
-from nrs_design.exporters.proof_assistant.theorem import Theorem
 from nrs_design.proof.evidence.graph import FormsOnGraph
 from nrs_design.proof.exact import IntegerMatrix, add
 from nrs_design.proof.lift import monomials

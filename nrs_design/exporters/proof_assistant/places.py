@@ -6,6 +6,7 @@ from fractions import Fraction
 from math import ceil
 
 from nrs_design.exporters.proof_assistant.flows import FlowStatement
+from nrs_design.exporters.proof_assistant.statement import Theorem
 from nrs_design.exporters.proof_assistant.text import (
     Definitions,
     factor_of,
@@ -14,7 +15,6 @@ from nrs_design.exporters.proof_assistant.text import (
     long_integer,
     symmetric,
 )
-from nrs_design.exporters.proof_assistant.theorem import Theorem
 from nrs_design.proof.evidence.graph import FormsOnGraph
 from nrs_design.proof.exact import transpose
 from nrs_design.proof.matrix import RationalMatrix

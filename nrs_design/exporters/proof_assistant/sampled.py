@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from math import gcd, lcm
 
-from nrs_design.exporters.proof_assistant.statement import AbstractStatement
+from nrs_design.exporters.proof_assistant.statement import AbstractStatement, Theorem
 from nrs_design.exporters.proof_assistant.text import (
     Definitions,
     factor_of,
@@ -14,7 +14,6 @@ from nrs_design.exporters.proof_assistant.text import (
     reordered,
     symmetric,
 )
-from nrs_design.exporters.proof_assistant.theorem import Theorem
 from nrs_design.proof.evidence.graph import FormsOnGraph
 from nrs_design.proof.mode import Mode
 from nrs_design.proof.steps import FREE, LOST, ROUNDING

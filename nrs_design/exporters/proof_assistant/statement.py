@@ -1,8 +1,9 @@
-"""What a theorem of Coq is about: a system and its forms, as lists of modes."""
+"""A theorem for Coq: what it is about, what is computed and stated, and why it follows."""
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from nrs_design.exporters.proof_assistant.text import Definitions, identifiers, listed
@@ -41,3 +42,16 @@ class AbstractStatement(ABC):
             definitions.define(names[mode.name], self.mode(k, mode, definitions), mode.name)
         each = (listed(names[mode.name] for mode in part) for part in (touching, flying))
         return next(each), next(each)
+
+
+@dataclass(frozen=True, slots=True)
+class Theorem:
+    """The text of a file, but for its head."""
+
+    library: tuple[str, ...]  # Parts of the library, in order
+    definitions: Sequence[str]  # The system and the certificate
+    check: str  # What must be computed to be true
+    statement: str  # The theorem
+    proof: str  # A term, with `checked` for what was computed
+    states: tuple[str, ...]  # In the order in which it counts them
+    left_out: tuple[str, ...] = ()  # What the statement leaves out against the claim

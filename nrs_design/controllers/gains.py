@@ -174,12 +174,15 @@ def designed_gains(
 
 def _motion(spec: InteractionDesignSpec, gains: Numbers) -> ProportionalDerivative:
     """Return the motion controller; none where the robot has its own."""
-    if spec.motion_loop is None:
+    loop = spec.motion_loop
+    if loop is None:
         return NO_MOTION
     motion = ProportionalDerivative.of(gains[MOTION])
     if motion.Kp <= 0 or motion.Kd <= 0:
         raise CertificateError("the gains of the motion controller are not positive")
-    if not motion_gains_fixed_by(spec, motion):
+    given, zero = loop.derivative_gain, loop.zero
+    fixed = given is None or motion.Kd == to_float32(given.exact)
+    if not fixed or (zero is not None and motion.Kp != to_float32(motion.Kd * zero.exact)):
         raise CertificateError("the gains of the motion controller are not what the spec fixes")
     return motion
 
@@ -192,15 +195,6 @@ def idle_decay(idle: IdleStatesSpec) -> Fraction:
 def idle_share(idle: IdleStatesSpec, period: Fraction) -> Fraction:
     """Return what a period in s leaves of idle states: a single-precision number, too."""
     return to_float32(exponential_between(-idle_decay(idle) * period)[0])
-
-
-def motion_gains_fixed_by(spec: InteractionDesignSpec, motion: ProportionalDerivative) -> bool:
-    """Tell whether a motion controller has the gains that the spec fixes, if it fixes any."""
-    loop = spec.motion_loop
-    assert loop is not None, "a robot with its own has no gains"
-    if loop.derivative_gain is not None and motion.Kd != to_float32(loop.derivative_gain.exact):
-        return False
-    return loop.zero is None or motion.Kp == to_float32(motion.Kd * loop.zero.exact)
 
 
 def _controller(name: str, spec: ControllerSpec, values: Mapping[str, Fraction]) -> Controller:

@@ -8,7 +8,6 @@ have no point in common, no stiffness explains them. The theorem is in docs/expo
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -71,9 +70,11 @@ def sector_of(spec: InteractionDesignSpec) -> Sector | str:
         return "the spec has no `monitoring`, so nothing says how far readings are off"
     if spec.contact is None:
         return "the spec does not say by `contact` whether contact may be lost"
-    if spec.monitoring.surface != "fixed" and _ages(spec) > 1:
+    youngest, oldest = (0, 0) if spec.sampling is None else spec.sampling.delay
+    if spec.monitoring.surface != "fixed" and oldest - youngest > 1:
         return "ages of the force sample differ by more than one, so the order of contacts is lost"
-    touched = list(_touched(spec))
+    names = {name for c in spec.controllers.values() for name in contact_names(c.contacts)}
+    touched = [e for e in build_environments(spec) if e.name in names]
     if not touched:
         return "no controller touches anything"
     for e in touched:
@@ -107,17 +108,5 @@ def _sector(spec: InteractionDesignSpec, touched: list[Environment], viscous: Fr
     )
 
 
-def _ages(spec: InteractionDesignSpec) -> int:
-    """Return by how many samples the ages of torques differ."""
-    youngest, oldest = (0, 0) if spec.sampling is None else spec.sampling.delay
-    return oldest - youngest
-
-
 def _not_below(quantity: Quantity | None) -> Fraction:
     return Fraction(0) if quantity is None else quantity.not_below
-
-
-def _touched(spec: InteractionDesignSpec) -> Iterator[Environment]:
-    """Yield what controllers touch, alone or together."""
-    names = {name for c in spec.controllers.values() for name in contact_names(c.contacts)}
-    yield from (e for e in build_environments(spec) if e.name in names)

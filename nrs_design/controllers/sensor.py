@@ -120,7 +120,7 @@ def _errors(spec: SensorSpec, pivot: Vector) -> Iterator[tuple[str, Fraction]]:
     if spec.bias is not None:
         yield "bias", spec.bias.exact
     if spec.force_bias is not None:
-        yield "bias of the force", spec.force_bias.exact * length_between(pivot)[1]
+        yield "bias of the force", spec.force_bias.exact * length_above(pivot)
     if spec.drift is not None and spec.tared_every is not None:
         yield "drift since taring", spec.drift.exact * spec.tared_every.exact
     if spec.resolution is not None:
@@ -146,16 +146,16 @@ def _moments(tool: ToolSpec, pivot: Vector) -> tuple[Fraction, Fraction]:
         off.append(max(abs(m * (at - origin) - moment) for m, at in ends))
         own.append(moment)
     gravity = tool.gravity.exact
-    return gravity * length_between(off)[1], gravity * length_between(own)[1]
+    return gravity * length_above(off), gravity * length_above(own)
 
 
 def _ends(written: RangedQuantity) -> tuple[Fraction, ...]:
     return tuple(end.exact for end in written.range)
 
 
-def length_between(vector: Vector) -> tuple[Fraction, Fraction]:
-    """Return fractions not above and not below the length of a vector."""
+def length_above(vector: Vector) -> Fraction:
+    """Return a fraction not below the length of a vector, and next to it."""
     square = sum((c * c for c in vector), ZERO) * _FINE**2
     root = isqrt(square.numerator // square.denominator)
     exact = root * root * square.denominator == square.numerator
-    return Fraction(root, _FINE), Fraction(root + (not exact), _FINE)
+    return Fraction(root + (not exact), _FINE)

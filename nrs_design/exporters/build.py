@@ -88,14 +88,12 @@ def _contents(design: ControllerDesign, spec: InteractionDesignSpec) -> dict[str
         "package": Package(version=__version__),
         "motion": MotionController(gains=_gains(design, design.motion.name)),
         "controllers": tuple(
-            CompliantController.model_validate(
-                {
-                    "name": controller.name,
-                    "law": controller.law.name,
-                    "environment": controller.environment,
-                    "contacts": controller.contacts,
-                    "gains": _gains(design, controller.name),
-                }
+            CompliantController(
+                name=controller.name,
+                law=controller.law.name,
+                environment=controller.environment,
+                contacts=controller.contacts,
+                gains=_gains(design, controller.name),
             )
             for controller in design.controllers
         ),

@@ -9,6 +9,7 @@ changed spec.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -142,7 +143,7 @@ class _Search:
         for left, lines in zip(range(len(ways), 0, -1), ways, strict=True):
             if lines and self._decide(_least(lines), (until - self._spent) / left):
                 break
-        return (self._proved(tuple((line, line.least, 0) for line in lines)),)
+        return (self._least_proved(lines),)
 
     def _single(
         self, lines: Sequence[Concession], find: float, stretch: float
@@ -193,8 +194,9 @@ class _Search:
         long as the rest is proved.
         """
         kept: list[Concession] = []
-        for line in lines:
-            if line.in_all and self._is_valid((*kept, line)):
+        for line in (line for line in lines if line.in_all):
+            with suppress(SpecError):  # What makes no valid spec with the others is left out.
+                _edited(self._result.loaded, _least([*kept, line]))
                 kept.append(line)
         if len(kept) < 2 or not self._decide(_least(kept), (until - self._spent) / 2):
             return ()
@@ -203,16 +205,7 @@ class _Search:
             if self._decide(_least(fewer), (until - self._spent) / left):
                 kept = fewer
         # One line alone was found already.
-        return (
-            () if len(kept) < 2 else (self._proved(tuple((line, line.least, 0) for line in kept)),)
-        )
-
-    def _is_valid(self, lines: Sequence[Concession]) -> bool:
-        try:
-            _edited(self._result.loaded, _least(lines))
-        except SpecError:
-            return False
-        return True
+        return (self._least_proved(kept),) if len(kept) > 1 else ()
 
     def _decide(self, edits: Sequence[Edit], budget: float) -> _Decided | None:
         """Take a changed spec all the way; None without a proof, or where it makes no system."""
@@ -246,6 +239,9 @@ class _Search:
         if decided.verdict is not Verdict.PROVED:
             return None
         return _Decided(loaded, decided, gains_text(designed))
+
+    def _least_proved(self, lines: Sequence[Concession]) -> Proved:
+        return self._proved([(line, line.least, 0) for line in lines])
 
     def _proved(self, lines: Sequence[tuple[Concession, Way, int]]) -> Proved:
         edits = [line.edit(form, step) for line, form, step in lines]

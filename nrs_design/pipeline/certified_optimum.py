@@ -243,7 +243,7 @@ class _Search:
         from nrs_design.design.trust_region import ConstrainedProblem, minimize_in_trust_region
 
         gains = self.gains
-        evaluate = DesignEvaluator.of(gains, self.constraints, self.progress).evaluate
+        evaluate = DesignEvaluator(gains, self.constraints, self.progress).evaluate
         problem = ConstrainedProblem(gains.cost, evaluate, gains.low, gains.high, gains.spared)
         first = evaluate(start, None)
         found = minimize_in_trust_region(problem, first)

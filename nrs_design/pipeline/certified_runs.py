@@ -40,7 +40,7 @@ def hold_bounds(
 ) -> tuple[CertifiedBound, ...]:
     """Return the certified bounds with the reasons why they do not apply to a run."""
     from nrs_design.proof.bounds import upper_float
-    from nrs_design.simulation.coverage import uncovered
+    from nrs_design.simulation.coverage import Coverage
 
     system, found = certificate.system, []
     for statement in certificate.statements:
@@ -48,9 +48,9 @@ def hold_bounds(
         # One bound for each output is about all disturbances at once.
         if bound is None or set(bound.channels) != set(system.channels):
             continue
-        reasons = uncovered(designed.spec, system, statement, simulated.scenario, simulated.run)
-        level = upper_float(bound.level)
-        found.append(CertifiedBound(bound.output.name, bound.output.unit, level, tuple(reasons)))
+        beside = Coverage(designed.spec, system, statement, simulated.scenario, simulated.run)
+        reasons, level = tuple(beside.uncovered()), upper_float(bound.level)
+        found.append(CertifiedBound(bound.output.name, bound.output.unit, level, reasons))
     return tuple(found)
 
 
@@ -61,7 +61,7 @@ def hold_rate(
     from nrs_design.proof.bounds import lower_float, upper_float
     from nrs_design.proof.evidence.abstract import Shows
     from nrs_design.proof.mode import Time
-    from nrs_design.simulation.coverage import end_of_command, undecayed
+    from nrs_design.simulation.coverage import Coverage, end_of_command
 
     system, one = certificate.system, simulated
     evidence = certificate.evidence
@@ -69,11 +69,11 @@ def hold_rate(
     if evidence is None or evidence.shows is not Shows.STABILITY or proved is None:
         return None
     continuous = system.time is Time.CONTINUOUS
-    reasons = undecayed(designed.spec, system, evidence, one.scenario, one.run)
+    beside = Coverage(designed.spec, system, evidence, one.scenario, one.run)
     return CertifiedRate(
         (lower_float if continuous else upper_float)(proved),
         "1/s" if continuous else "",
         evidence.attains_rate,
         end_of_command(one.scenario),
-        tuple(reasons),
+        tuple(beside.undecayed()),
     )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from math import exp, log
 from typing import TYPE_CHECKING
 
@@ -133,16 +134,12 @@ class DesignEvaluator:
     gains: FreeGains
     constraints: tuple[ProofConstraint, ...]
     progress: Progress
-    allowance: Allowance
 
-    @classmethod
-    def of(
-        cls, gains: FreeGains, constraints: tuple[ProofConstraint, ...], progress: Progress
-    ) -> DesignEvaluator:
-        """Take work and memory from the spec."""
-        limits = search_limits(gains.designed.spec)
-        allowance = Allowance(limits.budget, limits.memory, Fuse.of(limits.budget))
-        return cls(gains, constraints, progress, allowance)
+    @cached_property
+    def allowance(self) -> Allowance:
+        """Work and memory that the spec allows."""
+        limits = search_limits(self.gains.designed.spec)
+        return Allowance(limits.budget, limits.memory, Fuse.of(limits.budget))
 
     def evaluate(
         self,

@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import partial
 
 import numpy as np
 
@@ -80,12 +81,9 @@ def admissible_run(
         for mode in system.modes
     ]
     roots = [np.asarray(np.linalg.cholesky(functions[m.name]).T) for m in system.modes]
-    successors = _successors(system, paces)
-    runs = []
-    for mode, initial in _starts(paces, roots, successors):
-        states, modes = _follow(mode, initial, paces, roots, successors, steps)
-        runs.append((_kept(roots, paces, states, modes), states, modes))
-    _, states, modes = max(runs, key=lambda run: run[0])
+    adversary = _Adversary(paces, roots, _successors(system, paces))
+    runs = [adversary.follow(mode, initial, steps) for mode, initial in adversary.starts()]
+    states, modes = max(runs, key=lambda run: adversary.kept(*run))
     instants = np.concatenate([[0.0], np.cumsum([paces[mode].step for mode in modes])])
     return SwitchedRun(instants, _filled(states), np.array(modes))
 
@@ -120,71 +118,65 @@ def _successors(system: SwitchedSystem, paces: list[_Pace]) -> list[list[_Move]]
     return moves
 
 
-def _starts(
-    paces: list[_Pace], roots: list[Array], successors: list[list[_Move]]
-) -> list[tuple[int, Array]]:
-    """Return some modes, each with the state that keeps the most over a dwell time and a move."""
-    found = []
-    for mode, moves in enumerate(successors):
-        flow = np.linalg.matrix_power(paces[mode].flow, paces[mode].fewest)
-        best = max((_largest(roots, mode, move, flow) for move in moves), key=lambda item: item[0])
-        found.append((best[0], mode, best[1]))
-    found.sort(key=lambda item: -item[0])
-    return [(mode, initial) for _, mode, initial in found[:_STARTS]]
+@dataclass(frozen=True)
+class _Adversary:
+    """He knows of every mode its pace, the root of its function, and what may follow."""
 
+    paces: list[_Pace]
+    roots: list[Array]
+    successors: list[list[_Move]]
 
-def _largest(roots: list[Array], mode: int, move: _Move, flow: Array) -> tuple[float, Array]:
-    """Return how much the function can keep over a switch, and the state that keeps it."""
-    inverse = np.linalg.inv(roots[mode])
-    _, values, right = np.linalg.svd(roots[move.mode] @ move.reset @ flow @ inverse)
-    return float(values[0]), inverse @ right[0]
+    def starts(self) -> list[tuple[int, Array]]:
+        """Return some modes, each with the state that keeps most over a dwell time and a move."""
+        found = []
+        for mode, moves in enumerate(self.successors):
+            flow = np.linalg.matrix_power(self.paces[mode].flow, self.paces[mode].fewest)
+            best = max(
+                (self._largest(mode, move, flow) for move in moves), key=lambda item: item[0]
+            )
+            found.append((best[0], mode, best[1]))
+        found.sort(key=lambda item: -item[0])
+        return [(mode, initial) for _, mode, initial in found[:_STARTS]]
 
+    def _largest(self, mode: int, move: _Move, flow: Array) -> tuple[float, Array]:
+        """Return how much the function can keep over a switch, and the state that keeps it."""
+        inverse = np.linalg.inv(self.roots[mode])
+        _, values, right = np.linalg.svd(self.roots[move.mode] @ move.reset @ flow @ inverse)
+        return float(values[0]), inverse @ right[0]
 
-def _follow(
-    mode: int,
-    initial: Array,
-    paces: list[_Pace],
-    roots: list[Array],
-    successors: list[list[_Move]],
-    steps: int,
-) -> tuple[list[Array], list[int]]:
-    """Move on greedily until there are enough steps."""
-    states, modes = [initial], []
-    move, stayed = _Move.into(mode, np.eye(len(initial)), paces[mode].fewest, paces[mode]), 0
-    while True:
-        states[-1] = move.reset @ states[-1]
-        for _ in range(move.steps):
-            states.append(paces[move.mode].flow @ states[-1])
-            modes.append(move.mode)
-        if len(modes) >= steps:
-            return states, modes
-        mode, stayed = move.mode, stayed + move.steps
-        # To stay comes first.
-        must_leave = stayed + 1 > paces[mode].most
-        moves = successors[mode][int(must_leave) :]
-        if not moves:
-            # What may follow is none of these modes.
-            return states, modes
-        move = _least_loss(mode, states[-1], roots, moves)
-        stayed = stayed if move.mode == mode else 0
+    def follow(self, mode: int, initial: Array, steps: int) -> tuple[list[Array], list[int]]:
+        """Move on greedily until there are enough steps."""
+        states, modes, pace = [initial], list[int](), self.paces[mode]
+        move, stayed = _Move.into(mode, np.eye(len(initial)), pace.fewest, pace), 0
+        while True:
+            states[-1] = move.reset @ states[-1]
+            for _ in range(move.steps):
+                states.append(self.paces[move.mode].flow @ states[-1])
+                modes.append(move.mode)
+            if len(modes) >= steps:
+                return states, modes
+            mode, stayed = move.mode, stayed + move.steps
+            # To stay comes first.
+            must_leave = stayed + 1 > self.paces[mode].most
+            moves = self.successors[mode][int(must_leave) :]
+            if not moves:
+                # What may follow is none of these modes.
+                return states, modes
+            move = max(moves, key=partial(self._gain, mode, states[-1]))
+            stayed = stayed if move.mode == mode else 0
 
-
-def _kept(roots: list[Array], paces: list[_Pace], states: list[Array], modes: list[int]) -> float:
-    """Return the mean growth of the active function per time, as a logarithm."""
-    first = float(np.linalg.norm(roots[modes[0]] @ states[0]))
-    last = float(np.linalg.norm(roots[modes[-1]] @ states[-1]))
-    time = sum(paces[mode].step for mode in modes)
-    return math.log(last / first) / time if last > 0 else -math.inf
-
-
-def _least_loss(mode: int, x: Array, roots: list[Array], moves: list[_Move]) -> _Move:
-    now = float(np.linalg.norm(roots[mode] @ x))
-
-    def gain(move: _Move) -> float:
-        after = float(np.linalg.norm(roots[move.mode] @ (move.whole @ x)))
+    def _gain(self, mode: int, x: Array, move: _Move) -> float:
+        now, after = self._norm(mode, x), self._norm(move.mode, move.whole @ x)
         return math.log(after / now) / move.time if after > 0 and now > 0 else -math.inf
 
-    return max(moves, key=gain)
+    def kept(self, states: list[Array], modes: list[int]) -> float:
+        """Return the mean growth of the active function per time, as a logarithm."""
+        first, last = self._norm(modes[0], states[0]), self._norm(modes[-1], states[-1])
+        time = sum(self.paces[mode].step for mode in modes)
+        return math.log(last / first) / time if last > 0 else -math.inf
+
+    def _norm(self, mode: int, x: Array) -> float:
+        return float(np.linalg.norm(self.roots[mode] @ x))
 
 
 def _filled(states: list[Array]) -> Array:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 from nrs_design.proof.evidence.abstract import AbstractEvidence
 from nrs_design.proof.system import SwitchedSystem
@@ -15,57 +16,105 @@ from nrs_design.spec import InteractionDesignSpec
 _SAME = 1 + 1e-12
 
 
-def uncovered(
-    spec: InteractionDesignSpec,
-    system: SwitchedSystem,
-    statement: AbstractEvidence,
-    scenario: Scenario,
-    run: Run,
-) -> Iterator[str]:
-    """Yield what happens in a run that a checked bound does not cover; nothing if it holds."""
-    bound = statement.bound(system)
-    assert bound is not None
-    limits = {channel.name: float(channel.bound) for channel in bound.channels}
-    errors = scenario.errors
-    acting = {
-        "velocity command": _largest_command(scenario, run),
-        "friction": errors.friction,
-        "encoder error": errors.encoder_step / 2,
-        "force error": errors.force_step / 2,
-    }
-    for name, size in acting.items():
-        if size > limits.get(name, 0.0) * _SAME:
-            yield f"the {name} is larger than the proof takes it for"
-    if errors.friction:
-        yield "friction may change its sign within a period"
-    angles = None if spec.disturbances is None else spec.disturbances.largest_angle
-    held = (name for name in ("angle", "reference") if name in run.response.signals)
-    if angles is not None and any(abs(run.response[n]).max() > angles.si for n in held):
-        yield "the angle is larger than the proof takes it for"
-    if errors.force_noise:
-        yield "the noise of the torque has no bound"
-    if errors.jitter:
-        yield "samples are late, and the proof takes none for late"
-    yield from _sampling(spec, run)
-    yield from _differences(spec, system, statement, scenario, run)
+@dataclass(frozen=True, slots=True)
+class Coverage:
+    """A checked statement about a system of a spec, beside a run of a scenario."""
 
+    spec: InteractionDesignSpec
+    system: SwitchedSystem
+    statement: AbstractEvidence
+    scenario: Scenario
+    run: Run
 
-def undecayed(
-    spec: InteractionDesignSpec,
-    system: SwitchedSystem,
-    statement: AbstractEvidence,
-    scenario: Scenario,
-    run: Run,
-) -> Iterator[str]:
-    """Yield why a certified rate, of a checked statement, does not cover the end of a run."""
-    if end_of_command(scenario) is None:
-        yield "the command does not come to an end before the run does"
-    if scenario.errors != Errors():
-        yield "friction, resolutions, noise or jitter go on acting"
-    if run.engine != "exact":
-        yield "the rounding of angle and reference goes on acting"
-    yield from _sampling(spec, run)
-    yield from _differences(spec, system, statement, scenario, run)
+    def uncovered(self) -> Iterator[str]:
+        """Yield what happens in the run that a bound does not cover; nothing if it holds."""
+        scenario, run = self.scenario, self.run
+        bound = self.statement.bound(self.system)
+        assert bound is not None
+        limits = {channel.name: float(channel.bound) for channel in bound.channels}
+        errors = scenario.errors
+        acting = {
+            "velocity command": _largest_command(scenario, run),
+            "friction": errors.friction,
+            "encoder error": errors.encoder_step / 2,
+            "force error": errors.force_step / 2,
+        }
+        for name, size in acting.items():
+            if size > limits.get(name, 0.0) * _SAME:
+                yield f"the {name} is larger than the proof takes it for"
+        if errors.friction:
+            yield "friction may change its sign within a period"
+        angles = None if self.spec.disturbances is None else self.spec.disturbances.largest_angle
+        held = (name for name in ("angle", "reference") if name in run.response.signals)
+        if angles is not None and any(abs(run.response[n]).max() > angles.si for n in held):
+            yield "the angle is larger than the proof takes it for"
+        if errors.force_noise:
+            yield "the noise of the torque has no bound"
+        if errors.jitter:
+            yield "samples are late, and the proof takes none for late"
+        yield from self._sampling()
+        yield from self._differences()
+
+    def undecayed(self) -> Iterator[str]:
+        """Yield why a certified rate does not cover the end of the run."""
+        if end_of_command(self.scenario) is None:
+            yield "the command does not come to an end before the run does"
+        if self.scenario.errors != Errors():
+            yield "friction, resolutions, noise or jitter go on acting"
+        if self.run.engine != "exact":
+            yield "the rounding of angle and reference goes on acting"
+        yield from self._sampling()
+        yield from self._differences()
+
+    def _differences(self) -> Iterator[str]:
+        """Yield how the run differs from every run that the proof covers."""
+        spec, run, statement = self.spec, self.run, self.statement
+        angles = None if spec.disturbances is None else spec.disturbances.largest_angle
+        if any(controller.commands != "velocity" for controller in spec.controllers.values()):
+            yield "the run is not one of impedance control alone"
+        if run.engine != "exact" and (angles is None or not statement.covers_rounding):
+            yield "the law is rounded to single precision, and the proof does not take up all of it"
+        if run.saturated:
+            yield "the motor's command met its limit, and the proof knows none"
+        if run.refused:
+            yield "the law refused samples, and the proof knows no such step"
+        if self.system.contact is None or not statement.covers_lost_contact:
+            # Each run begins in free motion.
+            yield "contact is lost or made, and the proof takes it for kept"
+        yield from self._surroundings()
+        control = self.scenario.control
+        # Who stays keeps all rules but one: that a controller has to be left.
+        left = spec.switching.longest_dwell_time is not None
+        changes = bool(control.switches or control.schedule)
+        ruled = not spec.switching.is_arbitrary and (changes or left)
+        if ruled and (spec.mode_logic is None or control != by_logic(spec)):
+            yield "nothing makes the run keep the rules of switching"
+
+    def _sampling(self) -> Iterator[str]:
+        """Yield it if period or delay differ from those of the proof."""
+        sampling, run = self.spec.sampling, self.run
+        if sampling is None or run.sampling is None:
+            if run.sampling is not None or sampling is not None:
+                yield f"the proof is not about the {run.engine} loop"
+            return
+        period, least, most = run.sampling
+        shortest, longest = sampling.delay
+        same = period == float(sampling.period.exact) and run.outer == float(sampling.outer)
+        if not same or least < shortest or most > longest:
+            yield "period or delay are not those of the proof"
+
+    def _surroundings(self) -> Iterator[str]:
+        """Yield how the surfaces of the run differ from those of the proof."""
+        if len(self.scenario.surfaces) > 1:
+            yield "there are several surfaces, and the proof is about one"
+        for surface in self.scenario.surfaces:
+            name = surface.environment
+            if surface.arms:
+                yield f"{name} has others beside it, and the proof is about it alone"
+            if surface.element is None:
+                yield f"{name} is nonlinear, and the proof is about a box of linear ones"
+            if any(name not in c.contacts for c in self.spec.controllers.values()):
+                yield f"{name} is no contact of every controller"
 
 
 def end_of_command(scenario: Scenario) -> float | None:
@@ -78,36 +127,6 @@ def end_of_command(scenario: Scenario) -> float | None:
     return None if start is None or start >= scenario.duration else start
 
 
-def _differences(
-    spec: InteractionDesignSpec,
-    system: SwitchedSystem,
-    statement: AbstractEvidence,
-    scenario: Scenario,
-    run: Run,
-) -> Iterator[str]:
-    """Yield how a run differs from every run that the proof covers."""
-    angles = None if spec.disturbances is None else spec.disturbances.largest_angle
-    if any(controller.commands != "velocity" for controller in spec.controllers.values()):
-        yield "the run is not one of impedance control alone"
-    if run.engine != "exact" and (angles is None or not statement.covers_rounding):
-        yield "the law is rounded to single precision, and the proof does not take up all of it"
-    if run.saturated:
-        yield "the motor's command met its limit, and the proof knows none"
-    if run.refused:
-        yield "the law refused samples, and the proof knows no such step"
-    if system.contact is None or not statement.covers_lost_contact:
-        # Each run begins in free motion.
-        yield "contact is lost or made, and the proof takes it for kept"
-    yield from _surroundings(spec, scenario)
-    control = scenario.control
-    # Who stays keeps all rules but one: that a controller has to be left.
-    left = spec.switching.longest_dwell_time is not None
-    changes = bool(control.switches or control.schedule)
-    ruled = not spec.switching.is_arbitrary and (changes or left)
-    if ruled and (spec.mode_logic is None or control != by_logic(spec)):
-        yield "nothing makes the run keep the rules of switching"
-
-
 def _largest_command(scenario: Scenario, run: Run) -> float:
     """Return what is commanded at most: a sinusoid has its peak between two instants."""
     profile = scenario.profile
@@ -116,29 +135,3 @@ def _largest_command(scenario: Scenario, run: Run) -> float:
         return seen
     (piece,) = profile.pieces
     return max(seen, abs(profile.mean) + abs(piece.slope / profile.omega))
-
-
-def _sampling(spec: InteractionDesignSpec, run: Run) -> Iterator[str]:
-    """Yield it if period or delay differ from those of the proof."""
-    if spec.sampling is None or run.sampling is None:
-        if run.sampling is not None or spec.sampling is not None:
-            yield f"the proof is not about the {run.engine} loop"
-        return
-    period, least, most = run.sampling
-    shortest, longest = spec.sampling.delay
-    same = period == float(spec.sampling.period.exact) and run.outer == float(spec.sampling.outer)
-    if not same or least < shortest or most > longest:
-        yield "period or delay are not those of the proof"
-
-
-def _surroundings(spec: InteractionDesignSpec, scenario: Scenario) -> Iterator[str]:
-    """Yield how the surfaces of a run differ from those of the proof."""
-    if len(scenario.surfaces) > 1:
-        yield "there are several surfaces, and the proof is about one"
-    for surface in scenario.surfaces:
-        if surface.arms:
-            yield f"{surface.environment} has others beside it, and the proof is about it alone"
-        if surface.element is None:
-            yield f"{surface.environment} is nonlinear, and the proof is about a box of linear ones"
-        if any(surface.environment not in c.contacts for c in spec.controllers.values()):
-            yield f"{surface.environment} is no contact of every controller"

@@ -19,8 +19,7 @@ from numpy.typing import NDArray
 
 from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.models.plant import Plant
-from nrs_design.simulation.driven import DrivenJoint
-from nrs_design.simulation.motor import Motor
+from nrs_design.simulation.motor import DrivenJoint, Motor
 from nrs_design.simulation.run import INPUTS, OUTPUTS, Run
 from nrs_design.simulation.scenario import COMMAND, DEPTH, TORQUE, Array, Scenario
 from nrs_design.simulation.step_program import StepProgram

@@ -41,7 +41,8 @@ def spread(work: Work[T], points: Collection[int], jobs: int) -> Iterator[tuple[
     left, deaths = set(points), 0
     while left:
         try:
-            for point, found in _in_processes(work, sorted(left), jobs):
+            parallel = workers(jobs, _begin, os.getpid())
+            for point, found in parallel((_numbered, (work, k), {}) for k in sorted(left)):
                 left.discard(point)
                 deaths = 0
                 yield point, found
@@ -53,11 +54,6 @@ def spread(work: Work[T], points: Collection[int], jobs: int) -> Iterator[tuple[
                     remedy="they may need more memory than there is: take fewer --jobs; what is "
                     "there is kept, and the same command goes on from it",
                 ) from None
-
-
-def _in_processes(work: Work[T], points: Sequence[int], jobs: int) -> Iterator[tuple[int, T]]:
-    parallel = workers(jobs, _begin, os.getpid())
-    yield from parallel((_numbered, (work, point), {}) for point in points)
 
 
 def _begin(run: int) -> None:

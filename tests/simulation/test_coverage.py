@@ -11,7 +11,7 @@ from nrs_design.pipeline.certified_runs import hold_bounds, hold_rate
 from nrs_design.pipeline.runs import run_certification
 from nrs_design.pipeline.scenarios import Runs, run_scenarios
 from nrs_design.search.certification import Limits
-from nrs_design.simulation.coverage import uncovered
+from nrs_design.simulation.coverage import Coverage
 from nrs_design.simulation.exact import simulate_exactly
 from nrs_design.simulation.sampled import simulate_sampled
 from nrs_design.simulation.scenario import Control, Errors, Profile
@@ -146,7 +146,7 @@ def test_contact_that_a_proof_takes_for_kept(certified):
     alone = replace(one.scenario, surfaces=())
     statement = next(s for s in certified.certificate.statements if s.bound(system))
     for kept in (replace(system, contact=None), system):
-        reasons = list(uncovered(designed.spec, kept, statement, alone, one.run))
+        reasons = [*Coverage(designed.spec, kept, statement, alone, one.run).uncovered()]
         assert reasons == ["contact is lost or made, and the proof takes it for kept"] * (
             kept.contact is None
         )
@@ -209,7 +209,7 @@ def test_the_reference_counts_among_the_angles(certified, share, said):
     given = DisturbancesSpec.model_validate({"command": "8 deg/s", "largest_angle": limit})
     spec = designed.spec.model_copy(update={"disturbances": given})
     statement = next(s for s in certified.certificate.statements if s.bound(system))
-    reasons = list(uncovered(spec, system, statement, one.scenario, one.run))
+    reasons = [*Coverage(spec, system, statement, one.scenario, one.run).uncovered()]
     assert ("the angle is larger than the proof takes it for" in reasons) == said
 
 
@@ -224,7 +224,7 @@ def test_one_controller_all_the_time_is_not_left_in_time(certified, rules, said)
     (one,) = run_scenarios(certified.designed)
     stays = replace(one.scenario, control=Control("insertion"))
     statement = next(s for s in certified.certificate.statements if s.bound(system))
-    reasons = list(uncovered(spec, system, statement, stays, one.run))
+    reasons = [*Coverage(spec, system, statement, stays, one.run).uncovered()]
     assert reasons == ["nothing makes the run keep the rules of switching"] * said
 
 

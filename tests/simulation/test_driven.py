@@ -9,7 +9,7 @@ from scipy.integrate import solve_ivp
 from nrs_design.models.drive import lagging_drive, position_drive, velocity_drive
 from nrs_design.models.interval import Interval
 from nrs_design.models.motion_loop import MotionLoop
-from nrs_design.simulation.driven import DrivenJoint
+from nrs_design.simulation.motor import DrivenJoint
 
 F = Fraction
 THIRD = MotionLoop((F(5), F(300)), (F(1), F(20), F(130), F(300)))

@@ -66,7 +66,8 @@ class Fuse:
 class Allowance:
     """What may still be done: work in units, and memory of a single step in bytes.
 
-    The fuse is looked at whenever something is charged; by default it never blows.
+    What was done is `charged`. Whenever something is, the fuse is looked at; by default it never
+    blows.
     """
 
     def __init__(
@@ -77,7 +78,7 @@ class Allowance:
         parent: Allowance | None = None,
     ) -> None:
         self.work, self.memory, self.fuse = work, memory, fuse or Fuse()
-        self._charged, self._parent = 0.0, parent
+        self.charged, self._parent = 0.0, parent
 
     def part(self, share: float) -> Allowance:
         """Return an allowance for a share of the work that is left."""
@@ -89,14 +90,9 @@ class Allowance:
         return self.work if self._parent is None else self._parent.total
 
     @property
-    def charged(self) -> float:
-        """Work that was done."""
-        return self._charged
-
-    @property
     def left(self) -> float:
         """Work that is left; a part has no more than the whole."""
-        own = max(0.0, self.work - self._charged)
+        own = max(0.0, self.work - self.charged)
         return own if self._parent is None else min(own, self._parent.left)
 
     def charge(self, work: float) -> None:
@@ -105,7 +101,7 @@ class Allowance:
         self._add(work)
 
     def _add(self, work: float) -> None:
-        self._charged += work
+        self.charged += work
         if self._parent is not None:
             self._parent._add(work)
 

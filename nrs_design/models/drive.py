@@ -227,21 +227,18 @@ def position_drive(loop: MotionLoop) -> Drive:
     rest = [ONE]
     for row, b in zip(A[:-1], B[:-1], strict=True):
         rest.append(-row[0] - b)
-    # In z~ = z - rest * position, the rows lose what the position does to their rest.
-    first = [A[0][j] + (A[0][1] * rest[1] if n > 1 and j == 0 else ZERO) for j in range(n)]
-    shifted = [first]
-    for i in range(1, n):
-        own = [*A[i]]
-        own[0] += sum((A[i][j] * rest[j] for j in range(1, n)), ZERO)
-        shifted.append([a - rest[i] * f for a, f in zip(own, first, strict=True)])
-    inputs = [B[0], *(b - rest[i] * B[0] for i, b in enumerate(B[1:], 1))]
-    # The position goes last.
-    rates = [
-        (*row[1:], row[0], b)
-        for row, b in zip([*shifted[1:], shifted[0]], [*inputs[1:], inputs[0]], strict=True)
-    ]
+    # In z~ = z - rest * position, the rows lose what the position does to their rest. It goes last.
+    first, *others = (
+        [sum((a * r for a, r in zip(row, rest, strict=True)), ZERO), *row[1:], b]
+        for row, b in zip(A, B, strict=True)
+    )
+    shifted = (
+        [a - r * f for a, f in zip(row, first, strict=True)]
+        for row, r in zip(others, rest[1:], strict=True)
+    )
+    rates = [(*row[1:-1], row[0], row[-1]) for row in (*shifted, first)]
     jumps = B[0] != 0
-    names = (OMEGA, *(f"xp{i}" for i in range(2, n + 1))) if jumps else _states(n - 1)
+    names = _states(n if jumps else n - 1)
     speed = MultiAffine({(): (rates[-1],)}) if jumps else None
     return Drive(
         Takes.POSITION, names, MultiAffine({(): tuple(rates)}), MappingProxyType({}), speed=speed

@@ -89,39 +89,92 @@ def certify_design(
     Where the goal `delay` asks for an older force than the spec declares, that is proved of it, if
     all goals that gains are chosen by are met then; it holds of the younger one.
     """
-    limits = limits or search_limits(loaded.spec)
+    prover = _Prover(loaded, limits or search_limits(loaded.spec), progress)
     older: tuple[Attempt, ...] = ()
     try:
         wide = None if designed is None else for_goal(designed)
         if designed is not None and wide is not None:
-            found = _certified(loaded, wide, method, limits, progress)
+            found = prover.certified(wide, method)
             if (result := _of_older(designed, wide, found)) is not None:
                 return result
             older = tuple(replace(a, step=f"{a.step}, older force") for a in found.attempts)
     except (DesignError, AssemblyError):
         pass  # What is not modelled is not proved.
-    found = _certified(loaded, designed, method, limits, progress)
+    found = prover.certified(designed, method)
     points, cuts = "", tuple[RangeCut, ...]()
     if found.is_open:
-        points, found = _at_points(loaded, designed, found, limits, progress)
+        points, found = prover.at_points(designed, found)
     if found.is_open and method is Method.AUTO:
-        cuts, found = _in_cases(loaded, designed, found, limits, progress)
+        cuts, found = prover.in_cases(designed, found)
     found = replace(found, attempts=(*older, *found.attempts))
     return Result(loaded, designed, found, certificate_of(loaded, designed, found, points, cuts))
 
 
-def _certified(
-    loaded: LoadedSpec,
-    designed: Designed | None,
-    method: Method,
-    limits: Limits,
-    progress: Progress,
-) -> Certification:
-    from nrs_design.search.certify import certify
+@dataclass(frozen=True, slots=True)
+class _Prover:
+    """Takes designs of a spec to verdicts."""
 
-    with placed(loaded):
-        system = assemble_spec(loaded, designed)
-    return certify(system, method, limits, progress)
+    loaded: LoadedSpec
+    limits: Limits
+    progress: Progress
+
+    def certified(self, designed: Designed | None, method: Method) -> Certification:
+        from nrs_design.search.certify import certify
+
+        with placed(self.loaded):
+            system = assemble_spec(self.loaded, designed)
+        return certify(system, method, self.limits, self.progress)
+
+    def at_points(
+        self, designed: Designed | None, known: Certification
+    ) -> tuple[str, Certification]:
+        """Look for growth at points of the ranges, which their enclosure does not refute."""
+        from nrs_design.loop.assemble import POINTS, assemble
+        from nrs_design.search.certify import certify
+
+        if designed is None or designed.spec.sampling is None:
+            return "", known
+        limits = replace(self.limits, budget=self.limits.budget / 4)
+        for points in POINTS:
+            with placed(self.loaded):
+                system = assemble(designed.spec, designed.plant, designed.design, points=points)
+            if system.modes == known.system.modes:
+                continue
+            found = certify(system, Method.PERIOD, limits, self.progress)
+            tried = tuple(replace(a, step=f"{a.step}, at {points}") for a in found.attempts)
+            known = replace(known, attempts=(*known.attempts, *tried))
+            if found.verdict is Verdict.REFUTED or found.refuted_in is not None:
+                return points, replace(found, attempts=known.attempts)
+        return "", known
+
+    def in_cases(
+        self, designed: Designed | None, known: Certification
+    ) -> tuple[tuple[RangeCut, ...], Certification]:
+        """Look for a proof of each part of the ranges of constants, where they have none together.
+
+        Under arbitrary switching; a constant is in one part for ever.
+        """
+        from nrs_design.loop.assemble import assemble
+        from nrs_design.pipeline.cases import CASES, find_cases
+        from nrs_design.search.certify import certify_cases
+
+        switching = known.system.switching
+        if designed is None or not switching.fixed_parameters or switching.resets:
+            return (), known
+        self.progress(CASES)
+        with placed(self.loaded):
+            start = perf_counter()
+            found = find_cases(designed, switching.fixed_parameters, self.limits)
+            attempt = Attempt(CASES, found.outcome, perf_counter() - start, found.work)
+            attempts = (*known.attempts, attempt)
+            if not found.cuts:
+                return (), replace(known, attempts=attempts)
+            parts, proofs = zip(*found.proved, strict=True)
+            cuts = found.cuts
+            system = assemble(
+                designed.spec, designed.plant, designed.design, cuts=cuts, parts=parts
+            )
+        return cuts, certify_cases(system, proofs, attempts)
 
 
 def _of_older(designed: Designed, wide: Designed, found: Certification) -> Result | None:
@@ -146,64 +199,6 @@ def meets_goals(result: Result) -> bool:
     goals = certified_goals(result.loaded.spec, result.certificate)
     proved = result.certification.verdict is Verdict.PROVED
     return proved and all(goal.met for goal in goals if goal.key in STEERING)
-
-
-def _in_cases(
-    loaded: LoadedSpec,
-    designed: Designed | None,
-    known: Certification,
-    limits: Limits,
-    progress: Progress,
-) -> tuple[tuple[RangeCut, ...], Certification]:
-    """Look for a proof of each part of the ranges of constants, where none was found of them all.
-
-    Under arbitrary switching; a constant is in one part for ever.
-    """
-    from nrs_design.loop.assemble import assemble
-    from nrs_design.pipeline.cases import CASES, find_cases
-    from nrs_design.search.certify import certify_cases
-
-    switching = known.system.switching
-    if designed is None or not switching.fixed_parameters or switching.resets:
-        return (), known
-    progress(CASES)
-    with placed(loaded):
-        start = perf_counter()
-        found = find_cases(designed, switching.fixed_parameters, limits)
-        attempt = Attempt(CASES, found.outcome, perf_counter() - start, found.work)
-        attempts = (*known.attempts, attempt)
-        if not found.cuts:
-            return (), replace(known, attempts=attempts)
-        parts, proofs = zip(*found.proved, strict=True)
-        cuts = found.cuts
-        system = assemble(designed.spec, designed.plant, designed.design, cuts=cuts, parts=parts)
-    return cuts, certify_cases(system, proofs, attempts)
-
-
-def _at_points(
-    loaded: LoadedSpec,
-    designed: Designed | None,
-    known: Certification,
-    limits: Limits,
-    progress: Progress,
-) -> tuple[str, Certification]:
-    """Look for growth at points of the ranges, which a wide enclosure of them does not refute."""
-    from nrs_design.loop.assemble import POINTS, assemble
-    from nrs_design.search.certify import certify
-
-    if designed is None or designed.spec.sampling is None:
-        return "", known
-    for points in POINTS:
-        with placed(loaded):
-            system = assemble(designed.spec, designed.plant, designed.design, points=points)
-        if system.modes == known.system.modes:
-            continue
-        found = certify(system, Method.PERIOD, replace(limits, budget=limits.budget / 4), progress)
-        tried = tuple(replace(a, step=f"{a.step}, at {points}") for a in found.attempts)
-        known = replace(known, attempts=(*known.attempts, *tried))
-        if found.verdict is Verdict.REFUTED or found.refuted_in is not None:
-            return points, replace(found, attempts=known.attempts)
-    return "", known
 
 
 def certificate_of(

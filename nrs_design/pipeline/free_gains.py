@@ -72,16 +72,11 @@ class FreeGains:
     analysis: DesignAnalysis
     massless: bool
 
-    @property
-    def items(self) -> tuple[ImpedanceAnalysis, ...]:
-        """What each impedance controller is optimized for."""
-        return self.analysis.impedance
-
     @cached_property
     def coordinates(self) -> tuple[GainCoordinate, ...]:
         """The gains that are chosen."""
         found: list[GainCoordinate | None] = []
-        for item in self.items:
+        for item in self.analysis.impedance:
             units = self.designed.design.units[item.name]
             Mt, Bt = item.given.Mt, item.given.Bt
             if not self.massless:
@@ -110,7 +105,7 @@ class FreeGains:
 
         best = {
             item.name: optimize_with_goals(problem, item.requirement)
-            for item, problem in zip(self.items, self._as_given, strict=True)
+            for item, problem in zip(self.analysis.impedance, self._as_given, strict=True)
         }
         found = np.log(
             [
@@ -128,7 +123,7 @@ class FreeGains:
             name: {gain: float(value) for gain, value in law.gains.items()}
             for name, law in laws.items()
         }
-        for item in self.items:
+        for item in self.analysis.impedance:
             Mt, Bt = item.given.Mt, item.given.Bt
             found[item.name]["Mt"] = 0.0 if self.massless else Mt.min.si
             found[item.name]["Bt"] = Bt.min.si
@@ -149,13 +144,13 @@ class FreeGains:
             item.name: float(
                 impedance_cost(problem, gains[item.name]["Mt"], gains[item.name]["Bt"])
             )
-            for item, problem in zip(self.items, self._problems(x), strict=True)
+            for item, problem in zip(self.analysis.impedance, self._problems(x), strict=True)
         }
 
     def spared(self, x: Array) -> Array:
         """Return for each controller with goals by how much they are met; negative if missed."""
         gains, met = self.gains(x), []
-        for item in self.items:
+        for item in self.analysis.impedance:
             if item.requirement.goals:
                 own = (np.array([gains[item.name][gain]]) for gain in BOUNDED)
                 met.append(-self._requirement(item, x).violation(*own)[0])
@@ -184,7 +179,7 @@ class FreeGains:
         digits = self.designed.spec.design.significant_digits
         zeros = {
             (item.name, gain): (Fraction(0), f"0 {unit('kg*m^2')}")
-            for item in self.items
+            for item in self.analysis.impedance
             for gain in BOUNDED
             if not getattr(item.given, gain).fixed
         }
@@ -196,7 +191,7 @@ class FreeGains:
 
     def holds(self, design: ControllerDesign) -> bool:
         """Tell whether a design has masses where these gains have some, and none where not."""
-        masses = (design.laws[item.name].gains["Mt"] for item in self.items)
+        masses = (design.laws[item.name].gains["Mt"] for item in self.analysis.impedance)
         return all((mass == 0) == self.massless for mass in masses)
 
     def of(self, design: ControllerDesign) -> RoundedGains:
@@ -230,7 +225,7 @@ class FreeGains:
     def said(self, x: Array) -> str:
         """Write the gains at a point for people: those of impedance controllers, and free ones."""
         gains, units = self.gains(x), self.designed.design.units
-        shown = {item.name: dict.fromkeys(BOUNDED) for item in self.items}
+        shown = {item.name: dict.fromkeys(BOUNDED) for item in self.analysis.impedance}
         for one in self.coordinates:
             shown.setdefault(one.controller, {})[one.gain] = None
         return "; ".join(
@@ -254,7 +249,11 @@ class FreeGains:
     @cached_property
     def _moves_cost(self) -> NDArray[np.bool_]:
         """Which coordinates the cost depends on beside Mt and Bt."""
-        costing = {MOTION, *(item.name for item in self.items)} if self.items else set()
+        costing = (
+            {MOTION, *(item.name for item in self.analysis.impedance)}
+            if self.analysis.impedance
+            else set()
+        )
         return np.array(
             [one.given is not None and one.controller in costing for one in self.coordinates],
             dtype=bool,
@@ -263,7 +262,7 @@ class FreeGains:
     @cached_property
     def _as_given(self) -> tuple[ImpedanceProblem, ...]:
         """What each impedance controller is optimized for while the other gains are as given."""
-        return tuple(self._bounded(item.problem) for item in self.items)
+        return tuple(self._bounded(item.problem) for item in self.analysis.impedance)
 
     def _bounded(self, problem: ImpedanceProblem) -> ImpedanceProblem:
         low, high = problem.mass_bounds
@@ -286,7 +285,7 @@ class FreeGains:
         from nrs_design.design.laws.impedance import impedance_problem
 
         task = self._task(design)
-        for item in self.items:
+        for item in self.analysis.impedance:
             problem = self._bounded(impedance_problem(task, item.given, item.requirement))
             # The spring of the spec is a single-precision number, and has no slope.
             Kt = float(design.laws[item.name].gains.get("Kt", 0))

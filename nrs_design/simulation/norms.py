@@ -69,14 +69,11 @@ def diagonal_exponents(Q: IntegerMatrix) -> list[int]:
     return [Q[i][i].bit_length() // 2 for i in range(len(Q))]
 
 
-def scaled_form(M: IntegerMatrix, exponents: Sequence[int], scale: int = 1) -> Array:
-    """Return ``M_ij / (scale 2^(e_i + e_j))``: integers may be beyond the range of doubles."""
+def scaled_form(M: IntegerMatrix, exponents: Sequence[int]) -> Array:
+    """Return ``M_ij / 2^(e_i + e_j)``: integers may be beyond the range of doubles."""
     return np.array(
         [
-            [
-                float(Fraction(entry, scale << (a + b)))
-                for b, entry in zip(exponents, row, strict=True)
-            ]
+            [float(Fraction(entry, 1 << (a + b))) for b, entry in zip(exponents, row, strict=True)]
             for a, row in zip(exponents, M, strict=True)
         ]
     )

@@ -4,15 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from math import inf, pi
+from math import pi
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from nrs_design.robot.models.dynamics import gravity_torque, inverse_dynamics, mass_matrix
-from nrs_design.robot.models.kinematics import joint_motion
+from nrs_design.robot.models.dynamics import gravity_torque, mass_matrix
 from nrs_design.robot.models.robot import Robot
-from nrs_design.robot.models.simplified import simplified_dynamics, simplified_torque
+from nrs_design.robot.models.simplified import simplified_dynamics
 from nrs_design.robot.models.vectors import Array, root_mean_square
 
 SAMPLES = 720
@@ -20,13 +19,12 @@ SAMPLES = 720
 
 @dataclass(frozen=True, slots=True)
 class Sine:
-    """Sines of phi, psi and d in phase (thesis table 3.5)."""
+    """Sines of phi, psi and d in phase, so slow that only gravity counts (thesis table 3.5)."""
 
     # phi, psi: amplitudes in rad.
     phi: float
     psi: float
     d: tuple[float, float]  # Smallest and largest depth in m
-    period: float = inf  # In s; infinite for a motion so slow that only gravity counts
 
 
 DEPTHS = ((0.150, 0.160), (0.195, 0.205), (0.240, 0.250))
@@ -119,19 +117,10 @@ def thesis_tilts() -> Array:
 def _torques(robot: Robot, sine: Sine) -> tuple[Array, Array]:
     """Full and simplified torques along a trajectory; shapes (SAMPLES, 3)."""
     phase = 2 * pi * (np.arange(SAMPLES) + 0.5) / SAMPLES
-    rate = 2 * pi / sine.period
     low, high = sine.d
     swing = np.array([sine.phi, sine.psi, (high - low) / 2])
     pose = np.array([0.0, 0.0, (high + low) / 2]) + np.sin(phase)[:, None] * swing
-    motion = joint_motion(
-        robot,
-        pose,
-        rate * np.cos(phase)[:, None] * swing,
-        -(rate**2) * np.sin(phase)[:, None] * swing,
-    )
-    full = inverse_dynamics(robot, pose, motion.velocity, motion.acceleration)
-    simplified = simplified_torque(robot, pose, motion.acceleration)
-    return full, simplified
+    return gravity_torque(robot, pose), simplified_dynamics(robot, pose).Gs
 
 
 @dataclass(frozen=True, slots=True)

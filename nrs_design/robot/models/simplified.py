@@ -54,13 +54,6 @@ def simplified_dynamics(
     return SimplifiedDynamics(Ms, Gs)
 
 
-def simplified_torque(robot: Robot, pose: ArrayLike, acceleration: ArrayLike) -> Array:
-    """Return ``Ms q'' + Gs`` (thesis 3.29); shapes (..., 3), in rad/s^2 and N m."""
-    model = simplified_dynamics(robot, pose)
-    column = np.asarray(acceleration, dtype=np.float64)[..., None]
-    return np.asarray((model.Ms @ column)[..., 0] + model.Gs)
-
-
 def _rates(closed: Posture) -> Array:
     """Jacobian of (theta_x, theta_y, d) of the platform; shape (..., 3, 3)."""
     units = np.eye(3).reshape(3, *(1 for _ in np.shape(closed.d)), 3)

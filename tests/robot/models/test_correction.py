@@ -9,7 +9,6 @@ from nrs_design.robot.models import correction
 from nrs_design.robot.models.correction import (
     DEPTH_SINES,
     TABLE_3_5,
-    Sine,
     correct,
     correction_coefficients,
     tilt_tables,
@@ -25,14 +24,6 @@ def test_table_for_the_controller(robot):
         [-40, *table.mean_ratio[0], *table.least_squares[0]], abs=1e-6
     )
     assert len(lines) == 3
-
-
-def test_speed_enters_only_when_it_is_given(robot):
-    slow = correction_coefficients(robot, TABLE_3_5[3])
-    minute = correction_coefficients(robot, Sine(0.1205, 0.2043, (0.15, 0.16), period=60.0))
-    second = correction_coefficients(robot, Sine(0.1205, 0.2043, (0.15, 0.16), period=1.0))
-    assert minute.mean_ratio == pytest.approx(slow.mean_ratio, abs=1e-3)
-    assert np.abs(second.mean_ratio - slow.mean_ratio).max() > 1e-2
 
 
 @given(st.lists(st.floats(0.5, 3), min_size=3, max_size=3))
@@ -59,8 +50,8 @@ def test_tables_of_several_groups_of_motions_are_those_of_each(robot, monkeypatc
     tilts = np.radians([-40.0, 0.0])
     apart = [tilt_tables(robot, tilts, group)[0] for group in (DEPTH_SINES, TABLE_3_5)]
     moved = []
-    moves = correction.joint_motion
-    monkeypatch.setattr(correction, "joint_motion", lambda *at: moved.append(at) or moves(*at))
+    holds = correction.gravity_torque
+    monkeypatch.setattr(correction, "gravity_torque", lambda *at: moved.append(at) or holds(*at))
     together = tilt_tables(robot, tilts, DEPTH_SINES, TABLE_3_5)
     for one, other in zip(together, apart, strict=True):
         assert (one.mean_ratio == other.mean_ratio).all()

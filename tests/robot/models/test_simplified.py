@@ -6,9 +6,9 @@ from hypothesis import given
 
 from nrs_design.robot.models.dynamics import gravity_torque, mass_matrix
 from nrs_design.robot.models.kinematics import jacobian, orientation, orientation_jacobian
-from nrs_design.robot.models.simplified import simplified_dynamics, simplified_torque
+from nrs_design.robot.models.simplified import simplified_dynamics
 
-from .strategies import poses, rates, tilts
+from .strategies import poses, tilts
 
 
 def only_platform(robot):
@@ -40,11 +40,3 @@ def test_as_the_thesis_writes_it(robot, pose):
     inertia = R @ np.diag([rod, rod, 0]) @ R.T + np.diag([14.81e-7, 0, 0])
     Ms = 0.7972 * linear.T @ linear + angular.T @ inertia @ angular
     assert simplified_dynamics(robot, pose, printed=True).Ms == pytest.approx(Ms, abs=1e-14)
-
-
-@given(pose=poses, acceleration=rates)
-def test_torque(robot, pose, acceleration):
-    model = simplified_dynamics(robot, pose)
-    found = simplified_torque(robot, [pose, pose], [acceleration, 0 * acceleration])
-    assert found[0] == pytest.approx(model.Ms @ acceleration + model.Gs, abs=1e-14)
-    assert found[1] == pytest.approx(model.Gs, abs=0)

@@ -43,11 +43,6 @@ class Mechanism:
     robot: Robot  # On its base, with its counter-masses if it has any
     balance: Balance | None = None  # The balance whose springs act on it
 
-    @property
-    def parts(self) -> tuple[Robot, Balance | None]:
-        """What two mechanisms must have in common to be computed together."""
-        return self.robot, self.balance
-
     def mass_and_bias(self, position: Array, velocity: Array) -> tuple[Array, Array]:
         """Return the mass matrices in kg m^2, and all torques in N m that no acceleration makes.
 

@@ -84,7 +84,7 @@ def _lockstep(batch: Sequence[Track], steps: int, held: int) -> list[TrackingRec
     drives = DriveArrays.of([one.drive for one in batch])
     state = JointState(wanted.position[0], *np.zeros((2, len(batch), 3)))
     benches = _shared(batch, lambda one: (one.law, one.encoder))
-    plants = _shared(batch, lambda one: one.mechanism.parts)
+    plants = _shared(batch, lambda one: (one.mechanism.robot, one.mechanism.balance))
     memory = [LawState() for _ in benches]
     angles, positions, commands = np.empty((3, len(time), len(batch), 3))
     seen: JointState | None = None

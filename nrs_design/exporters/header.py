@@ -12,20 +12,17 @@ def header_lines(record: ExportRecord) -> tuple[str, ...]:
     """
     proof = record.proof
     certificate = "none" if proof is None else proof.certificate_id
+    verdict = "PROVED" if record.unproved is None else f"UNPROVED: {record.unproved}"
     return (
         f"nrs-design {record.package.version}, {record.schema_id}",
         f"spec: {record.spec.name}, sha256 {record.spec.sha256}",
         f"certificate: {certificate}",
-        f"verdict: {_verdict(record)}",
+        f"verdict: {verdict}",
         *(() if proof is None else (f"claim: {proof.claim}",)),
         f"sample time: {_sample_time(record)}",
         "units: SI; each gain has its unit beside it, which names that of the motor",
         *(f"outside the proof: {text}" for text in record.outside),
     )
-
-
-def _verdict(record: ExportRecord) -> str:
-    return "PROVED" if record.unproved is None else f"UNPROVED: {record.unproved}"
 
 
 def _sample_time(record: ExportRecord) -> str:

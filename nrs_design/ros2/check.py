@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass, field, replace
 from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 from fractions import Fraction
@@ -169,7 +169,8 @@ def check_file(path: Path, question: Question, limits: Limits, progress: Progres
     notes: dict[str, None] = {}
     beside = [*find_undecided(nodes, controllers)]
     for node in controllers:
-        if shared := [*_shared(node, nodes)]:
+        beside_it = (other for other in nodes if other.base_name != MANAGER)
+        if shared := [*_shared(node, beside_it, LAW, "")]:
             obligations += [_unreadable(path, node, fault) for fault in shared]
             continue
         try:
@@ -179,10 +180,11 @@ def check_file(path: Path, question: Question, limits: Limits, progress: Progres
             continue
         managers = managers_of(node, nodes)
         manager = managers[0] if len(managers) == 1 else None
-        asked = () if manager is None or question.rate is not None else _shared_rate(manager, nodes)
-        if rates := [*asked]:
-            obligations += [_unreadable(path, node, fault) for fault in rates]
-            continue
+        if manager is not None and question.rate is None:
+            instead = f", or give the rate as {RATE}"
+            if rates := [*_shared(manager, nodes, ("update_rate",), instead)]:
+                obligations += [_unreadable(path, node, fault) for fault in rates]
+                continue
         rate = _rate(law, manager, question.rate, path)
         around = question.around(1 / rate)
         notes |= dict.fromkeys(assumptions(around))
@@ -204,29 +206,17 @@ def check_file(path: Path, question: Question, limits: Limits, progress: Progres
     return GateOutcome((outcome,), tuple(said))
 
 
-def _shared_rate(manager: RosNode, nodes: tuple[RosNode, ...]) -> Iterator[Fault]:
-    """Yield the rates that another node may give a manager, too."""
-    for other in nodes:
-        if other is not manager and "update_rate" in other.values and manager.may_share(other):
+def _shared(
+    node: RosNode, nodes: Iterable[RosNode], names: Collection[str], instead: str
+) -> Iterator[Fault]:
+    """Yield what another node may say of a node, too, of some names."""
+    for other in (other for other in nodes if other is not node and node.may_share(other)):
+        for name in (name for name in other.values if name in names):
             yield other.fault(
-                "update_rate",
-                f"counts for {manager.name}, too; if both say it, releases differ in which counts",
-                f"write it at {manager.name} alone, or give the rate as {RATE}",
+                name,
+                f"counts for {node.name}, too; if both say it, releases differ in which counts",
+                f"write it at {node.name} alone{instead}",
             )
-
-
-def _shared(node: RosNode, nodes: tuple[RosNode, ...]) -> Iterator[Fault]:
-    """Yield what the law depends on and another node may say of it, too."""
-    for other in nodes:
-        if other is node or other.base_name == MANAGER or not node.may_share(other):
-            continue
-        for name in other.values:
-            if name in LAW:
-                yield other.fault(
-                    name,
-                    f"counts for {node.name}, too; if both say it, releases differ in which counts",
-                    f"write it at {node.name} alone",
-                )
 
 
 def _owed(

@@ -8,7 +8,7 @@ numbers as they are written, and nothing is written without that proof. With sti
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from decimal import Decimal
 from fractions import Fraction
@@ -52,14 +52,6 @@ class RosExport:
     certificates: Mapping[str, Certificate]
 
 
-@dataclass(frozen=True, slots=True)
-class _Chosen:
-    """A controller for an axis, and what it touches."""
-
-    designed: Designed
-    met: Range
-
-
 def export_controllers(
     designs: Mapping[str, Designed], lag: Range, limits: Limits
 ) -> Iterator[RosExport]:
@@ -80,23 +72,20 @@ def export_controllers(
                 at=("sampling",),
             )
     for name, controllers in _controllers(designs):
-        chosen = {
-            axis: _Chosen(designs[axis], _met(designs[axis], controller))
-            for axis, controller in controllers.items()
-        }
+        touched = {axis: _met(designs[axis], one) for axis, one in controllers.items()}
         body = _body(controllers, share, _rate(sampling))
         law = _law_in(body, name)
         verdicts, certificates = list[str](), dict[str, Certificate]()
-        for axis, item in chosen.items():
-            around = Surroundings(sampling.period.exact, sampling.delay, item.met, item.met, lag)
+        for axis, met in touched.items():
+            around = Surroundings(sampling.period.exact, sampling.delay, met, met, lag)
             closed = close_axis(law, law.axes[AXES.index(axis)], around)
-            system = _with_contact(item.designed, closed)
+            system = _with_contact(designs[axis], closed)
             found = certify(system, limits=limits)
             verdicts.append(str(found.verdict))
             if found.statements:
                 certificates[axis] = Certificate(
-                    spec_name=item.designed.spec.name,
-                    spec_sha256=item.designed.loaded.sha256,
+                    spec_name=designs[axis].spec.name,
+                    spec_sha256=designs[axis].loaded.sha256,
                     coordinates=None,
                     gains={},
                     system=system,
@@ -105,8 +94,16 @@ def export_controllers(
                 )
         worst = max(verdicts, key=SEVERITY.index)
         text = ""
-        if worst == "proved" and len(certificates) == len(chosen):
-            text = _header(name, chosen, sampling, certificates) + body
+        if worst == "proved" and len(certificates) == len(touched):
+            about = [
+                line
+                for axis, met in touched.items()
+                for line in _about(axis, designs[axis], met, certificates[axis])
+            ]
+            text = (
+                _header(name, next(iter(designs.values())).spec.name, sampling, about, len(touched))
+                + body
+            )
         yield RosExport(name, worst, text, certificates)
 
 
@@ -263,47 +260,38 @@ def _law_in(body: str, controller: str) -> AdmittanceLaw:
         ) from None
 
 
-def _header(
-    name: str,
-    chosen: Mapping[str, _Chosen],
-    sampling: SamplingSpec,
-    certificates: Mapping[str, Certificate],
-) -> str:
+def _header(name: str, spec: str, sampling: SamplingSpec, about: Sequence[str], axes: int) -> str:
     least, most = sampling.delay
-    first = next(iter(chosen.values())).designed
     lines = [
-        f"nrs-design ros2 of {first.spec.name}, controller {name}, nrs-design {__version__}",
+        f"nrs-design ros2 of {spec}, controller {name}, nrs-design {__version__}",
         "verdict: PROVED, of the law as admittance_controller computes it with these numbers",
         f"sample time: {exact_text(sampling.period.exact)} s, measurements {least} to {most} "
         "samples old",
-        *(line for axis, item in chosen.items() for line in _about(axis, item, certificates[axis])),
+        *about,
         *(f"outside the proof: {text}" for text in OUTSIDE),
         "outside the proof: switching to another controller; the same joint_damping acts on all "
         "axes, and no force on those that are not selected",
-        *(("outside the proof: what the axes do to each other",) if len(chosen) > 1 else ()),
+        *(("outside the proof: what the axes do to each other",) if axes > 1 else ()),
         f"to be given beside this file: {BESIDE}",
     ]
     return "".join(f"# {line}\n" for line in lines)
 
 
-def _about(axis: str, item: _Chosen, certificate: Certificate) -> Iterator[str]:
+def _about(axis: str, designed: Designed, met: Range, certificate: Certificate) -> Iterator[str]:
     """Yield what is proved of one axis."""
-    evidence, spec = certificate.evidence, item.designed.spec
+    evidence, spec = certificate.evidence, designed.spec
     assert evidence is not None, "proved by something"
     unit = spec.axis.unit
-    yield f"axis {axis}: spec: {spec.name}, sha256 {item.designed.loaded.sha256}"
+    yield f"axis {axis}: spec: {spec.name}, sha256 {designed.loaded.sha256}"
     yield f"axis {axis}: certificate: {certificate.id}"
     yield f"axis {axis}: claim: {evidence.claim(certificate.system)}"
-    low, high = map(float, item.met)
+    low, high = map(float, met)
     yield f"axis {axis}: touched: {low!r} to {high!r} {unit('N*m/rad')}"
     yield f"axis {axis}: units: {unit('kg*m^2')}, {unit('N*m/rad')}, joint_damping in 1/s"
-    for text in (*certificate.granted, *_kept(certificate)):
+    # A claim says that contact is kept only where its loss is modelled.
+    kept = ("contact is not lost",) if certificate.system.contact is None else ()
+    for text in (*certificate.granted, *kept):
         yield f"axis {axis}: taken for granted: {text}"
-
-
-def _kept(certificate: Certificate) -> tuple[str, ...]:
-    """Say that contact is kept, where it is; a claim says so only where its loss is modelled."""
-    return ("contact is not lost",) if certificate.system.contact is None else ()
 
 
 def _list(items: Iterator[str]) -> str:

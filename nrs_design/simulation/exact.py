@@ -9,14 +9,13 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Iterator
-from dataclasses import dataclass, field
 
 import numpy as np
 
 from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.models.plant import Plant
 from nrs_design.progress import Progress, silent
-from nrs_design.simulation.flow import CHUNK, Flow
+from nrs_design.simulation.flow import CHUNK
 from nrs_design.simulation.location import TOLERANCE, Location, make_location
 from nrs_design.simulation.loop import Loop
 from nrs_design.simulation.run import (
@@ -58,22 +57,17 @@ def simulate_exactly(
     return _Engine(Loop(spec, plant, design, scenario), max_steps, tell).run()
 
 
-@dataclass
 class _Engine:
     """A run of the hybrid loop, up to now."""
 
-    loop: Loop
-    max_steps: int
-    tell: Progress
-    locations: dict[tuple[object, ...], Location] = field(default_factory=dict)
-    switches: list[tuple[float, str]] = field(default_factory=list)
-    contacts: list[tuple[float, str, bool]] = field(default_factory=list)
-    steps: int = 0
-    crossings: int = 0
-    stopped: str | None = None
-
-    def __post_init__(self) -> None:
+    def __init__(self, loop: Loop, max_steps: int, tell: Progress) -> None:
         """Begin at rest, free of contact."""
+        self.loop, self.max_steps, self.tell = loop, max_steps, tell
+        self.locations: dict[tuple[object, ...], Location] = {}
+        self.switches: list[tuple[float, str]] = []
+        self.contacts: list[tuple[float, str, bool]] = []
+        self.steps, self.crossings = 0, 0
+        self.stopped: str | None = None
         scenario = self.loop.scenario
         self.t, self.z = 0.0, self.loop.start()
         self.controller, self.since = scenario.control.start, 0.0
@@ -210,7 +204,10 @@ class _Engine:
                 return False
             time = flow.first_crossing(self.z, width, sides) if count <= whole else None
             at_limit = time is None and width < flow.h
-            self._step(flow, width if time is None else time, limit if at_limit else None)
+            taken = width if time is None else time
+            self.t, self.z = limit if at_limit else self.t + taken, flow.after(self.z, taken)
+            self.steps += 1
+            self._tell(1)
             if time is not None:
                 return True
         return False
@@ -221,12 +218,6 @@ class _Engine:
             self.stopped = f"{self.max_steps} steps by {self.t:.6g} s: the budget is used up"
         if self.steps // _OFTEN != (self.steps - done) // _OFTEN:
             self.tell(f"{self.t:.3g} s")
-
-    def _step(self, flow: Flow, width: float, end: float | None = None) -> None:
-        self.z = flow.after(self.z, width)
-        self.t = self.t + width if end is None else end
-        self.steps += 1
-        self._tell(1)
 
     def _settle(self) -> None:
         """Make every change that is due at this instant."""

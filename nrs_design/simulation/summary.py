@@ -7,17 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from nrs_design.simulation.metrics import (
-    effort,
-    impedance_rmse,
-    mean_speed,
-    overshoot,
-    peak,
-    rms,
-    steady_state_error,
-    time_above,
-    withdrawal_times,
-)
+from nrs_design.simulation import metrics
 from nrs_design.simulation.run import Run
 from nrs_design.simulation.scenario import Scenario
 from nrs_design.spec import InteractionDesignSpec
@@ -32,21 +22,21 @@ def summarize(spec: InteractionDesignSpec, scenario: Scenario, run: Run) -> dict
     t, torque, velocity = response.t, response["torque"], response["velocity"]
     limit, desired = spec.limits.torque.si, spec.limits.torque.si / spec.limits.velocity.si
     size = np.abs(torque)
-    out = withdrawal_times(t, response["hand"], torque)
+    out = metrics.withdrawal_times(t, response["hand"], torque)
     touched = size > 0
     return {
         "duration": float(t[-1]),
-        "peak_torque": peak(torque),
+        "peak_torque": metrics.peak(torque),
         "torque_limit": limit,
-        "time_above_limit": time_above(t, size, limit),
+        "time_above_limit": metrics.time_above(t, size, limit),
         "peak_depth": float(response["depth"].max()),
-        "peak_velocity": peak(velocity),
-        "mean_speed": mean_speed(t, velocity),
-        "time_in_contact": time_above(t, size, 0.0),
-        "impedance_rmse": impedance_rmse(t, response["hand"], torque, desired),
+        "peak_velocity": metrics.peak(velocity),
+        "mean_speed": metrics.mean_speed(t, velocity),
+        "time_in_contact": metrics.time_above(t, size, 0.0),
+        "impedance_rmse": metrics.impedance_rmse(t, response["hand"], torque, desired),
         "desired_impedance": desired,
         "withdrawal_times": list(out),
-        "effort": asdict(effort(t, torque, velocity)),
+        "effort": asdict(metrics.effort(t, torque, velocity)),
         "rms_torque_in_contact": rms_where(response.t, torque, touched),
         "force_control": _force_control(spec, scenario, run),
         "switches": len(run.switches),
@@ -58,11 +48,11 @@ def summarize(spec: InteractionDesignSpec, scenario: Scenario, run: Run) -> dict
 
 def rms_where(t: np.ndarray[Any, Any], y: np.ndarray[Any, Any], where: Any) -> float:
     """Return the root mean square over the time in which something holds; 0 if it never does."""
-    held = time_above(t, where.astype(float), 0.5)
+    held = metrics.time_above(t, where.astype(float), 0.5)
     length = float(t[-1] - t[0])
     if not held:
         return 0.0
-    return float(rms(t, np.where(where, y, 0.0)) * np.sqrt(length / held))
+    return float(metrics.rms(t, np.where(where, y, 0.0)) * np.sqrt(length / held))
 
 
 def _force_control(
@@ -84,8 +74,8 @@ def _force_control(
                     "controller": name,
                     "from": begin,
                     "to": end,
-                    "overshoot": overshoot(torque, wanted),
-                    "steady_state_error": steady_state_error(t, torque, wanted),
+                    "overshoot": metrics.overshoot(torque, wanted),
+                    "steady_state_error": metrics.steady_state_error(t, torque, wanted),
                 }
             )
     return found

@@ -19,32 +19,25 @@ from nrs_design.reporting.figures.panels import Curve, Panel, PanelColumn, draw_
 from nrs_design.reporting.render import render_html
 from nrs_design.simulation.metrics import displayed_impedance
 from nrs_design.simulation.time_response import TimeResponse
-from nrs_design.thesis import thesis
+from nrs_design.thesis import interaction, thesis
 from nrs_design.thesis.errata import read_data
-from nrs_design.thesis.interaction import (
-    BLEEDING,
-    DESIRED,
-    INTEGRAL,
-    POSITION,
-    PROPORTIONAL,
-    PROPORTIONAL_FROM_MEASURED,
-    admittance,
-    run_scenario,
-)
 
 # Thesis 6.3.1.1: from the sensor at the pivot to the contact, in m; a torque in N m is so many N.
 ARM = 0.24
 # Controllers of the runs by name, and what stands for `force` where a run has another law.
 CONTROLLERS = {
-    "impedance": admittance("0", "2.15"),
-    "insertion": admittance("0.01", "2.15"),
-    "withdrawal": admittance("0.01", "1.04"),
-    "tissue": admittance("0.01", "2.15"),
-    "tool": admittance("0.01", "2.11", "stiff"),
-    "position": POSITION,
-    "force": PROPORTIONAL,
+    "impedance": interaction.admittance("0", "2.15"),
+    "insertion": interaction.admittance("0.01", "2.15"),
+    "withdrawal": interaction.admittance("0.01", "1.04"),
+    "tissue": interaction.admittance("0.01", "2.15"),
+    "tool": interaction.admittance("0.01", "2.11", "stiff"),
+    "position": interaction.POSITION,
+    "force": interaction.PROPORTIONAL,
 }
-LAWS = {"measured": (PROPORTIONAL_FROM_MEASURED, ""), "integral": (INTEGRAL, BLEEDING)}
+LAWS = {
+    "measured": (interaction.PROPORTIONAL_FROM_MEASURED, ""),
+    "integral": (interaction.INTEGRAL, interaction.BLEEDING),
+}
 ENGINE = (
     "Continuous time, exact between events. Not in it: sampling (motion loop at 500 Hz, admittance "
     "every 0.1 ms), noise and bias of the force sensor, joint clearance, gravity, the other axes."
@@ -68,15 +61,11 @@ class Counterpart:
     illustration: Illustration  # Drawn
 
     @property
-    def name(self) -> str:
-        """What its section is called."""
-        numbers = list(self.given["shows"])
-        return f"Figure{'s' * (len(numbers) > 1)} {', '.join(numbers)}"
-
-    @property
     def title(self) -> str:
-        """What was simulated."""
-        return str(self.given["title"])
+        """What its section is called, and what was simulated."""
+        numbers = list(self.given["shows"])
+        figures = f"Figure{'s' * (len(numbers) > 1)} {', '.join(numbers)}"
+        return f"{figures}: {self.given['title']}"
 
 
 def draw_counterparts(progress: Progress = silent) -> tuple[Counterpart, ...]:
@@ -98,7 +87,7 @@ def _simulate(controllers: Sequence[str], scenario: str, law: str = "") -> TimeR
     more = ""
     if law:
         chosen["force"], more = LAWS[law]
-    return run_scenario(chosen, scenario, more).response
+    return interaction.run_scenario(chosen, scenario, more).response
 
 
 def _column(panels: Sequence[str], response: TimeResponse, given: Mapping[str, Any]) -> PanelColumn:
@@ -154,7 +143,7 @@ def _impedance(response: TimeResponse, crosses: Crosses) -> Panel:
     if crosses:
         t, y = np.array(crosses).T
         curves.append(Curve(t, y, "printed value", printed=True))
-    return Panel("Impedance\n[N m s/rad]", tuple(curves), (DESIRED,), "desired, 2.1486")
+    return Panel("Impedance\n[N m s/rad]", tuple(curves), (interaction.DESIRED,), "desired, 2.1486")
 
 
 def _selection(response: TimeResponse, _: Crosses) -> Panel:
@@ -177,9 +166,7 @@ PANELS: Mapping[str, Callable[[TimeResponse, Crosses], Panel]] = {
 def gallery_page(found: Sequence[Counterpart]) -> str:
     """Return the page; the same counterparts give the same bytes."""
     rows = tuple(
-        (figure, shows, f"{one.name}: {one.title}")
-        for one in found
-        for figure, shows in one.given["shows"].items()
+        (figure, shows, one.title) for one in found for figure, shows in one.given["shows"].items()
     )
     report = Report(
         name="Figures of the thesis, simulated",
@@ -206,7 +193,7 @@ def _section(one: Counterpart) -> Section:
         Bullets("Inputs from the thesis", tuple(one.given["given"])),
         Bullets("Inputs of ours, which the thesis omits", tuple(one.given["chosen"])),
     )
-    return Section(f"{one.name}: {one.title}", blocks)
+    return Section(one.title, blocks)
 
 
 def summarize_gallery(found: Sequence[Counterpart]) -> list[dict[str, Any]]:

@@ -1,57 +1,17 @@
-"""The whole table. A new capability adds its module of rows to `TOPICS`, and nothing else."""
+"""The whole table: a module for each topic of `rows.yaml`, in that order.
+
+It is that of the thesis, but for the formulas.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from types import ModuleType
+from importlib import import_module
 
 from nrs_design.progress import Progress, silent
-from nrs_design.thesis import (
-    actuator,
-    balance,
-    correction,
-    experiments,
-    force_loop,
-    formulas,
-    gradient,
-    hand_runs,
-    hands_on,
-    impedance,
-    modes,
-    robot_dynamics,
-    robot_kinematics,
-    root_locus,
-    runs,
-    specimens,
-    switching,
-    tissue,
-    tracking,
-)
 from nrs_design.thesis.comparison import PrintVerdict, ReproducedValue, compare_topic
-from nrs_design.thesis.errata import Erratum, errata
-
-# In the order of the thesis, but for the formulas.
-TOPICS = (
-    formulas,
-    tissue,
-    robot_kinematics,
-    robot_dynamics,
-    correction,
-    actuator,
-    root_locus,
-    tracking,
-    balance,
-    specimens,
-    impedance,
-    modes,
-    force_loop,
-    switching,
-    gradient,
-    experiments,
-    runs,
-    hands_on,
-    hand_runs,
-)
+from nrs_design.thesis.errata import Erratum, errata, read_data
+from nrs_design.thesis.tracking import measured
 
 CONVERTED = (
     "The dissertation's text was converted by machine: single characters that differ may be slips "
@@ -62,16 +22,16 @@ CONVERTED = (
 def reproduce(progress: Progress = silent) -> tuple[ReproducedValue, ...]:
     """Recompute every number of every topic."""
     table: list[ReproducedValue] = []
-    for topic in TOPICS:
-        progress(topic.__name__.rpartition(".")[2].replace("_", " "))
+    for topic in read_data("rows.yaml"):
+        progress(topic.replace("_", " "))
         table.extend(topic_rows(topic))
     return tuple(table)
 
 
-def topic_rows(topic: ModuleType) -> tuple[ReproducedValue, ...]:
+def topic_rows(topic: str) -> tuple[ReproducedValue, ...]:
     """Return the rows of a topic: those of `rows.yaml`, and what was measured on the robot."""
-    rows = compare_topic(topic.__name__.rpartition(".")[2], topic.results())
-    return (*rows, *tracking.measured()) if topic is tracking else rows
+    rows = compare_topic(topic, import_module(f"nrs_design.thesis.{topic}").results())
+    return (*rows, *measured()) if topic == "tracking" else rows
 
 
 def count_verdicts(table: Sequence[ReproducedValue]) -> dict[str, int]:

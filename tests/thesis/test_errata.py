@@ -22,7 +22,7 @@ def test_what_is_printed_differently_names_its_error(rows):
 @pytest.mark.parametrize("name", CHECKS)
 def test_a_formula_that_no_longer_holds_is_a_drift(name, monkeypatch):
     monkeypatch.setattr(formulas, "CHECKS", {**CHECKS, name: lambda: False})
-    drifts = [row for row in topic_rows(formulas) if row.verdict is PrintVerdict.DRIFT]
+    drifts = [row for row in topic_rows("formulas") if row.verdict is PrintVerdict.DRIFT]
     assert len(drifts) == 1
     assert name in drifts[0].section
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from nrs_design.thesis import figures, runs
+from nrs_design.thesis import figures
 from nrs_design.thesis.figures import draw_counterparts, gallery_page, summarize_gallery
 from nrs_design.thesis.table import topic_rows
 
@@ -64,7 +64,7 @@ def test_at_rest_the_robot_displays_its_damping(counterparts, by_run):
 
 def test_the_limit_is_that_of_the_closed_form(by_run):
     """Peak of 6.41 at 5 deg/s, as in the rows of the table."""
-    (row,) = [row for row in topic_rows(runs) if "X_i the reference" in row.name]
+    (row,) = [row for row in topic_rows("runs") if "X_i the reference" in row.name]
     assert by_run["figure-6-26-p"]["torque"][by_run["figure-6-26-p"].t < 25].max() == pytest.approx(
         float(row.value.split(",")[0]), rel=1e-3
     )

@@ -1,9 +1,8 @@
-from nrs_design.thesis import specimens
 from nrs_design.thesis.comparison import PrintedRow, Recomputed, judge
 from nrs_design.thesis.page import format_within, render_page
 from nrs_design.thesis.table import counts_line, topic_rows
 
-ROWS = topic_rows(specimens)
+ROWS = topic_rows("specimens")
 
 
 def test_page_is_self_contained():

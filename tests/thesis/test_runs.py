@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from nrs_design.thesis import hand_runs, runs, thesis
+from nrs_design.thesis import hand_runs, thesis
 from nrs_design.thesis.hands_on import ADMITTANCES
 from nrs_design.thesis.table import topic_rows
 
@@ -39,5 +39,5 @@ def test_the_spec_of_the_runs_is_the_robot_of_the_thesis():
 
     approach = Approach("reference", math.radians(5), 0.3)
     peak = peak_force(thesis.EXACT_LOOP, float(thesis.SOFT), 0.02, approach)
-    row = next(row for row in topic_rows(runs) if "reference at the switch" in row.name)
+    row = next(row for row in topic_rows("runs") if "reference at the switch" in row.name)
     assert float(row.value.split(", ")[0]) == pytest.approx(peak, rel=1e-4)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 import typer
@@ -114,9 +115,8 @@ def _shares(robot: Robot) -> dict[str, Any]:
     from nrs_design.robot.models import reachable_poses, thesis_grid, torque_shares
 
     shares = torque_shares(robot, reachable_poses(robot, thesis_grid()))
-    parts = {"gravity": shares.gravity, "coriolis": shares.coriolis, "inertia": shares.inertia}
-    names = ("gravity", "coriolis", "inertia")
+    parts = asdict(shares)
     return {
-        "mean_shares": dict(zip(names, shares.means, strict=True)),
+        "mean_shares": dict(zip(parts, shares.means, strict=True)),
         "shares_by_joint": {name: part.mean(axis=0).tolist() for name, part in parts.items()},
     }

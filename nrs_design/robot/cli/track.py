@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from enum import StrEnum
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -79,9 +80,10 @@ def track(
     """
     from nrs_design.robot.pipeline import run_robot
     from nrs_design.robot.simulation.tracking.simulate import LEFT_OUT
+    from nrs_design.robot.simulation.tracking.track import experiment_tilt
 
     loaded, robot_spec, robot = run_robot(spec)
-    robot = _on_base(robot_spec, robot, tilt)
+    robot = robot.tilted(experiment_tilt(robot_spec) if tilt is None else math.radians(tilt))
     moved = None if experiment is ExperimentOption.ALL else experiment.value
     with progress("simulating") as tell:
         records = _records(robot_spec, robot, controller, moved, period, tell)
@@ -104,14 +106,6 @@ def track(
 
     facts = spec_facts(loaded)
     return Answer(lambda: facts | _document(robot, runs, changes) | {"files": files}, show)
-
-
-def _on_base(spec: RobotSpec, robot: Robot, tilt: float | None) -> Robot:
-    import math
-
-    from nrs_design.robot.simulation.tracking.track import experiment_tilt
-
-    return robot.tilted(experiment_tilt(spec) if tilt is None else math.radians(tilt))
 
 
 def _records(

@@ -98,8 +98,11 @@ class Robot:
 
     def without_links(self) -> Robot:
         """Return the robot with nothing but the mass of its platform (thesis 3.3)."""
-        left, right, middle = self.legs
-        return replace(self, legs=(_bare(left), _bare(right), _bare(middle)))
+        left, right, middle = (
+            replace(leg, crank=MASSLESS, coupler=MASSLESS, arm=MASSLESS, axis_inertia=0.0)
+            for leg in self.legs
+        )
+        return replace(self, legs=(left, right, middle))
 
     @cached_property
     def loads(self) -> tuple[tuple[Body, Body, Body], ...]:
@@ -117,10 +120,6 @@ class Robot:
     def home(self) -> Array:
         """The pose in the middle of the workspace, (0, 0, d)."""
         return np.array([0.0, 0.0, sum(self.workspace.d) / 2])
-
-
-def _bare(leg: Leg) -> Leg:
-    return replace(leg, crank=MASSLESS, coupler=MASSLESS, arm=MASSLESS, axis_inertia=0.0)
 
 
 def build_robot(spec: RobotSpec) -> Robot:

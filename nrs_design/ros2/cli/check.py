@@ -19,7 +19,7 @@ from nrs_design.ros2.cli.options import Lag, range_of, read_lag
 from nrs_design.ros2.quantities import RATE, RATE_UNITS, ROTATIONAL, STIFFNESS
 
 if TYPE_CHECKING:
-    from nrs_design.gating.obligations import GateOutcome, SpecOutcome
+    from nrs_design.gating.obligations import GateOutcome
 
 LONGEST_AGE = 20
 
@@ -107,13 +107,9 @@ def _show(outcome: GateOutcome) -> None:
             say_failure(line, item.status)
     for caution in found.cautions:
         note(f"{found.path}:{caution.line}: warning: {caution.message}")
-    _conclude(found, outcome.notes)
-
-
-def _conclude(found: SpecOutcome, notes: tuple[str, ...]) -> None:
     if found.verdict is not None:
         say(f"{found.path}: {found.verdict.upper()}", verdict=found.verdict)
-    for line in notes:
+    for line in outcome.notes:
         say(f"  {line}")
 
 

@@ -10,7 +10,7 @@ import pytest
 from typer.testing import CliRunner
 
 from nrs_design.cli.app import make_app
-from nrs_design.thesis import specimens, table
+from nrs_design.thesis import table
 from nrs_design.thesis.comparison import PrintVerdict
 from nrs_design.thesis.table import topic_rows
 from tests.support import ROOT
@@ -18,12 +18,12 @@ from tests.support import ROOT
 
 @pytest.fixture
 def short(monkeypatch):
-    monkeypatch.setattr(table, "TOPICS", (specimens,))
+    monkeypatch.setattr(table, "read_data", lambda name: ["specimens"])
 
 
 @pytest.fixture
 def drifting(short, monkeypatch):
-    good = topic_rows(specimens)
+    good = topic_rows("specimens")
     bad = replace(good[1], verdict=PrintVerdict.DRIFT, value="700")
     monkeypatch.setattr(table, "topic_rows", lambda topic: (good[0], bad, *good[2:]))
 
@@ -58,7 +58,7 @@ def test_text_json_and_page_agree(tmp_path):
     assert run("--quiet").output == ""
     assert "6.1 elastic fits, soft specimen: Not reproducible, because the records" in text
     assert "converted by machine" in text
-    assert last == found["summary"] == table.counts_line(topic_rows(specimens))
+    assert last == found["summary"] == table.counts_line(topic_rows("specimens"))
     parts = [f"{count} {verdict}" for verdict, count in found["counts"].items()]
     assert sum(found["counts"].values()) == len(found["rows"])
     assert all(part in found["summary"] for part in parts)

@@ -38,7 +38,6 @@ if TYPE_CHECKING:
     from nrs_design.design.goals import Requirement
     from nrs_design.design.impedance_optimum import ImpedanceProblem
     from nrs_design.design.laws.law import Task
-    from nrs_design.models.plant import Plant
     from nrs_design.proof.system import SwitchedSystem
 
 Array = NDArray[np.float64]
@@ -169,9 +168,9 @@ class FreeGains:
             }
         )
 
-    def system(self, x: Array, plant: Plant | None = None) -> SwitchedSystem:
+    def system(self, x: Array) -> SwitchedSystem:
         """Assemble the modes with the single-precision gains next to a point."""
-        designed = replace(self.designed, design=self.design(x), plant=plant or self.designed.plant)
+        designed = replace(self.designed, design=self.design(x))
         return assemble_spec(designed.loaded, designed)
 
     def roundings(self, x: Array) -> Iterator[RoundedGains]:

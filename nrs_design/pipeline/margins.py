@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
@@ -83,7 +83,6 @@ def _rule_for_misses(result: Result) -> MissRuleSpec | None:
 
 def _run_misses(rule: MissRuleSpec, result: Result, limits: Limits, progress: Progress) -> Bracket:
     """Find the most misses in the same window, or in a row, with a proof."""
-    from nrs_design.search.certify import certify
     from nrs_design.search.misses_margin import find_most_misses
 
     declared, of = rule.window
@@ -92,11 +91,7 @@ def _run_misses(rule: MissRuleSpec, result: Result, limits: Limits, progress: Pr
         changed = rule.with_misses(number)
         if (many := changed.states) > MOST_STATES:
             return f"{many} states, and at most {MOST_STATES} are built"
-        try:
-            system = _with_rule(result, changed)
-        except NrsDesignError as error:
-            return error.message
-        return certify(system, limits=limits)
+        return _decided(partial(_with_rule, result, changed), limits)
 
     most = max(declared, MOST_IN_A_ROW) if rule.consecutive is not None else of - 1
     return find_most_misses(declared, most, decide, result.certification, progress)
@@ -106,14 +101,30 @@ def _with_rule(result: Result, rule: MissRuleSpec) -> SwitchedSystem:
     """Return the system of a spec, undisturbed, under another rule for misses."""
     from nrs_design.loop.assemble import assemble_matrices
 
-    designed, spec = result.designed, result.loaded.spec
-    if designed is None:
-        assert spec.kind == "switched-system"
-        return assemble_matrices(spec.model_copy(update={"misses": rule}))
+    if result.designed is not None:
+        return _with_sampling(result.designed, {"misses": rule})
+    spec = result.loaded.spec
+    assert spec.kind == "switched-system"
+    return assemble_matrices(spec.model_copy(update={"misses": rule}))
+
+
+def _with_sampling(designed: Designed, changes: Mapping[str, object]) -> SwitchedSystem:
+    """Return the loop of a design, undisturbed, where it is sampled otherwise."""
     assert designed.spec.sampling is not None
-    sampling = designed.spec.sampling.model_copy(update={"misses": rule})
+    sampling = designed.spec.sampling.model_copy(update=changes)
     changed = designed.spec.model_copy(update={"sampling": sampling, "disturbances": None})
-    return assemble_spec(result.loaded, replace(designed, spec=changed))
+    return assemble_spec(designed.loaded, replace(designed, spec=changed))
+
+
+def _decided(assemble: Callable[[], SwitchedSystem], limits: Limits) -> Certification | str:
+    """Return the verdict on a system, or why there is no system."""
+    from nrs_design.search.certify import certify
+
+    try:
+        system = assemble()
+    except NrsDesignError as error:
+        return error.message
+    return certify(system, limits=limits)
 
 
 def _run_box(result: Result, limits: Limits, progress: Progress) -> BoxMargin:
@@ -147,7 +158,8 @@ def _run_loop(result: Result, limits: Limits, progress: Progress) -> MarginBrack
         return None
     delay = period = None
     if (sampling := result.designed.spec.sampling) is not None:
-        delay, period = _sampling_margins(result.designed, sampling, result, limits, progress)
+        known = result.certification
+        delay, period = _sampling_margins(result.designed, sampling, known, limits, progress)
     return MarginBrackets(delay, period, _command_margin(result))
 
 
@@ -160,31 +172,22 @@ def _has_loop(result: Result) -> bool:
 def _sampling_margins(
     designed: Designed,
     sampling: SamplingSpec,
-    result: Result,
+    known: Certification,
     limits: Limits,
     progress: Progress,
 ) -> tuple[Bracket, Bracket]:
     """Decide the loop at other delays and other periods, without what disturbs it."""
-    from nrs_design.search.certify import certify, refuted_at_once
+    from nrs_design.search.certify import refuted_at_once
     from nrs_design.search.loop_margin import find_longest_delay, find_longest_period
     from nrs_design.spec.sampling import LONGEST_DELAY
 
-    def assemble_at(changes: Mapping[str, object]) -> SwitchedSystem:
-        changed = sampling.model_copy(update=changes)
-        spec = designed.spec.model_copy(update={"sampling": changed, "disturbances": None})
-        return assemble_spec(result.loaded, replace(designed, spec=spec))
-
     def decide(changes: Mapping[str, object]) -> Certification | str:
-        try:
-            system = assemble_at(changes)
-        except NrsDesignError as error:
-            return error.message
-        return certify(system, limits=limits)
+        return _decided(partial(_with_sampling, designed, changes), limits)
 
     def unstable_in(delay: int) -> str | None:
         progress(f"delay {delay} alone")
         try:
-            system = assemble_at({"delay": (delay, delay)})
+            system = _with_sampling(designed, {"delay": (delay, delay)})
         except NrsDesignError:
             return None  # What makes no loop shows nothing.
         return refuted_at_once(system, limits)
@@ -201,7 +204,6 @@ def _sampling_margins(
             }
         )
 
-    known = result.certification
     return (
         find_longest_delay(*sampling.delay, LONGEST_DELAY, at_delay, unstable_in, known, progress),
         find_longest_period(sampling.period.exact, at_period, known, progress),

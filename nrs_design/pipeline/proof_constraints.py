@@ -18,7 +18,6 @@ from nrs_design.work import Allowance, Fuse, NotAffordableError
 
 if TYPE_CHECKING:
     from nrs_design.design.trust_region import Evaluation
-    from nrs_design.models.plant import Plant
     from nrs_design.proof.system import SwitchedSystem
     from nrs_design.spec import GoalsSpec
 
@@ -141,36 +140,24 @@ class DesignEvaluator:
         limits = search_limits(self.gains.designed.spec)
         return Allowance(limits.budget, limits.memory, Fuse.of(limits.budget))
 
-    def evaluate(
-        self,
-        x: Array,
-        expected: Array | None,
-        plant: Callable[[Array], Plant | None] = lambda x: None,
-    ) -> Evaluation:
-        """Evaluate a design about what is expected; its Jacobian only where it is asked for.
-
-        What is behind the gains in x is for the plant, by default that of the spec.
-        """
+    def evaluate(self, x: Array, expected: Array | None) -> Evaluation:
+        """Evaluate a design about what is expected; its Jacobian only where it is asked for."""
         from nrs_design.design.trust_region import Evaluation
 
-        gains, n = self.gains, len(self.gains.coordinates)
-
-        def system(x: Array) -> SwitchedSystem:
-            return gains.system(x[:n], plant(x))
-
-        here = system(x)
+        gains = self.gains
+        here = gains.system(x)
         found = [
             self._value(constraint, here, None if expected is None else float(expected[k]))
             for k, constraint in enumerate(self.constraints)
         ]
         said = ", ".join(one.said for one in found)
-        self.progress(f"{said} at cost {gains.cost(x[:n]):.5g}")
+        self.progress(f"{said} at cost {gains.cost(x):.5g}")
 
         def jacobian() -> Array:
             moved = []
             for i in range(len(x)):
-                step = -STEP if i < n and x[i] + STEP > gains.high[i] else STEP
-                there = system(x + step * np.eye(len(x))[i])
+                step = -STEP if x[i] + STEP > gains.high[i] else STEP
+                there = gains.system(x + step * np.eye(len(x))[i])
                 moved.append([one.change(there) / step for one in found])
             return np.array(moved).T
 

@@ -10,7 +10,7 @@ jump at a switch: with the motor, the state is the angle and ``w = theta' - Km K
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -197,11 +197,10 @@ class _Closing:
             reference = reference + correction
         if not law.bleeds:
             reference = sum((row(name) for name in loop.bleeding), reference)
-        velocity = self._velocity(angle, reference)
-        found = LoopMode(A, angle, velocity, np.zeros(n), reference)
+        found = LoopMode(A, angle, self._velocity(reference), np.zeros(n), reference)
         torque = self._torque(found)
         self._fill(A, found, torque)
-        return LoopMode(A, angle, velocity, torque, reference)
+        return replace(found, torque=torque)
 
     def _takes_at_once(self) -> bool:
         """Tell whether the command depends on the force of the moment."""
@@ -214,7 +213,7 @@ class _Closing:
         rows = (loop.scenario.surfaces[j].sign * loop.push(j, mode) for j in self.touched)
         return np.asarray(sum(rows, np.zeros(len(loop.states))))
 
-    def _velocity(self, angle: Array, reference: Array) -> Array:
+    def _velocity(self, reference: Array) -> Array:
         loop, n = self.loop, len(self.loop.states)
         if loop._given is None:
             return np.asarray(loop.row("motion w") + loop._direct * reference)

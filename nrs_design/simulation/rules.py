@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -41,15 +40,13 @@ class Rules:
 
         The step is as `fitting_step` gives it; where modes take turns, there are no rules.
         """
-        count = len(system.modes)
-        identity = np.eye(system.order)[None]
         if system.clock is not None:
-            return _turns(system, system.clock, identity)
+            return _turns(system, system.clock)
         if system.switching.is_arbitrary:
-            modes = np.arange(count)
-            nothing = np.zeros(count, dtype=np.int64)
-            return cls(modes, nothing, nothing, identity, modes[None])
-        return _Graph(system, step).rules(identity)
+            modes = np.arange(len(system.modes))
+            nothing = np.zeros_like(modes)
+            return cls(modes, nothing, nothing, np.eye(system.order)[None], modes[None])
+        return _stays_counted(system, step)
 
 
 def fitting_step(system: SwitchedSystem, step: float) -> float:
@@ -80,7 +77,7 @@ def _counts(stay: Stay, step: Fraction) -> tuple[int, int | None] | None:
     return (fewest, most) if most >= fewest else None
 
 
-def _turns(system: SwitchedSystem, clock: Clock, identity: Array) -> Rules:
+def _turns(system: SwitchedSystem, clock: Clock) -> Rules:
     """Return a node for each state of a clock, the first of which any run may begin with.
 
     A run from rest may rest in the first steps, so it may as well begin with the others.
@@ -92,64 +89,47 @@ def _turns(system: SwitchedSystem, clock: Clock, identity: Array) -> Rules:
         own = [k for k, of_first in enumerate(first) if of_first is kind]
         found = [actions.setdefault((k, 0, target), len(actions)) for k in own]
         after.setdefault(node, []).extend(found)
-    return _packed(actions, [identity[0]], after)
+    return _packed(actions, [np.eye(system.order)], after)
 
 
-class _Graph:
-    """Rules that are being laid out."""
+def _stays_counted(system: SwitchedSystem, step: float) -> Rules:
+    """Return a node for each number of steps spent in each mode; node 0 is the beginning."""
+    unit = Fraction(1) if system.time is Time.DISCRETE else Fraction(step)
+    stays, modes = system.stays(), system.modes
+    counts = []
+    for mode in modes:
+        count = _counts(stays[mode.name], unit)
+        if count is None:
+            raise ValueError(f"mode {mode.name} must be left before it may be")
+        counts.append(count)
+    # Node 0 is the beginning; then each mode, after one step in it, after two, ...
+    spans = [fewest if most is None else most for fewest, most in counts]
+    base = np.concatenate([[1], 1 + np.cumsum(spans)]).tolist()
+    if base[-1] > _NODES:
+        raise ValueError(f"the rules make more than {_NODES} nodes on this grid")
+    index = {mode.name: k for k, mode in enumerate(modes)}
+    actions: dict[tuple[int, int, int], int] = {}
+    jumps, maps = [np.eye(system.order)], dict[int, int]()
 
-    def __init__(self, system: SwitchedSystem, step: float) -> None:
-        unit = Fraction(1) if system.time is Time.DISCRETE else Fraction(step)
-        stays = system.stays()
-        self._counts = []
-        for mode in system.modes:
-            counts = _counts(stays[mode.name], unit)
-            if counts is None:
-                raise ValueError(f"mode {mode.name} must be left before it may be")
-            self._counts.append(counts)
-        # Node 0 is the beginning; then each mode, after one step in it, after two, ...
-        spans = [fewest if most is None else most for fewest, most in self._counts]
-        self._base = np.concatenate([[1], 1 + np.cumsum(spans)]).tolist()
-        if self._base[-1] > _NODES:
-            raise ValueError(f"the rules make more than {_NODES} nodes on this grid")
-        self._system = system
+    def action(mode: int, jump: int, target: int) -> int:
+        return actions.setdefault((mode, jump, target), len(actions))
 
-    def rules(self, identity: Array) -> Rules:
-        """Return the graph."""
-        modes = self._system.modes
-        index = {mode.name: k for k, mode in enumerate(modes)}
-        actions: dict[tuple[int, int, int], int] = {}
-        jumps = [identity[0]]
-        maps: dict[int, int] = {}
-
-        def action(mode: int, jump: int, target: int) -> int:
-            return actions.setdefault((mode, jump, target), len(actions))
-
-        after: dict[int, list[int]] = {
-            0: [action(k, 0, self._base[k]) for k in range(len(modes))],
-        }
-        leaving: dict[int, list[int]] = {k: [] for k in range(len(modes))}
-        for edge in self._system.edges():
-            target, jump = index[edge.target.name], 0
-            if edge.map is not None:
-                jump = maps.setdefault(id(edge.map), len(jumps))
-                if jump == len(jumps):
-                    jumps.append(np.array(edge.map.floats()))
-            leaving[index[edge.source.name]].append(action(target, jump, self._base[target]))
-        for k in range(len(modes)):
-            for node, stays, leaves in self._stays(k):
-                kept = [action(k, 0, stays)] if stays is not None else []
-                after[node] = kept + (leaving[k] if leaves else [])
-        return _packed(actions, jumps, after)
-
-    def _stays(self, mode: int) -> Iterator[tuple[int, int | None, bool]]:
-        """Yield each node of a mode, the one after another step in it, and whether it may leave."""
-        fewest, most = self._counts[mode]
-        first, last = self._base[mode], self._base[mode + 1] - 1
-        for node in range(first, last + 1):
-            spent = node - first + 1
+    after = {0: [action(k, 0, base[k]) for k in range(len(modes))]}
+    leaving: dict[int, list[int]] = {k: [] for k in range(len(modes))}
+    for edge in system.edges():
+        target, jump = index[edge.target.name], 0
+        if edge.map is not None:
+            jump = maps.setdefault(id(edge.map), len(jumps))
+            if jump == len(jumps):
+                jumps.append(np.array(edge.map.floats()))
+        leaving[index[edge.source.name]].append(action(target, jump, base[target]))
+    for k, (fewest, most) in enumerate(counts):
+        last = base[k + 1] - 1
+        for spent, node in enumerate(range(base[k], last + 1), start=1):
             further = node + 1 if node < last else node if most is None else None
-            yield node, further, spent >= fewest
+            kept = [] if further is None else [action(k, 0, further)]
+            after[node] = kept + (leaving[k] if spent >= fewest else [])
+    return _packed(actions, jumps, after)
 
 
 def _packed(

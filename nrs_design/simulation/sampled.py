@@ -30,9 +30,9 @@ def simulate_sampled(
 ) -> Run:
     """Simulate a scenario with the law that ships, at most so many of its samples."""
     axis = _axis(spec, plant, design, scenario)
-    wanted = math.floor(axis.scenario.duration / axis.T + 1e-9) + 1
+    wanted = math.floor(scenario.duration / axis.T + 1e-9) + 1
     count = min(wanted, max_steps)
-    inputs = SampleInputs.of(axis.scenario, axis.T, axis.delay, axis.late, axis.misses, count)
+    inputs = SampleInputs.of(scenario, axis.sampling, axis.late, count)
     instants = [*inputs.times.tolist(), float(inputs.times[-1]) + axis.T]
     drawn = (inputs.hand, inputs.noise, inputs.ages, inputs.lates, inputs.missed)
     rows = list(zip(*(column.tolist() for column in drawn), strict=True))
@@ -103,15 +103,5 @@ def _axis(
             at=("sampling", "misses"),
         )
     shortest, longest = spec.late
-    return SampledAxis(
-        plant,
-        design,
-        scenario,
-        program,
-        sampling.step,
-        sampling.delay,
-        int(period / sampling.step),
-        int(outer / sampling.step),
-        (float(shortest), float(longest)),
-        sampling.misses,
-    )
+    late = float(shortest), float(longest)
+    return SampledAxis(plant, design, scenario, program, sampling, late)

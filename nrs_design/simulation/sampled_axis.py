@@ -12,7 +12,6 @@ from __future__ import annotations
 import math
 from collections import deque
 from dataclasses import dataclass
-from fractions import Fraction
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,7 +24,8 @@ from nrs_design.simulation.scenario import COMMAND, DEPTH, TORQUE, Array, Scenar
 from nrs_design.simulation.step_program import StepProgram
 from nrs_design.simulation.time_response import Signal, TimeResponse, on_axis
 from nrs_design.simulation.tissue import Tissue
-from nrs_design.spec.misses import DeadlinesSpec, automaton_of
+from nrs_design.spec.misses import automaton_of
+from nrs_design.spec.sampling import SamplingSpec
 
 # Parts of a step, where tissue moves by itself or loads the motor.
 PARTS = 8
@@ -52,26 +52,26 @@ class SampleInputs:
     def of(
         cls,
         scenario: Scenario,
-        period: float,
-        delay: tuple[int, int],
+        sampling: SamplingSpec,
         late: tuple[float, float],
-        misses: DeadlinesSpec | None,
         count: int,
     ) -> SampleInputs:
         """Draw what N samples are given from the seed of the scenario.
 
-        `delay` holds the smallest and largest age; `late`, the times from a sample to its command,
-        in s. Where a rule allows misses, every second sample or so is missed.
+        `late` holds the times from a sample to its command, in s. Where a rule allows misses, every
+        second sample or so is missed.
         """
         rng = np.random.default_rng(scenario.seed)
-        shifted = scenario.errors.jitter * period * rng.random(count)
+        step, (youngest, oldest) = float(sampling.step), sampling.delay
+        shifted = scenario.errors.jitter * step * rng.random(count)
         noise = scenario.errors.force_noise * rng.standard_normal(count)
-        ages = rng.integers(delay[0], delay[1] + 1, count)
-        times = period * np.arange(count) + shifted
+        ages = rng.integers(youngest, oldest + 1, count)
+        times = step * np.arange(count) + shifted
         lates = late[0] + (late[1] - late[0]) * rng.random(count)
         missed = np.zeros(count, dtype=bool)
-        if misses is not None:
-            wanted, automaton, state = rng.random(count) < MISSED, automaton_of(*misses.window), 0
+        if sampling.misses is not None:
+            automaton, state = automaton_of(*sampling.misses.window), 0
+            wanted = rng.random(count) < MISSED
             for k in range(count):
                 after = automaton.miss[state]
                 missed[k] = wanted[k] and after is not None
@@ -87,15 +87,9 @@ class SampledAxis:
     design: ControllerDesign  # Gains that ship
     scenario: Scenario  # What happens to it
     program: StepProgram  # Its law
-    period: Fraction  # Between two samples, in s
-    # Smallest and largest age of the force samples, counted in samples of the outer loop.
-    delay: tuple[int, int]
-    # Periods of motion loop and outer loop in samples; one of them is 1.
-    motion_turn: int
-    outer_turn: int
+    sampling: SamplingSpec  # When the law runs, and how old its force sample is
     # Shortest and longest time from a sample to where its command takes effect, in s.
     late: tuple[float, float]
-    misses: DeadlinesSpec | None  # How many deadlines are missed, and what happens then
 
     def __post_init__(self) -> None:
         """Begin at rest, free of contact."""
@@ -113,8 +107,12 @@ class SampledAxis:
         self.theta, self.omega, self.commanded = scenario.start, 0.0, scenario.start
         self.states = [np.float32(scenario.start * s.starts_at_angle) for s in law.states]
         self.inputs = [value.name for value in law.inputs]
-        self.T = float(self.period)
-        self.buffer = deque([0.0] * (self.delay[1] + 1), self.delay[1] + 1)
+        sampling, oldest = self.sampling, self.sampling.delay[1]
+        self.T = float(sampling.step)
+        # Periods of motion loop and outer loop in samples; one of them is 1.
+        self.motion_turn = int(sampling.period.exact / sampling.step)
+        self.outer_turn = int(sampling.outer / sampling.step)
+        self.buffer = deque([0.0] * (oldest + 1), oldest + 1)
         self.modes = {name: i for i, name in enumerate(law.modes)}
         self.holds = {c.name: c.law.holds_hand for c in self.design.controllers}
         self.controller, self.held = scenario.control.start, 0
@@ -139,12 +137,12 @@ class SampledAxis:
             tuple(self.switches),
             tuple(self.tissue.contacts),
             len(self.rows),
-            (float(self.motion_turn * self.period), *self.delay),
+            (float(self.sampling.period.exact), *self.sampling.delay),
             self.refused,
             self.saturated,
             stopped,
-            outer=float(self.outer_turn * self.period),
-            missed=None if self.misses is None else int(inputs.missed[: len(self.rows)].sum()),
+            outer=float(self.sampling.outer),
+            missed=int(inputs.missed[: len(self.rows)].sum()) if self.sampling.misses else None,
         )
 
     def sample(
@@ -164,8 +162,8 @@ class SampledAxis:
             self.buffer.appendleft(_coarse(torque + noise, self.scenario.errors.force_step))
         felt, before = self.buffer[age], self.states
         if missed:
-            assert self.misses is not None
-            self.command = self.command if self.misses.command == "hold" else 0.0
+            assert self.sampling.misses is not None
+            self.command = self.command if self.sampling.misses.command == "hold" else 0.0
         else:
             if outer:
                 self._decide(t, hand, felt, depths)

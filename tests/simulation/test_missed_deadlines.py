@@ -31,10 +31,12 @@ def test_what_is_drawn_keeps_the_rule(tmp_path, rule, most, of):
     given = designed(tmp_path, "")
     scenario = default_scenario(given.spec, given.plant)
     misses = DeadlinesSpec.model_validate({**rule, "command": "hold"})
-    drawn = SampleInputs.of(scenario, 0.002, (0, 1), (0.0, 0.0), misses, 4000)
+    sampling = given.spec.sampling
+    missing = sampling.model_copy(update={"misses": misses})
+    drawn = SampleInputs.of(scenario, missing, (0.0, 0.0), 4000)
     windows = np.lib.stride_tricks.sliding_window_view(drawn.missed, of).sum(axis=1)
     assert windows.max() == most
-    plain = SampleInputs.of(scenario, 0.002, (0, 1), (0.0, 0.0), None, 4000)
+    plain = SampleInputs.of(scenario, sampling, (0.0, 0.0), 4000)
     assert not plain.missed.any()
     assert (plain.ages == drawn.ages).all()
     assert (plain.noise == drawn.noise).all()

@@ -23,5 +23,3 @@ robot = typer.Typer(
 COMMANDS = (check, kinematics, dynamics, correction, balance, track)
 for one in COMMANDS:
     robot.command(one.__name__)(one)
-
-__all__ = ["robot"]

@@ -16,5 +16,3 @@ ros2 = typer.Typer(
 )
 ros2.command("check")(check)
 ros2.command("export")(export)
-
-__all__ = ["ros2"]

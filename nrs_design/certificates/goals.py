@@ -16,8 +16,8 @@ from nrs_design.spec.faults import Location
 
 if TYPE_CHECKING:
     from nrs_design.proof.system import SwitchedSystem
-    from nrs_design.spec import InteractionDesignSpec, Spec
-
+    from nrs_design.spec import Quantity, Spec
+    from nrs_design.spec.sampling import SamplingSpec
 
 N = TypeVar("N", Fraction, float)
 _FREE = "optimize says which gains come nearest"
@@ -57,47 +57,44 @@ def _goals(spec: Spec, certificate: Certificate | None) -> Iterator[CertifiedGoa
     if spec.kind != "interaction-design" or (goals := spec.goals) is None:
         return
     if goals.peak_torque is not None:
-        yield _peak_torque(goals.peak_torque.exact, goals.peak_torque.text, certificate)
+        yield _peak_torque(goals.peak_torque, certificate)
     if goals.decay_rate is not None:
-        yield _decay_rate(goals.decay_rate.exact, goals.decay_rate.text, certificate)
+        yield _decay_rate(goals.decay_rate, certificate)
     if goals.delay is not None and spec.sampling is not None:
-        yield _delay(spec, goals.delay.exact, goals.delay.text, certificate)
-    if isinstance(goals.initial_force, str):
-        yield _initial_force(None, goals.initial_force, certificate)
-    elif goals.initial_force is not None:
-        yield _initial_force(goals.initial_force.exact, goals.initial_force.text, certificate)
+        yield _delay(spec.sampling, goals.delay, certificate)
+    if goals.initial_force is not None:
+        yield _initial_force(goals.initial_force, certificate)
 
 
-def _peak_torque(wanted: Fraction, text: str, certificate: Certificate | None) -> CertifiedGoal:
+def _peak_torque(wanted: Quantity, certificate: Certificate | None) -> CertifiedGoal:
     found = None
     if certificate is not None:
         found = bound_on(certificate.system, certificate.statements, "force")
-    if found is None:
-        return CertifiedGoal("peak_torque", "no bound on the force was proved", text, False)
+    if certificate is None or found is None:
+        return CertifiedGoal("peak_torque", "no bound on the force was proved", wanted.text, False)
     acting = (f"|{c.name}| <= {rounded_down(c.bound, c.unit)}" for c in found.channels)
     said = (
         f"while {', '.join(acting)} and nothing else disturbs, the force is proved to stay below "
         f"{rounded_up(found.level, _effort(certificate))}, from rest"
     )
-    if certificate is not None and certificate.system.contact is None:
+    if certificate.system.contact is None:
         said += ", while contact is kept"
-    return CertifiedGoal("peak_torque", said, text, found.level <= wanted)
+    return CertifiedGoal("peak_torque", said, wanted.text, found.level <= wanted.exact)
 
 
-def _effort(certificate: Certificate | None) -> str:
+def _effort(certificate: Certificate) -> str:
     """Return the unit of a force on the axis."""
-    assert certificate is not None, "it holds a bound"
     return axis_with(certificate.system.states).unit("N*m")
 
 
-def _decay_rate(wanted: Fraction, text: str, certificate: Certificate | None) -> CertifiedGoal:
+def _decay_rate(wanted: Quantity, certificate: Certificate | None) -> CertifiedGoal:
     rate = decay_rate(certificate)
-    if rate is None:
-        return CertifiedGoal("decay_rate", "no decay rate in 1/s was proved", text, False)
+    if certificate is None or rate is None:
+        return CertifiedGoal("decay_rate", "no decay rate in 1/s was proved", wanted.text, False)
     said = f"the proved decay rate is {rounded_down(rate, '1/s')}"
-    if certificate is not None and certificate.system.saturation is not None:
+    if certificate.system.saturation is not None:
         said += " while no signal saturates"
-    return CertifiedGoal("decay_rate", said, text, rate >= wanted)
+    return CertifiedGoal("decay_rate", said, wanted.text, rate >= wanted.exact)
 
 
 def decay_rate(certificate: Certificate | None) -> Fraction | None:
@@ -119,27 +116,25 @@ def rate_per_second(rate: N | None, system: SwitchedSystem) -> N | None:
 
 
 def _delay(
-    spec: InteractionDesignSpec, wanted: Fraction, text: str, certificate: Certificate | None
+    sampling: SamplingSpec, wanted: Quantity, certificate: Certificate | None
 ) -> CertifiedGoal:
-    assert spec.sampling is not None
     if certificate is None or certificate.verdict != Verdict.PROVED:
-        return CertifiedGoal("delay", "nothing was proved", text, False)
-    least, oldest = (n * spec.sampling.outer for n in certificate.ages or spec.sampling.delay)
+        return CertifiedGoal("delay", "nothing was proved", wanted.text, False)
+    least, oldest = (n * sampling.outer for n in certificate.ages or sampling.delay)
     ages = f"{rounded_up(least, 's')} to {rounded_down(oldest, 's')} old"
     said = f"the loop is proved for force samples {ages}"
-    return CertifiedGoal("delay", said, text, oldest >= wanted)
+    return CertifiedGoal("delay", said, wanted.text, oldest >= wanted.exact)
 
 
-def _initial_force(
-    wanted: Fraction | None, text: str, certificate: Certificate | None
-) -> CertifiedGoal:
+def _initial_force(wanted: Quantity | str, certificate: Certificate | None) -> CertifiedGoal:
+    least, text = (None, wanted) if isinstance(wanted, str) else (wanted.exact, wanted.text)
     statements = () if certificate is None else certificate.statements
     level = next((size for s in statements if (size := s.start_size) is not None), None)
-    if level is None:
+    if certificate is None or level is None:
         said = "no force was proved from which motions decay although signals saturate"
         return CertifiedGoal("initial_force", said, text, False)
     said = (
         f"from rest with a contact force up to {rounded_down(level, _effort(certificate))} "
         "motions are proved to decay although signals saturate"
     )
-    return CertifiedGoal("initial_force", said, text, wanted is None or level >= wanted)
+    return CertifiedGoal("initial_force", said, text, least is None or level >= least)

@@ -24,8 +24,6 @@ from nrs_design.output import C_SOURCE
 
 # The first entry is always the same, and so are the first bytes of the file.
 _FIRST = "documentation/nrs-design.txt"
-
-
 _MARK = b"nrs-design fmu\n"
 # Where the library for 64-bit Linux on x86 is, if there is one.
 _LIBRARIES = "binaries/linux64"

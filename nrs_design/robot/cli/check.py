@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from nrs_design.cli import exit_codes
 from nrs_design.cli.command import Answer, command
@@ -11,9 +11,6 @@ from nrs_design.cli.options import SpecFile
 from nrs_design.cli.printing import insist, say
 from nrs_design.cli.tables import print_table
 from nrs_design.facts.spec import spec_facts
-
-if TYPE_CHECKING:
-    from nrs_design.robot.models import Robot, WorkspaceSurvey
 
 
 @command("robot-check")
@@ -39,12 +36,24 @@ def check(spec: SpecFile) -> Answer:
             f"be reached; {survey.obstacle.message}"
         )
 
+    content: dict[str, Any] = {
+        "moving_mass_kg": robot.moving_mass,
+        "home": robot.home.tolist(),
+        "reachable_share": survey.reachable,
+        "obstacle": survey.obstacle.message if survey.obstacle else None,
+        "corners": [
+            {"phi_deg": math.degrees(phi), "psi_deg": math.degrees(psi), "deepest_m": depth}
+            for phi, psi, depth in survey.deepest
+        ],
+        "mass_matrix_eigenvalues_at_home": inertia,
+    }
+
     def show() -> None:
         say(f"{spec}: valid robot {loaded.spec.name!r}")
-        _print(robot, survey, inertia)
+        _print(content)
 
     return Answer(
-        lambda: {**spec_facts(loaded), "valid": True, **_summary(robot, survey, inertia)},
+        lambda: {**spec_facts(loaded), "valid": True, **content},
         show,
         exit_codes.unless(survey.obstacle is not None),
     )
@@ -55,28 +64,11 @@ def _share(fraction: float) -> str:
     return f"{math.ceil(1e4 * fraction) / 100:g} %"
 
 
-def _corners(survey: WorkspaceSurvey) -> list[dict[str, Any]]:
-    return [
-        {"phi_deg": math.degrees(phi), "psi_deg": math.degrees(psi), "deepest_m": depth}
-        for phi, psi, depth in survey.deepest
-    ]
-
-
-def _summary(robot: Robot, survey: WorkspaceSurvey, inertia: list[float]) -> dict[str, Any]:
-    return {
-        "moving_mass_kg": robot.moving_mass,
-        "home": robot.home.tolist(),
-        "reachable_share": survey.reachable,
-        "obstacle": survey.obstacle.message if survey.obstacle else None,
-        "corners": _corners(survey),
-        "mass_matrix_eigenvalues_at_home": inertia,
-    }
-
-
-def _print(robot: Robot, survey: WorkspaceSurvey, inertia: list[float]) -> None:
+def _print(content: dict[str, Any]) -> None:
+    mass, inertia = content["moving_mass_kg"], content["mass_matrix_eigenvalues_at_home"]
     eigenvalues = ", ".join(f"{value:.4g}" for value in inertia)
-    say(f"moving mass {robot.moving_mass:.4f} kg; eigenvalues of M at home {eigenvalues} kg m^2")
-    if survey.obstacle is None:
+    say(f"moving mass {mass:.4f} kg; eigenvalues of M at home {eigenvalues} kg m^2")
+    if content["obstacle"] is None:
         say("every pose of a grid over the workspace is reachable by all legs")
     print_table(
         "",
@@ -87,6 +79,6 @@ def _print(robot: Robot, survey: WorkspaceSurvey, inertia: list[float]) -> None:
                 f"{corner['psi_deg']:.4g} deg",
                 "no depth" if (depth := corner["deepest_m"]) is None else f"{1e3 * depth:.1f} mm",
             ]
-            for corner in _corners(survey)
+            for corner in content["corners"]
         ],
     )

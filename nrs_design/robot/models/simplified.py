@@ -46,11 +46,11 @@ def simplified_dynamics(
         about_y = np.broadcast_to(np.cross((0.0, 0.0, 1.0), robot.legs[2].axis), about_y.shape)
     angular = _columns(about_x, about_y, np.zeros_like(about_x)) @ rates
     Ms = (
-        body.mass * _transposed(linear) @ linear
-        + _transposed(angular) @ frame @ body.inertia @ _transposed(frame) @ angular
+        body.mass * linear.mT @ linear
+        + angular.mT @ frame @ body.inertia @ frame.mT @ angular
         + robot.legs[2].axis_inertia * rates[..., 0, :, None] * rates[..., 0, None, :]
     )
-    Gs = -body.mass * _transposed(linear) @ np.asarray(robot.gravity_vector)
+    Gs = -body.mass * linear.mT @ np.asarray(robot.gravity_vector)
     return SimplifiedDynamics(Ms, Gs)
 
 
@@ -73,7 +73,3 @@ def _platform_frame(closed: Posture) -> Array:
 
 def _columns(*vectors: Array) -> Array:
     return np.stack(vectors, axis=-1)
-
-
-def _transposed(matrix: Array) -> Array:
-    return np.swapaxes(matrix, -1, -2)

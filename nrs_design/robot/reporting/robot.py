@@ -52,7 +52,6 @@ if TYPE_CHECKING:
     import datetime
 
     from nrs_design.robot.models.robot import Robot
-    from nrs_design.robot.models.vectors import Array
     from nrs_design.robot.models.workspace import WorkspaceSurvey
     from nrs_design.spec import LoadedSpec, RobotSpec
 
@@ -199,10 +198,9 @@ def _correction(robot: Robot) -> Section:
     def drawn() -> tuple[Block, ...]:
         depth, every = tilt_tables(robot, thesis_tilts(), DEPTH_SINES, TABLE_3_5)
         apart = correct_separately(robot, reachable_poses(robot, thesis_grid()))
-        rows = tuple(
-            (name, *map(number, row))
-            for name, row in zip(JOINTS, _coefficients(robot), strict=True)
-        )
+        found = correction_coefficients(robot, TABLE_3_5)
+        shown = found.mean_ratio, found.least_squares, found.least_squares_error
+        rows = tuple((name, *map(number, row)) for name, *row in zip(JOINTS, *shown, strict=True))
         columns = ("Joint", "Mean ratio [1]", "Least squares [1]", "Error left [N·m]")
         return (
             Paragraph(
@@ -225,11 +223,6 @@ def _correction(robot: Robot) -> Section:
         )
 
     return Section("Correction of the simplified torque", _or_why(drawn))
-
-
-def _coefficients(robot: Robot) -> Array:
-    found = correction_coefficients(robot, TABLE_3_5)
-    return np.stack([found.mean_ratio, found.least_squares, found.least_squares_error], axis=1)
 
 
 def _balance(loaded: LoadedSpec, spec: RobotSpec, robot: Robot) -> tuple[Section, ...]:

@@ -60,6 +60,14 @@ def round_coordinates(P: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.asarray(np.linalg.inv(np.linalg.cholesky(P)).T)
 
 
+def separating(P: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return coordinates in which a form is nearly round, and which leave the last state alone."""
+    T = np.zeros_like(P)
+    T[:-1, :-1] = round_coordinates(P[:-1, :-1])
+    T[-1, -1] = 1 / np.sqrt(P[-1, -1])
+    return T
+
+
 def mean_norm(matrices: NDArray[np.float64], time: Time) -> NDArray[np.float64]:
     """Return the sum of the matrices of the modes' own norms, each of trace two."""
     forms = [own_norm(A, time) for A in matrices]

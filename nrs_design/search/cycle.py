@@ -11,6 +11,7 @@ from itertools import islice
 import numpy as np
 
 from nrs_design.search.graph import Array, Cycle, Graph, Jump
+from nrs_design.search.structure import reach
 from nrs_design.work import Allowance
 
 MAX_CYCLES = 120
@@ -78,16 +79,12 @@ def _closed(
 
 def _returning(jumps: Sequence[Jump]) -> list[int]:
     """Return the jumps that lie on some cycle: both modes reach each other."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
-    if not jumps:
-        return []
-    pairs = np.array([(jump.source, jump.target) for jump in jumps])
-    size = int(pairs.max()) + 1
-    links = coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(size, size))
-    _, part = connected_components(links, directed=True, connection="strong")
-    return [int(k) for k in np.flatnonzero(part[pairs[:, 0]] == part[pairs[:, 1]])]
+    size = 1 + max((max(jump.source, jump.target) for jump in jumps), default=0)
+    links = np.zeros((size, size), dtype=bool)
+    for jump in jumps:
+        links[jump.source, jump.target] = True
+    reaches = reach(links)
+    return [k for k, jump in enumerate(jumps) if reaches[jump.target, jump.source]]
 
 
 def _best_pair(graph: Graph, cycle: Cycle) -> Array:

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.proof.evidence import GrowingSequence
+from nrs_design.search.balance import round_coordinates
 from nrs_design.search.branches import best_words
 from nrs_design.search.candidates import Candidates
 from nrs_design.search.family import Family
@@ -89,7 +90,7 @@ def words_in_norms(
     maps = np.array([program.every[k].M for k in order])
     none = np.zeros(len(rows), dtype=np.int64)
     lifted = StepGraph((), sources, targets, none, none, maps, len(places), has_choice=False)
-    T = np.array([np.linalg.inv(np.linalg.cholesky(Q)).T for Q in solution.forms])
+    T = np.array([round_coordinates(Q) for Q in solution.forms])
     for word, growth in best_words(lifted, allowance, floor, T, LONGEST):
         yield tuple(int(edges[k]) for k in word), growth
 

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.mode import Time
+from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.balance import balance, scale_states
 from nrs_design.search.decay import limit_rate
@@ -96,6 +96,14 @@ def stand_ins(names: Sequence[str], matrices: NDArray[np.float64]) -> dict[str, 
             kept.append(i)
         found[names[i]] = names[k]
     return found
+
+
+def distinct_modes(modes: Sequence[Mode]) -> list[tuple[Mode, NDArray[np.float64]]]:
+    """Return modes in floating point, without those that differ by an enclosed number."""
+    matrices = to_floats([mode.A for mode in modes])
+    named = stand_ins([mode.name for mode in modes], matrices)
+    pairs = zip(modes, matrices, strict=True)
+    return [(mode, A) for mode, A in pairs if named[mode.name] == mode.name]
 
 
 def to_floats(matrices: Sequence[RationalMatrix]) -> NDArray[np.float64]:

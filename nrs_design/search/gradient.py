@@ -17,7 +17,7 @@ from nrs_design.search.balance import mean_norm, own_norm, round_coordinates
 from nrs_design.search.decay import rate_of
 from nrs_design.search.family import Family
 from nrs_design.search.gradient_settings import Coordinates, Gradient, Order
-from nrs_design.search.rounding import rate_at
+from nrs_design.search.rounding import position_of, rate_at
 from nrs_design.work import Allowance, NotAffordableError
 
 # Work per round and per multiplication in it.
@@ -201,7 +201,6 @@ def _coordinates(family: Family, norm: Matrices) -> Matrices:
 
 def _position(family: Family, Q: Matrices) -> float:
     """Return where the rate that Q itself shows lies between mere stability and the limit."""
-    time, limit = family.system.time, family.limit
-    rate = rate_of(family.matrices, Q, time)
-    position = rate / limit if time is Time.CONTINUOUS else (1 - rate) / (1 - limit)
+    time = family.system.time
+    position = position_of(rate_of(family.matrices, Q, time), family.limit, time)
     return min(max(position, 0.0), 1.0)

@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.proof.clock import on_turn
-from nrs_design.proof.contact import Contact
 from nrs_design.proof.evidence import FormsOnGraph
 from nrs_design.proof.evidence.graph import Arc, Multiplier, Node
 from nrs_design.proof.lift import monomials
@@ -20,7 +19,7 @@ from nrs_design.proof.spectrum import is_stable
 from nrs_design.proof.steps import CONTACT, FREE, ROUNDING, Stays
 from nrs_design.proof.switching import Clock, Stay
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.search.balance import balance, own_norm, scale_states
+from nrs_design.search.balance import balance, own_norm, round_coordinates, scale_states, separating
 from nrs_design.search.branches import best_words, round_forms
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
 from nrs_design.search.cycle import growing_cycles
@@ -192,7 +191,7 @@ def search_conewise_modes(family: Family) -> Candidates[FormsOnGraph]:
         return OUT_OF_RANGE
     # What is left of the budget is for simpler functions in kept contact.
     allowance = family.allowance.part(0.25)
-    nodes = len(family.system.modes) + len(_free(family.system))
+    nodes = len(family.system.every_mode)
     allowance.require(Cost(PER_EDGE * 2 * nodes**2), f"a graph of {2 * nodes**2} edges")
     drawing = draw_conewise_modes(family)
     if not drawing.is_finite:
@@ -206,8 +205,8 @@ def draw_conewise_modes(family: Family) -> Drawing:
     system, motions = family.system, Motions.of(family)
     own = FormCoordinates(family.exponents, separating_coordinates(motions))
     flying = FormCoordinates(family.exponents[:-1], own.T[:-1, :-1])
-    free = _free(system)
-    names = [mode.name for mode in (*system.modes, *free)]
+    free = system.free
+    names = [mode.name for mode in system.every_mode]
     like = stand_ins(names[: len(system.modes)], motions.contact)
     like |= stand_ins(names[len(system.modes) :], motions.free)
     number = {name: k for k, name in enumerate(dict.fromkeys(like.values()))}
@@ -238,7 +237,7 @@ def search_periodic_quadratic(family: Family) -> Candidates[FormsOnGraph]:
     if not np.isfinite(family.matrices).all():
         return OUT_OF_RANGE
     limit, ended = _limit(family, clock), None
-    every = [mode.name for mode in (*system.modes, *_free(system))]
+    every = [mode.name for mode in system.every_mode]
     kinds = Counter(name in clock.first for name in every)
     # At the largest rate itself there is no room for rounding.
     rates = Rates(0.5, resolution=2.0**-5, nearest=0.99, few=True, bits=digits(24))
@@ -312,9 +311,10 @@ def _coordinates(family: Family, clock: Clock) -> Iterator[Array]:
     What a mean mode keeps of the state until it is at rest is round in them.
     """
     means = [matrices.mean(axis=0) for matrices in _turns(family, clock)]
+    apart = round_coordinates if family.system.contact is None else separating
     if not clock.is_round:
         graph = StepGraph.of_clock(clock, ("in time", "missed"), np.array(means), (True, False))
-        yield from (_apart(family, P) for P in round_forms(graph))
+        yield from map(apart, round_forms(graph))
         return
     each = [means[min(step, 1)] for step in range(clock.length)]
     n = family.system.order
@@ -328,17 +328,7 @@ def _coordinates(family: Family, clock: Clock) -> Iterator[Array]:
     for mean in reversed(each * 2):
         form = np.eye(n) / len(each) + share**2 * mean.T @ form @ mean
         forms.append(form)
-    yield from (_apart(family, P) for P in forms[: -len(each) - 1 : -1])
-
-
-def _apart(family: Family, P: Array) -> Array:
-    """Return coordinates in which a form is nearly round, and which leave the deflection alone."""
-    if family.system.contact is None:
-        return np.asarray(np.linalg.inv(np.linalg.cholesky(P)).T)
-    T = np.zeros_like(P)
-    T[:-1, :-1] = np.linalg.inv(np.linalg.cholesky(P[:-1, :-1])).T
-    T[-1, -1] = 1 / np.sqrt(P[-1, -1])
-    return T
+    yield from map(apart, forms[: -len(each) - 1 : -1])
 
 
 def _limit(family: Family, clock: Clock) -> float:
@@ -351,10 +341,6 @@ def _limit(family: Family, clock: Clock) -> float:
     rounds = [np.linalg.matrix_power(B, clock.length - 1) @ A for A in first for B in others]
     slowest = max(limit_rate(whole[None], Time.DISCRETE) for whole in rounds)
     return float(slowest ** (1 / clock.length))
-
-
-def _free(system: SwitchedSystem) -> tuple[Mode, ...]:
-    return (system.contact or Contact(())).free
 
 
 def search_modes(family: Family, degree: int = 1) -> Candidates[FormsOnGraph]:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from nrs_design.proof.contact import Contact
 from nrs_design.proof.mode import Time
-from nrs_design.search.balance import mean_norm
+from nrs_design.search.balance import mean_norm, separating
 from nrs_design.search.family import Family, to_floats
 
 Array = NDArray[np.float64]
@@ -38,12 +38,7 @@ class Motions:
 
 def separating_coordinates(motions: Motions) -> Array:
     """Return T that makes the mean of the modes' norms round, but leaves the deflection alone."""
-    n = motions.contact.shape[-1]
-    Q = mean_norm(motions.contact, motions.time)
-    T = np.zeros((n, n))
-    T[:-1, :-1] = np.linalg.inv(np.linalg.cholesky(Q[:-1, :-1])).T
-    T[-1, -1] = 1 / np.sqrt(Q[-1, -1])
-    return T
+    return separating(mean_norm(motions.contact, motions.time))
 
 
 def multiplied(contact: Contact, time: Time) -> NDArray[np.int64]:

@@ -192,7 +192,7 @@ def _roundings(
     """Round times to few digits, and keep them admissible."""
     names = [system.modes[mode].name for mode in graph.modes(cycle)]
     edges = tuple(graph.jumps[k].way for k in cycle)
-    has_choice = len(set(_pairs(graph))) < len(graph.jumps)
+    has_choice = any(jump.way for jump in graph.jumps)
     for bits in digits(FEWEST_BITS) if system.time is Time.CONTINUOUS else digits()[-1:]:
         steps = tuple(
             (name, _admissible(system, name, _short(float(time), bits)))
@@ -201,10 +201,6 @@ def _roundings(
         floats = np.array([float(time) for _, time in steps])
         growth = float(graph.growth(cycle, floats) * floats.sum())
         yield from powers(system, steps, edges if has_choice else (), exp(min(growth, 700.0)))
-
-
-def _pairs(graph: Graph) -> list[tuple[int, int]]:
-    return [(jump.source, jump.target) for jump in graph.jumps]
 
 
 def _admissible(system: SwitchedSystem, mode: str, time: Fraction) -> Fraction:

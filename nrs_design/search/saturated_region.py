@@ -49,7 +49,7 @@ class Problem:
         assert saturation is not None  # who asks has looked
         free = () if system.contact is None else system.contact.free
         limits = np.array([float(s.limit) for s in saturation.signals])
-        A = to_floats([mode.A for mode in (*system.modes, *free)])
+        A = to_floats([mode.A for mode in system.every_mode])
         columns = np.stack([to_floats(s.columns)[:, :, 0] for s in saturation.signals], axis=1)
         columns *= limits[:, None]
         if free:

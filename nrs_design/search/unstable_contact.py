@@ -23,7 +23,7 @@ from nrs_design.proof.switching import NOWHERE
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.balance import scale_states
 from nrs_design.search.candidates import Candidate, Candidates
-from nrs_design.search.family import Family, stand_ins, to_floats
+from nrs_design.search.family import Family, distinct_modes
 from nrs_design.work import Allowance, Cost
 
 Array = NDArray[np.float64]
@@ -85,11 +85,11 @@ class _Loop:
         flying = {m.name for m in free} if flights is None else {*flights.flying}
         first = frozenset(() if system.clock is None else system.clock.first)
         kinds: dict[tuple[bool, ...], list[Mode]] = {}
-        for mode in (*system.modes, *free):
+        for mode in system.every_mode:
             kind = tuple(mode.name in part for part in (touching, flying, first))
             kinds.setdefault(kind, []).append(mode)
-        modes = [mode for group in kinds.values() for mode in _distinct(group)]
-        names = tuple(mode.name for mode in modes)
+        modes = [pair for group in kinds.values() for pair in distinct_modes(group)]
+        names = tuple(mode.name for mode, _ in modes)
         rows = [] if contact is None else contact.pulls
         rows = rows if flights is None else flights.pulls
         pulls = [np.ldexp(np.array(row.floats())[0], family.exponents) for row in rows]
@@ -102,7 +102,7 @@ class _Loop:
         return cls(
             system,
             names,
-            scale_states(to_floats([mode.A for mode in modes]), family.exponents),
+            scale_states(np.array([A for _, A in modes]), family.exponents),
             np.array([name in touching for name in names]),
             np.array([name in flying for name in names]),
             np.array(pulls).reshape(len(pulls), system.order),
@@ -227,12 +227,6 @@ def _once(sequence: list[int]) -> list[int]:
         for k in range(1, count + 1)
         if count % k == 0 and sequence[:k] * (count // k) == sequence
     )
-
-
-def _distinct(modes: Sequence[Mode]) -> list[Mode]:
-    """Return modes without those that differ by an enclosed number."""
-    named = stand_ins([mode.name for mode in modes], to_floats([mode.A for mode in modes]))
-    return [mode for mode in modes if named[mode.name] == mode.name]
 
 
 def _enclosing_cost(system: SwitchedSystem, steps: Steps) -> Cost:

@@ -18,10 +18,8 @@ from nrs_design.search.family import Family
 from nrs_design.search.lmi import time_unit
 from nrs_design.search.rounding import digits
 from nrs_design.search.sdp import (
-    Sparse,
+    Blocks,
     begin,
-    maximize_margin,
-    pack,
     program_cost,
     symmetric_basis,
 )
@@ -122,24 +120,20 @@ class _Program:
         # Most entries are zero: each inequality knows its own function and multipliers.
         cost = program_cost(touched, corners * size + 1, cones)
         begun = begin(allowance, cost, f"a program of {unknowns} unknowns")
-        own = np.arange(size)
-        parts = [(np.eye(n), -basis, k * size + own) for k in range(corners)]
+        blocks = Blocks()
+        for k in range(corners):
+            blocks.add(np.eye(n), dict(enumerate(-basis, k * size)))
         functions = self._of_functions(basis, rate)
-        last = np.array([unknowns - 1])
         for k in range(sets):
-            at = corners * size + 2 * k * square + np.arange(2 * square)
+            at = corners * size + 2 * k * square
             for v, A in enumerate(self.modes[k]):
-                images = np.concatenate([functions, _of_multipliers(A), -np.eye(2 * n)[None]])
-                columns = np.concatenate([v * size + own, at, last])
-                parts.append((np.zeros((2 * n, 2 * n)), images, columns))
-        x = maximize_margin(
-            _stacked(parts, unknowns),
-            np.concatenate([pack(constant) for constant, _, _ in parts]),
-            [len(constant) for constant, _, _ in parts],
-            begun,
-        )
-        if x is None or x[-1] <= 0:
+                images = dict(enumerate(functions, v * size))
+                images |= enumerate(_of_multipliers(A), at)
+                blocks.add(0.0, images | {unknowns - 1: -np.eye(2 * n)})
+        found = blocks.maximize(unknowns, begun)
+        if found is None or found.x[-1] <= 0:
             return None
+        x = found.x
         P = np.tensordot(x[: corners * size].reshape(corners, size), basis, axes=1)
         slack = x[corners * size : -1].reshape(sets, 2, n, n)
         inverse = np.linalg.inv(self.coordinates)
@@ -166,18 +160,3 @@ def _of_multipliers(A: Array) -> Array:
     first = np.block([[-(moved + back), E], [turned, nothing]])
     second = np.block([[nothing, -back], [-moved, E + turned]])
     return np.concatenate([first, second])
-
-
-def _stacked(parts: list[tuple[Array, Array, Indices]], unknowns: int) -> Sparse:
-    """Put the constraints of all blocks below each other, without their zeros."""
-    values, rows, columns, first = [], [], [], 0
-    for _, images, at in parts:
-        packed = -pack(images)
-        unknown, row = np.nonzero(packed)
-        values.append(packed[unknown, row])
-        rows.append(first + row)
-        columns.append(at[unknown])
-        first += packed.shape[1]
-    return Sparse.of(
-        np.concatenate(values), np.concatenate(rows), np.concatenate(columns), (first, unknowns)
-    )

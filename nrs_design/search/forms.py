@@ -38,9 +38,9 @@ from nrs_design.search.pieces import enough_pieces
 from nrs_design.search.rounding import round_form, round_rate
 from nrs_design.search.sdp import (
     STEPS,
+    Maximum,
     Sparse,
     begin,
-    find_maximum,
     maximize_margin,
     pack,
     program_cost,
@@ -296,17 +296,19 @@ class FormsProgram:
         """Solve for some of the edges."""
         if self.is_dear:
             return self._solve_ours(active, rate, allowance)
+        found = self._maximum(active, rate, allowance)
+        return None if found is None else self._read(found.x, rate)
+
+    def _maximum(self, active: Sequence[int], rate: float, allowance: Allowance) -> Maximum | None:
         begun = begin(allowance, *self.cost(active))
-        x = maximize_margin(*self._built.of_edges(self.factors(rate), active), begun)
-        return None if x is None else self._read(x, rate)
+        return maximize_margin(*self._built.of_edges(self.factors(rate), active), begun)
 
     def solve_dual(self, rate: float, allowance: Allowance) -> DualSolution | None:
         """Solve at a rate, for the dual variables as well; None without a margin."""
         if self.solve(rate, allowance) is None:
             return None
         active = self.active  # Enough of the edges, as the solution has found
-        begun = begin(allowance, *self.cost(active))
-        found = find_maximum(*self._built.of_edges(self.factors(rate), active), begun)
+        found = self._maximum(active, rate, allowance)
         solution = None if found is None else self._read(found.x, rate)
         if found is None or solution is None:
             return None
@@ -676,49 +678,6 @@ def _entries(drawing: Drawing, form: int, states: int) -> list[int]:
     return [k for k, term in terms if not any(term[states:])]
 
 
-@dataclass(frozen=True)
-class _Moved:
-    """A step between two nodes, with the coordinates of their forms."""
-
-    step: Step
-    floats: _Floats
-    before: int
-    kept: Indices
-    after: int
-    left: Indices
-    S: Array  # Of the state before
-    M: Array  # In coordinates, but for errors
-    names: Mapping[str, Fact]
-
-    @property
-    def states(self) -> int:
-        return len(self.kept)
-
-    def edge(self, scales: Mapping[Fact, float], *, lasts: float) -> Inequality:
-        """Return the edge, with the multipliers of the facts that have a scale."""
-        n, facts = self.states, []
-        for name, c in self.floats.crossings:
-            fact, form = self.names[name], np.zeros((n, n))
-            form[n - 1] = scales[fact] * self.S[-1, -1] * (c[:n] @ self.S)
-            facts.append((fact, form + form.T))
-        errors = tuple(
-            Error(self.names[name], self.M[:, i], q[:n] @ self.S)
-            for name, i, q in self.floats.errors
-        )
-        return Inequality(
-            self.before,
-            self.kept,
-            self.after,
-            self.left,
-            self.M[:, :n],
-            tuple(facts),
-            errors,
-            self.step.is_flow,
-            lasts,
-            self.step.time > 0,
-        )
-
-
 def _edges(
     drawing: Drawing, scales: Mapping[Fact, float] | None = None
 ) -> tuple[list[Inequality], dict[Fact, float]]:
@@ -730,41 +689,58 @@ def _edges(
     wholes = [one.whole for one in drawing.coordinates]
     inverses = [np.linalg.inv(whole) for whole in wholes]
     listed = [*graph.edges_in_time(system), *_at_once(drawing)]
-    names = _named(drawing, listed)
-    cached: dict[int, _Floats] = {}
-    edges, moved = list[Inequality](), list[_Moved]()
+    names, edges = _named(drawing, listed), list[Inequality]()
+    moves, known = list[tuple[int, Step, int]](), dict[int, _Floats]()
     for a, step, b in listed:
-        before, after = drawing.forms[a], drawing.forms[b]
         if isinstance(step, EnclosedStep):
-            whole = [np.arange(len(wholes[k])) for k in (before, after)]
+            before, after = drawing.forms[a], drawing.forms[b]
+            kept, left = (np.arange(len(wholes[k])) for k in (before, after))
             for lasts, flow in _stays(step):
                 M = inverses[after] @ flow @ wholes[before]
-                edges.append(
-                    Inequality(before, whole[0], after, whole[1], M, (), (), False, lasts, True)
-                )
+                edges.append(Inequality(before, kept, after, left, M, (), (), False, lasts, True))
             continue
-        if id(step) not in cached:
-            lift = step if graph.degree == 1 else lifted(step, graph.degree, Fraction(1))
-            cached[id(step)] = _Floats.of(lift)
-        floats = cached[id(step)]
+        moves.append((a, step, b))
+        if id(step) not in known:
+            known[id(step)] = _Floats.of(
+                step if graph.degree == 1 else lifted(step, graph.degree, Fraction(1))
+            )
+    sizes: dict[Fact, float] = {}
+    for a, step, b in moves:
+        last = _entries(drawing, drawing.forms[a], step.states)[-1]
+        size = float(wholes[drawing.forms[a]][last, last] ** 2)
+        for name, _ in known[id(step)].crossings:
+            sizes[names[b][name]] = max(size, sizes.get(names[b][name], 0.0))
+    scales = scales or {
+        fact: 1 / size if size > 0 and isfinite(1 / size) else 1.0 for fact, size in sizes.items()
+    }
+    for a, step, b in moves:
+        before, after, floats = drawing.forms[a], drawing.forms[b], known[id(step)]
         kept = np.array(_entries(drawing, before, step.states), dtype=np.int64)
         left = np.array(_entries(drawing, after, len(step.rows)), dtype=np.int64)
         S, n = wholes[before][np.ix_(kept, kept)], len(kept)
         own = inverses[after][np.ix_(left, left)]
         M = np.asarray(own @ np.hstack([floats.M[:, :n] @ S, floats.M[:, n:]]), dtype=float)
-        moved.append(_Moved(step, floats, before, kept, after, left, S, M, names[b]))
-    sizes: dict[Fact, float] = {}
-    for item in moved:
-        for name, _ in item.floats.crossings:
-            fact, size = item.names[name], float(item.S[-1, -1] ** 2)
-            sizes[fact] = max(size, sizes.get(fact, 0.0))
-    found = {
-        fact: 1 / size if size > 0 and isfinite(1 / size) else 1.0 for fact, size in sizes.items()
-    }
-    scales = found if scales is None else scales
-    for item in moved:
-        lasts = item.step.time if system.time is Time.DISCRETE else 0.0
-        edges.append(item.edge(scales, lasts=lasts))
+        facts = list[tuple[Fact, Array]]()
+        for name, c in floats.crossings:
+            fact, form = names[b][name], np.zeros((n, n))
+            form[n - 1] = scales[fact] * S[-1, -1] * (c[:n] @ S)
+            facts.append((fact, form + form.T))
+        errors = tuple(Error(names[b][name], M[:, i], q[:n] @ S) for name, i, q in floats.errors)
+        lasts = step.time if system.time is Time.DISCRETE else 0.0
+        edges.append(
+            Inequality(
+                before,
+                kept,
+                after,
+                left,
+                M[:, :n],
+                tuple(facts),
+                errors,
+                step.is_flow,
+                lasts,
+                step.time > 0,
+            )
+        )
     return edges, dict(scales)
 
 

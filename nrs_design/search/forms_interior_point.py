@@ -19,7 +19,7 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.search.interior_point import STEP_SHARE, nesterov_todd, step_to_border
+from nrs_design.search.interior_point import nesterov_todd, predict_and_correct
 from nrs_design.search.sdp import pack, symmetric_basis, unpack
 from nrs_design.work import Cost
 
@@ -246,41 +246,18 @@ def _step(cones: FormsCones, X: list[Array], Z: list[Array]) -> tuple[Array, lis
     size = float(np.sqrt(np.abs(gram.diagonal()[:-1]).max()))
     gram[-1, :-1] = gram[:-1, -1] = size * cones.trace
 
-    def direction(target: list[Array]) -> tuple[Array, list[Array], list[Array]]:
+    def direction(target: list[Array]) -> tuple[Array, list[Array]]:
         moved = [_t(own) @ part @ own for own, part in zip(W, target, strict=True)]
         force = np.append(cones.adjoint(moved) + residual, 0.0)
         dy = np.asarray(np.linalg.solve(gram, force))[:-1]
-        dX = [own @ part @ _t(own) for own, part in zip(W, cones.image(dy), strict=True)]
-        return dy, dX, [a - b for a, b in zip(target, dX, strict=True)]
+        return dy, [own @ part @ _t(own) for own, part in zip(W, cones.image(dy), strict=True)]
 
-    D = [own[..., None] * np.eye(own.shape[-1]) for own in d]
-    _, dX, dZ = direction([-own for own in D])
-    gap, count = sum(float((own * own).sum()) for own in d), sum(own.size for own in d)
-    first, second = _farthest(d, dX, 1.0), _farthest(d, dZ, 1.0)
-    reached = sum(
-        float(((a + first * b) * (a + second * c)).sum()) for a, b, c in zip(D, dX, dZ, strict=True)
-    )
-    center = max(reached / gap, 0.0) ** 3 * gap / count
-    target = [
-        center / own[..., None] * np.eye(own.shape[-1])
-        - (b @ c + c @ b) / (own[..., None] + own[..., None, :])
-        - a
-        for own, a, b, c in zip(d, D, dX, dZ, strict=True)
-    ]
-    dy, dX, dZ = direction(target)
-    far = _farthest(d, dZ, STEP_SHARE)
-    lacks = (1 - far) * float(np.abs(residual - _along(residual, cones.trace)).max())
-    back = [far * (_t(own) @ part @ own) for own, part in zip(W, dZ, strict=True)]
-    return _farthest(d, dX, STEP_SHARE) * dy, back, lacks
-
-
-def _along(residual: Array, trace: Array) -> Array:
-    """Return what of a residual the equation of the trace makes up for."""
-    return np.asarray(trace * float(residual @ trace) / float(trace @ trace))
-
-
-def _farthest(d: list[Array], change: list[Array], share: float) -> float:
-    return min(step_to_border(own, part, share) for own, part in zip(d, change, strict=True))
+    step = predict_and_correct(d, direction)
+    # The equation of the trace makes up for a part of the residual.
+    along = cones.trace * float(residual @ cones.trace) / float(cones.trace @ cones.trace)
+    lacks = (1 - step.dual) * float(np.abs(residual - along).max())
+    back = [step.dual * (_t(own) @ part @ own) for own, part in zip(W, step.dZ, strict=True)]
+    return step.primal * step.dy, back, lacks
 
 
 def _kronecker(U: Array, V: Array) -> Array:

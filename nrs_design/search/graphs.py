@@ -205,7 +205,6 @@ def draw_conewise_modes(family: Family) -> Drawing:
     system, motions = family.system, Motions.of(family)
     own = FormCoordinates(family.exponents, separating_coordinates(motions))
     flying = FormCoordinates(family.exponents[:-1], own.T[:-1, :-1])
-    free = system.free
     names = [mode.name for mode in system.every_mode]
     like = stand_ins(names[: len(system.modes)], motions.contact)
     like |= stand_ins(names[len(system.modes) :], motions.free)

@@ -48,14 +48,6 @@ class Cones:
         return self.constant + change.reshape(self.constant.shape)
 
 
-class _Scaled(NamedTuple):
-    """The coordinates in which X and its multiplier Z are the same diagonal matrix."""
-
-    W: Array
-    d: Array
-    rows: Array
-
-
 def step_cost(variables: int, cones: int, order: int) -> Cost:
     """Predict what one step of `maximize_last` takes."""
     entries = variables * cones * order**2
@@ -68,14 +60,12 @@ def maximize_last(
     cones: Cones,
     start: Array,
     goes_on: Callable[[], bool] = lambda: True,
-    floor: float = GAP_FLOOR,
 ) -> Array:
     """Maximize the last variable, until it is positive and within a factor of the largest one.
 
     The start is strictly feasible; the matrices that the last variable enters grow as it falls.
     `goes_on` is asked before every step: No ends the search with the last iterate, strictly
-    feasible in floating point. The optimum counts as found when X and Z are as close to
-    complementary as `floor`.
+    feasible in floating point.
     """
     y, X = start, cones.at(start)
     inverse = np.linalg.inv(X)
@@ -93,43 +83,65 @@ def maximize_last(
             break
         y, X, Z = y + dy, trial, Z + dZ
         gap = float((X * Z).sum())
-        if gap <= max(floor, (GOOD_FACTOR - 1) * y[-1]):
+        if gap <= max(GAP_FLOOR, (GOOD_FACTOR - 1) * y[-1]):
             break
     return y
 
 
 def _step(cones: Cones, X: Array, Z: Array) -> tuple[Array, Array]:
     """Return the changes of y and Z."""
-    scaled = _scale(cones, X, Z)
-    d, n = scaled.d, X.shape[-1]
+    W, d = nesterov_todd(X, Z)
+    back = np.swapaxes(W, -1, -2)
+    # In the coordinates in which X and Z are the same diagonal matrix.
+    rows = pack(W @ cones.images @ back).reshape(len(cones.images), -1)
     residual = cones.images.reshape(len(cones.images), -1) @ Z.ravel()
     residual[-1] += 1.0
-    gram = scaled.rows @ scaled.rows.T
+    gram = rows @ rows.T
 
-    def direction(target: Array) -> tuple[Array, Array, Array]:
-        force = scaled.rows @ pack(target).ravel() + residual
+    def direction(target: list[Array]) -> tuple[Array, list[Array]]:
+        force = rows @ pack(target[0]).ravel() + residual
         dy = np.asarray(np.linalg.solve(gram, force), dtype=np.float64)
-        dX = unpack((dy @ scaled.rows).reshape(len(X), -1), n)
-        return dy, dX, target - dX
+        return dy, [unpack((dy @ rows).reshape(len(X), -1), X.shape[-1])]
 
-    D = d[..., None] * np.eye(n)
-    _, dX, dZ = direction(-D)
-    gap = (d * d).sum()
-    reached = ((D + step_to_border(d, dX, 1.0) * dX) * (D + step_to_border(d, dZ, 1.0) * dZ)).sum()
-    center = max(reached / gap, 0.0) ** 3 * gap / d.size
-    bend = (dX @ dZ + dZ @ dX) / (d[..., None] + d[..., None, :])
-    dy, dX, dZ = direction(center / d[..., None] * np.eye(n) - bend - D)
-    back = np.swapaxes(scaled.W, -1, -2)
-    return step_to_border(d, dX, STEP_SHARE) * dy, step_to_border(d, dZ, STEP_SHARE) * (
-        back @ dZ @ scaled.W
+    step = predict_and_correct([d], direction)
+    return step.primal * step.dy, step.dual * (back @ step.dZ[0] @ W)
+
+
+class Step(NamedTuple):
+    """A direction in scaled coordinates, and how far X and Z may follow it."""
+
+    dy: Array
+    dZ: list[Array]
+    primal: float
+    dual: float
+
+
+def predict_and_correct(
+    d: list[Array], direction: Callable[[list[Array]], tuple[Array, list[Array]]]
+) -> Step:
+    """Return the step of Mehrotra, from where X and Z are diagonal with the entries d.
+
+    The direction gives the changes of y and X for what those of X and Z are to add up to.
+    """
+    D = [own[..., None] * np.eye(own.shape[-1]) for own in d]
+    target = [-own for own in D]
+    _, dX = direction(target)
+    dZ = [a - b for a, b in zip(target, dX, strict=True)]
+    gap, count = sum(float((own * own).sum()) for own in d), sum(own.size for own in d)
+    first, second = _farthest(d, dX, 1.0), _farthest(d, dZ, 1.0)
+    reached = sum(
+        float(((a + first * b) * (a + second * c)).sum()) for a, b, c in zip(D, dX, dZ, strict=True)
     )
-
-
-def _scale(cones: Cones, X: Array, Z: Array) -> _Scaled:
-    """Bring all images to the coordinates in which X and Z are the same diagonal matrix."""
-    W, d = nesterov_todd(X, Z)
-    images = W @ cones.images @ np.swapaxes(W, -1, -2)
-    return _Scaled(W, d, pack(images).reshape(len(images), -1))
+    center = max(reached / gap, 0.0) ** 3 * gap / count
+    target = [
+        center / own[..., None] * np.eye(own.shape[-1])
+        - (b @ c + c @ b) / (own[..., None] + own[..., None, :])
+        - a
+        for own, a, b, c in zip(d, D, dX, dZ, strict=True)
+    ]
+    dy, dX = direction(target)
+    dZ = [a - b for a, b in zip(target, dX, strict=True)]
+    return Step(dy, dZ, _farthest(d, dX, STEP_SHARE), _farthest(d, dZ, STEP_SHARE))
 
 
 def nesterov_todd(X: Array, Z: Array) -> tuple[Array, Array]:
@@ -143,8 +155,12 @@ def nesterov_todd(X: Array, Z: Array) -> tuple[Array, Array]:
     return np.sqrt(d)[..., None] * Vt @ np.linalg.inv(L), d
 
 
-def step_to_border(d: Array, change: Array, share: float) -> float:
+def _farthest(d: list[Array], change: list[Array], share: float) -> float:
     """Return how far a step may go, one at most, as a share of the way to the border."""
+    return min(_to_border(own, part, share) for own, part in zip(d, change, strict=True))
+
+
+def _to_border(d: Array, change: Array, share: float) -> float:
     root = np.sqrt(d)
     relative = change / (root[..., None] * root[..., None, :])
     steepest = float(-np.linalg.eigvalsh(relative)[..., 0].min())

@@ -48,13 +48,15 @@ LADDER: tuple[Rung, ...] = (
     Rung(
         "conewise quadratic",
         Method.CONEWISE_QUADRATIC,
-        lambda f: f.may_lose_contact and f.may_share_an_ellipsoid,
+        lambda f: f.system.contact is not None and f.may_share_an_ellipsoid,
         _in("graphs", "search_together"),
     ),
     Rung(
         "quadratic, with roundings",
         Method.LMI,
-        lambda f: f.rounds and not f.may_lose_contact and f.may_share_an_ellipsoid,
+        lambda f: (
+            bool(f.system.roundings) and f.system.contact is None and f.may_share_an_ellipsoid
+        ),
         _in("graphs", "search_together"),
     ),
     # Before what takes for granted that contact is kept; that no quadratic function exists is said
@@ -84,7 +86,7 @@ LADDER: tuple[Rung, ...] = (
         Rung(
             name,
             Method.PERIOD,
-            lambda f: f.is_losable,
+            lambda f: f.system.is_losable,
             _in("unstable_contact", "search_contact"),
             clocked=clocked,
             in_kept_contact=False,

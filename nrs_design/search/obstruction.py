@@ -69,10 +69,10 @@ def solve_dual(matrices: Array, time: Time, allowance: Allowance | None = None) 
     rows = np.vstack([trace, positive, total])
     offset = np.zeros(len(rows))
     offset[0] = 1.0
-    x = maximize_margin(rows, offset, [n] * (m + 1), begun, 1)
-    if x is None or x[-1] <= 0:
+    found = maximize_margin(rows, offset, [n] * (m + 1), begun, 1)
+    if found is None or found.x[-1] <= 0:
         return None
-    return unpack(x[:-1].reshape(m, size), n)
+    return unpack(found.x[:-1].reshape(m, size), n)
 
 
 def _roundings(

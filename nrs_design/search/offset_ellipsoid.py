@@ -32,10 +32,8 @@ from nrs_design.search.invariant_ellipsoid import (
 from nrs_design.search.motions import Motions, numerators, separating_coordinates
 from nrs_design.search.rounding import unscale
 from nrs_design.search.sdp import (
-    Sparse,
+    Blocks,
     begin,
-    maximize_margin,
-    pack,
     program_cost,
     symmetric_basis,
 )
@@ -264,13 +262,19 @@ class _Program:
         begun = begin(allowance, self.cost, WHAT)
         basis = symmetric_basis(self.order)
         place = {name: len(basis) + i for i, name in enumerate(self.scales)}
-        cones = _Cones(len(basis) + len(place), strict=level is not None)
+        blocks, last = Blocks(), len(basis) + len(place)
+
+        def add(images: dict[int, Array], block: Array | float = 0.0) -> None:
+            """Leave something to spare in a block, or let the level enter it as it does."""
+            if level is not None:
+                images = {**images, last: -np.eye(len(images[0]))}
+            blocks.add(block, images)
+
         for item in self.conditions:
             images = dict(enumerate(item.images(basis, share)))
-            images |= {place[f]: -form / self.scales[f] for f, form in item.facts.items()}
-            cones.add(0.0, images)
-        cones.add(0.0, dict(enumerate(basis[:, 1:, 1:])))
-        cones.add(0.0, dict(enumerate(-basis[:, :1, :1])), spare=False)
+            add(images | {place[f]: -form / self.scales[f] for f, form in item.facts.items()})
+        add(dict(enumerate(basis[:, 1:, 1:])))
+        blocks.add(0.0, dict(enumerate(-basis[:, :1, :1])))
         one = np.zeros((self.order, self.order))
         one[0, 0] = 1.0
         for name, row in self.ends:
@@ -279,45 +283,19 @@ class _Program:
             image[0, -1] = image[-1, 0] = -0.5
             images = {**dict(enumerate(basis)), place[name]: image}
             if level is None:
-                images[cones.last] = -one
-            cones.add(block + (level or 0.0) * one, images)
+                images[last] = -one
+            add(images, block + (level or 0.0) * one)
         for column in place.values():
-            cones.add(0.0, {column: np.ones((1, 1))}, spare=False)
+            blocks.add(0.0, {column: np.ones((1, 1))})
         if level is not None:
-            cones.add(1.0, {cones.last: -np.ones((1, 1))}, spare=False)
-        x = maximize_margin(*cones.program(), begun)
-        if x is None or (level is None) == (x[-1] >= 0) or not x[-1]:
+            blocks.add(1.0, {last: -np.ones((1, 1))})
+        reached = blocks.maximize(last + 1, begun)
+        if reached is None or (level is None) == (reached.x[-1] >= 0) or not reached.x[-1]:
             return None
+        x = reached.x
         found = {name: float(x[place[name]] / scale) for name, scale in self.scales.items()}
         Q = np.asarray(np.tensordot(x[: len(basis)], basis, axes=1))
         return _Found(Q, found, float(-x[-1]))
-
-
-class _Cones:
-    """Blocks that must stay positive, of images of the unknowns, of which most are in few."""
-
-    def __init__(self, last: int, *, strict: bool) -> None:
-        # The last unknown is a level, or what is left to spare.
-        self.last, self._strict = last, strict
-        self._sizes, self._offsets, self._count = list[int](), list[Array](), 0
-        self._entries: list[tuple[Array, NDArray[np.int64], NDArray[np.int64]]] = []
-
-    def add(self, block: Array | float, images: dict[int, Array], *, spare: bool = True) -> None:
-        size = len(next(iter(images.values())))
-        if self._strict and spare:
-            images = {**images, self.last: -np.eye(size)}
-        for column, image in images.items():
-            entries = -pack(image)
-            (rows,) = np.nonzero(entries)
-            self._entries.append((entries[rows], self._count + rows, np.full(len(rows), column)))
-        self._offsets.append(pack(np.broadcast_to(block, (size, size))))
-        self._sizes.append(size)
-        self._count += size * (size + 1) // 2
-
-    def program(self) -> tuple[Sparse, Array, list[int]]:
-        values, rows, columns = (np.concatenate(part) for part in zip(*self._entries, strict=True))
-        matrix = Sparse.of(values, rows, columns, (self._count, self.last + 1))
-        return matrix, np.concatenate(self._offsets), self._sizes
 
 
 def _rounded(

@@ -61,26 +61,6 @@ class Facts:
         return self.may_share_a_function and self.system.order > 1
 
     @property
-    def may_lose_contact(self) -> bool:
-        """Whether the system says how contact is lost."""
-        return self.system.contact is not None
-
-    @property
-    def is_losable(self) -> bool:
-        """Whether the loss of contact must be covered."""
-        return self.system.is_losable
-
-    @property
-    def rounds(self) -> bool:
-        """Whether the system says what its arithmetic rounds."""
-        return bool(self.system.roundings)
-
-    @property
-    def takes_turns(self) -> bool:
-        """Whether its modes take turns."""
-        return self.system.clock is not None
-
-    @property
     def may_bounce(self) -> bool:
         """Whether functions could be for lost contact with springs."""
         contact = self.system.contact
@@ -168,7 +148,7 @@ class Rung:
 
     def can_decide(self, facts: Facts) -> bool:
         """Tell whether it can decide a system."""
-        return self.clocked == facts.takes_turns and self.applies(facts)
+        return self.clocked == (facts.system.clock is not None) and self.applies(facts)
 
     def steps(self, system: SwitchedSystem, limits: Limits, allowance: Allowance) -> Iterator[Step]:
         """Yield itself, or searches of rising degree and the reason why there is no higher one.

@@ -6,7 +6,7 @@ takes to solve it.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from typing import Any
@@ -156,11 +156,6 @@ class Begun:
         more = self.allowance.left / self.per_step if self.per_step else MOST_STEPS
         return STEPS + int(min(more, MOST_STEPS - STEPS))
 
-    @property
-    def seconds(self) -> float:
-        """After which the fuse blows."""
-        return self.allowance.fuse.left
-
     def end(self, steps: int) -> None:
         """Charge the steps that were made instead of those that were predicted."""
         self.allowance.charge((steps - STEPS) * self.per_step)
@@ -172,21 +167,44 @@ def begin(allowance: Allowance, cost: Cost, what: str) -> Begun:
     return Begun(allowance, cost.per_step)
 
 
+class Blocks:
+    """Matrices that must stay positive semidefinite, of which each depends on few unknowns."""
+
+    def __init__(self) -> None:
+        self._sizes, self._offsets, self._count = list[int](), list[Array](), 0
+        self._entries: list[tuple[Array, NDArray[np.int64], NDArray[np.int64]]] = []
+
+    def add(self, constant: Array | float, images: Mapping[int, Array]) -> None:
+        """Add a constant, and what some unknowns add to it, by their numbers."""
+        packed = -pack(np.array([*images.values()]))
+        image, row = np.nonzero(packed)
+        unknowns = np.array([*images])[image]
+        self._entries.append((packed[image, row], self._count + row, unknowns))
+        size = next(iter(images.values())).shape[0]
+        self._offsets.append(pack(np.broadcast_to(constant, (size, size))))
+        self._sizes.append(size)
+        self._count += packed.shape[1]
+
+    def maximize(self, unknowns: int, begun: Begun) -> Maximum | None:
+        """Maximize the last unknown, as `maximize_margin` does."""
+        values, rows, columns = (np.concatenate(part) for part in zip(*self._entries, strict=True))
+        matrix = Sparse.of(values, rows, columns, (self._count, unknowns))
+        return maximize_margin(matrix, np.concatenate(self._offsets), self._sizes, begun)
+
+
 def solve_blocks(blocks: Sequence[tuple[Array, Array]], allowance: Allowance) -> Array | None:
     """Make the last unknown as large as all blocks stay positive semidefinite with.
 
-    A block is a constant (m, m), and what every unknown adds to it (N, m, m); the result is as of
-    `maximize_margin`.
+    A block is a constant (m, m), and what every unknown adds to it (N, m, m). Returns the unknowns.
     """
     unknowns = len(blocks[0][1])
     cost = program_cost(unknowns, unknowns, [(len(constant), unknowns) for constant, _ in blocks])
     begun = begin(allowance, cost, f"a program of {unknowns} unknowns and {len(blocks)} blocks")
-    return maximize_margin(
-        np.concatenate([-pack(images).T for _, images in blocks]),
-        np.concatenate([pack(constant) for constant, _ in blocks]),
-        [len(constant) for constant, _ in blocks],
-        begun,
-    )
+    program = Blocks()
+    for constant, images in blocks:
+        program.add(constant, dict(enumerate(images)))
+    found = program.maximize(unknowns, begun)
+    return None if found is None else found.x
 
 
 def maximize_margin(
@@ -195,24 +213,12 @@ def maximize_margin(
     sizes: Sequence[int],
     begun: Begun,
     equalities: int = 0,
-) -> Array | None:
+) -> Maximum | None:
     """Maximize the last variable subject to ``offset - rows x`` in a product of cones.
 
     The first `equalities` rows are equations, the others packed positive semidefinite cones of
     these sizes. Returns what the solver returned, whatever its status; None if that is not finite.
     """
-    found = find_maximum(rows, offset, sizes, begun, equalities)
-    return None if found is None else found.x
-
-
-def find_maximum(
-    rows: Array | Sparse,
-    offset: Array,
-    sizes: Sequence[int],
-    begun: Begun,
-    equalities: int = 0,
-) -> Maximum | None:
-    """Do the same as `maximize_margin`, and return the dual variables as well."""
     import clarabel
 
     variables = rows.shape[1]
@@ -224,7 +230,7 @@ def find_maximum(
     settings.verbose = False
     settings.max_threads = 1
     settings.max_iter = begun.most_steps
-    settings.time_limit = begun.seconds
+    settings.time_limit = begun.allowance.fuse.left
     quadratic = Sparse.of_dense(np.zeros((variables, variables)))
     rows = rows if isinstance(rows, Sparse) else Sparse.of_dense(rows)
 

@@ -37,7 +37,7 @@ def test_the_largest_margin_of_a_matrix_is_its_smallest_eigenvalue():
 
 def largest_margin(allowance):
     begun = begin(allowance, COST, "a program")
-    return maximize_margin(pack(np.eye(3))[:, None], pack(M), [3], begun)
+    return maximize_margin(pack(np.eye(3))[:, None], pack(M), [3], begun).x
 
 
 def test_the_steps_that_were_made_are_charged_not_those_that_were_predicted():
@@ -67,5 +67,5 @@ def test_a_solver_that_is_stopped_by_its_steps_returns_what_it_has(monkeypatch):
 def test_equations_come_first():
     # x1 = 2 and t <= x1.
     rows, offset = np.array([[1.0, 0.0], [-1.0, 1.0]]), np.array([2.0, 0.0])
-    x = maximize_margin(rows, offset, [1], begin(Allowance(), COST, "a program"), 1)
-    assert x == pytest.approx([2.0, 2.0], abs=1e-6)
+    found = maximize_margin(rows, offset, [1], begin(Allowance(), COST, "a program"), 1)
+    assert found.x == pytest.approx([2.0, 2.0], abs=1e-6)

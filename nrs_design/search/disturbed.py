@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -91,30 +92,29 @@ class DisturbedProblem:
         last[n - 1] = 1.0
         if self.time is Time.CONTINUOUS:
             for A, sizes in zip(self.contact, self.contact_sizes, strict=True):
-                yield MatrixInequality(_flow(Q, A, share), n, sizes=sizes)
+                yield MatrixInequality(_flow(Q, A, share), n, sizes)
             for A, sizes in zip(self.free, self.free_sizes, strict=True):
                 moved, own = np.delete(A[:-1], n - 1, axis=1), np.delete(sizes, n - 1, axis=1)
-                yield MatrixInequality(_flow(inner, moved, share), n - 1, sizes=own)
+                yield MatrixInequality(_flow(inner, moved, share), n - 1, own)
             for k, (i, j) in enumerate(np.ndindex(len(self.free), len(self.pulls))):
                 pull = _crossing(last, np.pad(self.pulls[j], (0, len(last) - n)))
-                yield MatrixInequality(
-                    _flow(Q, self.free[i], share), n, {k: pull}, self.free_sizes[i]
-                )
+                form = _flow(Q, self.free[i], share)
+                yield MatrixInequality(form, n, self.free_sizes[i], {k: pull})
             return
         for A, sizes in zip(self.contact, self.contact_sizes, strict=True):
-            yield MatrixInequality(_step(Q, A, Q, share), n, sizes=sizes)
+            yield MatrixInequality(_step(Q, A, Q, share), n, sizes)
             if self.losable:
                 lost = _step(Q, A[:-1], inner, share)
-                yield MatrixInequality(lost, n, {0: _crossing(last, A[-1])}, sizes)
+                yield MatrixInequality(lost, n, sizes, {0: _crossing(last, A[-1])})
         for A, sizes in zip(self.free, self.free_sizes, strict=True):
             moved, own = np.delete(A, n - 1, axis=1), np.delete(sizes, n - 1, axis=1)
-            yield MatrixInequality(_step(inner, moved[:-1], inner, share), n - 1, sizes=own)
-            yield MatrixInequality(_step(inner, moved, Q, share), n - 1, sizes=own)
+            yield MatrixInequality(_step(inner, moved[:-1], inner, share), n - 1, own)
+            yield MatrixInequality(_step(inner, moved, Q, share), n - 1, own)
             for k, q in enumerate(self.pulls):
                 pulled = _crossing(last, np.pad(q, (0, len(last) - n)))
-                yield MatrixInequality(_step(Q, A, Q, share), n, {3 * k + 1: pulled}, sizes)
+                yield MatrixInequality(_step(Q, A, Q, share), n, sizes, {3 * k + 1: pulled})
                 crossings = {3 * k + 2: pulled, 3 * k + 3: _crossing(last, A[-1])}
-                yield MatrixInequality(_step(Q, A[:-1], inner, share), n, crossings, sizes)
+                yield MatrixInequality(_step(Q, A[:-1], inner, share), n, sizes, crossings)
 
 
 @dataclass(frozen=True)
@@ -123,9 +123,9 @@ class MatrixInequality:
 
     images: Array  # Shape (k, s, s). Of every Q.
     order: int  # States in it; disturbances and errors follow
+    sizes: Array  # Shape (r, s - r). Of the errors.
     # Shape (s, s). The images of its multipliers for lost contact, by which they are.
     crossings: Mapping[int, Array] = field(default_factory=dict)
-    sizes: Array | None = None  # Shape (r, s - r). Of the errors.
 
     def stack(self, disturbances: int, multipliers: int) -> Array:
         """Return the images of Q, lambda, shares and tau in turn."""
@@ -138,9 +138,8 @@ class MatrixInequality:
             crossings[k] = crossing
         for i in range(disturbances):
             shares[i, n + i, n + i] = 1.0
-        sizes = np.zeros((0, side)) if self.sizes is None else self.sizes
-        taus = np.zeros((len(sizes), side, side))
-        for i, row in enumerate(sizes):
+        taus = np.zeros((len(self.sizes), side, side))
+        for i, row in enumerate(self.sizes):
             taus[i, : len(row), : len(row)] = -np.outer(row, row)
             taus[i, n + disturbances + i, n + disturbances + i] = 1.0
         return np.concatenate([self.images, crossings, shares, taus])
@@ -281,20 +280,10 @@ def balanced(problem: DisturbedProblem) -> tuple[DisturbedProblem, Array]:
     return own, root**2
 
 
-@dataclass(frozen=True)
-class Rounded:
-    """The integers of a solution over two to a power, in the coordinates of the spec."""
-
-    Q: tuple[tuple[int, ...], ...]
-    log2: int
-    multipliers: tuple[int, ...]
-    roundings: tuple[int, ...]
-
-
 def roundings(
     family: Family, found: DisturbedSolution, T: Array, units: Array, size: float = 1.0
-) -> Iterator[Rounded]:
-    """Yield roundings of a solution in coordinates ``x = size T z`` of the family.
+) -> Iterator[dict[str, Any]]:
+    """Yield roundings of a solution in coordinates ``x = size T z``, as fields of evidence.
 
     The scale of Q is kept: a set may be ``V <= 1``. The units are as `balanced` gives them.
     """
@@ -312,9 +301,9 @@ def roundings(
         log2 -= exponent
         if log2 < 0:
             rows, log2 = tuple(tuple(v << -log2 for v in row) for row in rows), 0
-        yield Rounded(
-            rows,
-            log2,
-            numerators(multipliers, log2),
-            numerators(taus, log2),
-        )
+        yield {
+            "Q": rows,
+            "denominator_log2": log2,
+            "multipliers": numerators(multipliers, log2),
+            "roundings": numerators(taus, log2),
+        }

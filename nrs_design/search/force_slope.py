@@ -12,28 +12,16 @@ from math import isfinite, log, sqrt
 
 import numpy as np
 from numpy.linalg import LinAlgError
-from numpy.typing import NDArray
 
 from nrs_design.proof.channels import Output
-from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.search.disturbed import DisturbedProblem, balanced, problem_of, transformed
+from nrs_design.search.disturbed import DisturbedProblem
 from nrs_design.search.family import Family, floats_in_silence
-from nrs_design.search.invariant_ellipsoid import best_share, least_level, reach_and_level
-from nrs_design.search.motions import Motions, separating_coordinates
+from nrs_design.search.invariant_ellipsoid import Frame, best_share, largest_share, least_level
 from nrs_design.work import Allowance
 
 # Shares beside one that was the best nearby.
 BESIDE = (0.6, 1.0, 1.6)
-
-
-@dataclass(frozen=True)
-class _Frame:
-    """Coordinates and scales, which stay for small changes."""
-
-    T: NDArray[np.float64]
-    size: float
-    level: float
 
 
 @dataclass(frozen=True)
@@ -43,7 +31,7 @@ class ForceSlope:
     level: float  # SI units of the output
     share: float  # Of the disturbances; a guess for systems nearby
     _output: Output
-    _frame: _Frame
+    _frame: Frame  # Which stays for small changes
     _allowance: Allowance
 
     def change(self, system: SwitchedSystem) -> float:
@@ -65,17 +53,13 @@ def force_slope(
     """
     with floats_in_silence():
         try:
-            family = Family.of(system)
-            motions = Motions.of(family)
-            T = separating_coordinates(motions)
-            size, level = reach_and_level(problem_of(family, motions, system.channels, output), T)
+            frame = Frame.of(Family.of(system), system.channels, output)
         except LinAlgError:  # A mode that grows has no norm.
             return None
-        if not (np.isfinite(T).all() and isfinite(size) and isfinite(level) and size * level > 0):
+        if frame is None:
             return None
-        frame = _Frame(T, size, level)
         own, limit = _problem(system, output, frame)
-        top = 2 * limit if own.time is Time.CONTINUOUS else 1 - limit**2
+        top = largest_share(limit, own.time)
         tried = {}
         for near in (share * factor for factor in BESIDE if share is not None):
             if near < top and (found := least_level(own, near, allowance)) is not None:
@@ -92,14 +76,13 @@ def force_slope(
             least, best = best_share(attempt, limit, own.time)
     if not isfinite(least):
         return None
-    return ForceSlope(level * sqrt(least), best, output, frame, allowance)
+    return ForceSlope(frame.level * sqrt(least), best, output, frame, allowance)
 
 
 def _problem(
-    system: SwitchedSystem, output: Output, frame: _Frame
+    system: SwitchedSystem, output: Output, frame: Frame
 ) -> tuple[DisturbedProblem, float]:
     """Return the conditions in a frame, without what is rounded, and the rate limit."""
     family = Family.of(system)
-    raw = problem_of(family, Motions.of(family), system.channels, output)
-    whole, _ = balanced(transformed(raw, frame.T, frame.size, frame.level))
+    whole, _ = frame.problem(family, system.channels, output)
     return whole.without_roundings().distinct(), family.limit

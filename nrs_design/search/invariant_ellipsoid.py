@@ -8,7 +8,7 @@ little above the best one, and the conditions are satisfied with as much to spar
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import isfinite
 
@@ -54,13 +54,10 @@ def search_ellipsoid(
     others.
     """
     family = Family.of(system)
-    motions = Motions.of(family)
-    raw = problem_of(family, motions, channels, output)
-    T = separating_coordinates(motions)
-    size, level = reach_and_level(raw, T)
-    if not (np.isfinite(T).all() and isfinite(size) and isfinite(level) and size * level > 0):
+    frame = Frame.of(family, channels, output)
+    if frame is None:
         return OUT_OF_RANGE
-    whole, units = balanced(transformed(raw, T, size, level))
+    whole, units = frame.problem(family, channels, output)
     exact = whole.without_roundings().distinct()
 
     def attempt(share: float) -> float:
@@ -82,24 +79,41 @@ def search_ellipsoid(
                 (),
                 0,
                 tuple(map(seven_digits, found.shares.tolist())),
-                seven_digits(level * float(np.sqrt(best)) * slack),
+                seven_digits(frame.level * float(np.sqrt(best)) * slack),
             )
-            for numbers in roundings(family, found, T, units, size):
-                yield Candidate(
-                    replace(
-                        empty,
-                        Q=numbers.Q,
-                        denominator_log2=numbers.log2,
-                        multipliers=numbers.multipliers,
-                        roundings=numbers.roundings,
-                    )
-                )
+            for numbers in roundings(family, found, frame.T, units, frame.size):
+                yield Candidate(replace(empty, **numbers))
     return None
 
 
 def seven_digits(number: float) -> Fraction:
     """Return a number with seven digits."""
     return Fraction(f"{number:.6e}")
+
+
+@dataclass(frozen=True)
+class Frame:
+    """Coordinates ``x = size T z`` and a unit of the output, in which both are about one."""
+
+    T: Array
+    size: float
+    level: float
+
+    @classmethod
+    def of(cls, family: Family, channels: Sequence[Channel], output: Output) -> Frame | None:
+        """Return the frame of a system; None if it is beyond floating point."""
+        motions = Motions.of(family)
+        T = separating_coordinates(motions)
+        size, level = reach_and_level(problem_of(family, motions, channels, output), T)
+        found = np.isfinite(T).all() and isfinite(size) and isfinite(level) and size * level > 0
+        return cls(T, size, level) if found else None
+
+    def problem(
+        self, family: Family, channels: Sequence[Channel], output: Output
+    ) -> tuple[DisturbedProblem, Array]:
+        """Return the conditions in these coordinates, and the units that `balanced` gives."""
+        raw = problem_of(family, Motions.of(family), channels, output)
+        return balanced(transformed(raw, self.T, self.size, self.level))
 
 
 def reach_and_level(problem: DisturbedProblem, T: Array) -> tuple[float, float]:

@@ -20,16 +20,16 @@ from nrs_design.proof.evidence import OffsetEllipsoid
 from nrs_design.proof.steps import Step
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
-from nrs_design.search.disturbed import BITS, balanced, problem_of, transformed
+from nrs_design.search.disturbed import BITS
 from nrs_design.search.family import NEARLY, Family
 from nrs_design.search.invariant_ellipsoid import (
     SLACKS,
     SMALLEST_SHARE,
+    Frame,
     largest_share,
-    reach_and_level,
     seven_digits,
 )
-from nrs_design.search.motions import Motions, numerators, separating_coordinates
+from nrs_design.search.motions import numerators
 from nrs_design.search.rounding import unscale
 from nrs_design.search.sdp import (
     Blocks,
@@ -60,21 +60,18 @@ def search_offset_ellipsoid(
     Contact may be lost.
     """
     family = Family.of(system)
-    motions = Motions.of(family)
-    raw = problem_of(family, motions, channels, output)
-    T = separating_coordinates(motions)
-    size, level = reach_and_level(raw, T)
-    if not (np.isfinite(T).all() and isfinite(size) and isfinite(level) and size * level > 0):
+    frame = Frame.of(family, channels, output)
+    if frame is None:
         return OUT_OF_RANGE
-    moved, balance = balanced(transformed(raw, T, size, level))
+    moved, balance = frame.problem(family, channels, output)
     pushes = np.abs(moved.contact[:, :, moved.order :][:, :, : len(channels)]).max(axis=(0, 1))
     names = tuple(channel.name for channel in channels)
     empty = OffsetEllipsoid(names, output.name, (), 0, (Fraction(1, 2),), Fraction(1))
     units = _Units(
-        np.ldexp(size * T, family.exponents[:, None]),
+        np.ldexp(frame.size * frame.T, family.exponents[:, None]),
         len(channels),
         balance**-0.5,
-        level,
+        frame.level,
         tuple(np.flatnonzero(pushes < WEAK * pushes.max())),
     )
     every = replace(empty, roundings=(0,) * len(system.roundings))
@@ -92,9 +89,8 @@ def search_offset_ellipsoid(
     for slack in SLACKS[1:]:
         found = whole.solve(share, allowance, best * slack)
         if found is not None:
-            claim = replace(
-                every, shares=(seven_digits(share),), level=seven_digits(level * best * slack)
-            )
+            level = seven_digits(frame.level * best * slack)
+            claim = replace(every, shares=(seven_digits(share),), level=level)
             yield from map(Candidate, _rounded(claim, whole, found, family.exponents))
     return None
 

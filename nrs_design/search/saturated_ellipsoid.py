@@ -25,15 +25,15 @@ from nrs_design.search.rounding import round_rate, unscale
 from nrs_design.search.saturated_region import (
     BELOW,
     ENOUGH,
-    H_DIGITS,
-    LARGEST,
     SLOWEST,
     SMALLEST,
     Array,
     Problem,
     Region,
     bordered_by,
+    largest_region,
     last_unknown,
+    log2_of,
     row_unknowns,
     solved,
 )
@@ -111,28 +111,16 @@ def _largest(
 
 def _improved(problem: Problem, rate: float, near: Region, allowance: Allowance) -> Region | None:
     """Return the largest region for the columns g that fit another."""
-    n, count = problem.A.shape[1], len(problem.rows)
-    (S, Y), size = row_unknowns(n, count), last_unknown(n, count)
-    unit = np.linalg.norm(problem.starts, axis=1).max()
-    # An ellipsoid may be long, but not without end.
-    blocks = [(LARGEST * np.eye(n), -S)]
-    blocks += [(np.zeros((n, n)), S - size * np.outer(x, x)) for x in problem.starts / unit]
-    corner = np.zeros((n + 1, n + 1))
-    corner[n, n] = 1.0
-    for y in Y:
-        blocks.append((corner, bordered_by(S, y)))
-    before = dict(enumerate(problem.vertices(np.eye(n), [h[None] for h in near.H])))
-    for i, (k, form) in enumerate(problem.vertices(S, Y)):
-        if problem.is_free(k):
-            form = form + _column(before[i][1], near.S, rate)[:, None] @ S[:, n - 1 : n, :]
-        images = -(form + np.swapaxes(form, -1, -2)) - 2 * rate * S
-        blocks.append((-SMALLEST * np.eye(n), images))
-    x = solved(blocks, allowance)
-    if x is None:
-        return None
-    found = np.asarray(np.tensordot(x, S, axes=1))
-    rows = np.concatenate([np.tensordot(x, y, axes=1) for y in Y])
-    return Region(found, rows @ np.linalg.inv(found), float(np.sqrt(x[-1]) / unit))
+    n = problem.A.shape[1]
+
+    def decreases(S: Array, Y: list[Array]) -> Iterator[tuple[Array, Array]]:
+        before = problem.vertices(np.eye(n), [h[None] for h in near.H])
+        for (k, form), (_, B) in zip(problem.vertices(S, Y), before, strict=True):
+            if problem.is_free(k):
+                form = form + _column(B, near.S, rate)[:, None] @ S[:, n - 1 : n, :]
+            yield -SMALLEST * np.eye(n), -(form + np.swapaxes(form, -1, -2)) - 2 * rate * S
+
+    return largest_region(problem, decreases, allowance)
 
 
 def _column(B: Array, S: Array, rate: float) -> Array:
@@ -179,7 +167,7 @@ def _rounded(
     H = limits[:, None] * (region.H @ np.linalg.inv(T))
     shape = np.asarray(np.linalg.inv(region.S), dtype=np.float64)
     T = np.asarray(T @ round_coordinates(shape), dtype=np.float64)
-    log2 = max(0, H_DIGITS - int(np.frexp(np.abs(H).max())[1]))
+    log2 = log2_of(H)
     rows = tuple(tuple(round(float(v)) for v in row) for row in np.ldexp(H, log2))
     kept = np.ldexp(np.array(rows, dtype=float), -log2) / limits[:, None] @ T
     for share in RATES:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 from typing import Any
@@ -167,6 +167,34 @@ def bordered_by(S: Array, y: Array) -> Array:
     whole[:, :n, :n] = S
     whole[:, n:, :n], whole[:, :n, n:] = y, np.swapaxes(y, -1, -2)
     return whole
+
+
+def largest_region(
+    problem: Problem,
+    decreases: Callable[[Array, list[Array]], Iterable[tuple[Array, Array]]],
+    allowance: Allowance,
+) -> Region | None:
+    """Return the region with the largest start for which blocks of S and Y are positive."""
+    n, count = problem.A.shape[1], problem.held
+    (S, Y), size = row_unknowns(n, count), last_unknown(n, count)
+    unit = np.linalg.norm(problem.starts, axis=1).max()
+    # An ellipsoid may be long, but not without end.
+    blocks = [(LARGEST * np.eye(n), -S)]
+    blocks += [(np.zeros((n, n)), S - size * np.outer(x, x)) for x in problem.starts / unit]
+    corner = np.zeros((n + 1, n + 1))
+    corner[n, n] = 1.0
+    blocks += [(corner, bordered_by(S, y)) for y in Y]
+    x = solved([*blocks, *decreases(S, Y)], allowance)
+    if x is None:
+        return None
+    found = np.asarray(np.tensordot(x, S, axes=1))
+    rows = np.concatenate([np.tensordot(x, y, axes=1) for y in Y])
+    return Region(found, rows @ np.linalg.inv(found), float(np.sqrt(x[-1]) / unit))
+
+
+def log2_of(H: Array) -> int:
+    """Return with how many binary digits after the point rows are written."""
+    return max(0, H_DIGITS - int(np.frexp(np.abs(H).max())[1]))
 
 
 def solved(blocks: Sequence[tuple[Array, Array]], allowance: Allowance) -> Array | None:

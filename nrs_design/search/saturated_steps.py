@@ -37,16 +37,12 @@ from nrs_design.search.rounding import round_rate
 from nrs_design.search.saturated_region import (
     BELOW,
     ENOUGH,
-    H_DIGITS,
-    LARGEST,
     SMALLEST,
     Array,
     Problem,
     Region,
-    bordered_by,
-    last_unknown,
-    row_unknowns,
-    solved,
+    largest_region,
+    log2_of,
 )
 from nrs_design.search.sdp import solve_blocks, symmetric_basis
 from nrs_design.work import Allowance
@@ -189,28 +185,17 @@ def _parts(item: Rounding | CutOff, kept: list[int]) -> dict[str, Any]:
 
 def _improved(problem: Problem, rate: float, allowance: Allowance) -> Region | None:
     """Return the region with the largest start, in contact and without roundings."""
-    n, count = problem.A.shape[1], problem.held
-    (S, Y), size = row_unknowns(n, count), last_unknown(n, count)
-    unit = np.linalg.norm(problem.starts, axis=1).max()
-    # An ellipsoid may be long, but not without end.
-    blocks = [(LARGEST * np.eye(n), -S)]
-    blocks += [(np.zeros((n, n)), S - size * np.outer(x, x)) for x in problem.starts / unit]
-    corner = np.zeros((n + 1, n + 1))
-    corner[n, n] = 1.0
-    blocks += [(corner, bordered_by(S, y)) for y in Y]
-    for k, form in problem.vertices(S, Y):
-        if problem.is_free(k):
-            continue
-        whole = np.zeros((len(S), 2 * n, 2 * n))
-        whole[:, :n, :n], whole[:, n:, n:] = rate**2 * S, S
-        whole[:, n:, :n], whole[:, :n, n:] = form, np.swapaxes(form, -1, -2)
-        blocks.append((-SMALLEST * np.eye(2 * n), whole))
-    x = solved(blocks, allowance)
-    if x is None:
-        return None
-    found = np.asarray(np.tensordot(x, S, axes=1))
-    rows = np.concatenate([np.tensordot(x, y, axes=1) for y in Y])
-    return Region(found, rows @ np.linalg.inv(found), float(np.sqrt(x[-1]) / unit))
+    n = problem.A.shape[1]
+
+    def decreases(S: Array, Y: list[Array]) -> Iterator[tuple[Array, Array]]:
+        for k, form in problem.vertices(S, Y):
+            if not problem.is_free(k):
+                whole = np.zeros((len(S), 2 * n, 2 * n))
+                whole[:, :n, :n], whole[:, n:, n:] = rate**2 * S, S
+                whole[:, n:, :n], whole[:, :n, n:] = form, np.swapaxes(form, -1, -2)
+                yield -SMALLEST * np.eye(2 * n), whole
+
+    return largest_region(problem, decreases, allowance)
 
 
 def _largest(
@@ -235,12 +220,8 @@ def _rows(loop: _Loop, H: Array, way: float) -> Array:
     """Return rows between what the signals are while nothing is cut off and others, rounded."""
     moved = loop.linear + way * (H - loop.linear)
     found = loop.limits[:, None] * (moved @ np.linalg.inv(loop.T))
-    log2 = _log2(found)
+    log2 = log2_of(found)
     return np.asarray(np.ldexp(np.rint(np.ldexp(found, log2)), -log2))
-
-
-def _log2(H: Array) -> int:
-    return max(0, H_DIGITS - int(np.frexp(np.abs(H).max())[1]))
 
 
 def _fastest(
@@ -340,18 +321,9 @@ def _rounded(
     found = _solution(loop, H, float(rate), float(level), allowance, rounding=rounding)
     if found is None:
         return
-    log2 = _log2(H)
+    log2 = log2_of(H)
     each = [H] if max(loop.own.groups) == 0 else [loop.by_mode(H)[k] for k in loop.stands]
     rows = tuple(tuple(int(v) for v in row) for row in np.ldexp(np.concatenate(each), log2))
     family, T, _, units = loop.whole(H, rounding=rounding)
     for numbers in roundings(family, found, T, units):
-        yield SaturatedEllipsoid(
-            Q=numbers.Q,
-            denominator_log2=numbers.log2,
-            rate=rate,
-            H=rows,
-            H_denominator_log2=log2,
-            level=level,
-            multipliers=numbers.multipliers,
-            roundings=numbers.roundings,
-        )
+        yield SaturatedEllipsoid(rate=rate, H=rows, H_denominator_log2=log2, level=level, **numbers)

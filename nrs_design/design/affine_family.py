@@ -137,13 +137,18 @@ def squared_over(
 
 def squared_magnitude(P: Sequence[Any]) -> list[Any]:
     """Return ``|P(j omega)|^2`` in omega^2, lowest powers first."""
-    square = [_fmpq(ZERO)] * len(P)
+    return real_product(P, P)
+
+
+def real_product(P: Sequence[Any], Q: Sequence[Any]) -> list[Any]:
+    """Return ``Re P(j omega) conj(Q(j omega))`` in omega^2, lowest powers first."""
+    found = [_fmpq(ZERO)] * len(P)
     for i, a in enumerate(P):
-        for k, b in enumerate(P):
+        for k, b in enumerate(Q):
             # Odd powers of j cancel: of i + k odd there is nothing.
             if (i + k) % 2 == 0:
-                square[(i + k) // 2] += (-1) ** (abs(i - k) // 2) * a * b
-    return square
+                found[(i + k) // 2] += (-1) ** (abs(i - k) // 2) * a * b
+    return found
 
 
 def coefficients_between(

@@ -18,7 +18,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from math import comb
+from math import comb, isqrt
 
 from nrs_design.controllers.laws import Admittance, CompliantLaw
 from nrs_design.controllers.sensor import LowPass
@@ -34,7 +34,6 @@ from nrs_design.design.affine_family import (
     squared_over,
     zeros_at_rest,
 )
-from nrs_design.design.passivity import root_below
 from nrs_design.errors import InternalError
 from nrs_design.loop.cut_loop import ContinuousAxis, Place, multiply
 from nrs_design.models.contact import KelvinVoigt
@@ -71,6 +70,14 @@ def largest_impedance(
     Ranges are those of ``Km``, ``tau``, ``Mt``, ``Bt``, ``Kt``, as far as they have any. None where
     the robot that nobody holds is not shown to be stable.
     """
+    at = impedance_at(axis, law)
+    return largest_over(at, ranges, band, limit) if is_stable_over(at, ranges) else None
+
+
+def impedance_at(
+    axis: ContinuousAxis, law: CompliantLaw
+) -> Callable[[Mapping[str, Fraction]], Quotient]:
+    """Return the displayed impedance as a function of the parameters."""
 
     def at(values: Mapping[str, Fraction]) -> Quotient:
         held, place, factor = parameters_at(axis, law, values)
@@ -81,7 +88,7 @@ def largest_impedance(
         felt = [b - a for a, b in zip(free, damped, strict=True)]
         return Quotient(free, felt, _poles_in_the_air(held, free))
 
-    return largest_over(at, ranges, band, limit) if is_stable_over(at, ranges) else None
+    return at
 
 
 def largest_tracking_error(
@@ -196,6 +203,11 @@ def largest_over(
         },
         omega=float(square) ** 0.5,
     )
+
+
+def root_below(x: Fraction, digits: int = 6) -> Fraction:
+    """Return a number of so many decimals whose square is not above x."""
+    return Fraction(isqrt(int(x * 10 ** (2 * digits))), 10**digits)
 
 
 def root_above(square: Fraction) -> Fraction:

@@ -386,14 +386,12 @@ class ForceRequirement(AbstractRequirement):
     @cached_property
     def _loops(self) -> dict[str, Loops]:
         assert self.axis is not None, "without an axis there are no loops"
-        period, found = self.axis.period, {}
-        for corner in self.corners:
-            cut = self.axis.cut(self.law, corner.contact, corner.place)
-            exact = [c - o for c, o in zip(cut.closed, cut.opened, strict=True)], cut.opened
-            numerator, denominator = (np.array([p], dtype=np.float64) for p in exact)
-            sampled = None if period is None else float(period)
-            found[corner.label] = Loops(numerator, denominator, sampled)
-        return found
+        return {
+            corner.label: Loops.of_cut(
+                self.axis.cut(self.law, corner.contact, corner.place), self.axis.period
+            )
+            for corner in self.corners
+        }
 
 
 def corners_of(
@@ -406,26 +404,16 @@ def corners_of(
 
     `home` is the contact designed for; the spring is in N m/rad.
     """
-    return tuple(
-        corner
-        for environment in environments
-        for corner in _corners(environment, home, places, spring)
-    )
-
-
-def _corners(
-    environment: Environment,
-    home: str,
-    places: tuple[Place, ...],
-    spring: Fraction,
-) -> Iterator[ContactCorner]:
-    points = list(environment.corners)
-    if environment.nominal not in points:
-        points.insert(0, environment.nominal)
-    for contact, place in product(points, places):
-        label = f"{environment.name}, {', '.join((*contact.texts(unit), *place.texts))}"
-        is_home = environment.name == home
-        yield ContactCorner(label, environment.name, contact, place, is_home, spring)
+    found = []
+    for environment in environments:
+        points = list(environment.corners)
+        if environment.nominal not in points:
+            points.insert(0, environment.nominal)
+        for contact, place in product(points, places):
+            label = f"{environment.name}, {', '.join((*contact.texts(unit), *place.texts))}"
+            is_home = environment.name == home
+            found.append(ContactCorner(label, environment.name, contact, place, is_home, spring))
+    return tuple(found)
 
 
 def _inside(group: Sequence[ContactCorner]) -> Iterator[ContactCorner]:

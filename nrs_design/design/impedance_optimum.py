@@ -167,31 +167,27 @@ def admittance_at(
 
 def objective_of(problem: ImpedanceProblem, nodes: int) -> Objective:
     """Return the cost over the unit square; infinite where the nominal loop is not stable."""
-    return partial(_stable_cost, problem, _sample(problem, nodes))
+    samples, stabilizing = (
+        _sample(problem, nodes),
+        problem.stable or partial(stabilizes, problem.loop),
+    )
 
+    def stable_cost(u: FloatArray, v: FloatArray) -> FloatArray:
+        Mt, Bt = admittance_at(problem, u, v)
+        stable = stabilizing(Mt, Bt)
+        costs = np.full(len(Mt), np.inf)
+        costs[stable] = samples.cost(Mt[stable], Bt[stable])
+        return costs
 
-def _stable_cost(
-    problem: ImpedanceProblem, samples: _Samples, u: FloatArray, v: FloatArray
-) -> FloatArray:
-    """Evaluate the cost at points of the unit square, infinite where the loop is not stable."""
-    Mt, Bt = admittance_at(problem, u, v)
-    stable = stabilizes(problem.loop, Mt, Bt) if problem.stable is None else problem.stable(Mt, Bt)
-    if stable.all():
-        return samples.cost(Mt, Bt)
-    costs = np.full(len(Mt), np.inf)
-    costs[stable] = samples.cost(Mt[stable], Bt[stable])
-    return costs
-
-
-def _scan_shape(problem: ImpedanceProblem) -> tuple[int, int]:
-    fixed_mass = problem.mass_bounds[0] == problem.mass_bounds[1]
-    fixed_damping = problem.damping_bounds[0] == problem.damping_bounds[1]
-    return (1 if fixed_mass else _SCAN[0], 1 if fixed_damping else _SCAN[1])
+    return stable_cost
 
 
 def _scan(problem: ImpedanceProblem) -> Points:
     """Return the starts of the search: local minima of a scan, and those along its valley."""
-    shape = _scan_shape(problem)
+    bounds = problem.mass_bounds, problem.damping_bounds
+    shape = tuple(
+        1 if low == high else count for (low, high), count in zip(bounds, _SCAN, strict=True)
+    )
     u, v = np.meshgrid(*(np.linspace(0, 1, count) for count in shape), indexing="ij")
     costs = objective_of(problem, _SCAN_NODES)(u.ravel(), v.ravel()).reshape(shape)
     rows = np.flatnonzero(np.isfinite(costs).any(axis=1))

@@ -65,7 +65,7 @@ def linear_parts(plant: Plant, design: ControllerDesign) -> LinearParts:
     No loops where what is touched acts on the motor (`load_inertia`): they are not made of these.
     """
     actuator, motion = _plant_parts(plant, design)
-    low_pass, loops = design.sensor.filter, tuple(_loops(plant, design))
+    low_pass, (loops, left_out) = design.sensor.filter, _loops(plant, design)
     return LinearParts(
         actuator,
         motion,
@@ -73,7 +73,7 @@ def linear_parts(plant: Plant, design: ControllerDesign) -> LinearParts:
         None if low_pass is None else _filter_part(low_pass),
         tuple(_contacts(plant, design)),
         loops,
-        tuple(_left_out(plant, design, {loop.name for loop in loops})),
+        left_out,
     )
 
 
@@ -145,15 +145,19 @@ def _contact_part(name: str, contact: AbstractLinearLaw, motion: str) -> LinearP
     return _of_rows(name, [], force, ("position", "rad"), output)
 
 
-def _loops(plant: Plant, design: ControllerDesign) -> Iterator[LinearPart]:
-    """Yield the closed loop of each controller at each contact, as far as it is made of the parts.
+def _loops(
+    plant: Plant, design: ControllerDesign
+) -> tuple[tuple[LinearPart, ...], tuple[str, ...]]:
+    """Return the closed loop of each controller at each contact, and why some are not there.
 
     The input is a torque that acts on the sensor beside that of the contact; outputs are the motion
     and the torque of the contact. States are those of the motion loop, the contact, the filter of
     the force and the controller. With `load_inertia` there are none.
     """
     if plant.load_inertia is not None:
-        return
+        why = "all: what is touched acts on the motor, which the motion loop here does not know"
+        return (), (why,)
+    loops, left_out = list[LinearPart](), list[str]()
     motion, low_pass = _plant_parts(plant, design)[1], design.sensor.filter
     for controller in design.controllers:
         law = _controller_part(controller)
@@ -161,10 +165,13 @@ def _loops(plant: Plant, design: ControllerDesign) -> Iterator[LinearPart]:
         if low_pass is not None:
             law = _in_series(_filter_part(low_pass), law)
         for environment in plant.among(controller.contacts):
+            name = f"{controller.name}/{environment.name}"
             contact = _contact_part(environment.name, environment.nominal, kind)
-            if contact is not None:
-                name = f"{controller.name}/{environment.name}"
-                yield _closed(name, motion, contact, law, kind)
+            if contact is None:
+                left_out.append(f"{name}: its force takes more than the motion that is commanded")
+            else:
+                loops.append(_closed(name, motion, contact, law, kind))
+    return tuple(loops), tuple(left_out)
 
 
 def _contacts(plant: Plant, design: ControllerDesign) -> Iterator[LinearPart]:
@@ -173,17 +180,6 @@ def _contacts(plant: Plant, design: ControllerDesign) -> Iterator[LinearPart]:
         kinds = {c.law.commands: None for c in design.controllers if environment.name in c.contacts}
         parts = (_contact_part(environment.name, environment.nominal, kind) for kind in kinds)
         yield from (part for part in parts if part is not None)
-
-
-def _left_out(plant: Plant, design: ControllerDesign, there: set[str]) -> Iterator[str]:
-    """Yield why a closed loop is not there."""
-    if plant.load_inertia is not None:
-        yield "all: what is touched acts on the motor, which the motion loop here does not know"
-        return
-    for controller in design.controllers:
-        for environment in plant.among(controller.contacts):
-            if (name := f"{controller.name}/{environment.name}") not in there:
-                yield f"{name}: its force takes more than the motion that is commanded"
 
 
 def _closed(

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import cached_property
 
 import numpy as np
@@ -21,6 +22,7 @@ from nrs_design.design.polynomials import (
     stationary,
 )
 from nrs_design.design.transfer import BoolArray, ComplexArray, FloatArray, hurwitz
+from nrs_design.loop.cut_loop import CutLoop
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,6 +40,13 @@ class Loops:
     # Sampled: the time between two samples in s, and the polynomials are in ``(2/T) (z - 1)/(z +
     # 1)`` instead of s.
     period: float | None = None
+
+    @classmethod
+    def of_cut(cls, cut: CutLoop, period: Fraction | None) -> Loops:
+        """Return the one loop of a mode that is cut; the period is in s."""
+        exact = [c - o for c, o in zip(cut.closed, cut.opened, strict=True)], cut.opened
+        numerator, denominator = (np.array([p], dtype=np.float64) for p in exact)
+        return cls(numerator, denominator, None if period is None else float(period))
 
     @cached_property
     def closed(self) -> FloatArray:

@@ -64,16 +64,13 @@ def _at(axis: AbstractAxis, controller: Controller, corner: ContactCorner) -> Op
     opened, closed = axis.modes(controller.law, corner.contact, corner.place)
     column, row = _factors(opened, closed)
     cut = axis.cut(controller.law, corner.contact, corner.place)
-    exact = [c - o for c, o in zip(cut.closed, cut.opened, strict=True)], cut.opened
-    numerator, denominator = (np.array([p], dtype=np.float64) for p in exact)
-    period = None if axis.period is None else float(axis.period)
     return OpenLoop(
         controller.name,
         corner.label,
         np.array([[float(entry) for entry in line] for line in opened]),
         np.array([[float(entry)] for entry in column]),
         np.array([[-float(entry) for entry in row]]),
-        Loops(numerator, denominator, period),
+        Loops.of_cut(cut, axis.period),
     )
 
 

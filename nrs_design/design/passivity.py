@@ -18,22 +18,26 @@ unknown but constant; that is what a frequency is about.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 from itertools import product
-from math import isqrt, lcm
-from typing import TYPE_CHECKING, Any
+from math import lcm
+from typing import Any
 
 from nrs_design.controllers.laws import CompliantLaw
-from nrs_design.loop.cut_loop import ContinuousAxis, Place, multiply
-from nrs_design.models.contact import KelvinVoigt
+from nrs_design.design.affine_family import (
+    corners_in,
+    lowest_first,
+    real_product,
+    squared_over,
+)
+from nrs_design.design.displayed_response import impedance_at, root_below
+from nrs_design.loop.cut_loop import ContinuousAxis
 from nrs_design.models.interval import Interval
+from nrs_design.proof.enclosure import fraction_of
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Time
 from nrs_design.proof.spectrum import is_stable
-
-if TYPE_CHECKING:
-    from flint import arb
 
 # How far beyond a root it is looked for a negative value, at first, as a share of the root.
 RESOLUTION = Fraction(1, 10**5)
@@ -64,59 +68,39 @@ def passive_band(
     """
     if not is_stable(RationalMatrix.from_rows(axis.realization.A), Time.CONTINUOUS):
         return PassiveBand(Fraction(0), None)
-    grid = {
-        at: real_part(axis, law, dict(zip(ranges, values, strict=True)))
-        for at, values in zip(
-            product(range(3), repeat=len(ranges)),
-            product(*((r.low, r.middle, r.high) for r in ranges.values())),
-            strict=True,
-        )
-    }
+    places = product(range(3), repeat=len(ranges))
+    grid = dict(zip(places, real_parts(axis, law, ranges), strict=True))
     # None is zero at every frequency: passive, and on the border of it.
-    bounds = [P for Q in _bernstein(grid) if any(P := _without_zeros(Q))]
+    bounds = [P for Q in grid.values() if any(P := without_zeros(Q))]
     if any(P[-1] <= 0 for P in bounds):
         return PassiveBand(Fraction(0), None)
     roots = [bracket for P in bounds if (bracket := first_root(P)) is not None]
-    corners = [P for at, Q in grid.items() if 1 not in at and any(P := _without_zeros(Q))]
+    corners = [P for at, Q in grid.items() if 1 not in at and any(P := without_zeros(Q))]
     found = [(bracket[1], P) for P in corners if (bracket := first_root(P)) is not None]
     broken = [omega for high, P in found if (omega := _negative_beyond(P, high)) is not None]
     passive = root_below(min(low for low, _ in roots)) if roots else None
     return PassiveBand(passive, min(broken, default=None))
 
 
-def real_part(
-    axis: ContinuousAxis, law: CompliantLaw, values: Mapping[str, Fraction]
-) -> Polynomial:
-    """Return ``Re N conj(D)`` in ``x = omega^2``, times what is positive, highest power first."""
-    nominal = axis.places[0].motor
-    gain, tau = values.get("Km", nominal.gain), values.get("tau", nominal.time_constant)
-    place = Place(replace(nominal, gain=gain, time_constant=tau))
-    held = law.of({**law.gains, **values})
-    D, damped = (
-        axis.cut(held, KelvinVoigt(Fraction(0), Fraction(b)), place).closed for b in (0, 1)
-    )
-    factor = tau * (held.gains["Mt"] or held.gains["Bt"])
-    N = [factor * (b - a) for a, b in zip(D, damped, strict=True)]
-    mirrored = [factor * c * (-1) ** k for k, c in enumerate(reversed(D))][::-1]
-    even = list(reversed(multiply(N, mirrored)))[::2]
-    return [c * (-1) ** k for k, c in enumerate(even)][::-1]
+def real_parts(
+    axis: ContinuousAxis, law: CompliantLaw, ranges: Mapping[str, Interval]
+) -> list[Polynomial]:
+    """Return ``Re N conj(D)`` in ``x = omega^2``, times what is positive, highest power first.
 
-
-def _bernstein(grid: Mapping[tuple[int, ...], Polynomial]) -> list[Polynomial]:
-    """Return the coefficients of a polynomial of second degree in each parameter, over a box.
-
-    Along one parameter they are its values at the ends and twice that in the middle less their
-    mean; anywhere in the box, the polynomial is a mean of all of them.
+    They are the Bernstein coefficients over the box: at its corners, the values there.
     """
-    found = dict(grid)
-    for axis in range(len(next(iter(grid)))):
-        for at in [at for at in found if at[axis] == 1]:
-            ends = (found[(*at[:axis], end, *at[axis + 1 :])] for end in (0, 2))
-            found[at] = [2 * m - (a + b) / 2 for m, a, b in zip(found[at], *ends, strict=True)]
-    return [*found.values()]
+    corners = corners_in(impedance_at(axis, law), ranges)
+    both = [[*lowest_first(found.above), *lowest_first(found.below)] for found in corners]
+
+    def real(both: Sequence[Any]) -> list[Any]:
+        n = len(both) // 2
+        return real_product(both[:n], both[n:])
+
+    tensor = squared_over(both, real)
+    return [[Fraction(int(c.p), int(c.q)) for c in reversed(P)] for P in tensor]
 
 
-def _without_zeros(P: Polynomial) -> Polynomial:
+def without_zeros(P: Polynomial) -> Polynomial:
     """Leave out zeros of the highest powers, and powers of x that all terms have."""
     kept = [i for i, c in enumerate(P) if c]
     return P[kept[0] : kept[-1] + 1] if kept else []
@@ -134,14 +118,8 @@ def first_root(P: Sequence[Fraction]) -> tuple[Fraction, Fraction] | None:
     # The stubs of python-flint leave out the multiplicities.
     roots: Any = fmpz_poly([int(c * common) for c in reversed(P)]).complex_roots()
     real = (root.real for root, _ in roots if root.imag == 0)
-    positive = [(_exact(root.lower()), _exact(root.upper())) for root in real if root > 0]
+    positive = [(fraction_of(root.lower()), fraction_of(root.upper())) for root in real if root > 0]
     return min(positive, default=None)
-
-
-def _exact(number: arb) -> Fraction:
-    """Return a ball without radius as a fraction."""
-    mantissa, exponent = number.man_exp()
-    return int(mantissa) * Fraction(2) ** int(exponent)
 
 
 def evaluate(P: Sequence[Fraction], x: Fraction) -> Fraction:
@@ -150,11 +128,6 @@ def evaluate(P: Sequence[Fraction], x: Fraction) -> Fraction:
     for c in P:
         value = value * x + c
     return value
-
-
-def root_below(x: Fraction, digits: int = 6) -> Fraction:
-    """Return a number of so many decimals whose square is not above x."""
-    return Fraction(isqrt(int(x * 10 ** (2 * digits))), 10**digits)
 
 
 def _negative_beyond(P: Sequence[Fraction], x: Fraction) -> Fraction | None:

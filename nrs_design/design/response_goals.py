@@ -105,7 +105,27 @@ def judged_responses(
     Ranges are those of ``Km``, ``tau``, ``Mt``, ``Bt`` and ``Kt``, as far as they have any.
     """
     for key, goal in goals.items():
-        yield _judged(spec, key, goal, axis, law, ranges, environments)
+        touched = None if goal.environment is None else environments[goal.environment]
+        where = f"in contact with {goal.environment}" if touched else "in free motion"
+        why_not, found = _why_not(spec, key, axis, law, touched), None
+        if not why_not:
+            found = _found(key, goal, axis, law, ranges, touched)
+            if found is None:
+                why_not = "the loop is not shown to be stable at every value of the ranges"
+        yield JudgedResponse(
+            key=key,
+            title=f"{_TITLES[key]} {where}",
+            limit=goal.limit,
+            wanted=f"at most {goal.limit_text} from {goal.band[0].text} to {goal.band[1].text}",
+            unit=unit("N*m*s/rad") if key == TRANSPARENCY else "",
+            found=found,
+            why_not=why_not,
+            units={
+                **{"Km": f"{unit('rad/s')}/{spec.command}", "tau": "s", "Mt": unit("kg*m^2")},
+                **dict.fromkeys(("Bt", "b"), unit("N*m*s/rad")),
+                **dict.fromkeys(("Kt", "k"), unit("N*m/rad")),
+            },
+        )
 
 
 def response_goals(*given: GoalsSpec | None) -> dict[str, ResponseGoal]:
@@ -117,38 +137,6 @@ def response_goals(*given: GoalsSpec | None) -> dict[str, ResponseGoal]:
         for key in (TRANSPARENCY, ACCURACY)
         if (goal := getattr(goals, key)) is not None
     }
-
-
-def _judged(
-    spec: InteractionDesignSpec,
-    key: str,
-    goal: ResponseGoal,
-    axis: AbstractAxis | None,
-    law: CompliantLaw,
-    ranges: Mapping[str, Interval],
-    environments: Mapping[str, Environment],
-) -> JudgedResponse:
-    touched = None if goal.environment is None else environments[goal.environment]
-    where = f"in contact with {goal.environment}" if touched else "in free motion"
-    why_not, found = _why_not(spec, key, axis, law, touched), None
-    if not why_not:
-        found = _found(key, goal, axis, law, ranges, touched)
-        if found is None:
-            why_not = "the loop is not shown to be stable at every value of the ranges"
-    return JudgedResponse(
-        key=key,
-        title=f"{_TITLES[key]} {where}",
-        limit=goal.limit,
-        wanted=f"at most {goal.limit_text} from {goal.band[0].text} to {goal.band[1].text}",
-        unit=unit("N*m*s/rad") if key == TRANSPARENCY else "",
-        found=found,
-        why_not=why_not,
-        units={
-            **{"Km": f"{unit('rad/s')}/{spec.command}", "tau": "s", "Mt": unit("kg*m^2")},
-            **dict.fromkeys(("Bt", "b"), unit("N*m*s/rad")),
-            **dict.fromkeys(("Kt", "k"), unit("N*m/rad")),
-        },
-    )
 
 
 def _found(

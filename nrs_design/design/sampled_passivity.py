@@ -33,6 +33,7 @@ from fractions import Fraction
 from math import floor
 
 from nrs_design.controllers.laws import ProportionalDerivative
+from nrs_design.design.displayed_response import root_below
 from nrs_design.design.enclosed_polynomial import (
     Enclosed,
     Polynomial,
@@ -46,7 +47,7 @@ from nrs_design.design.enclosed_polynomial import (
     rounded_outwards,
     times,
 )
-from nrs_design.design.passivity import evaluate, first_root, root_below
+from nrs_design.design.passivity import evaluate, first_root, without_zeros
 from nrs_design.models.actuator import Actuator
 from nrs_design.proof.taylor import exponential_between
 
@@ -134,7 +135,7 @@ def _band(
     highest = [[high for _, high in reversed(rounded_outwards(P))] for P in signs]
     if min(P[-1] for P in lowest) <= 0:
         return SampledBand(age, ZERO)
-    brackets = [bracket for P in lowest if (bracket := first_root(_trimmed(P))) is not None]
+    brackets = [bracket for P in lowest if (bracket := first_root(without_zeros(P))) is not None]
     if not brackets:
         # Up to half the sampling rate; pi is more than 3.14159.
         return SampledBand(age, Fraction(314159, 100_000) / period)
@@ -210,8 +211,3 @@ def _frequency(t: Fraction, period: Fraction) -> Enclosed:
         found.append(2 * t * p / q / period)
     unit = 10**9
     return Fraction(floor(min(found) * unit), unit), Fraction(-floor(-max(found) * unit), unit)
-
-
-def _trimmed(P: list[Fraction]) -> list[Fraction]:
-    """Leave out zeros of the highest powers."""
-    return P[next(i for i, c in enumerate(P) if c) :]

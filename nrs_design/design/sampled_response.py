@@ -27,8 +27,12 @@ from typing import Any
 from nrs_design.controllers.laws import Admittance, ProportionalDerivative
 from nrs_design.controllers.sensor import LowPass
 from nrs_design.design.affine_family import Polynomial, Quotient, is_stable_over
-from nrs_design.design.displayed_response import Band, LargestResponse, largest_over
-from nrs_design.design.passivity import root_below
+from nrs_design.design.displayed_response import (
+    Band,
+    LargestResponse,
+    largest_over,
+    root_below,
+)
 from nrs_design.loop.cut_loop import multiply, on_the_axis
 from nrs_design.models.actuator import ActuatorRanges
 from nrs_design.models.interval import Interval

@@ -19,6 +19,7 @@ from nrs_design.certificates.certificate import (
 )
 from nrs_design.certificates.goals import rate_per_second
 from nrs_design.errors import DISAGREE, DesignError, InternalError
+from nrs_design.late import late_function
 from nrs_design.progress import Progress, silent
 from nrs_design.proof.channels import Channel, Output
 from nrs_design.proof.evidence import AbstractEvidence, FormsOnGraph, Shows
@@ -44,6 +45,10 @@ OFF_THE_ORIGIN = 0.7
 # The end of a search that had a solution, but no rate to claim for it.
 NO_RATE = "what was found shows no rate of decay"
 SATURATION = "decay under saturation"
+SATURATED = {
+    Time.CONTINUOUS: late_function("nrs_design.search.saturated_ellipsoid", "search_saturated"),
+    Time.DISCRETE: late_function("nrs_design.search.saturated_steps", "search_saturated_steps"),
+}
 SUSPICIOUS, ENCLOSURE = "suspicious modes", "enclosure of the ranges"
 WIDE = (
     "is not stable, and no loop of the spec need be there: nothing that covers the enclosure can "
@@ -219,20 +224,8 @@ def _saturated(
     if system.saturation is None:
         return (), ()
     progress(SATURATION)
-    search = partial(_saturation_search(system), system, allowance)
+    search = partial(SATURATED[system.time], system, allowance)
     return _attempted(SATURATION, search, system, allowance)
-
-
-def _saturation_search(
-    system: SwitchedSystem,
-) -> Callable[[SwitchedSystem, Allowance], Candidates[AbstractEvidence]]:
-    if system.time is Time.DISCRETE:
-        from nrs_design.search.saturated_steps import search_saturated_steps
-
-        return search_saturated_steps
-    from nrs_design.search.saturated_ellipsoid import search_saturated
-
-    return search_saturated
 
 
 def _attempted(

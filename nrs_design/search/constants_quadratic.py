@@ -9,14 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.proof.evidence import ConstantsQuadratic
-from nrs_design.proof.evidence.fields import Matrix
 from nrs_design.proof.mode import Time
 from nrs_design.search.balance import mean_norm_coordinates
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
 from nrs_design.search.decay import fastest_first
 from nrs_design.search.family import Family
 from nrs_design.search.lmi import time_unit
-from nrs_design.search.rounding import digits
+from nrs_design.search.rounding import digits, round_form, round_matrix
 from nrs_design.search.sdp import (
     Blocks,
     begin,
@@ -72,19 +71,12 @@ class _Solution:
         """Round to integers."""
         top, bits = max(int(exponents.max()), 0), bits + self.more_bits
         shifts = top - exponents
-
-        def whole(M: Array) -> Matrix:
-            entries = np.ldexp(M, bits)
-            if not np.isfinite(entries).all():
-                raise OverflowError("a form beyond the range of floating point")
-            return tuple(
-                tuple(round(float(v)) << int(i + j) for v, j in zip(row, shifts, strict=True))
-                for row, i in zip(entries, shifts, strict=True)
-            )
-
         return ConstantsQuadratic(
-            tuple(whole((P + P.T) / 2) for P in self.functions),
-            tuple((whole(F), whole(G)) for F, G in self.multipliers),
+            tuple(round_form(P, shifts, bits) for P in self.functions),
+            tuple(
+                (round_matrix(F, shifts, bits), round_matrix(G, shifts, bits))
+                for F, G in self.multipliers
+            ),
             bits + 2 * top,
             rate,
         )

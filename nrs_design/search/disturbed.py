@@ -297,10 +297,7 @@ def roundings(
     taus = found.taus * units[: len(found.taus)]
     exponent = int(np.frexp(np.abs(Q).max())[1])
     for bits in BITS:
-        rows, log2 = unscale(np.ldexp(Q, -exponent), family.exponents, bits)
-        log2 -= exponent
-        if log2 < 0:
-            rows, log2 = tuple(tuple(v << -log2 for v in row) for row in rows), 0
+        rows, log2 = unscale(Q, family.exponents, bits - exponent)
         yield {
             "Q": rows,
             "denominator_log2": log2,

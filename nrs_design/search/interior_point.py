@@ -107,7 +107,7 @@ def _step(cones: Cones, X: Array, Z: Array) -> tuple[Array, Array]:
     return step.primal * step.dy, step.dual * (back @ step.dZ[0] @ W)
 
 
-class Step(NamedTuple):
+class ScaledStep(NamedTuple):
     """A direction in scaled coordinates, and how far X and Z may follow it."""
 
     dy: Array
@@ -118,7 +118,7 @@ class Step(NamedTuple):
 
 def predict_and_correct(
     d: list[Array], direction: Callable[[list[Array]], tuple[Array, list[Array]]]
-) -> Step:
+) -> ScaledStep:
     """Return the step of Mehrotra, from where X and Z are diagonal with the entries d.
 
     The direction gives the changes of y and X for what those of X and Z are to add up to.
@@ -141,7 +141,7 @@ def predict_and_correct(
     ]
     dy, dX = direction(target)
     dZ = [a - b for a, b in zip(target, dX, strict=True)]
-    return Step(dy, dZ, _farthest(d, dX, STEP_SHARE), _farthest(d, dZ, STEP_SHARE))
+    return ScaledStep(dy, dZ, _farthest(d, dX, STEP_SHARE), _farthest(d, dZ, STEP_SHARE))
 
 
 def nesterov_todd(X: Array, Z: Array) -> tuple[Array, Array]:

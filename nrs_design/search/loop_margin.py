@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from nrs_design.certificates.certificate import Verdict
 from nrs_design.progress import Progress, silent
-from nrs_design.search.tried import Tried, sharpen
+from nrs_design.search.tried import Tried, sharpened
 
 if TYPE_CHECKING:
     from nrs_design.proof.evidence.abstract import Bound
@@ -151,24 +151,10 @@ def find_longest_period(
         double(Fraction(1, 2), Verdict.PROVED)
     if not tried.that_are(Verdict.REFUTED):
         double(Fraction(2), Verdict.REFUTED)
-    proved = _bisect(tried, Verdict.PROVED)
-    refuted = _bisect(tried, Verdict.REFUTED)
+    proved = sharpened(tried, Verdict.PROVED, STEPS, up=True)
+    refuted = sharpened(tried, Verdict.REFUTED, STEPS, up=False)
     end = "" if refuted is not None else tried.end("of up to", "a longer one makes no loop")
     return Bracket(proved, refuted, end, tried.refuted_in(refuted))
-
-
-def _bisect(tried: Tried[Fraction], verdict: Verdict) -> Fraction | None:
-    """Sharpen the largest period that is proved, or the smallest that is refuted."""
-    mine = tried.that_are(verdict)
-    if not mine:
-        return None
-    up = verdict is Verdict.PROVED
-    best = max(mine) if up else min(mine)
-    beyond = [v for v in tried.all() if (v > best if up else v < best)]
-    if not beyond:
-        return best
-    other = min(beyond) if up else max(beyond)
-    return sharpen(best, other, STEPS, lambda value: tried(value) is verdict)
 
 
 def command_margin(found: Bound, reached: float) -> CommandMargin | None:

@@ -11,7 +11,7 @@ from nrs_design.certificates.certificate import Verdict, refutes_in_contact
 from nrs_design.errors import AssemblyError
 from nrs_design.progress import Progress, silent
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.search.tried import Tried, sharpen
+from nrs_design.search.tried import Tried, sharpen, sharpened
 from nrs_design.spec.switching import LONGEST_DWELL
 
 if TYPE_CHECKING:
@@ -116,11 +116,7 @@ def _smallest_refuted(tried: Tried[Fraction], assemble: Assemble) -> Fraction | 
             return not isinstance(system, AssemblyError)
 
         tried.is_refuted(sharpen(tried.longest(), high, STEPS, makes_system))
-    refuted = min(tried.that_are(Verdict.REFUTED), default=None)
-    below = [scale for scale in tried.all() if refuted is not None and scale < refuted]
-    if refuted is None or not below:
-        return refuted
-    return sharpen(refuted, max(below), REFUTED_STEPS, tried.is_refuted)
+    return sharpened(tried, Verdict.REFUTED, REFUTED_STEPS, up=False)
 
 
 @dataclass(frozen=True)
@@ -167,7 +163,7 @@ def find_shortest_dwell(
         return DwellMargin(None, longest, None, longest, tried.refuted_in(Fraction(0)))
     proved = min(tried.that_are(Verdict.PROVED), default=None) or _widen(tried, system)
     if proved is None:
-        refuted = _longest_refuted(tried)
+        refuted = sharpened(tried, Verdict.REFUTED, REFUTED_STEPS, up=True)
         return DwellMargin(None, refuted, None, longest, tried.refuted_in(refuted))
     for _ in range(HALVINGS):
         if not tried.is_proved(proved / 2):
@@ -175,7 +171,7 @@ def find_shortest_dwell(
         proved /= 2
     low = max(dwell for dwell in tried.all() if dwell < proved)
     proved = sharpen(proved, low, DWELL_STEPS, tried.is_proved)
-    refuted = _longest_refuted(tried)
+    refuted = sharpened(tried, Verdict.REFUTED, REFUTED_STEPS, up=True)
     where = tried.refuted_in(refuted)
     return DwellMargin(proved, refuted, proofs[proved], tried.longest(), where)
 
@@ -218,11 +214,3 @@ def _fastest_time(system: SwitchedSystem) -> Fraction:
     largest = max(entries, default=Fraction(0)) or Fraction(1)
     size = largest.denominator.bit_length() - largest.numerator.bit_length()
     return Fraction(2) ** size
-
-
-def _longest_refuted(tried: Tried[Fraction]) -> Fraction | None:
-    refuted = max(tried.that_are(Verdict.REFUTED), default=None)
-    above = [dwell for dwell in tried.all() if refuted is not None and dwell > refuted]
-    if refuted is None or not above:
-        return refuted
-    return sharpen(refuted, min(above), REFUTED_STEPS, tried.is_refuted)

@@ -184,15 +184,11 @@ class _Condition:
 
     def is_near(self, other: _Condition) -> bool:
         """Tell whether floating point can hardly tell it from another."""
+        numbers = ([one.M, *one.facts.values()] for one in (self, other))
         return self.kind == other.kind and all(
             np.abs(one - two).max() <= NEARLY * np.abs(one).max()
-            for one, two in zip(self.numbers(), other.numbers(), strict=True)
+            for one, two in zip(*numbers, strict=True)
         )
-
-    def numbers(self) -> Iterator[Array]:
-        """Yield all that distinguishes it from others of its kind."""
-        yield self.M
-        yield from self.facts.values()
 
 
 @dataclass(frozen=True)
@@ -307,8 +303,6 @@ def _rounded(
     given = np.array([found.multipliers.get(name, 0.0) for name in program.stands.values()])
     for bits in BITS:
         rows, log2 = unscale(near, shifts, bits)
-        if log2 < 0:
-            rows, log2 = tuple(tuple(v << -log2 for v in row) for row in rows), 0
         known = dict(zip(program.stands, numerators(units.level * given, log2), strict=True))
         taus = tuple(known[f"rounding {i}"] for i, _ in enumerate(item.roundings, 1))
         own = tuple(m for name, m in known.items() if not name.startswith("rounding "))

@@ -27,17 +27,13 @@ def highest_degree(variables: int) -> int:
     return max(fitting, default=1)
 
 
-def family_cost(system: SwitchedSystem, degree: int) -> tuple[Cost, str]:
-    """Predict what a form of degree 2d for all modes takes; say for what."""
-    return _shared_cost(system, degree, 0)
-
-
 def conewise_cost(system: SwitchedSystem, degree: int) -> tuple[Cost, str]:
-    """Predict the same in contact and free motion."""
-    return _shared_cost(system, degree, len(system.free))
+    """Predict what a form of degree 2d in contact and free motion takes; say for what."""
+    return family_cost(system, degree, len(system.free))
 
 
-def _shared_cost(system: SwitchedSystem, degree: int, free: int) -> tuple[Cost, str]:
+def family_cost(system: SwitchedSystem, degree: int, free: int = 0) -> tuple[Cost, str]:
+    """Predict the same for all modes, and some of free motion."""
     n, modes = system.order, len(system.modes)
     (order, own, forms), (inner, _, flying) = (form_sizes(k, degree) for k in (n, n - 1))
     shared = own + 1

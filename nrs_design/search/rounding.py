@@ -73,11 +73,18 @@ def _round_down(value: Fraction) -> Fraction:
 def round_form(
     M: NDArray[np.float64], shifts: NDArray[np.int64], bits: int
 ) -> tuple[tuple[int, ...], ...]:
-    """Round a symmetric matrix to integers over ``2^bits``, then scale exactly, ``2^s M 2^s``.
+    """Round a symmetric matrix to integers over ``2^bits``, then scale exactly, ``2^s M 2^s``."""
+    return round_matrix((M + M.T) / 2, shifts, bits)
+
+
+def round_matrix(
+    M: NDArray[np.float64], shifts: NDArray[np.int64], bits: int
+) -> tuple[tuple[int, ...], ...]:
+    """Do the same with any matrix.
 
     No shift s is negative; bits may be. An OverflowError beyond the range of floating point.
     """
-    rounded = np.ldexp((M + M.T) / 2, bits)
+    rounded = np.ldexp(M, bits)
     if not np.isfinite(rounded).all():
         raise OverflowError("a form beyond the range of floating point")
     return tuple(
@@ -91,7 +98,8 @@ def unscale(
 ) -> tuple[tuple[tuple[int, ...], ...], int]:
     """Round to integers over ``2^bits`` and undo the scaling exactly, ``2^-d Q 2^-d``.
 
-    Returns the integers, and the logarithm of their denominator, which is two to a power.
+    Returns the integers, and the logarithm of their denominator, which is two to a power and whole.
     """
     top = int(exponents.max())
-    return round_form(Q, top - exponents, bits), bits + 2 * top
+    rows, log2 = round_form(Q, top - exponents, bits), bits + 2 * top
+    return (rows, log2) if log2 >= 0 else (tuple(tuple(v << -log2 for v in row) for row in rows), 0)

@@ -182,11 +182,9 @@ def _rounded(
         unit = np.ldexp(np.ldexp(Q, shifts[:, None]), shifts[None])
         for bits in DIGITS:
             numerators, power = unscale(unit, shifts, bits)
-            if power < 0:
-                numerators = tuple(tuple(v << -power for v in row) for row in numerators)
             yield SaturatedEllipsoid(
                 Q=numerators,
-                denominator_log2=max(power, 0),
+                denominator_log2=power,
                 rate=alpha,
                 H=rows,
                 H_denominator_log2=log2,

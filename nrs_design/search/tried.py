@@ -117,3 +117,16 @@ def sharpen(
         else:
             other = middle
     return accepted
+
+
+def sharpened(tried: Tried[Fraction], verdict: Verdict, steps: int, *, up: bool) -> Fraction | None:
+    """Return the largest number with a verdict, or the smallest, after so many bisections."""
+    mine = tried.that_are(verdict)
+    if not mine:
+        return None
+    best = max(mine) if up else min(mine)
+    beyond = [number for number in tried.all() if (number > best if up else number < best)]
+    if not beyond:
+        return best
+    other = min(beyond) if up else max(beyond)
+    return sharpen(best, other, steps, lambda number: tried(number) is verdict)

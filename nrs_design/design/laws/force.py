@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
 from nrs_design.controllers.controller_design import Controller
 from nrs_design.controllers.float32 import round_significant, to_float32
-from nrs_design.controllers.laws import CompliantLaw, ProportionalForce
+from nrs_design.controllers.laws import ProportionalForce
 from nrs_design.design.force_limit import Approach, peak_force, steady_force_error
 from nrs_design.design.force_loop import ForceLoop, design_force_gain, force_loop_response
-from nrs_design.design.goals import Achieved, ForceRequirement
+from nrs_design.design.goals import ForceRequirement
 from nrs_design.design.laws.law import (
     AbstractControllerAnalysis,
     Choice,
@@ -20,8 +19,8 @@ from nrs_design.design.laws.law import (
     goals_of,
     naming,
 )
-from nrs_design.design.measures import FORCE_MEASURES
-from nrs_design.design.proved_margins import RangedLoop, ranged_loops, with_proofs
+from nrs_design.design.measures import FORCE_ERROR, FORCE_MEASURES, Measure
+from nrs_design.design.proved_margins import RangedLoop, ranged_loops
 from nrs_design.design.transfer import TransferFunction
 from nrs_design.loop.cut_loop import ContinuousAxis
 from nrs_design.spec import ForceControllerSpec
@@ -41,27 +40,6 @@ class ForceAnalysis(AbstractControllerAnalysis):
     peak: float | None  # Largest force then, in N m; None without offset
     # What Kp times the stiffness multiplies in the open loop: G, or that with an integral.
     forward: TransferFunction
-    # Over whose ranges margins can be proved; empty for a sampled law, or one over a motor with
-    # ranges.
-    loops: tuple[RangedLoop, ...] = ()
-
-    @property
-    def is_provable(self) -> bool:
-        """Whether margins can be proved over all values of the ranges."""
-        return bool(self.loops)
-
-    def prove(self, achieved: Sequence[Achieved]) -> tuple[Achieved, ...]:
-        """Return worst values with what is proved of them over all values of the ranges."""
-        return with_proofs(achieved, self.loops)
-
-
-def loops_of(
-    task: Task, given: ForceControllerSpec | IntegralControllerSpec, law: CompliantLaw
-) -> tuple[RangedLoop, ...]:
-    """Return the loops over whose ranges the margins of a law can be proved."""
-    if not isinstance(task.axis, ContinuousAxis) or not task.plant.actuator_ranges.fixed:
-        return ()
-    return ranged_loops(task.axis, law, task.contacts(given), {})
 
 
 def proportional_gain(task: Task, given: ForceControllerSpec | IntegralControllerSpec) -> Fraction:
@@ -80,22 +58,47 @@ def choose(task: Task, given: ForceControllerSpec) -> Choice:
 
 def analyze(task: Task, given: ForceControllerSpec, controller: Controller) -> ForceAnalysis:
     """Close the loop in nominal contact, which must be stable, and measure it in all contacts."""
-    goals = goals_of(task.spec, given, FORCE_MEASURES)
-    stiffness = task.stiffness(given)
-    gain = float(controller.law.gains["Kp"])
     limits = task.spec.limits
     approach = Approach(given.offset, limits.velocity.si, limits.torque.si)
+    return analyze_approach(task, given, controller, task.motion, approach, FORCE_MEASURES)
+
+
+def analyze_approach(
+    task: Task,
+    given: ForceControllerSpec | IntegralControllerSpec,
+    controller: Controller,
+    forward: TransferFunction,
+    approach: Approach,
+    measures: tuple[Measure, ...],
+) -> ForceAnalysis:
+    """Do so for any law, with what its Kp times the stiffness multiplies in the open loop.
+
+    An error that is not among the measures is nil.
+    """
+    goals = goals_of(task.spec, given, measures)
+    stiffness, gain = task.stiffness(given), float(controller.law.gains["Kp"])
     requirement = ForceRequirement(
-        task.axis, task.corners(given), goals, controller.law, task.motion, approach
+        task.axis, task.corners(given), goals, controller.law, forward, approach
     )
+    left, loops = 0.0, tuple[RangedLoop, ...]()
     with naming(controller.name):
-        loop = force_loop_response(task.motion, stiffness, gain)
-        left = steady_force_error(task.motion, stiffness, gain, approach)
+        loop = force_loop_response(forward, stiffness, gain)
+        if FORCE_ERROR in measures:
+            left = steady_force_error(task.motion, stiffness, gain, approach)
         peak = peak_force(task.motion, stiffness, gain, approach)
-        achieved = requirement.achieved(FORCE_MEASURES)
-    loops = loops_of(task, given, controller.law)
+        achieved = requirement.achieved(measures)
+    if isinstance(task.axis, ContinuousAxis) and task.plant.actuator_ranges.fixed:
+        loops = ranged_loops(task.axis, controller.law, task.contacts(given), {})
     return ForceAnalysis(
-        controller.name, achieved, stiffness, loop, approach, left, peak, task.motion, loops
+        controller.name,
+        achieved,
+        stiffness,
+        loop,
+        approach,
+        left,
+        peak,
+        forward,
+        loops=loops,
     )
 
 

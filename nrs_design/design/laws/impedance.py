@@ -35,7 +35,7 @@ from nrs_design.design.measures import (
     Measure,
 )
 from nrs_design.design.passivity import PassiveBand, passive_band
-from nrs_design.design.proved_margins import RangedLoop, ranged_loops, with_proofs
+from nrs_design.design.proved_margins import ranged_loops, with_proofs
 from nrs_design.design.relief import doubt_stiffness
 from nrs_design.design.response_cost import ResponseCost, response_cost
 from nrs_design.design.response_goals import JudgedResponse, judged_responses, response_goals
@@ -79,14 +79,6 @@ class ImpedanceAnalysis(AbstractControllerAnalysis):
     # Of everything that it touches, in m; None if there is none, or not the same for all.
     lever_arm: float | None = None
     responses: tuple[JudgedResponse, ...] = ()  # Goals for its frequency responses, with proofs
-    # Over whose ranges margins can be proved; empty for a sampled law, or more than four ranges at
-    # once.
-    loops: tuple[RangedLoop, ...] = ()
-
-    @property
-    def is_provable(self) -> bool:
-        """Whether margins can be proved over all values of the ranges."""
-        return bool(self.loops)
 
     def prove(self, achieved: Sequence[Achieved]) -> tuple[Achieved, ...]:
         """Return worst values with what is proved of them over all values of the ranges."""
@@ -148,6 +140,8 @@ def analyze(
         for name, found in requirement.stiffness_limits(Mt, Bt).items()
         if name in _home_names(given)
     )
+    axis = task.axis if isinstance(task.axis, ContinuousAxis) else None
+    law, contacts, moving = controller.law, task.contacts(given), _moving(task)
     asked = dict(requirement.goals)
     measures = (*_measures(task), *(item for item in HAND_MEASURES if item in asked))
     return ImpedanceAnalysis(
@@ -161,25 +155,19 @@ def analyze(
         Bt=Bt,
         cost=float(impedance_cost(problem, Mt, Bt)),
         requirement=requirement,
-        highest_stiffness=float(_highest_stiffness(task, given)),
+        highest_stiffness=float(
+            max(task.plant.environment(name).stiffness.high for name in _home_names(given))
+        ),
         lowest_limit=limit,
         limit_at=limit_at,
-        stiff=tuple(doubt_stiffness(controller.name, requirement, task.contacts(given), Mt, Bt)),
-        band=_band(task, controller),
+        stiff=tuple(doubt_stiffness(controller.name, requirement, contacts, Mt, Bt)),
+        band=None if axis is None else passive_band(axis, law, moving),
         sampled=_sampled_bands(task, given, controller),
         lever_arm=_lever_arm(task, given),
         responses=tuple(_responses(task, given, controller)),
-        loops=_ranged_loops(task, given, controller),
+        # None with more than four ranges at once.
+        loops=() if axis is None else ranged_loops(axis, law, contacts, moving),
     )
-
-
-def _ranged_loops(
-    task: Task, given: ImpedanceControllerSpec, controller: Controller
-) -> tuple[RangedLoop, ...]:
-    """Return the loops over whose ranges margins can be proved."""
-    if not isinstance(task.axis, ContinuousAxis):
-        return ()
-    return ranged_loops(task.axis, controller.law, task.contacts(given), _moving(task))
 
 
 def _given_optimum(problem: ImpedanceProblem, given: ImpedanceControllerSpec) -> ImpedanceOptimum:
@@ -222,13 +210,6 @@ def _stable_below(requirement: Requirement, Mt: float, Bt: float) -> str:
     return f"it is stable{nominal} below {lower(Fraction(limit), 6)} {unit('N m/rad')}"
 
 
-def _band(task: Task, controller: Controller) -> PassiveBand | None:
-    """Return where the displayed admittance is passive, over the ranges of the motor."""
-    if not isinstance(task.axis, ContinuousAxis):
-        return None
-    return passive_band(task.axis, controller.law, _moving(task))
-
-
 def _responses(
     task: Task, given: ImpedanceControllerSpec, controller: Controller
 ) -> Iterator[JudgedResponse]:
@@ -256,10 +237,8 @@ def _sampled_bands(
     sampling = task.spec.sampling
     if sampling is None or sampling.round > 1 or task.sensor.filter or _spring(given):
         return ()
-    if sampling.misses is not None:
-        return ()
     fixed = task.plant.actuator_ranges.fixed and task.spec.late_at is None
-    if not fixed:
+    if sampling.misses is not None or not fixed:
         return ()
     law = controller.law.discretize(sampling.period.exact, sampling.admittance)
     oldest = sampling.delay[1] + 1
@@ -289,12 +268,7 @@ def impedance_problem(
 ) -> ImpedanceProblem:
     """State the choice of one controller's virtual mass and damping as an optimization."""
     return ImpedanceProblem(
-        loop=ImpedanceLoop(
-            task.motion,
-            task.plant.environment(given.environment).nominal,
-            float(_spring(given)),
-            _lags(task),
-        ),
+        loop=_loop(task, given, given.environment),
         desired=desired_impedance(task.spec, given),
         bandwidth=task.spec.limits.bandwidth.si,
         mass_bounds=(given.Mt.min.si, given.Mt.max.si),
@@ -319,13 +293,7 @@ def _response_costs(task: Task, given: ImpedanceControllerSpec) -> Iterator[Resp
     """Yield what goals for frequency responses add to the cost."""
     for key, goal in response_goals(task.spec.goals, given.goals).items():
         if weight := float(getattr(given.weights, key) or 0):
-            name = goal.environment or given.environment
-            loop = ImpedanceLoop(
-                task.motion,
-                task.plant.environment(name).nominal,
-                float(_spring(given)),
-                _lags(task),
-            )
+            loop = _loop(task, given, goal.environment or given.environment)
             band = goal.band[0].si, goal.band[1].si
             touches = goal.environment is not None
             yield response_cost(loop, weight, float(goal.limit), band, touches=touches)
@@ -359,19 +327,17 @@ def _home_names(given: ImpedanceControllerSpec) -> tuple[str, ...]:
     return given.environment, *contact_names(tuple(at_once))
 
 
-def _highest_stiffness(task: Task, given: ImpedanceControllerSpec) -> Fraction:
-    """Return that of the environment that the gains are designed for, and of what it is part of."""
-    return max(task.plant.environment(name).stiffness.high for name in _home_names(given))
-
-
 def _measures(task: Task) -> tuple[Measure, ...]:
     """Return what an impedance controller is measured by: creep where its cause is known."""
     return (*IMPEDANCE_MEASURES, *(CREEP_MEASURES if task.sensor.errors else ()))
 
 
-def _lags(task: Task) -> tuple[float, ...]:
+def _loop(task: Task, given: ImpedanceControllerSpec, environment: str) -> ImpedanceLoop:
+    """Return the loop of a controller in nominal contact."""
     low_pass = task.sensor.filter
-    return (1.0,) if low_pass is None else low_pass.denominator
+    lags = (1.0,) if low_pass is None else low_pass.denominator
+    contact = task.plant.environment(environment).nominal
+    return ImpedanceLoop(task.motion, contact, float(_spring(given)), lags)
 
 
 def _optimize(task: Task, given: ImpedanceControllerSpec) -> tuple[Admittance, ImpedanceOptimum]:

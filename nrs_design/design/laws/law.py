@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import ABC
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
 from typing import Any
@@ -17,6 +17,7 @@ from nrs_design.controllers.sensor import Sensor, build_sensor
 from nrs_design.design.doubts import doubt_values, is_unusual
 from nrs_design.design.goals import Achieved, ContactCorner, corners_of
 from nrs_design.design.measures import Measure
+from nrs_design.design.proved_margins import RangedLoop, with_proofs
 from nrs_design.design.transfer import TransferFunction
 from nrs_design.errors import DesignError
 from nrs_design.loop.cut_loop import AbstractAxis, Place, axis_of
@@ -89,6 +90,8 @@ class AbstractControllerAnalysis(ABC):
 
     name: str  # Of the controller
     achieved: tuple[Achieved, ...]  # The worst values over the contacts, beside the goals
+    # Over whose ranges margins can be proved; empty where they cannot.
+    loops: tuple[RangedLoop, ...] = field(default=(), kw_only=True)
 
     @property
     def unusual(self) -> tuple[Measure, ...]:
@@ -111,12 +114,12 @@ class AbstractControllerAnalysis(ABC):
 
     def prove(self, achieved: Sequence[Achieved]) -> tuple[Achieved, ...]:
         """Return worst values with what is proved of them over all values of the ranges."""
-        return tuple(achieved)
+        return with_proofs(achieved, self.loops)
 
     @property
     def is_provable(self) -> bool:
         """Whether margins can be proved over all values of the ranges."""
-        return False
+        return bool(self.loops)
 
     @property
     def proved_titles(self) -> tuple[str, ...]:

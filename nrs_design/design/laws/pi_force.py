@@ -11,11 +11,10 @@ import numpy as np
 from nrs_design.controllers.controller_design import Controller
 from nrs_design.controllers.float32 import round_significant, to_float32
 from nrs_design.controllers.laws.pi_force import IntegralForce
-from nrs_design.design.force_limit import Approach, peak_force
+from nrs_design.design.force_limit import Approach
 from nrs_design.design.force_loop import force_loop_response
-from nrs_design.design.goals import ForceRequirement
-from nrs_design.design.laws.force import ForceAnalysis, loops_of, proportional_gain
-from nrs_design.design.laws.law import Choice, LawDesign, Task, goals_of, naming
+from nrs_design.design.laws.force import ForceAnalysis, analyze_approach, proportional_gain
+from nrs_design.design.laws.law import Choice, LawDesign, Task
 from nrs_design.design.measures import MARGINS
 from nrs_design.design.transfer import TransferFunction
 from nrs_design.errors import DesignError
@@ -75,20 +74,11 @@ def choose(task: Task, given: IntegralControllerSpec) -> Choice:
 def analyze(task: Task, given: IntegralControllerSpec, controller: Controller) -> ForceAnalysis:
     """Close the loop in nominal contact, which must be stable, and measure it in all contacts."""
     Kp, Ki = (float(controller.law.gains[name]) for name in ("Kp", "Ki"))
-    motion = with_integral(task.motion, Ki / Kp)
-    goals = goals_of(task.spec, given, MARGINS)
-    requirement = ForceRequirement(task.axis, task.corners(given), goals, controller.law, motion)
-    stiffness = task.stiffness(given)
     limits = task.spec.limits
     # The position command waits, and the integral is what it was: the command does not step.
     approach = Approach("reference", limits.velocity.si, limits.torque.si, Ki)
-    name = controller.name
-    with naming(name):
-        loop = force_loop_response(motion, stiffness, Kp)
-        peak = peak_force(task.motion, stiffness, Kp, approach)
-        achieved = requirement.achieved(MARGINS)
-    loops = loops_of(task, given, controller.law)
-    return ForceAnalysis(name, achieved, stiffness, loop, approach, 0.0, peak, motion, loops)
+    forward = with_integral(task.motion, Ki / Kp)
+    return analyze_approach(task, given, controller, forward, approach, MARGINS)
 
 
 DESIGN = LawDesign(choose, analyze)

@@ -80,19 +80,15 @@ def analyze_design(
 ) -> DesignAnalysis:
     """Compute poles, costs and margins of a design; an unstable nominal loop is a `DesignError`."""
     task = Task(spec, plant, design.motion)
+    stated = spec.motion_loop is None or spec.motion_loop.transfer_function is not None
     return DesignAnalysis(
         wanted=root_locus_design(spec),
         motion=task.motion,
-        motion_source=_source(spec),
+        motion_source="given" if stated else "designed",
         reached=motion_loop_response(task.motion),
         measured=tuple(_measured(task, design)),
         doubts=(*doubt_spec(spec), *doubt_same(spec, design)),
     )
-
-
-def _source(spec: InteractionDesignSpec) -> str:
-    stated = spec.motion_loop is None or spec.motion_loop.transfer_function is not None
-    return "given" if stated else "designed"
 
 
 def too_stiff(

@@ -58,8 +58,8 @@ def bound_cost(
     least = least_cost(
         frequencies,
         weights,
-        _ends(problem.mass_bounds),
-        _ends(problem.damping_bounds),
+        (Fraction(problem.mass_bounds[0]), Fraction(problem.mass_bounds[1])),
+        (Fraction(problem.damping_bounds[0]), Fraction(problem.damping_bounds[1])),
         enough=enough,
         most=most,
     )
@@ -76,10 +76,6 @@ def why_no_bound(problem: ImpedanceProblem) -> str:
     if problem.responses:
         return "the weights for transparency and accuracy are not covered"
     return ""
-
-
-def _ends(bounds: tuple[float, float]) -> tuple[Fraction, Fraction]:
-    return Fraction(bounds[0]), Fraction(bounds[1])
 
 
 def _frequencies(problem: ImpedanceProblem) -> Iterator[Frequency]:

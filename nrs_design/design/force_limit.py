@@ -32,9 +32,6 @@ class Approach:
     integral: float = 0.0
 
 
-NO_OFFSET = Approach()
-
-
 def steady_force_error(
     motion: TransferFunction, stiffness: float, gain: float, approach: Approach
 ) -> float:

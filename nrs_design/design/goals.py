@@ -24,7 +24,7 @@ import numpy as np
 
 from nrs_design.axis import unit
 from nrs_design.controllers.laws import CompliantLaw
-from nrs_design.design.force_limit import NO_OFFSET, Approach, steady_force_error
+from nrs_design.design.force_limit import Approach, steady_force_error
 from nrs_design.design.hands_on import hand_effort, transparency
 from nrs_design.design.loop_family import LoopFamily
 from nrs_design.design.loops import Loops, by_length, gain_extremes
@@ -372,7 +372,7 @@ class ForceRequirement(AbstractRequirement):
     law: CompliantLaw  # With the gains that ship
     # Closed motion loop G, from commanded to actual position, for the steady error.
     motion: TransferFunction
-    approach: Approach = NO_OFFSET  # How the limit is reached, for the steady error
+    approach: Approach  # How the limit is reached, for the steady error
 
     def _at(self, corner: ContactCorner, measure: Measure, *gains: FloatArray) -> FloatArray:
         gain, stiffness = float(self.law.gains["Kp"]), corner.contact.stiffness

@@ -26,7 +26,7 @@ from typing import Any
 
 from nrs_design.controllers.laws import Admittance, ProportionalDerivative
 from nrs_design.controllers.sensor import LowPass
-from nrs_design.design.affine_family import Polynomial, Quotient, is_stable_over
+from nrs_design.design.affine_family import Quotient, is_stable_over
 from nrs_design.design.displayed_response import (
     Band,
     LargestResponse,
@@ -79,7 +79,8 @@ class SampledAdmittance:
         turned = multiply([ONE, -ONE, ZERO], lag)
         driven = multiply(C, [Km * (T - s), Km * (s - T * E)])
         closed = [a + b for a, b in zip(turned, [ZERO, *driven], strict=True)]
-        above, below = multiply(closed, self._pole(numbers)), multiply(C, lag)
+        pole = [ONE, -numbers["a"]] if "a" in numbers else [ONE]
+        above, below = multiply(closed, pole), multiply(C, lag)
         scale = Km * numbers["T"] * numbers["b"]
         if self.low_pass is not None:
             held = self.low_pass.discretize(T)
@@ -94,10 +95,6 @@ class SampledAdmittance:
     @property
     def _numbers(self) -> Mapping[str, Fraction]:
         return self.law.discretize(self.period, self.method).numbers
-
-    @staticmethod
-    def _pole(numbers: Mapping[str, Fraction]) -> Polynomial:
-        return [ONE, -numbers["a"]] if "a" in numbers else [ONE]
 
     def halves(self) -> tuple[SampledAdmittance, ...]:
         """Halve the range of the time constant; nothing if it is short."""

@@ -83,7 +83,7 @@ def _rule_for_misses(result: Result) -> MissRuleSpec | None:
 
 def _run_misses(rule: MissRuleSpec, result: Result, limits: Limits, progress: Progress) -> Bracket:
     """Find the most misses in the same window, or in a row, with a proof."""
-    from nrs_design.search.misses_margin import find_most_misses
+    from nrs_design.search.loop_margin import find_most_misses
 
     declared, of = rule.window
 

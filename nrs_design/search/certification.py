@@ -17,9 +17,6 @@ from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.gradient_settings import Gradient
 from nrs_design.work import GIGABYTE
 
-DEFAULT_BUDGET = 60.0
-DEFAULT_MEMORY = 2 * GIGABYTE
-
 
 @dataclass(frozen=True, slots=True)
 class Limits:
@@ -28,8 +25,8 @@ class Limits:
     # Highest degree of a homogeneous polynomial function; None for as high as the budget allows.
     max_degree: int | None = None
     # Work, in units (`nrs_design.work`). Steps that are predicted not to fit are not begun.
-    budget: float = DEFAULT_BUDGET
-    memory: float = DEFAULT_MEMORY  # Steps that are predicted to need more bytes are not begun
+    budget: float = 60.0
+    memory: float = 2 * GIGABYTE  # Steps that are predicted to need more bytes are not begun
     optimize_rate: bool = True  # Look for the largest provable decay rate, not only for some
     more: bool = True  # Look for bounds under disturbances and the like, where stability is proved
     gradient: Gradient = field(default_factory=Gradient)  # Settings of the gradient iteration

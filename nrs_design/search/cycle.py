@@ -11,7 +11,7 @@ from itertools import islice
 import numpy as np
 
 from nrs_design.search.graph import Array, Cycle, Graph, Jump
-from nrs_design.search.structure import reach
+from nrs_design.search.structure import reachable
 from nrs_design.work import Allowance
 
 MAX_CYCLES = 120
@@ -83,7 +83,7 @@ def _returning(jumps: Sequence[Jump]) -> list[int]:
     links = np.zeros((size, size), dtype=bool)
     for jump in jumps:
         links[jump.source, jump.target] = True
-    reaches = reach(links)
+    reaches = reachable(links)
     return [k for k, jump in enumerate(jumps) if reaches[jump.target, jump.source]]
 
 

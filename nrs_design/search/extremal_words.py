@@ -68,20 +68,11 @@ def words_in_norms(
     if steps is None or steps.has_choice:
         return
     index = {mode.name: k for k, mode in enumerate(system.modes)}
-    own = _edges_of(steps, free=system.switching.is_arbitrary)
-    places = [node.place for node in program.drawing.graph.nodes]
+    graph, free = program.drawing.graph, system.switching.is_arbitrary
+    own, places = _edges_of(steps, free=free), [node.place for node in graph.nodes]
     rows = list[tuple[int, int, int]]()
-    for (a, step, b), _ in zip(
-        program.drawing.graph.edges_in_time(system), program.every, strict=True
-    ):
-        key = (
-            (index[step.mode],)
-            if system.switching.is_arbitrary
-            else (
-                index[places[a]],
-                index[places[b]],
-            )
-        )
+    for a, step, b in graph.edges_in_time(system):
+        key = tuple(index[name] for name in ((step.mode,) if free else (places[a], places[b])))
         if key not in own:
             return  # A stay of several steps is none of this graph.
         rows.append((a, b, own[key]))

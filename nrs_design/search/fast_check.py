@@ -5,19 +5,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from itertools import accumulate, combinations_with_replacement
-from operator import sub
+from operator import mul, sub
+from typing import Any
 
 from nrs_design.proof.evidence import AbstractEvidence, FormsOnGraph
 from nrs_design.proof.evidence.abstract import find_indefinite
-from nrs_design.proof.exact import IntegerMatrix, bit_length, is_symmetric, is_too_large
+from nrs_design.proof.exact import IntegerMatrix, bit_length, is_symmetric, is_too_large, multiply
 from nrs_design.proof.system import SwitchedSystem
 
 # Bits of the smallest diagonal entry in the elimination with rounded numbers: one digit of Python.
 CLEAR_BITS = 28
-# From this order on, products of another library are faster than plain ones.
-LARGE_ORDER = 10
+# From this order on, packed products are faster than plain ones.
+PACKED_ORDER = 10
 # Work per candidate, and per form: for itself, and per product of entries and square of their bits.
 # What a motion does during a stay is enclosed anew for each form.
 PER_CANDIDATE = 1e-3
@@ -41,10 +42,8 @@ def find_fault(
     charge(PER_CANDIDATE)
     if (unfit := evidence.find_unfit(system)) is not None:
         return unfit
-    if isinstance(evidence, FormsOnGraph) and system.order >= LARGE_ORDER:
-        forms = evidence.forms(system, multiply_fast)
-    else:
-        forms = evidence.forms(system)
+    packed = _PACKED.get(type(evidence)) if system.order >= PACKED_ORDER else None
+    forms = evidence.forms(system) if packed is None else packed(evidence, system)
     # Evidence that encloses what happens during a stay says in how many pieces.
     encloses = getattr(getattr(evidence, "stays", None), "pieces", 1) > 1
     counted = _counted(forms, PER_ENCLOSED_FORM if encloses else PER_FORM, charge)
@@ -94,9 +93,25 @@ def _diagonal(order: int) -> Iterator[int]:
     return accumulate(range(order, 1, -1), initial=0)
 
 
-def multiply_fast(left: IntegerMatrix, right: IntegerMatrix) -> list[list[int]]:
-    """Return the matrix product, as `nrs_design.proof.exact.multiply` does."""
-    from flint import fmpz_mat
+def multiply_packed(left: IntegerMatrix, right: IntegerMatrix) -> list[list[int]]:
+    """Return the matrix product, as `nrs_design.proof.exact.multiply` does.
 
-    product = fmpz_mat(list(map(list, left))) * fmpz_mat(list(map(list, right)))
-    return [[int(entry) for entry in row] for row in product.tolist()]
+    Every row of the right factor is written as one long integer, with its entries as digits of a
+    base that no entry of the product can overflow. A row of the product is then a sum of as many
+    long products as it has factors; half of the base makes its digits positive.
+    """
+    if not right or any(len(row) != len(right) for row in left):
+        return multiply(left, right)
+    width = bit_length(left) + bit_length(right) + len(right).bit_length() + 1
+    half, mask = 1 << (width - 1), (1 << width) - 1
+    shifts = range(0, width * len(right[0]), width)
+    long_rows = [sum([a << shift for a, shift in zip(row, shifts, strict=True)]) for row in right]
+    halves = sum(half << shift for shift in shifts)
+    sums = [sum(map(mul, row, long_rows), halves) for row in left]
+    return [[(total >> shift & mask) - half for shift in shifts] for total in sums]
+
+
+# Kinds with forms that may be multiplied in another way.
+_PACKED: Mapping[type[AbstractEvidence], Callable[[Any, SwitchedSystem], Forms]] = {
+    FormsOnGraph: lambda evidence, system: evidence.forms(system, multiply_packed)
+}

@@ -14,18 +14,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, partial
 
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.search.interior_point import nesterov_todd, predict_and_correct
+from nrs_design.search.interior_point import follow, nesterov_todd, predict_and_correct
 from nrs_design.search.sdp import pack, symmetric_basis, unpack
 from nrs_design.work import Cost
 
 Array = NDArray[np.float64]
 
-MAX_STEPS = 60
 # The margin is found to this share of itself, or to this share of the forms where it is nil.
 ACCURACY, FLOOR = 0.5, 1e-11
 # The equations of the optimum hold nearly enough for its bound to be believed.
@@ -190,29 +189,19 @@ def maximize(
     before every step; No ends the search with the last iterate.
     """
     y = _start(cones, start)
-    X = cones.at(y)
-    inverse = [np.asarray(np.linalg.inv(own), dtype=np.float64) for own in X]
+    inverse = [np.asarray(np.linalg.inv(own), dtype=np.float64) for own in cones.at(y)]
     counted = sum(
         float(np.trace(own, axis1=1, axis2=2).sum())
         for own, kind in zip(inverse, cones.kinds, strict=True)
         if kind.counts
     )
-    Z: list[Array] = [own / counted for own in inverse]
-    for _ in range(MAX_STEPS):
-        if not goes_on():
-            break
-        try:
-            dy, dZ, lacks = _step(cones, X, Z)
-            trial, other = cones.at(y + dy), [a + b for a, b in zip(Z, dZ, strict=True)]
-        except np.linalg.LinAlgError:
-            break
-        if not all(np.isfinite(own).all() for own in (*trial, *other)):
-            break
-        y, X, Z = y + dy, trial, other
-        gap = sum(float((a * b).sum()) for a, b in zip(X, Z, strict=True))
-        settled = lacks < NEARLY_DUAL
-        if settled and (gap <= max(FLOOR, accuracy * abs(y[-1])) or y[-1] + 2 * gap < 0):
-            break
+
+    def is_enough(value: float, gap: float, lacks: float) -> bool:
+        nearly = gap <= max(FLOOR, accuracy * abs(value)) or value + 2 * gap < 0
+        return lacks < NEARLY_DUAL and nearly
+
+    Z = [own / counted for own in inverse]
+    y = follow(y, Z, cones.at, partial(_step, cones), is_enough, goes_on)
     forms, multipliers = cones.split(y)
     return FormsPoint(forms, multipliers, float(y[-1]))
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -67,29 +68,52 @@ def maximize_last(
     `goes_on` is asked before every step: No ends the search with the last iterate, strictly
     feasible in floating point.
     """
-    y, X = start, cones.at(start)
-    inverse = np.linalg.inv(X)
+    inverse = np.linalg.inv(cones.at(start))
     # With this unit, Z = inverse satisfies the equation of the last variable at the start.
     Z = -inverse / (cones.images[-1] * inverse).sum()
+    return follow(
+        start,
+        [Z],
+        lambda y: [cones.at(y)],
+        partial(_step, cones),
+        lambda value, gap, lacks: gap <= max(GAP_FLOOR, (GOOD_FACTOR - 1) * value),
+        goes_on,
+    )
+
+
+def follow(
+    y: Array,
+    Z: list[Array],
+    at: Callable[[Array], list[Array]],
+    step: Callable[[list[Array], list[Array]], tuple[Array, list[Array], float]],
+    is_enough: Callable[[float, float, float], bool],
+    goes_on: Callable[[], bool],
+) -> Array:
+    """Make steps until the last unknown, the gap and what the equations of the optimum lack do.
+
+    X is known `at` the unknowns; a step gives the changes of y and Z, and what will be lacking.
+    """
+    X = at(y)
     for _ in range(MAX_STEPS):
         if not goes_on():
             break
         try:
-            dy, dZ = _step(cones, X, Z)
+            dy, dZ, lacks = step(X, Z)
+            trial, other = at(y + dy), [a + b for a, b in zip(Z, dZ, strict=True)]
         except np.linalg.LinAlgError:
             break
-        trial = cones.at(y + dy)
-        if not (np.isfinite(trial).all() and np.isfinite(dZ).all()):
+        if not all(np.isfinite(own).all() for own in (*trial, *other)):
             break
-        y, X, Z = y + dy, trial, Z + dZ
-        gap = float((X * Z).sum())
-        if gap <= max(GAP_FLOOR, (GOOD_FACTOR - 1) * y[-1]):
+        y, X, Z = y + dy, trial, other
+        gap = sum(float((a * b).sum()) for a, b in zip(X, Z, strict=True))
+        if is_enough(float(y[-1]), gap, lacks):
             break
     return y
 
 
-def _step(cones: Cones, X: Array, Z: Array) -> tuple[Array, Array]:
-    """Return the changes of y and Z."""
+def _step(cones: Cones, Xs: list[Array], Zs: list[Array]) -> tuple[Array, list[Array], float]:
+    """Return the changes of y and Z; what the equations of the optimum lack is not asked for."""
+    (X,), (Z,) = Xs, Zs
     W, d = nesterov_todd(X, Z)
     back = np.swapaxes(W, -1, -2)
     # In the coordinates in which X and Z are the same diagonal matrix.
@@ -104,7 +128,7 @@ def _step(cones: Cones, X: Array, Z: Array) -> tuple[Array, Array]:
         return dy, [unpack((dy @ rows).reshape(len(X), -1), X.shape[-1])]
 
     step = predict_and_correct([d], direction)
-    return step.primal * step.dy, step.dual * (back @ step.dZ[0] @ W)
+    return step.primal * step.dy, [step.dual * (back @ step.dZ[0] @ W)], 0.0
 
 
 class ScaledStep(NamedTuple):

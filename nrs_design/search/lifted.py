@@ -8,10 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.proof.lift import monomials
-from nrs_design.search.sdp import (
-    pack,
-    unpack,
-)
+from nrs_design.search.sdp import pack, unpack
 
 Array = NDArray[np.float64]
 Exponents = NDArray[np.int64]
@@ -35,26 +32,16 @@ def monomial_weights(variables: int, degree: int) -> Exponents:
     return np.asarray(np.rint(np.log2(counts) / 2).astype(np.int64))
 
 
-def _differences(variables: int, degree: int, scaling: Exponents) -> Array:
-    """Return a basis of the forms that vanish identically, shape (p, K, K)."""
-    pairs = [group for group in products(variables, degree) if len(group) > 1]
-    forms = [_difference(group[0], other, scaling) for group in pairs for other in group[1:]]
-    return np.array(forms).reshape(-1, len(scaling), len(scaling))
-
-
 def vanishing_basis(variables: int, degree: int, scaling: Exponents) -> Array:
     """Return an orthonormal basis of the forms that vanish, in the coordinates ``2^e z(x)``.
 
     z are the monomials of a degree in so many variables, e the exponents of the scaling.
     """
-    return orthonormal(_differences(variables, degree, scaling))
-
-
-def orthonormal(forms: Array) -> Array:
-    """Return an orthonormal basis of the span of symmetric matrices, shape (p, K, K)."""
-    if not len(forms):
-        return forms
-    return unpack(np.linalg.qr(pack(forms).T)[0].T, forms.shape[-1])
+    groups, size = products(variables, degree), len(scaling)
+    forms = [_difference(group[0], other, scaling) for group in groups for other in group[1:]]
+    if not forms:
+        return np.zeros((0, size, size))
+    return unpack(np.linalg.qr(pack(np.array(forms)).T)[0].T, size)
 
 
 def _difference(one: Pair, other: Pair, scaling: Exponents) -> Array:

@@ -12,10 +12,7 @@ from numpy.typing import NDArray
 
 from nrs_design.proof.mode import Time
 from nrs_design.search.interior_point import Cones, maximize_last, step_cost
-from nrs_design.search.sdp import (
-    pack,
-    symmetric_basis,
-)
+from nrs_design.search.sdp import pack, symmetric_basis
 from nrs_design.work import Allowance, Cost
 
 Matrices = NDArray[np.float64]
@@ -91,8 +88,9 @@ def solve_by_interior_point(
     """Improve on Q in the margin form for the given modes, with the method of our own."""
     m, n = matrices.shape[:2]
     step = step_cost(n * (n + 1) // 2 + 1, m + 2, n)
-    allowance.require(Cost(FEWEST_STEPS * step.work, step.memory), _described(m, n))
     basis, identity = symmetric_basis(n), np.eye(n)
+    what = f"a program of {len(basis)} unknowns and {m + 2} blocks"
+    allowance.require(Cost(FEWEST_STEPS * step.work, step.memory), what)
     constant, images = np.zeros((m + 2, n, n)), np.zeros((len(basis) + 1, m + 2, n, n))
     constant[1] = identity
     images[:-1, 0], images[:-1, 1] = basis, -basis
@@ -103,7 +101,3 @@ def solve_by_interior_point(
     start = np.append(pack(Q), below)
     y = maximize_last(Cones(constant, images), start, lambda: allowance.goes_on(step.work))
     return np.asarray(np.tensordot(y[:-1], basis, axes=1))
-
-
-def _described(modes: int, order: int) -> str:
-    return f"a program of {order * (order + 1) // 2} unknowns and {modes + 2} blocks"

@@ -1,4 +1,4 @@
-"""How far delay, period and command of a loop stretch: proved and refuted side."""
+"""How far delay, period, misses and command of a loop stretch: proved and refuted side."""
 
 from __future__ import annotations
 
@@ -88,7 +88,9 @@ def find_longest_delay(
     refuted = min(tried.that_are(Verdict.REFUTED), default=None)
     where = tried.refuted_in(refuted)
     if refuted is None:
-        refuted = _first_unstable(longest, lambda delay: unstable_in(delay) is not None)
+        refuted = longest
+        if unstable_in(longest) is None:
+            refuted = _first_beyond(longest, FARTHEST_DELAY, lambda n: unstable_in(n) is None)
         where = "" if refuted is None else unstable_in(refuted) or ""
     ends = [None if delay is None else Fraction(delay) for delay in (proved, refuted)]
     end = "" if refuted is not None else _end_of_delays(tried)
@@ -115,14 +117,14 @@ def halve(inside: int, outside: int, accepts: Callable[[int], bool]) -> int:
     return outside
 
 
-def _first_unstable(stable: int, is_unstable: Callable[[int], bool]) -> int | None:
-    """Return a short delay that is unstable, beyond one that is not: by doubling and bisecting."""
-    unstable = stable
-    while not is_unstable(unstable):
-        if unstable == FARTHEST_DELAY:
-            return None
-        stable, unstable = unstable, min(2 * unstable, FARTHEST_DELAY)
-    return halve(stable, unstable, lambda delay: not is_unstable(delay))
+def _first_beyond(inside: int, most: int, accepts: Callable[[int], bool]) -> int | None:
+    """Return the first number that is not accepted, by doubling and bisecting; None up to most."""
+    while inside < most:
+        outside = min(2 * inside, most)
+        if not accepts(outside):
+            return halve(inside, outside, accepts)
+        inside = outside
+    return None
 
 
 def find_longest_period(
@@ -155,6 +157,42 @@ def find_longest_period(
     refuted = sharpened(tried, Verdict.REFUTED, STEPS, up=False)
     end = "" if refuted is not None else tried.end("of up to", "a longer one makes no loop")
     return Bracket(proved, refuted, end, tried.refuted_in(refuted))
+
+
+def find_most_misses(
+    declared: int,
+    most: int,
+    decide: Callable[[int], Found],
+    known: Found | None = None,
+    progress: Progress = silent,
+) -> Bracket:
+    """Bracket how many steps may be missed, by doubling and bisecting, up to `most`.
+
+    What may happen with few misses may happen with more: a proof for a number is one for every
+    smaller one, and a refutation one for every larger one. `known` is on the declared number,
+    perhaps by a longer search.
+    """
+    tried: Tried[int] = Tried(decide, progress, "misses")
+    if known is not None:
+        tried.remember(declared, known)
+    if tried.is_proved(declared):
+        _first_beyond(declared, most, tried.is_proved)
+    else:
+        halve(0, declared, tried.is_proved)
+    proved = max(tried.that_are(Verdict.PROVED), default=None)
+
+    def bears(number: int) -> bool:
+        return not (tried.is_refuted(number) or tried.makes_no_system(number))
+
+    if tried.that_are(Verdict.REFUTED):
+        first = min(tried.that_are(Verdict.REFUTED))
+        halve(max((n for n in tried.all() if n < first), default=0), first, bears)
+    else:
+        _first_beyond(max(n for n in tried.all() if not tried.makes_no_system(n)), most, bears)
+    refuted = min(tried.that_are(Verdict.REFUTED), default=None)
+    end = "" if refuted is not None else tried.end("of up to", "more make no system")
+    ends = [None if number is None else Fraction(number) for number in (proved, refuted)]
+    return Bracket(ends[0], ends[1], end, tried.refuted_in(refuted))
 
 
 def command_margin(found: Bound, reached: float) -> CommandMargin | None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from itertools import product
 from math import isfinite
 
 import numpy as np
@@ -11,6 +10,7 @@ from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.decay import limit_rate
 from nrs_design.search.family import to_floats
+from nrs_design.search.words import products_of
 
 MAX_WORDS = 3000
 # Multiplications in the eigenvalues of all words of a length.
@@ -53,12 +53,9 @@ def _cycle_growth(matrices: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -
     words_at_most = min(MAX_WORDS, MAX_WORK // len(matrices[0]) ** 3)
     while m > 1 and m ** (length + 1) <= words_at_most:
         length += 1
-        words = np.array(list(product(range(m), repeat=length)))
-        products = matrices[words[:, 0]]
-        for column in words.T[1:]:
-            products = matrices[column] @ products
-        if not np.isfinite(products).all():
+        _, found = products_of(matrices, length)
+        if not np.isfinite(found).all():
             break
-        radius = np.abs(np.linalg.eigvals(products)).max()
+        radius = np.abs(np.linalg.eigvals(found)).max()
         best = max(best, float(radius) ** (1 / length))
     return best

@@ -169,16 +169,10 @@ def _best(
 def _shown(program: FormsProgram, solution: Solution) -> float:
     """Return the rate in 1/s that forms show; none where they are singular in floating point."""
     try:
-        return _in_seconds(program.own_rate(solution), program)
+        rate = program.own_rate(solution)
     except LinAlgError:
         return -inf
-
-
-def _in_seconds(rate: float, program: FormsProgram) -> float:
-    """Return a rate as the program counts it in 1/s."""
-    if program.time is Time.CONTINUOUS:
-        return rate
-    return (1 - rate) / _period(program)
+    return rate if program.time is Time.CONTINUOUS else (1 - rate) / _period(program)
 
 
 def _decrease(

@@ -54,7 +54,7 @@ def triangular_blocks(system: SwitchedSystem) -> tuple[tuple[int, ...], ...]:
         pattern |= np.array(mode.A.numerators, dtype=bool)
         if pattern.all():
             return (tuple(range(n)),)
-    reaches = reach(pattern)
+    reaches = reachable(pattern)
     # States that reach each other are one block; its first state stands for it.
     first = np.argmax(reaches & reaches.T, axis=1)
     blocks = [tuple(int(i) for i in np.flatnonzero(first == k)) for k in sorted({*first})]
@@ -62,7 +62,7 @@ def triangular_blocks(system: SwitchedSystem) -> tuple[tuple[int, ...], ...]:
     return tuple(blocks[k] for k in _sources_first(np.array(drives)))
 
 
-def reach(pattern: Pattern) -> Pattern:
+def reachable(pattern: Pattern) -> Pattern:
     """Return which state is driven by which in any number of steps, by squaring."""
     reaches = pattern | np.eye(len(pattern), dtype=bool)
     for _ in range(len(pattern).bit_length()):

@@ -30,10 +30,16 @@ def growing_words(matrices: Array, allowance: Allowance) -> Iterator[tuple[tuple
         count, n = m**length, matrices.shape[1]
         cost = Cost(count * (PER_MATRIX + PER_PRODUCT * n**3), 32 * count * n**2)
         allowance.take(cost, f"looking at {count} products of {length} modes")
-        words = np.array(list(product(range(m), repeat=length)))
-        monodromy = matrices[words[:, 0]]
-        for column in words.T[1:]:
-            monodromy = matrices[column] @ monodromy
+        words, monodromy = products_of(matrices, length)
         radius = np.abs(np.linalg.eigvals(monodromy)).max(axis=1)
         best = int(radius.argmax())
         yield tuple(int(i) for i in words[best]), float(radius[best])
+
+
+def products_of(matrices: Array, length: int) -> tuple[NDArray[np.int64], Array]:
+    """Return all words of a length, shape (count, length), with their products."""
+    words = np.array(list(product(range(len(matrices)), repeat=length)))
+    found = matrices[words[:, 0]]
+    for column in words.T[1:]:
+        found = matrices[column] @ found
+    return words, found

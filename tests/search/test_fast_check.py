@@ -14,10 +14,10 @@ from nrs_design.proof.mode import Time
 from nrs_design.search import fast_check
 from nrs_design.search.fast_check import (
     CLEAR_BITS,
-    LARGE_ORDER,
+    PACKED_ORDER,
     find_fault,
     is_clearly_positive_definite,
-    multiply_fast,
+    multiply_packed,
 )
 from tests.proof.graphs import common_quadratic
 from tests.proof.systems import SYSTEMS, family, genuine
@@ -50,7 +50,7 @@ REJECTIONS = (LookupError, TypeError, ValueError, ArithmeticError, AttributeErro
     )
 )
 def test_packed_products_are_products(factors):
-    assert multiply_fast(*factors) == multiply(*factors)
+    assert multiply_packed(*factors) == multiply(*factors)
 
 
 @pytest.mark.parametrize("bits", [0, 1, 7, 30, 31, 64, 200])
@@ -58,7 +58,7 @@ def test_packed_products_are_products(factors):
 def test_the_largest_entries_of_all_sizes_do_not_overflow(bits, signs):
     a, b = (sign * (2**bits - 1) for sign in signs)
     for n in (1, 2, 3, 4, 8, 9, 16):
-        packed = multiply_fast([[a] * n] * 2, [[b, -b, 1]] * n)
+        packed = multiply_packed([[a] * n] * 2, [[b, -b, 1]] * n)
         assert packed == [[a * b * n, -a * b * n, a * n]] * 2
 
 
@@ -67,8 +67,8 @@ def test_the_largest_entries_of_all_sizes_do_not_overflow(bits, signs):
     [([[1]], [[1], [2]]), ([[1, 2]], [[1]]), ([[1, 2]], [[1, 2], [3]]), ([[1, 2], [3]], [[1]])],
 )
 def test_factors_that_do_not_fit(left, right):
-    with pytest.raises(ValueError, match=r"incompatible|different lengths"):
-        multiply_fast(left, right)
+    with pytest.raises(ValueError, match=r"needs as many|argument 2 is"):
+        multiply_packed(left, right)
 
 
 @given(
@@ -115,7 +115,7 @@ def test_nothing_is_clear_that_the_plain_check_would_not_accept(M):
 @pytest.mark.parametrize("every", [5, pytest.param(1, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("example", SYSTEMS)
 def test_genuine_and_forged_evidence_meets_the_same_answer(example, every, monkeypatch):
-    monkeypatch.setattr(fast_check, "LARGE_ORDER", 1)
+    monkeypatch.setattr(fast_check, "PACKED_ORDER", 1)
     system, evidence = genuine(example)
     assert find_fault(evidence, system) is None
     stored = json.loads(json.dumps({"kind": evidence.kind, **evidence.to_fields()}))
@@ -132,7 +132,7 @@ def test_genuine_and_forged_evidence_meets_the_same_answer(example, every, monke
 @given(data=st.data())
 def test_large_orders_meet_the_same_answer(time, data):
     """Diagonally dominant modes with Q = I, at rates on both sides of the best."""
-    n = LARGE_ORDER
+    n = PACKED_ORDER
     rows = data.draw(rectangle(n, n, SMALL))
     own = -20 if time is Time.CONTINUOUS else 0
     A = [[Fraction(e + own * (i == j), 20) for j, e in enumerate(r)] for i, r in enumerate(rows)]

@@ -3,7 +3,7 @@
 import pytest
 
 from nrs_design.certificates.certificate import Verdict
-from nrs_design.search.misses_margin import find_most_misses
+from nrs_design.search.loop_margin import find_most_misses
 
 
 class Decide:

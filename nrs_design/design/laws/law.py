@@ -45,7 +45,8 @@ class Task:
     @property
     def motion(self) -> TransferFunction:
         """The motion loop in floating point."""
-        return to_transfer_function(self.loop)
+        numerator, denominator = self.loop.numerator, self.loop.denominator
+        return TransferFunction(tuple(map(float, numerator)), tuple(map(float, denominator)))
 
     @cached_property
     def axis(self) -> AbstractAxis | None:
@@ -117,18 +118,13 @@ class AbstractControllerAnalysis(ABC):
         return with_proofs(achieved, self.loops)
 
     @property
-    def is_provable(self) -> bool:
-        """Whether margins can be proved over all values of the ranges."""
-        return bool(self.loops)
-
-    @property
     def proved_titles(self) -> tuple[str, ...]:
         """What is proved over all values of the ranges."""
         return tuple(found.measure.title for found in self.judged if found.bound is not None)
 
     def doubts(self) -> Iterator[Doubt]:
         """Yield what is doubtful about the gains, and no goal speaks of it."""
-        yield from doubt_values(self.name, self.achieved, provable=self.is_provable)
+        yield from doubt_values(self.name, self.achieved, provable=bool(self.loops))
 
 
 # The law with the gains that ship, and what they were rounded from, if a search found them.
@@ -179,11 +175,6 @@ def naming(controller: str) -> Iterator[None]:
         message = f"controller {controller}: {error.message}"
         at = ("controllers", controller, *error.at)
         raise DesignError(message, remedy=error.remedy, at=at) from error
-
-
-def to_transfer_function(loop: MotionLoop) -> TransferFunction:
-    """Return the motion loop in floating point."""
-    return TransferFunction(tuple(map(float, loop.numerator)), tuple(map(float, loop.denominator)))
 
 
 def goals_of(

@@ -98,52 +98,46 @@ POLYNOMIAL = Rates(
 
 
 def propose(
-    programs: Sequence[FormsProgram],
+    program: FormsProgram,
     family: Family,
     limit: float,
     rates: Rates,
-    *,
-    covers: int = 0,
+    coverings: Sequence[bool] = (False,),
 ) -> Candidates[FormsOnGraph]:
     """Solve for any rate; then, if asked to, for the largest, which is proposed first.
 
-    Of programs for the same graph, the last one is asked for rates, each of them for forms; the
-    first `covers` leave room for errors that they do not solve for. No form can beat the limit.
+    Of `coverings` in turn, forms leave room for errors that they are not solved for, or they do
+    not. No form can beat the limit.
     """
-    time, allowance, asked = family.system.time, family.allowance, programs[-1]
-    first, best = asked.solve(rate_at(0.0, limit, time), allowance), 0.0
+    time, allowance = family.system.time, family.allowance
+    first, best = program.solve(rate_at(0.0, limit, time), allowance), 0.0
     if first is None:
         return NO_MARGIN
-    if asked.is_dear and all(program is asked for program in programs):
-        return (yield from _propose_dear(asked, first, family, limit, rates, covers))
+    if program.is_dear:
+        return (yield from _propose_dear(program, first, family, limit, rates, coverings))
     part = allowance.part(rates.share)
     if family.optimize_rate or rates.always:
         half = part.part(0.5)
-
         best = bisect_position(
-            lambda s: asked.solve(rate_at(s, limit, time), half) is not None,
+            lambda s: program.solve(rate_at(s, limit, time), half) is not None,
             rates.resolution,
             rates.smallest,
         )
-    for k, program in enumerate(programs, 1):
-        covered = k <= covers
+    for covered in coverings:
         bits = WITH_ERRORS if covered else rates.bits
         try:
             for claim in claims(best, limit, time, rates.nearest, few=rates.few):
-                if not best or (solution := program.solve(float(claim), part)) is None:
-                    continue
-                for evidence in program.roundings(solution, claim, bits, errors=covered):
-                    yield Candidate(evidence, rates.words)
+                if (solution := program.solve(float(claim), part)) is not None:
+                    for evidence in program.roundings(solution, claim, bits, errors=covered):
+                        yield Candidate(evidence, rates.words)
         except NotAffordableError:
             if rates.always:
                 raise
         if rates.always:
             continue
-        for claim in claims(1.0, asked.own_rate(first), time):
-            slow = first if program is asked else program.solve(float(claim), part)
-            if slow is not None:
-                for evidence in program.roundings(slow, claim, bits, errors=covered):
-                    yield Candidate(evidence)
+        for claim in claims(1.0, program.own_rate(first), time):
+            for evidence in program.roundings(first, claim, bits, errors=covered):
+                yield Candidate(evidence)
     return None
 
 
@@ -153,7 +147,7 @@ def _propose_dear(
     family: Family,
     limit: float,
     rates: Rates,
-    covers: int,
+    coverings: Sequence[bool],
 ) -> Candidates[FormsOnGraph]:
     """Propose forms of a program of which every solution takes long: no more of them than needed.
 
@@ -177,7 +171,7 @@ def _propose_dear(
         start = first.margin, found[0][0]
         climb_position(ask, start, max(rates.resolution, OF_DEAR), rates.smallest)
     for position, solution in sorted(found, key=lambda one: one[0], reverse=True):
-        for covered in (True, False) if covers else (False,):
+        for covered in (True, False) if True in coverings else (False,):
             bits = WITH_ERRORS if covered else rates.bits
             for claim in claims(position, limit, time, min(rates.nearest, NEAR_OF_DEAR)):
                 for evidence in program.roundings(solution, claim, bits, errors=covered):
@@ -197,7 +191,7 @@ def search_conewise_modes(family: Family) -> Candidates[FormsOnGraph]:
     if not drawing.is_finite:
         return OUT_OF_RANGE
     own = replace(family, allowance=allowance)
-    return (yield from propose([FormsProgram(drawing)], own, family.limit, Rates(bits=digits(12))))
+    return (yield from propose(FormsProgram(drawing), own, family.limit, Rates(bits=digits(12))))
 
 
 def draw_conewise_modes(family: Family) -> Drawing:
@@ -246,9 +240,9 @@ def search_periodic_quadratic(family: Family) -> Candidates[FormsOnGraph]:
         of = drawing.forms[:: len(drawing.forms) // clock.length]
         different = {(of[k], first, of[target]) for k, first, target in clock.turns()}
         checked = sum(kinds[first] for _, first, _ in different)
-        ways = 2 if system.roundings and checked <= MOST_ROUNDED else 1
-        programs = [FormsProgram(drawing)] * ways
-        ended = yield from propose(programs, family, limit, rates, covers=ways - 1)
+        rounds = bool(system.roundings) and checked <= MOST_ROUNDED
+        coverings = (True, False) if rounds else (False,)
+        ended = yield from propose(FormsProgram(drawing), family, limit, rates, coverings)
     return ended
 
 
@@ -366,7 +360,7 @@ def search_modes(family: Family, degree: int = 1) -> Candidates[FormsOnGraph]:
         if not family.optimize_rate:
             rates = replace(rates, resolution=ROUGH)
         rates = replace(rates, always=always, words="found")
-        ended = yield from propose([FormsProgram(drawing)], family, limit, rates)
+        ended = yield from propose(FormsProgram(drawing), family, limit, rates)
     return ended
 
 
@@ -425,8 +419,10 @@ def search_together(family: Family) -> Candidates[FormsOnGraph]:
 
     Where the arithmetic rounds, forms that cover that are tried before others.
     """
-    lost, rounds = family.system.contact is not None, bool(family.system.roundings)
-    return (yield from _together(family, (rounds + lost) or 1, rounds, lost=lost))
+    lost = family.system.contact is not None
+    covered = (True,) if family.system.roundings else ()
+    coverings = (*covered, False) if lost or not covered else covered
+    return (yield from _together(family, coverings, lost=lost))
 
 
 def search_raw(family: Family) -> Candidates[FormsOnGraph]:
@@ -443,13 +439,12 @@ def search_preconditioned(family: Family) -> Candidates[FormsOnGraph]:
 
 def _together(
     family: Family,
-    times: int = 1,
-    covers: int = 0,
+    coverings: Sequence[bool] = (False,),
     *,
     lost: bool = False,
     coordinates: FormCoordinates | None = None,
 ) -> Candidates[FormsOnGraph]:
-    """Ask one program so many times, the first times for forms that cover errors."""
+    """Ask one program for a form for all modes."""
     if not np.isfinite(family.limit):
         return OUT_OF_RANGE
     drawing = draw_together(family, 1, lost=lost)
@@ -457,22 +452,22 @@ def _together(
         drawing = replace(drawing, coordinates=(coordinates,))
     if not drawing.is_finite:
         return OUT_OF_RANGE
-    programs = [FormsProgram(drawing)] * times
-    return (yield from propose(programs, family, family.limit, Rates(share=0.5), covers=covers))
+    program, rates = FormsProgram(drawing), Rates(share=0.5)
+    return (yield from propose(program, family, family.limit, rates, coverings))
 
 
 def search_polynomial(family: Family, degree: int) -> Candidates[FormsOnGraph]:
     """Search for a polynomial of degree 2d that all modes share."""
     family.allowance.require(*family_cost(family.system, degree))
     program = FormsProgram(draw_together(family, degree))
-    return (yield from propose([program], family, family.limit, POLYNOMIAL))
+    return (yield from propose(program, family, family.limit, POLYNOMIAL))
 
 
 def search_conewise_polynomial(family: Family, degree: int) -> Candidates[FormsOnGraph]:
     """Search for a polynomial of degree 2d for contact and free motion."""
     family.allowance.require(*conewise_cost(family.system, degree))
     program = FormsProgram(draw_together(family, degree, lost=True))
-    return (yield from propose([program], family, family.limit, POLYNOMIAL))
+    return (yield from propose(program, family, family.limit, POLYNOMIAL))
 
 
 def lifted_coordinates(d: Exponents, degree: int) -> FormCoordinates:

@@ -145,7 +145,7 @@ def search_memory(family: Family, length: int, degree: int = 1) -> Candidates[Fo
     drawing = draw_memory(family.system, length, degree)
     if not drawing.is_finite:
         return OUT_OF_RANGE
-    return (yield from propose([FormsProgram(drawing)], family, limit, POLYNOMIAL))
+    return (yield from propose(FormsProgram(drawing), family, limit, POLYNOMIAL))
 
 
 def search_quartic_memory(family: Family, length: int) -> Candidates[FormsOnGraph]:

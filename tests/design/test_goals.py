@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from nrs_design.controllers.laws import ProportionalForce
+from nrs_design.design.force_limit import Approach
 from nrs_design.design.goals import ForceRequirement, Requirement, corners_of
 from nrs_design.design.impedance import ImpedanceLoop
 from nrs_design.design.measures import (
@@ -86,7 +87,7 @@ def test_an_unstable_corner_is_the_worst():
 def force(motion, Kp, goals=()):
     corners = corners_of((SOFT,), "soft", (PLACE,))
     return ForceRequirement(
-        axis_with(motion), corners, goals, ProportionalForce(Fraction(Kp)), motion
+        axis_with(motion), corners, goals, ProportionalForce(Fraction(Kp)), motion, Approach()
     )
 
 

@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from nrs_design.design.doubts import doubt_stiffness, enough_damping
 from nrs_design.design.goals import Requirement, corners_of
-from nrs_design.design.relief import doubt_stiffness, enough_damping
 from nrs_design.design.transfer import TransferFunction
 from nrs_design.models.contact import Elastic
 from nrs_design.models.contact.environment import Environment

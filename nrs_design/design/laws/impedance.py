@@ -13,7 +13,7 @@ from nrs_design.controllers.controller_design import Controller, ImpedanceOptimu
 from nrs_design.controllers.float32 import exact_decimal, neighbors, round_significant, to_float32
 from nrs_design.controllers.laws import Admittance
 from nrs_design.design.constrained import best_rounding, meets, optimize_with_goals
-from nrs_design.design.doubts import doubt_bounds
+from nrs_design.design.doubts import doubt_bounds, doubt_stiffness
 from nrs_design.design.goals import NOT_COMPUTED, Achieved, Requirement
 from nrs_design.design.impedance import ImpedanceLoop
 from nrs_design.design.impedance_optimum import (
@@ -36,7 +36,6 @@ from nrs_design.design.measures import (
 )
 from nrs_design.design.passivity import PassiveBand, passive_band
 from nrs_design.design.proved_margins import ranged_loops, with_proofs
-from nrs_design.design.relief import doubt_stiffness
 from nrs_design.design.response_cost import ResponseCost, response_cost
 from nrs_design.design.response_goals import JudgedResponse, judged_responses, response_goals
 from nrs_design.design.sampled_passivity import SampledBand, sampled_bands

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from contextlib import suppress
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
 from time import perf_counter
@@ -60,6 +60,16 @@ NOT_IN_TURNS = (
 )
 
 
+@dataclass(frozen=True)
+class _Task:
+    """What is asked for, and what may be spent on it."""
+
+    method: Method
+    limits: Limits
+    allowance: Allowance
+    progress: Progress
+
+
 def certify(
     system: SwitchedSystem,
     method: Method = Method.AUTO,
@@ -87,23 +97,23 @@ def certify(
     _check_gradient(system, method, limits.gradient)
     simple = system.switching.is_arbitrary and system.is_uniform and system.clock is None
     merged = merge_equal_modes(system) if simple else system
-    limits = _limits_for(merged, system, limits)
+    task = _Task(method, _limits_for(merged, system, limits), allowance, progress)
     # Lost contact and what the arithmetic rounds are matters of the whole state.
     simple = simple and system.contact is None and system.flights is None
     simple = simple and not system.roundings
     blocks = triangular_blocks(merged) if simple else (tuple(range(system.order)),)
     if len(blocks) == 1:
-        result = _climb(merged, method, limits, allowance, progress)
+        result = _climb(merged, task)
     else:
         parts = [
-            _certify_block(merged, block, method, limits, allowance.part(1 / left), progress)
+            _certify_block(merged, block, replace(task, allowance=allowance.part(1 / left)))
             for left, block in zip(range(len(blocks), 0, -1), blocks, strict=True)
         ]
         result = _combine(merged, blocks, parts)
     statements = _spread(result.statements, merged, system)
     if result.verdict is Verdict.PROVED and limits.more:
-        bounds, attempts = _bounds(system, allowance, progress)
-        held, last = _saturated(system, allowance, progress)
+        bounds, attempts = _bounds(system, task)
+        held, last = _saturated(system, task)
         statements += bounds + held
         result = replace(result, attempts=(*result.attempts, *attempts, *last))
     if merged is not system or len(blocks) > 1:
@@ -172,7 +182,7 @@ def _allowance(limits: Limits) -> Allowance:
 
 
 def _bounds(
-    system: SwitchedSystem, allowance: Allowance, progress: Progress
+    system: SwitchedSystem, task: _Task
 ) -> tuple[tuple[AbstractEvidence, ...], tuple[Attempt, ...]]:
     """Bound every output under all disturbances at once, and the first one under each alone."""
     alone = [(channel,) for channel in system.channels]
@@ -187,8 +197,8 @@ def _bounds(
     attempts: list[Attempt] = []
     for count, (channels, output) in enumerate(pairs):
         name = _bound_name(channels, output)
-        progress(name)
-        own = allowance.part(1 / (len(pairs) - count))
+        task.progress(name)
+        own = task.allowance.part(1 / (len(pairs) - count))
         search = partial(_ellipsoids, system, channels, output, own)
         evidence, attempt = _attempted(name, search, system, own)
         found += evidence
@@ -218,14 +228,14 @@ def _bound_name(channels: Sequence[Channel], output: Output) -> str:
 
 
 def _saturated(
-    system: SwitchedSystem, allowance: Allowance, progress: Progress
+    system: SwitchedSystem, task: _Task
 ) -> tuple[tuple[AbstractEvidence, ...], tuple[Attempt, ...]]:
     """Show from where motions decay although signals saturate, where the system has some."""
     if system.saturation is None:
         return (), ()
-    progress(SATURATION)
-    search = partial(SATURATED[system.time], system, allowance)
-    return _attempted(SATURATION, search, system, allowance)
+    task.progress(SATURATION)
+    search = partial(SATURATED[system.time], system, task.allowance)
+    return _attempted(SATURATION, search, system, task.allowance)
 
 
 def _attempted(
@@ -248,26 +258,14 @@ def _check_again(statements: tuple[AbstractEvidence, ...], system: SwitchedSyste
             raise InternalError(f"the search returned evidence that does not hold: {fault}")
 
 
-def _certify_block(
-    system: SwitchedSystem,
-    block: tuple[int, ...],
-    method: Method,
-    limits: Limits,
-    allowance: Allowance,
-    progress: Progress,
-) -> Certification:
+def _certify_block(system: SwitchedSystem, block: tuple[int, ...], task: _Task) -> Certification:
     """Certify the family of one diagonal block."""
     from nrs_design.proof.evidence.block_triangular import diagonal_block
 
     full = diagonal_block(system, block)
     merged = merge_equal_modes(full)
-    limits = _limits_for(merged, full, limits)
-    result = _climb(merged, method, limits, allowance, progress)
-    return replace(
-        result,
-        system=full,
-        statements=_spread(result.statements, merged, full),
-    )
+    result = _climb(merged, replace(task, limits=_limits_for(merged, full, task.limits)))
+    return replace(result, system=full, statements=_spread(result.statements, merged, full))
 
 
 def _check_gradient(system: SwitchedSystem, method: Method, gradient: Gradient) -> None:
@@ -291,21 +289,12 @@ def _limits_for(merged: SwitchedSystem, system: SwitchedSystem, limits: Limits) 
     return replace(limits, gradient=replace(limits.gradient, start=start))
 
 
-def _climb(
-    system: SwitchedSystem,
-    method: Method,
-    limits: Limits,
-    allowance: Allowance,
-    progress: Progress,
-) -> Certification:
+def _climb(system: SwitchedSystem, task: _Task) -> Certification:
     """Try one rung after the other until one decides, or the budget is used up."""
+    method, limits, allowance = task.method, task.limits, task.allowance
+    rates, gradient = limits.optimize_rate, limits.gradient
     with floats_in_silence():
-        family = Family.of(
-            system,
-            allowance,
-            optimize_rate=limits.optimize_rate,
-            gradient=limits.gradient,
-        )
+        family = Family.of(system, allowance, optimize_rate=rates, gradient=gradient)
     attempts: list[Attempt] = []
     remarks: list[AbstractEvidence] = []
     best: tuple[str, AbstractEvidence] | None = None
@@ -319,7 +308,7 @@ def _climb(
             spent = f"not begun: the budget of {allowance.total:g} is used up (--budget)"
             attempts.append(Attempt(name, spent, 0.0))
             break
-        progress(name)
+        task.progress(name)
         found, attempt = _attempted(name, partial(search, family), system, family.allowance)
         attempts += attempt
         if not found:

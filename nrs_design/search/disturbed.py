@@ -22,6 +22,9 @@ from nrs_design.search.rounding import unscale
 
 Array = NDArray[np.float64]
 
+# A constant, and what every unknown adds to it.
+Block = tuple[Array, Array]
+
 BITS = (30, 40, 50, 60)
 
 
@@ -115,6 +118,25 @@ class DisturbedProblem:
                 yield MatrixInequality(_step(Q, A, Q, share), n, sizes, {3 * k + 1: pulled})
                 crossings = {3 * k + 2: pulled, 3 * k + 3: _crossing(last, A[-1])}
                 yield MatrixInequality(_step(Q, A[:-1], inner, share), n, sizes, crossings)
+
+    def condition_blocks(self, basis: Array, share: float, spare: float) -> list[Block]:
+        """Return the conditions with so much of the last unknown to spare; others are as usual."""
+        blocks = []
+        for condition in self.conditions(basis, share):
+            stack = condition.stack(self.disturbances, self.multipliers)
+            side = stack.shape[-1]
+            images = np.concatenate([stack, -spare * np.eye(side)[None]])
+            blocks.append((np.zeros((side, side)), images))
+        return blocks
+
+    def bordered(self, row: Array, basis: Array) -> Block:
+        """Return ``[[Q, row'], [row, 0]]``, with nothing of the other unknowns."""
+        n = self.order
+        unknowns = len(basis) + self.multipliers + self.disturbances + self.errors + 1
+        constant, images = np.zeros((n + 1, n + 1)), np.zeros((unknowns, n + 1, n + 1))
+        constant[:n, n] = constant[n, :n] = row
+        images[: len(basis), :n, :n] = basis
+        return constant, images
 
 
 @dataclass(frozen=True)

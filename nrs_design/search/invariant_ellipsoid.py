@@ -177,16 +177,9 @@ def least_level(
     """
     n, lost, c, basis = own.order, own.multipliers, own.disturbances, symmetric_basis(own.order)
     k, unknowns = len(basis), len(basis) + lost + c + own.errors + 1
-    blocks: list[tuple[Array, Array]] = []
-    for condition in own.conditions(basis, share):
-        stack = condition.stack(c, lost)
-        side = stack.shape[-1]
-        spare = np.eye(side) if level is not None else np.zeros((side, side))
-        blocks.append((np.zeros((side, side)), np.concatenate([stack, -spare[None]])))
+    blocks = own.condition_blocks(basis, share, 0.0 if level is None else 1.0)
     for row in own.rows:
-        constant, images = np.zeros((n + 1, n + 1)), np.zeros((unknowns, n + 1, n + 1))
-        constant[:n, n] = constant[n, :n] = row
-        images[:k, :n, :n] = basis
+        constant, images = own.bordered(row, basis)
         if level is None:
             images[-1, n, n] = -1.0
         else:

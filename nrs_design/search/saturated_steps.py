@@ -66,6 +66,8 @@ class _Loop:
     T: Array
     own: Problem
     stands: tuple[int, ...]  # For each mode of the whole system, the one that stands for it
+    rounding: bool  # Whether what the arithmetic rounds is covered
+    allowance: Allowance
 
     @property
     def limits(self) -> Array:
@@ -86,10 +88,10 @@ class _Loop:
         count = len(self.own.rows)
         return [H[group * count : (group + 1) * count] for group in self.own.groups]
 
-    def whole(self, H: Array, *, rounding: bool) -> tuple[Family, Array, DisturbedProblem, Array]:
+    def whole(self, H: Array) -> tuple[Family, Array, DisturbedProblem, Array]:
         """Return the conditions for given rows, with their family, coordinates and units."""
         held = [[[Fraction(float(v)) for v in h] for h in rows] for rows in self.by_mode(H)]
-        loop = between(self.system, held, rounding=rounding)
+        loop = between(self.system, held, rounding=self.rounding)
         family = Family.of(loop)
         T = np.ldexp(self.T, -family.exponents[:, None])
         problem = transformed(problem_of(family, Motions.of(family)), T)
@@ -118,23 +120,20 @@ def search_saturated_steps(
     first = _improved(own, slowest, allowance)
     if first is None:
         return NO_MARGIN
-    loop = _Loop(lean, T, own, stands)
     wanted = system.saturation.start.wanted
-    rounded = (True, False) if system.roundings else (False,)
-    for rounding in rounded:
-        found = _largest(loop, first, slowest, allowance, rounding=rounding)
+    for rounding in (True, False) if system.roundings else (False,):
+        loop = _Loop(lean, T, own, stands, rounding, allowance)
+        found = _largest(loop, first, slowest)
         if found is None:
             continue
         H, size = found
         level, rate = Fraction(f"{BELOW * size:.4e}"), slowest
         if wanted is not None and wanted < level:
             level = wanted
-            H, rate = _fastest(loop, H, float(level), (family.limit, slowest), allowance, rounding)
+            H, rate = _fastest(loop, H, float(level), family.limit, slowest)
         for share in RATES:
             claimed = round_rate(1 - share * (1 - rate), Time.DISCRETE)
-            yield from map(
-                Candidate, _rounded(loop, H, level, claimed, allowance, rounding=rounding)
-            )
+            yield from map(Candidate, _rounded(loop, H, level, claimed))
     return NO_MARGIN
 
 
@@ -198,18 +197,16 @@ def _improved(problem: Problem, rate: float, allowance: Allowance) -> Region | N
     return largest_region(problem, decreases, allowance)
 
 
-def _largest(
-    loop: _Loop, region: Region, rate: float, allowance: Allowance, *, rounding: bool
-) -> tuple[Array, float] | None:
+def _largest(loop: _Loop, region: Region, rate: float) -> tuple[Array, float] | None:
     """Return the rows, in units of the spec, and the largest start for them, rounded as it is."""
     for way in WAYS:
         H = _rows(loop, region.H, way)
         # The rows are made for this size, which leaves no room: a little less does.
         wanted = BELOW * region.size
         slower = 1 - RATES[0] * (1 - rate)
-        if way == 1.0 and _solution(loop, H, slower, wanted, allowance, rounding=rounding):
+        if way == 1.0 and _solution(loop, H, slower, wanted):
             return H, region.size
-        found = _solution(loop, H, rate, region.size, allowance, rounding=rounding, largest=True)
+        found = _solution(loop, H, rate, region.size, largest=True)
         if found is not None:
             # With roundings, the solver ends a little beyond what is possible without them.
             return H, region.size * min(1 / float(np.sqrt(found.last)), 1.0)
@@ -224,23 +221,15 @@ def _rows(loop: _Loop, H: Array, way: float) -> Array:
     return np.asarray(np.ldexp(np.rint(np.ldexp(found, log2)), -log2))
 
 
-def _fastest(
-    loop: _Loop,
-    H: Array,
-    level: float,
-    between_rates: tuple[float, float],
-    allowance: Allowance,
-    rounding: bool,
-) -> tuple[Array, float]:
+def _fastest(loop: _Loop, H: Array, level: float, fast: float, slow: float) -> tuple[Array, float]:
     """Return rows and the least rho that bisection finds for a start, from a slow one on."""
-    fast, slow = between_rates
     for _ in range(BISECTIONS):
         rate = 1 - float(np.sqrt((1 - fast) * (1 - slow)))
-        region = _improved(loop.own, rate, allowance)
+        region = _improved(loop.own, rate, loop.allowance)
         enough = region is not None and region.size * ENOUGH >= level
         found = None
         if region is not None and enough:
-            found = _largest(loop, region, rate, allowance, rounding=rounding)
+            found = _largest(loop, region, rate)
         if found is None or found[1] * ENOUGH < level:
             fast = rate
         else:
@@ -249,35 +238,21 @@ def _fastest(
 
 
 def _solution(
-    loop: _Loop,
-    H: Array,
-    rate: float,
-    level: float,
-    allowance: Allowance,
-    *,
-    rounding: bool,
-    largest: bool = False,
+    loop: _Loop, H: Array, rate: float, level: float, *, largest: bool = False
 ) -> DisturbedSolution | None:
     """Return Q and multipliers for a start of some size, with most to spare; or the largest start.
 
     Of that, `last` is the square of the level over its size.
     """
-    _, _, problem, _ = loop.whole(H, rounding=rounding)
+    _, _, problem, _ = loop.whole(H)
     n, basis = problem.order, symmetric_basis(problem.order)
     k, lost = len(basis), problem.multipliers
     unknowns = k + lost + problem.errors + 1
     spare = 0.0 if largest else 1.0
-    blocks: list[tuple[Array, Array]] = []
-    for condition in problem.conditions(basis, 1 - rate**2):
-        stack = condition.stack(0, lost)
-        side = stack.shape[-1]
-        images = np.concatenate([stack, -spare * np.eye(side)[None]])
-        blocks.append((np.zeros((side, side)), images))
+    blocks = problem.condition_blocks(basis, 1 - rate**2, spare)
     for h in H / loop.limits[:, None] @ loop.T:
-        constant, images = np.zeros((n + 1, n + 1)), np.zeros((unknowns, n + 1, n + 1))
-        constant[:n, n] = constant[n, :n] = h
+        constant, images = problem.bordered(h, basis)
         constant[n, n] = 1.0
-        images[:k, :n, :n] = basis
         images[-1] = -spare * np.eye(n + 1)
         blocks.append((constant, images))
     for x in loop.own.starts:
@@ -290,7 +265,7 @@ def _solution(
         images = np.zeros((unknowns, 1, 1))
         images[i] = 1.0
         blocks.append((np.zeros((1, 1)), images))
-    x = solve_blocks(blocks, allowance)
+    x = solve_blocks(blocks, loop.allowance)
     if x is None or (x[-1] >= 0 if largest else x[-1] <= 0):
         return None
     if largest and not _holds(blocks, x):
@@ -309,21 +284,15 @@ def _holds(blocks: Sequence[tuple[Array, Array]], x: Array) -> bool:
 
 
 def _rounded(
-    loop: _Loop,
-    H: Array,
-    level: Fraction,
-    rate: Fraction,
-    allowance: Allowance,
-    *,
-    rounding: bool,
+    loop: _Loop, H: Array, level: Fraction, rate: Fraction
 ) -> Iterator[SaturatedEllipsoid]:
     """Yield the region with Q and the multipliers in integers, with ever more digits."""
-    found = _solution(loop, H, float(rate), float(level), allowance, rounding=rounding)
+    found = _solution(loop, H, float(rate), float(level))
     if found is None:
         return
     log2 = log2_of(H)
     each = [H] if max(loop.own.groups) == 0 else [loop.by_mode(H)[k] for k in loop.stands]
     rows = tuple(tuple(int(v) for v in row) for row in np.ldexp(np.concatenate(each), log2))
-    family, T, _, units = loop.whole(H, rounding=rounding)
+    family, T, _, units = loop.whole(H)
     for numbers in roundings(family, found, T, units):
         yield SaturatedEllipsoid(rate=rate, H=rows, H_denominator_log2=log2, level=level, **numbers)

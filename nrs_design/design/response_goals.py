@@ -18,6 +18,7 @@ from nrs_design.loop.cut_loop import AbstractAxis, ContinuousAxis, ProcessorAxis
 from nrs_design.models.actuator import ActuatorRanges
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.interval import Interval
+from nrs_design.models.plant import Plant
 from nrs_design.proof.bounds import rounded_down, rounded_up
 from nrs_design.spec import InteractionDesignSpec
 from nrs_design.spec.goals import GoalsSpec, ResponseGoal
@@ -98,14 +99,14 @@ def judged_responses(
     axis: AbstractAxis | None,
     law: CompliantLaw,
     ranges: Mapping[str, Interval],
-    environments: Mapping[str, Environment],
+    plant: Plant,
 ) -> Iterator[JudgedResponse]:
     """Yield the goals for frequency responses of a controller, and what is proved of them.
 
     Ranges are those of ``Km``, ``tau``, ``Mt``, ``Bt`` and ``Kt``, as far as they have any.
     """
     for key, goal in goals.items():
-        touched = None if goal.environment is None else environments[goal.environment]
+        touched = None if goal.environment is None else plant.environment(goal.environment)
         where = f"in contact with {goal.environment}" if touched else "in free motion"
         why_not, found = _why_not(spec, key, axis, law, touched), None
         if not why_not:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from fractions import Fraction
 from math import gcd
 
@@ -92,13 +93,13 @@ def search_by_gradient(family: Family) -> Candidates[FormsOnGraph]:
     if not np.isfinite(family.limit):
         return OUT_OF_RANGE
     # The rungs below need time as well.
-    allowance = family.allowance.part(0.5)
-    result = find_by_gradient(family, allowance)
+    family = replace(family, allowance=family.allowance.part(0.5))
+    result = find_by_gradient(family)
     if result.Q is None:
         return f"not converged after {result.updates} updates"
     words = f"found after {result.updates} updates"
     if family.optimize_rate:
-        faster = find_faster_by_gradient(family, result.Q, allowance)
+        faster = find_faster_by_gradient(family, result.Q)
         more = f"with a decay rate near the largest after {faster.updates} more"
         if faster.Q is not None:
             yield from _at_own_rate(family, faster.Q, f"{words}, {more}")

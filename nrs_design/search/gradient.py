@@ -42,15 +42,13 @@ class GradientResult:
     updates: int
 
 
-def find_by_gradient(family: Family, allowance: Allowance | None = None) -> GradientResult:
+def find_by_gradient(family: Family) -> GradientResult:
     """Run the iteration in the coordinates of its settings; Q is for those of the family."""
     T = _coordinates(family, mean_norm(family.matrices, family.system.time))
-    return _iterate_in(T, family, family.matrices, family.gradient, allowance)
+    return _iterate_in(T, family, family.matrices, family.gradient)
 
 
-def find_faster_by_gradient(
-    family: Family, found: Matrices, allowance: Allowance | None = None
-) -> GradientResult:
+def find_faster_by_gradient(family: Family, found: Matrices) -> GradientResult:
     """Bisect for the largest rate at which the iteration still ends; return its Q.
 
     Instead of mean-norm coordinates it takes those in which the best Q so far is round. It ends
@@ -64,7 +62,7 @@ def find_faster_by_gradient(
         shifted = _shift(family.matrices, time, rate_at(middle, family.limit, time))
         T = _coordinates(family, best)
         try:
-            result = _iterate_in(T, family, shifted, settings, allowance)
+            result = _iterate_in(T, family, shifted, settings)
         except NotAffordableError:
             break
         updates += result.updates
@@ -76,17 +74,13 @@ def find_faster_by_gradient(
 
 
 def _iterate_in(
-    T: Matrices,
-    family: Family,
-    matrices: Matrices,
-    settings: Gradient,
-    allowance: Allowance | None,
+    T: Matrices, family: Family, matrices: Matrices, settings: Gradient
 ) -> GradientResult:
     """Iterate in z, ``x = T z``, and return Q for x."""
     inverse, names = np.linalg.inv(T), [mode.name for mode in family.system.modes]
     start = 0 if settings.start is None else names.index(settings.start)
     modes = inverse @ matrices @ T
-    found = iterate_gradient(modes, family.system.time, settings, start, allowance)
+    found = iterate_gradient(modes, family.system.time, settings, start, family.allowance)
     return found if found.Q is None else replace(found, Q=inverse.T @ found.Q @ inverse)
 
 

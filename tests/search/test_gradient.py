@@ -179,7 +179,7 @@ def test_the_bisection_for_the_rate_ends_early_without_work():
     ring = Family.of(family(*PAIR.tolist()))
     found = find_by_gradient(ring).Q
     allowance = Allowance(5 * PER_ROUND)
-    result = find_faster_by_gradient(ring, found, allowance)
+    result = find_faster_by_gradient(replace(ring, allowance=allowance), found)
     np.testing.assert_array_equal(result.Q, found)
 
 

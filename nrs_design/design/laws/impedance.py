@@ -46,7 +46,6 @@ from nrs_design.proof.bounds import lower, upper_float
 from nrs_design.spec import Doubt, GainSpec, ImpedanceControllerSpec, InteractionDesignSpec
 from nrs_design.spec.controllers import contact_names, names_in, touched_in
 from nrs_design.spec.quantity import Quantity
-from nrs_design.spec.response_goals import AccuracySpec
 
 
 @dataclass(frozen=True)
@@ -141,7 +140,7 @@ def analyze(
     )
     axis = task.axis if isinstance(task.axis, ContinuousAxis) else None
     law, contacts, moving = controller.law, task.contacts(given), _moving(task)
-    asked = dict(requirement.goals)
+    asked, of_responses = dict(requirement.goals), response_goals(task.spec.goals, given.goals)
     measures = (*_measures(task), *(item for item in HAND_MEASURES if item in asked))
     return ImpedanceAnalysis(
         name=controller.name,
@@ -163,7 +162,9 @@ def analyze(
         band=None if axis is None else passive_band(axis, law, moving),
         sampled=_sampled_bands(task, given, controller),
         lever_arm=_lever_arm(task, given),
-        responses=tuple(_responses(task, given, controller)),
+        responses=tuple(
+            judged_responses(task.spec, of_responses, task.axis, law, moving, task.plant)
+        ),
         # None with more than four ranges at once.
         loops=() if axis is None else ranged_loops(axis, law, contacts, moving),
     )
@@ -207,19 +208,6 @@ def _stable_below(requirement: Requirement, Mt: float, Bt: float) -> str:
     if not limit:
         return f"it is unstable{nominal} however soft the contact is"
     return f"it is stable{nominal} below {lower(Fraction(limit), 6)} {unit('N m/rad')}"
-
-
-def _responses(
-    task: Task, given: ImpedanceControllerSpec, controller: Controller
-) -> Iterator[JudgedResponse]:
-    """Yield the goals for frequency responses, and what is proved of them."""
-    goals = response_goals(task.spec.goals, given.goals)
-    if not goals:
-        return
-    names = [goal.environment for goal in goals.values() if isinstance(goal, AccuracySpec)]
-    environments = {name: task.plant.environment(name) for name in names if name is not None}
-    moving = _moving(task)
-    yield from judged_responses(task.spec, goals, task.axis, controller.law, moving, environments)
 
 
 def _moving(task: Task) -> dict[str, Interval]:

@@ -17,7 +17,13 @@ from nrs_design.proof.channels import Channel, Output
 from nrs_design.proof.contact import Contact
 from nrs_design.proof.mode import Time
 from nrs_design.search.family import Family, to_floats
-from nrs_design.search.motions import Motions, in_numerators, multiplied, numerators
+from nrs_design.search.motions import (
+    free_motions,
+    in_numerators,
+    multiplied,
+    numerators,
+    pulling_forces,
+)
 from nrs_design.search.rounding import unscale
 
 Array = NDArray[np.float64]
@@ -212,7 +218,6 @@ class DisturbedSolution:
 
 def problem_of(
     family: Family,
-    motions: Motions,
     channels: Sequence[Channel] = (),
     output: Output | None = None,
 ) -> DisturbedProblem:
@@ -223,7 +228,7 @@ def problem_of(
     """
     system, d = family.system, family.exponents
     n, count = len(d), len(system.modes)
-    maps = np.concatenate([motions.contact, motions.free])
+    maps = np.concatenate([family.matrices, free_motions(family)])
     bounds = np.array([float(channel.bound) for channel in channels])
     columns = [to_floats(c.columns)[:, :, 0] * b for c, b in zip(channels, bounds, strict=True)]
     errors = system.roundings
@@ -244,7 +249,7 @@ def problem_of(
         maps[count:],
         sizes[:count],
         sizes[count:],
-        motions.pulls,
+        pulling_forces(family),
         rows,
         len(channels),
         system.contact is not None,

@@ -54,6 +54,8 @@ Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 # The name of a fact, and the node after the step if there are several that it is known of.
 Fact = tuple[str, int | None]
+# Unknowns with their packed images in an inequality: those that stay, and those times a factor.
+Part = tuple[Indices, Array, Array | None]
 
 # A multiplier of a crossing lies between 0 and this, where all numbers are of like size.
 LARGEST_MULTIPLIER = 64.0
@@ -247,8 +249,62 @@ class FormsProgram:
         return program_cost(unknowns, shared, cones), f"a program with {len(cones)} blocks"
 
     @cached_property
-    def _built(self) -> _Built:
-        return _Built.of(self)
+    def _starts(self) -> Indices:
+        """Where the unknowns of each form, those that vanish, multipliers and the margin begin."""
+        own = [n * (n + 1) // 2 for n in self.sizes]
+        return np.cumsum([0, *own, *map(len, self._vanishing), len(self.scales)])
+
+    @cached_property
+    def _bounds(self) -> list[_Cone]:
+        """Those of forms and multipliers, which are in every program."""
+        found, margin = list[_Cone](), int(self._starts[-1])
+        for k, n in enumerate(self.sizes):
+            images = np.eye(n * (n + 1) // 2)
+            columns = self._starts[k] + np.arange(len(images))
+            found.append(_Cone.of(n, 0.0, [(columns, images, None)], margin))
+            found.append(_Cone.of(n, 1.0, [(columns, -images, None)], None))
+        for k in range(len(self.scales)):
+            column, one = self._starts[-2:-1] + k, np.ones((1, 1))
+            found.append(_Cone.of(1, 0.0, [(column, one, None)], None))
+            found.append(_Cone.of(1, LARGEST_MULTIPLIER, [(column, -one, None)], None))
+        return found
+
+    @cached_property
+    def _inequalities(self) -> list[_Cone]:
+        """Those of all edges."""
+        found, margin = list[_Cone](), int(self._starts[-1])
+        facts = {fact: self._starts[-2:-1] + k for k, fact in enumerate(self.scales)}
+        for k, edge in enumerate(self.edges):
+            before, after = (
+                self._starts[form] + _columns(entries)
+                for form, entries in ((edge.before, edge.kept), (edge.after, edge.left))
+            )
+            given = pack(symmetric_basis(len(edge.kept)))
+            changed = -pack(edge.changed(symmetric_basis(len(edge.left))))
+            parts: list[Part] = [(before, given, None), (after, np.zeros_like(changed), changed)]
+            if edge.is_flow:
+                parts = [(before, np.ldexp(changed, self.unit), -given)]
+            vanishing = pack(self._vanishing[k])
+            columns = self._starts[len(self.sizes) + k] + np.arange(len(vanishing))
+            parts.append((columns, vanishing, None))
+            parts += [(facts[fact], pack(form)[None], None) for fact, form in edge.facts]
+            found.append(_Cone.of(edge.size, 0.0, parts, margin if edge.is_strict else None))
+        return found
+
+    def _program(self, rate: float, active: Sequence[int]) -> tuple[Sparse, Array, list[int]]:
+        """Return rows, offset and cones for some of the edges, whose cones are the last ones."""
+        factors = self.factors(rate)
+        cones = [(cone, 0.0) for cone in self._bounds]
+        cones += [(self._inequalities[k], factors[k]) for k in active]
+        offsets = [cone.constant * pack(np.eye(cone.size)) for cone, _ in cones]
+        firsts = np.cumsum([0, *map(len, offsets)])
+        matrix = Sparse.of(
+            np.concatenate([cone.fixed + cone.varying * factor for cone, factor in cones]),
+            np.concatenate([k + cone.rows for k, (cone, _) in zip(firsts, cones, strict=False)]),
+            np.concatenate([cone.columns for cone, _ in cones]),
+            (int(firsts[-1]), int(self._starts[-1]) + 1),
+        )
+        return matrix, np.concatenate(offsets), [cone.size for cone, _ in cones]
 
     def solve(self, rate: float, allowance: Allowance) -> Solution | None:
         """Maximize the margin at a rate; None if it is not positive.
@@ -301,7 +357,7 @@ class FormsProgram:
 
     def _maximum(self, active: Sequence[int], rate: float, allowance: Allowance) -> Maximum | None:
         begun = begin(allowance, *self.cost(active))
-        return maximize_margin(*self._built.of_edges(self.factors(rate), active), begun)
+        return maximize_margin(*self._program(rate, active), begun)
 
     def solve_dual(self, rate: float, allowance: Allowance) -> DualSolution | None:
         """Solve at a rate, for the dual variables as well; None without a margin."""
@@ -372,7 +428,7 @@ class FormsProgram:
         if x[-1] <= 0:
             return None
         factors = self.factors(rate)
-        parts = np.split(x[:-1], self._built.ends)
+        parts = np.split(x[:-1], self._starts[1:-1])
         forms = [
             np.tensordot(part, symmetric_basis(n), axes=1)
             for part, n in zip(parts, self.sizes, strict=False)
@@ -559,98 +615,27 @@ def _spaced(count: int, few: int) -> list[int]:
 
 
 @dataclass(frozen=True)
-class _Built:
-    """The constraints for any rate: entries that stay, and those that a rate multiplies."""
+class _Cone:
+    """One inequality in the form of the solver: entries that stay, and those that a rate counts."""
 
-    places: tuple[Indices, Indices]
+    size: int
+    constant: float  # Times the identity
+    rows: Indices  # Of the packed inequality
+    columns: Indices  # The unknowns
     fixed: Array
-    varying: Array
-    edges: Indices  # To which edge an entry that varies belongs; the last is none
-    offset: Array
-    cones: list[int]
-    ends: Indices  # Where forms, vanishing forms and multipliers end, but the last
-    shape: tuple[int, int]
-
-    def of_edges(
-        self, factors: list[float], active: Sequence[int]
-    ) -> tuple[Sparse, Array, list[int]]:
-        """Return rows, offset and cones for some of the edges, whose cones are the last ones."""
-        first = len(self.cones) - len(factors)
-        cones = [*range(first), *(first + k for k in active)]
-        ends = np.cumsum([n * (n + 1) // 2 for n in self.cones])
-        kept = np.concatenate([np.arange(ends[k - 1] if k else 0, ends[k]) for k in cones])
-        row = np.full(self.shape[0], -1)
-        row[kept] = np.arange(len(kept))
-        values = self.fixed + self.varying * np.array([*factors, 0.0])[self.edges]
-        rows, columns = row[self.places[0]], self.places[1]
-        used = rows >= 0
-        shape = len(kept), self.shape[1]
-        matrix = Sparse.of(values[used], rows[used], columns[used], shape)
-        return matrix, self.offset[kept], [self.cones[k] for k in cones]
+    varying: Array  # Times the factor of an edge
 
     @classmethod
-    def of(cls, program: FormsProgram) -> _Built:
-        own = [n * (n + 1) // 2 for n in program.sizes]
-        widths = [*own, *map(len, program._vanishing), len(program.scales)]
-        starts = np.concatenate([[0], np.cumsum(widths)])
-        facts = {fact: int(starts[-2]) + k for k, fact in enumerate(program.scales)}
-        margin, none = int(starts[-1]), len(program.edges)
-        parts: list[tuple[Indices, Indices, Array, Array, int]] = []
-        offsets, cones, row = list[Array](), list[int](), 0
-
-        def add(columns: Indices, fixed: Array, varying: Array | None = None, k: int = 0) -> None:
-            i, j = np.nonzero(fixed if varying is None else np.abs(fixed) + np.abs(varying))
-            grown = np.zeros(len(i)) if varying is None else -varying[i, j]
-            parts.append(
-                (row + j, columns[i], -fixed[i, j], grown, k if varying is not None else none)
-            )
-
-        def close(size: int, constant: float, *, strict: bool) -> int:
-            identity = pack(np.eye(size))
-            if strict:
-                add(np.array([margin]), -identity[None])
-            offsets.append(constant * identity)
-            cones.append(size)
-            return row + len(identity)
-
-        for k, n in enumerate(program.sizes):
-            columns, images = starts[k] + np.arange(own[k]), np.eye(own[k])
-            add(columns, images)
-            row = close(n, 0.0, strict=True)
-            add(columns, -images)
-            row = close(n, 1.0, strict=False)
-        for column in facts.values():
-            add(np.array([column]), np.ones((1, 1)))
-            row = close(1, 0.0, strict=False)
-            add(np.array([column]), -np.ones((1, 1)))
-            row = close(1, LARGEST_MULTIPLIER, strict=False)
-        for k, edge in enumerate(program.edges):
-            before, after = (
-                starts[form] + _columns(entries)
-                for form, entries in ((edge.before, edge.kept), (edge.after, edge.left))
-            )
-            given = pack(symmetric_basis(len(edge.kept)))
-            changed = -pack(edge.changed(symmetric_basis(len(edge.left))))
-            if edge.is_flow:
-                add(before, np.ldexp(changed, program.unit), -given, k)
-            else:
-                add(before, given)
-                add(after, np.zeros_like(changed), changed, k)
-            columns = starts[len(own) + k] + np.arange(len(program._vanishing[k]))
-            if len(columns):
-                add(columns, pack(program._vanishing[k]))
-            for fact, form in edge.facts:
-                add(np.array([facts[fact]]), pack(form)[None])
-            row = close(edge.size, 0.0, strict=edge.is_strict)
-        columns, places, fixed, varying = (
-            np.concatenate([part[i] for part in parts]) for i in (1, 0, 2, 3)
-        )
-        edges = np.concatenate([np.full(len(part[0]), part[4]) for part in parts])
-        ends = starts[1:-1]
-        shape = row, margin + 1
-        return cls(
-            (places, columns), fixed, varying, edges, np.concatenate(offsets), cones, ends, shape
-        )
+    def of(cls, size: int, constant: float, parts: Sequence[Part], margin: int | None) -> _Cone:
+        """Join packed images of unknowns; with a margin, as the unknown of this number."""
+        if margin is not None:
+            parts = [*parts, (np.array([margin]), -pack(np.eye(size))[None], None)]
+        entries = []
+        for columns, fixed, given in parts:
+            varying = np.zeros_like(fixed) if given is None else given
+            i, j = np.nonzero(np.abs(fixed) + np.abs(varying))
+            entries.append((j, columns[i], -fixed[i, j], -varying[i, j]))
+        return cls(size, constant, *(np.concatenate(part) for part in zip(*entries, strict=True)))
 
 
 def _columns(entries: Indices) -> Indices:

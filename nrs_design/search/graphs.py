@@ -34,7 +34,7 @@ from nrs_design.search.family import Family, stand_ins, to_floats
 from nrs_design.search.forms import Drawing, FormCoordinates, FormsProgram, Solution
 from nrs_design.search.graph import Graph
 from nrs_design.search.lifted import monomial_weights
-from nrs_design.search.motions import Motions, separating_coordinates
+from nrs_design.search.motions import free_motions, separating_coordinates
 from nrs_design.search.polynomial import conewise_cost, family_cost, functions_cost, work_of_checks
 from nrs_design.search.rounding import BACK_OFFS, claims, digits, position_of, rate_at
 from nrs_design.search.rounds import turns_graph
@@ -196,12 +196,12 @@ def search_conewise_modes(family: Family) -> Candidates[FormsOnGraph]:
 
 def draw_conewise_modes(family: Family) -> Drawing:
     """Draw a node for each mode, in contact and free, which takes its steps to every node."""
-    system, motions = family.system, Motions.of(family)
-    own = FormCoordinates(family.exponents, separating_coordinates(motions))
+    system = family.system
+    own = FormCoordinates(family.exponents, separating_coordinates(family))
     flying = FormCoordinates(family.exponents[:-1], own.T[:-1, :-1])
     names = [mode.name for mode in system.every_mode]
-    like = stand_ins(names[: len(system.modes)], motions.contact)
-    like |= stand_ins(names[len(system.modes) :], motions.free)
+    like = stand_ins(names[: len(system.modes)], family.matrices)
+    like |= stand_ins(names[len(system.modes) :], free_motions(family))
     number = {name: k for k, name in enumerate(dict.fromkeys(like.values()))}
     contact = {like[mode.name] for mode in system.modes}
     return Drawing(
@@ -497,7 +497,7 @@ def draw_together(family: Family, degree: int, *, lost: bool = False) -> Drawing
     )
     own = lifted_coordinates(family.exponents, degree)
     if degree == 1:
-        own = FormCoordinates(family.exponents, separating_coordinates(Motions.of(family)))
+        own = FormCoordinates(family.exponents, separating_coordinates(family))
     return Drawing(system, graph, (0,) * len(places), (own,))
 
 

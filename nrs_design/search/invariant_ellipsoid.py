@@ -29,7 +29,7 @@ from nrs_design.search.disturbed import (
     transformed,
 )
 from nrs_design.search.family import Family
-from nrs_design.search.motions import Motions, separating_coordinates
+from nrs_design.search.motions import separating_coordinates
 from nrs_design.search.sdp import solve_blocks, symmetric_basis
 from nrs_design.work import Allowance
 
@@ -102,9 +102,8 @@ class Frame:
     @classmethod
     def of(cls, family: Family, channels: Sequence[Channel], output: Output) -> Frame | None:
         """Return the frame of a system; None if it is beyond floating point."""
-        motions = Motions.of(family)
-        T = separating_coordinates(motions)
-        size, level = reach_and_level(problem_of(family, motions, channels, output), T)
+        T = separating_coordinates(family)
+        size, level = reach_and_level(problem_of(family, channels, output), T)
         found = np.isfinite(T).all() and isfinite(size) and isfinite(level) and size * level > 0
         return cls(T, size, level) if found else None
 
@@ -112,7 +111,7 @@ class Frame:
         self, family: Family, channels: Sequence[Channel], output: Output
     ) -> tuple[DisturbedProblem, Array]:
         """Return the conditions in these coordinates, and the units that `balanced` gives."""
-        raw = problem_of(family, Motions.of(family), channels, output)
+        raw = problem_of(family, channels, output)
         return balanced(transformed(raw, self.T, self.size, self.level))
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from fractions import Fraction
 
 import numpy as np
@@ -10,35 +9,29 @@ from numpy.typing import NDArray
 
 from nrs_design.proof.contact import Contact
 from nrs_design.proof.mode import Time
-from nrs_design.search.balance import mean_norm, separating
+from nrs_design.search.balance import mean_norm, scale_states, separating
 from nrs_design.search.family import Family, to_floats
 
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
-class Motions:
-    """The maps in contact and free, in floating point."""
-
-    time: Time  # Continuous or discrete
-    contact: Array  # Shape (m, n, n). Modes in contact.
-    free: Array  # Shape (f, n, n). Free modes.
-    pulls: Array  # Shape (p, n). Forces of environments that could pull.
-
-    @classmethod
-    def of(cls, family: Family) -> Motions:
-        """Convert the motions of a system to the coordinates of a family."""
-        contact, d = family.system.contact or Contact(()), family.exponents
-        free = to_floats([mode.A for mode in contact.free]).reshape(-1, len(d), len(d))
-        rows = [to_floats([q])[0, 0] for q in contact.pulls]
-        pulls = np.ldexp(np.array(rows).reshape(-1, len(d)), d[None, :])
-        scaled = np.ldexp(free, d[None, :] - d[:, None])
-        return cls(family.system.time, family.matrices, scaled, pulls)
+def free_motions(family: Family) -> Array:
+    """Return the free modes in the coordinates of a family, shape (f, n, n)."""
+    d = family.exponents
+    free = to_floats([mode.A for mode in family.system.free]).reshape(-1, len(d), len(d))
+    return scale_states(free, d)
 
 
-def separating_coordinates(motions: Motions) -> Array:
+def pulling_forces(family: Family) -> Array:
+    """Return the forces of environments that could pull, shape (p, n)."""
+    contact, d = family.system.contact or Contact(()), family.exponents
+    rows = [to_floats([q])[0, 0] for q in contact.pulls]
+    return np.asarray(np.ldexp(np.array(rows).reshape(-1, len(d)), d[None, :]))
+
+
+def separating_coordinates(family: Family) -> Array:
     """Return T that makes the mean of the modes' norms round, but leaves the deflection alone."""
-    return separating(mean_norm(motions.contact, motions.time))
+    return separating(mean_norm(family.matrices, family.system.time))
 
 
 def multiplied(contact: Contact, time: Time) -> NDArray[np.int64]:

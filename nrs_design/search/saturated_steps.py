@@ -32,7 +32,7 @@ from nrs_design.search.disturbed import (
     transformed,
 )
 from nrs_design.search.family import Family, stand_ins, to_floats
-from nrs_design.search.motions import Motions, separating_coordinates
+from nrs_design.search.motions import separating_coordinates
 from nrs_design.search.rounding import round_rate
 from nrs_design.search.saturated_region import (
     BELOW,
@@ -94,7 +94,7 @@ class _Loop:
         loop = between(self.system, held, rounding=self.rounding)
         family = Family.of(loop)
         T = np.ldexp(self.T, -family.exponents[:, None])
-        problem = transformed(problem_of(family, Motions.of(family)), T)
+        problem = transformed(problem_of(family), T)
         problem, units = balanced(problem)
         return family, T, problem.distinct(), units
 
@@ -111,7 +111,7 @@ def search_saturated_steps(
     kept, stands = _stand_ins(system)
     lean = _lean(system, kept)
     family, raw = Family.of(lean), Problem.of(lean)
-    T = np.ldexp(separating_coordinates(Motions.of(family)), family.exponents[:, None])
+    T = np.ldexp(separating_coordinates(family), family.exponents[:, None])
     T /= np.linalg.norm(raw.linear @ T, axis=-1).max()
     own = raw.transformed(T)
     if not all(np.isfinite(part).all() for part in (T, own.A, own.columns, *own.rows)):

@@ -76,7 +76,8 @@ def is_clearly_positive_definite(M: IntegerMatrix) -> bool:
         for entry in row[i:]
     ]
     while order:
-        for k in _diagonal(order):
+        # Where the diagonal is in an upper triangle that is written row after row.
+        for k in accumulate(range(order, 1, -1), initial=0):
             entries[k] -= order
         pivot, row, rest = entries[0], entries[1:order], entries[order:]
         if pivot <= 0:
@@ -86,11 +87,6 @@ def is_clearly_positive_definite(M: IntegerMatrix) -> bool:
         entries = list(map(sub, rest, [a * b // pivot for a, b in pairs]))
         order -= 1
     return True
-
-
-def _diagonal(order: int) -> Iterator[int]:
-    """Return where the diagonal is in an upper triangle that is written row after row."""
-    return accumulate(range(order, 1, -1), initial=0)
 
 
 def multiply_packed(left: IntegerMatrix, right: IntegerMatrix) -> list[list[int]]:

@@ -34,6 +34,7 @@ from nrs_design.search.forms_interior_point import (
 )
 from nrs_design.search.lifted import make_vanish, products, vanishing_basis
 from nrs_design.search.lmi import FEWEST_STEPS, time_unit
+from nrs_design.search.motions import numerators
 from nrs_design.search.pieces import enough_pieces
 from nrs_design.search.rounding import round_form, round_rate
 from nrs_design.search.sdp import (
@@ -545,9 +546,10 @@ class FormsProgram:
                 nodes.append(
                     Node(node.place, tuple(tuple(whole[k][i][j] for j in kept) for i in kept))
                 )
+            values = numerators(np.array([*found.values()]), log2 - exponent)
             facts = tuple(
-                Multiplier(name, _numerator(float(value), log2 - exponent), target)
-                for (name, b), value in found.items()
+                Multiplier(name, value, target)
+                for (name, b), value in zip(found, values, strict=True)
                 for target in ([None] if b is None else drawing.like(b))
             )
             graph = replace(
@@ -829,11 +831,6 @@ def _factor(step: Step, degree: int, rate: Fraction) -> int:
     if not step.is_flow:
         return int(moved.units[0]) ** 2
     return (2 * degree * rate * moved.over).denominator * moved.over
-
-
-def _numerator(value: float, log2: int) -> int:
-    """Round a multiplier to an integer over two to a power; it does not become negative."""
-    return round(max(Fraction(value), Fraction(0)) * Fraction(2) ** log2)
 
 
 def _shift(value: int, exponent: int) -> int:

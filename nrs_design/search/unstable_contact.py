@@ -205,7 +205,9 @@ class _Loop:
                 steps = tuple(
                     (self.names[mode], Fraction(len([*same]))) for mode, same in groupby(sequence)
                 )
-                allowance.take(_enclosing_cost(self.system, steps), "the enclosure of a sequence")
+                sets = (self.system.enclosure_of(name) for name in {name for name, _ in steps})
+                cost = Cost(PER_ENTRY * self.system.order**2 * sum(map(len, sets)))
+                allowance.take(cost, "the enclosure of a sequence")
                 factor = _bracket(self.system, steps, float(value.real))
                 if factor is not None:
                     yield Candidate(GrowingSequence(steps, factor=factor))
@@ -227,11 +229,6 @@ def _once(sequence: list[int]) -> list[int]:
         for k in range(1, count + 1)
         if count % k == 0 and sequence[:k] * (count // k) == sequence
     )
-
-
-def _enclosing_cost(system: SwitchedSystem, steps: Steps) -> Cost:
-    sets = (system.enclosure_of(name) for name in {name for name, _ in steps})
-    return Cost(PER_ENTRY * system.order**2 * sum(map(len, sets)))
 
 
 def _bracket(

@@ -70,9 +70,10 @@ def search_value(family: Family) -> Candidates[GrowingSequence]:
             continue
         for denominator in DENOMINATORS:
             short = tuple(Fraction(s).limit_denominator(denominator) for s in shares)
-            for evidence in _unstable_modes(system, short):
-                found = True
-                yield Candidate(evidence)
+            for mode in system_at(system, short).modes:
+                if not is_stable(mode.A, system.time):
+                    found = True
+                    yield Candidate(replace(staying(mode.name), shares=short))
     return None if found else "every mode is stable at every value tried"
 
 
@@ -173,9 +174,3 @@ def _moved(shares: Array, axis: int, *to: float) -> Array:
     rows = np.repeat(shares[None], len(to), axis=0)
     rows[:, axis] = to
     return rows
-
-
-def _unstable_modes(system: SwitchedSystem, shares: Shares) -> Iterator[GrowingSequence]:
-    for mode in system_at(system, shares).modes:
-        if not is_stable(mode.A, system.time):
-            yield replace(staying(mode.name), shares=shares)

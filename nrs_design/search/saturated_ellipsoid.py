@@ -56,10 +56,10 @@ def search_saturated(
     nearly the largest.
     """
     assert system.saturation is not None  # who asks has looked
-    family, raw = Family.of(system), Problem.of(system)
+    family, raw = Family.of(system), Problem.of(system, allowance)
     slowest = SLOWEST * family.limit
     T = np.diag(np.ldexp(1.0, family.exponents))
-    first = _unsaturated(raw.transformed(T), slowest, allowance)
+    first = _unsaturated(raw.transformed(T), slowest)
     if first is None:
         return NO_MARGIN
     # A triangular change of coordinates leaves the deflection alone, which is zero in free motion.
@@ -71,18 +71,18 @@ def search_saturated(
     start = Region(np.eye(len(T)), own.linear[0], 0.0)
     wanted = system.saturation.start.wanted
     enough = np.inf if wanted is None else float(wanted) / BELOW**2
-    largest = _largest(own, slowest, start, allowance, enough)
+    largest = _largest(own, slowest, start, enough)
     if largest is None:
         return NO_MARGIN
     level = Fraction(f"{BELOW * largest.size:.4e}")
     if wanted is not None and wanted < level:
         level = wanted
-    region, rate = _fastest(own, largest, float(level), slowest, family.limit, allowance)
-    yield from map(Candidate, _rounded(raw, system, T, region, rate, level, allowance))
+    region, rate = _fastest(own, largest, float(level), slowest, family.limit)
+    yield from map(Candidate, _rounded(raw, system, T, region, rate, level))
     return None
 
 
-def _unsaturated(problem: Problem, rate: float, allowance: Allowance) -> Array | None:
+def _unsaturated(problem: Problem, rate: float) -> Array | None:
     """Return a quadratic function of the loop in which nothing is cut off."""
     n = problem.A.shape[1]
     Q, t = row_unknowns(n, 0)[0], last_unknown(n, 0)
@@ -90,17 +90,15 @@ def _unsaturated(problem: Problem, rate: float, allowance: Allowance) -> Array |
     for k, A in enumerate(problem.A):
         last = n - problem.is_free(k)
         blocks.append(_decrease(A[:last, :last], Q[:, :last, :last], t, rate))
-    x = solved(blocks, allowance)
+    x = solved(blocks, problem.allowance)
     return None if x is None else np.asarray(np.tensordot(x, Q, axes=1))
 
 
-def _largest(
-    problem: Problem, rate: float, start: Region, allowance: Allowance, enough: float = np.inf
-) -> Region | None:
+def _largest(problem: Problem, rate: float, start: Region, enough: float) -> Region | None:
     """Return the region with the largest start; in free motion, one that is hard to improve."""
     best = None
     for _ in range(STEPS if problem.free else 1):
-        found = _improved(problem, rate, start, allowance)
+        found = _improved(problem, rate, start)
         if found is None or (best is not None and found.size < GAIN * best.size):
             return best if found is None or (best and best.size > found.size) else found
         best = start = found
@@ -109,7 +107,7 @@ def _largest(
     return best
 
 
-def _improved(problem: Problem, rate: float, near: Region, allowance: Allowance) -> Region | None:
+def _improved(problem: Problem, rate: float, near: Region) -> Region | None:
     """Return the largest region for the columns g that fit another."""
     n = problem.A.shape[1]
 
@@ -120,7 +118,7 @@ def _improved(problem: Problem, rate: float, near: Region, allowance: Allowance)
                 form = form + _column(B, near.S, rate)[:, None] @ S[:, n - 1 : n, :]
             yield -SMALLEST * np.eye(n), -(form + np.swapaxes(form, -1, -2)) - 2 * rate * S
 
-    return largest_region(problem, decreases, allowance)
+    return largest_region(problem, decreases)
 
 
 def _column(B: Array, S: Array, rate: float) -> Array:
@@ -133,18 +131,13 @@ def _column(B: Array, S: Array, rate: float) -> Array:
 
 
 def _fastest(
-    problem: Problem,
-    region: Region,
-    level: float,
-    slowest: float,
-    fastest: float,
-    allowance: Allowance,
+    problem: Problem, region: Region, level: float, slowest: float, fastest: float
 ) -> tuple[Region, float]:
     """Return a region that holds the start, with the largest rate that bisection finds."""
     low, high = slowest, fastest
     for _ in range(BISECTIONS):
         rate = float(np.sqrt(low * high))
-        found = _largest(problem, rate, region, allowance, level / ENOUGH)
+        found = _largest(problem, rate, region, level / ENOUGH)
         if found is None or found.size * ENOUGH < level:
             high = rate
         else:
@@ -153,13 +146,7 @@ def _fastest(
 
 
 def _rounded(
-    raw: Problem,
-    system: SwitchedSystem,
-    T: Array,
-    region: Region,
-    rate: float,
-    level: Fraction,
-    allowance: Allowance,
+    raw: Problem, system: SwitchedSystem, T: Array, region: Region, rate: float, level: Fraction
 ) -> Iterator[SaturatedEllipsoid]:
     """Yield the region with H rounded and Q found anew for it, with ever more digits."""
     assert system.saturation is not None
@@ -172,7 +159,7 @@ def _rounded(
     kept = np.ldexp(np.array(rows, dtype=float), -log2) / limits[:, None] @ T
     for share in RATES:
         alpha = round_rate(share * rate, Time.CONTINUOUS)
-        own = _fitted(raw.transformed(T), kept, float(level), float(alpha), allowance)
+        own = _fitted(raw.transformed(T), kept, float(level), float(alpha))
         if own is None:
             continue
         inverse = np.linalg.inv(T)
@@ -192,9 +179,7 @@ def _rounded(
             )
 
 
-def _fitted(
-    problem: Problem, H: Array, level: float, rate: float, allowance: Allowance
-) -> Array | None:
+def _fitted(problem: Problem, H: Array, level: float, rate: float) -> Array | None:
     """Return Q for a given H, where it is about the identity, with as much to spare as possible."""
     n = problem.A.shape[1]
     Q, t = row_unknowns(n, 0)[0], last_unknown(n, 0)
@@ -211,7 +196,7 @@ def _fitted(
     for k, B in problem.vertices(np.eye(n), [h[None] for h in H]):
         last = n - problem.is_free(k)
         blocks.append(_decrease(B[:last, :last], Q[:, :last, :last], t, rate))
-    x = solved(blocks, allowance)
+    x = solved(blocks, problem.allowance)
     return None if x is None else np.asarray(np.tensordot(x, Q, axes=1))
 
 

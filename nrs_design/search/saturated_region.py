@@ -30,7 +30,7 @@ SMALLEST, LARGEST = 1e-7, 1e5
 
 @dataclass(frozen=True)
 class Problem:
-    """The loop in floating point; signals in units of their limits."""
+    """The loop in floating point, with signals in units of their limits, and what may be spent."""
 
     # Shape (k, n, n). Modes in contact, and after them the free ones, which leave the deflection
     # where it is.
@@ -41,9 +41,10 @@ class Problem:
     starts: Array  # Shape (c, n). States at the size one.
     # Which rows h a mode has, of those that modes share: always the first in continuous time.
     groups: tuple[int, ...]
+    allowance: Allowance
 
     @classmethod
-    def of(cls, system: SwitchedSystem) -> Problem:
+    def of(cls, system: SwitchedSystem, allowance: Allowance) -> Problem:
         """Convert a system of which something saturates."""
         saturation = system.saturation
         assert saturation is not None  # who asks has looked
@@ -63,7 +64,7 @@ class Problem:
         groups = (0,) * len(A)
         if system.time is Time.DISCRETE:
             groups = _alike(np.concatenate([row[:, :n] for row in rows], axis=1))
-        return cls(A, len(free), columns, tuple(rows), starts, groups)
+        return cls(A, len(free), columns, tuple(rows), starts, groups, allowance)
 
     @property
     def held(self) -> int:
@@ -172,7 +173,6 @@ def bordered_by(S: Array, y: Array) -> Array:
 def largest_region(
     problem: Problem,
     decreases: Callable[[Array, list[Array]], Iterable[tuple[Array, Array]]],
-    allowance: Allowance,
 ) -> Region | None:
     """Return the region with the largest start for which blocks of S and Y are positive."""
     n, count = problem.A.shape[1], problem.held
@@ -184,7 +184,7 @@ def largest_region(
     corner = np.zeros((n + 1, n + 1))
     corner[n, n] = 1.0
     blocks += [(corner, bordered_by(S, y)) for y in Y]
-    x = solved([*blocks, *decreases(S, Y)], allowance)
+    x = solved([*blocks, *decreases(S, Y)], problem.allowance)
     if x is None:
         return None
     found = np.asarray(np.tensordot(x, S, axes=1))

@@ -67,7 +67,6 @@ class _Loop:
     own: Problem
     stands: tuple[int, ...]  # For each mode of the whole system, the one that stands for it
     rounding: bool  # Whether what the arithmetic rounds is covered
-    allowance: Allowance
 
     @property
     def limits(self) -> Array:
@@ -110,19 +109,19 @@ def search_saturated_steps(
     assert system.saturation is not None  # who asks has looked
     kept, stands = _stand_ins(system)
     lean = _lean(system, kept)
-    family, raw = Family.of(lean), Problem.of(lean)
+    family, raw = Family.of(lean), Problem.of(lean, allowance)
     T = np.ldexp(separating_coordinates(family), family.exponents[:, None])
     T /= np.linalg.norm(raw.linear @ T, axis=-1).max()
     own = raw.transformed(T)
     if not all(np.isfinite(part).all() for part in (T, own.A, own.columns, *own.rows)):
         return OUT_OF_RANGE
     slowest = 1 - SLOWEST_STEP * (1 - family.limit)
-    first = _improved(own, slowest, allowance)
+    first = _improved(own, slowest)
     if first is None:
         return NO_MARGIN
     wanted = system.saturation.start.wanted
     for rounding in (True, False) if system.roundings else (False,):
-        loop = _Loop(lean, T, own, stands, rounding, allowance)
+        loop = _Loop(lean, T, own, stands, rounding)
         found = _largest(loop, first, slowest)
         if found is None:
             continue
@@ -182,7 +181,7 @@ def _parts(item: Rounding | CutOff, kept: list[int]) -> dict[str, Any]:
     return {part: tuple(rows[k] for k in kept) for part, rows in parts.items() if rows}
 
 
-def _improved(problem: Problem, rate: float, allowance: Allowance) -> Region | None:
+def _improved(problem: Problem, rate: float) -> Region | None:
     """Return the region with the largest start, in contact and without roundings."""
     n = problem.A.shape[1]
 
@@ -194,7 +193,7 @@ def _improved(problem: Problem, rate: float, allowance: Allowance) -> Region | N
                 whole[:, n:, :n], whole[:, :n, n:] = form, np.swapaxes(form, -1, -2)
                 yield -SMALLEST * np.eye(2 * n), whole
 
-    return largest_region(problem, decreases, allowance)
+    return largest_region(problem, decreases)
 
 
 def _largest(loop: _Loop, region: Region, rate: float) -> tuple[Array, float] | None:
@@ -225,7 +224,7 @@ def _fastest(loop: _Loop, H: Array, level: float, fast: float, slow: float) -> t
     """Return rows and the least rho that bisection finds for a start, from a slow one on."""
     for _ in range(BISECTIONS):
         rate = 1 - float(np.sqrt((1 - fast) * (1 - slow)))
-        region = _improved(loop.own, rate, loop.allowance)
+        region = _improved(loop.own, rate)
         enough = region is not None and region.size * ENOUGH >= level
         found = None
         if region is not None and enough:
@@ -265,7 +264,7 @@ def _solution(
         images = np.zeros((unknowns, 1, 1))
         images[i] = 1.0
         blocks.append((np.zeros((1, 1)), images))
-    x = solve_blocks(blocks, loop.allowance)
+    x = solve_blocks(blocks, loop.own.allowance)
     if x is None or (x[-1] >= 0 if largest else x[-1] <= 0):
         return None
     if largest and not _holds(blocks, x):

@@ -194,10 +194,7 @@ def largest_over(
     *places, x = found.at
     square = low + x * (high - low)
     return LargestResponse(
-        # A number whose square is not below, near the root.
-        above=None
-        if found.above is None
-        else root_below(found.above, _DIGITS) + Fraction(1, 10**_DIGITS),
+        above=None if found.above is None else root_above(found.above),
         below=root_below(found.below, _DIGITS),
         square=square,
         at={
@@ -211,3 +208,8 @@ def largest_over(
 def root_below(x: Fraction, digits: int = 6) -> Fraction:
     """Return a number of so many decimals whose square is not above x."""
     return Fraction(isqrt(int(x * 10 ** (2 * digits))), 10**digits)
+
+
+def root_above(square: Fraction) -> Fraction:
+    """Return a number whose square is not below, near the root."""
+    return root_below(square, _DIGITS) + Fraction(1, 10**_DIGITS)

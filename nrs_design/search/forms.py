@@ -629,7 +629,7 @@ class _Cone:
 
     @classmethod
     def of(cls, size: int, constant: float, parts: Sequence[Part], margin: int | None) -> _Cone:
-        """Join packed images of unknowns; with a margin, as the unknown of this number."""
+        """Join packed images of unknowns; a margin is the number of that which is left to spare."""
         if margin is not None:
             parts = [*parts, (np.array([margin]), -pack(np.eye(size))[None], None)]
         entries = []

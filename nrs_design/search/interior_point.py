@@ -89,9 +89,10 @@ def follow(
     is_enough: Callable[[float, float, float], bool],
     goes_on: Callable[[], bool],
 ) -> Array:
-    """Make steps until the last unknown, the gap and what the equations of the optimum lack do.
+    """Make steps until they are enough, and return the last unknowns.
 
-    X is known `at` the unknowns; a step gives the changes of y and Z, and what will be lacking.
+    `at` gives X for unknowns; `step` the changes of y and Z, and by how much the equations of the
+    optimum will fail. `is_enough` is asked with the last unknown, the gap, and that.
     """
     X = at(y)
     for _ in range(MAX_STEPS):
@@ -112,7 +113,7 @@ def follow(
 
 
 def _step(cones: Cones, Xs: list[Array], Zs: list[Array]) -> tuple[Array, list[Array], float]:
-    """Return the changes of y and Z; what the equations of the optimum lack is not asked for."""
+    """Return the changes of y and Z; zero, as nobody asks how far the equations fail."""
     (X,), (Z,) = Xs, Zs
     W, d = nesterov_todd(X, Z)
     back = np.swapaxes(W, -1, -2)

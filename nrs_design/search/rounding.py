@@ -98,7 +98,7 @@ def unscale(
 ) -> tuple[tuple[tuple[int, ...], ...], int]:
     """Round to integers over ``2^bits`` and undo the scaling exactly, ``2^-d Q 2^-d``.
 
-    Returns the integers, and the logarithm of their denominator, which is two to a power and whole.
+    Returns the integers, and the logarithm of their denominator, two to a power of at least zero.
     """
     top = int(exponents.max())
     rows, log2 = round_form(Q, top - exponents, bits), bits + 2 * top

@@ -88,9 +88,9 @@ def solve_by_interior_point(
     """Improve on Q in the margin form for the given modes, with the method of our own."""
     m, n = matrices.shape[:2]
     step = step_cost(n * (n + 1) // 2 + 1, m + 2, n)
-    basis, identity = symmetric_basis(n), np.eye(n)
-    what = f"a program of {len(basis)} unknowns and {m + 2} blocks"
+    what = f"a program of {n * (n + 1) // 2} unknowns and {m + 2} blocks"
     allowance.require(Cost(FEWEST_STEPS * step.work, step.memory), what)
+    basis, identity = symmetric_basis(n), np.eye(n)
     constant, images = np.zeros((m + 2, n, n)), np.zeros((len(basis) + 1, m + 2, n, n))
     constant[1] = identity
     images[:-1, 0], images[:-1, 1] = basis, -basis

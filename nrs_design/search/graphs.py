@@ -253,14 +253,8 @@ def draw_turns(family: Family, clock: Clock) -> Iterator[Drawing]:
     """
     system, lost = family.system, family.system.contact is not None
     places = [CONTACT, FREE] if lost else [CONTACT]
-    nodes = tuple(Node(f"{place} {k}", ()) for k in range(clock.length) for place in places)
-    roundings = range(1, len(system.roundings) + 1)
-    graph = FormsOnGraph(
-        nodes,
-        0,
-        ANY_RATE,
-        multipliers=tuple(Multiplier(f"{ROUNDING} {k}", 0) for k in roundings),
-    )
+    every = [f"{place} {k}" for k in range(clock.length) for place in places]
+    graph = _graph_of(every, len(system.roundings))
     own = [FormCoordinates(family.exponents, T) for T in _coordinates(family, clock)]
     if not clock.is_round and clock.length > FEW_STATES:
         like = _alike(clock)
@@ -485,20 +479,19 @@ def draw_together(family: Family, degree: int, *, lost: bool = False) -> Drawing
     """
     system = family.system
     places = [CONTACT, FREE] if lost else [CONTACT]
-    facts = list[str]()
-    if degree == 1:  # A form of monomials has no multipliers
-        facts += [f"{ROUNDING} {k}" for k, _ in enumerate(system.roundings, 1)]
-    graph = FormsOnGraph(
-        tuple(Node(place, ()) for place in places),
-        0,
-        ANY_RATE,
-        degree,
-        multipliers=tuple(Multiplier(fact, 0) for fact in facts),
-    )
+    # A form of monomials has no multipliers.
+    graph = _graph_of(places, len(system.roundings) if degree == 1 else 0, degree)
     own = lifted_coordinates(family.exponents, degree)
     if degree == 1:
         own = FormCoordinates(family.exponents, separating_coordinates(family))
     return Drawing(system, graph, (0,) * len(places), (own,))
+
+
+def _graph_of(places: Sequence[str], roundings: int, degree: int = 1) -> FormsOnGraph:
+    """Return a graph with a node at every place, and multipliers for so many roundings."""
+    nodes = tuple(Node(place, ()) for place in places)
+    multipliers = tuple(Multiplier(f"{ROUNDING} {k + 1}", 0) for k in range(roundings))
+    return FormsOnGraph(nodes, 0, ANY_RATE, degree, multipliers=multipliers)
 
 
 def left_modes(system: SwitchedSystem) -> tuple[str, ...]:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Generic, TypeVar
 
 from pydantic_core import PydanticCustomError
 
-from nrs_design.spec.faults import Location, as_error, fault
+from nrs_design.proof.text import quoted
+from nrs_design.spec.faults import Location, as_error, did_you_mean, fault
 
 S = TypeVar("S")
 T = TypeVar("T")
@@ -110,6 +111,13 @@ def each(parts: Callable[[S], Iterable[tuple[Location, T]]], *checks: Row[T]) ->
     return tuple(replace(check, parts=parts) for check in checks)  # type: ignore[misc]
 
 
+def refuse(
+    found: Callable[[S], Iterable[tuple[Location, object]]], message: str, remedy: str
+) -> Row[S]:
+    """Return the check that nothing is found; each find, with its place, fills the texts."""
+    return Row("", lambda item: item, message, remedy, parts=found)
+
+
 def not_together(
     *features: Feature[S], form: str = "{}: not modelled", because: str = ""
 ) -> Row[S]:
@@ -187,3 +195,21 @@ def exactly_one(ways: dict[str, str]) -> tuple[Row[Any], ...]:
         ),
         *exclusive(one, other),
     )
+
+
+@dataclass(frozen=True, slots=True)
+class Reference:
+    """A name in a spec that leads to another part of it, and those that there are."""
+
+    noun: str
+    name: str
+    choices: Collection[str]
+
+    def is_lost(self) -> tuple[str, str] | None:
+        """Return the name and what may be meant, if there is no such name."""
+        if self.name in self.choices:
+            return None
+        return quoted(self.name), did_you_mean(self.name, self.choices)
+
+
+NO_SUCH = Row[Reference]("", Reference.is_lost, "there is no {s.noun} {0}", "{1}")

@@ -21,7 +21,7 @@ from nrs_design.models.contact import (
 )
 from nrs_design.models.interval import Interval, turn
 from nrs_design.spec import kinds
-from nrs_design.spec.check import Row, each
+from nrs_design.spec.check import Row, refuse
 from nrs_design.spec.faults import Location
 from nrs_design.spec.fields import Title
 from nrs_design.spec.model import optional
@@ -75,9 +75,19 @@ class AbstractEnvironmentSpec(IdentifiedRangesSpec):
         "hold small motions there"
     )
 
-    def _quantities(self) -> Iterator[tuple[Location, tuple[RangedQuantity, Quantity | None]]]:
-        for name, quantity in self.parameters().items():
-            yield (name,), (quantity, self.lever_arm)
+    def _without_arm(self) -> Iterator[tuple[Location, str]]:
+        """Yield what is linear without a lever arm, about a pivot."""
+        if self.lever_arm is None and current() is AxisType.ROTARY:
+            for name, quantity in self.parameters().items():
+                if is_translational(quantity.nominal):
+                    yield (name,), quantity.nominal.text
+
+    def _with_arm(self) -> Iterator[tuple[Location, str]]:
+        """Yield what is rotational beside a lever arm."""
+        if self.lever_arm is not None:
+            for name, quantity in self.parameters().items():
+                if not is_translational(quantity.nominal):
+                    yield (name,), quantity.nominal.text
 
     checks: ClassVar[tuple[Row[Any], ...]] = (
         *IdentifiedRangesSpec.checks,
@@ -87,26 +97,16 @@ class AbstractEnvironmentSpec(IdentifiedRangesSpec):
             "the axis is prismatic, and has no pivot to be at a distance from",
             "remove lever_arm",
         ),
-        *each(
-            _quantities,
-            Row[Any](
-                "",
-                lambda x: (
-                    x[1] is None
-                    and current() is AxisType.ROTARY
-                    and is_translational(x[0].nominal)
-                    and x[0].nominal.text
-                ),
-                "{0!r} is linear, and there is no lever_arm",
-                "add `lever_arm: 0.24 m` (the distance from the pivot to the contact point) or "
-                "write the rotational value at the pivot",
-            ),
-            Row[Any](
-                "",
-                lambda x: x[1] and not is_translational(x[0].nominal) and x[0].nominal.text,
-                "{0!r} is rotational, and a lever_arm is given",
-                "remove lever_arm, or write the linear value (N/m, N*s/m, kg)",
-            ),
+        refuse(
+            _without_arm,
+            "{0!r} is linear, and there is no lever_arm",
+            "add `lever_arm: 0.24 m` (the distance from the pivot to the contact point) or write "
+            "the rotational value at the pivot",
+        ),
+        refuse(
+            _with_arm,
+            "{0!r} is rotational, and a lever_arm is given",
+            "remove lever_arm, or write the linear value (N/m, N*s/m, kg)",
         ),
     )
 

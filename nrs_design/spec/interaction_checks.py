@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass
-from fractions import Fraction
 from functools import partial
 
 from nrs_design.models.drive import Takes
 from nrs_design.proof.bounds import rounded_up
-from nrs_design.spec.check import Row, each
+from nrs_design.spec.check import NO_SUCH, Reference, Row, each, refuse
 from nrs_design.spec.combinations import COMBINATIONS
-from nrs_design.spec.controllers import ControllerSpec, names_in, touched_in
+from nrs_design.spec.controllers import names_in, touched_in
 from nrs_design.spec.faults import Location
 from nrs_design.spec.features import (
     BLEEDING,
@@ -25,27 +24,12 @@ from nrs_design.spec.goals import OF_THE_CERTIFICATE, ONLY_FOR, GoalsSpec, Respo
 from nrs_design.spec.interaction_parts import FREE, INTERFACES, MOTION, NOT_CONTROLLERS, OF_CORNERS
 from nrs_design.spec.interaction_parts import AbstractInteractionSpec as Spec
 from nrs_design.spec.logic_checks import LOGIC_CHECKS
-from nrs_design.spec.motion import IN_ITS_UNIT, AboutCommands
+from nrs_design.spec.motion import commands_in
 from nrs_design.spec.quantity import PI_BETWEEN, Quantity
-from nrs_design.spec.references import NO_SUCH, Reference
 from nrs_design.spec.response_goals import AccuracySpec
 from nrs_design.spec.sampling import LONGEST_DELAY
 from nrs_design.spec.scenario_checks import SCENARIO_CHECKS
-from nrs_design.spec.switching import DwellTime, switching_checks
-
-
-@dataclass(frozen=True, slots=True)
-class _Of:
-    """A controller in its spec."""
-
-    spec: Spec
-    name: str
-    it: ControllerSpec
-
-    def misses_its_own(self) -> bool:
-        """Return whether it does not touch what it is designed for."""
-        names, own = touched_in(self.it.contacts), self.it.environment
-        return own is not None and own not in names and self.spec.environments.keys() >= set(names)
+from nrs_design.spec.switching import switching_checks
 
 
 def _too_late(spec: Spec) -> tuple[str, str, str, int] | None:
@@ -56,9 +40,12 @@ def _too_late(spec: Spec) -> tuple[str, str, str, int] | None:
     return (*spec.late_at, rounded_up(spec.late[1]), LONGEST_DELAY) if too_long else None
 
 
-def _controllers(spec: Spec) -> Iterator[tuple[Location, _Of]]:
+def _apart(spec: Spec) -> Iterator[tuple[Location, tuple[str, str]]]:
+    """Yield controllers that do not touch what they are designed for, and that."""
     for name, controller in spec.controllers.items():
-        yield ("controllers", name), _Of(spec, name, controller)
+        names, own = touched_in(controller.contacts), controller.environment
+        if own is not None and own not in names and spec.environments.keys() >= set(names):
+            yield ("controllers", name, "contacts"), (name, own)
 
 
 def _named_environments(spec: Spec) -> Iterator[tuple[Location, Reference]]:
@@ -73,11 +60,6 @@ def _named_environments(spec: Spec) -> Iterator[tuple[Location, Reference]]:
             for index, contact in enumerate(controller.contacts):
                 for key in names_in(contact):
                     yield ("controllers", name, "contacts", index), reference(name=key)
-
-
-def _is_of_modes(name: str) -> bool:
-    """Tell whether modes have this word in the place of a contact, or behind it."""
-    return name == FREE or OF_CORNERS.fullmatch(name) is not None
 
 
 def _freed(spec: Spec) -> Iterator[tuple[Location, tuple[Spec, str, str]]]:
@@ -115,13 +97,10 @@ def _contact_mix(spec: Spec) -> tuple[str, ...]:
     return ()
 
 
-def _other_offset(spec: Spec) -> tuple[str, ...]:
+def _other_offset(spec: Spec) -> tuple[str, ...] | None:
     """Return a controller whose offset is not that of the first one that has one."""
     offsets = [(name, c.own_offset) for name, c in spec.controllers.items() if c.own_offset]
-    for name, offset in offsets:
-        if offset != offsets[0][1]:
-            return name, str(offset), offsets[0][0], str(offsets[0][1])
-    return ()
+    return next(((*item, *offsets[0]) for item in offsets if item[1] != offsets[0][1]), None)
 
 
 def _restless(spec: Spec) -> tuple[str, ...]:
@@ -195,24 +174,15 @@ def _responses(spec: Spec) -> Iterator[tuple[Location, ResponseGoal]]:
                 yield (*at, key), goal
 
 
-@dataclass(frozen=True, slots=True)
-class _SampledBand:
-    """A band of frequencies, and the rate of the samples."""
-
-    end: Quantity
-    period: Fraction
-
-    def too_high(self) -> tuple[str, str] | None:
-        """Return where it ends and half the rate, if it does not end below."""
-        # In Hz, with a pi that is not above.
-        end, half = self.end.not_below / 2 / PI_BETWEEN[0], 1 / self.period / 2
-        return (self.end.text, f"{float(half):g}") if end >= half else None
-
-
-def _sampled_bands(spec: Spec) -> Iterator[tuple[Location, _SampledBand]]:
+def _high_bands(spec: Spec) -> Iterator[tuple[Location, tuple[str, str]]]:
+    """Yield where bands end that do not end below half the sampling rate, and that in Hz."""
     if spec.sampling is not None:
+        half = 1 / spec.sampling.outer / 2
         for at, goal in _responses(spec):
-            yield (*at, "band"), _SampledBand(goal.band[1], spec.sampling.outer)
+            end = goal.band[1]
+            # With a pi that is not above.
+            if end.not_below / 2 / PI_BETWEEN[0] >= half:
+                yield (*at, "band"), (end.text, f"{float(half):g}")
 
 
 def _accurate_in(spec: Spec) -> Iterator[tuple[Location, Reference]]:
@@ -221,30 +191,21 @@ def _accurate_in(spec: Spec) -> Iterator[tuple[Location, Reference]]:
         if isinstance(goal, AccuracySpec) and goal.environment is not None:
             yield (
                 (*at, "environment"),
-                Reference("environment", name=goal.environment, choices=spec.environments),
+                Reference("environment", goal.environment, spec.environments),
             )
 
 
-@dataclass(frozen=True, slots=True)
-class _Weighed:
-    """A goal that is in the cost of a controller, if it is given, and its key."""
-
-    key: str
-    goal: ResponseGoal | None
-
-    def in_the_air(self) -> bool:
-        """Return whether it is about a motion in which the gains have no part."""
-        return isinstance(self.goal, AccuracySpec) and self.goal.environment is None
-
-
-def _weighed(spec: Spec) -> Iterator[tuple[Location, _Weighed]]:
+def _weighed(spec: Spec) -> Iterator[tuple[Location, tuple[str, ResponseGoal | None]]]:
+    """Yield the keys of goals in the cost of a controller, each with the goal if it is given."""
     for name, c in spec.controllers.items():
         weights = getattr(c, "weights", None)
         for key in ("transparency", "accuracy"):
             if weights is not None and getattr(weights, key):
-                given = (goals for goals in (c.goals, spec.goals) if goals is not None)
-                found = (goal for goals in given if (goal := getattr(goals, key)) is not None)
-                yield ("controllers", name, "weights", key), _Weighed(key, next(found, None))
+                given = (
+                    getattr(goals, key) for goals in (c.goals, spec.goals) if goals is not None
+                )
+                goal = next((goal for goal in given if goal is not None), None)
+                yield ("controllers", name, "weights", key), (key, goal)
 
 
 def _common_goals(spec: Spec) -> Iterator[tuple[Location, _Goals]]:
@@ -288,27 +249,23 @@ _GOALS = (
 )
 
 
-def _commands(spec: Spec) -> Iterator[tuple[Location, AboutCommands]]:
+def _about_commands(spec: Spec) -> Iterator[tuple[Location, Quantity | None]]:
     """Yield what is about commands of the motor."""
-    disturbances = spec.disturbances
-    written: dict[Location, Quantity | None] = {
-        ("motion_loop", "derivative_gain"): getattr(spec.motion_loop, "derivative_gain", None),
-        # A robot that follows what is streamed has no such limit.
-        ("limits", "command"): None if spec.followed else spec.limits.command,
-        ("disturbances", "friction"): None if disturbances is None else disturbances.friction,
-    }
+    yield ("motion_loop", "derivative_gain"), getattr(spec.motion_loop, "derivative_gain", None)
+    # A robot that follows what is streamed has no such limit.
+    yield ("limits", "command"), None if spec.followed else spec.limits.command
+    yield ("disturbances", "friction"), getattr(spec.disturbances, "friction", None)
     for name, run in spec.scenarios.items():
-        friction = None if run.errors is None else run.errors.friction
-        written["scenarios", name, "errors", "friction"] = friction
-    for at, quantity in written.items():
-        if quantity is not None:
-            yield at, AboutCommands(spec.command, quantity)
+        yield ("scenarios", name, "errors", "friction"), getattr(run.errors, "friction", None)
 
 
-def _dwell_times(spec: Spec) -> Iterator[tuple[Location, DwellTime]]:
+def _untimed(spec: Spec) -> Iterator[tuple[Location, str]]:
+    """Yield dwell times in steps."""
     # Those of a sampled loop are refused as such: no other way to write them helps.
     if spec.sampling is None:
-        yield from ((("switching", *at), dwell) for at, dwell in spec.switching.dwell_times())
+        for at, dwell in spec.switching.dwell_times():
+            if dwell.unit != "s":
+                yield ("switching", *at), dwell.text
 
 
 def _weightless(spec: Spec) -> tuple[str, Touched] | None:
@@ -383,7 +340,7 @@ INTERACTION_CHECKS: tuple[Row[Spec], ...] = (
     ),
     Row(
         "environments.{0}",
-        lambda s: next(filter(_is_of_modes, s.environments), None),
+        lambda s: next((n for n in s.environments if n == FREE or OF_CORNERS.fullmatch(n)), None),
         "an environment cannot be called {0!r}: so are the modes without contact, or at the end of "
         "a range",
         "call it by what it is, such as `tissue`",
@@ -402,15 +359,11 @@ INTERACTION_CHECKS: tuple[Row[Spec], ...] = (
         "controller",
     ),
     # Controllers.
-    *each(
-        _controllers,
-        Row[_Of](
-            "contacts",
-            _Of.misses_its_own,
-            "{s.name!r} is designed for {s.it.environment!r}, but that is not among its contacts: "
-            "nothing would be proved about it there",
-            "add {s.it.environment} to contacts, or design it for one of them",
-        ),
+    refuse(
+        _apart,
+        "{0!r} is designed for {1!r}, but that is not among its contacts: nothing would be proved "
+        "about it there",
+        "add {1} to contacts, or design it for one of them",
     ),
     Row(
         "controllers.{0}.type",
@@ -462,27 +415,23 @@ INTERACTION_CHECKS: tuple[Row[Spec], ...] = (
     *each(_own_goals, *_GOALS),
     *each(
         _weighed,
-        Row[_Weighed](
+        Row[tuple[str, ResponseGoal | None]](
             "",
-            lambda w: w.goal is None,
-            "{s.key} is in the cost, and no goal says in which band and below which limit",
-            "add the goal {s.key}, or remove the weight",
+            lambda item: item[1] is None and item[0],
+            "{0} is in the cost, and no goal says in which band and below which limit",
+            "add the goal {0}, or remove the weight",
         ),
-        Row[_Weighed](
+        Row[tuple[str, ResponseGoal | None]](
             "",
-            _Weighed.in_the_air,
+            lambda item: isinstance(item[1], AccuracySpec) and item[1].environment is None,
             "accuracy is in the cost, but gains have no part in it where nothing is touched",
             "add `environment` to the goal accuracy, or remove the weight",
         ),
     ),
-    *each(
-        _sampled_bands,
-        Row[_SampledBand](
-            "",
-            _SampledBand.too_high,
-            "the band reaches {0}, and half the sampling rate is {1} Hz",
-            "end it below {1} Hz, or sample more often",
-        ),
+    refuse(
+        _high_bands,
+        "the band reaches {0}, and half the sampling rate is {1} Hz",
+        "end it below {1} Hz, or sample more often",
     ),
     Row(
         "goals.peak_torque",
@@ -568,18 +517,10 @@ INTERACTION_CHECKS: tuple[Row[Spec], ...] = (
         "{1!r} is below {2}",
         "write the largest error of a reading, all causes together",
     ),
-    *each(_commands, IN_ITS_UNIT),
+    commands_in(lambda s: s.command, _about_commands),
     # Switching and runs.
     *LOGIC_CHECKS,
     *SCENARIO_CHECKS,
-    *each(
-        _dwell_times,
-        Row[DwellTime](
-            "",
-            lambda dwell: dwell.unit != "s",
-            "{s.text!r} is not a time",
-            "write seconds, such as '2.76 s'",
-        ),
-    ),
+    refuse(_untimed, "{0!r} is not a time", "write seconds, such as '2.76 s'"),
     *COMBINATIONS,
 )

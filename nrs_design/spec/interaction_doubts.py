@@ -7,7 +7,7 @@ from functools import partial
 from math import isclose, sqrt
 
 from nrs_design.proof.bounds import rounded_up
-from nrs_design.spec.check import Feature, Row, each, not_together
+from nrs_design.spec.check import Feature, Row, not_together, refuse
 from nrs_design.spec.faults import Location
 from nrs_design.spec.features import (
     COMMAND,
@@ -22,7 +22,6 @@ from nrs_design.spec.features import (
     TWO_PERIODS,
 )
 from nrs_design.spec.interaction_parts import AbstractInteractionSpec as Spec
-from nrs_design.spec.provenance import IdentifiedSpec
 from nrs_design.spec.quantity import is_less
 
 # Beyond a force that a motion begins with, in limits of the torque, another unit was likely meant.
@@ -31,12 +30,16 @@ _HARDEST = 10
 _NEAR = 0.05
 
 
-def _identified(spec: Spec) -> Iterator[tuple[Location, tuple[str, IdentifiedSpec]]]:
-    return (((*at, "doubts"), (at[-1], item)) for at, item in spec.identified.items())
+def _doubted(spec: Spec) -> Iterator[tuple[Location, str]]:
+    """Yield what was identified with doubts that nobody accepts."""
+    for at, item in spec.identified.items():
+        if item.doubts and item.accept_doubt is None:
+            yield (*at, "doubts"), at[-1]
 
 
-def _environments(spec: Spec) -> Iterator[tuple[Location, tuple[str, bool]]]:
-    return ((("environments", name), (name, name in spec.touched)) for name in spec.environments)
+def _untouched(spec: Spec) -> Iterator[tuple[Location, str]]:
+    touched = spec.touched
+    return ((("environments", name), name) for name in spec.environments if name not in touched)
 
 
 def _late_threshold(spec: Spec) -> tuple[object, ...]:
@@ -114,23 +117,15 @@ def _unproved(*features: Feature[Spec]) -> Row[Spec]:
 
 
 INTERACTION_DOUBTS: tuple[Row[Spec], ...] = (
-    *each(
-        _identified,
-        Row[tuple[str, IdentifiedSpec]](
-            "",
-            lambda item: item[1].doubts and item[1].accept_doubt is None and item[0],
-            "the identification of {0} is in doubt, and nothing says why that is accepted",
-            "record again, or add accept_doubt",
-        ),
+    refuse(
+        _doubted,
+        "the identification of {0} is in doubt, and nothing says why that is accepted",
+        "record again, or add accept_doubt",
     ),
-    *each(
-        _environments,
-        Row[tuple[str, bool]](
-            "",
-            lambda item: not item[1] and item[0],
-            "environment {0} is touched by no controller, so nothing is shown about it",
-            "list it in the contacts of a controller, or remove it",
-        ),
+    refuse(
+        _untouched,
+        "environment {0} is touched by no controller, so nothing is shown about it",
+        "list it in the contacts of a controller, or remove it",
     ),
     Row(
         "mode_logic.switches",

@@ -3,36 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
-from nrs_design.spec.check import Row, each
+from nrs_design.spec.check import NO_SUCH, Reference, Row, each, refuse
 from nrs_design.spec.faults import Location
 from nrs_design.spec.interaction_parts import AbstractInteractionSpec as Spec
-from nrs_design.spec.references import NO_SUCH, Reference
 from nrs_design.spec.switching import DwellTime, SwitchingSpec, Transition
 
+_Times = tuple[DwellTime | None, DwellTime | None]
 _REMEDY = "write `switching: mode-logic`, or rules that it keeps"
-
-
-@dataclass(frozen=True, slots=True)
-class _Stay:
-    """How long the rules keep a controller, and how long the logic does."""
-
-    name: str
-    rules: tuple[DwellTime | None, DwellTime | None]
-    logic: tuple[DwellTime | None, DwellTime | None]
-
-    def too_short(self) -> tuple[str, str] | None:
-        """For how long the logic keeps it, and what the rules say, if that is more."""
-        shortest, least = self.rules[0], self.logic[0]
-        if shortest is None or (least is not None and least.value >= shortest.value):
-            return None
-        return "no time" if least is None else least.text, shortest.text
-
-    def too_long(self) -> str | None:
-        """When the rules say that it is left: thresholds leave it at no certain time."""
-        longest = self.rules[1]
-        return None if longest is None else longest.text
 
 
 def _kept(spec: Spec) -> SwitchingSpec:
@@ -54,11 +32,26 @@ def _names(spec: Spec) -> Iterator[tuple[Location, Reference]]:
         yield ("mode_logic",), Reference("controller", name, spec.controllers)
 
 
-def _stays(spec: Spec) -> Iterator[tuple[Location, _Stay]]:
+def _stays(spec: Spec) -> Iterator[tuple[str, _Times, _Times]]:
+    """Yield how long the rules keep each controller, and how long the logic does."""
     kept = _kept(spec)
     if not _about_others(spec):
         for name in dict.fromkeys(end for pair in kept.transitions or () for end in pair):
-            yield ("switching",), _Stay(name, spec.switching.stay(name), kept.stay(name))
+            yield name, spec.switching.stay(name), kept.stay(name)
+
+
+def _too_short(spec: Spec) -> Iterator[tuple[Location, tuple[str, str, str]]]:
+    for name, (shortest, _), (least, _) in _stays(spec):
+        if shortest is not None and (least is None or least.value < shortest.value):
+            found = name, "no time" if least is None else least.text, shortest.text
+            yield ("switching", "dwell_time"), found
+
+
+def _too_long(spec: Spec) -> Iterator[tuple[Location, tuple[str, str]]]:
+    """Yield what the rules say to be left, as thresholds leave it at no certain time."""
+    for name, (_, longest), _ in _stays(spec):
+        if longest is not None:
+            yield ("switching", "longest_dwell_time"), (name, longest.text)
 
 
 def _forbidden(spec: Spec) -> Transition | None:
@@ -77,21 +70,12 @@ LOGIC_CHECKS: tuple[Row[Spec], ...] = (
         "the rules are not about what the mode logic decides",
         _REMEDY,
     ),
-    *each(
-        _stays,
-        Row[_Stay](
-            "dwell_time",
-            _Stay.too_short,
-            "the mode logic keeps {s.name} for {0}, the rules say {1}",
-            f"{_REMEDY}; a `hold` in mode_logic keeps it longer",
-        ),
-        Row[_Stay](
-            "longest_dwell_time",
-            _Stay.too_long,
-            "the mode logic leaves {s.name} at no certain time, the rules say {0}",
-            _REMEDY,
-        ),
+    refuse(
+        _too_short,
+        "the mode logic keeps {0} for {1}, the rules say {2}",
+        f"{_REMEDY}; a `hold` in mode_logic keeps it longer",
     ),
+    refuse(_too_long, "the mode logic leaves {0} at no certain time, the rules say {1}", _REMEDY),
     Row(
         "switching.transitions",
         _forbidden,

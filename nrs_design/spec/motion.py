@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
-from operator import attrgetter
-from typing import Annotated, Any, Literal
+from collections.abc import Callable, Iterable, Iterator
+from typing import Annotated, Literal
 
 from pydantic import Field
 
 from nrs_design.axis import COMMAND_UNITS
 from nrs_design.proof.text import quoted
-from nrs_design.spec.check import Row, each, exactly_one
+from nrs_design.spec.check import Row, S, exactly_one, refuse
 from nrs_design.spec.faults import Location
 from nrs_design.spec.fields import Exact, UnitFraction
 from nrs_design.spec.model import SpecModel, optional
@@ -56,41 +54,25 @@ class ActuatorIntervals(SpecModel):
     )
 
 
-@dataclass(frozen=True, slots=True)
-class AboutCommands:
-    """A quantity that holds a unit of commands once, and the unit that the motor takes."""
+def commands_in(
+    command: Callable[[S], str], written: Callable[[S], Iterable[tuple[Location, Quantity | None]]]
+) -> Row[S]:
+    """Return the check that quantities about commands are in the unit that the motor takes."""
 
-    command: str
-    it: Quantity
+    def others(said: S) -> Iterator[tuple[Location, tuple[str, ...]]]:
+        taken = command(said)
+        for at, quantity in written(said):
+            if quantity is None or (held := command_unit(quantity.dimension)) == taken:
+                continue
+            advice = f"write it in {taken}"
+            if {held, taken} <= set(COMMAND_UNITS):
+                advice += (
+                    f"; a spec of kind interaction-design may say `command: {held}` in its "
+                    f"actuator, and then writes all that is about commands in {held}"
+                )
+            yield at, (quoted(quantity.text), held, taken, advice)
 
-    def other_unit(self) -> tuple[str, str, str] | None:
-        """Return what is written, its unit, and what to do, if that is not the motor's."""
-        held, advice = command_unit(self.it.dimension), f"write it in {self.command}"
-        if {held, self.command} <= set(COMMAND_UNITS):
-            advice += (
-                f"; a spec of kind interaction-design may say `command: {held}` in its actuator, "
-                f"and then writes all that is about commands in {held}"
-            )
-        return None if held == self.command else (quoted(self.it.text), held, advice)
-
-
-IN_ITS_UNIT = Row[AboutCommands](
-    "",
-    AboutCommands.other_unit,
-    "{0} is about commands in {1}, and the motor takes {s.command}",
-    "{2}",
-)
-
-
-def commands_in(command: str, *places: str) -> tuple[Row[Any], ...]:
-    """Return the checks that quantities about commands are in the unit that the motor takes."""
-
-    def parts(said: object) -> Iterator[tuple[Location, AboutCommands]]:
-        for place in places:
-            if (quantity := attrgetter(place)(said)) is not None:
-                yield tuple(place.split(".")), AboutCommands(command, quantity)
-
-    return each(parts, IN_ITS_UNIT)
+    return refuse(others, "{0} is about commands in {1}, and the motor takes {2}", "{3}")
 
 
 class ActuatorSpec(IdentifiedRangesSpec):
@@ -128,10 +110,10 @@ class ActuatorSpec(IdentifiedRangesSpec):
         """Its numbers with ranges, by key."""
         return {"gain": self.gain, "time_constant": self.time_constant}
 
-    def _about_commands(self) -> Iterator[tuple[Location, AboutCommands]]:
-        yield ("gain",), AboutCommands(self.command, self.gain.nominal)
+    def _about_commands(self) -> Iterator[tuple[Location, Quantity]]:
+        yield ("gain",), self.gain.nominal
         for i, end in enumerate(self.intervals.gain if self.intervals else ()):
-            yield ("intervals", "gain", i), AboutCommands(self.command, end)
+            yield ("intervals", "gain", i), end
 
     def _missed(self, name: str) -> tuple[str, ...]:
         """Return an interval and the value that it does not hold."""
@@ -144,7 +126,7 @@ class ActuatorSpec(IdentifiedRangesSpec):
 
     checks = (
         *IdentifiedRangesSpec.checks,
-        *each(_about_commands, IN_ITS_UNIT),
+        commands_in(lambda s: s.command, _about_commands),
         Row(
             "intervals.{0}",
             lambda s: s._missed("gain") or s._missed("time_constant"),

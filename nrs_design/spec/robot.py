@@ -194,7 +194,12 @@ class DriveSpec(SpecModel):
         description="counts of the encoder per turn of the gearhead's output"
     )
 
-    checks = commands_in(_DRIVEN_BY, "gain", "coulomb_friction")
+    checks = (
+        commands_in(
+            lambda _: _DRIVEN_BY,
+            lambda s: ((("gain",), s.gain), (("coulomb_friction",), s.coulomb_friction)),
+        ),
+    )
 
 
 class RobotControlSpec(SpecModel):
@@ -203,7 +208,12 @@ class RobotControlSpec(SpecModel):
     motion_loop: MotionLoopSpec = Field(description="the position loop around each motor")
     sample_period: Duration = Field(description="time between two control ticks, in s")
 
-    checks = commands_in(_DRIVEN_BY, "motion_loop.derivative_gain")
+    checks = (
+        commands_in(
+            lambda _: _DRIVEN_BY,
+            lambda s: ((("motion_loop", "derivative_gain"), s.motion_loop.derivative_gain),),
+        ),
+    )
 
 
 class BalancedLegSpec(SpecModel):

@@ -5,23 +5,21 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 from pydantic import Field
 
 from nrs_design.spec.certification import CertificationSpec
-from nrs_design.spec.check import Row, each
+from nrs_design.spec.check import NO_SUCH, Reference, Row, each, refuse
 from nrs_design.spec.faults import Location, did_you_mean
 from nrs_design.spec.fields import Label, Name, Title
 from nrs_design.spec.misses import MissesSpec
 from nrs_design.spec.model import SpecModel, optional
 from nrs_design.spec.parameters import MAX_PARAMETERS, Entry, ParameterName, ParameterSpec
-from nrs_design.spec.references import NO_SUCH, Reference
 from nrs_design.spec.switching import (
     MAX_DIMENSION,
     MAX_TRANSITIONS,
     DwellObstacle,
-    DwellTime,
     ResetSpec,
     SwitchingRule,
     Transition,
@@ -188,22 +186,18 @@ def _renamed(spec: SwitchedSystemSpec) -> Iterator[tuple[Location, str]]:
         known.add(mode.name)
 
 
-def _in_matrices(spec: SwitchedSystemSpec) -> Iterator[tuple[Location, Reference]]:
-    """Yield the parameters in the matrices that are not declared."""
+def _undeclared(spec: SwitchedSystemSpec) -> Iterator[tuple[Location, tuple[str, str]]]:
+    """Yield the parameters in the matrices that are not declared, and what to do."""
+    known = spec.parameters.keys()
     for index, mode in enumerate(spec.modes):
-        if mode.parameters <= spec.parameters.keys():
+        if mode.parameters <= known:
             continue
         for i, row in enumerate(mode.A):
             for j, entry in enumerate(row):
-                for name in sorted(entry.names):
-                    yield ("modes", index, "A", i, j), Reference("", name, spec.parameters)
-
-
-def _undeclared(parameter: Reference) -> tuple[str, str] | None:
-    if parameter.name in parameter.choices:
-        return None
-    known = did_you_mean(parameter.name, parameter.choices, "parameters here are")
-    return parameter.name, known if parameter.choices else "write a number, or declare parameters"
+                for name in sorted({*entry.names} - known):
+                    meant = did_you_mean(name, known, "parameters here are")
+                    meant = meant if known else "write a number, or declare parameters"
+                    yield ("modes", index, "A", i, j), (name, meant)
 
 
 def _unused(spec: SwitchedSystemSpec) -> str | None:
@@ -223,23 +217,17 @@ def _entries(spec: SwitchedSystemSpec) -> int:
 _UNITS = {"continuous": ("s", "2.76 s"), "discrete": ("steps", "3 steps")}
 
 
-def _dwell_times(
-    spec: SwitchedSystemSpec,
-) -> Iterator[tuple[Location, tuple[SwitchedSystemSpec, str, DwellTime]]]:
-    for at, dwell in spec.switching.dwell_times():
-        yield ("switching", *at), (spec, at[0], dwell)
-
-
-def _other_unit(said: tuple[SwitchedSystemSpec, str, DwellTime]) -> tuple[str, ...]:
-    spec, _, dwell = said
+def _other_units(spec: SwitchedSystemSpec) -> Iterator[tuple[Location, tuple[str, ...]]]:
     unit, example = _UNITS[spec.time]
-    return () if dwell.unit == unit else (dwell.text, spec.time, unit, example)
+    for at, dwell in spec.switching.dwell_times():
+        if dwell.unit != unit:
+            yield ("switching", *at), (dwell.text, spec.time, unit, example)
 
 
-def _obstacle(said: tuple[SwitchedSystemSpec, str, DwellTime]) -> tuple[str, ...]:
-    spec, key, _ = said
-    found = spec.find_dwell_obstacle()
-    return () if found is None else (found.message, key, found.remedy)
+def _obstacles(spec: SwitchedSystemSpec) -> Iterator[tuple[Location, tuple[str, ...]]]:
+    if (found := spec.find_dwell_obstacle()) is not None:
+        for at, _ in spec.switching.dwell_times():
+            yield ("switching", *at), (found.message, at[0], found.remedy)
 
 
 def _sizes(spec: SwitchedSystemSpec) -> Iterator[tuple[Location, tuple[str, int, str, int]]]:
@@ -267,21 +255,9 @@ def _transitions(spec: SwitchedSystemSpec) -> Iterator[tuple[Transition, Locatio
                 yield (source.name, target.name), ("modes", index, "A")
 
 
-def _found(said: Any) -> Any:
-    return said
-
-
 SYSTEM_CHECKS: tuple[Row[SwitchedSystemSpec], ...] = (
-    *each(_renamed, Row[str]("", _found, "another mode is named {0!r}", "rename it")),
-    *each(
-        _in_matrices,
-        Row[Reference](
-            "",
-            _undeclared,
-            "{0!r} is not a number, and there is no parameter of that name",
-            "{1}",
-        ),
-    ),
+    refuse(_renamed, "another mode is named {0!r}", "rename it"),
+    refuse(_undeclared, "{0!r} is not a number, and there is no parameter of that name", "{1}"),
     Row("parameters.{0}", _unused, "no matrix depends on this parameter", "remove it or use it"),
     short_denominator(
         "parameters", lambda s: (v for p in s.parameters.values() for v in (p.nominal, *p.range))
@@ -301,16 +277,8 @@ SYSTEM_CHECKS: tuple[Row[SwitchedSystemSpec], ...] = (
     *switching_checks(
         lambda s: s.switching, lambda s: dict.fromkeys(mode.name for mode in s.modes), "mode"
     ),
-    *each(
-        _dwell_times,
-        Row[Any](
-            "",
-            _other_unit,
-            "{0!r} is not a dwell time in {1} time, expected {2}",
-            "such as {3!r}",
-        ),
-        Row[Any]("", _obstacle, "{0}", "leave {1} out, or {2}"),
-    ),
+    refuse(_other_units, "{0!r} is not a dwell time in {1} time, expected {2}", "such as {3!r}"),
+    refuse(_obstacles, "{0}", "leave {1} out, or {2}"),
     *each(_named_modes, NO_SUCH),
     Row(
         "misses",
@@ -366,15 +334,11 @@ SYSTEM_CHECKS: tuple[Row[SwitchedSystemSpec], ...] = (
             "write a row for each state after the switch, a column for each state before it",
         ),
     ),
-    *each(
+    refuse(
         _sizes,
-        Row[Any](
-            "",
-            _found,
-            "{0} has {1} states and {2} has {3}, and the switch from {0} to {2} has no reset",
-            "give all modes the same size, or add {{from: {0}, to: {2}, map: ...}} with {3} x {1} "
-            "entries to resets",
-        ),
+        "{0} has {1} states and {2} has {3}, and the switch from {0} to {2} has no reset",
+        "give all modes the same size, or add {{from: {0}, to: {2}, map: ...}} with {3} x {1} "
+        "entries to resets",
     ),
 )
 SwitchedSystemSpec.checks = SYSTEM_CHECKS

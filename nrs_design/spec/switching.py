@@ -13,13 +13,12 @@ from pydantic import Field
 from nrs_design.errors import SpecError
 from nrs_design.proof.text import counted, quoted
 from nrs_design.spec import kinds
-from nrs_design.spec.check import Row, each
+from nrs_design.spec.check import NO_SUCH, Reference, Row, each, refuse
 from nrs_design.spec.exact import parse_exact
 from nrs_design.spec.faults import Location, as_text, fault, reported
 from nrs_design.spec.fields import Exact, Label
 from nrs_design.spec.model import ReadBefore, ReadBy, SpecModel, optional
 from nrs_design.spec.quantity import QUANTITY_PATTERN, parse_quantity
-from nrs_design.spec.references import NO_SUCH, Reference
 
 MAX_TRANSITIONS = 20_000
 MAX_DIMENSION = 64
@@ -278,14 +277,10 @@ def matrix_checks(
 ) -> tuple[Row[Any], ...]:
     """Return the checks of a matrix: rows of one length, a common denominator of few digits."""
     return (
-        *each(
+        refuse(
             lambda s: (((key, *at), found) for at, found in _uneven(rows(s))),
-            Row[Any](
-                "",
-                lambda found: found,
-                "row {0} has {1} entries, the first has {2}",
-                "give all rows the same length",
-            ),
+            "row {0} has {1} entries, the first has {2}",
+            "give all rows the same length",
         ),
         short_denominator(key, numbers),
     )

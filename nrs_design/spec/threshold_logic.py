@@ -17,7 +17,7 @@ from pydantic import Field
 
 from nrs_design.proof.bounds import lower, lower_float, upper_float
 from nrs_design.proof.text import exact_text, quoted
-from nrs_design.spec.check import Row, each
+from nrs_design.spec.check import Reference, Row, each, refuse
 from nrs_design.spec.faults import Location, as_text, did_you_mean, fault
 from nrs_design.spec.fields import Label
 from nrs_design.spec.model import ReadBy, SpecModel, optional
@@ -31,7 +31,6 @@ from nrs_design.spec.quantity_fields import (
     Torque,
     TorqueRate,
 )
-from nrs_design.spec.references import Reference
 from nrs_design.spec.switching import (
     DWELL_SCHEMA,
     DwellTime,
@@ -81,13 +80,11 @@ class LogicSignalsSpec(SpecModel):
     )
 
 
-ONE_SIDE = (
-    Row[Any](
-        "",
-        lambda s: (s.above is None) == (s.below is None),
-        "a condition has one threshold",
-        "write {{above: ...}} or {{below: ...}}",
-    ),
+_ONE_SIDE = Row[Any](
+    "",
+    lambda s: (s.above is None) == (s.below is None),
+    "a condition has one threshold",
+    "write {{above: ...}} or {{below: ...}}",
 )
 
 
@@ -97,7 +94,7 @@ class CommandCondition(SpecModel):
     above: SignedAngularVelocity | None = optional(_ABOVE.format(unit="rad/s"))
     below: SignedAngularVelocity | None = optional(_BELOW.format(unit="rad/s"))
 
-    checks = ONE_SIDE
+    checks = (_ONE_SIDE,)
 
 
 class TorqueCondition(SpecModel):
@@ -106,7 +103,7 @@ class TorqueCondition(SpecModel):
     above: SignedTorque | None = optional(_ABOVE.format(unit="N*m"))
     below: SignedTorque | None = optional(_BELOW.format(unit="N*m"))
 
-    checks = ONE_SIDE
+    checks = (_ONE_SIDE,)
 
 
 Condition = CommandCondition | TorqueCondition
@@ -185,61 +182,48 @@ class ThresholdLogicSpec(SpecModel):
                 if getattr(self.signals, name) is None:
                     yield ("switches", index, name), name
 
-    def _holds(self) -> Iterator[tuple[Location, tuple[str, DwellTime | None]]]:
-        """Yield how long controllers are held, by name; "" for all."""
-        if isinstance(self.hold, dict):
-            yield from ((("hold", name), (name, time)) for name, time in self.hold.items())
-        else:
-            yield ("hold",), ("", self.hold)
+    def _holds(self) -> dict[str, DwellTime]:
+        """Return how long controllers are held, by name; "" for all."""
+        if self.hold is None:
+            return {}
+        return self.hold if isinstance(self.hold, dict) else {"": self.hold}
 
     def _held(self) -> Iterator[tuple[Location, Reference]]:
         """Yield the names of controllers that are held."""
-        for at, (name, _) in self._holds():
-            if name:
-                yield at, Reference("controller", name, self.controllers)
+        for name in filter(None, self._holds()):
+            yield ("hold", name), Reference("controller", name, self.controllers)
 
-    def _chattering(self) -> Iterator[tuple[Location, tuple[str, Apart]]]:
-        """Yield controllers that may be left as soon as they are entered."""
+    def _untimed(self) -> Iterator[tuple[Location, str]]:
+        for name, time in self._holds().items():
+            if time.unit != "s":
+                yield ("hold", *filter(None, [name])), time.text
+
+    def _chattering(self) -> Iterator[tuple[Location, tuple[str, int, int]]]:
+        """Yield controllers that may be left as soon as they are entered, and by which switches."""
         # Of a signal of which nothing is said there is nothing to compute.
         for name in () if any(self._unsaid()) else self.controllers:
             apart = self.tightest(name)
             if apart is not None and self.stay(name) is None:
-                yield ("switches", apart.leaving), (name, apart)
+                yield ("switches", apart.leaving), (name, apart.entering + 1, apart.leaving + 1)
 
     checks = (
-        *each(
+        refuse(
             _unsaid,
-            Row[Any](
-                "",
-                lambda name: name,
-                "nothing is said of the signal {0}",
-                "add `{0}: {{noise: ..., age: ..., largest_rate: ...}}` to signals",
-            ),
+            "nothing is said of the signal {0}",
+            "add `{0}: {{noise: ..., age: ..., largest_rate: ...}}` to signals",
         ),
         *each(
             _held,
             Row[Reference]("", Reference.is_lost, "no switch leads to or from {0}", "{1}"),
         ),
-        *each(
-            _holds,
-            Row[Any](
-                "",
-                lambda held: held[1] is not None and held[1].unit != "s" and held[1].text,
-                "{0!r} is not a time",
-                "write seconds, as in '50 ms'",
-            ),
-        ),
-        *each(
+        refuse(_untimed, "{0!r} is not a time", "write seconds, as in '50 ms'"),
+        refuse(
             _chattering,
-            Row[Any](
-                "",
-                lambda found: (found[0], found[1].entering + 1, found[1].leaving + 1),
-                "{0!r} may be left as soon as it is entered, so the controllers may chatter: no "
-                "signal has to move between switch {1} and switch {2} of the list",
-                "let one of them ask for a signal above, the other for the same signal below, "
-                "further apart than twice its noise and what it moves in its age; or add "
-                "`hold: {{{0}: 50 ms}}`",
-            ),
+            "{0!r} may be left as soon as it is entered, so the controllers may chatter: no signal "
+            "has to move between switch {1} and switch {2} of the list",
+            "let one of them ask for a signal above, the other for the same signal below, further "
+            "apart than twice its noise and what it moves in its age; or add "
+            "`hold: {{{0}: 50 ms}}`",
         ),
     )
 

@@ -103,7 +103,7 @@ def _write_page(path: Path, report: Report, date: datetime | None) -> None:
 
 def _write_spec(spec: LoadedSpec, text: str) -> None:
     from nrs_design.output import write_output
-    from nrs_design.spec.changes import spec_changes
+    from nrs_design.spec.describe import spec_changes
 
     changed, lost = spec_changes(spec, text)
     write_output(spec.path, text)

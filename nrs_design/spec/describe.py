@@ -6,20 +6,17 @@ from collections.abc import Iterator, Mapping
 from fractions import Fraction
 from typing import TYPE_CHECKING, NamedTuple
 
-from nrs_design.axis import current, unit
+from nrs_design.axis import current
 from nrs_design.proof.text import exact_text
 from nrs_design.spec import kinds
-from nrs_design.spec.controllers import (
-    ControllerSpec,
-    contact_names,
-)
+from nrs_design.spec.controllers import ControllerSpec, contact_names
 from nrs_design.spec.environment import AbstractEnvironmentSpec, EnvironmentSpec, unit_at_pivot
 from nrs_design.spec.gain_fields import GainSpec
 from nrs_design.spec.interaction import InteractionDesignSpec
-from nrs_design.spec.interaction_parts import INTERFACES
+from nrs_design.spec.interaction_parts import DriveSpec
+from nrs_design.spec.load import LoadedSpec, parse_spec
 from nrs_design.spec.model import SpecModel
-from nrs_design.spec.motion import ActuatorSpec, LimitsSpec
-from nrs_design.spec.parameters import ParameterSpec
+from nrs_design.spec.motion import ActuatorIntervals, LimitsSpec
 from nrs_design.spec.provenance import (
     COVERS,
     MOTOR_COVERS,
@@ -76,11 +73,27 @@ def describe(spec: Spec) -> tuple[Line, ...]:
     return tuple(_interaction(spec))
 
 
+def spec_changes(loaded: LoadedSpec, text: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Return what a new text of a spec changes, and what it has no longer, a line each."""
+    old, new = (
+        {row.name: row.written for row in describe(spec)}
+        for spec in (loaded.spec, parse_spec(text))
+    )
+    was = {name: old.get(name, "not there") for name in new}
+    changed = (f"{n}: {was[n]} -> {w}" for n, w in new.items() if w != was[n])
+    lost = (f"{n}: {w}" for n, w in old.items() if n not in new)
+    return tuple(changed), tuple(lost)
+
+
 def _modes(spec: SwitchedSystemSpec) -> Iterator[Line]:
     yield Line("time", spec.time, "", "")
     yield from _switching(spec.switching)
     for name, parameter in spec.parameters.items():
-        yield from _parameter(f"parameters.{name}", parameter)
+        yield _number(f"parameters.{name}", parameter.nominal)
+        if not parameter.fixed:
+            yield _coefficients(f"parameters.{name}.range", parameter.range)
+            change = "arbitrarily fast" if parameter.varies else "unknown, but constant"
+            yield Line(f"parameters.{name}.varies", str(parameter.varies).lower(), change, "")
     unit = "1/s" if spec.time == "continuous" else ""
     for index, mode in enumerate(spec.modes):
         n = mode.dimension
@@ -89,14 +102,6 @@ def _modes(spec: SwitchedSystemSpec) -> Iterator[Line]:
     for index, reset in enumerate(spec.resets):
         shape = f"{reset.shape[0]} x {reset.shape[1]}"
         yield Line(f"resets[{index}]", f"{reset.source} to {reset.target}", shape, "")
-
-
-def _parameter(name: str, parameter: ParameterSpec) -> Iterator[Line]:
-    yield _number(name, parameter.nominal)
-    if not parameter.fixed:
-        yield _coefficients(f"{name}.range", parameter.range)
-        change = "arbitrarily fast" if parameter.varies else "unknown, but constant"
-        yield Line(f"{name}.varies", str(parameter.varies).lower(), change, "")
 
 
 def _switching(switching: SwitchingSpec) -> Iterator[Line]:
@@ -111,23 +116,9 @@ def _switching(switching: SwitchingSpec) -> Iterator[Line]:
         yield Line("switching.transitions", listed or "no switch", str(len(pairs)), "")
 
 
-# Of the numbers of a robot without a motor of the user's.
-DRIVE_UNITS = {"time_constant": "s", "inertia": "kg*m^2", "friction": "N*m*s/rad"}
-
-
 def _interaction(spec: InteractionDesignSpec) -> Iterator[Line]:
-    if spec.actuator is not None:
-        yield from _actuator(spec.actuator)
     for name, drive in spec.drives.items():
-        if name not in INTERFACES:
-            continue
-        for key, item in drive.ranges.items():
-            yield from _ranged(f"{name}.{key}", item, item, unit(DRIVE_UNITS[key]))
-        yield from describe_model(
-            getattr(drive, "transfer_function", None), f"{name}.transfer_function"
-        )
-        yield from _times(f"{name}.dead_time", drive.dead_time)
-        yield from _identified(name, drive, MOTOR_COVERS)
+        yield from _drive(name, drive)
     yield from describe_model(spec.motion_loop, "motion_loop")
     yield from describe_model(spec.limits, "limits")
     for name, environment in spec.environments.items():
@@ -138,32 +129,25 @@ def _interaction(spec: InteractionDesignSpec) -> Iterator[Line]:
         yield from describe_model(getattr(spec, key), key)
     if spec.sampling is not None:
         yield from _sampling(spec.sampling)
-    for key in (
-        "disturbances",
-        "sensor",
-        "monitoring",
-        "mode_logic",
-        "scenarios",
-    ):
+    for key in ("disturbances", "sensor", "monitoring", "mode_logic", "scenarios"):
         yield from describe_model(getattr(spec, key), key)
     yield Line("contact", spec.contact or "not said: the claim tells", "", "")
     yield from _switching(spec.switching)
 
 
-def _actuator(actuator: ActuatorSpec) -> Iterator[Line]:
-    if actuator.command != THESIS_COMMAND:
-        yield Line("actuator.command", actuator.command, "", "")
-    for name in ("gain", "time_constant"):
-        written = getattr(actuator, name)
-        unit = _shown_unit(written.nominal)
-        yield from _ranged(f"actuator.{name}", written, written, unit)
-    yield from _times("actuator.dead_time", actuator.dead_time)
-    yield from describe_model(actuator.load_inertia, "actuator.load_inertia")
-    if actuator.intervals is not None:
-        for name in ("gain", "time_constant"):
-            low, high = getattr(actuator.intervals, name)
-            yield Line(f"actuator.intervals.{name}", f"[{low.text}, {high.text}]", "", "")
-    yield from _identified("actuator", actuator, MOTOR_COVERS)
+def _drive(name: str, drive: DriveSpec) -> Iterator[Line]:
+    for key in type(drive).model_fields:
+        value = getattr(drive, key)
+        if isinstance(value, RangedQuantity):
+            yield from _ranged(f"{name}.{key}", value, value, _shown_unit(value.nominal))
+        elif isinstance(value, ActuatorIntervals):
+            for measured, (low, high) in value:
+                yield Line(f"{name}.{key}.{measured}", f"[{low.text}, {high.text}]", "", "")
+        elif isinstance(value, Times):
+            yield from _times(f"{name}.{key}", value)
+        elif key not in IdentifiedRangesSpec.model_fields and value != THESIS_COMMAND:
+            yield from describe_model(value, f"{name}.{key}")
+    yield from _identified(name, drive, MOTOR_COVERS)
 
 
 def _times(key: str, times: Times | None) -> Iterator[Line]:
@@ -198,18 +182,13 @@ def _environment(name: str, environment: EnvironmentSpec) -> Iterator[Line]:
     for key in type(environment).model_fields:
         if key not in parameters and key not in AbstractEnvironmentSpec.model_fields:
             yield from describe_model(getattr(environment, key), f"{name}.{key}")
-    if environment.preloaded:
-        yield from _over_preload(name, environment)
+    # Where stiffness and damping of a power law are over its preload, at the pivot.
+    for key, interval in environment.linear_at_pivot().items() if environment.preloaded else ():
+        value = f"[{_text(float(interval.low))}, {_text(float(interval.high))}]"
+        unit = unit_at_pivot(parameters[key].nominal)
+        yield Line(f"{name}.{key} over the preload", "", value, unit)
     yield from describe_model(environment.lever_arm, f"{name}.lever_arm")
     yield from _identified(name, environment, COVERS)
-
-
-def _over_preload(name: str, environment: EnvironmentSpec) -> Iterator[Line]:
-    """List where stiffness and damping of a power law are over its preload, at the pivot."""
-    for key, interval in environment.linear_at_pivot().items():
-        unit = unit_at_pivot(getattr(environment, key).nominal)
-        value = f"[{_text(float(interval.low))}, {_text(float(interval.high))}]"
-        yield Line(f"{name}.{key} over the preload", "", value, unit)
 
 
 def _identified(
@@ -280,14 +259,6 @@ def _desired_impedance(
     yield Line(name, written, _text(value), kinds.IMPEDANCE.on(current()).si_unit)
 
 
-def _gain(name: str, gain: GainSpec) -> Iterator[Line]:
-    unit, bounds = _shown_unit(gain.min), (gain.min, gain.max)
-    if gain.fixed:
-        yield Line(name, gain.min.text, _text(gain.min.si), unit)
-    else:
-        yield _interval(name, bounds, bounds, unit)
-
-
 def _number(name: str, number: Fraction) -> Line:
     return Line(name, exact_text(number), _text(float(number)), "")
 
@@ -300,7 +271,11 @@ def _coefficients(name: str, numbers: tuple[Fraction, ...]) -> Line:
 def describe_model(value: object, name: str = "") -> Iterator[Line]:
     """List every value of a part whose quantities need no conversion but that to SI."""
     if isinstance(value, GainSpec):
-        yield from _gain(name, value)
+        unit, bounds = _shown_unit(value.min), (value.min, value.max)
+        if value.fixed:
+            yield Line(name, value.min.text, _text(value.min.si), unit)
+        else:
+            yield _interval(name, bounds, bounds, unit)
     elif isinstance(value, SpecModel):
         for field in type(value).model_fields:
             if name or field not in ("kind", "name", "title"):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any, ClassVar, Self
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
@@ -64,3 +64,18 @@ class ReadBefore(ReadBy):
     def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> CoreSchema:
         """Return the schema that calls the function, and then validates the model."""
         return core_schema.no_info_before_validator_function(self.read, handler(source))
+
+
+def pair_schema(item: Any) -> dict[str, Any]:
+    """Return the JSON Schema of a list of two such items, or of one of each."""
+    return {"type": "array", "items": item, "minItems": 2, "maxItems": 2}
+
+
+def keys_schema(keys: Mapping[str, Any], *required: str) -> dict[str, Any]:
+    """Return the JSON Schema of a mapping with these keys alone."""
+    return {
+        "type": "object",
+        "properties": dict(keys),
+        "required": [*required],
+        "additionalProperties": False,
+    }

@@ -14,7 +14,7 @@ from nrs_design.spec.exact import parse_exact
 from nrs_design.spec.expression import EXPRESSION_PATTERN, parse_affine
 from nrs_design.spec.faults import as_text, fault, reported
 from nrs_design.spec.fields import NUMBER_SCHEMA, read_exact
-from nrs_design.spec.model import ReadBy, SpecModel
+from nrs_design.spec.model import ReadBy, SpecModel, pair_schema
 from nrs_design.spec.range_checks import RANGE_CHECKS
 
 PARAMETER_PATTERN = "^[A-Za-z][A-Za-z0-9_]{0,31}$"
@@ -76,7 +76,7 @@ def _read_range(value: object) -> tuple[Fraction, Fraction]:
 _Value = Annotated[Fraction, ReadBy(_read_value, NUMBER_SCHEMA)]
 _Range = Annotated[
     tuple[Fraction, Fraction],
-    ReadBy(_read_range, {"type": "array", "items": NUMBER_SCHEMA, "minItems": 2, "maxItems": 2}),
+    ReadBy(_read_range, pair_schema(NUMBER_SCHEMA)),
 ]
 ParameterName = Annotated[
     str,

@@ -15,7 +15,7 @@ monotonic in phi, so the ends of its range suffice.
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import Annotated, Any
+from typing import Annotated
 
 from pydantic import Field
 
@@ -23,7 +23,7 @@ from nrs_design.models.interval import Interval
 from nrs_design.proof.power import power_between
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import NUMBER_SCHEMA, read_exact
-from nrs_design.spec.model import ReadBefore, ReadBy, SpecModel
+from nrs_design.spec.model import ReadBefore, ReadBy, SpecModel, keys_schema, pair_schema
 from nrs_design.spec.range_checks import RANGE_CHECKS
 
 # Powers are enclosed in integers with as many digits as the denominator is large.
@@ -48,26 +48,11 @@ def _read_exponent(value: object) -> Fraction:
 
 _NOMINAL = "exponent that the design uses, no unit"
 _RANGE = "[lowest, highest] exponent that the proof covers; default: the nominal one"
-_SCHEMA: dict[str, Any] = {
-    "anyOf": [
-        NUMBER_SCHEMA,
-        {
-            "type": "object",
-            "properties": {
-                "nominal": NUMBER_SCHEMA | {"description": _NOMINAL},
-                "range": {
-                    "type": "array",
-                    "items": NUMBER_SCHEMA,
-                    "minItems": 2,
-                    "maxItems": 2,
-                    "description": _RANGE,
-                },
-            },
-            "required": ["nominal"],
-            "additionalProperties": False,
-        },
-    ]
+_KEYS = {
+    "nominal": NUMBER_SCHEMA | {"description": _NOMINAL},
+    "range": pair_schema(NUMBER_SCHEMA) | {"description": _RANGE},
 }
+_SCHEMA = {"anyOf": [NUMBER_SCHEMA, keys_schema(_KEYS, "nominal")]}
 _Exponent = Annotated[Fraction, ReadBy(_read_exponent, NUMBER_SCHEMA)]
 
 

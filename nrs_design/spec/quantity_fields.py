@@ -15,7 +15,7 @@ from nrs_design.proof.text import quoted
 from nrs_design.spec import kinds
 from nrs_design.spec.check import Row
 from nrs_design.spec.faults import as_text, fault, reported
-from nrs_design.spec.model import ReadBefore, ReadBy, SpecModel
+from nrs_design.spec.model import ReadBefore, ReadBy, SpecModel, keys_schema, pair_schema
 from nrs_design.spec.parameters import Switch
 from nrs_design.spec.quantity import (
     QUANTITY_PATTERN,
@@ -115,11 +115,6 @@ class Bounds(SpecModel):
 
     checks = BOUND_CHECKS
 
-    @property
-    def fixed(self) -> bool:
-        """Whether only one value is admissible."""
-        return self.min.rational_part == self.max.rational_part
-
 
 class RangedQuantity(SpecModel):
     """Nominal value of an uncertain quantity, and the interval that it lies in.
@@ -155,18 +150,21 @@ class RangedQuantity(SpecModel):
         return self.range[0].rational_part == self.range[1].rational_part
 
 
-def _bounds(kind: QuantityKind) -> ReadBefore:
+def bounds_of(kind: QuantityKind, model: type[SpecModel], *, positive: bool = True) -> ReadBefore:
+    """Read the smallest and the largest of a quantity, the keys of a model; or one for both."""
+    keys = {key: field.description for key, field in model.model_fields.items()}
+
     def reader(value: object) -> Quantity:
-        return read_quantity(value, kind, positive=True)
+        return read_quantity(value, kind, positive=positive)
 
     def read(value: object) -> object:
         if isinstance(value, str | Quantity):
-            quantity = reader(value)
-            return {"min": quantity, "max": quantity}
-        return read_entries(value, ("min", "max"), reader)
+            return dict.fromkeys(keys, reader(value))
+        return read_entries(value, tuple(keys), reader)
 
-    keys = {"min": "smallest admissible value", "max": "largest admissible value"}
-    return ReadBefore(read, _pair_schema(kind, keys, ["min", "max"]))
+    single = quantity_schema(kind)
+    described = {key: single | {"description": text} for key, text in keys.items()}
+    return ReadBefore(read, {"anyOf": [single, keys_schema(described, *keys)]})
 
 
 def _ranged(
@@ -191,20 +189,18 @@ def _ranged(
             entries["range"] = read_range(entries["range"], reader)
         return entries
 
-    schema = _pair_schema(kind, {"nominal": "value that the design uses"}, ["nominal"])
-    schema["anyOf"][1]["properties"]["range"] = {
-        "type": "array",
-        "items": quantity_schema(kind),
-        "minItems": 2,
-        "maxItems": 2,
-        "description": "[lowest, highest] value that the proof covers",
+    single = quantity_schema(kind)
+    keys: dict[str, Any] = {
+        "nominal": single | {"description": "value that the design uses"},
+        "range": pair_schema(single)
+        | {"description": "[lowest, highest] value that the proof covers"},
     }
     if constant:
-        schema["anyOf"][1]["properties"]["varies"] = {
+        keys["varies"] = {
             "type": "boolean",
             "description": "false: unknown in the range, but it does not change",
         }
-    return ReadBefore(read, schema)
+    return ReadBefore(read, {"anyOf": [single, keys_schema(keys, "nominal")]})
 
 
 Reader = Callable[[object], Quantity]
@@ -231,18 +227,6 @@ def _read_or_fault(reader: Reader, value: object) -> QuantityOrFault:
         return reader(value)
     except PydanticCustomError as error:
         return error
-
-
-def _pair_schema(kind: QuantityKind, keys: dict[str, str], required: list[str]) -> dict[str, Any]:
-    single = quantity_schema(kind)
-    properties = {key: single | {"description": text} for key, text in keys.items()}
-    mapping = {
-        "type": "object",
-        "properties": properties,
-        "required": required,
-        "additionalProperties": False,
-    }
-    return {"anyOf": [single, mapping]}
 
 
 class Times(NamedTuple):
@@ -293,24 +277,17 @@ def ends_of(times: Times | None) -> tuple[Fraction, Fraction]:
     return (times[0].exact, times[1].exact) if times else (Fraction(0), Fraction(0))
 
 
-_TIMES = {
-    "type": "array",
-    "items": quantity_schema(kinds.DURATION),
-    "minItems": 2,
-    "maxItems": 2,
-}
-_RANGED_TIMES = {
-    "type": "object",
-    "properties": {
+_TIMES = pair_schema(quantity_schema(kinds.DURATION))
+_RANGED_TIMES = keys_schema(
+    {
         "range": _TIMES | {"description": "[shortest, longest] time that the proof covers"},
         "varies": {
             "type": "boolean",
             "description": "false: it is unknown, but always the same; default: true",
         },
     },
-    "required": ["range"],
-    "additionalProperties": False,
-}
+    "range",
+)
 # One time for both ends, or a range, in which it may be constant.
 TimeRange = Annotated[
     Times,
@@ -365,4 +342,4 @@ Command = Annotated[Quantity, _one(kinds.COMMAND, positive=False)]
 DriveCommand = Annotated[Quantity, _one(kinds.DRIVE_COMMAND, positive=False)]
 LargestCommand = Annotated[Quantity, _one(kinds.COMMAND)]
 TorqueGradient = Annotated[Quantity, _one(kinds.TORQUE_GRADIENT)]
-LengthBounds = Annotated[Bounds, _bounds(kinds.LENGTH)]
+LengthBounds = Annotated[Bounds, bounds_of(kinds.LENGTH, Bounds)]

@@ -12,7 +12,7 @@ from nrs_design.spec import kinds
 from nrs_design.spec.check import Row
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import Label, UnitFraction
-from nrs_design.spec.model import ReadBy, SpecModel, optional
+from nrs_design.spec.model import ReadBy, SpecModel, optional, pair_schema
 from nrs_design.spec.quantity import Quantity, is_less
 from nrs_design.spec.quantity_fields import Impedance, quantity_schema, read_quantity
 
@@ -30,16 +30,7 @@ def _read_band(value: object) -> tuple[Quantity, Quantity]:
 
 
 Band = Annotated[
-    tuple[Quantity, Quantity],
-    ReadBy(
-        _read_band,
-        {
-            "type": "array",
-            "items": quantity_schema(kinds.BANDWIDTH),
-            "minItems": 2,
-            "maxItems": 2,
-        },
-    ),
+    tuple[Quantity, Quantity], ReadBy(_read_band, pair_schema(quantity_schema(kinds.BANDWIDTH)))
 ]
 _BAND = "[lowest, highest] frequency, such as [0 Hz, 2 Hz]; sampled, below half the sampling rate"
 _ORDERED = Row[SpecModel](

@@ -13,7 +13,7 @@ from nrs_design.spec.check import Row
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import read_exact
 from nrs_design.spec.misses import DeadlinesSpec
-from nrs_design.spec.model import ReadBy, SpecModel, optional
+from nrs_design.spec.model import ReadBy, SpecModel, optional, pair_schema
 from nrs_design.spec.provenance import IdentifiedSpec
 from nrs_design.spec.quantity_fields import (
     Angle,
@@ -62,11 +62,7 @@ def _read_delay(value: object) -> tuple[int, int]:
 
 _SAMPLES = {"type": "integer", "minimum": 0, "maximum": LONGEST_DELAY}
 Delay = Annotated[
-    tuple[int, int],
-    ReadBy(
-        _read_delay,
-        {"anyOf": [_SAMPLES, {"type": "array", "items": _SAMPLES, "minItems": 2, "maxItems": 2}]},
-    ),
+    tuple[int, int], ReadBy(_read_delay, {"anyOf": [_SAMPLES, pair_schema(_SAMPLES)]})
 ]
 
 

@@ -14,7 +14,7 @@ from nrs_design.spec import kinds
 from nrs_design.spec.check import Row
 from nrs_design.spec.faults import all_of, as_text, fault
 from nrs_design.spec.fields import LABEL_PATTERN, Label, Title, UnitFraction, whole
-from nrs_design.spec.model import ReadBy, SpecModel, optional
+from nrs_design.spec.model import ReadBy, SpecModel, optional, pair_schema
 from nrs_design.spec.quantity import Quantity, is_less
 from nrs_design.spec.quantity_fields import (
     Angle,
@@ -87,8 +87,8 @@ def _read_file(value: object) -> str:
 
 
 def _pairs(first: dict[str, Any], second: dict[str, Any], least: int) -> dict[str, Any]:
-    pair = {"type": "array", "items": [first, second], "minItems": 2, "maxItems": 2}
-    return {"type": "array", "items": pair, "minItems": least, "maxItems": MAX_POINTS}
+    pairs = pair_schema([first, second])
+    return {"type": "array", "items": pairs, "minItems": least, "maxItems": MAX_POINTS}
 
 
 _TIME = quantity_schema(kinds.DURATION)

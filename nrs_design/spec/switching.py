@@ -17,7 +17,7 @@ from nrs_design.spec.check import NO_SUCH, Reference, Row, each, refuse
 from nrs_design.spec.exact import parse_exact
 from nrs_design.spec.faults import Location, as_text, fault, reported
 from nrs_design.spec.fields import Exact, Label
-from nrs_design.spec.model import ReadBefore, ReadBy, SpecModel, optional
+from nrs_design.spec.model import ReadBefore, ReadBy, SpecModel, optional, pair_schema
 from nrs_design.spec.quantity import QUANTITY_PATTERN, parse_quantity
 
 MAX_TRANSITIONS = 20_000
@@ -132,12 +132,7 @@ DWELL_SCHEMA: dict[str, Any] = {
 }
 _TRANSITIONS_SCHEMA: dict[str, Any] = {
     "type": "array",
-    "items": {
-        "type": "array",
-        "items": {"type": ["string", "integer"]},
-        "minItems": 2,
-        "maxItems": 2,
-    },
+    "items": pair_schema({"type": ["string", "integer"]}),
 }
 
 

@@ -19,7 +19,7 @@ from nrs_design.identification.write_spec import (
 )
 from nrs_design.models.contact import Elastic, KelvinVoigt
 from nrs_design.spec import parse_spec, read_spec
-from nrs_design.spec.changes import spec_changes
+from nrs_design.spec.describe import spec_changes
 from nrs_design.spec.environment import KelvinBoltzmannSpec
 from tests.identification import motors, signals, synthetic
 from tests.identification.support import MOTOR, quick, record, sinusoids, slow

@@ -14,8 +14,8 @@ from functools import partial
 from math import ceil, floor, log2
 
 from nrs_design.proof.text import exact_text
-from nrs_design.spec.document import Data, to_data
-from nrs_design.spec.edits import Edit, Keys, in_one_line
+from nrs_design.spec.document import Data, Node, to_data
+from nrs_design.spec.edits import Edit, Keys, in_one_line, node_at
 from nrs_design.spec.exact import parse_exact
 from nrs_design.spec.interaction import InteractionDesignSpec
 from nrs_design.spec.load import LoadedSpec
@@ -76,49 +76,48 @@ def concessions(loaded: LoadedSpec, slowest: float | None) -> Iterator[Concessio
     The gains are those that are designed, as decimals in SI. `slowest` is the decay rate of the
     slowest mode in 1/s: it says which dwell times are tried.
     """
-    spec, said = loaded.spec, to_data(loaded.root)
-    assert isinstance(said, dict)
+    spec, root = loaded.spec, loaded.root
     if isinstance(spec, SwitchedSystemSpec):
-        yield from _of_matrices(spec, said, slowest)
+        yield from _of_matrices(spec, root, slowest)
     elif isinstance(spec, InteractionDesignSpec):
-        yield from _of_interaction(spec, said, slowest)
+        yield from _of_interaction(spec, root, slowest)
 
 
 def _of_matrices(
-    spec: SwitchedSystemSpec, said: dict[str, Data], slowest: float | None
+    spec: SwitchedSystemSpec, root: Node, slowest: float | None
 ) -> Iterator[Concession]:
     for name in spec.parameters:
-        yield from _range(said, ("parameters", name))
+        yield from _range(root, ("parameters", name))
     for name, parameter in spec.parameters.items():
         if parameter.varies and not parameter.fixed:
             yield _with(("parameters", name, "varies"), "false", "true")
-    yield from _dwell(spec.switching.is_arbitrary, said, slowest, spec.time == "discrete")
+    yield from _dwell(spec.switching.is_arbitrary, root, slowest, spec.time == "discrete")
     for index in range(len(spec.modes) if len(spec.modes) > 1 else 0):
         yield _without(("modes", index), in_all=False)
 
 
 def _of_interaction(
-    spec: InteractionDesignSpec, said: dict[str, Data], slowest: float | None
+    spec: InteractionDesignSpec, root: Node, slowest: float | None
 ) -> Iterator[Concession]:
     for name in sorted(spec.touched):
         for key in ("exponent", *spec.environments[name].parameters()):
-            yield from _range(said, ("environments", name, key))
+            yield from _range(root, ("environments", name, key))
     for at in spec.motor_ranges:
-        yield from _range(said, at)
+        yield from _range(root, at)
     for place, quantity in spec.ranges.items():
         if quantity.varies and not quantity.fixed:
             yield _with((*place, "varies"), "false", "true")
     if spec.sampling is not None:
         yield from _delay(*spec.sampling.delay)
-        yield from _times(said, ("sampling", "latency"))
+        yield from _times(root, ("sampling", "latency"))
         if spec.sampling.jitter is not None:
             yield _without(("sampling", "jitter"), other_loop=True)
     for drive in spec.drives:
-        yield from _times(said, (drive, "dead_time"))
+        yield from _times(root, (drive, "dead_time"))
     if spec.contact == "losable":
         yield _with(("contact",), "kept", "losable")
     if spec.sampling is None:
-        yield from _dwell(spec.switching.is_arbitrary, said, slowest, discrete=False)
+        yield from _dwell(spec.switching.is_arbitrary, root, slowest, discrete=False)
     yield from _left_out(spec)
 
 
@@ -129,22 +128,17 @@ def calmer(loaded: LoadedSpec, more: int, less: int) -> tuple[Concession, ...]:
     """
     less_force = Fraction(1, less)
     factors = dict(zip(GIVEN_GAINS, (Fraction(more), less_force, less_force), strict=True))
-    said = to_data(loaded.root)
-    assert isinstance(said, dict)
-    controllers = _get(said, ("controllers",))
+    root = loaded.root
+    controllers = _said(root, ("controllers",))
     if not isinstance(loaded.spec, InteractionDesignSpec) or not isinstance(controllers, dict):
         return ()
+    places = (("controllers", name, key) for name in controllers for key in factors)
+    given = {at: said for at in places if (said := _said(root, at)) is not None}
     return tuple(
-        _changed_to(at, given, _scaled(given, factor))
-        for name in controllers
-        for key, factor in factors.items()
-        if (given := _get(said, at := ("controllers", name, key))) is not None and factor != 1
+        _with(at, _scaled(said, factors[at[-1]]), in_one_line(said), other_loop=True)
+        for at, said in given.items()
+        if factors[at[-1]] != 1
     )
-
-
-def _changed_to(at: Keys, given: Data, new: Data) -> Concession:
-    way = Way(WITH, lambda _: new, lambda _: in_one_line(new), in_one_line(given))
-    return Concession(at, way, other_loop=True)
 
 
 def _scaled(given: Data, factor: Fraction) -> Data:
@@ -177,8 +171,9 @@ def _left_out(spec: InteractionDesignSpec) -> Iterator[Concession]:
         yield _without(("sampling", "misses"))
 
 
-def _with(at: Keys, word: str, asked: str) -> Concession:
-    return Concession(at, Way(WITH, lambda _: word, lambda _: word, asked))
+def _with(at: Keys, said: Data, asked: str, *, other_loop: bool = False) -> Concession:
+    way = Way(WITH, lambda _: said, lambda _: in_one_line(said), asked)
+    return Concession(at, way, other_loop=other_loop)
 
 
 def _without(at: Keys, *, other_loop: bool = False, in_all: bool = True) -> Concession:
@@ -186,9 +181,9 @@ def _without(at: Keys, *, other_loop: bool = False, in_all: bool = True) -> Conc
     return Concession(at, form, other_loop=other_loop, in_all=in_all)
 
 
-def _range(said: dict[str, Data], at: Keys) -> Iterator[Concession]:
+def _range(root: Node, at: Keys) -> Iterator[Concession]:
     """Yield the range of a quantity, if one is written; the center is its nominal value."""
-    part = _get(said, at)
+    part = _said(root, at)
     if not isinstance(part, dict) or not isinstance(part.get("range"), tuple):
         return
     low, high = map(str, part["range"])
@@ -251,9 +246,9 @@ def _number(text: str, unit_of: str = "") -> Fraction:
     return value * parse_unit(unit.strip()).factor / parse_unit(other.strip()).factor
 
 
-def _times(said: dict[str, Data], at: Keys) -> Iterator[Concession]:
+def _times(root: Node, at: Keys) -> Iterator[Concession]:
     """Yield a range of times, if one is written: what is asked for least is the shortest."""
-    part = _get(said, at)
+    part = _said(root, at)
     if isinstance(part, dict):
         at, part = (*at, "range"), part.get("range")
     if not isinstance(part, tuple) or len(part) != 2:
@@ -288,12 +283,12 @@ def _samples(count: int) -> str:
 
 
 def _dwell(
-    arbitrary: bool, said: dict[str, Data], slowest: float | None, discrete: bool
+    arbitrary: bool, root: Node, slowest: float | None, discrete: bool
 ) -> Iterator[Concession]:
     """Yield a dwell time where there is none, or a longer one than the one for all modes."""
     at: Keys = ("switching",)
-    given = _get(said, (*at, "dwell_time"))
-    if arbitrary and said.get("switching") == "arbitrary":
+    given = _said(root, (*at, "dwell_time"))
+    if arbitrary and _said(root, at) == "arbitrary":
         if discrete:
             yield Concession(at, _dwell_form(MOST_STEPS - 2, _steps_at))
         elif slowest is not None and slowest > 0:
@@ -328,12 +323,7 @@ def _seconds_at(longest: Fraction, step: int) -> str:
     return f"{exact_text(ceil(time / unit) * unit)} s"
 
 
-def _get(said: Data, at: Keys) -> Data | None:
-    for part in at:
-        if isinstance(said, dict) and part in said:
-            said = said[str(part)]
-        elif isinstance(said, tuple) and isinstance(part, int) and part < len(said):
-            said = said[part]
-        else:
-            return None
-    return said
+def _said(root: Node, at: Keys) -> Data | None:
+    """Return what a document says at a place, or None if nothing."""
+    node = node_at(root, at)
+    return None if node is None else to_data(node)

@@ -46,7 +46,14 @@ if TYPE_CHECKING:
 
     Spec: TypeAlias = InteractionDesignSpec | SwitchedSystemSpec | RobotSpec
 
-SPEC_KINDS = ("interaction-design", "switched-system", "robot", KIND)
+# Where the model of each kind is.
+_MODELS = {
+    "interaction-design": ("interaction", "InteractionDesignSpec"),
+    "switched-system": ("switched_system", "SwitchedSystemSpec"),
+    "robot": ("robot", "RobotSpec"),
+    KIND: ("task_space", "TaskSpaceSpec"),
+}
+SPEC_KINDS = tuple(_MODELS)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -147,15 +154,6 @@ def parse_spec(text: str, path: Path | None = None) -> Spec:
     A `SpecError` with line, column, message and remedy; the path is named in it.
     """
     return _validate(*parse_with_faults(text, path), path)
-
-
-# Where the model of each kind is.
-_MODELS = {
-    "interaction-design": ("interaction", "InteractionDesignSpec"),
-    "robot": ("robot", "RobotSpec"),
-    "switched-system": ("switched_system", "SwitchedSystemSpec"),
-    KIND: ("task_space", "TaskSpaceSpec"),
-}
 
 
 def model_of(kind: str) -> type[Any]:

@@ -15,9 +15,9 @@ _REMEDY = "write `switching: mode-logic`, or rules that it keeps"
 
 def _kept(spec: Spec) -> SwitchingSpec:
     """Return the rules that the mode logic keeps; none without one, or where it does not fit."""
-    if spec.mode_logic is None or spec.mode_logic.lost_names(spec.controllers):
-        return SwitchingSpec()
-    return spec.mode_logic.rules()
+    logic = spec.mode_logic
+    fits = logic is not None and spec.controllers.keys() >= {*logic.controllers}
+    return logic.rules() if logic is not None and fits else SwitchingSpec()
 
 
 def _about_others(spec: Spec) -> bool:
@@ -27,8 +27,7 @@ def _about_others(spec: Spec) -> bool:
 
 
 def _names(spec: Spec) -> Iterator[tuple[Location, Reference]]:
-    names = () if spec.mode_logic is None else spec.mode_logic.lost_names(spec.controllers)
-    for name in names:
+    for name in () if spec.mode_logic is None else spec.mode_logic.controllers:
         yield ("mode_logic",), Reference("controller", name, spec.controllers)
 
 

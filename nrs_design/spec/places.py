@@ -57,7 +57,7 @@ _NO_GOALS = {
 # What `identify` writes into a section: it is listed after what people write.
 _IDENTIFIED = ("provenance", "doubts", "accept_doubt", "range_covers", "range_id", "intervals")
 # How deep that tag is: below a name.
-_DEPTH = {"environments": 2, "controllers": 2}
+_DEPTH = 2
 _MAPPINGS = ("model_type", "model_attributes_type", "dict_type")
 
 
@@ -134,15 +134,12 @@ def _resolve_one(
         place = place_of(root, (*location, _CHOICES[str(location[0])]), at_key=False)
         return place.line, place.column, *_words(details, location, model)
     place = place_of(root, tuple(p for p in location if p != "[key]"), at_key)
-    message, remedy = _words(details, location, model)
-    return place.line, place.column, message, remedy
+    return place.line, place.column, *_words(details, location, model)
 
 
 def _without_tag(location: Location) -> Location:
-    depth = _DEPTH.get(str(location[0]), len(location)) if location else 0
-    if len(location) > depth and location[depth] != "[key]":
-        return location[:depth] + location[depth + 1 :]
-    return location
+    chosen = len(location) > _DEPTH and location[0] in _CHOICES and location[_DEPTH] != "[key]"
+    return location[:_DEPTH] + location[_DEPTH + 1 :] if chosen else location
 
 
 def place_of(root: Node, location: Location, at_key: bool) -> Position:
@@ -259,12 +256,11 @@ def fields_at(
     rest = location[1:]
     if location[0] in _CHOICES:
         key = _CHOICES[str(location[0])]
-        depth = _DEPTH[str(location[0])]
-        if len(rest) < depth:
+        if len(rest) < _DEPTH:
             return {key: ""}
-        tag = rest[depth - 1]
+        tag = rest[_DEPTH - 1]
         arms = [arm for arm in arms if tag in get_args(arm.model_fields[key].annotation)]
-        rest = rest[depth:]
+        rest = rest[_DEPTH:]
     elif field and get_origin(field.annotation) is dict:
         rest = rest[1:]
     while rest and isinstance(rest[0], int):

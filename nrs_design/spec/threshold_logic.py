@@ -227,10 +227,6 @@ class ThresholdLogicSpec(SpecModel):
         ),
     )
 
-    def lost_names(self, controllers: Mapping[str, object]) -> tuple[str, ...]:
-        """Return the names of controllers in it that there are not."""
-        return tuple(name for name in self.controllers if name not in controllers)
-
     @property
     def controllers(self) -> tuple[str, ...]:
         """Names of the controllers in the order in which they are named."""

@@ -9,17 +9,18 @@ value where nobody has said which of two asks for more.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, fields, is_dataclass
 from fractions import Fraction
 
 from pydantic import BaseModel
-from pydantic.fields import FieldInfo
 
 from nrs_design.errors import SpecError
 from nrs_design.proof.text import exact_text, quoted
 from nrs_design.spec.document import Data
+from nrs_design.spec.edits import in_one_line
 from nrs_design.spec.exact import is_number, parse_exact
+from nrs_design.spec.places import dotted
 from nrs_design.spec.quantity import Quantity, is_less
 from nrs_design.spec.quantity_fields import Times
 from nrs_design.spec.switching import ARBITRARY, DwellTime, SwitchingSpec
@@ -98,7 +99,8 @@ def meaning_of(value: object) -> Data:
         ends = (value.shortest.text, value.longest.text)
         return _ranged({"range": ends, "varies": meaning_of(value.varies)})
     if isinstance(value, BaseModel):
-        named = ((f.alias or name, getattr(value, name)) for name, f in _fields_of(value))
+        fields_of = type(value).model_fields.items()
+        named = ((f.alias or name, getattr(value, name)) for name, f in fields_of)
         said = {key: meaning_of(item) for key, item in named if item is not None and item != ""}
         return _ranged(said) if "nominal" in said else said
     if isinstance(value, Quantity | DwellTime):
@@ -114,10 +116,6 @@ def meaning_of(value: object) -> Data:
     if is_dataclass(value):
         return {field.name: meaning_of(getattr(value, field.name)) for field in fields(value)}
     return str(value)
-
-
-def _fields_of(value: BaseModel) -> Iterable[tuple[str, FieldInfo]]:
-    return type(value).model_fields.items()
 
 
 def _ranged(said: dict[str, Data]) -> Data:
@@ -313,7 +311,9 @@ def _is_weaker(before: Data, after: Data, at: Place) -> bool:
         return _word(after) != stronger
     if _is_another(path):
         return False
-    if isinstance(before, str) is not isinstance(after, str) or _is_law(at):
+    if isinstance(before, str) is not isinstance(after, str) or (
+        _is_touched(at) and key == "model"
+    ):
         return True
     goal = "goals" in path
     most = (goal and key.startswith("max_")) or not _AT_MOST.isdisjoint(path) or _is_limit(path)
@@ -348,10 +348,6 @@ def _is_touched(at: Place) -> bool:
     A proof for one value says nothing of another one, not even where there is no range.
     """
     return at[:1] == ("environments",) and len(at) > 2 and at[2] not in _ABOUT_VALUES
-
-
-def _is_law(at: Place) -> bool:
-    return _is_touched(at) and at[-1] == "model"
 
 
 def _is_borne(path: list[str]) -> bool:
@@ -403,24 +399,11 @@ def _without(said: dict[str, Data], keys: set[str]) -> dict[str, Data]:
 
 
 def _name(at: Place) -> str:
-    text = "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in at)
-    return text.removeprefix(".") or "the spec"
+    return dotted(at) or "the spec"
 
 
 def _said(said: Data) -> str:
     """Return what is said as one short text."""
-    if isinstance(said, str):
-        return quoted(said)
-    if isinstance(said, tuple):
-        return quoted(f"[{', '.join(_plain(item) for item in said)}]")
-    if "nominal" in said and "range" in said:
-        return quoted(f"{_plain(said['nominal'])} in {_plain(said['range'])}")
-    return quoted(f"{{{', '.join(f'{key}: {_plain(value)}' for key, value in said.items())}}}")
-
-
-def _plain(said: Data) -> str:
-    if isinstance(said, str):
-        return said
-    if isinstance(said, tuple):
-        return f"[{', '.join(map(_plain, said))}]"
-    return f"{{{', '.join(f'{key}: {_plain(value)}' for key, value in said.items())}}}"
+    if isinstance(said, dict) and "nominal" in said and "range" in said:
+        return quoted(f"{in_one_line(said['nominal'])} in {in_one_line(said['range'])}")
+    return quoted(in_one_line(said))

@@ -11,7 +11,7 @@ from nrs_design import __version__
 from nrs_design.certificates.certificate import Certificate
 from nrs_design.certificates.verify import verify
 from nrs_design.gating.examine import Examiner, certified_rate
-from nrs_design.gating.lock import Lock, LockedGoal, LockedSpec, relative_to_lock
+from nrs_design.gating.lock import Lock, LockedSpec, relative_to_lock
 from nrs_design.gating.obligations import (
     Caution,
     GateOutcome,
@@ -22,11 +22,7 @@ from nrs_design.gating.obligations import (
 )
 from nrs_design.gating.recorded import hash_recorded
 from nrs_design.gating.required import find_missing
-from nrs_design.gating.rules import (
-    LOCKED,
-    RULES,
-    SCENARIO_LIMIT,
-)
+from nrs_design.gating.rules import LOCKED, RULES, SCENARIO_LIMIT
 from nrs_design.progress import Progress, silent
 from nrs_design.spec import LoadedSpec, RobotSpec, read_spec
 from nrs_design.spec.load import is_there
@@ -55,13 +51,12 @@ def run_locked(
         progress(f"spec {number} of {len(specs)}")
         entry = entries.pop(relative_to_lock(path, file), None)
         outcomes.append(_examine_safely(path, entry, file))
-    below = _Below(named)
     unnamed = []
     for name in sorted(entries):
         path = file.parent / name
         if not is_there(path):
             outcomes.append(_absent(path, f"is in {file.name}, but no longer exists ({PRUNE})"))
-        elif below.has(path):
+        elif _is_below(path, named):
             message = f"is in {file.name}, but was not examined: it lies behind a link to a folder "
             outcomes.append(_absent(path, message + "or in a hidden folder (name it, or move it)"))
         else:
@@ -70,16 +65,10 @@ def run_locked(
     return GateOutcome(tuple(outcomes), notes)
 
 
-class _Below:
-    """Tells whether a file is below one of the named paths, by its name or really."""
-
-    def __init__(self, named: Sequence[Path]) -> None:
-        self._roots = {form for path in named for form in _forms(path)}
-
-    def has(self, path: Path) -> bool:
-        return any(
-            form in self._roots or not self._roots.isdisjoint(form.parents) for form in _forms(path)
-        )
+def _is_below(path: Path, named: Sequence[Path]) -> bool:
+    """Tell whether a file is below one of the named paths, by its name or really."""
+    roots = {form for one in named for form in _forms(one)}
+    return any(not roots.isdisjoint((form, *form.parents)) for form in _forms(path))
 
 
 def _forms(path: Path) -> tuple[Path, Path]:
@@ -108,14 +97,14 @@ def _examine(loaded: LoadedSpec, entry: LockedSpec | None, file: Path) -> SpecOu
     if entry.certificate is None:
         return _inconclusive(examiner, entry, file)
     place = Path(os.path.normpath(file.parent / entry.certificate.file))
-    if not _Below([Path(os.path.realpath(file.parent))]).has(Path(os.path.realpath(place))):
+    if not _is_below(Path(os.path.realpath(place)), [Path(os.path.realpath(file.parent))]):
         return _missed(examiner, f"{place.as_posix()} lies behind a link that leads elsewhere")
     checked = verify(place, loaded)
     if checked.certificate is None or checked.fault is not None:
         obligation = examiner.certificate(place, checked.fault or "it holds no claim")
         return SpecOutcome(loaded.path, (obligation,), loaded.sha256, certificate=place)
     certificate = checked.certificate
-    if difference := _find_difference(certificate, entry, loaded):
+    if difference := _find_difference(certificate, entry):
         return _missed(examiner, f"{place.as_posix()} {difference} ({RENEW})")
     return _confirmed(examiner, certificate, entry, place, file)
 
@@ -135,9 +124,8 @@ def _find_change(loaded: LoadedSpec, entry: LockedSpec) -> str | None:
 def _confirmed(
     examiner: Examiner, certificate: Certificate, entry: LockedSpec, place: Path, file: Path
 ) -> SpecOutcome:
-    stability = examiner.stability(certificate.system, certificate.statements, "as locked")
     found = (
-        *stability,
+        *examiner.stability(certificate.system, certificate.statements, "as locked"),
         examiner.certificate(place, None),
         *_others(examiner, certificate, entry, file),
     )
@@ -158,13 +146,12 @@ def _others(
 def _goals(examiner: Examiner, entry: LockedSpec) -> Iterator[Obligation]:
     """Yield what only a design can decide, as it ended when it was locked."""
     for goal in entry.goals:
-        yield examiner.obligation(
-            RULES[goal.rule],
-            goal.subject,
-            Status(goal.status),
-            f"{goal.message} {_AS_LOCKED}",
-            _place(goal),
-        )
+        # A run is named by its scenario: `NAME: torque`.
+        run = goal.rule == SCENARIO_LIMIT.id
+        place = "scenarios", goal.subject.partition(":")[0], "limits"
+        said, ended = f"{goal.message} {_AS_LOCKED}", Status(goal.status)
+        at = place if run else ("controllers", goal.subject)
+        yield examiner.obligation(RULES[goal.rule], goal.subject, ended, said, at)
 
 
 def _remark(examiner: Examiner, entry: LockedSpec) -> Iterator[Caution]:
@@ -174,16 +161,8 @@ def _remark(examiner: Examiner, entry: LockedSpec) -> Iterator[Caution]:
         yield replace(caution, beyond=found.beyond)
 
 
-def _place(goal: LockedGoal) -> tuple[str, ...]:
-    """Return the keys of a locked obligation in the spec."""
-    if goal.rule == SCENARIO_LIMIT.id:
-        # A run is named by its scenario: `NAME: torque`.
-        return "scenarios", goal.subject.partition(":")[0], "limits"
-    return "controllers", goal.subject
-
-
-def _find_difference(certificate: Certificate, entry: LockedSpec, loaded: LoadedSpec) -> str | None:
-    """Say how a valid certificate differs from what was locked, or from what the spec asks for."""
+def _find_difference(certificate: Certificate, entry: LockedSpec) -> str | None:
+    """Say how a valid certificate differs from what was locked."""
     if entry.certificate is None or certificate.id != entry.certificate.id:
         return "is not the certificate that was locked"
     if (certificate.verdict, certified_rate(certificate)[0]) != (entry.verdict, entry.rate):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
@@ -165,25 +166,15 @@ def of_error(path: Path, error: NrsDesignError) -> Obligation:
     if error.remedy:
         message += f" ({error.remedy})"
     message += error.more
-    return Obligation(
-        RULES[error.rule],
-        path,
-        "spec",
-        Status.INCONCLUSIVE if isinstance(error, ClockError) else Status.ERROR,
-        _one_line(message),
-        None if elsewhere else error.line,
-        None if elsewhere else error.column,
-    )
+    status = Status.INCONCLUSIVE if isinstance(error, ClockError) else Status.ERROR
+    place = (None, None) if elsewhere else (error.line, error.column)
+    return Obligation(RULES[error.rule], path, "spec", status, _one_line(message), *place)
 
 
 def count_by_verdict(specs: Iterable[SpecOutcome]) -> dict[str, int]:
     """Count specs by verdict, or by why they have none."""
-    counts: dict[str, int] = {}
-    for spec in specs:
-        none = "without verdict" if spec.certifiable else "with nothing to certify"
-        key = spec.verdict or none
-        counts[key] = counts.get(key, 0) + 1
-    return counts
+    none = {True: "without verdict", False: "with nothing to certify"}
+    return Counter(spec.verdict or none[spec.certifiable] for spec in specs)
 
 
 def _one_line(text: str) -> str:

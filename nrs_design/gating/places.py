@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from nrs_design.spec import LoadedSpec, SwitchedSystemSpec
 from nrs_design.spec.document import Mapping, Node, Position, Sequence
+from nrs_design.spec.edits import node_at
 
 
 class Places:
@@ -26,13 +27,7 @@ class Places:
     def goal(self, controller: str, key: str) -> Position:
         """Return the place of a goal of a controller: its own, or that of the whole spec."""
         own = ("controllers", controller, "goals", key)
-        return self.at(*own) if self._has(*own) else self.at("goals", key)
-
-    def _has(self, *keys: str) -> bool:
-        node: Node | None = self._root
-        for key in keys:
-            node = node.entries.get(key) if isinstance(node, Mapping) else None
-        return node is not None
+        return self.at(*own) if node_at(self._root, own) is not None else self.at("goals", key)
 
     def at(self, *keys: str | int) -> Position:
         """Return the place of a key or item, or of what would hold it if it is not there."""

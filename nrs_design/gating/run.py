@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import os
 from collections import defaultdict
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -17,20 +17,16 @@ from nrs_design.axis import about
 from nrs_design.certificates.certificate import dump
 from nrs_design.certificates.prove import find_altered, read_document
 from nrs_design.controllers.gains import gains_of
-from nrs_design.errors import CertificateError, OutputError, SpecError
+from nrs_design.errors import CertificateError, DesignError, OutputError, SpecError
 from nrs_design.gating.examine import Examiner
-from nrs_design.gating.judge import judge_margins, judge_scenarios
-from nrs_design.gating.obligations import (
-    GateOutcome,
-    SpecOutcome,
-    failed,
-)
+from nrs_design.gating.obligations import GateOutcome, Obligation, SpecOutcome, failed
 from nrs_design.gating.pages import is_current, made_of, note_page
 from nrs_design.gating.paths import is_utf8
 from nrs_design.gating.places import Places
 from nrs_design.gating.recorded import hash_recorded
 from nrs_design.output import CERTIFICATE, PAGE, check_place, write_output
 from nrs_design.ownership import REMEDY, check_owner, origin_of
+from nrs_design.pipeline.analysis import run_judgement
 from nrs_design.pipeline.blocked import Blocked, blocked_lines, find_blocked
 from nrs_design.pipeline.certification import Overrides, Result, run_verification, search_limits
 from nrs_design.pipeline.runs import Recorded, run_certification, run_kept
@@ -200,8 +196,8 @@ def _examine(
             fault = run_verification(place, result).fault
         obligations += (examiner.certificate(place, fault),)
     recorded = hash_recorded(loaded)
-    simulated = tuple(judge_scenarios(result, examiner, progress))
-    analysis, goals = judge_margins(result, examiner, progress)
+    simulated = tuple(_judge_scenarios(result, examiner, progress))
+    analysis, goals = _judge_margins(result, examiner, progress)
     shown = (*examiner.contact(certificate), *examiner.limits(certificate))
     cautions = (*shown, *examiner.cautions(analysis))
     obligations += (
@@ -221,6 +217,45 @@ def _examine(
         return replace(outcome, recorded=recorded)
     gains, units = gains_of(result.design), result.design.units
     return replace(outcome, gains=gains, units=units, recorded=recorded)
+
+
+def _judge_margins(
+    result: Result, examiner: Examiner, progress: Progress
+) -> tuple[DesignAnalysis | None, tuple[Obligation, ...]]:
+    """Analyze a design, and return how its goals and stiffness ranges end: NRS103, NRS106, NRS112.
+
+    No analysis for given matrices, and where a nominal loop is unstable.
+    """
+    if result.designed is None:
+        return None, ()
+    progress("margins")
+    try:
+        analysis = run_judgement(result.designed)
+    except DesignError as error:
+        return None, (examiner.no_margins(error),)
+    judged = (examiner.stiffness_ranges, examiner.goals, examiner.responses)
+    return analysis, tuple(item for judge in judged for item in judge(analysis))
+
+
+def _judge_scenarios(
+    result: Result, examiner: Examiner, progress: Progress
+) -> Iterator[Obligation]:
+    """Simulate the scenarios that have limits, and yield how they end."""
+    if result.designed is None:
+        return
+    limited = [n for n, one in result.designed.spec.scenarios.items() if one.limits is not None]
+    if not limited:
+        return
+    from nrs_design.pipeline.scenarios import Runs, run_scenarios
+
+    for name in limited:
+        progress(f"scenario {name}")
+        try:
+            (simulated,) = run_scenarios(result.designed, Runs((name,)))
+        except DesignError as error:
+            yield examiner.no_scenario(name, error)
+        else:
+            yield from examiner.scenario(name, simulated)
 
 
 def _holds(file: Path, id_: str, origin: str) -> bool:

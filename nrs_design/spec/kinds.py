@@ -89,11 +89,7 @@ TORQUE = QuantityKind(
     },
     sliding=_sliding("a force", ("N",), "3 N", "N*m"),
 )
-INITIAL_TORQUE = replace(
-    TORQUE,
-    example="0.5 N*m",
-    sliding=_sliding("a force", ("N",), "3 N", "N*m"),
-)
+INITIAL_TORQUE = replace(TORQUE, example="0.5 N*m")
 BANDWIDTH = QuantityKind(
     "a bandwidth",
     ("rad/s", "Hz"),

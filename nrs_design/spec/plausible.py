@@ -18,6 +18,7 @@ from nrs_design.spec.model import SpecModel
 from nrs_design.spec.quantity import Quantity
 from nrs_design.spec.units import parse_unit
 
+_Asked = tuple[tuple[str, ...], str]  # Keys that lead to a field, and the question
 _TABLE = Path(__file__).with_name("sizes.toml")
 
 
@@ -87,7 +88,7 @@ def doubt_size(field: str, value: float, unit: str, number: str | None = None) -
 _ENDS = frozenset({"nominal", "range", "min", "max"})
 
 
-def doubt_sizes(spec: SpecModel) -> Iterator[tuple[tuple[str, ...], str]]:
+def doubt_sizes(spec: SpecModel) -> Iterator[_Asked]:
     """Yield fields of a spec with implausible sizes, as keys that lead there, and a question.
 
     A field is asked about once, by its first size that is not plausible. Where a part of the spec
@@ -101,7 +102,7 @@ def unusual(part: SpecModel) -> tuple[str, ...]:
     return tuple(text for _, text in _parts(part, (), ""))
 
 
-def _walk(value: object, at: tuple[str, ...], field: str) -> Iterator[tuple[tuple[str, ...], str]]:
+def _walk(value: object, at: tuple[str, ...], field: str) -> Iterator[_Asked]:
     if isinstance(value, Quantity):
         size = size_of(field, value.dimension)
         asked = size and size.doubt(value.si, value.text.split(" ")[0], value.unit)
@@ -119,9 +120,7 @@ def _walk(value: object, at: tuple[str, ...], field: str) -> Iterator[tuple[tupl
             yield from _once(_walk(item, at, field))
 
 
-def _parts(
-    model: SpecModel, at: tuple[str, ...], field: str
-) -> Iterator[tuple[tuple[str, ...], str]]:
+def _parts(model: SpecModel, at: tuple[str, ...], field: str) -> Iterator[_Asked]:
     for key in type(model).model_fields:
         ends = key in _ENDS
         value = getattr(model, key)
@@ -129,8 +128,8 @@ def _parts(
 
 
 def _once(
-    found: Iterator[tuple[tuple[str, ...], str]],
-) -> Iterator[tuple[tuple[str, ...], str]]:
+    found: Iterator[_Asked],
+) -> Iterator[_Asked]:
     seen = set()
     for at, text in found:
         if at not in seen:

@@ -205,10 +205,9 @@ class ControlSpec(SpecModel):
         for i, (_, name) in enumerate(self.schedule or ()):
             found["schedule", i, 1] = name
         for key in ("sign", "threshold"):
-            part = getattr(self, key)
-            for field in ("insertion", "withdrawal", "position", "force"):
-                if part is not None and hasattr(part, field):
-                    found[key, field] = getattr(part, field)
+            for field, name in getattr(self, key) or ():
+                if isinstance(name, str):
+                    found[key, field] = name
         for environment, name in (self.contact or {}).items():
             found["contact", environment] = name
         return found
@@ -236,12 +235,7 @@ class ScenarioLimitsSpec(SpecModel):
     velocity: AngularVelocity | None = optional("largest speed of the axis in rad/s")
 
     checks = (
-        Row(
-            "",
-            lambda s: not s.named,
-            "no limit is named",
-            "name torque, deflection or velocity",
-        ),
+        Row("", lambda s: not s.named, "no limit is named", "name torque, deflection or velocity"),
     )
 
     @property

@@ -7,12 +7,7 @@ from decimal import Decimal
 from fractions import Fraction
 
 from nrs_design.controllers.float32 import to_float32
-from nrs_design.gating.obligations import (
-    GateOutcome,
-    Obligation,
-    SpecOutcome,
-    count_by_verdict,
-)
+from nrs_design.gating.obligations import GateOutcome, Obligation, SpecOutcome, count_by_verdict
 from nrs_design.gating.rules import NOT_WEAKER
 from nrs_design.printable import printable
 from nrs_design.proof.text import counted
@@ -113,7 +108,5 @@ def summary_line(outcome: GateOutcome) -> str:
     broken = len(outcome.broken)
     total = sum(len(spec.obligations) for spec in outcome.specs)
     ending = "all fulfilled" if not broken else f"{broken} not fulfilled (nrs-design explain RULE)"
-    count = len(outcome.specs)
-    specs = "1 spec" if count == 1 else f"{count} specs"
-    obligations = "1 obligation" if total == 1 else f"{total} obligations"
-    return f"{specs}: {counts}; {obligations}, {ending}"
+    specs = counted(len(outcome.specs), "spec")
+    return f"{specs}: {counts}; {counted(total, 'obligation')}, {ending}"

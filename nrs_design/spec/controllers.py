@@ -19,7 +19,7 @@ from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import Contact, Label, Positive, TouchedAtOnce, UnitFraction, Weight
 from nrs_design.spec.gain_fields import DampingGain, GainSpec, InertiaGain, SpringGain
 from nrs_design.spec.goals import GoalsSpec
-from nrs_design.spec.model import SpecModel, optional
+from nrs_design.spec.model import SpecModel, optional, required
 from nrs_design.spec.parameters import Switch
 from nrs_design.spec.quantity import Quantity
 from nrs_design.spec.quantity_fields import (
@@ -91,12 +91,10 @@ _TOUCHED = (
 class CostWeights(SpecModel):
     """Weights of the parts of the impedance cost: the two of thesis 6.7, and two for a band."""
 
-    displayed: Weight = Field(
-        default=Fraction(1, 2), description="weight of the displayed-impedance error, >= 0, no unit"
+    displayed: Weight = optional(
+        "weight of the displayed-impedance error, >= 0, no unit", Fraction(1, 2)
     )
-    sensitivity: Weight = Field(
-        default=Fraction(1, 2), description="weight of the mean sensitivity, >= 0, no unit"
-    )
+    sensitivity: Weight = optional("weight of the mean sensitivity, >= 0, no unit", Fraction(1, 2))
     transparency: Weight | None = optional(
         "weight of the largest displayed impedance over the limit of the goal transparency, in its "
         "band, >= 0, no unit"
@@ -167,8 +165,8 @@ class ImpedanceControllerSpec(AbstractControllerSpec):
     limits_stiffness: ClassVar[bool] = True
     freeable: ClassVar[Mapping[str, str | None]] = MappingProxyType({"Kt": None})
 
-    type: Literal["impedance"] = Field(description="impedance: admittance Y = 1/(Mt s + Bt + Kt/s)")
-    environment: Label = Field(description=_ENVIRONMENT)
+    type: Literal["impedance"] = required("impedance: admittance Y = 1/(Mt s + Bt + Kt/s)")
+    environment: Label = required(_ENVIRONMENT)
     contacts: Annotated[tuple[TouchedAtOnce, ...], *_TOUCHED]
     desired_impedance: Impedance | None = optional(
         "impedance to display in N*m*s/rad; default: limits.torque/limits.velocity"
@@ -176,13 +174,12 @@ class ImpedanceControllerSpec(AbstractControllerSpec):
     desired_impedance_ratio: Positive | None = optional(
         "multiplies limits.torque/limits.velocity, no unit; not with desired_impedance"
     )
-    Mt: InertiaGain = Field(
-        description="admittance inertia in kg*m^2: one quantity, or {min: ..., max: ...} "
+    Mt: InertiaGain = required(
+        "admittance inertia in kg*m^2: one quantity, or {min: ..., max: ...} "
         "for the design; 0 allowed"
     )
-    Bt: DampingGain = Field(
-        description="admittance damping in N*m*s/rad: one quantity, or {min: ..., max: ...} "
-        "for the design; > 0"
+    Bt: DampingGain = required(
+        "admittance damping in N*m*s/rad: one quantity, or {min: ..., max: ...} for the design; > 0"
     )
     Kt: SpringGain | None = optional(
         "admittance spring in N*m/rad, which draws the robot back to its position "
@@ -223,8 +220,8 @@ class ForceControllerSpec(AbstractControllerSpec):
     holds_force: ClassVar[bool] = True
     freeable: ClassVar[Mapping[str, str | None]] = MappingProxyType({"Kp": "damping_ratio"})
 
-    type: Literal["force"] = Field(description="force: u = X_i + Kp (Fd - F), see offset")
-    environment: Label = Field(description=_ENVIRONMENT)
+    type: Literal["force"] = required("force: u = X_i + Kp (Fd - F), see offset")
+    environment: Label = required(_ENVIRONMENT)
     contacts: Annotated[tuple[TouchedAtOnce, ...], *_TOUCHED]
     proportional_gain: ForceGain | None = optional(
         "Kp in rad/(N*m); exactly one of proportional_gain and damping_ratio"
@@ -232,12 +229,12 @@ class ForceControllerSpec(AbstractControllerSpec):
     damping_ratio: UnitFraction | None = optional(
         "wanted damping ratio of the dominant poles, in (0, 1), no unit; chooses Kp"
     )
-    offset: Offset = Field(
-        default="none",
-        description="offset X_i that is added to the command (thesis 6.41), taken at every switch "
+    offset: Offset = optional(
+        "offset X_i that is added to the command (thesis 6.41), taken at every switch "
         "of controllers and held until the next: the reference of the motion loop at the switch, "
         "or the measured position; none: no switch takes anything, and u = X + Kp (Fd - F) with "
         "the position X that is commanded from outside, constant while force is controlled",
+        "none",
     )
     goals: GoalsSpec | None = optional(_GOALS)
 
@@ -274,11 +271,11 @@ class IntegralControllerSpec(AbstractControllerSpec):
         {"Kp": "damping_ratio", "Ki": "settling_time"}
     )
 
-    type: Literal["pi-force"] = Field(
-        description="pi-force: u = X + Kp (Fd - F) + w with w' = Ki (Fd - F); while another "
+    type: Literal["pi-force"] = required(
+        "pi-force: u = X + Kp (Fd - F) + w with w' = Ki (Fd - F); while another "
         "controller is active, w decays as idle_states says, and stays in the command meanwhile"
     )
-    environment: Label = Field(description=_ENVIRONMENT)
+    environment: Label = required(_ENVIRONMENT)
     contacts: Annotated[tuple[TouchedAtOnce, ...], *_TOUCHED]
     proportional_gain: ForceGain | None = optional(
         "Kp in rad/(N*m); exactly one of proportional_gain and damping_ratio"
@@ -314,14 +311,14 @@ class TorqueImpedanceSpec(AbstractControllerSpec):
     makes_torques: ClassVar[bool] = True
     goals: ClassVar[GoalsSpec | None] = None
 
-    type: Literal["torque-impedance"] = Field(
-        description="torque-impedance: the joint moves as one of inertia_ratio times its inertia "
+    type: Literal["torque-impedance"] = required(
+        "torque-impedance: the joint moves as one of inertia_ratio times its inertia "
         "on a spring and a damper to the commanded position; for a torque_interface"
     )
-    environment: Label = Field(description="name of the environment that it touches")
+    environment: Label = required("name of the environment that it touches")
     contacts: Annotated[tuple[TouchedAtOnce, ...], *_TOUCHED]
-    stiffness: RotationalStiffness = Field(description="of the spring, in N*m/rad")
-    damping: NonnegativeImpedance = Field(description="of the damper, in N*m*s/rad; 0 allowed")
+    stiffness: RotationalStiffness = required("of the spring, in N*m/rad")
+    damping: NonnegativeImpedance = required("of the damper, in N*m*s/rad; 0 allowed")
     inertia_ratio: Positive | None = optional(
         "wanted inertia over that of the joint, no unit; other than 1 it takes the measured force; "
         "default: 1"
@@ -337,29 +334,29 @@ class PositionControllerSpec(AbstractControllerSpec):
     contacts: ClassVar[tuple[Contact, ...]] = ()
     goals: ClassVar[GoalsSpec | None] = None
 
-    type: Literal["position"] = Field(description="position: the motion loop alone, no contact")
+    type: Literal["position"] = required("position: the motion loop alone, no contact")
 
 
 class IdleStatesSpec(SpecModel):
     """What the states of impedance and pi-force controllers do while others are active."""
 
-    decay: Decay = Field(
-        description="rate in 1/s at which the admittance velocity and the position reference "
+    decay: Decay = required(
+        "rate in 1/s at which the admittance velocity and the position reference "
         "decay, and the integral of a pi-force controller; 0 1/s holds them, which is not "
         "asymptotically stable by itself"
     )
-    reset: Switch = Field(
-        default=False,
-        description="true: they are set to zero when an impedance controller is left; not with "
+    reset: Switch = optional(
+        "true: they are set to zero when an impedance controller is left; not with "
         "pi-force controllers, whose integral bleeds",
+        False,
     )
 
 
 class AntiWindupSpec(SpecModel):
     """What keeps the integral of pi-force controllers from winding up."""
 
-    clamp: Angle = Field(
-        description="where the integral w is cut off, both ways, at every sample and under every "
+    clamp: Angle = required(
+        "where the integral w is cut off, both ways, at every sample and under every "
         "controller, as an angle of the reference, such as 2 deg"
     )
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from fractions import Fraction
 from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import Discriminator, Field
+from pydantic import Discriminator
 
 from nrs_design.axis import AxisType, current
 from nrs_design.models.contact import (
@@ -24,7 +24,7 @@ from nrs_design.spec import kinds
 from nrs_design.spec.check import Row, refuse
 from nrs_design.spec.faults import Location
 from nrs_design.spec.fields import Title
-from nrs_design.spec.model import optional
+from nrs_design.spec.model import optional, required
 from nrs_design.spec.preload import RangedExponent, power_box
 from nrs_design.spec.provenance import Coverage, IdentifiedRangesSpec
 from nrs_design.spec.quantity import Quantity
@@ -203,8 +203,8 @@ class ElasticSpec(AbstractEnvironmentSpec):
 
     law: ClassVar[type[AbstractLinearLaw]] = Elastic
 
-    model: Literal["elastic"] = Field(description="law of the environment: elastic, F = k delta")
-    stiffness: Stiffness = Field(description=_STIFFNESS.format(which=""))
+    model: Literal["elastic"] = required("law of the environment: elastic, F = k delta")
+    stiffness: Stiffness = required(_STIFFNESS.format(which=""))
 
 
 class KelvinVoigtSpec(AbstractEnvironmentSpec):
@@ -212,11 +212,11 @@ class KelvinVoigtSpec(AbstractEnvironmentSpec):
 
     law: ClassVar[type[AbstractLinearLaw]] = KelvinVoigt
 
-    model: Literal["kelvin-voigt"] = Field(
-        description="law of the environment: kelvin-voigt, F = k delta + b ddelta/dt"
+    model: Literal["kelvin-voigt"] = required(
+        "law of the environment: kelvin-voigt, F = k delta + b ddelta/dt"
     )
-    stiffness: Stiffness = Field(description=_STIFFNESS.format(which=""))
-    damping: Damping = Field(description=_DAMPING.format(which=""))
+    stiffness: Stiffness = required(_STIFFNESS.format(which=""))
+    damping: Damping = required(_DAMPING.format(which=""))
 
 
 class HandSpec(AbstractEnvironmentSpec):
@@ -224,14 +224,14 @@ class HandSpec(AbstractEnvironmentSpec):
 
     law: ClassVar[type[AbstractLinearLaw]] = Hand
 
-    model: Literal["hand"] = Field(
-        description="law of the environment: hand, F = k delta + b ddelta/dt + m d2delta/dt2; it "
+    model: Literal["hand"] = required(
+        "law of the environment: hand, F = k delta + b ddelta/dt + m d2delta/dt2; it "
         "holds the robot, so contact is kept"
     )
-    stiffness: Stiffness = Field(description=_STIFFNESS.format(which=""))
-    damping: Damping = Field(description=_DAMPING.format(which=""))
-    mass: HandMass = Field(
-        description="mass that moves along, at the pivot in kg*m^2, or at the contact point in kg "
+    stiffness: Stiffness = required(_STIFFNESS.format(which=""))
+    damping: Damping = required(_DAMPING.format(which=""))
+    mass: HandMass = required(
+        "mass that moves along, at the pivot in kg*m^2, or at the contact point in kg "
         "with lever_arm; one quantity, or {nominal: ..., range: [lowest, highest]}"
     )
 
@@ -241,12 +241,12 @@ class MaxwellSpec(AbstractEnvironmentSpec):
 
     law: ClassVar[type[AbstractLinearLaw]] = Maxwell
 
-    model: Literal["maxwell"] = Field(
-        description="law of the environment: maxwell, F + (b/k) dF/dt = b ddelta/dt; it has no "
+    model: Literal["maxwell"] = required(
+        "law of the environment: maxwell, F + (b/k) dF/dt = b ddelta/dt; it has no "
         "rest position, and must be the only environment that controllers touch"
     )
-    stiffness: Stiffness = Field(description=_STIFFNESS.format(which=" k of the spring"))
-    damping: PositiveDamping = Field(description=_DAMPING.format(which=" b of the damper, > 0,"))
+    stiffness: Stiffness = required(_STIFFNESS.format(which=" k of the spring"))
+    damping: PositiveDamping = required(_DAMPING.format(which=" b of the damper, > 0,"))
 
 
 class KelvinBoltzmannSpec(AbstractEnvironmentSpec):
@@ -254,17 +254,17 @@ class KelvinBoltzmannSpec(AbstractEnvironmentSpec):
 
     law: ClassVar[type[AbstractLinearLaw]] = KelvinBoltzmann
 
-    model: Literal["kelvin-boltzmann"] = Field(
-        description="law of the environment: kelvin-boltzmann, a spring k2 in a row with a spring "
+    model: Literal["kelvin-boltzmann"] = required(
+        "law of the environment: kelvin-boltzmann, a spring k2 in a row with a spring "
         "k1 beside a damper b"
     )
-    parallel_stiffness: Stiffness = Field(
-        description=_STIFFNESS.format(which=" k1 of the spring beside the damper,")
+    parallel_stiffness: Stiffness = required(
+        _STIFFNESS.format(which=" k1 of the spring beside the damper,")
     )
-    series_stiffness: Stiffness = Field(
-        description=_STIFFNESS.format(which=" k2 of the spring in a row with both,")
+    series_stiffness: Stiffness = required(
+        _STIFFNESS.format(which=" k2 of the spring in a row with both,")
     )
-    damping: PositiveDamping = Field(description=_DAMPING.format(which=" b of the damper, > 0,"))
+    damping: PositiveDamping = required(_DAMPING.format(which=" b of the damper, > 0,"))
 
 
 class HuntCrossleySpec(AbstractEnvironmentSpec):
@@ -273,25 +273,24 @@ class HuntCrossleySpec(AbstractEnvironmentSpec):
     law: ClassVar[type[AbstractLinearLaw]] = KelvinVoigt
     nonlinear: ClassVar[type[AbstractNonlinearLaw] | None] = HuntCrossley
 
-    model: Literal["hunt-crossley"] = Field(
-        description="law of the environment: hunt-crossley, F = (rho + lam ddelta/dt) delta^phi, "
+    model: Literal["hunt-crossley"] = required(
+        "law of the environment: hunt-crossley, F = (rho + lam ddelta/dt) delta^phi, "
         "while its deflection stays in the preload"
     )
-    stiffness: Stiffness = Field(
-        description=_STIFFNESS.format(which=" of small motions at the deflection `about`,")
+    stiffness: Stiffness = required(
+        _STIFFNESS.format(which=" of small motions at the deflection `about`,")
     )
-    damping: Damping = Field(description=_DAMPING.format(which=" at the deflection `about`,"))
-    exponent: RangedExponent = Field(
-        description="phi, 1 to 3 with at most three decimals, no unit; one number, or "
+    damping: Damping = required(_DAMPING.format(which=" at the deflection `about`,"))
+    exponent: RangedExponent = required(
+        "phi, 1 to 3 with at most three decimals, no unit; one number, or "
         "{nominal: ..., range: [lowest, highest]}"
     )
-    about: Deflection = Field(
-        description="deflection at which stiffness and damping are given, within the preload: a "
+    about: Deflection = required(
+        "deflection at which stiffness and damping are given, within the preload: a "
         "length with lever_arm, an angle otherwise"
     )
-    preload: tuple[Deflection, Deflection] = Field(
-        description="[lowest, highest] deflection, counted from the surface, within which the "
-        "proof holds"
+    preload: tuple[Deflection, Deflection] = required(
+        "[lowest, highest] deflection, counted from the surface, within which the proof holds"
     )
 
     def _of_other_kind(self) -> tuple[str, str, str] | None:

@@ -4,18 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from pydantic import Field
-
 from nrs_design.spec.check import Row
 from nrs_design.spec.fields import Positive
-from nrs_design.spec.model import SpecModel, optional
+from nrs_design.spec.model import SpecModel, optional, required
 
 
 class FactorBounds(SpecModel):
     """Bounds of a gain, as factors on the one that the spec gives."""
 
-    min: Positive = Field(description="smallest factor on the given gain, no unit")
-    max: Positive = Field(description="largest factor on the given gain, no unit")
+    min: Positive = required("smallest factor on the given gain, no unit")
+    max: Positive = required("largest factor on the given gain, no unit")
 
     checks = (
         Row(

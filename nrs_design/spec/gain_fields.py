@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from pydantic import Field
-
 from nrs_design.spec import kinds
-from nrs_design.spec.model import ReadBefore, SpecModel
+from nrs_design.spec.model import ReadBefore, SpecModel, required
 from nrs_design.spec.quantity_fields import AnyQuantity, bounds_of, quantity_schema
 from nrs_design.spec.range_checks import BOUND_CHECKS
 
@@ -15,8 +13,8 @@ from nrs_design.spec.range_checks import BOUND_CHECKS
 class GainSpec(SpecModel):
     """A gain: fixed, with ``min == max``, or to be designed within bounds."""
 
-    min: AnyQuantity = Field(description="smallest value that the design may choose")
-    max: AnyQuantity = Field(description="largest value that the design may choose")
+    min: AnyQuantity = required("smallest value that the design may choose")
+    max: AnyQuantity = required("largest value that the design may choose")
 
     checks = BOUND_CHECKS
 

@@ -27,7 +27,7 @@ from nrs_design.spec.fields import Digits, Label, Name, Title
 from nrs_design.spec.free import FreeGainsSpec
 from nrs_design.spec.goals import GoalsSpec
 from nrs_design.spec.misses import MISS
-from nrs_design.spec.model import ReadBefore, SpecModel, optional
+from nrs_design.spec.model import ReadBefore, SpecModel, optional, required
 from nrs_design.spec.monitoring import MonitoringSpec
 from nrs_design.spec.motion import (
     ActuatorSpec,
@@ -68,9 +68,8 @@ OF_CORNERS = re.compile(r"([A-Za-z]|tau|Km|(h|in)\d+)-(min|max)|(delay|flow|case
 class DesignSpec(SpecModel):
     """How gains are written down."""
 
-    significant_digits: Digits = Field(
-        default=4,
-        description="designed gains are rounded to so many digits, 1 to 7, then to float32",
+    significant_digits: Digits = optional(
+        "designed gains are rounded to so many digits, 1 to 7, then to float32", 4
     )
     free: Annotated[dict[Label, FreeGainsSpec], Field(max_length=MAX_ENTRIES)] = Field(
         default_factory=dict,
@@ -83,13 +82,13 @@ class DesignSpec(SpecModel):
 class AbstractInteractionSpec(SpecModel):
     """The keys of such a spec, and what follows from them."""
 
-    kind: Literal["interaction-design"] = Field(description="what this file describes")
-    name: Name = Field(description="short name: lower-case letters, digits, '.', '_', '-'")
-    title: Title = Field(default="", description="one line for people, at most 200 characters")
-    axis: AxisType = Field(
-        default=AxisType.ROTARY,
-        description="rotary: it turns about a pivot, in rad, N*m and kg*m^2; prismatic: it slides, "
+    kind: Literal["interaction-design"] = required("what this file describes")
+    name: Name = required("short name: lower-case letters, digits, '.', '_', '-'")
+    title: Title = optional("one line for people, at most 200 characters", "")
+    axis: AxisType = optional(
+        "rotary: it turns about a pivot, in rad, N*m and kg*m^2; prismatic: it slides, "
         "in m, N and kg wherever a rotary one has those",
+        AxisType.ROTARY,
     )
     actuator: ActuatorSpec | None = optional(
         "the velocity-controlled motor, with motion_loop around it"
@@ -106,13 +105,13 @@ class AbstractInteractionSpec(SpecModel):
         "a robot that takes torques, in the place of actuator and motion_loop; its controllers are "
         "of type torque-impedance"
     )
-    limits: LimitsSpec = Field(description="what the interaction must respect")
+    limits: LimitsSpec = required("what the interaction must respect")
     environments: Annotated[dict[Label, EnvironmentSpec], Field(max_length=MAX_ENTRIES)] = Field(
         default_factory=dict, description="what the robot touches: name -> environment"
     )
     controllers: Annotated[
         dict[Label, ControllerSpec], Field(min_length=1, max_length=MAX_ENTRIES)
-    ] = Field(description="what the robot switches between: name -> controller")
+    ] = required("what the robot switches between: name -> controller")
     idle_states: IdleStatesSpec | None = optional(
         "what the states of impedance controllers do while a position or force "
         "controller is active, and the integral of a pi-force controller while another one is; "
@@ -143,17 +142,16 @@ class AbstractInteractionSpec(SpecModel):
         "whether a proof must hold while contact is lost and made again (losable), or "
         "takes for granted that it is kept; default: losable where that can be proved"
     )
-    coordinates: Literal["deflection"] = Field(
-        default="deflection",
-        description="state of the contact: the deflection, which stays continuous when the "
-        "stiffness switches",
+    coordinates: Literal["deflection"] = optional(
+        "state of the contact: the deflection, which stays continuous when the stiffness switches",
+        "deflection",
     )
     mode_logic: Annotated[ThresholdLogicSpec, ReadBefore(check_type)] | None = optional(
         "what decides which controller is active; `switching: mode-logic` lets the "
         "proof be about the switching signals that it can give"
     )
-    switching: LogicalRule = Field(
-        description="when controllers change: arbitrary, mode-logic (as mode_logic says), or rules "
+    switching: LogicalRule = required(
+        "when controllers change: arbitrary, mode-logic (as mode_logic says), or rules "
         "with dwell_time and transitions between controllers, or between controllers in one "
         "contact each, such as tissue/soft"
     )

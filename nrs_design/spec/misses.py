@@ -10,11 +10,9 @@ from itertools import takewhile
 from math import comb
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import Field
-
 from nrs_design.spec.check import Row
 from nrs_design.spec.fields import Label, whole
-from nrs_design.spec.model import SpecModel, optional
+from nrs_design.spec.model import SpecModel, optional, required
 
 MOST_STEPS = 1000
 MOST_STATES = 1000
@@ -99,7 +97,7 @@ class MissRuleSpec(SpecModel):
 class MissesSpec(MissRuleSpec):
     """In any so many steps in a row, at most some are in the mode of a miss."""
 
-    mode: Label = Field(description="name of the mode that a missed deadline brings about")
+    mode: Label = required("name of the mode that a missed deadline brings about")
 
     def __str__(self) -> str:
         """Say the rule in a few words."""
@@ -116,14 +114,14 @@ class DeadlinesSpec(MissRuleSpec):
     Deadline Misses Constraints, 2020).
     """
 
-    command: Literal["hold", "zero"] = Field(
-        description="what the drive follows in a period whose deadline is missed: `hold` the "
+    command: Literal["hold", "zero"] = required(
+        "what the drive follows in a period whose deadline is missed: `hold` the "
         "command of the period before, or `zero`, a command of zero"
     )
-    job: Literal["kill", "skip"] = Field(
-        default="kill",
-        description="what becomes of a job that misses its deadline: `kill` drops it, and the law "
+    job: Literal["kill", "skip"] = optional(
+        "what becomes of a job that misses its deadline: `kill` drops it, and the law "
         "keeps its states; `skip`, which lets it go on, is refused with what to write instead",
+        "kill",
     )
 
     def __str__(self) -> str:

@@ -31,9 +31,14 @@ class SpecModel(BaseModel):
         return self
 
 
-def optional(description: str) -> Any:
-    """Return a field that a spec may leave out; it is None then."""
-    return Field(default=None, description=description)
+def required(description: str) -> Any:
+    """Return a field that a spec must have."""
+    return Field(description=description)
+
+
+def optional(description: str, default: object = None) -> Any:
+    """Return a field that a spec may leave out, and what it is then."""
+    return Field(default=default, description=description)
 
 
 class ReadBy:

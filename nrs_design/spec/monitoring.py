@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from typing import Literal
 
-from pydantic import Field
-
 from nrs_design.spec.check import Row
-from nrs_design.spec.model import SpecModel, optional
+from nrs_design.spec.model import SpecModel, optional, required
 from nrs_design.spec.quantity_fields import Angle, AngularVelocity, Duration, Torque
 
 Surface = Literal["fixed", "free", "touched"]
@@ -19,16 +17,16 @@ class MonitoringSpec(SpecModel):
     No proof depends on them. `export --format monitor` and `audit` test the stiffness within them.
     """
 
-    torque_noise: Torque = Field(
-        description="largest error of a reading of the torque in N*m, with bias, drift and half a "
+    torque_noise: Torque = required(
+        "largest error of a reading of the torque in N*m, with bias, drift and half a "
         "step of the sensor: a bound, no standard deviation"
     )
-    angle_noise: Angle = Field(
-        description="largest error of a reading of the joint angle in rad: half a step of the "
+    angle_noise: Angle = required(
+        "largest error of a reading of the joint angle in rad: half a step of the "
         "encoder, and what the joint bends between encoder and contact"
     )
-    surface: Surface = Field(
-        description="where the surface is that the torque is counted from: fixed (one place for "
+    surface: Surface = required(
+        "where the surface is that the torque is counted from: fixed (one place for "
         "the whole run), free (it may move while nothing is touched, and stands still from the "
         "last sample before the touch on), or touched (it may move until contact is certain)"
     )

@@ -12,7 +12,7 @@ from nrs_design.proof.text import quoted
 from nrs_design.spec.check import Row, S, exactly_one, refuse
 from nrs_design.spec.faults import Location
 from nrs_design.spec.fields import Exact, UnitFraction
-from nrs_design.spec.model import SpecModel, optional
+from nrs_design.spec.model import SpecModel, optional, required
 from nrs_design.spec.provenance import Coverage, IdentifiedRangesSpec
 from nrs_design.spec.quantity import Quantity, is_less
 from nrs_design.spec.quantity_fields import (
@@ -46,11 +46,11 @@ class ActuatorIntervals(SpecModel):
     The design and the proof take the nominal values.
     """
 
-    gain: tuple[ActuatorGain, ActuatorGain] = Field(
-        description="[lowest, highest] gain in rad/s per command unit, 95 % interval"
+    gain: tuple[ActuatorGain, ActuatorGain] = required(
+        "[lowest, highest] gain in rad/s per command unit, 95 % interval"
     )
-    time_constant: tuple[Duration, Duration] = Field(
-        description="[lowest, highest] time constant in s, 95 % interval"
+    time_constant: tuple[Duration, Duration] = required(
+        "[lowest, highest] time constant in s, 95 % interval"
     )
 
 
@@ -78,16 +78,16 @@ def commands_in(
 class ActuatorSpec(IdentifiedRangesSpec):
     """Velocity actuator ``theta_m/delta = Km/(s (tau s + 1))`` (thesis 4.1)."""
 
-    command: CommandUnit = Field(
-        default="rpm",
-        description="unit of the commands delta that the motor takes: rpm, V, A or counts; gain, "
+    command: CommandUnit = optional(
+        "unit of the commands delta that the motor takes: rpm, V, A or counts; gain, "
         "derivative_gain and friction are written in it",
+        "rpm",
     )
-    gain: RangedActuatorGain = Field(
-        description="Km, motor speed per command unit, such as rad/s/rpm or rad/s/V, as in "
+    gain: RangedActuatorGain = required(
+        "Km, motor speed per command unit, such as rad/s/rpm or rad/s/V, as in "
         "theta_m/delta = Km/(s (tau s + 1))"
     )
-    time_constant: RangedDuration = Field(description="tau, mechanical time constant in s")
+    time_constant: RangedDuration = required("tau, mechanical time constant in s")
     dead_time: TimeRange | None = optional(
         "time in s for which a command does nothing before the motor follows it, one number or "
         "[shortest, longest]; the proof adds it to the latency of `sampling`"
@@ -146,11 +146,11 @@ _COVERS = "what the identified ranges hold: confidence, tolerance or prediction,
 class TransferFunctionSpec(SpecModel):
     """Strictly proper transfer function, coefficients with the highest power first."""
 
-    numerator: Coefficients = Field(
-        description="numerator coefficients, exact numbers, highest power of s first"
+    numerator: Coefficients = required(
+        "numerator coefficients, exact numbers, highest power of s first"
     )
-    denominator: Coefficients = Field(
-        description="denominator coefficients, exact numbers, highest power of s first"
+    denominator: Coefficients = required(
+        "denominator coefficients, exact numbers, highest power of s first"
     )
 
     checks = (
@@ -223,8 +223,8 @@ class PositionInterfaceSpec(FollowingSpec):
 class TorqueInterfaceSpec(IdentifiedRangesSpec):
     """A robot that takes torques, its gravity compensated: ``J omega' = u - B omega - F``."""
 
-    inertia: RangedInertia = Field(description="J of the joint and all that it moves, in kg*m^2")
-    friction: RangedImpedance = Field(description="B, viscous friction of the joint, N*m*s/rad")
+    inertia: RangedInertia = required("J of the joint and all that it moves, in kg*m^2")
+    friction: RangedImpedance = required("B, viscous friction of the joint, N*m*s/rad")
     dead_time: TimeRange | None = optional(_DEAD_TIME)
     range_covers: Coverage | None = optional(_COVERS)
 
@@ -237,10 +237,10 @@ class TorqueInterfaceSpec(IdentifiedRangesSpec):
 class MotionLoopSpec(SpecModel):
     """Motion loop around the actuator, closed by a PD controller (thesis 4.3)."""
 
-    damping_ratio: UnitFraction = Field(
-        description="wanted damping ratio of the closed loop, between 0 and 1, no unit"
+    damping_ratio: UnitFraction = required(
+        "wanted damping ratio of the closed loop, between 0 and 1, no unit"
     )
-    settling_time: Duration = Field(description="wanted settling time 4/(zeta wn) in s")
+    settling_time: Duration = required("wanted settling time 4/(zeta wn) in s")
     derivative_gain: DerivativeGain | None = optional(
         "derivative gain really used, such as rpm*s/rad, in the unit of the commands; "
         "default: from the root locus"
@@ -260,9 +260,9 @@ MOTOR_COMMAND = "motor command"
 class LimitsSpec(SpecModel):
     """What the interaction must respect (thesis 6.3.1)."""
 
-    velocity: AngularVelocity = Field(description="largest commanded angular velocity in rad/s")
-    torque: Torque = Field(description="largest interaction torque in N*m")
-    bandwidth: Bandwidth = Field(description="highest frequency of the operator's motion, Hz")
+    velocity: AngularVelocity = required("largest commanded angular velocity in rad/s")
+    torque: Torque = required("largest interaction torque in N*m")
+    bandwidth: Bandwidth = required("highest frequency of the operator's motion, Hz")
     command: LargestCommand | None = optional(
         "largest command that the motor's driver takes, such as rpm, for the error "
         "that derivative_gain is for: where the driver closes its loop on an encoder that turns "

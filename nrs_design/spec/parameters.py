@@ -14,7 +14,7 @@ from nrs_design.spec.exact import parse_exact
 from nrs_design.spec.expression import EXPRESSION_PATTERN, parse_affine
 from nrs_design.spec.faults import as_text, fault, reported
 from nrs_design.spec.fields import NUMBER_SCHEMA, read_exact
-from nrs_design.spec.model import ReadBy, SpecModel, pair_schema
+from nrs_design.spec.model import ReadBy, SpecModel, optional, pair_schema, required
 from nrs_design.spec.range_checks import RANGE_CHECKS
 
 PARAMETER_PATTERN = "^[A-Za-z][A-Za-z0-9_]{0,31}$"
@@ -95,15 +95,15 @@ Entry = Annotated[
 class ParameterSpec(SpecModel):
     """An uncertain number that the matrices depend on."""
 
-    nominal: _Value = Field(description="value that is meant, an exact number, no unit")
+    nominal: _Value = required("value that is meant, an exact number, no unit")
     range: _Range = Field(
         default_factory=lambda data: (data.get("nominal"), data.get("nominal")),
         description="[lowest, highest] value that the proof covers; default: the nominal one",
     )
-    varies: Switch = Field(
-        default=True,
-        description="true: may change arbitrarily fast within its range; false: unknown, but it "
+    varies: Switch = optional(
+        "true: may change arbitrarily fast within its range; false: unknown, but it "
         "does not change",
+        True,
     )
 
     @property

@@ -23,7 +23,7 @@ from nrs_design.models.interval import Interval
 from nrs_design.proof.power import power_between
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import NUMBER_SCHEMA, read_exact
-from nrs_design.spec.model import ReadBefore, ReadBy, SpecModel, keys_schema, pair_schema
+from nrs_design.spec.model import ReadBefore, ReadBy, SpecModel, keys_schema, pair_schema, required
 from nrs_design.spec.range_checks import RANGE_CHECKS
 
 # Powers are enclosed in integers with as many digits as the denominator is large.
@@ -59,7 +59,7 @@ _Exponent = Annotated[Fraction, ReadBy(_read_exponent, NUMBER_SCHEMA)]
 class ExponentSpec(SpecModel):
     """An exponent that is known up to a range."""
 
-    nominal: _Exponent = Field(description=_NOMINAL)
+    nominal: _Exponent = required(_NOMINAL)
     range: tuple[_Exponent, _Exponent] = Field(
         default_factory=lambda data: (data.get("nominal"), data.get("nominal")),
         description=_RANGE,

@@ -13,7 +13,7 @@ from pydantic import Field
 from nrs_design.spec.check import Row
 from nrs_design.spec.edits import NOT_IDENTIFIED
 from nrs_design.spec.fields import Hash, Title
-from nrs_design.spec.model import SpecModel, optional
+from nrs_design.spec.model import SpecModel, optional, required
 from nrs_design.spec.plausible import unusual
 from nrs_design.spec.quantity import Quantity
 
@@ -43,10 +43,10 @@ MOTOR_COVERS: Mapping[Coverage, str] = MappingProxyType(
 class ProvenanceSpec(SpecModel):
     """A file of measured data, as `nrs-design identify --write` notes it down."""
 
-    file: Title = Field(description="name of the data file, one line, no unit")
-    sha256: Hash = Field(description="SHA-256 of its bytes, 64 hexadecimal digits")
-    data: Literal["measured", "synthetic"] = Field(
-        description="measured, or synthetic: made by a simulation"
+    file: Title = required("name of the data file, one line, no unit")
+    sha256: Hash = required("SHA-256 of its bytes, 64 hexadecimal digits")
+    data: Literal["measured", "synthetic"] = required(
+        "measured, or synthetic: made by a simulation"
     )
 
 
@@ -56,14 +56,13 @@ Provenance = Annotated[tuple[ProvenanceSpec, ...], Field(max_length=MAX_SOURCES)
 class IdentifiedSpec(SpecModel):
     """What `nrs-design identify --write` notes down beside the values."""
 
-    provenance: Provenance = Field(
-        default=(),
-        description="data files that the values were identified from, by nrs-design identify",
+    provenance: Provenance = optional(
+        "data files that the values were identified from, by nrs-design identify", ()
     )
-    doubts: Annotated[tuple[Title, ...], Field(max_length=MAX_DOUBTS)] = Field(
-        default=(),
-        description="why the records may not determine the values, by nrs-design identify; the "
+    doubts: Annotated[tuple[Title, ...], Field(max_length=MAX_DOUBTS)] = optional(
+        "why the records may not determine the values, by nrs-design identify; the "
         "gate fails on them (NRS107)",
+        (),
     )
     accept_doubt: Title | None = optional(
         "why the values are used despite the doubts, or without any despite their "

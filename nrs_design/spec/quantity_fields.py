@@ -15,7 +15,15 @@ from nrs_design.proof.text import quoted
 from nrs_design.spec import kinds
 from nrs_design.spec.check import Row
 from nrs_design.spec.faults import as_text, fault, reported
-from nrs_design.spec.model import ReadBefore, ReadBy, SpecModel, keys_schema, pair_schema
+from nrs_design.spec.model import (
+    ReadBefore,
+    ReadBy,
+    SpecModel,
+    keys_schema,
+    optional,
+    pair_schema,
+    required,
+)
 from nrs_design.spec.parameters import Switch
 from nrs_design.spec.quantity import (
     QUANTITY_PATTERN,
@@ -110,8 +118,8 @@ AnyQuantity = Annotated[
 class Bounds(SpecModel):
     """Closed interval."""
 
-    min: AnyQuantity = Field(description="smallest admissible value")
-    max: AnyQuantity = Field(description="largest admissible value")
+    min: AnyQuantity = required("smallest admissible value")
+    max: AnyQuantity = required("largest admissible value")
 
     checks = BOUND_CHECKS
 
@@ -122,16 +130,16 @@ class RangedQuantity(SpecModel):
     Without an interval in the spec, both ends are the nominal value.
     """
 
-    nominal: AnyQuantity = Field(description="value that the design uses")
+    nominal: AnyQuantity = required("value that the design uses")
     range: tuple[AnyQuantity, AnyQuantity] = Field(
         default_factory=lambda data: (data.get("nominal"), data.get("nominal")),
         description="[lowest, highest] value that the proof covers; default: the nominal one",
     )
 
-    varies: Switch = Field(
-        default=True,
-        description="true: may change arbitrarily fast within its range; false: unknown, but it "
+    varies: Switch = optional(
+        "true: may change arbitrarily fast within its range; false: unknown, but it "
         "does not change",
+        True,
     )
 
     checks = (

@@ -5,14 +5,12 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Annotated, ClassVar
 
-from pydantic import Field
-
 from nrs_design.proof.text import exact_text
 from nrs_design.spec import kinds
 from nrs_design.spec.check import Row
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import Label, UnitFraction
-from nrs_design.spec.model import ReadBy, SpecModel, optional, pair_schema
+from nrs_design.spec.model import ReadBy, SpecModel, optional, pair_schema, required
 from nrs_design.spec.quantity import Quantity, is_less
 from nrs_design.spec.quantity_fields import Impedance, quantity_schema, read_quantity
 
@@ -44,10 +42,10 @@ _ORDERED = Row[SpecModel](
 class TransparencySpec(SpecModel):
     """How little the surgeon shall feel of the robot, in free motion."""
 
-    max_impedance: Impedance = Field(
-        description="largest force of the hand over the velocity of the tool, N*m*s/rad"
+    max_impedance: Impedance = required(
+        "largest force of the hand over the velocity of the tool, N*m*s/rad"
     )
-    band: Band = Field(description=_BAND)
+    band: Band = required(_BAND)
     environment: ClassVar[str | None] = None  # Nothing is touched
 
     checks = (_ORDERED,)
@@ -66,10 +64,10 @@ class TransparencySpec(SpecModel):
 class AccuracySpec(SpecModel):
     """How well the tool shall follow the commanded velocity."""
 
-    max_error: UnitFraction = Field(
-        description="largest |1 - V/Vcmd|, a share of the commanded velocity, between 0 and 1"
+    max_error: UnitFraction = required(
+        "largest |1 - V/Vcmd|, a share of the commanded velocity, between 0 and 1"
     )
-    band: Band = Field(description=_BAND)
+    band: Band = required(_BAND)
     environment: Label | None = optional(
         "what is touched meanwhile, elastic or Kelvin-Voigt; default: nothing"
     )

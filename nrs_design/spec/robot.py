@@ -5,12 +5,10 @@ from __future__ import annotations
 from math import sin
 from typing import Annotated, ClassVar, Literal
 
-from pydantic import Field
-
 from nrs_design.spec.check import Row
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import Name, Positive, Title, read_exact, whole
-from nrs_design.spec.model import ReadBy, SpecModel, optional
+from nrs_design.spec.model import ReadBy, SpecModel, optional, required
 from nrs_design.spec.motion import CommandUnit, MotionLoopSpec, commands_in
 from nrs_design.spec.quantity_fields import (
     ActuatorGain,
@@ -51,9 +49,9 @@ Counts = Annotated[int, whole(2, MAX_COUNTS)]
 class TensorSpec(SpecModel):
     """Inertia tensor about the center of mass; products with the sign they have in the tensor."""
 
-    xx: MomentOfInertia = Field(description="moment about x in kg*m^2")
-    yy: MomentOfInertia = Field(description="moment about y in kg*m^2")
-    zz: MomentOfInertia = Field(description="moment about z in kg*m^2")
+    xx: MomentOfInertia = required("moment about x in kg*m^2")
+    yy: MomentOfInertia = required("moment about y in kg*m^2")
+    zz: MomentOfInertia = required("moment about z in kg*m^2")
     xy: ProductOfInertia | None = optional("entry (x, y) of the tensor in kg*m^2; default 0")
     xz: ProductOfInertia | None = optional("entry (x, z) of the tensor in kg*m^2; default 0")
     yz: ProductOfInertia | None = optional("entry (y, z) of the tensor in kg*m^2; default 0")
@@ -77,12 +75,12 @@ class TensorSpec(SpecModel):
 class BodySpec(SpecModel):
     """A rigid body: mass, center of mass, and inertia as a tensor or as that of a rod."""
 
-    mass: Mass = Field(description="mass in kg, >= 0")
-    center_of_mass: tuple[Coordinate, Coordinate, Coordinate] = Field(
-        description="center of mass [x, y, z] in m, in the frame of the body"
+    mass: Mass = required("mass in kg, >= 0")
+    center_of_mass: tuple[Coordinate, Coordinate, Coordinate] = required(
+        "center of mass [x, y, z] in m, in the frame of the body"
     )
-    inertia: Literal["slender-rod", "tensor"] = Field(
-        description="slender-rod: m l^2/12 about both axes across the body's length, 0 along it; "
+    inertia: Literal["slender-rod", "tensor"] = required(
+        "slender-rod: m l^2/12 about both axes across the body's length, 0 along it; "
         "tensor: as given under `tensor`"
     )
     tensor: TensorSpec | None = optional("inertia about the center of mass, with `inertia: tensor`")
@@ -100,30 +98,29 @@ class BodySpec(SpecModel):
 class LegSpec(SpecModel):
     """One leg: crank and coupler move in a plane that turns about the leg's base axis."""
 
-    azimuth: SignedAngle = Field(
-        description="direction of the base axis through the pivot, in the base's x-y plane, "
-        "from x towards y"
+    azimuth: SignedAngle = required(
+        "direction of the base axis through the pivot, in the base's x-y plane, from x towards y"
     )
-    elbow_sign: ElbowSign = Field(
-        description="sign of the elbow's angle in `crank angle = direction of the coupler joint + "
+    elbow_sign: ElbowSign = required(
+        "sign of the elbow's angle in `crank angle = direction of the coupler joint + "
         "sign * acos(...)`: -1 bends the elbow outwards (thesis 3.10), 1 inwards"
     )
-    l0: Length = Field(description="pivot to base joint along the base axis, in m")
-    l1: Length = Field(description="length of the crank, in m")
-    l2: Length = Field(description="length of the coupler, in m")
-    l3: Length = Field(description="distance of the coupler's end from the endoscope axis, in m")
-    crank: BodySpec = Field(
-        description="first link; x along it from the base joint, z normal to the leg's plane"
+    l0: Length = required("pivot to base joint along the base axis, in m")
+    l1: Length = required("length of the crank, in m")
+    l2: Length = required("length of the coupler, in m")
+    l3: Length = required("distance of the coupler's end from the endoscope axis, in m")
+    crank: BodySpec = required(
+        "first link; x along it from the base joint, z normal to the leg's plane"
     )
-    coupler: BodySpec = Field(
-        description="second link; x along it from the elbow, z normal to the leg's plane"
+    coupler: BodySpec = required(
+        "second link; x along it from the elbow, z normal to the leg's plane"
     )
-    arm: BodySpec = Field(
-        description="third link; x along it from the coupler's end to the endoscope axis, z "
+    arm: BodySpec = required(
+        "third link; x along it from the coupler's end to the endoscope axis, z "
         "normal to the leg's plane"
     )
-    axis_inertia: MomentOfInertia = Field(
-        description="inertia about the base axis of what turns with the leg's plane beside its "
+    axis_inertia: MomentOfInertia = required(
+        "inertia about the base axis of what turns with the leg's plane beside its "
         "links, such as a rotor, in kg*m^2"
     )
 
@@ -131,11 +128,9 @@ class LegSpec(SpecModel):
 class LegsSpec(SpecModel):
     """The three legs; the middle one carries the platform."""
 
-    left: LegSpec = Field(description="side leg of theta1, the angle of its plane")
-    right: LegSpec = Field(description="side leg of theta2, the angle of its plane")
-    middle: LegSpec = Field(
-        description="leg of theta3, its crank angle; its arm is rigid with the platform"
-    )
+    left: LegSpec = required("side leg of theta1, the angle of its plane")
+    right: LegSpec = required("side leg of theta2, the angle of its plane")
+    middle: LegSpec = required("leg of theta3, its crank angle; its arm is rigid with the platform")
 
     checks = (
         Row(
@@ -154,45 +149,41 @@ class PlatformSpec(BodySpec):
     the endoscope, y completes a right-handed frame.
     """
 
-    length: Length = Field(description="length along the endoscope axis, for slender-rod, in m")
+    length: Length = required("length along the endoscope axis, for slender-rod, in m")
 
 
 class RobotWorkspaceSpec(SpecModel):
     """Poses that the robot is made for."""
 
-    phi: Angle = Field(description="largest |phi| (yaw)")
-    psi: Angle = Field(description="largest |psi| (pitch)")
-    d: LengthBounds = Field(description="depth along the endoscope axis, {min: ..., max: ...}")
+    phi: Angle = required("largest |phi| (yaw)")
+    psi: Angle = required("largest |psi| (pitch)")
+    d: LengthBounds = required("depth along the endoscope axis, {min: ..., max: ...}")
 
 
 class TaskLimitsSpec(SpecModel):
     """Largest motion of the endoscope that the task asks for (thesis 3.3)."""
 
-    angular_velocity: AngularVelocity = Field(description="of phi and psi, in rad/s")
-    linear_velocity: LinearVelocity = Field(description="of d, in m/s")
-    angular_acceleration: AngularAcceleration = Field(description="of phi and psi, in rad/s^2")
-    linear_acceleration: LinearAcceleration = Field(description="of d, in m/s^2")
+    angular_velocity: AngularVelocity = required("of phi and psi, in rad/s")
+    linear_velocity: LinearVelocity = required("of d, in m/s")
+    angular_acceleration: AngularAcceleration = required("of phi and psi, in rad/s^2")
+    linear_acceleration: LinearAcceleration = required("of d, in m/s^2")
 
 
 class DriveSpec(SpecModel):
     """Motor with driver, gearhead, capstan and encoder; the same for all three joints."""
 
-    gain: ActuatorGain = Field(
-        description="Km, speed of the gearhead's output per command, in rad/s/rpm (thesis 4.9)"
+    gain: ActuatorGain = required(
+        "Km, speed of the gearhead's output per command, in rad/s/rpm (thesis 4.9)"
     )
-    time_constant: Duration = Field(description="mechanical time constant in s (thesis 4.9)")
-    rotor_inertia: MomentOfInertia = Field(
-        description="motor and gearhead, at the motor shaft, in kg*m^2"
+    time_constant: Duration = required("mechanical time constant in s (thesis 4.9)")
+    rotor_inertia: MomentOfInertia = required("motor and gearhead, at the motor shaft, in kg*m^2")
+    gearhead_ratio: Positive = required("motor turns per turn of the gearhead, no unit")
+    capstan_ratio: Positive = required("gearhead turns per turn of the joint, no unit")
+    speed_torque_gradient: TorqueGradient = required(
+        "command per torque at the motor shaft, in rpm/(N*m) (thesis 4.10)"
     )
-    gearhead_ratio: Positive = Field(description="motor turns per turn of the gearhead, no unit")
-    capstan_ratio: Positive = Field(description="gearhead turns per turn of the joint, no unit")
-    speed_torque_gradient: TorqueGradient = Field(
-        description="command per torque at the motor shaft, in rpm/(N*m) (thesis 4.10)"
-    )
-    coulomb_friction: Command = Field(description="dry friction as a command (thesis 4.1)")
-    encoder_counts: Counts = Field(
-        description="counts of the encoder per turn of the gearhead's output"
-    )
+    coulomb_friction: Command = required("dry friction as a command (thesis 4.1)")
+    encoder_counts: Counts = required("counts of the encoder per turn of the gearhead's output")
 
     checks = (
         commands_in(
@@ -205,8 +196,8 @@ class DriveSpec(SpecModel):
 class RobotControlSpec(SpecModel):
     """Motion control of the joints (thesis 4.2 and 4.3)."""
 
-    motion_loop: MotionLoopSpec = Field(description="the position loop around each motor")
-    sample_period: Duration = Field(description="time between two control ticks, in s")
+    motion_loop: MotionLoopSpec = required("the position loop around each motor")
+    sample_period: Duration = required("time between two control ticks, in s")
 
     checks = (
         commands_in(
@@ -219,26 +210,22 @@ class RobotControlSpec(SpecModel):
 class BalancedLegSpec(SpecModel):
     """Counter-masses and spring of one side leg (thesis 4.4)."""
 
-    arm_center_of_mass: Length = Field(
-        description="G_c, center of mass of the arm from the coupler's end, in m"
+    arm_center_of_mass: Length = required(
+        "G_c, center of mass of the arm from the coupler's end, in m"
     )
-    coupler_counter_arm: Length = Field(
-        description="B_b, counter-mass of the coupler from the elbow, in m"
-    )
-    arm_counter_arm: Length = Field(
-        description="B_c, counter-mass of the arm from the coupler's end, in m"
-    )
-    spring_on_crank: Length = Field(description="A0C_A, spring on the crank from the base joint")
-    spring_on_base: Length = Field(description="A0D0, spring on the base from the base joint, in m")
+    coupler_counter_arm: Length = required("B_b, counter-mass of the coupler from the elbow, in m")
+    arm_counter_arm: Length = required("B_c, counter-mass of the arm from the coupler's end, in m")
+    spring_on_crank: Length = required("A0C_A, spring on the crank from the base joint")
+    spring_on_base: Length = required("A0D0, spring on the base from the base joint, in m")
 
 
 class BalanceSpec(SpecModel):
     """Passive balance of the side legs (thesis 4.4)."""
 
-    payload: Mass = Field(description="m_p, share of the platform that each side leg carries")
-    tilt: SignedAngle = Field(description="base tilt for which the springs are anchored")
-    left: BalancedLegSpec = Field(description="left leg")
-    right: BalancedLegSpec = Field(description="right leg")
+    payload: Mass = required("m_p, share of the platform that each side leg carries")
+    tilt: SignedAngle = required("base tilt for which the springs are anchored")
+    left: BalancedLegSpec = required("left leg")
+    right: BalancedLegSpec = required("right leg")
 
 
 class RobotSpec(SpecModel):
@@ -247,17 +234,17 @@ class RobotSpec(SpecModel):
     # Nothing is certified about it, so no range is covered.
     has_ranges: ClassVar[bool] = False
 
-    kind: Literal["robot"] = Field(description="what this file describes")
-    name: Name = Field(description="short name: lower-case letters, digits, '.', '_', '-'")
-    title: Title = Field(default="", description="one line for people, at most 200 characters")
-    gravity: Gravity = Field(description="gravitational acceleration, m/s^2")
-    base_tilt: SignedAngle = Field(
-        description="theta4, rotation of the base against the vertical (thesis 3.40)"
+    kind: Literal["robot"] = required("what this file describes")
+    name: Name = required("short name: lower-case letters, digits, '.', '_', '-'")
+    title: Title = optional("one line for people, at most 200 characters", "")
+    gravity: Gravity = required("gravitational acceleration, m/s^2")
+    base_tilt: SignedAngle = required(
+        "theta4, rotation of the base against the vertical (thesis 3.40)"
     )
-    legs: LegsSpec = Field(description="the three legs")
-    platform: PlatformSpec = Field(description="mobile platform with the endoscope")
-    workspace: RobotWorkspaceSpec = Field(description="poses that the robot is made for")
-    task_limits: TaskLimitsSpec = Field(description="largest motion of the endoscope")
-    drive: DriveSpec = Field(description="what moves each joint")
+    legs: LegsSpec = required("the three legs")
+    platform: PlatformSpec = required("mobile platform with the endoscope")
+    workspace: RobotWorkspaceSpec = required("poses that the robot is made for")
+    task_limits: TaskLimitsSpec = required("largest motion of the endoscope")
+    drive: DriveSpec = required("what moves each joint")
     control: RobotControlSpec | None = optional("motion control")
     balance: BalanceSpec | None = optional("passive gravity balance")

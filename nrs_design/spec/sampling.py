@@ -6,14 +6,12 @@ import re
 from fractions import Fraction
 from typing import Annotated, Literal
 
-from pydantic import Field
-
 from nrs_design.proof.text import exact_text
 from nrs_design.spec.check import Row
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import read_exact
 from nrs_design.spec.misses import DeadlinesSpec
-from nrs_design.spec.model import ReadBy, SpecModel, optional, pair_schema
+from nrs_design.spec.model import ReadBy, SpecModel, optional, pair_schema, required
 from nrs_design.spec.provenance import IdentifiedSpec
 from nrs_design.spec.quantity_fields import (
     Angle,
@@ -73,9 +71,9 @@ class SamplingSpec(IdentifiedSpec):
     samples, and motion and admittance run with one period, unless the admittance has its own.
     """
 
-    period: Duration = Field(description="time between two samples in s")
-    delay: Delay = Field(
-        description="age of the force sample that the law uses, in samples: one number, or "
+    period: Duration = required("time between two samples in s")
+    delay: Delay = required(
+        "age of the force sample that the law uses, in samples: one number, or "
         "[smallest, largest] for a delay that may differ at every sample"
     )
     latency: TimeRange | None = optional(
@@ -93,10 +91,10 @@ class SamplingSpec(IdentifiedSpec):
     misses: DeadlinesSpec | None = optional(
         "how many periods may miss their deadline, and what happens in these; default: none"
     )
-    admittance: Literal["exact", "euler"] = Field(
-        default="exact",
-        description="how Mt vm' + Bt vm = F becomes a step: exact for a force held over the "
+    admittance: Literal["exact", "euler"] = optional(
+        "how Mt vm' + Bt vm = F becomes a step: exact for a force held over the "
         "period, or one step of Euler's method",
+        "exact",
     )
 
     @property

@@ -14,7 +14,7 @@ from nrs_design.spec import kinds
 from nrs_design.spec.check import Row
 from nrs_design.spec.faults import all_of, as_text, fault
 from nrs_design.spec.fields import LABEL_PATTERN, Label, Title, UnitFraction, whole
-from nrs_design.spec.model import ReadBy, SpecModel, optional, pair_schema
+from nrs_design.spec.model import ReadBy, SpecModel, optional, pair_schema, required
 from nrs_design.spec.quantity import Quantity, is_less
 from nrs_design.spec.quantity_fields import (
     Angle,
@@ -112,8 +112,8 @@ def one_of(message: str, remedy: str) -> tuple[Row[Any], ...]:
 class SinusoidSpec(SpecModel):
     """A velocity ``offset + amplitude sin(omega t)``."""
 
-    amplitude: AngularVelocity = Field(description="amplitude in rad/s")
-    frequency: Bandwidth = Field(description="frequency in Hz, or rad/s")
+    amplitude: AngularVelocity = required("amplitude in rad/s")
+    frequency: Bandwidth = required("frequency in Hz, or rad/s")
     offset: SignedAngularVelocity | None = optional("mean in rad/s; default: none")
 
 
@@ -137,19 +137,19 @@ class CommandProfileSpec(SpecModel):
 class SurfaceSpec(SpecModel):
     """Where an environment begins; it pushes and never pulls."""
 
-    environment: Label = Field(description="name of the environment")
-    beside: Annotated[tuple[Label, ...], Field(max_length=MAX_SURFACES)] = Field(
-        default=(),
-        description="linear environments that are one body with it, of the same parameters: "
+    environment: Label = required("name of the environment")
+    beside: Annotated[tuple[Label, ...], Field(max_length=MAX_SURFACES)] = optional(
+        "linear environments that are one body with it, of the same parameters: "
         "forces add up, and only their sum does not pull. An elastic one with maxwell ones beside "
         "it is a Prony series",
+        (),
     )
-    at: SignedAngle = Field(description="angle of its surface in rad")
-    side: Literal["above", "below"] = Field(
-        default="above", description="above: met by rising angles; below: by falling ones"
+    at: SignedAngle = required("angle of its surface in rad")
+    side: Literal["above", "below"] = optional(
+        "above: met by rising angles; below: by falling ones", "above"
     )
-    parameters: Literal["nominal", "lowest", "highest"] = Field(
-        default="nominal", description="which end of its ranges it has: all parameters alike"
+    parameters: Literal["nominal", "lowest", "highest"] = optional(
+        "which end of its ranges it has: all parameters alike", "nominal"
     )
 
 
@@ -159,18 +159,16 @@ Surfaces = Annotated[tuple[SurfaceSpec, ...], Field(max_length=MAX_SURFACES)]
 class SignControlSpec(SpecModel):
     """Insertion and withdrawal by the signs of command and torque (thesis 6.3.2)."""
 
-    insertion: Label = Field(description="controller while the command goes into the tissue")
-    withdrawal: Label = Field(
-        description="controller while the command goes out of tissue that pushes"
-    )
+    insertion: Label = required("controller while the command goes into the tissue")
+    withdrawal: Label = required("controller while the command goes out of tissue that pushes")
 
 
 class ThresholdControlSpec(SpecModel):
     """Position control up to a torque, force control from there on (thesis 6.3.3)."""
 
-    position: Label = Field(description="controller below the threshold")
-    force: Label = Field(description="controller from the threshold on, until the command is out")
-    torque: Torque = Field(description="the threshold T_th in N*m")
+    position: Label = required("controller below the threshold")
+    force: Label = required("controller from the threshold on, until the command is out")
+    torque: Torque = required("the threshold T_th in N*m")
 
 
 class ControlSpec(SpecModel):
@@ -247,17 +245,16 @@ class ScenarioLimitsSpec(SpecModel):
 class ScenarioSpec(SpecModel):
     """One run of the robot against its surroundings."""
 
-    title: Title = Field(default="", description="one line for people, at most 200 characters")
-    command: CommandProfileSpec = Field(description="velocity that the surgeon commands")
+    title: Title = optional("one line for people, at most 200 characters", "")
+    command: CommandProfileSpec = required("velocity that the surgeon commands")
     duration: Duration | None = optional(
         "length of the run in s, at most an hour; default: that of points or csv"
     )
     start: SignedAngle | None = optional(
         "angle at which the axis rests at first, in rad; default: 0"
     )
-    surfaces: Surfaces = Field(
-        default=(),
-        description="what is touched where; where several are, forces add up. Default: nothing",
+    surfaces: Surfaces = optional(
+        "what is touched where; where several are, forces add up. Default: nothing", ()
     )
     control: ControlSpec | None = optional(
         "which controller is in force; default: the spec's mode_logic, else the first controller"
@@ -272,7 +269,7 @@ class ScenarioSpec(SpecModel):
         "what the run must keep for the gate to pass (NRS109), such as "
         "{torque: 0.3 N*m, deflection: 1 deg}; without it, the gate does not simulate it"
     )
-    seed: Seed = Field(default=0, description="of noise, jitter and varying delay")
+    seed: Seed = optional("of noise, jitter and varying delay", 0)
 
     def _too_long(self) -> tuple[str, str] | None:
         """Return the key of a length that is not simulated, and the length."""

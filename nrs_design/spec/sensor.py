@@ -5,11 +5,9 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Annotated
 
-from pydantic import Field
-
 from nrs_design.spec.check import Row
 from nrs_design.spec.fields import whole
-from nrs_design.spec.model import SpecModel, optional
+from nrs_design.spec.model import SpecModel, optional, required
 from nrs_design.spec.quantity import Quantity
 from nrs_design.spec.quantity_fields import (
     Angle,
@@ -33,18 +31,18 @@ _AT = "{axis} of {what}, in m along the axes of the sensor"
 class FilterSpec(SpecModel):
     """A low-pass of so many equal lags in a row, ``1/(s/cutoff + 1)^order``."""
 
-    order: Annotated[int, whole(1, HIGHEST_ORDER)] = Field(
-        default=1, description=f"number of lags, 1 to {HIGHEST_ORDER}, no unit"
+    order: Annotated[int, whole(1, HIGHEST_ORDER)] = optional(
+        f"number of lags, 1 to {HIGHEST_ORDER}, no unit", 1
     )
-    cutoff: Bandwidth = Field(description="corner frequency of each lag, such as 30 Hz")
+    cutoff: Bandwidth = required("corner frequency of each lag, such as 30 Hz")
 
 
 class PointSpec(SpecModel):
     """A point, from the origin of the sensor."""
 
-    x: Coordinate = Field(description=_AT.format(axis="x", what="the point"))
-    y: Coordinate = Field(description=_AT.format(axis="y", what="the point"))
-    z: Coordinate = Field(description=_AT.format(axis="z", what="the point"))
+    x: Coordinate = required(_AT.format(axis="x", what="the point"))
+    y: Coordinate = required(_AT.format(axis="y", what="the point"))
+    z: Coordinate = required(_AT.format(axis="z", what="the point"))
 
     @property
     def exact(self) -> tuple[Fraction, ...]:
@@ -55,21 +53,21 @@ class PointSpec(SpecModel):
 class CenterSpec(SpecModel):
     """A center of mass that is known within ranges, from the origin of the sensor."""
 
-    x: RangedCoordinate = Field(description=_AT.format(axis="x", what="the center of mass"))
-    y: RangedCoordinate = Field(description=_AT.format(axis="y", what="the center of mass"))
-    z: RangedCoordinate = Field(description=_AT.format(axis="z", what="the center of mass"))
+    x: RangedCoordinate = required(_AT.format(axis="x", what="the center of mass"))
+    y: RangedCoordinate = required(_AT.format(axis="y", what="the center of mass"))
+    z: RangedCoordinate = required(_AT.format(axis="z", what="the center of mass"))
 
 
 class ToolSpec(SpecModel):
     """What hangs on the sensor. Its weight is taken off the signal, with the nominal values."""
 
-    mass: RangedMass = Field(
-        description="mass in kg: one quantity, or {nominal: ..., range: [lowest, highest]}"
+    mass: RangedMass = required(
+        "mass in kg: one quantity, or {nominal: ..., range: [lowest, highest]}"
     )
-    center_of_mass: CenterSpec = Field(description="center of mass, from the origin of the sensor")
-    gravity: Gravity = Field(
-        default=Quantity("9.81 m/s^2", Fraction("9.81"), "m/s^2"),
-        description="gravitational acceleration in m/s^2; default: 9.81 m/s^2",
+    center_of_mass: CenterSpec = required("center of mass, from the origin of the sensor")
+    gravity: Gravity = optional(
+        "gravitational acceleration in m/s^2; default: 9.81 m/s^2",
+        Quantity("9.81 m/s^2", Fraction("9.81"), "m/s^2"),
     )
 
 

@@ -14,7 +14,7 @@ from nrs_design.spec.check import NO_SUCH, Reference, Row, each, refuse
 from nrs_design.spec.faults import Location, did_you_mean
 from nrs_design.spec.fields import Label, Name, Title
 from nrs_design.spec.misses import MissesSpec
-from nrs_design.spec.model import SpecModel, optional
+from nrs_design.spec.model import SpecModel, optional, required
 from nrs_design.spec.parameters import MAX_PARAMETERS, Entry, ParameterName, ParameterSpec
 from nrs_design.spec.switching import (
     MAX_DIMENSION,
@@ -38,9 +38,9 @@ _Matrix = Annotated[tuple[_Row, ...], Field(min_length=1, max_length=MAX_DIMENSI
 class ModeSpec(SpecModel):
     """One mode ``x' = A x`` (or ``x+ = A x``)."""
 
-    name: Label = Field(description="name of the mode, unique in this file")
-    A: _Matrix = Field(
-        description="state matrix as a list of rows, n x n with n <= 64; integers, decimals, "
+    name: Label = required("name of the mode, unique in this file")
+    A: _Matrix = required(
+        "state matrix as a list of rows, n x n with n <= 64; integers, decimals, "
         '"p/q" or expressions that are affine in the parameters such as "3/4*k - m + 0.5", read '
         "exactly; unit 1/s in continuous time"
     )
@@ -82,32 +82,30 @@ class ModeSpec(SpecModel):
 class SwitchedSystemSpec(SpecModel):
     """A finite family of linear modes, or of boxes of modes."""
 
-    kind: Literal["switched-system"] = Field(description="what this file describes")
-    name: Name = Field(description="short name: lower-case letters, digits, '.', '_', '-'")
-    title: Title = Field(default="", description="one line for people, at most 200 characters")
-    time: Literal["continuous", "discrete"] = Field(
-        description="continuous: x' = A x; discrete: x+ = A x"
-    )
+    kind: Literal["switched-system"] = required("what this file describes")
+    name: Name = required("short name: lower-case letters, digits, '.', '_', '-'")
+    title: Title = optional("one line for people, at most 200 characters", "")
+    time: Literal["continuous", "discrete"] = required("continuous: x' = A x; discrete: x+ = A x")
     parameters: Annotated[dict[ParameterName, ParameterSpec], Field(max_length=MAX_PARAMETERS)] = (
         Field(
             default_factory=dict,
             description="uncertain numbers that the matrices depend on: name -> nominal and range",
         )
     )
-    modes: Annotated[tuple[ModeSpec, ...], Field(min_length=1, max_length=MAX_MODES)] = Field(
-        description="the modes, at least one; of the same size, unless resets link them"
+    modes: Annotated[tuple[ModeSpec, ...], Field(min_length=1, max_length=MAX_MODES)] = required(
+        "the modes, at least one; of the same size, unless resets link them"
     )
-    switching: SwitchingRule = Field(
-        description="when modes change: arbitrary, or rules with dwell_time and transitions"
+    switching: SwitchingRule = required(
+        "when modes change: arbitrary, or rules with dwell_time and transitions"
     )
     misses: MissesSpec | None = optional(
         "how many steps may miss their deadline, in discrete time, in the place of rules of "
         "switching; the other modes are what a step in time brings about"
     )
-    resets: Annotated[tuple[ResetSpec, ...], Field(max_length=MAX_TRANSITIONS)] = Field(
-        default=(),
-        description="what switches do to the state; the others leave it as it is. Several from one "
+    resets: Annotated[tuple[ResetSpec, ...], Field(max_length=MAX_TRANSITIONS)] = optional(
+        "what switches do to the state; the others leave it as it is. Several from one "
         "mode to another are as many switches: any one of them may happen",
+        (),
     )
     # The default is made without validation, for which a validator of its own would be built.
     certification: CertificationSpec = Field(

@@ -17,7 +17,7 @@ from nrs_design.spec.check import NO_SUCH, Reference, Row, each, refuse
 from nrs_design.spec.exact import parse_exact
 from nrs_design.spec.faults import Location, as_text, fault, reported
 from nrs_design.spec.fields import Exact, Label
-from nrs_design.spec.model import ReadBefore, ReadBy, SpecModel, optional, pair_schema
+from nrs_design.spec.model import ReadBefore, ReadBy, SpecModel, optional, pair_schema, required
 from nrs_design.spec.quantity import QUANTITY_PATTERN, parse_quantity
 
 MAX_TRANSITIONS = 20_000
@@ -286,8 +286,8 @@ class ResetSpec(SpecModel):
 
     source: Label = Field(alias="from", description="name of the mode before the switch")
     target: Label = Field(alias="to", description="name of the mode after the switch")
-    map: _Matrix = Field(
-        description="matrix of x+ = map x as a list of rows, as many rows as the mode after the "
+    map: _Matrix = required(
+        "matrix of x+ = map x as a list of rows, as many rows as the mode after the "
         "switch has states, as many columns as the mode before it; exact numbers"
     )
 

@@ -18,7 +18,7 @@ from nrs_design.spec.check import Row
 from nrs_design.spec.document import Mapping, Node, Scalar
 from nrs_design.spec.faults import Location, did_you_mean
 from nrs_design.spec.fields import Name, Title
-from nrs_design.spec.model import SpecModel, optional
+from nrs_design.spec.model import SpecModel, optional, required
 
 KIND = "task-space"
 SEPARATOR = "#"
@@ -41,14 +41,12 @@ def _of_each_part(s: TaskSpaceSpec) -> Iterator[tuple[Location, _Keys]]:
 class TaskSpaceSpec(SpecModel):
     """Axes that are interaction designs: each has the keys in common and its own."""
 
-    kind: Literal["task-space"] = Field(description="what this file describes")
-    name: Name = Field(description="name of the spec; an axis is called NAME-AXIS")
+    kind: Literal["task-space"] = required("what this file describes")
+    name: Name = required("name of the spec; an axis is called NAME-AXIS")
     title: Title | None = optional("what reports are headed with")
-    common: _Keys = Field(
-        default={}, description="keys of an interaction-design that every axis has"
-    )
-    axes: Annotated[dict[Name, _Keys], Field(min_length=1, max_length=MAX_AXES)] = Field(
-        description="by the name of each axis the keys of an interaction-design that it has alone"
+    common: _Keys = optional("keys of an interaction-design that every axis has", {})
+    axes: Annotated[dict[Name, _Keys], Field(min_length=1, max_length=MAX_AXES)] = required(
+        "by the name of each axis the keys of an interaction-design that it has alone"
     )
 
     checks = (

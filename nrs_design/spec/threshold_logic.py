@@ -20,7 +20,7 @@ from nrs_design.proof.text import exact_text, quoted
 from nrs_design.spec.check import Reference, Row, each, refuse
 from nrs_design.spec.faults import Location, as_text, did_you_mean, fault
 from nrs_design.spec.fields import Label
-from nrs_design.spec.model import ReadBy, SpecModel, optional
+from nrs_design.spec.model import ReadBy, SpecModel, optional, required
 from nrs_design.spec.quantity import Quantity
 from nrs_design.spec.quantity_fields import (
     AngularAcceleration,
@@ -55,17 +55,17 @@ _BELOW = "the value that the logic sees is at most this, in {unit}"
 class CommandSignalSpec(SpecModel):
     """The velocity command of the surgeon, positive towards the tissue."""
 
-    noise: AngularVelocity = Field(description=_NOISE.format(unit="rad/s"))
-    age: Duration = Field(description=_AGE)
-    largest_rate: AngularAcceleration = Field(description=_RATE.format(unit="rad/s^2"))
+    noise: AngularVelocity = required(_NOISE.format(unit="rad/s"))
+    age: Duration = required(_AGE)
+    largest_rate: AngularAcceleration = required(_RATE.format(unit="rad/s^2"))
 
 
 class TorqueSignalSpec(SpecModel):
     """The torque of the tissue on the robot, positive where it is pushed."""
 
-    noise: Torque = Field(description=_NOISE.format(unit="N*m"))
-    age: Duration = Field(description=_AGE)
-    largest_rate: TorqueRate = Field(description=_RATE.format(unit="N*m/s"))
+    noise: Torque = required(_NOISE.format(unit="N*m"))
+    age: Duration = required(_AGE)
+    largest_rate: TorqueRate = required(_RATE.format(unit="N*m/s"))
 
 
 SignalSpec = CommandSignalSpec | TorqueSignalSpec
@@ -162,14 +162,14 @@ def check_type(given: object) -> object:
 class ThresholdLogicSpec(SpecModel):
     """Controllers that follow each other by thresholds on command and torque."""
 
-    type: Literal["thresholds"] = Field(
-        description="thresholds: switches by the size and the sign of command and torque"
+    type: Literal["thresholds"] = required(
+        "thresholds: switches by the size and the sign of command and torque"
     )
-    start: Label = Field(description="controller that is active at first")
-    signals: LogicSignalsSpec = Field(description="what the logic sees, and how well")
+    start: Label = required("controller that is active at first")
+    signals: LogicSignalsSpec = required("what the logic sees, and how well")
     switches: Annotated[
         tuple[LogicSwitchSpec, ...], Field(min_length=1, max_length=MAX_SWITCHES)
-    ] = Field(description="switches from one controller to another; the first that may be made is")
+    ] = required("switches from one controller to another; the first that may be made is")
     hold: Annotated[DwellTimes | None, ReadBy(read_dwell_times, DWELL_SCHEMA)] = optional(
         "shortest time in s for which a controller is held whatever the signals "
         "say; one for all, or by name. Default: what thresholds, noise and age give anyway"

@@ -14,9 +14,6 @@ if TYPE_CHECKING:
     from nrs_design.spec.controllers import IdleStatesSpec as IdleStatesSpec
     from nrs_design.spec.controllers import ImpedanceControllerSpec as ImpedanceControllerSpec
     from nrs_design.spec.controllers import PositionControllerSpec as PositionControllerSpec
-    from nrs_design.spec.doubts import Doubt as Doubt
-    from nrs_design.spec.doubts import doubt_spec as doubt_spec
-    from nrs_design.spec.doubts import worst_first as worst_first
     from nrs_design.spec.exact import parse_exact as parse_exact
     from nrs_design.spec.gain_fields import GainSpec as GainSpec
     from nrs_design.spec.goals import GoalsSpec as GoalsSpec
@@ -26,6 +23,9 @@ if TYPE_CHECKING:
     from nrs_design.spec.load import load_spec as load_spec
     from nrs_design.spec.load import parse_spec as parse_spec
     from nrs_design.spec.load import read_spec as read_spec
+    from nrs_design.spec.plausible import Doubt as Doubt
+    from nrs_design.spec.plausible import doubt_spec as doubt_spec
+    from nrs_design.spec.plausible import worst_first as worst_first
     from nrs_design.spec.quantity import Quantity as Quantity
     from nrs_design.spec.robot import BalancedLegSpec as BalancedLegSpec
     from nrs_design.spec.robot import BodySpec as BodySpec
@@ -43,7 +43,7 @@ _HOMES = {
     for module, names in {
         "controllers": "ControllerSpec ForceControllerSpec IdleStatesSpec "
         "ImpedanceControllerSpec PositionControllerSpec",
-        "doubts": "Doubt doubt_spec worst_first",
+        "plausible": "Doubt doubt_spec worst_first",
         "exact": "parse_exact",
         "gain_fields": "GainSpec",
         "goals": "GoalsSpec",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
+from itertools import product
 from types import MappingProxyType
 from typing import Annotated, ClassVar, Literal, get_args
 
@@ -208,14 +209,26 @@ class ImpedanceControllerSpec(AbstractControllerSpec):
     )
 
 
+# In which ways a gain is given, each with an example.
+_PROPORTIONAL = {
+    "proportional_gain": "proportional_gain: 0.02 rad/(N*m)",
+    "damping_ratio": "damping_ratio: 0.741",
+}
+_INTEGRAL = {
+    "integral_gain": "integral_gain: 0.5 rad/(N*m*s)",
+    "settling_time": "settling_time: 0.3 s",
+}
+
+
+def _just_one_of(*ways: dict[str, str]) -> ConfigDict:
+    """Return what the JSON Schema says of keys of which just one of each is given."""
+    return ConfigDict(json_schema_extra={"oneOf": [{"required": [*k]} for k in product(*ways)]})
+
+
 class ForceControllerSpec(AbstractControllerSpec):
     """Proportional force controller of the hybrid scheme (thesis 6.3.3)."""
 
-    model_config = ConfigDict(
-        json_schema_extra={
-            "oneOf": [{"required": ["proportional_gain"]}, {"required": ["damping_ratio"]}]
-        }
-    )
+    model_config = _just_one_of(_PROPORTIONAL)
     commands: ClassVar[Command] = "position"
     holds_force: ClassVar[bool] = True
     freeable: ClassVar[Mapping[str, str | None]] = MappingProxyType({"Kp": "damping_ratio"})
@@ -243,27 +256,13 @@ class ForceControllerSpec(AbstractControllerSpec):
         """As `offset` says."""
         return self.offset
 
-    checks = exactly_one(
-        {
-            "proportional_gain": "proportional_gain: 0.02 rad/(N*m)",
-            "damping_ratio": "damping_ratio: 0.741",
-        }
-    )
+    checks = exactly_one(_PROPORTIONAL)
 
 
 class IntegralControllerSpec(AbstractControllerSpec):
     """Proportional and integral force controller whose integral bleeds in other modes."""
 
-    model_config = ConfigDict(
-        json_schema_extra={
-            "oneOf": [
-                {"required": ["proportional_gain", "integral_gain"]},
-                {"required": ["proportional_gain", "settling_time"]},
-                {"required": ["damping_ratio", "integral_gain"]},
-                {"required": ["damping_ratio", "settling_time"]},
-            ]
-        }
-    )
+    model_config = _just_one_of(_PROPORTIONAL, _INTEGRAL)
     commands: ClassVar[Command] = "position"
     holds_force: ClassVar[bool] = True
     bleeds: ClassVar[bool] = True
@@ -293,15 +292,7 @@ class IntegralControllerSpec(AbstractControllerSpec):
     )
     goals: GoalsSpec | None = optional(_GOALS)
 
-    checks = (
-        *ForceControllerSpec.checks,
-        *exactly_one(
-            {
-                "integral_gain": "integral_gain: 0.5 rad/(N*m*s)",
-                "settling_time": "settling_time: 0.3 s",
-            }
-        ),
-    )
+    checks = (*exactly_one(_PROPORTIONAL), *exactly_one(_INTEGRAL))
 
 
 class TorqueImpedanceSpec(AbstractControllerSpec):

@@ -6,8 +6,6 @@ import re
 from fractions import Fraction
 from typing import Annotated
 
-from pydantic import Field
-
 from nrs_design.proof.text import quoted
 from nrs_design.spec.affine import Affine
 from nrs_design.spec.exact import parse_exact
@@ -15,7 +13,7 @@ from nrs_design.spec.expression import EXPRESSION_PATTERN, parse_affine
 from nrs_design.spec.faults import as_text, fault, reported
 from nrs_design.spec.fields import NUMBER_SCHEMA, read_exact
 from nrs_design.spec.model import ReadBy, SpecModel, optional, pair_schema, required
-from nrs_design.spec.range_checks import RANGE_CHECKS
+from nrs_design.spec.range_checks import RANGE_CHECKS, range_around
 
 PARAMETER_PATTERN = "^[A-Za-z][A-Za-z0-9_]{0,31}$"
 MAX_PARAMETERS = 16
@@ -96,9 +94,8 @@ class ParameterSpec(SpecModel):
     """An uncertain number that the matrices depend on."""
 
     nominal: _Value = required("value that is meant, an exact number, no unit")
-    range: _Range = Field(
-        default_factory=lambda data: (data.get("nominal"), data.get("nominal")),
-        description="[lowest, highest] value that the proof covers; default: the nominal one",
+    range: _Range = range_around(
+        "[lowest, highest] value that the proof covers; default: the nominal one"
     )
     varies: Switch = optional(
         "true: may change arbitrarily fast within its range; false: unknown, but it "

@@ -1,22 +1,28 @@
-"""Sizes that no surgical or co-worker robot has: one table, `sizes.toml`, for all quantities.
+"""Reasons to doubt a valid spec, such as sizes that no robot has: warnings, not errors.
 
-What lies outside is valid and probably a slip of the unit, which the same table names: the same
-number in another unit that would lie within. The ranges are wide, so that what is doubted here is
-out of the question by an order of magnitude or more.
+Sizes that no surgical or co-worker robot has are one table, `sizes.toml`, for all quantities. What
+lies outside is valid and probably a slip of the unit, which the same table names: the same number
+in another unit that would lie within. The ranges are wide, so that what is doubted here is out of
+the question by an order of magnitude or more.
 """
 
 from __future__ import annotations
 
 import math
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
+from typing import TYPE_CHECKING
 
+from nrs_design.spec.check import find_faults
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.quantity import Quantity
 from nrs_design.spec.units import parse_unit
+
+if TYPE_CHECKING:
+    from nrs_design.spec.load import Spec
 
 _Asked = tuple[tuple[str, ...], str]  # Keys that lead to a field, and the question
 _TABLE = Path(__file__).with_name("sizes.toml")
@@ -135,3 +141,29 @@ def _once(
         if at not in seen:
             seen.add(at)
             yield at, text
+
+
+@dataclass(frozen=True, slots=True)
+class Doubt:
+    """Something that is allowed, and probably not meant."""
+
+    at: tuple[str, ...]  # Keys that lead to it in the spec
+    message: str  # What is doubtful; one line
+    # A value of the design over its limit: how useless it makes the design; 0 where it has none.
+    beyond: float = 0.0
+
+    def __str__(self) -> str:
+        """Return the message."""
+        return self.message
+
+
+def doubt_spec(spec: Spec) -> Iterator[Doubt]:
+    """Yield what is doubtful about a spec, before anything is designed."""
+    yield from (Doubt(at, text) for at, text in doubt_sizes(spec))
+    for found in find_faults(spec.warnings, spec, spec.checks):
+        yield Doubt(found["at"], f"{found['message']} ({found['remedy']})")
+
+
+def worst_first(doubts: Iterable[Doubt]) -> tuple[Doubt, ...]:
+    """Return doubts by how far they are beyond a limit, else in their order."""
+    return tuple(sorted(doubts, key=lambda doubt: -doubt.beyond))

@@ -17,14 +17,12 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Annotated
 
-from pydantic import Field
-
 from nrs_design.models.interval import Interval
 from nrs_design.proof.power import power_between
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import NUMBER_SCHEMA, read_exact
 from nrs_design.spec.model import ReadBefore, ReadBy, SpecModel, keys_schema, pair_schema, required
-from nrs_design.spec.range_checks import RANGE_CHECKS
+from nrs_design.spec.range_checks import RANGE_CHECKS, range_around
 
 # Powers are enclosed in integers with as many digits as the denominator is large.
 FINEST = 1000
@@ -60,10 +58,7 @@ class ExponentSpec(SpecModel):
     """An exponent that is known up to a range."""
 
     nominal: _Exponent = required(_NOMINAL)
-    range: tuple[_Exponent, _Exponent] = Field(
-        default_factory=lambda data: (data.get("nominal"), data.get("nominal")),
-        description=_RANGE,
-    )
+    range: tuple[_Exponent, _Exponent] = range_around(_RANGE)
 
     checks = RANGE_CHECKS
 

@@ -6,7 +6,6 @@ from collections.abc import Callable
 from fractions import Fraction
 from typing import Annotated, Any, Literal, NamedTuple
 
-from pydantic import Field
 from pydantic_core import PydanticCustomError
 
 from nrs_design.axis import current
@@ -33,7 +32,7 @@ from nrs_design.spec.quantity import (
     is_less,
     parse_quantity,
 )
-from nrs_design.spec.range_checks import BOUND_CHECKS, RANGE_CHECKS
+from nrs_design.spec.range_checks import BOUND_CHECKS, RANGE_CHECKS, range_around
 
 
 def read_quantity(
@@ -131,9 +130,8 @@ class RangedQuantity(SpecModel):
     """
 
     nominal: AnyQuantity = required("value that the design uses")
-    range: tuple[AnyQuantity, AnyQuantity] = Field(
-        default_factory=lambda data: (data.get("nominal"), data.get("nominal")),
-        description="[lowest, highest] value that the proof covers; default: the nominal one",
+    range: tuple[AnyQuantity, AnyQuantity] = range_around(
+        "[lowest, highest] value that the proof covers; default: the nominal one"
     )
 
     varies: Switch = optional(

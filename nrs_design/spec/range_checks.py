@@ -5,6 +5,8 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Any
 
+from pydantic import Field
+
 from nrs_design.proof.text import quoted
 from nrs_design.spec.check import Row
 from nrs_design.spec.quantity import Quantity, is_less
@@ -60,6 +62,13 @@ ORDERED_RANGE = Row[Any](
     "the range ends at {0}, below its start {1}",
     "write [lowest, highest]",
 )
+
+
+def range_around(description: str) -> Any:
+    """Return the field of a range around the nominal value, which is that alone by default."""
+    return Field(default_factory=lambda data: (data.get("nominal"),) * 2, description=description)
+
+
 # Of a nominal value and a range around it.
 RANGE_CHECKS: tuple[Row[Any], ...] = (
     Row("range", _mixed, "nominal and range have different units", "use one unit"),

@@ -15,6 +15,7 @@ from pydantic import (
     Field,
 )
 
+from nrs_design.spec import quantity_fields as field
 from nrs_design.spec.check import Row, exactly_one, exclusive
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import Contact, Label, Positive, TouchedAtOnce, UnitFraction, Weight
@@ -23,16 +24,6 @@ from nrs_design.spec.goals import GoalsSpec
 from nrs_design.spec.model import SpecModel, optional, required
 from nrs_design.spec.parameters import Switch
 from nrs_design.spec.quantity import Quantity
-from nrs_design.spec.quantity_fields import (
-    Angle,
-    Decay,
-    Duration,
-    ForceGain,
-    Impedance,
-    IntegralForceGain,
-    NonnegativeImpedance,
-    RotationalStiffness,
-)
 
 _ENVIRONMENT = "name of the environment that the gains are designed for"
 _CONTACTS = (
@@ -169,7 +160,7 @@ class ImpedanceControllerSpec(AbstractControllerSpec):
     type: Literal["impedance"] = required("impedance: admittance Y = 1/(Mt s + Bt + Kt/s)")
     environment: Label = required(_ENVIRONMENT)
     contacts: Annotated[tuple[TouchedAtOnce, ...], *_TOUCHED]
-    desired_impedance: Impedance | None = optional(
+    desired_impedance: field.Impedance | None = optional(
         "impedance to display in N*m*s/rad; default: limits.torque/limits.velocity"
     )
     desired_impedance_ratio: Positive | None = optional(
@@ -236,7 +227,7 @@ class ForceControllerSpec(AbstractControllerSpec):
     type: Literal["force"] = required("force: u = X_i + Kp (Fd - F), see offset")
     environment: Label = required(_ENVIRONMENT)
     contacts: Annotated[tuple[TouchedAtOnce, ...], *_TOUCHED]
-    proportional_gain: ForceGain | None = optional(
+    proportional_gain: field.ForceGain | None = optional(
         "Kp in rad/(N*m); exactly one of proportional_gain and damping_ratio"
     )
     damping_ratio: UnitFraction | None = optional(
@@ -276,17 +267,17 @@ class IntegralControllerSpec(AbstractControllerSpec):
     )
     environment: Label = required(_ENVIRONMENT)
     contacts: Annotated[tuple[TouchedAtOnce, ...], *_TOUCHED]
-    proportional_gain: ForceGain | None = optional(
+    proportional_gain: field.ForceGain | None = optional(
         "Kp in rad/(N*m); exactly one of proportional_gain and damping_ratio"
     )
     damping_ratio: UnitFraction | None = optional(
         "wanted damping ratio of the dominant poles without the integral, in (0, 1), "
         "no unit; chooses Kp"
     )
-    integral_gain: IntegralForceGain | None = optional(
+    integral_gain: field.IntegralForceGain | None = optional(
         "Ki in rad/(N*m*s); exactly one of integral_gain and settling_time"
     )
-    settling_time: Duration | None = optional(
+    settling_time: field.Duration | None = optional(
         "time in s by which the force error has fallen to 2 %, four time constants of "
         "the slowest pole; chooses Ki"
     )
@@ -308,8 +299,8 @@ class TorqueImpedanceSpec(AbstractControllerSpec):
     )
     environment: Label = required("name of the environment that it touches")
     contacts: Annotated[tuple[TouchedAtOnce, ...], *_TOUCHED]
-    stiffness: RotationalStiffness = required("of the spring, in N*m/rad")
-    damping: NonnegativeImpedance = required("of the damper, in N*m*s/rad; 0 allowed")
+    stiffness: field.RotationalStiffness = required("of the spring, in N*m/rad")
+    damping: field.NonnegativeImpedance = required("of the damper, in N*m*s/rad; 0 allowed")
     inertia_ratio: Positive | None = optional(
         "wanted inertia over that of the joint, no unit; other than 1 it takes the measured force; "
         "default: 1"
@@ -331,7 +322,7 @@ class PositionControllerSpec(AbstractControllerSpec):
 class IdleStatesSpec(SpecModel):
     """What the states of impedance and pi-force controllers do while others are active."""
 
-    decay: Decay = required(
+    decay: field.Decay = required(
         "rate in 1/s at which the admittance velocity and the position reference "
         "decay, and the integral of a pi-force controller; 0 1/s holds them, which is not "
         "asymptotically stable by itself"
@@ -346,7 +337,7 @@ class IdleStatesSpec(SpecModel):
 class AntiWindupSpec(SpecModel):
     """What keeps the integral of pi-force controllers from winding up."""
 
-    clamp: Angle = required(
+    clamp: field.Angle = required(
         "where the integral w is cut off, both ways, at every sample and under every "
         "controller, as an angle of the reference, such as 2 deg"
     )

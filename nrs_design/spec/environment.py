@@ -21,6 +21,7 @@ from nrs_design.models.contact import (
 )
 from nrs_design.models.interval import Interval, turn
 from nrs_design.spec import kinds
+from nrs_design.spec import quantity_fields as field
 from nrs_design.spec.check import Row, refuse
 from nrs_design.spec.faults import Location
 from nrs_design.spec.fields import Title
@@ -28,15 +29,7 @@ from nrs_design.spec.model import optional, required
 from nrs_design.spec.preload import RangedExponent, power_box
 from nrs_design.spec.provenance import Coverage, IdentifiedRangesSpec
 from nrs_design.spec.quantity import Quantity
-from nrs_design.spec.quantity_fields import (
-    Damping,
-    Deflection,
-    HandMass,
-    LeverArm,
-    PositiveDamping,
-    RangedQuantity,
-    Stiffness,
-)
+from nrs_design.spec.quantity_fields import RangedQuantity
 
 _LEVER_ARM = (
     "distance from the pivot to the contact point, a length in m; required if the parameters are "
@@ -68,7 +61,7 @@ class AbstractEnvironmentSpec(IdentifiedRangesSpec):
 
     model: str
 
-    lever_arm: LeverArm | None = optional(_LEVER_ARM)
+    lever_arm: field.LeverArm | None = optional(_LEVER_ARM)
     range_covers: Coverage | None = optional(_COVERS)
     linearized_about: Title | None = optional(
         "deflections that a nonlinear law was linearized about, in words: the ranges "
@@ -204,7 +197,7 @@ class ElasticSpec(AbstractEnvironmentSpec):
     law: ClassVar[type[AbstractLinearLaw]] = Elastic
 
     model: Literal["elastic"] = required("law of the environment: elastic, F = k delta")
-    stiffness: Stiffness = required(_STIFFNESS.format(which=""))
+    stiffness: field.Stiffness = required(_STIFFNESS.format(which=""))
 
 
 class KelvinVoigtSpec(AbstractEnvironmentSpec):
@@ -215,8 +208,8 @@ class KelvinVoigtSpec(AbstractEnvironmentSpec):
     model: Literal["kelvin-voigt"] = required(
         "law of the environment: kelvin-voigt, F = k delta + b ddelta/dt"
     )
-    stiffness: Stiffness = required(_STIFFNESS.format(which=""))
-    damping: Damping = required(_DAMPING.format(which=""))
+    stiffness: field.Stiffness = required(_STIFFNESS.format(which=""))
+    damping: field.Damping = required(_DAMPING.format(which=""))
 
 
 class HandSpec(AbstractEnvironmentSpec):
@@ -228,9 +221,9 @@ class HandSpec(AbstractEnvironmentSpec):
         "law of the environment: hand, F = k delta + b ddelta/dt + m d2delta/dt2; it "
         "holds the robot, so contact is kept"
     )
-    stiffness: Stiffness = required(_STIFFNESS.format(which=""))
-    damping: Damping = required(_DAMPING.format(which=""))
-    mass: HandMass = required(
+    stiffness: field.Stiffness = required(_STIFFNESS.format(which=""))
+    damping: field.Damping = required(_DAMPING.format(which=""))
+    mass: field.HandMass = required(
         "mass that moves along, at the pivot in kg*m^2, or at the contact point in kg "
         "with lever_arm; one quantity, or {nominal: ..., range: [lowest, highest]}"
     )
@@ -245,8 +238,8 @@ class MaxwellSpec(AbstractEnvironmentSpec):
         "law of the environment: maxwell, F + (b/k) dF/dt = b ddelta/dt; it has no "
         "rest position, and must be the only environment that controllers touch"
     )
-    stiffness: Stiffness = required(_STIFFNESS.format(which=" k of the spring"))
-    damping: PositiveDamping = required(_DAMPING.format(which=" b of the damper, > 0,"))
+    stiffness: field.Stiffness = required(_STIFFNESS.format(which=" k of the spring"))
+    damping: field.PositiveDamping = required(_DAMPING.format(which=" b of the damper, > 0,"))
 
 
 class KelvinBoltzmannSpec(AbstractEnvironmentSpec):
@@ -258,13 +251,13 @@ class KelvinBoltzmannSpec(AbstractEnvironmentSpec):
         "law of the environment: kelvin-boltzmann, a spring k2 in a row with a spring "
         "k1 beside a damper b"
     )
-    parallel_stiffness: Stiffness = required(
+    parallel_stiffness: field.Stiffness = required(
         _STIFFNESS.format(which=" k1 of the spring beside the damper,")
     )
-    series_stiffness: Stiffness = required(
+    series_stiffness: field.Stiffness = required(
         _STIFFNESS.format(which=" k2 of the spring in a row with both,")
     )
-    damping: PositiveDamping = required(_DAMPING.format(which=" b of the damper, > 0,"))
+    damping: field.PositiveDamping = required(_DAMPING.format(which=" b of the damper, > 0,"))
 
 
 class HuntCrossleySpec(AbstractEnvironmentSpec):
@@ -277,19 +270,19 @@ class HuntCrossleySpec(AbstractEnvironmentSpec):
         "law of the environment: hunt-crossley, F = (rho + lam ddelta/dt) delta^phi, "
         "while its deflection stays in the preload"
     )
-    stiffness: Stiffness = required(
+    stiffness: field.Stiffness = required(
         _STIFFNESS.format(which=" of small motions at the deflection `about`,")
     )
-    damping: Damping = required(_DAMPING.format(which=" at the deflection `about`,"))
+    damping: field.Damping = required(_DAMPING.format(which=" at the deflection `about`,"))
     exponent: RangedExponent = required(
         "phi, 1 to 3 with at most three decimals, no unit; one number, or "
         "{nominal: ..., range: [lowest, highest]}"
     )
-    about: Deflection = required(
+    about: field.Deflection = required(
         "deflection at which stiffness and damping are given, within the preload: a "
         "length with lever_arm, an angle otherwise"
     )
-    preload: tuple[Deflection, Deflection] = required(
+    preload: tuple[field.Deflection, field.Deflection] = required(
         "[lowest, highest] deflection, counted from the surface, within which the proof holds"
     )
 

@@ -9,21 +9,12 @@ from typing import Annotated
 
 from pydantic import AfterValidator
 
+from nrs_design.spec import quantity_fields as field
 from nrs_design.spec.check import Row
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import AboveOne, BelowTwo, UnitFraction
 from nrs_design.spec.model import SpecModel, optional
 from nrs_design.spec.quantity import Quantity
-from nrs_design.spec.quantity_fields import (
-    Angle,
-    AngularVelocity,
-    DecayRate,
-    Duration,
-    Impedance,
-    Phase,
-    Torque,
-    TorqueOrLargest,
-)
 from nrs_design.spec.response_goals import AccuracySpec, TransparencySpec
 
 # What only one type of controller has.
@@ -58,10 +49,10 @@ class GoalsSpec(SpecModel):
     min_gain_margin: AboveOne | None = optional(
         "smallest factor on the loop gain that destabilizes, above 1"
     )
-    min_phase_margin: Annotated[Phase, AfterValidator(_below_half_turn)] | None = optional(
+    min_phase_margin: Annotated[field.Phase, AfterValidator(_below_half_turn)] | None = optional(
         "smallest phase margin, such as 30 deg"
     )
-    min_delay_margin: Duration | None = optional(
+    min_delay_margin: field.Duration | None = optional(
         "longest dead time up to which none destabilizes, such as 5 ms"
     )
     min_disk_margin: BelowTwo | None = optional(
@@ -76,15 +67,15 @@ class GoalsSpec(SpecModel):
         "|L/(1 + L)| up to the bandwidth, between 0 and 1, no unit; impedance controllers whose "
         "environment is the hand"
     )
-    max_hand_effort: Impedance | None = optional(
+    max_hand_effort: field.Impedance | None = optional(
         "largest torque of the hand over the velocity that it intends, |Ze/(1 + L)| "
         "up to the bandwidth in N*m*s/rad; impedance controllers whose environment is the hand"
     )
-    max_creep: AngularVelocity | None = optional(
+    max_creep: field.AngularVelocity | None = optional(
         "largest lasting velocity in free motion by errors of the force signal, such "
         "as 0.5 deg/s; impedance controllers only, and with sensor"
     )
-    max_creep_angle: Angle | None = optional(
+    max_creep_angle: field.Angle | None = optional(
         "largest angle that the robot creeps in free motion by errors of the force "
         "signal, such as 2 deg; impedance controllers with a spring Kt only, and with sensor"
     )
@@ -100,18 +91,18 @@ class GoalsSpec(SpecModel):
         "largest steady force error over the commanded force, between 0 and 1, no "
         "unit; force controllers only"
     )
-    peak_torque: Torque | None = optional(
+    peak_torque: field.Torque | None = optional(
         "largest torque in N*m that the proved bound under all disturbances of the "
         "spec may have; for the whole spec, not for one controller"
     )
-    decay_rate: DecayRate | None = optional(
+    decay_rate: field.DecayRate | None = optional(
         "smallest proved decay rate in 1/s; for the whole spec, not for one controller"
     )
-    delay: Duration | None = optional(
+    delay: field.Duration | None = optional(
         "age of a force sample up to which the sampled loop must be proved, such as "
         "4 ms; for the whole spec, and with sampling"
     )
-    initial_force: TorqueOrLargest | None = optional(
+    initial_force: field.TorqueOrLargest | None = optional(
         "contact force in N*m from which, at rest, every motion must be proved to "
         "decay although velocity command and motor command saturate at their limits (sampled: "
         "the motor command alone, and the integral at its clamp); largest: as large as is found; "

@@ -9,29 +9,14 @@ from pydantic import Field
 
 from nrs_design.axis import COMMAND_UNITS
 from nrs_design.proof.text import quoted
+from nrs_design.spec import quantity_fields as field
 from nrs_design.spec.check import Row, S, exactly_one, refuse
 from nrs_design.spec.faults import Location
 from nrs_design.spec.fields import Exact, UnitFraction
 from nrs_design.spec.model import SpecModel, optional, required
 from nrs_design.spec.provenance import Coverage, IdentifiedRangesSpec
 from nrs_design.spec.quantity import Quantity, is_less
-from nrs_design.spec.quantity_fields import (
-    ActuatorGain,
-    AngularVelocity,
-    Bandwidth,
-    DerivativeGain,
-    Duration,
-    LargestCommand,
-    RangedActuatorGain,
-    RangedDuration,
-    RangedImpedance,
-    RangedInertia,
-    RangedQuantity,
-    RotorInertia,
-    TimeRange,
-    Torque,
-    Zero,
-)
+from nrs_design.spec.quantity_fields import RangedQuantity
 from nrs_design.spec.units import command_unit
 
 MAX_COEFFICIENTS = 10
@@ -46,10 +31,10 @@ class ActuatorIntervals(SpecModel):
     The design and the proof take the nominal values.
     """
 
-    gain: tuple[ActuatorGain, ActuatorGain] = required(
+    gain: tuple[field.ActuatorGain, field.ActuatorGain] = required(
         "[lowest, highest] gain in rad/s per command unit, 95 % interval"
     )
-    time_constant: tuple[Duration, Duration] = required(
+    time_constant: tuple[field.Duration, field.Duration] = required(
         "[lowest, highest] time constant in s, 95 % interval"
     )
 
@@ -83,16 +68,16 @@ class ActuatorSpec(IdentifiedRangesSpec):
         "derivative_gain and friction are written in it",
         "rpm",
     )
-    gain: RangedActuatorGain = required(
+    gain: field.RangedActuatorGain = required(
         "Km, motor speed per command unit, such as rad/s/rpm or rad/s/V, as in "
         "theta_m/delta = Km/(s (tau s + 1))"
     )
-    time_constant: RangedDuration = required("tau, mechanical time constant in s")
-    dead_time: TimeRange | None = optional(
+    time_constant: field.RangedDuration = required("tau, mechanical time constant in s")
+    dead_time: field.TimeRange | None = optional(
         "time in s for which a command does nothing before the motor follows it, one number or "
         "[shortest, longest]; the proof adds it to the latency of `sampling`"
     )
-    load_inertia: RotorInertia | None = optional(
+    load_inertia: field.RotorInertia | None = optional(
         "inertia at the joint in kg*m^2 against which the torque of an environment "
         "works; without it that torque does not slow the motor"
     )
@@ -172,13 +157,13 @@ class TransferFunctionSpec(SpecModel):
 class FollowingSpec(IdentifiedRangesSpec):
     """A robot that closes its own motion loop, and follows what is streamed."""
 
-    time_constant: RangedDuration | None = optional(
+    time_constant: field.RangedDuration | None = optional(
         "tau in s of 1/(tau s + 1), by which the robot follows its command"
     )
     transfer_function: TransferFunctionSpec | None = optional(
         "by which the robot follows its command, in the place of time_constant; no unit"
     )
-    dead_time: TimeRange | None = optional(_DEAD_TIME)
+    dead_time: field.TimeRange | None = optional(_DEAD_TIME)
     range_covers: Coverage | None = optional(_COVERS)
 
     @property
@@ -223,9 +208,9 @@ class PositionInterfaceSpec(FollowingSpec):
 class TorqueInterfaceSpec(IdentifiedRangesSpec):
     """A robot that takes torques, its gravity compensated: ``J omega' = u - B omega - F``."""
 
-    inertia: RangedInertia = required("J of the joint and all that it moves, in kg*m^2")
-    friction: RangedImpedance = required("B, viscous friction of the joint, N*m*s/rad")
-    dead_time: TimeRange | None = optional(_DEAD_TIME)
+    inertia: field.RangedInertia = required("J of the joint and all that it moves, in kg*m^2")
+    friction: field.RangedImpedance = required("B, viscous friction of the joint, N*m*s/rad")
+    dead_time: field.TimeRange | None = optional(_DEAD_TIME)
     range_covers: Coverage | None = optional(_COVERS)
 
     @property
@@ -240,12 +225,12 @@ class MotionLoopSpec(SpecModel):
     damping_ratio: UnitFraction = required(
         "wanted damping ratio of the closed loop, between 0 and 1, no unit"
     )
-    settling_time: Duration = required("wanted settling time 4/(zeta wn) in s")
-    derivative_gain: DerivativeGain | None = optional(
+    settling_time: field.Duration = required("wanted settling time 4/(zeta wn) in s")
+    derivative_gain: field.DerivativeGain | None = optional(
         "derivative gain really used, such as rpm*s/rad, in the unit of the commands; "
         "default: from the root locus"
     )
-    zero: Zero | None = optional(
+    zero: field.Zero | None = optional(
         "zero Kp/Kd of the PD controller really used, in 1/s; default: from the root locus"
     )
     transfer_function: TransferFunctionSpec | None = optional(
@@ -260,10 +245,10 @@ MOTOR_COMMAND = "motor command"
 class LimitsSpec(SpecModel):
     """What the interaction must respect (thesis 6.3.1)."""
 
-    velocity: AngularVelocity = required("largest commanded angular velocity in rad/s")
-    torque: Torque = required("largest interaction torque in N*m")
-    bandwidth: Bandwidth = required("highest frequency of the operator's motion, Hz")
-    command: LargestCommand | None = optional(
+    velocity: field.AngularVelocity = required("largest commanded angular velocity in rad/s")
+    torque: field.Torque = required("largest interaction torque in N*m")
+    bandwidth: field.Bandwidth = required("highest frequency of the operator's motion, Hz")
+    command: field.LargestCommand | None = optional(
         "largest command that the motor's driver takes, such as rpm, for the error "
         "that derivative_gain is for: where the driver closes its loop on an encoder that turns "
         "five times as far as the joint, and the gains are for the joint, a fifth of the "

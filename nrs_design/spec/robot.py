@@ -5,30 +5,12 @@ from __future__ import annotations
 from math import sin
 from typing import Annotated, ClassVar, Literal
 
+from nrs_design.spec import quantity_fields as field
 from nrs_design.spec.check import Row
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import Name, Positive, Title, read_exact, whole
 from nrs_design.spec.model import ReadBy, SpecModel, optional, required
 from nrs_design.spec.motion import CommandUnit, MotionLoopSpec, commands_in
-from nrs_design.spec.quantity_fields import (
-    ActuatorGain,
-    Angle,
-    AngularAcceleration,
-    AngularVelocity,
-    Command,
-    Coordinate,
-    Duration,
-    Gravity,
-    Length,
-    LengthBounds,
-    LinearAcceleration,
-    LinearVelocity,
-    Mass,
-    MomentOfInertia,
-    ProductOfInertia,
-    SignedAngle,
-    TorqueGradient,
-)
 
 MAX_COUNTS = 1 << 24
 # The gradient of speed over torque is about such commands (thesis 4.10).
@@ -49,12 +31,12 @@ Counts = Annotated[int, whole(2, MAX_COUNTS)]
 class TensorSpec(SpecModel):
     """Inertia tensor about the center of mass; products with the sign they have in the tensor."""
 
-    xx: MomentOfInertia = required("moment about x in kg*m^2")
-    yy: MomentOfInertia = required("moment about y in kg*m^2")
-    zz: MomentOfInertia = required("moment about z in kg*m^2")
-    xy: ProductOfInertia | None = optional("entry (x, y) of the tensor in kg*m^2; default 0")
-    xz: ProductOfInertia | None = optional("entry (x, z) of the tensor in kg*m^2; default 0")
-    yz: ProductOfInertia | None = optional("entry (y, z) of the tensor in kg*m^2; default 0")
+    xx: field.MomentOfInertia = required("moment about x in kg*m^2")
+    yy: field.MomentOfInertia = required("moment about y in kg*m^2")
+    zz: field.MomentOfInertia = required("moment about z in kg*m^2")
+    xy: field.ProductOfInertia | None = optional("entry (x, y) of the tensor in kg*m^2; default 0")
+    xz: field.ProductOfInertia | None = optional("entry (x, z) of the tensor in kg*m^2; default 0")
+    yz: field.ProductOfInertia | None = optional("entry (y, z) of the tensor in kg*m^2; default 0")
 
     def _excess(self) -> str | None:
         """Return the moment that exceeds the sum of the two others."""
@@ -75,8 +57,8 @@ class TensorSpec(SpecModel):
 class BodySpec(SpecModel):
     """A rigid body: mass, center of mass, and inertia as a tensor or as that of a rod."""
 
-    mass: Mass = required("mass in kg, >= 0")
-    center_of_mass: tuple[Coordinate, Coordinate, Coordinate] = required(
+    mass: field.Mass = required("mass in kg, >= 0")
+    center_of_mass: tuple[field.Coordinate, field.Coordinate, field.Coordinate] = required(
         "center of mass [x, y, z] in m, in the frame of the body"
     )
     inertia: Literal["slender-rod", "tensor"] = required(
@@ -98,17 +80,17 @@ class BodySpec(SpecModel):
 class LegSpec(SpecModel):
     """One leg: crank and coupler move in a plane that turns about the leg's base axis."""
 
-    azimuth: SignedAngle = required(
+    azimuth: field.SignedAngle = required(
         "direction of the base axis through the pivot, in the base's x-y plane, from x towards y"
     )
     elbow_sign: ElbowSign = required(
         "sign of the elbow's angle in `crank angle = direction of the coupler joint + "
         "sign * acos(...)`: -1 bends the elbow outwards (thesis 3.10), 1 inwards"
     )
-    l0: Length = required("pivot to base joint along the base axis, in m")
-    l1: Length = required("length of the crank, in m")
-    l2: Length = required("length of the coupler, in m")
-    l3: Length = required("distance of the coupler's end from the endoscope axis, in m")
+    l0: field.Length = required("pivot to base joint along the base axis, in m")
+    l1: field.Length = required("length of the crank, in m")
+    l2: field.Length = required("length of the coupler, in m")
+    l3: field.Length = required("distance of the coupler's end from the endoscope axis, in m")
     crank: BodySpec = required(
         "first link; x along it from the base joint, z normal to the leg's plane"
     )
@@ -119,7 +101,7 @@ class LegSpec(SpecModel):
         "third link; x along it from the coupler's end to the endoscope axis, z "
         "normal to the leg's plane"
     )
-    axis_inertia: MomentOfInertia = required(
+    axis_inertia: field.MomentOfInertia = required(
         "inertia about the base axis of what turns with the leg's plane beside its "
         "links, such as a rotor, in kg*m^2"
     )
@@ -149,40 +131,42 @@ class PlatformSpec(BodySpec):
     the endoscope, y completes a right-handed frame.
     """
 
-    length: Length = required("length along the endoscope axis, for slender-rod, in m")
+    length: field.Length = required("length along the endoscope axis, for slender-rod, in m")
 
 
 class RobotWorkspaceSpec(SpecModel):
     """Poses that the robot is made for."""
 
-    phi: Angle = required("largest |phi| (yaw)")
-    psi: Angle = required("largest |psi| (pitch)")
-    d: LengthBounds = required("depth along the endoscope axis, {min: ..., max: ...}")
+    phi: field.Angle = required("largest |phi| (yaw)")
+    psi: field.Angle = required("largest |psi| (pitch)")
+    d: field.LengthBounds = required("depth along the endoscope axis, {min: ..., max: ...}")
 
 
 class TaskLimitsSpec(SpecModel):
     """Largest motion of the endoscope that the task asks for (thesis 3.3)."""
 
-    angular_velocity: AngularVelocity = required("of phi and psi, in rad/s")
-    linear_velocity: LinearVelocity = required("of d, in m/s")
-    angular_acceleration: AngularAcceleration = required("of phi and psi, in rad/s^2")
-    linear_acceleration: LinearAcceleration = required("of d, in m/s^2")
+    angular_velocity: field.AngularVelocity = required("of phi and psi, in rad/s")
+    linear_velocity: field.LinearVelocity = required("of d, in m/s")
+    angular_acceleration: field.AngularAcceleration = required("of phi and psi, in rad/s^2")
+    linear_acceleration: field.LinearAcceleration = required("of d, in m/s^2")
 
 
 class DriveSpec(SpecModel):
     """Motor with driver, gearhead, capstan and encoder; the same for all three joints."""
 
-    gain: ActuatorGain = required(
+    gain: field.ActuatorGain = required(
         "Km, speed of the gearhead's output per command, in rad/s/rpm (thesis 4.9)"
     )
-    time_constant: Duration = required("mechanical time constant in s (thesis 4.9)")
-    rotor_inertia: MomentOfInertia = required("motor and gearhead, at the motor shaft, in kg*m^2")
+    time_constant: field.Duration = required("mechanical time constant in s (thesis 4.9)")
+    rotor_inertia: field.MomentOfInertia = required(
+        "motor and gearhead, at the motor shaft, in kg*m^2"
+    )
     gearhead_ratio: Positive = required("motor turns per turn of the gearhead, no unit")
     capstan_ratio: Positive = required("gearhead turns per turn of the joint, no unit")
-    speed_torque_gradient: TorqueGradient = required(
+    speed_torque_gradient: field.TorqueGradient = required(
         "command per torque at the motor shaft, in rpm/(N*m) (thesis 4.10)"
     )
-    coulomb_friction: Command = required("dry friction as a command (thesis 4.1)")
+    coulomb_friction: field.Command = required("dry friction as a command (thesis 4.1)")
     encoder_counts: Counts = required("counts of the encoder per turn of the gearhead's output")
 
     checks = (
@@ -197,7 +181,7 @@ class RobotControlSpec(SpecModel):
     """Motion control of the joints (thesis 4.2 and 4.3)."""
 
     motion_loop: MotionLoopSpec = required("the position loop around each motor")
-    sample_period: Duration = required("time between two control ticks, in s")
+    sample_period: field.Duration = required("time between two control ticks, in s")
 
     checks = (
         commands_in(
@@ -210,20 +194,24 @@ class RobotControlSpec(SpecModel):
 class BalancedLegSpec(SpecModel):
     """Counter-masses and spring of one side leg (thesis 4.4)."""
 
-    arm_center_of_mass: Length = required(
+    arm_center_of_mass: field.Length = required(
         "G_c, center of mass of the arm from the coupler's end, in m"
     )
-    coupler_counter_arm: Length = required("B_b, counter-mass of the coupler from the elbow, in m")
-    arm_counter_arm: Length = required("B_c, counter-mass of the arm from the coupler's end, in m")
-    spring_on_crank: Length = required("A0C_A, spring on the crank from the base joint")
-    spring_on_base: Length = required("A0D0, spring on the base from the base joint, in m")
+    coupler_counter_arm: field.Length = required(
+        "B_b, counter-mass of the coupler from the elbow, in m"
+    )
+    arm_counter_arm: field.Length = required(
+        "B_c, counter-mass of the arm from the coupler's end, in m"
+    )
+    spring_on_crank: field.Length = required("A0C_A, spring on the crank from the base joint")
+    spring_on_base: field.Length = required("A0D0, spring on the base from the base joint, in m")
 
 
 class BalanceSpec(SpecModel):
     """Passive balance of the side legs (thesis 4.4)."""
 
-    payload: Mass = required("m_p, share of the platform that each side leg carries")
-    tilt: SignedAngle = required("base tilt for which the springs are anchored")
+    payload: field.Mass = required("m_p, share of the platform that each side leg carries")
+    tilt: field.SignedAngle = required("base tilt for which the springs are anchored")
     left: BalancedLegSpec = required("left leg")
     right: BalancedLegSpec = required("right leg")
 
@@ -237,8 +225,8 @@ class RobotSpec(SpecModel):
     kind: Literal["robot"] = required("what this file describes")
     name: Name = required("short name: lower-case letters, digits, '.', '_', '-'")
     title: Title = optional("one line for people, at most 200 characters", "")
-    gravity: Gravity = required("gravitational acceleration, m/s^2")
-    base_tilt: SignedAngle = required(
+    gravity: field.Gravity = required("gravitational acceleration, m/s^2")
+    base_tilt: field.SignedAngle = required(
         "theta4, rotation of the base against the vertical (thesis 3.40)"
     )
     legs: LegsSpec = required("the three legs")

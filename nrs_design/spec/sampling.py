@@ -7,21 +7,14 @@ from fractions import Fraction
 from typing import Annotated, Literal
 
 from nrs_design.proof.text import exact_text
+from nrs_design.spec import quantity_fields as field
 from nrs_design.spec.check import Row
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import read_exact
 from nrs_design.spec.misses import DeadlinesSpec
 from nrs_design.spec.model import ReadBy, SpecModel, optional, pair_schema, required
 from nrs_design.spec.provenance import IdentifiedSpec
-from nrs_design.spec.quantity_fields import (
-    Angle,
-    AngularVelocity,
-    DriveCommand,
-    Duration,
-    TimeRange,
-    Torque,
-    ends_of,
-)
+from nrs_design.spec.quantity_fields import ends_of
 from nrs_design.spec.units import command_unit
 
 # Every sample of delay is a state more.
@@ -71,19 +64,19 @@ class SamplingSpec(IdentifiedSpec):
     samples, and motion and admittance run with one period, unless the admittance has its own.
     """
 
-    period: Duration = required("time between two samples in s")
+    period: field.Duration = required("time between two samples in s")
     delay: Delay = required(
         "age of the force sample that the law uses, in samples: one number, or "
         "[smallest, largest] for a delay that may differ at every sample"
     )
-    latency: TimeRange | None = optional(
+    latency: field.TimeRange | None = optional(
         "time in s from a sample to where its command takes effect: one number, or [shortest, "
         "longest] for one that may differ at every sample; default: at once"
     )
-    jitter: Duration | None = optional(
+    jitter: field.Duration | None = optional(
         "by how much, in s, a period may be longer or shorter than `period`, each for itself"
     )
-    outer_period: Duration | None = optional(
+    outer_period: field.Duration | None = optional(
         "time between two samples of the outer loop (filter of the force and "
         "admittance) in s, where it is not that of the motion loop: a whole number of its "
         "periods, or a whole part of one; `delay` counts samples of the force, so these"
@@ -165,21 +158,21 @@ class SamplingSpec(IdentifiedSpec):
 class DisturbancesSpec(SpecModel):
     """Bounds on what acts on the loop from outside; what is left out is zero."""
 
-    command: AngularVelocity | None = optional(
+    command: field.AngularVelocity | None = optional(
         "largest velocity command in rad/s, however it changes"
     )
-    friction: DriveCommand | None = optional(
+    friction: field.DriveCommand | None = optional(
         "largest Coulomb friction of the motor, as the command that it takes, in the "
         "unit of the commands, such as rpm"
     )
-    encoder_step: Angle | None = optional(
+    encoder_step: field.Angle | None = optional(
         "resolution of the measured joint angle in rad: an error of half a step"
     )
-    force_step: Torque | None = optional(
+    force_step: field.Torque | None = optional(
         "resolution of the measured torque in N*m: an error of half a step"
     )
 
-    largest_angle: Angle | None = optional(
+    largest_angle: field.Angle | None = optional(
         "largest joint angle and reference in rad that the law holds as "
         "single-precision numbers: their absolute rounding acts as a disturbance"
     )

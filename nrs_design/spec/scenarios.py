@@ -11,23 +11,13 @@ from pydantic import Field
 
 from nrs_design.proof.text import quoted
 from nrs_design.spec import kinds
+from nrs_design.spec import quantity_fields as field
 from nrs_design.spec.check import Row
 from nrs_design.spec.faults import all_of, as_text, fault
 from nrs_design.spec.fields import LABEL_PATTERN, Label, Title, UnitFraction, whole
 from nrs_design.spec.model import ReadBy, SpecModel, optional, pair_schema, required
 from nrs_design.spec.quantity import Quantity, is_less
-from nrs_design.spec.quantity_fields import (
-    Angle,
-    AngularVelocity,
-    Bandwidth,
-    DriveCommand,
-    Duration,
-    SignedAngle,
-    SignedAngularVelocity,
-    Torque,
-    quantity_schema,
-    read_quantity,
-)
+from nrs_design.spec.quantity_fields import quantity_schema, read_quantity
 
 MAX_POINTS, MAX_SURFACES, LONGEST = 1000, 16, 3600
 LARGEST_SEED = 2**32 - 1
@@ -112,15 +102,15 @@ def one_of(message: str, remedy: str) -> tuple[Row[Any], ...]:
 class SinusoidSpec(SpecModel):
     """A velocity ``offset + amplitude sin(omega t)``."""
 
-    amplitude: AngularVelocity = required("amplitude in rad/s")
-    frequency: Bandwidth = required("frequency in Hz, or rad/s")
-    offset: SignedAngularVelocity | None = optional("mean in rad/s; default: none")
+    amplitude: field.AngularVelocity = required("amplitude in rad/s")
+    frequency: field.Bandwidth = required("frequency in Hz, or rad/s")
+    offset: field.SignedAngularVelocity | None = optional("mean in rad/s; default: none")
 
 
 class CommandProfileSpec(SpecModel):
     """The velocity that the surgeon commands, in one of four ways; positive raises the angle."""
 
-    constant: SignedAngularVelocity | None = optional("one velocity all the time, in rad/s")
+    constant: field.SignedAngularVelocity | None = optional("one velocity all the time, in rad/s")
     points: Breakpoints | None = optional(
         "breakpoints [[time, velocity], ...], with straight lines between (thesis fig. "
         "6.7); the last velocity is kept. A time that is there twice is a jump"
@@ -144,7 +134,7 @@ class SurfaceSpec(SpecModel):
         "it is a Prony series",
         (),
     )
-    at: SignedAngle = required("angle of its surface in rad")
+    at: field.SignedAngle = required("angle of its surface in rad")
     side: Literal["above", "below"] = optional(
         "above: met by rising angles; below: by falling ones", "above"
     )
@@ -168,7 +158,7 @@ class ThresholdControlSpec(SpecModel):
 
     position: Label = required("controller below the threshold")
     force: Label = required("controller from the threshold on, until the command is out")
-    torque: Torque = required("the threshold T_th in N*m")
+    torque: field.Torque = required("the threshold T_th in N*m")
 
 
 class ControlSpec(SpecModel):
@@ -203,9 +193,9 @@ class ControlSpec(SpecModel):
         for i, (_, name) in enumerate(self.schedule or ()):
             found["schedule", i, 1] = name
         for key in ("sign", "threshold"):
-            for field, name in getattr(self, key) or ():
+            for role, name in getattr(self, key) or ():
                 if isinstance(name, str):
-                    found[key, field] = name
+                    found[key, role] = name
         for environment, name in (self.contact or {}).items():
             found["contact", environment] = name
         return found
@@ -214,12 +204,14 @@ class ControlSpec(SpecModel):
 class ErrorsSpec(SpecModel):
     """What acts on the sampled loop and its sensors; what is left out is zero."""
 
-    friction: DriveCommand | None = optional(
+    friction: field.DriveCommand | None = optional(
         "Coulomb friction of the motor, as the command that it takes, such as rpm"
     )
-    encoder_step: Angle | None = optional("resolution of the measured joint angle in rad")
-    force_step: Torque | None = optional("resolution of the measured torque in N*m")
-    force_noise: Torque | None = optional("standard deviation of white noise on the torque in N*m")
+    encoder_step: field.Angle | None = optional("resolution of the measured joint angle in rad")
+    force_step: field.Torque | None = optional("resolution of the measured torque in N*m")
+    force_noise: field.Torque | None = optional(
+        "standard deviation of white noise on the torque in N*m"
+    )
     jitter: UnitFraction | None = optional(
         "how far a sample may be late, as a share of the period; the law does not know"
     )
@@ -228,9 +220,11 @@ class ErrorsSpec(SpecModel):
 class ScenarioLimitsSpec(SpecModel):
     """What the gate wants a simulated run to keep; what is left out is not looked at."""
 
-    torque: Torque | None = optional("largest torque of the tissue in N*m")
-    deflection: Angle | None = optional("largest depth below a surface in rad, about the pivot")
-    velocity: AngularVelocity | None = optional("largest speed of the axis in rad/s")
+    torque: field.Torque | None = optional("largest torque of the tissue in N*m")
+    deflection: field.Angle | None = optional(
+        "largest depth below a surface in rad, about the pivot"
+    )
+    velocity: field.AngularVelocity | None = optional("largest speed of the axis in rad/s")
 
     checks = (
         Row("", lambda s: not s.named, "no limit is named", "name torque, deflection or velocity"),
@@ -247,10 +241,10 @@ class ScenarioSpec(SpecModel):
 
     title: Title = optional("one line for people, at most 200 characters", "")
     command: CommandProfileSpec = required("velocity that the surgeon commands")
-    duration: Duration | None = optional(
+    duration: field.Duration | None = optional(
         "length of the run in s, at most an hour; default: that of points or csv"
     )
-    start: SignedAngle | None = optional(
+    start: field.SignedAngle | None = optional(
         "angle at which the axis rests at first, in rad; default: 0"
     )
     surfaces: Surfaces = optional(
@@ -259,7 +253,7 @@ class ScenarioSpec(SpecModel):
     control: ControlSpec | None = optional(
         "which controller is in force; default: the spec's mode_logic, else the first controller"
     )
-    wanted_torque: Torque | None = optional(
+    wanted_torque: field.Torque | None = optional(
         "Fd of force controllers in N*m, towards rising angles; default: limits.torque"
     )
     errors: ErrorsSpec | None = optional(

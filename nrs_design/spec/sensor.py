@@ -5,23 +5,11 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Annotated
 
+from nrs_design.spec import quantity_fields as field
 from nrs_design.spec.check import Row
 from nrs_design.spec.fields import whole
 from nrs_design.spec.model import SpecModel, optional, required
 from nrs_design.spec.quantity import Quantity
-from nrs_design.spec.quantity_fields import (
-    Angle,
-    Bandwidth,
-    Coordinate,
-    Duration,
-    Force,
-    Gravity,
-    NoiseDensity,
-    RangedCoordinate,
-    RangedMass,
-    Torque,
-    TorqueRate,
-)
 
 # Every lag is a state more.
 HIGHEST_ORDER = 4
@@ -34,15 +22,15 @@ class FilterSpec(SpecModel):
     order: Annotated[int, whole(1, HIGHEST_ORDER)] = optional(
         f"number of lags, 1 to {HIGHEST_ORDER}, no unit", 1
     )
-    cutoff: Bandwidth = required("corner frequency of each lag, such as 30 Hz")
+    cutoff: field.Bandwidth = required("corner frequency of each lag, such as 30 Hz")
 
 
 class PointSpec(SpecModel):
     """A point, from the origin of the sensor."""
 
-    x: Coordinate = required(_AT.format(axis="x", what="the point"))
-    y: Coordinate = required(_AT.format(axis="y", what="the point"))
-    z: Coordinate = required(_AT.format(axis="z", what="the point"))
+    x: field.Coordinate = required(_AT.format(axis="x", what="the point"))
+    y: field.Coordinate = required(_AT.format(axis="y", what="the point"))
+    z: field.Coordinate = required(_AT.format(axis="z", what="the point"))
 
     @property
     def exact(self) -> tuple[Fraction, ...]:
@@ -53,19 +41,19 @@ class PointSpec(SpecModel):
 class CenterSpec(SpecModel):
     """A center of mass that is known within ranges, from the origin of the sensor."""
 
-    x: RangedCoordinate = required(_AT.format(axis="x", what="the center of mass"))
-    y: RangedCoordinate = required(_AT.format(axis="y", what="the center of mass"))
-    z: RangedCoordinate = required(_AT.format(axis="z", what="the center of mass"))
+    x: field.RangedCoordinate = required(_AT.format(axis="x", what="the center of mass"))
+    y: field.RangedCoordinate = required(_AT.format(axis="y", what="the center of mass"))
+    z: field.RangedCoordinate = required(_AT.format(axis="z", what="the center of mass"))
 
 
 class ToolSpec(SpecModel):
     """What hangs on the sensor. Its weight is taken off the signal, with the nominal values."""
 
-    mass: RangedMass = required(
+    mass: field.RangedMass = required(
         "mass in kg: one quantity, or {nominal: ..., range: [lowest, highest]}"
     )
     center_of_mass: CenterSpec = required("center of mass, from the origin of the sensor")
-    gravity: Gravity = optional(
+    gravity: field.Gravity = optional(
         "gravitational acceleration in m/s^2; default: 9.81 m/s^2",
         Quantity("9.81 m/s^2", Fraction("9.81"), "m/s^2"),
     )
@@ -88,28 +76,32 @@ class SensorSpec(SpecModel):
     Errors that last move the robot in free motion, as an admittance integrates them: the creep.
     """
 
-    bias: Torque | None = optional(
+    bias: field.Torque | None = optional(
         "largest bias of the torque about the pivot after taring, in N*m"
     )
-    force_bias: Force | None = optional(
+    force_bias: field.Force | None = optional(
         "largest bias of the measured force after taring, in N; it is a torque about "
         "the pivot if the pivot is not where the sensor is"
     )
-    drift: TorqueRate | None = optional("largest drift of the bias in N*m/s; with tared_every")
-    tared_every: Duration | None = optional("longest time between two tarings in s; with drift")
-    resolution: Torque | None = optional(
+    drift: field.TorqueRate | None = optional(
+        "largest drift of the bias in N*m/s; with tared_every"
+    )
+    tared_every: field.Duration | None = optional(
+        "longest time between two tarings in s; with drift"
+    )
+    resolution: field.Torque | None = optional(
         "step of the measured torque in N*m: an error of half a step"
     )
-    noise_density: NoiseDensity | None = optional(
+    noise_density: field.NoiseDensity | None = optional(
         "one-sided power density of white noise of the torque, in N^2*m^2*s, which is "
         "(N*m)^2/Hz; in no bound"
     )
     filter: FilterSpec | None = optional("low-pass of the force signal: a part of the loop")
     tool: ToolSpec | None = optional("what hangs on the sensor; its weight is taken off the signal")
-    pose_error: Angle | None = optional(
+    pose_error: field.Angle | None = optional(
         "largest error of the sensor's orientation in the robot, an angle; with tool"
     )
-    imu_error: Angle | None = optional(
+    imu_error: field.Angle | None = optional(
         "largest error of the measured direction of gravity, an angle; with tool"
     )
     pivot: PointSpec | None = optional("the pivot, from the origin of the sensor; default: there")

@@ -17,20 +17,12 @@ from pydantic import Field
 
 from nrs_design.proof.bounds import lower, lower_float, upper_float
 from nrs_design.proof.text import exact_text, quoted
+from nrs_design.spec import quantity_fields as field
 from nrs_design.spec.check import Reference, Row, each, refuse
 from nrs_design.spec.faults import Location, as_text, did_you_mean, fault
 from nrs_design.spec.fields import Label
 from nrs_design.spec.model import ReadBy, SpecModel, optional, required
 from nrs_design.spec.quantity import Quantity
-from nrs_design.spec.quantity_fields import (
-    AngularAcceleration,
-    AngularVelocity,
-    Duration,
-    SignedAngularVelocity,
-    SignedTorque,
-    Torque,
-    TorqueRate,
-)
 from nrs_design.spec.switching import (
     DWELL_SCHEMA,
     DwellTime,
@@ -55,17 +47,17 @@ _BELOW = "the value that the logic sees is at most this, in {unit}"
 class CommandSignalSpec(SpecModel):
     """The velocity command of the surgeon, positive towards the tissue."""
 
-    noise: AngularVelocity = required(_NOISE.format(unit="rad/s"))
-    age: Duration = required(_AGE)
-    largest_rate: AngularAcceleration = required(_RATE.format(unit="rad/s^2"))
+    noise: field.AngularVelocity = required(_NOISE.format(unit="rad/s"))
+    age: field.Duration = required(_AGE)
+    largest_rate: field.AngularAcceleration = required(_RATE.format(unit="rad/s^2"))
 
 
 class TorqueSignalSpec(SpecModel):
     """The torque of the tissue on the robot, positive where it is pushed."""
 
-    noise: Torque = required(_NOISE.format(unit="N*m"))
-    age: Duration = required(_AGE)
-    largest_rate: TorqueRate = required(_RATE.format(unit="N*m/s"))
+    noise: field.Torque = required(_NOISE.format(unit="N*m"))
+    age: field.Duration = required(_AGE)
+    largest_rate: field.TorqueRate = required(_RATE.format(unit="N*m/s"))
 
 
 SignalSpec = CommandSignalSpec | TorqueSignalSpec
@@ -91,8 +83,8 @@ _ONE_SIDE = Row[Any](
 class CommandCondition(SpecModel):
     """One side of a threshold on the command."""
 
-    above: SignedAngularVelocity | None = optional(_ABOVE.format(unit="rad/s"))
-    below: SignedAngularVelocity | None = optional(_BELOW.format(unit="rad/s"))
+    above: field.SignedAngularVelocity | None = optional(_ABOVE.format(unit="rad/s"))
+    below: field.SignedAngularVelocity | None = optional(_BELOW.format(unit="rad/s"))
 
     checks = (_ONE_SIDE,)
 
@@ -100,8 +92,8 @@ class CommandCondition(SpecModel):
 class TorqueCondition(SpecModel):
     """One side of a threshold on the torque."""
 
-    above: SignedTorque | None = optional(_ABOVE.format(unit="N*m"))
-    below: SignedTorque | None = optional(_BELOW.format(unit="N*m"))
+    above: field.SignedTorque | None = optional(_ABOVE.format(unit="N*m"))
+    below: field.SignedTorque | None = optional(_BELOW.format(unit="N*m"))
 
     checks = (_ONE_SIDE,)
 

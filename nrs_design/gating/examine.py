@@ -22,21 +22,9 @@ from nrs_design.certificates.goals import certified_goals
 from nrs_design.certificates.units import gain_units
 from nrs_design.design.measures import GoalStanding
 from nrs_design.errors import DesignError
+from nrs_design.gating import rules
 from nrs_design.gating.obligations import Caution, Obligation, SpecOutcome, Status
 from nrs_design.gating.places import Places
-from nrs_design.gating.rules import (
-    CERTIFICATE_HOLDS,
-    CERTIFIED_GOAL,
-    GOAL,
-    MODE_STABLE,
-    NOT_DOUBTED,
-    RESPONSE_GOAL,
-    SCENARIO_LIMIT,
-    SPEC,
-    STIFFNESS_RANGE,
-    SWITCHING_STABLE,
-    Rule,
-)
 from nrs_design.proof.bounds import lower, upper
 from nrs_design.proof.evidence import AbstractEvidence, Shows
 from nrs_design.proof.evidence.fields import rate_text
@@ -76,7 +64,7 @@ class Examiner:
 
     def obligation(
         self,
-        rule: Rule,
+        rule: rules.Rule,
         subject: str,
         status: Status,
         message: str,
@@ -153,7 +141,7 @@ class Examiner:
 
     def system(self, status: Status, message: str) -> Obligation:
         """Return NRS102: how the search for a proof of the whole system ended."""
-        return self.obligation(SWITCHING_STABLE, "system", status, message, ("switching",))
+        return self.obligation(rules.SWITCHING_STABLE, "system", status, message, ("switching",))
 
     def _mode(
         self, mode: Mode, system: SwitchedSystem, *, proved: bool, affordable: bool, lasts: bool
@@ -178,12 +166,14 @@ class Examiner:
             if not decides(system, mode.name):
                 status = Status.INCONCLUSIVE
                 message += f", which is growth {_open_growth(system, mode.name)}"
-        return self.obligation(MODE_STABLE, mode.name, status, message, self.places.mode(mode.name))
+        return self.obligation(
+            rules.MODE_STABLE, mode.name, status, message, self.places.mode(mode.name)
+        )
 
     def nothing_to_certify(self) -> SpecOutcome:
         """Return the outcome of a valid spec that makes no claim about switching."""
         message = f"a valid {self.loaded.spec.kind} spec; it has nothing to certify"
-        obligation = self.obligation(SPEC, "spec", Status.MET, message, ("kind",))
+        obligation = self.obligation(rules.SPEC, "spec", Status.MET, message, ("kind",))
         return SpecOutcome(self.loaded.path, (obligation,), self.loaded.sha256, certifiable=False)
 
     def certificate(self, file: Path, fault: str | None) -> Obligation:
@@ -191,13 +181,15 @@ class Examiner:
         holds = fault is None
         said = "holds, checked exactly" if holds else f"is rejected: {fault}"
         message = f"{file.as_posix()} {said}"
-        return self.obligation(CERTIFICATE_HOLDS, "certificate", _met(holds), message, ("name",))
+        return self.obligation(
+            rules.CERTIFICATE_HOLDS, "certificate", _met(holds), message, ("name",)
+        )
 
     def no_margins(self, error: DesignError) -> Obligation:
         """Return NRS103 for a design that is unstable at nominal stiffness, so has no margins."""
         message = f"design goal: {error.message}{self._in_contact} (floating point, not a proof)"
         place = ("controllers",)
-        return self.obligation(STIFFNESS_RANGE, "controllers", self._missed, message, place)
+        return self.obligation(rules.STIFFNESS_RANGE, "controllers", self._missed, message, place)
 
     @property
     def _missed(self) -> Status:
@@ -227,7 +219,7 @@ class Examiner:
                 "at the worst corner of the other ranges (floating point, not a proof)"
             )
             status, place = Status.MET if reached else self._missed, ("controllers", item.name)
-            yield self.obligation(STIFFNESS_RANGE, item.name, status, message, place)
+            yield self.obligation(rules.STIFFNESS_RANGE, item.name, status, message, place)
 
     def goals(self, analysis: DesignAnalysis) -> Iterator[Obligation]:
         """Yield NRS106 for every goal of every controller."""
@@ -243,7 +235,7 @@ class Examiner:
                 )
                 subject = f"{item.name}: {measure.goal}"
                 place, status = self.places.goal(item.name, measure.goal), _ENDS[found.standing]
-                yield self.obligation(GOAL, subject, status, message, place)
+                yield self.obligation(rules.GOAL, subject, status, message, place)
 
     def responses(self, analysis: DesignAnalysis) -> Iterator[Obligation]:
         """Yield NRS112 for every goal for a frequency response of every controller."""
@@ -253,7 +245,7 @@ class Examiner:
                 status = Status.REFUTED if found.refuted else status
                 message = f"controller {item.name}: {found.said}; {found.wanted} is wanted"
                 subject, place = f"{item.name}: {found.key}", self.places.goal(item.name, found.key)
-                yield self.obligation(RESPONSE_GOAL, subject, status, message, place)
+                yield self.obligation(rules.RESPONSE_GOAL, subject, status, message, place)
 
     def certified_goals(self, certificate: Certificate | None) -> Iterator[Obligation]:
         """Yield NRS108 for every goal to be proved."""
@@ -262,7 +254,7 @@ class Examiner:
             wanted = "" if goal.wanted == "largest" else f"; {goal.wanted} is wanted"
             status = Status.PROVED if goal.met else Status.INCONCLUSIVE
             subject, said = f"system: {goal.key}", goal.said + wanted
-            yield self.obligation(CERTIFIED_GOAL, subject, status, said, goal.place)
+            yield self.obligation(rules.CERTIFIED_GOAL, subject, status, said, goal.place)
 
     def scenario(self, name: str, simulated: Simulated) -> Iterator[Obligation]:
         """Yield NRS109 for every limit of a scenario, held against one of its runs."""
@@ -279,13 +271,13 @@ class Examiner:
             )
             place = ("scenarios", name, "limits", quantity)
             subject = f"{scenario.name}: {quantity}"
-            yield self.obligation(SCENARIO_LIMIT, subject, _met(met), message, place)
+            yield self.obligation(rules.SCENARIO_LIMIT, subject, _met(met), message, place)
 
     def no_scenario(self, name: str, error: DesignError) -> Obligation:
         """Return NRS109 for a scenario with limits that cannot be simulated."""
         message = f"simulated: {error.message} (no run, so no limit is met)"
         place = ("scenarios", name)
-        return self.obligation(SCENARIO_LIMIT, name, Status.MISSED, message, place)
+        return self.obligation(rules.SCENARIO_LIMIT, name, Status.MISSED, message, place)
 
     def identified(self) -> Iterator[Obligation]:
         """Yield NRS107 for everything whose identification is in doubt."""
@@ -299,7 +291,7 @@ class Examiner:
             accepted, key = item.accept_doubt is not None, "doubts"
             if accepted:
                 key, message = "accept_doubt", f"{message}; accepted because: {item.accept_doubt}"
-            yield self.obligation(NOT_DOUBTED, at[-1], _met(accepted), message, (*at, key))
+            yield self.obligation(rules.NOT_DOUBTED, at[-1], _met(accepted), message, (*at, key))
 
     def contact(self, certificate: Certificate | None) -> Iterator[Caution]:
         """Yield that contact must be kept, where the spec does not say whether it is."""

@@ -21,18 +21,7 @@ from pydantic import (
 
 from nrs_design.errors import CertificateError
 from nrs_design.files import open_regular, read_json_text, unique_keys
-from nrs_design.gating.rules import (
-    CERTIFICATE_HOLDS,
-    CERTIFIED_GOAL,
-    LOCKED,
-    MODE_STABLE,
-    NOT_DOUBTED,
-    NOT_WEAKER,
-    RETIRED,
-    RULES,
-    SPEC,
-    SWITCHING_STABLE,
-)
+from nrs_design.gating import rules
 
 SCHEMA: Literal["nrs-design/lock/2"] = "nrs-design/lock/2"
 MAX_BYTES = 32 * 2**20
@@ -40,14 +29,14 @@ MAX_SPECS = 10_000
 # What --locked decides itself; every other obligation is locked as it ended.
 DECIDED_AGAIN = frozenset(
     {
-        SPEC,
-        MODE_STABLE,
-        SWITCHING_STABLE,
-        CERTIFIED_GOAL,
-        CERTIFICATE_HOLDS,
-        LOCKED,
-        NOT_DOUBTED,
-        NOT_WEAKER,
+        rules.SPEC,
+        rules.MODE_STABLE,
+        rules.SWITCHING_STABLE,
+        rules.CERTIFIED_GOAL,
+        rules.CERTIFICATE_HOLDS,
+        rules.LOCKED,
+        rules.NOT_DOUBTED,
+        rules.NOT_WEAKER,
     }
 )
 
@@ -92,8 +81,8 @@ class LockedGoal(_Frozen):
 
     @model_validator(mode="after")
     def _check_rule(self) -> LockedGoal:
-        if self.rule not in RETIRED and (
-            self.rule not in RULES or RULES[self.rule] in DECIDED_AGAIN
+        if self.rule not in rules.RETIRED and (
+            self.rule not in rules.RULES or rules.RULES[self.rule] in DECIDED_AGAIN
         ):
             raise ValueError("this rule is not one that is locked")
         return self
@@ -110,7 +99,7 @@ class LockedRemark(_Frozen):
 
 def _skip_retired(goals: list[LockedGoal]) -> list[LockedGoal]:
     """Return the goals of rules that there are: an older release locked others."""
-    return [goal for goal in goals if goal.rule not in RETIRED]
+    return [goal for goal in goals if goal.rule not in rules.RETIRED]
 
 
 class LockedSpec(_Frozen):

@@ -140,8 +140,7 @@ class AbstractControllerSpec(SpecModel):
 
     def gains(self) -> dict[str, GainSpec]:
         """Return the gains that the design may choose, by name."""
-        values = ((name, getattr(self, name)) for name in type(self).model_fields)
-        return {name: value for name, value in values if isinstance(value, GainSpec)}
+        return {name: value for name, value in self if isinstance(value, GainSpec)}
 
 
 class ImpedanceControllerSpec(AbstractControllerSpec):

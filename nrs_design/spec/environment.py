@@ -152,8 +152,7 @@ class AbstractEnvironmentSpec(IdentifiedRangesSpec):
 
     def parameters(self) -> dict[str, RangedQuantity]:
         """Return the parameters of the law as written, by their keys."""
-        values = ((name, getattr(self, name)) for name in type(self).model_fields)
-        return {name: value for name, value in values if isinstance(value, RangedQuantity)}
+        return {name: value for name, value in self if isinstance(value, RangedQuantity)}
 
     def exact_at_pivot(self) -> dict[str, Interval]:
         """Return the parameters with their ranges for a rotation, in N*m/rad and N*m*s/rad.

@@ -88,21 +88,18 @@ def parse_dwell_time(text: str) -> DwellTime:
 
 def read_dwell_times(value: object) -> DwellTimes:
     """Read one time for all modes, or times by the names of modes."""
-    if isinstance(value, DwellTime):
-        return value
     if not isinstance(value, Mapping):
-        text = as_text(value)
-        return reported(lambda: parse_dwell_time(text))
+        return _read_dwell_time(value)
     if not value:
         raise fault("no mode is named", "write one time for all, or {a: 1 s, b: 2 s}")
-    return {name: _read_dwell_time(name, dwell) for name, dwell in value.items()}
+    return {name: _read_dwell_time(dwell, name) for name, dwell in value.items()}
 
 
-def _read_dwell_time(name: str, value: object) -> DwellTime:
+def _read_dwell_time(value: object, *at: str) -> DwellTime:
     if isinstance(value, DwellTime):
         return value
-    text = as_text(value, name)
-    return reported(lambda: parse_dwell_time(text), name)
+    text = as_text(value, *at)
+    return reported(lambda: parse_dwell_time(text), *at)
 
 
 def _read_transitions(value: object) -> tuple[Transition, ...]:
@@ -299,25 +296,31 @@ class ResetSpec(SpecModel):
     checks = matrix_checks("map", lambda s: s.map, lambda s: (e for row in s.map for e in row))
 
 
-@dataclass(frozen=True, slots=True)
-class _Stay:
-    """How long a mode is kept, and what may follow it."""
+def _left(
+    switching: SwitchingSpec, names: Collection[str]
+) -> Iterator[tuple[Location, str, DwellTime | None, DwellTime]]:
+    """Yield modes that must be left, with the shortest and the longest time in them."""
+    for name in names if switching.longest_dwell_time is not None else ():
+        shortest, longest = switching.stay(name)
+        if longest is not None:
+            yield ("switching", "longest_dwell_time", name), name, shortest, longest
 
-    noun: str
-    name: str
-    shortest: DwellTime | None
-    longest: DwellTime | None
-    follows: bool
 
-
-def _stays(
+def _too_early(
     switching: SwitchingSpec, names: Collection[str], noun: str
-) -> Iterator[tuple[Location, _Stay]]:
+) -> Iterator[tuple[Location, tuple[str, ...]]]:
+    for at, name, shortest, longest in _left(switching, names):
+        if shortest is not None and longest.value < shortest.value:
+            yield at, (noun, name, longest.text, shortest.text)
+
+
+def _nowhere(
+    switching: SwitchingSpec, names: Collection[str], noun: str
+) -> Iterator[tuple[Location, tuple[str, str]]]:
+    """Yield modes that must be left, and that nothing may follow."""
     allowed = switching.transitions
     left = names if allowed is None and len(names) > 1 else {a for a, _ in allowed or ()}
-    for name in names if switching.longest_dwell_time is not None else ():
-        at = ("switching", "longest_dwell_time", name)
-        yield at, _Stay(noun, name, *switching.stay(name), name in left)
+    return ((at, (noun, name)) for at, name, *_ in _left(switching, names) if name not in left)
 
 
 def _named(
@@ -331,22 +334,6 @@ def _named(
             yield ("switching", "transitions", index, side), Reference(noun, name, names)
 
 
-_STAY_CHECKS = (
-    Row[_Stay](
-        "",
-        lambda x: x.longest and x.shortest and x.longest.value < x.shortest.value,
-        "{s.noun} {s.name!r} must be left after {s.longest.text}, but not before {s.shortest.text}",
-        "give a longest dwell time that is not below the dwell time",
-    ),
-    Row[_Stay](
-        "",
-        lambda x: x.longest and not x.follows,
-        "{s.noun} {s.name!r} must be left, but nothing may follow it",
-        "allow a switch from {s.name}, or give it no longest dwell time",
-    ),
-)
-
-
 def switching_checks(
     rules: Callable[[Any], SwitchingSpec], names: Callable[[Any], Collection[str]], noun: str
 ) -> tuple[Row[Any], ...]:
@@ -356,5 +343,14 @@ def switching_checks(
     """
     return (
         *each(lambda s: _named(rules(s), names(s), noun), NO_SUCH),
-        *each(lambda s: _stays(rules(s), names(s), noun), *_STAY_CHECKS),
+        refuse(
+            lambda s: _too_early(rules(s), names(s), noun),
+            "{0} {1!r} must be left after {2}, but not before {3}",
+            "give a longest dwell time that is not below the dwell time",
+        ),
+        refuse(
+            lambda s: _nowhere(rules(s), names(s), noun),
+            "{0} {1!r} must be left, but nothing may follow it",
+            "allow a switch from {1}, or give it no longest dwell time",
+        ),
     )

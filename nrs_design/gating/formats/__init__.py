@@ -23,14 +23,3 @@ FORMATS: Mapping[str, Callable[[GateOutcome], str]] = MappingProxyType(
         "badge": to_badge,
     }
 )
-
-__all__ = [
-    "FORMATS",
-    "to_badge",
-    "to_github",
-    "to_json",
-    "to_junit",
-    "to_markdown",
-    "to_sarif",
-    "to_text",
-]

@@ -3,7 +3,7 @@ from pathlib import Path
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nrs_design.gating.formats import to_github
+from nrs_design.gating.formats.github import to_github
 from nrs_design.gating.obligations import Caution, Status
 from tests.gating.formats.support import obligation, outcome_of
 

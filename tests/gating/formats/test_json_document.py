@@ -1,7 +1,7 @@
 import json
 from pathlib import Path
 
-from nrs_design.gating.formats import to_json
+from nrs_design.gating.formats.json_document import to_json
 from nrs_design.gating.obligations import Caution
 from tests.gating.formats.support import GAINS, obligation, outcome_of
 

@@ -3,7 +3,7 @@ import xml.etree.ElementTree as ET
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nrs_design.gating.formats import to_junit
+from nrs_design.gating.formats.junit import to_junit
 from tests.gating.formats.support import HOSTILE, obligation, outcome_of
 
 

@@ -3,8 +3,7 @@ import json
 import jsonschema
 import pytest
 
-from nrs_design.gating.formats import to_sarif
-from nrs_design.gating.formats.sarif import fingerprint
+from nrs_design.gating.formats.sarif import fingerprint, to_sarif
 from nrs_design.gating.obligations import Status
 from nrs_design.gating.rules import RULES
 from tests.gating.formats.support import HOSTILE, obligation, outcome_of

@@ -4,7 +4,9 @@ from xml.etree import ElementTree
 
 import pytest
 
-from nrs_design.gating.formats import to_badge, to_markdown, to_text
+from nrs_design.gating.formats.badge import to_badge
+from nrs_design.gating.formats.markdown import to_markdown
+from nrs_design.gating.formats.text import to_text
 from nrs_design.gating.obligations import Status
 from tests.gating.formats.support import GAINS, HOSTILE, obligation, outcome_of
 

@@ -118,11 +118,6 @@ class GoalsSpec(SpecModel):
         ),
     )
 
-    @property
-    def wants_creep(self) -> bool:
-        """Whether there is a goal that errors of the force signal decide."""
-        return self.max_creep is not None or self.max_creep_angle is not None
-
     def given(self) -> Iterator[tuple[str, Quantity | Fraction | str | ResponseGoal]]:
         """Yield the goals that are set, by key."""
         return ((key, value) for key, value in self if value is not None)

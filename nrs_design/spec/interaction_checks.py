@@ -62,27 +62,23 @@ def _named_environments(spec: Spec) -> Iterator[tuple[Location, Reference]]:
                     yield ("controllers", name, "contacts", index), reference(name=key)
 
 
-def _freed(spec: Spec) -> Iterator[tuple[Location, tuple[Spec, str, str]]]:
-    """Yield the gains that are free beside Mt and Bt, each with its spec and controller."""
+def _not_freeable(spec: Spec) -> Iterator[tuple[Location, tuple[str, str, str]]]:
+    """Yield the gains that are to be free and cannot, with those of their controller that can."""
     for name, given in spec.design.free.items():
+        known = _freeable(spec, name)
         for gain, _ in given.given():
-            yield ("design", "free", name, gain), (spec, name, gain)
+            if gain not in known:
+                yield ("design", "free", name, gain), (name, gain, ", ".join(known) or "none")
 
 
-def _not_freeable(freed: tuple[Spec, str, str]) -> tuple[str, str, str] | None:
-    """Return the controller and the gain that it has not, and those that may be free."""
-    spec, name, gain = freed
+def _freeable(spec: Spec, name: str) -> tuple[str, ...]:
     if name == MOTION:
         loop = spec.motion_loop
-        known: tuple[str, ...] = ("Kp", "Kd")
-        if loop is None or loop.transfer_function is not None:
-            known = ()
-    else:
-        controller = spec.controllers.get(name)
-        known = () if controller is None else tuple(controller.freeable)
-        # A spring that is not there has no value to start from.
-        known = tuple(k for k in known if getattr(controller, k, True) is not None)
-    return None if gain in known else (name, gain, ", ".join(known) or "none")
+        return () if loop is None or loop.transfer_function is not None else ("Kp", "Kd")
+    controller = spec.controllers.get(name)
+    known = () if controller is None else controller.freeable
+    # A spring that is not there has no value to start from.
+    return tuple(gain for gain in known if getattr(controller, gain, True) is not None)
 
 
 def _contact_mix(spec: Spec) -> tuple[str, ...]:
@@ -103,14 +99,12 @@ def _other_offset(spec: Spec) -> tuple[str, ...] | None:
     return next(((*item, *offsets[0]) for item in offsets if item[1] != offsets[0][1]), None)
 
 
-def _restless(spec: Spec) -> tuple[str, ...]:
+def _restless(spec: Spec) -> tuple[str, ...] | None:
     """Return an environment without a rest position, its law, and the others that are touched."""
-    found = list(touched(spec))
-    for item in found:
-        if not item.law.has_rest and len(found) > 1:
-            others = ", ".join(other.name for other in found if other is not item)
-            return item.name, item.law.model, others
-    return ()
+    names = {item.name: item.law for item in touched(spec)}
+    name = next((name for name, law in names.items() if not law.has_rest), None)
+    others = ", ".join(other for other in names if other != name)
+    return (name, names[name].model, others) if name and others else None
 
 
 def _undriven(spec: Spec) -> str | None:
@@ -122,20 +116,18 @@ def _undriven(spec: Spec) -> str | None:
 
 def _understated(spec: Spec) -> tuple[str, str, str] | None:
     """Return a noise of readings that is below an error that the spec names elsewhere."""
-    if spec.monitoring is None:
-        return None
-    torque, angle = spec.monitoring.torque_noise, spec.monitoring.angle_noise
-    named: list[tuple[str, Quantity, str, Quantity | None, int]] = []
-    if spec.disturbances is not None:
-        steps = spec.disturbances.encoder_step, spec.disturbances.force_step
-        named += (("angle_noise", angle, "disturbances: encoder_step", steps[0], 2),)
-        named += (("torque_noise", torque, "disturbances: force_step", steps[1], 2),)
-    if spec.sensor is not None:
-        named += (("torque_noise", torque, "sensor: resolution", spec.sensor.resolution, 2),)
-        named += (("torque_noise", torque, "sensor: bias", spec.sensor.bias, 1),)
-    for key, noise, name, error, parts in named:
+    # The key of the noise, where the error stands, and into how many parts it goes.
+    named = (
+        ("angle_noise", "disturbances", "encoder_step", 2),
+        ("torque_noise", "disturbances", "force_step", 2),
+        ("torque_noise", "sensor", "resolution", 2),
+        ("torque_noise", "sensor", "bias", 1),
+    )
+    for key, part, name, parts in named if spec.monitoring is not None else ():
+        noise: Quantity = getattr(spec.monitoring, key)
+        error: Quantity | None = getattr(getattr(spec, part), name, None)
         if error is not None and noise.not_below < error.not_above / parts:
-            return key, noise.text, f"{'half of ' * (parts > 1)}`{name}`, {error.text}"
+            return key, noise.text, f"{'half of ' * (parts > 1)}`{part}: {name}`, {error.text}"
     return None
 
 
@@ -242,7 +234,7 @@ _GOALS = (
     ),
     Row[_Goals](
         "",
-        lambda g: g.it.wants_creep and not g.creeps,
+        lambda g: not g.creeps and (g.it.max_creep or g.it.max_creep_angle),
         "a goal for the creep, and no errors of a sensor that the robot creeps by",
         "add `sensor: {{bias: 5e-3 N*m}}`, or remove the goal",
     ),
@@ -328,15 +320,11 @@ INTERACTION_CHECKS: tuple[Row[Spec], ...] = (
     # Names.
     *each(_named_environments, NO_SUCH),
     *each(_accurate_in, NO_SUCH),
-    *each(
-        _freed,
-        Row[tuple[Spec, str, str]](
-            "",
-            _not_freeable,
-            "{0!r} has no gain {1} that can be free; those that can be: {2}",
-            "name motion with Kp or Kd, a force controller with Kp, or Ki, or an impedance "
-            "controller with the spring Kt that it is given; Mt and Bt are free by min and max",
-        ),
+    refuse(
+        _not_freeable,
+        "{0!r} has no gain {1} that can be free; those that can be: {2}",
+        "name motion with Kp or Kd, a force controller with Kp, or Ki, or an impedance controller "
+        "with the spring Kt that it is given; Mt and Bt are free by min and max",
     ),
     Row(
         "environments.{0}",
@@ -435,9 +423,7 @@ INTERACTION_CHECKS: tuple[Row[Spec], ...] = (
     ),
     Row(
         "goals.peak_torque",
-        lambda s: (
-            s.goals is not None and s.goals.peak_torque is not None and s.disturbances is None
-        ),
+        lambda s: getattr(s.goals, "peak_torque", None) and s.disturbances is None,
         "peak_torque is wanted, but nothing is said to disturb the loop",
         "add `disturbances: {{command: 8 deg/s}}`",
     ),
@@ -445,8 +431,7 @@ INTERACTION_CHECKS: tuple[Row[Spec], ...] = (
     Row(
         "disturbances",
         lambda s: (
-            s.goals is not None
-            and s.goals.peak_torque is not None
+            getattr(s.goals, "peak_torque", None)
             and s.disturbances is not None
             and s.disturbances.command is None
         ),
@@ -484,7 +469,7 @@ INTERACTION_CHECKS: tuple[Row[Spec], ...] = (
     ),
     Row(
         "goals.delay",
-        lambda s: s.goals is not None and s.goals.delay is not None and s.sampling is None,
+        lambda s: getattr(s.goals, "delay", None) and s.sampling is None,
         "a proof up to a delay is wanted, but the spec has no samples",
         "add `sampling: {{period: 2 ms, delay: [0, 2]}}`, or use min_delay_margin",
     ),
@@ -503,11 +488,7 @@ INTERACTION_CHECKS: tuple[Row[Spec], ...] = (
     ),
     Row(
         "disturbances.force_step",
-        lambda s: (
-            s.sensor is not None
-            and s.disturbances is not None
-            and s.disturbances.force_step is not None
-        ),
+        lambda s: s.sensor is not None and getattr(s.disturbances, "force_step", None),
         "the sensor says how far its signal is off, and force_step does, too",
         "move it to `sensor: {{resolution: ...}}`",
     ),

@@ -126,9 +126,8 @@ class SensorSpec(SpecModel):
     def has_errors(self) -> bool:
         """Whether it says of an error how large it is."""
         named = (self.bias, self.force_bias, self.drift, self.resolution)
-        turned = (self.pose_error, self.imu_error)
-        if any(error is not None for error in (*named, *turned)):
+        if any(error is not None for error in (*named, self.pose_error, self.imu_error)):
             return True
-        center = self.tool and self.tool.center_of_mass
-        parts = (center.x, center.y, center.z) if center else ()
-        return self.tool is not None and not all(p.fixed for p in (self.tool.mass, *parts))
+        tool = self.tool
+        numbers = () if tool is None else (tool.mass, *(end for _, end in tool.center_of_mass))
+        return not all(number.fixed for number in numbers)

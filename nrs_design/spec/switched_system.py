@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from fractions import Fraction
 from typing import Annotated, Literal
 
@@ -136,34 +135,36 @@ class SwitchedSystemSpec(SpecModel):
         return None
 
 
-@dataclass(frozen=True, slots=True)
-class _Reset:
-    """A reset in its spec."""
-
-    it: ResetSpec
-    # Whether the rules allow the switch, and whether the same reset stands before.
-    allowed: bool
-    doubled: bool
-    # Rows and columns that its map must have; None if a mode is not there.
-    expected: tuple[int, int] | None
-
-    def misshapen(self) -> tuple[int, ...]:
-        """Rows and columns of a map that has not those of its modes, and theirs."""
-        if self.expected is None or self.expected == self.it.shape:
-            return ()
-        return *self.it.shape, *self.expected
+def _resets(spec: SwitchedSystemSpec) -> Iterator[tuple[Location, ResetSpec]]:
+    return ((("resets", index), reset) for index, reset in enumerate(spec.resets))
 
 
-def _resets(spec: SwitchedSystemSpec) -> Iterator[tuple[Location, _Reset]]:
-    sizes = {mode.name: mode.dimension for mode in spec.modes}
-    rules, known = spec.switching.transitions, set[ResetSpec]()
-    allowed = None if rules is None else set(rules)
-    for index, reset in enumerate(spec.resets):
-        ends = reset.target, reset.source
-        expected = (sizes[ends[0]], sizes[ends[1]]) if sizes.keys() >= set(ends) else None
-        may = allowed is None or (reset.source, reset.target) in allowed or expected is None
-        yield ("resets", index), _Reset(reset, may, reset in known, expected)
+def _not_allowed(spec: SwitchedSystemSpec) -> Iterator[tuple[Location, tuple[str, str]]]:
+    """Yield resets of switches from one mode to another that no rule allows."""
+    names = {mode.name for mode in spec.modes}
+    allowed = {*spec.switching.transitions} if spec.switching.transitions is not None else None
+    for at, reset in _resets(spec):
+        ends = reset.source, reset.target
+        if allowed is not None and names >= {*ends} and len({*ends}) > 1 and ends not in allowed:
+            yield at, ends
+
+
+def _doubled(spec: SwitchedSystemSpec) -> Iterator[tuple[Location, bool]]:
+    known = set[ResetSpec]()
+    for at, reset in _resets(spec):
+        yield at, reset in known
         known.add(reset)
+
+
+def _misshapen(
+    spec: SwitchedSystemSpec,
+) -> Iterator[tuple[Location, tuple[int, int, int, int, str, str]]]:
+    """Yield rows and columns of maps that have not those of their modes, theirs, and the modes."""
+    sizes = {mode.name: mode.dimension for mode in spec.modes}
+    for at, reset in _resets(spec):
+        source, target = reset.source, reset.target
+        if sizes.keys() >= {source, target} and reset.shape != (sizes[target], sizes[source]):
+            yield (*at, "map"), (*reset.shape, sizes[target], sizes[source], target, source)
 
 
 def _named_modes(spec: SwitchedSystemSpec) -> Iterator[tuple[Location, Reference]]:
@@ -171,7 +172,7 @@ def _named_modes(spec: SwitchedSystemSpec) -> Iterator[tuple[Location, Reference
     if spec.misses is not None:
         yield ("misses", "mode"), Reference("mode", spec.misses.mode, names)
     for at, reset in _resets(spec):
-        for key, name in (("from", reset.it.source), ("to", reset.it.target)):
+        for key, name in (("from", reset.source), ("to", reset.target)):
             yield (*at, key), Reference("mode", name, names)
 
 
@@ -306,31 +307,23 @@ SYSTEM_CHECKS: tuple[Row[SwitchedSystemSpec], ...] = (
     ),
     *each(
         _resets,
-        Row[_Reset](
+        Row[ResetSpec](
             "to",
-            lambda r: r.it.source == r.it.target,
+            lambda reset: reset.source == reset.target,
             "a switch leads to another mode",
             "name two modes",
         ),
-        Row[_Reset](
-            "",
-            lambda r: not r.allowed and r.it.source != r.it.target,
-            "the switch from {s.it.source} to {s.it.target} is not allowed",
-            "add it to switching.transitions, or remove this reset",
-        ),
-        Row[_Reset](
-            "",
-            lambda r: r.doubled,
-            "this reset is listed twice",
-            "list each once",
-        ),
-        Row[_Reset](
-            "map",
-            _Reset.misshapen,
-            "the map is {0} x {1}, expected {2} x {3}: {s.it.target} has {2} states, "
-            "{s.it.source} has {3}",
-            "write a row for each state after the switch, a column for each state before it",
-        ),
+    ),
+    refuse(
+        _not_allowed,
+        "the switch from {0} to {1} is not allowed",
+        "add it to switching.transitions, or remove this reset",
+    ),
+    refuse(_doubled, "this reset is listed twice", "list each once"),
+    refuse(
+        _misshapen,
+        "the map is {0} x {1}, expected {2} x {3}: {4} has {2} states, {5} has {3}",
+        "write a row for each state after the switch, a column for each state before it",
     ),
     refuse(
         _sizes,

@@ -15,7 +15,6 @@ if TYPE_CHECKING:
     from nrs_design.spec.controllers import ImpedanceControllerSpec as ImpedanceControllerSpec
     from nrs_design.spec.controllers import PositionControllerSpec as PositionControllerSpec
     from nrs_design.spec.exact import parse_exact as parse_exact
-    from nrs_design.spec.gain_fields import GainSpec as GainSpec
     from nrs_design.spec.goals import GoalsSpec as GoalsSpec
     from nrs_design.spec.interaction import InteractionDesignSpec as InteractionDesignSpec
     from nrs_design.spec.load import LoadedSpec as LoadedSpec
@@ -27,6 +26,7 @@ if TYPE_CHECKING:
     from nrs_design.spec.plausible import doubt_spec as doubt_spec
     from nrs_design.spec.plausible import worst_first as worst_first
     from nrs_design.spec.quantity import Quantity as Quantity
+    from nrs_design.spec.quantity_fields import GainSpec as GainSpec
     from nrs_design.spec.robot import BalancedLegSpec as BalancedLegSpec
     from nrs_design.spec.robot import BodySpec as BodySpec
     from nrs_design.spec.robot import DriveSpec as DriveSpec
@@ -45,7 +45,7 @@ _HOMES = {
         "ImpedanceControllerSpec PositionControllerSpec",
         "plausible": "Doubt doubt_spec worst_first",
         "exact": "parse_exact",
-        "gain_fields": "GainSpec",
+        "quantity_fields": "GainSpec",
         "goals": "GoalsSpec",
         "interaction": "InteractionDesignSpec",
         "load": "LoadedSpec load_spec parse_spec read_spec",

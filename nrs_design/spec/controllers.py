@@ -19,11 +19,11 @@ from nrs_design.spec import quantity_fields as field
 from nrs_design.spec.check import Row, exactly_one, exclusive
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import Contact, Label, Positive, TouchedAtOnce, UnitFraction, Weight
-from nrs_design.spec.gain_fields import DampingGain, GainSpec, InertiaGain, SpringGain
 from nrs_design.spec.goals import GoalsSpec
 from nrs_design.spec.model import SpecModel, optional, required
 from nrs_design.spec.parameters import Switch
 from nrs_design.spec.quantity import Quantity
+from nrs_design.spec.quantity_fields import GainSpec
 
 _ENVIRONMENT = "name of the environment that the gains are designed for"
 _CONTACTS = (
@@ -165,14 +165,14 @@ class ImpedanceControllerSpec(AbstractControllerSpec):
     desired_impedance_ratio: Positive | None = optional(
         "multiplies limits.torque/limits.velocity, no unit; not with desired_impedance"
     )
-    Mt: InertiaGain = required(
+    Mt: field.InertiaGain = required(
         "admittance inertia in kg*m^2: one quantity, or {min: ..., max: ...} "
         "for the design; 0 allowed"
     )
-    Bt: DampingGain = required(
+    Bt: field.DampingGain = required(
         "admittance damping in N*m*s/rad: one quantity, or {min: ..., max: ...} for the design; > 0"
     )
-    Kt: SpringGain | None = optional(
+    Kt: field.SpringGain | None = optional(
         "admittance spring in N*m/rad, which draws the robot back to its position "
         "reference: one quantity; > 0; default: no spring; with one, contact "
         "is taken for kept unless the spec says `contact: losable`"

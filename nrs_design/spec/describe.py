@@ -11,7 +11,6 @@ from nrs_design.proof.text import exact_text
 from nrs_design.spec import kinds
 from nrs_design.spec.controllers import ControllerSpec, contact_names
 from nrs_design.spec.environment import AbstractEnvironmentSpec, EnvironmentSpec, unit_at_pivot
-from nrs_design.spec.gain_fields import GainSpec
 from nrs_design.spec.interaction import InteractionDesignSpec
 from nrs_design.spec.interaction_parts import DriveSpec
 from nrs_design.spec.load import LoadedSpec, parse_spec
@@ -25,7 +24,7 @@ from nrs_design.spec.provenance import (
     IdentifiedSpec,
 )
 from nrs_design.spec.quantity import Quantity
-from nrs_design.spec.quantity_fields import RangedQuantity, Times
+from nrs_design.spec.quantity_fields import GainSpec, RangedQuantity, Times
 from nrs_design.spec.robot import RobotSpec
 from nrs_design.spec.sampling import SamplingSpec
 from nrs_design.spec.switched_system import SwitchedSystemSpec

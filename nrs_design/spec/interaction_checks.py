@@ -20,13 +20,18 @@ from nrs_design.spec.features import (
     Touched,
     touched,
 )
-from nrs_design.spec.goals import OF_THE_CERTIFICATE, ONLY_FOR, GoalsSpec, ResponseGoal
+from nrs_design.spec.goals import (
+    OF_THE_CERTIFICATE,
+    ONLY_FOR,
+    AccuracySpec,
+    GoalsSpec,
+    ResponseGoal,
+)
 from nrs_design.spec.interaction_parts import FREE, INTERFACES, MOTION, NOT_CONTROLLERS, OF_CORNERS
 from nrs_design.spec.interaction_parts import AbstractInteractionSpec as Spec
 from nrs_design.spec.logic_checks import LOGIC_CHECKS
 from nrs_design.spec.motion import commands_in
 from nrs_design.spec.quantity import PI_BETWEEN, Quantity
-from nrs_design.spec.response_goals import AccuracySpec
 from nrs_design.spec.sampling import LONGEST_DELAY
 from nrs_design.spec.scenario_checks import SCENARIO_CHECKS
 from nrs_design.spec.switching import switching_checks

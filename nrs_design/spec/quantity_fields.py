@@ -123,6 +123,20 @@ class Bounds(SpecModel):
     checks = BOUND_CHECKS
 
 
+class GainSpec(SpecModel):
+    """A gain: fixed, with ``min == max``, or to be designed within bounds."""
+
+    min: AnyQuantity = required("smallest value that the design may choose")
+    max: AnyQuantity = required("largest value that the design may choose")
+
+    checks = BOUND_CHECKS
+
+    @property
+    def fixed(self) -> bool:
+        """Whether the design may choose only one value."""
+        return self.min.rational_part == self.max.rational_part
+
+
 class RangedQuantity(SpecModel):
     """Nominal value of an uncertain quantity, and the interval that it lies in.
 
@@ -349,3 +363,10 @@ DriveCommand = Annotated[Quantity, _one(kinds.DRIVE_COMMAND, positive=False)]
 LargestCommand = Annotated[Quantity, _one(kinds.COMMAND)]
 TorqueGradient = Annotated[Quantity, _one(kinds.TORQUE_GRADIENT)]
 LengthBounds = Annotated[Bounds, bounds_of(kinds.LENGTH, Bounds)]
+InertiaGain = Annotated[GainSpec, bounds_of(kinds.INERTIA, GainSpec, positive=False)]
+DampingGain = Annotated[GainSpec, bounds_of(kinds.IMPEDANCE, GainSpec)]
+# No design chooses it.
+SpringGain = Annotated[
+    GainSpec,
+    ReadBefore(bounds_of(kinds.SPRING, GainSpec).read, quantity_schema(kinds.SPRING)),
+]

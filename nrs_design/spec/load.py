@@ -32,9 +32,9 @@ from nrs_design.spec.model import SpecModel
 from nrs_design.spec.places import faults_between, file_faults, place_of
 from nrs_design.spec.task_space import (
     KIND,
+    TaskSpaceSpec,
     address,
     axis_document,
-    axis_names,
     file_of,
     is_task_space,
 )
@@ -85,10 +85,9 @@ def read_spec(path: str | os.PathLike[str]) -> LoadedSpec:
     named = Path(path)
     file = file_of(named)
     _, text = read_source(file)
-    root, syntax = _document(text, file)
-    if is_task_space(root):
-        _validated(model_of(KIND), root, syntax, file)
-        return _loaded(named, text, axis_document(root, named), ())
+    root, syntax, axes = _document(text, file)
+    if axes is not None:
+        return _loaded(named, text, axis_document(root, axes, named), ())
     if file != named:
         raise SpecError("this file holds no axes", path=file, remedy=f"name the file alone: {file}")
     return _loaded(file, text, root, syntax)
@@ -106,16 +105,16 @@ def axes_at(path: Path) -> tuple[Path, ...]:
     _, text = read_source(path)
     if KIND not in text:
         return (path,)
-    root, syntax = _document(text, path)
-    if not is_task_space(root):
-        return (path,)
-    _validated(model_of(KIND), root, syntax, path)
-    return tuple(address(path, axis) for axis in axis_names(root))
+    axes = _document(text, path)[2]
+    return (path,) if axes is None else tuple(address(path, axis) for axis in axes.axes)
 
 
-def _document(text: str, file: Path) -> tuple[Node, tuple[Fault, ...]]:
+def _document(text: str, file: Path) -> tuple[Node, tuple[Fault, ...], TaskSpaceSpec | None]:
+    """Return a document, the faults of its syntax, and what it says if it holds several axes."""
     root, syntax = parse_with_faults(text, file)
-    return as_read(root, file), syntax
+    root = as_read(root, file)
+    axes = _validated(model_of(KIND), root, syntax, file) if is_task_space(root) else None
+    return root, syntax, axes
 
 
 def respecified(loaded: LoadedSpec, root: Node) -> LoadedSpec:

@@ -14,15 +14,11 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from nrs_design.spec.check import find_faults
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.quantity import Quantity
 from nrs_design.spec.units import parse_unit
-
-if TYPE_CHECKING:
-    from nrs_design.spec.load import Spec
 
 _Asked = tuple[tuple[str, ...], str]  # Keys that lead to a field, and the question
 _TABLE = Path(__file__).with_name("sizes.toml")
@@ -157,7 +153,7 @@ class Doubt:
         return self.message
 
 
-def doubt_spec(spec: Spec) -> Iterator[Doubt]:
+def doubt_spec(spec: SpecModel) -> Iterator[Doubt]:
     """Yield what is doubtful about a spec, before anything is designed."""
     yield from (Doubt(at, text) for at, text in doubt_sizes(spec))
     for found in find_faults(spec.warnings, spec, spec.checks):

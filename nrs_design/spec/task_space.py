@@ -16,9 +16,11 @@ from nrs_design.errors import SpecError
 from nrs_design.proof.text import quoted
 from nrs_design.spec.check import Row
 from nrs_design.spec.document import Mapping, Node, Scalar
+from nrs_design.spec.edits import node_at
 from nrs_design.spec.faults import Location, did_you_mean
 from nrs_design.spec.fields import Name, Title
 from nrs_design.spec.model import SpecModel, optional, required
+from nrs_design.spec.places import place_of
 
 KIND = "task-space"
 SEPARATOR = "#"
@@ -85,18 +87,12 @@ def is_task_space(root: Node) -> bool:
     return isinstance(kind, Scalar) and kind.text == KIND
 
 
-def axis_names(root: Node) -> tuple[str, ...]:
-    """Return the names of the axes of a valid document, in file order."""
-    axes = root.entries["axes"] if isinstance(root, Mapping) else None
-    return tuple(axes.entries) if isinstance(axes, Mapping) else ()
-
-
-def axis_document(root: Node, path: Path) -> Mapping:
+def axis_document(root: Node, said: TaskSpaceSpec, path: Path) -> Mapping:
     """Return an axis as the document of an interaction design, with its places in the file.
 
     The path is the address of the axis; a `SpecError` if it names none of them.
     """
-    file, known = file_of(path), axis_names(root)
+    file, known = file_of(path), tuple(said.axes)
     if file == path:
         listed = ", ".join(known)
         raise SpecError(
@@ -106,26 +102,21 @@ def axis_document(root: Node, path: Path) -> Mapping:
             "optimize, report and gate take them all",
         )
     axis = str(path).removeprefix(f"{file}{SEPARATOR}")
-    assert isinstance(root, Mapping)
-    axes, common = root.entries["axes"], root.entries.get("common")
-    assert isinstance(axes, Mapping)
-    own = axes.entries.get(axis)
-    if not isinstance(own, Mapping):
+    own = node_at(root, ("axes", axis))
+    if not isinstance(root, Mapping) or not isinstance(own, Mapping):
         raise SpecError(
             f"there is no axis {quoted(axis)} in this file",
             path=file,
             remedy=did_you_mean(axis, known),
         )
-    place, name = axes.keys[axis], root.entries["name"]
-    assert isinstance(name, Scalar)
-    heads = {"kind": "interaction-design", "name": f"{name.text}-{axis}"}
-    title = root.entries.get("title")
-    if isinstance(title, Scalar):
-        heads["title"] = f"{title.text}: {axis}"
-    parts = [part for part in (common, own) if isinstance(part, Mapping)]
+    place = place_of(root, ("axes", axis), at_key=True)
+    heads = {"kind": "interaction-design", "name": f"{said.name}-{axis}"}
+    if said.title is not None:
+        heads["title"] = f"{said.title}: {axis}"
     entries: dict[str, Node] = {key: Scalar(text, place) for key, text in heads.items()}
     keys = dict.fromkeys(heads, place)
-    for part in parts:
-        entries |= part.entries
-        keys |= part.keys
+    for part in (root.entries.get("common"), own):
+        if isinstance(part, Mapping):
+            entries |= part.entries
+            keys |= part.keys
     return Mapping(entries, keys, place)

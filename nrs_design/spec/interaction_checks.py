@@ -186,10 +186,8 @@ def _accurate_in(spec: Spec) -> Iterator[tuple[Location, Reference]]:
     """Yield the environments in which a tool shall follow."""
     for at, goal in _responses(spec):
         if isinstance(goal, AccuracySpec) and goal.environment is not None:
-            yield (
-                (*at, "environment"),
-                Reference("environment", goal.environment, spec.environments),
-            )
+            named = Reference("environment", goal.environment, spec.environments)
+            yield (*at, "environment"), named
 
 
 def _weighed(spec: Spec) -> Iterator[tuple[Location, tuple[str, ResponseGoal | None]]]:

@@ -71,11 +71,11 @@ class DesignSpec(SpecModel):
     significant_digits: Digits = optional(
         "designed gains are rounded to so many digits, 1 to 7, then to float32", 4
     )
-    free: Annotated[dict[Label, FreeGainsSpec], Field(max_length=MAX_ENTRIES)] = Field(
-        default_factory=dict,
-        description="gains beside Mt and Bt that `optimize` may change where the proof "
-        "steers: motion or the name of a controller -> gain -> {min: ..., max: ...}, as "
-        "factors on the gain that the spec gives; all other commands take that gain",
+    free: Annotated[dict[Label, FreeGainsSpec], Field(max_length=MAX_ENTRIES)] = optional(
+        "gains beside Mt and Bt that `optimize` may change where the proof steers: motion or the "
+        "name of a controller -> gain -> {min: ..., max: ...}, as factors on the gain that the "
+        "spec gives; all other commands take that gain",
+        {},
     )
 
 
@@ -106,8 +106,8 @@ class AbstractInteractionSpec(SpecModel):
         "of type torque-impedance"
     )
     limits: LimitsSpec = required("what the interaction must respect")
-    environments: Annotated[dict[Label, EnvironmentSpec], Field(max_length=MAX_ENTRIES)] = Field(
-        default_factory=dict, description="what the robot touches: name -> environment"
+    environments: Annotated[dict[Label, EnvironmentSpec], Field(max_length=MAX_ENTRIES)] = optional(
+        "what the robot touches: name -> environment", {}
     )
     controllers: Annotated[
         dict[Label, ControllerSpec], Field(min_length=1, max_length=MAX_ENTRIES)
@@ -155,9 +155,8 @@ class AbstractInteractionSpec(SpecModel):
         "with dwell_time and transitions between controllers, or between controllers in one "
         "contact each, such as tissue/soft"
     )
-    scenarios: Annotated[dict[Label, ScenarioSpec], Field(max_length=MAX_ENTRIES)] = Field(
-        default_factory=dict,
-        description="runs for `nrs-design simulate`: name -> scenario; no proof depends on them",
+    scenarios: Annotated[dict[Label, ScenarioSpec], Field(max_length=MAX_ENTRIES)] = optional(
+        "runs for `nrs-design simulate`: name -> scenario; no proof depends on them", {}
     )
     # The default is made without validation, for which a validator of its own would be built.
     certification: CertificationSpec = Field(

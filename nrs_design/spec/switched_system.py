@@ -86,10 +86,7 @@ class SwitchedSystemSpec(SpecModel):
     title: Title = optional("one line for people, at most 200 characters", "")
     time: Literal["continuous", "discrete"] = required("continuous: x' = A x; discrete: x+ = A x")
     parameters: Annotated[dict[ParameterName, ParameterSpec], Field(max_length=MAX_PARAMETERS)] = (
-        Field(
-            default_factory=dict,
-            description="uncertain numbers that the matrices depend on: name -> nominal and range",
-        )
+        optional("uncertain numbers that the matrices depend on: name -> nominal and range", {})
     )
     modes: Annotated[tuple[ModeSpec, ...], Field(min_length=1, max_length=MAX_MODES)] = required(
         "the modes, at least one; of the same size, unless resets link them"

@@ -128,9 +128,10 @@ def _understated(spec: Spec) -> tuple[str, str, str] | None:
         ("torque_noise", "sensor", "resolution", 2),
         ("torque_noise", "sensor", "bias", 1),
     )
+    said = {"disturbances": spec.disturbances, "sensor": spec.sensor}
     for key, part, name, parts in named if spec.monitoring is not None else ():
         noise: Quantity = getattr(spec.monitoring, key)
-        error: Quantity | None = getattr(getattr(spec, part), name, None)
+        error: Quantity | None = getattr(said[part], name, None)
         if error is not None and noise.not_below < error.not_above / parts:
             return key, noise.text, f"{'half of ' * (parts > 1)}`{part}: {name}`, {error.text}"
     return None

@@ -132,25 +132,31 @@ class SwitchedSystemSpec(SpecModel):
         return None
 
 
-def _resets(spec: SwitchedSystemSpec) -> Iterator[tuple[Location, ResetSpec]]:
-    return ((("resets", index), reset) for index, reset in enumerate(spec.resets))
+def _resets(spec: SwitchedSystemSpec) -> Iterator[tuple[Location, ResetSpec, bool]]:
+    """Yield resets, and whether their modes are there."""
+    names = {mode.name for mode in spec.modes}
+    for index, reset in enumerate(spec.resets):
+        yield ("resets", index), reset, names >= {reset.source, reset.target}
+
+
+def _to_itself(spec: SwitchedSystemSpec) -> Iterator[tuple[Location, bool]]:
+    return (((*at, "to"), reset.source == reset.target) for at, reset, _ in _resets(spec))
 
 
 def _not_allowed(spec: SwitchedSystemSpec) -> Iterator[tuple[Location, tuple[str, str]]]:
     """Yield resets of switches from one mode to another that no rule allows."""
-    names = {mode.name for mode in spec.modes}
     allowed = {*spec.switching.transitions} if spec.switching.transitions is not None else None
-    for at, reset in _resets(spec):
+    for at, reset, known in _resets(spec):
         ends = reset.source, reset.target
-        if allowed is not None and names >= {*ends} and len({*ends}) > 1 and ends not in allowed:
+        if allowed is not None and known and reset.source != reset.target and ends not in allowed:
             yield at, ends
 
 
 def _doubled(spec: SwitchedSystemSpec) -> Iterator[tuple[Location, bool]]:
-    known = set[ResetSpec]()
-    for at, reset in _resets(spec):
-        yield at, reset in known
-        known.add(reset)
+    before = set[ResetSpec]()
+    for at, reset, _ in _resets(spec):
+        yield at, reset in before
+        before.add(reset)
 
 
 def _misshapen(
@@ -158,9 +164,9 @@ def _misshapen(
 ) -> Iterator[tuple[Location, tuple[int, int, int, int, str, str]]]:
     """Yield rows and columns of maps that have not those of their modes, theirs, and the modes."""
     sizes = {mode.name: mode.dimension for mode in spec.modes}
-    for at, reset in _resets(spec):
+    for at, reset, known in _resets(spec):
         source, target = reset.source, reset.target
-        if sizes.keys() >= {source, target} and reset.shape != (sizes[target], sizes[source]):
+        if known and reset.shape != (sizes[target], sizes[source]):
             yield (*at, "map"), (*reset.shape, sizes[target], sizes[source], target, source)
 
 
@@ -168,7 +174,7 @@ def _named_modes(spec: SwitchedSystemSpec) -> Iterator[tuple[Location, Reference
     names = dict.fromkeys(mode.name for mode in spec.modes)
     if spec.misses is not None:
         yield ("misses", "mode"), Reference("mode", spec.misses.mode, names)
-    for at, reset in _resets(spec):
+    for at, reset, _ in _resets(spec):
         for key, name in (("from", reset.source), ("to", reset.target)):
             yield (*at, key), Reference("mode", name, names)
 
@@ -302,15 +308,7 @@ SYSTEM_CHECKS: tuple[Row[SwitchedSystemSpec], ...] = (
         "there is no mode of a step in time",
         "add the mode of a hit beside that of a miss",
     ),
-    *each(
-        _resets,
-        Row[ResetSpec](
-            "to",
-            lambda reset: reset.source == reset.target,
-            "a switch leads to another mode",
-            "name two modes",
-        ),
-    ),
+    refuse(_to_itself, "a switch leads to another mode", "name two modes"),
     refuse(
         _not_allowed,
         "the switch from {0} to {1} is not allowed",

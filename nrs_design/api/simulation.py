@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any, overload
 from nrs_design.api.result import AbstractResult, Figures
 from nrs_design.axis import unit
 from nrs_design.errors import DesignError
-from nrs_design.facts.simulation import run_facts
 from nrs_design.facts.spec import spec_facts
 from nrs_design.pipeline.design import Designed
 
@@ -115,7 +114,45 @@ class ScenarioRun(AbstractResult):
         return self.designed.spec.axis
 
     def _facts(self) -> dict[str, Any]:
-        return run_facts(self.simulated, self.bounds, self.rate)
+        run, rate = self.run, self.rate
+        return {
+            "scenario": run.scenario,
+            "engine": run.engine,
+            "seed": self.scenario.seed,
+            "stopped": run.stopped,
+            "steps": run.steps,
+            "refused_samples": run.refused,
+            "saturated_samples": run.saturated,
+            "missed_samples": run.missed,
+            "not_modelled": list(run.left_out),
+            "metrics": dict(self.metrics),
+            "limits": dict(self.scenario.limits),
+            "switches": [{"time": time, "to": name} for time, name in run.switches],
+            "contacts": [
+                {"time": time, "environment": name, "made": made}
+                for time, name, made in run.contacts
+            ],
+            "certified_bounds": [
+                {
+                    "output": b.output,
+                    "unit": b.unit,
+                    "level": b.level,
+                    "holds_for_this_run": not b.uncovered,
+                    "uncovered": list(b.uncovered),
+                }
+                for b in self.bounds
+            ],
+            "certified_rate": None
+            if rate is None
+            else {
+                "rate": rate.rate,
+                "unit": rate.unit,
+                "attained": rate.attained,
+                "from": rate.start,
+                "holds_for_this_run": not rate.uncovered,
+                "uncovered": list(rate.uncovered),
+            },
+        }
 
     def _drawings(self) -> Figures:
         return [("run", self._draw)]

@@ -9,12 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 from nrs_design.api.result import AbstractResult, Figures
 from nrs_design.facts.spec import spec_facts
-from nrs_design.facts.worst_case import worst_case_facts
 from nrs_design.pipeline.design import Designed
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
     from nrs_design.pipeline.worst_case import WorstCase
     from nrs_design.simulation.worst_case import WorstRun
 
@@ -63,21 +60,38 @@ class WorstFound(AbstractResult):
         return self.designed.spec.axis
 
     def _facts(self) -> dict[str, Any]:
-        facts = worst_case_facts(self.case)
-        return spec_facts(self.designed.loaded) | facts | {"files": []}
+        from nrs_design.reporting.worst_case import LEFT_OUT, found_in
+
+        case = self.case
+        found = [
+            {
+                "output": item.name,
+                "unit": item.unit,
+                "worst_found": item.value,
+                "limit": item.limit,
+                "certified_bound": item.bound,
+                "bound_over_found": item.ratio,
+                "exceeds_limit": item.exceeds,
+                "duration": float(run.time[-1]),
+            }
+            for item, run in zip(found_in(case), case.runs, strict=True)
+        ]
+        facts = {
+            "disturbances": [
+                {"name": c.name, "unit": c.unit, "bound": float(c.bound)}
+                for c in case.system.channels
+            ],
+            "disturbances_declared": case.declared,
+            "found": found,
+            "not_modelled": [LEFT_OUT],
+        }
+        return spec_facts(self.designed.loaded) | {"worst_case": facts, "files": []}
 
     def _drawings(self) -> Figures:
-        return [(run.output.name, partial(self._draw, run)) for run in self.runs]
-
-    def _draw(self, run: WorstRun) -> Figure:
         from nrs_design.reporting.worst_case import draw_worst
 
-        return draw_worst(self.case, run, self._arm())
-
-    def _arm(self) -> float | None:
-        from nrs_design.simulation.run import common_lever_arm
-
-        return common_lever_arm(self.designed.spec, self.designed.spec.touched)
+        spec = self.designed.spec
+        return [(run.output.name, partial(draw_worst, self.case, run, spec)) for run in self.runs]
 
     def _headline(self) -> str:
         return f"{self.designed.spec.name}: the worst that was found, a lower bound"
@@ -86,4 +100,4 @@ class WorstFound(AbstractResult):
         from nrs_design.reporting.worst_case import COLUMNS, worst_rows
 
         yield COLUMNS
-        yield from worst_rows(self.case, self._arm())
+        yield from worst_rows(self.case, self.designed.spec)

@@ -10,7 +10,6 @@ import typer
 
 from nrs_design.cli import exit_codes
 from nrs_design.cli.command import Answer, command, take_spec
-from nrs_design.cli.gradient_options import MaxUpdates, Radius, Relaxation, Seed, StartMode
 from nrs_design.cli.options import Budget, Memory, SpecFile
 from nrs_design.cli.printing import note, progress, say
 from nrs_design.cli.tables import print_table
@@ -22,6 +21,8 @@ if TYPE_CHECKING:
     from nrs_design.search.method_run import MethodRun
     from nrs_design.spec import LoadedSpec
 
+PANEL = "Gradient iteration"
+
 
 @command("compare-methods")
 def compare_methods(
@@ -29,11 +30,25 @@ def compare_methods(
     optimize_rate: Annotated[
         bool, typer.Option(help="Let every method look for the largest decay rate, too.")
     ] = False,
-    relaxation: Relaxation = 1.0,
-    radius: Radius = 1.0,
-    start_mode: StartMode = None,
-    seed: Seed = 0,
-    max_updates: MaxUpdates = 20_000,
+    relaxation: Annotated[
+        float,
+        typer.Option(min=0.0, max=2.0, rich_help_panel=PANEL, help="The alpha of thesis 5.25."),
+    ] = 1.0,
+    radius: Annotated[
+        float, typer.Option(rich_help_panel=PANEL, help="The r of thesis 5.25, above 0.")
+    ] = 1.0,
+    start_mode: Annotated[
+        str | None,
+        typer.Option(
+            metavar="MODE", rich_help_panel=PANEL, help="Gives the first Q; default the first mode."
+        ),
+    ] = None,
+    seed: Annotated[
+        int, typer.Option(min=0, rich_help_panel=PANEL, help="Of the random order.")
+    ] = 0,
+    max_updates: Annotated[
+        int, typer.Option(min=0, rich_help_panel=PANEL, help="Updates after which it gives up.")
+    ] = 20_000,
     budget: Budget = None,
     memory: Memory = None,
     figure: Annotated[

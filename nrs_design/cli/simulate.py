@@ -2,27 +2,17 @@
 
 from __future__ import annotations
 
+from enum import StrEnum
 from functools import partial
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from nrs_design.cli.command import Answer, command, take_spec
 from nrs_design.cli.options import SpecFile
 from nrs_design.cli.printing import progress
-from nrs_design.cli.simulate_options import (
-    Bound,
-    BoundsOf,
-    Delay,
-    Engine,
-    EngineOption,
-    MaxSteps,
-    Out,
-    OuterPeriod,
-    Period,
-    Scenarios,
-    WorstCaseFlag,
-)
+from nrs_design.cli.seconds import seconds
 from nrs_design.progress import Progress
 
 if TYPE_CHECKING:
@@ -30,19 +20,73 @@ if TYPE_CHECKING:
     from nrs_design.pipeline.design import Designed
 
 
+class EngineOption(StrEnum):
+    """What simulates."""
+
+    EXACT = "exact"
+    SAMPLED = "sampled"
+
+
 @command("simulate")
 def simulate(
     spec: SpecFile,
-    scenario: Scenarios = None,
-    engine: Engine = None,
-    out: Out = None,
-    certificate: BoundsOf = None,
-    bound: Bound = True,
-    period: Period = None,
-    delay: Delay = None,
-    outer_period: OuterPeriod = None,
-    max_steps: MaxSteps = None,
-    worst: WorstCaseFlag = False,
+    scenario: Annotated[
+        list[str] | None,
+        typer.Option("--scenario", metavar="NAME", help="One scenario, or several; default: all."),
+    ] = None,
+    engine: Annotated[
+        EngineOption | None,
+        typer.Option(
+            help="exact: continuous time, from event to event; sampled: the law that ships, in "
+            "single precision. Default: sampled where the spec has sampling or tissue is not "
+            "linear."
+        ),
+    ] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FOLDER", help="Write SPEC.SCENARIO.svg, .png and .csv of every run there."
+        ),
+    ] = None,
+    certificate: Annotated[
+        Path | None,
+        typer.Option(metavar="CERT", help="Show the bounds of this certificate of the spec."),
+    ] = None,
+    bound: Annotated[
+        bool, typer.Option(help="Certify a bound where the spec says what disturbs the loop.")
+    ] = True,
+    period: Annotated[
+        float | None,
+        typer.Option(
+            metavar="S",
+            parser=seconds(1e-5, 1.0),
+            help="Period of the sampled engine in s, not the spec's; without either, 0.002.",
+        ),
+    ] = None,
+    delay: Annotated[
+        int | None,
+        typer.Option(min=0, max=10, help="Age of its force samples in samples, not the spec's."),
+    ] = None,
+    outer_period: Annotated[
+        float | None,
+        typer.Option(
+            metavar="S",
+            min=1e-5,
+            max=1.0,
+            help="Period of its force samples and admittances in s, not that of the motion loop.",
+        ),
+    ] = None,
+    max_steps: Annotated[
+        int | None, typer.Option(min=1, help="Most steps of a run; beyond, exit code 3.")
+    ] = None,
+    worst: Annotated[
+        bool,
+        typer.Option(
+            "--worst-case",
+            help="Let an adversary choose controllers, contact, delay and disturbances, and show "
+            "the worst runs that he finds.",
+        ),
+    ] = False,
 ) -> Answer:
     """Simulate the interaction of robot, tissue and surgeon, and measure safety and agility.
 

@@ -10,25 +10,20 @@ from typing import TYPE_CHECKING
 from nrs_design.axis import unit
 from nrs_design.cli import exit_codes
 from nrs_design.cli.command import Answer
-from nrs_design.cli.printing import note, say, wants_details
-from nrs_design.cli.run_files import RunFiles, write_runs
+from nrs_design.cli.printing import say, wants_details
+from nrs_design.cli.run_files import check_runs, write_runs
 from nrs_design.cli.tables import print_table
-from nrs_design.facts.simulation import run_facts
-from nrs_design.facts.spec import spec_facts
 from nrs_design.progress import Progress
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable
 
+    from nrs_design.api.simulation import ScenarioRun, Simulation
     from nrs_design.certificates.certificate import Certificate
-    from nrs_design.output import Output
-    from nrs_design.pipeline.certified_runs import CertifiedBound, CertifiedRate
+    from nrs_design.pipeline.certified_runs import CertifiedRate
     from nrs_design.pipeline.design import Designed
-    from nrs_design.pipeline.scenarios import Runs, Simulated
+    from nrs_design.pipeline.scenarios import Runs
     from nrs_design.simulation.run import Run
-
-# A run, and the bounds and the rate that are certified beside it.
-Bounded = tuple["Simulated", "tuple[CertifiedBound, ...]", "CertifiedRate | None"]
 
 
 def simulate_scenarios(
@@ -42,86 +37,44 @@ def simulate_scenarios(
 
     `prove` returns the certificate whose bounds are shown, if any; it is called when all has run.
     """
-    from nrs_design.pipeline.scenarios import run_scenarios
+    from nrs_design.api.simulation import Simulation
+    from nrs_design.output import RESPONSE
+    from nrs_design.pipeline.scenarios import names_of, run_scenarios
 
-    if out is not None:
-        _check_places(designed, wanted, out)
+    name = designed.spec.name
+    check_runs(out, (f"{name}.{one}" for one in names_of(designed.spec, wanted)), RESPONSE)
     found = list(run_scenarios(designed, wanted, step))
-    proof = prove()
-    runs = [(one, *_certified(designed, proof, one)) for one in found]
+    runs = Simulation.of(designed, found, prove())
     step("figures")
-    files = [] if out is None else _write(designed, out, runs)
+    drawn = ((f"{name}.{one.name}", one.response.to_csv(), one.plot()) for one in runs)
+    files = write_runs(out, drawn, RESPONSE)
 
     def show() -> None:
         if not wants_details():
             _print_briefly(runs)
             return
-        for run in runs:
-            _print(*run)
+        for one in runs:
+            _print(one)
         say("not modelled:")
-        for line in dict.fromkeys(line for one in found for line in one.run.left_out):
+        for line in dict.fromkeys(line for one in runs for line in one.run.left_out):
             say(f"  - {line}")
 
-    facts = spec_facts(designed.loaded)
     return Answer(
-        lambda: facts | {"runs": [run_facts(*run) for run in runs], "files": files},
+        lambda: runs.to_dict() | {"files": files},
         show,
-        exit_codes.INCONCLUSIVE if any(one.run.stopped for one in found) else exit_codes.PROVED,
+        exit_codes.INCONCLUSIVE if any(one.run.stopped for one in runs) else exit_codes.PROVED,
     )
 
 
-def _certified(
-    designed: Designed, proof: Certificate | None, one: Simulated
-) -> tuple[tuple[CertifiedBound, ...], CertifiedRate | None]:
-    """Return what is certified beside a run: bounds, and a rate."""
-    from nrs_design.pipeline.certified_runs import hold_bounds, hold_rate
-
-    if proof is None:
-        return (), None
-    return hold_bounds(designed, proof, one), hold_rate(designed, proof, one)
-
-
-def _check_places(designed: Designed, wanted: Runs, out: Path) -> None:
-    from nrs_design.pipeline.scenarios import names_of
-
-    for name in names_of(designed.spec, wanted):
-        _files(designed, out, name).check()
-
-
-def _files(designed: Designed, out: Path, scenario: str) -> RunFiles:
-    from nrs_design.output import RESPONSE
-
-    return RunFiles(out, f"{designed.spec.name}.{scenario}", RESPONSE)
-
-
-def _write(designed: Designed, out: Path, runs: Sequence[Bounded]) -> list[str]:
-    from nrs_design.reporting.figures.simulated import draw_simulated
-    from nrs_design.simulation.run import common_lever_arm
-
-    limits = designed.spec.limits
-    outputs: list[Output] = []
-    for one, bounds, _ in runs:
-        response = one.run.response
-        touched = [surface.environment for surface in one.scenario.surfaces]
-        arm = common_lever_arm(designed.spec, touched)
-        level = next(((b.level, not b.uncovered) for b in bounds if b.output == "force"), None)
-        figure = draw_simulated(response, limits.torque.si, limits.velocity.si, arm, level)
-        files = _files(designed, out, one.scenario.name)
-        outputs += files.outputs(response.to_csv(), figure)
-    written = write_runs(outputs)
-    note(f"written to {out}")
-    return written
-
-
-def _print_briefly(runs: Sequence[Bounded]) -> None:
+def _print_briefly(runs: Simulation) -> None:
     """Print a row for each run, and what went wrong in one."""
     from nrs_design.axis import current
     from nrs_design.proof.bounds import upper
     from nrs_design.reporting.simulation import four_digits_up
 
     fine, rows, beyond = current().fine, [], False
-    for one, bounds, _ in runs:
-        proved = {b.output: b.level for b in bounds if not b.uncovered}
+    for one in runs:
+        proved = {b.output: b.level for b in one.bounds if not b.uncovered}
         limits = {"torque": one.metrics["torque_limit"], **one.scenario.limits}
         peaks = {"torque": "peak_torque", "velocity": "peak_velocity", "deflection": "peak_depth"}
         shown = {
@@ -132,7 +85,7 @@ def _print_briefly(runs: Sequence[Bounded]) -> None:
         beyond = beyond or "!" in "".join(shown.values())
         rows.append(
             [
-                one.run.scenario,
+                one.name,
                 shown["torque"],
                 upper(Fraction(proved["force"]), 4) if "force" in proved else "-",
                 f"{limits['torque']:.4g}",
@@ -153,27 +106,27 @@ def _print_briefly(runs: Sequence[Bounded]) -> None:
     print_table("", columns, rows)
     if beyond:
         say("! beyond a limit of the spec or the scenario")
-    for one, _, _ in runs:
+    for one in runs:
         if one.run.stopped:
-            say(f"{one.run.scenario}: STOPPED: {one.run.stopped}")
+            say(f"{one.name}: STOPPED: {one.run.stopped}")
         if one.run.refused:
-            say(f"{one.run.scenario}: the law refused {one.run.refused} samples")
+            say(f"{one.name}: the law refused {one.run.refused} samples")
         if one.run.saturated:
-            say(f"{one.run.scenario}: the motor met its limit at {one.run.saturated} samples")
+            say(f"{one.name}: the motor met its limit at {one.run.saturated} samples")
     say("A run proves nothing; -v says more.")
 
 
-def _print(one: Simulated, bounds: tuple[CertifiedBound, ...], rate: CertifiedRate | None) -> None:
+def _print(one: ScenarioRun) -> None:
     """Print the metrics of a run, bounds beside what they bound."""
     from nrs_design.proof.bounds import upper
     from nrs_design.reporting.simulation import four_digits_up, metric_rows
 
-    run = one.run
+    run, rate = one.run, one.rate
     print_table(f"{run.scenario}: {run.engine} engine", ["", "value", "unit", "limit"],
                 metric_rows(one.metrics, one.scenario.limits))  # fmt: skip
     say(f"  {_setting(run)}")
     peaks = {"force": one.metrics["peak_torque"], "velocity": one.metrics["peak_velocity"]}
-    for b in bounds:
+    for b in one.bounds:
         peak = peaks.get(b.output)
         shown = "" if peak is None else f", simulated peak {four_digits_up(peak)} {b.unit}"
         level = upper(Fraction(b.level))

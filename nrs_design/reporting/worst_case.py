@@ -14,6 +14,7 @@ from nrs_design.axis import current, labelled
 from nrs_design.axis import unit as shown
 from nrs_design.proof.bounds import lower, upper
 from nrs_design.reporting.figures.bounded_run import BoundedSignal, draw_bounded_run
+from nrs_design.simulation.run import common_lever_arm
 from nrs_design.simulation.switched import SwitchedRun
 from nrs_design.simulation.time_response import Signal, TimeResponse
 from nrs_design.simulation.worst_outputs import DEFLECTION, output_values, pushes_only
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
     from nrs_design.proof.channels import Output
     from nrs_design.simulation.norms import Array
     from nrs_design.simulation.worst_case import WorstRun
+    from nrs_design.spec import InteractionDesignSpec
 
 COLUMNS = ("", "worst found", "unit", "limit", "certified bound", "bound / found")
 MEANING = (
@@ -83,12 +85,14 @@ def found_in(case: WorstCase) -> tuple[WorstValue, ...]:
     )
 
 
-def worst_rows(case: WorstCase, lever_arm: float | None) -> list[list[str]]:
-    """Return rows for `COLUMNS`: what was found rounded down, bounds rounded up.
+def meaning(case: WorstCase) -> str:
+    """Say what the numbers mean."""
+    return MEANING if case.bounds else f"{MEANING.partition(';')[0]}. {NO_BOUND}"
 
-    With a lever arm in m, the deflection is in mm, else in deg.
-    """
-    rows = []
+
+def worst_rows(case: WorstCase, spec: InteractionDesignSpec) -> list[list[str]]:
+    """Return rows for `COLUMNS`: what was found rounded down, bounds rounded up."""
+    rows, lever_arm = [], common_lever_arm(spec, spec.touched)
     for item in found_in(case):
         factor, unit = scale_of(item.name, item.unit, lever_arm)
         limit = "–" if item.limit is None else f"{factor * item.limit:.4g}"
@@ -114,8 +118,9 @@ def scale_of(name: str, unit: str, lever_arm: float | None) -> tuple[float, str]
     return each.get(unit, (1.0, unit))
 
 
-def draw_worst(case: WorstCase, run: WorstRun, lever_arm: float | None) -> Figure:
+def draw_worst(case: WorstCase, run: WorstRun, spec: InteractionDesignSpec) -> Figure:
     """Draw a run: all quantities with limits and bounds, the command and the active controller."""
+    lever_arm = common_lever_arm(spec, spec.touched)
     panels = [_panel(case, run, other.output, lever_arm) for other in case.runs]
     names = [channel.name for channel in case.system.channels]
     if _COMMAND in names:

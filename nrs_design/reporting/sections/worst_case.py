@@ -8,15 +8,7 @@ from nrs_design.errors import DesignError
 from nrs_design.pipeline.worst_case import run_worst_case
 from nrs_design.reporting.document import Illustration, Paragraph, Section, Table
 from nrs_design.reporting.sections.places import linked
-from nrs_design.reporting.worst_case import (
-    COLUMNS,
-    LEFT_OUT,
-    MEANING,
-    NO_BOUND,
-    draw_worst,
-    worst_rows,
-)
-from nrs_design.simulation.run import common_lever_arm
+from nrs_design.reporting.worst_case import COLUMNS, LEFT_OUT, draw_worst, meaning, worst_rows
 
 if TYPE_CHECKING:
     from nrs_design.pipeline.certification import Result
@@ -38,17 +30,17 @@ def worst_case_section(result: Result) -> Section | None:
         case = run_worst_case(designed, result.certificate)
     except DesignError:
         return None
-    arm = common_lever_arm(designed.spec, designed.spec.touched)
-    meaning = MEANING if case.bounds else f"{MEANING.partition(';')[0]}. {NO_BOUND}"
-    rows = tuple(_row(designed, row) for row in worst_rows(case, arm))
+    spec = designed.spec
+    rows = tuple(_row(designed, row) for row in worst_rows(case, spec))
+    drawn = draw_worst(case, case.runs[0], spec)
     return Section(
         "Worst case found",
         (
-            Paragraph(f"{meaning} Not in it: {LEFT_OUT}. Floating point, no part of the proof."),
-            Table("Worst found, limit and bound", COLUMNS, rows),
-            Illustration(
-                "worst-case", "The worst run found", _CAPTION, draw_worst(case, case.runs[0], arm)
+            Paragraph(
+                f"{meaning(case)} Not in it: {LEFT_OUT}. Floating point, no part of the proof."
             ),
+            Table("Worst found, limit and bound", COLUMNS, rows),
+            Illustration("worst-case", "The worst run found", _CAPTION, drawn),
         ),
     )
 

@@ -30,7 +30,7 @@ REACHED = {
     ("nrs_design.cli.report", "robot", "pipeline"),
     ("nrs_design.cli.report", "robot", "reporting.robot"),
     # Records and runs, from the library.
-    ("nrs_design.api.measured", "identification", "api.library"),
+    ("nrs_design.api.identified", "identification", "api.library"),
     ("nrs_design.api.study", "identification", "api.library"),
     # A recorded command is a record.
     ("nrs_design.simulation.build_scenario", "identification", "tables.table"),

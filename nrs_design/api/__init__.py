@@ -3,15 +3,13 @@
 from nrs_design.api.audit import Audit, AuditCheck
 from nrs_design.api.decision import Decision
 from nrs_design.api.exported import Exported
-from nrs_design.api.identified import FittedRange, Identification
+from nrs_design.api.identified import FittedRange, Identification, identify
 from nrs_design.api.lyapunov import Counterexample, LyapunovCheck
 from nrs_design.api.matrices import certify, check_lyapunov
-from nrs_design.api.measured import identify
 from nrs_design.api.optimum import Optimum
-from nrs_design.api.recheck import Recheck
+from nrs_design.api.recheck import Recheck, verify
 from nrs_design.api.simulation import ScenarioRun, Simulation
 from nrs_design.api.study import Study, load
-from nrs_design.api.verification import verify
 from nrs_design.api.worst import WorstFound
 from nrs_design.search.gradient_settings import Gradient
 

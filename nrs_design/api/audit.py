@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from nrs_design.api.result import AbstractResult, Figures, drawings_of
+from nrs_design.api.result import AbstractResult, Figures, drawn
 
 if TYPE_CHECKING:
     from nrs_design.reporting import Report
@@ -63,7 +63,7 @@ class Audit(AbstractResult):
         return dict(self.facts)
 
     def _drawings(self) -> Figures:
-        return drawings_of(self.page())
+        return drawn(self.page().sections)
 
     def _headline(self) -> str:
         made = ", SYNTHETIC data" if self.synthetic else ""

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from nrs_design.api.paper import form_of, latex_of, latex_of_gains
-from nrs_design.api.result import AbstractResult, Figures, drawings_of, evidence_drawings
+from nrs_design.api.result import AbstractResult, Figures, drawn, evidence_drawings
 from nrs_design.certificates.certificate import dump
 from nrs_design.errors import DesignError, OutputError, SpecError
 from nrs_design.facts.certification import certification_facts
@@ -141,7 +141,7 @@ class Decision(AbstractResult):
         for name, draw in evidence_drawings(self.result.certification):
             seen.add(name)
             yield name, draw
-        yield from ((name, draw) for name, draw in drawings_of(self._page()) if name not in seen)
+        yield from ((name, draw) for name, draw in drawn(self._page().sections) if name not in seen)
 
     def _headline(self) -> str:
         where = "" if self.refuted_in is None else f" (refuted {self.refuted_in})"

@@ -14,7 +14,6 @@ from nrs_design.certificates.units import gain_units
 from nrs_design.errors import DesignError
 from nrs_design.exporters import known_format
 from nrs_design.exporters.write import check_places, places, write_export
-from nrs_design.facts.export import export_facts
 from nrs_design.ownership import check_certificate
 from nrs_design.pipeline.design import placed
 
@@ -115,7 +114,15 @@ class Exported(AbstractResult):
         return None if self.export.spec is None else self.export.spec.axis
 
     def _facts(self) -> dict[str, Any]:
-        return export_facts(self.name, self.export)
+        return {
+            "spec": self.name,
+            "verdict": self.verdict,
+            "reason": self.reason or None,
+            "file": None,
+            "files": [],
+            "certificate": None,
+            "record": self.record.model_dump(mode="json", by_alias=True) if self.record else None,
+        }
 
     def _drawings(self) -> Figures:
         designed = self.export.designed

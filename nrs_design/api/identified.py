@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from nrs_design.api.paper import latex_of_ranges
-from nrs_design.api.result import AbstractResult, Figures, drawings_of
+from nrs_design.api.result import AbstractResult, Figures, drawn
 from nrs_design.proof.bounds import lower, upper
+from nrs_design.wings import load_wing
 
 if TYPE_CHECKING:
     from nrs_design.reporting import Report
@@ -80,7 +81,7 @@ class Identification(AbstractResult):
         return dict(self.facts)
 
     def _drawings(self) -> Figures:
-        return drawings_of(self.page())
+        return drawn(self.page().sections)
 
     def _headline(self) -> str:
         made = "SYNTHETIC data, " if self.synthetic else ""
@@ -94,3 +95,43 @@ class Identification(AbstractResult):
             yield name, str(found)
         for doubt in self.doubts:
             yield "doubt", doubt
+
+
+def identify(
+    records: str | Path | Iterable[str | Path],
+    kind: str = "tissue",
+    *,
+    law: str | None = None,
+    columns: Mapping[str, str] | None = None,
+) -> Identification:
+    """Find a tissue, an actuator or a delay in records, with 95 % intervals.
+
+    Parameters
+    ----------
+    records : path-like or iterable of path-like
+        CSV files; see `nrs-design identify` for their columns. Of a delay, one.
+    kind : {"tissue", "actuator", "delay"}
+        What they are records of. Resistance and torque of an actuator are said for the motor of
+        thesis table 4.1; gain, time constant, friction and dead time depend on no data sheet.
+    law : str, optional
+        Of the tissue; by default the one that the records speak for.
+    columns : mapping of str to str, optional
+        Foreign names of columns, as in ``{"force_N": "Fz"}``; of a delay, also which columns are
+        its ``command`` and what was ``measured``.
+
+    Raises
+    ------
+    DataError
+        If a file is no such record, or there is no such kind, law or column.
+
+    Examples
+    --------
+    >>> import nrs_design as nrs
+    >>> found = nrs.identify([f"specs/data/silicone-soft-{i}.csv" for i in (1, 2, 3)])
+    >>> found.chosen, list(found.ranges), found.ranges["k"].unit, found.doubts
+    ('elastic', ['k'], 'N/m', ())
+    """
+    files = [records] if isinstance(records, str | Path) else [*records]
+    library = load_wing("identification", "api.library")
+    found: Identification = library.identify_records(files, kind, law, columns or {})
+    return found

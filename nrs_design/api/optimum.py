@@ -9,7 +9,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from nrs_design.api.paper import latex_of_gains
-from nrs_design.api.result import AbstractResult, Figures, illustrated
+from nrs_design.api.result import AbstractResult, Figures, drawn
 from nrs_design.facts.design import finite, optimum_facts
 from nrs_design.facts.spec import spec_facts
 from nrs_design.pipeline.analysis import run_analysis
@@ -75,7 +75,7 @@ class Optimum(AbstractResult):
         from nrs_design.reporting.sections.design import design_sections
 
         sections = design_sections(self.designed, self._analysis)
-        return illustrated(sections, "displayed-impedance")
+        return drawn(sections, "displayed-impedance")
 
     def gain_rows(self) -> Iterator[tuple[str, str, str, str]]:
         """Return controller, gain, value and unit of each gain."""

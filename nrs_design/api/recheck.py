@@ -10,8 +10,10 @@ from typing import TYPE_CHECKING, Any
 from nrs_design.api.result import AbstractResult, Figures, evidence_drawings
 from nrs_design.axis import axis_with
 from nrs_design.certificates.prove import Verification
+from nrs_design.certificates.verify import verify as verify_file
 from nrs_design.facts.verification import verification_facts
 from nrs_design.pipeline.certification import recorded_certification
+from nrs_design.spec import read_spec
 
 if TYPE_CHECKING:
     from nrs_design.certificates.certificate import Certificate
@@ -86,3 +88,31 @@ class Recheck(AbstractResult):
     def __bool__(self) -> bool:
         """Whether the certificate is valid and proves; one that refutes is valid, too."""
         return bool(self.outcome)
+
+
+def verify(certificate: str | Path, spec: str | Path | None = None) -> Recheck:
+    """Re-check a certificate file, exactly and without a solver.
+
+    Parameters
+    ----------
+    certificate : path-like
+        The file.
+    spec : path-like, optional
+        The spec that it must belong to. Without it the proof is checked for the modes that the
+        file holds, whosever they are.
+
+    Returns
+    -------
+    Recheck
+        Its `fault` says why the certificate is rejected, None if it is valid. Its
+        `verdict` may be ``refuted``; true in a condition if it is a proof.
+
+    Raises
+    ------
+    SpecError, CertificateError
+        If a file cannot be read at all.
+    """
+    file = Path(certificate)
+    if spec is None:
+        return Recheck(file, None, verify_file(file))
+    return Recheck(file, Path(spec), verify_file(file, read_spec(spec)))

@@ -6,6 +6,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from html import escape
+from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
 from nrs_design.axis import about
@@ -14,8 +15,7 @@ from nrs_design.errors import DesignError
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from nrs_design.reporting import Report
-    from nrs_design.reporting.document import Illustration, Section
+    from nrs_design.reporting.document import Section
     from nrs_design.search.certification import Certification
 
 # Widths of one column and of both in papers of the IEEE, in.
@@ -114,50 +114,26 @@ class AbstractResult(ABC):
         return f"<p><strong>{escape(self._headline())}</strong></p>{table}"
 
 
-def drawn(illustrations: Iterable[Illustration], first: str = "") -> Figures:
-    """Return figures that are there already, one of them first.
+def drawn(sections: Iterable[Section], first: str = "") -> Figures:
+    """Return the figures of sections, which are drawn already, one of them first.
 
     Parameters
     ----------
-    illustrations : iterable of Illustration
+    sections : iterable of Section
         In order.
     first : str
-        Name of the one to come first.
+        Name of the figure to come first.
     """
-    found = sorted(illustrations, key=lambda item: item.name != first)
-    return [(item.name, partial(_same, item.figure)) for item in found]
-
-
-def _same(figure: Figure) -> Figure:
-    return figure
+    found = [item for section in sections for item in section.illustrations]
+    found.sort(key=lambda item: item.name != first)
+    return [(item.name, partial(attrgetter("figure"), item)) for item in found]
 
 
 def evidence_drawings(certification: Certification) -> Figures:
     """Return the figures of what was shown; a run beside its bound comes first."""
     from nrs_design.reporting.sections.evidence import evidence_sections
 
-    return illustrated(evidence_sections(certification), "run")
-
-
-def illustrated(sections: Iterable[Section | None], first: str) -> Figures:
-    """Return the figures of sections, one of them first.
-
-    Parameters
-    ----------
-    sections : iterable of Section or None
-        In order.
-    first : str
-        Name of the figure.
-    """
-    from nrs_design.reporting.document import Illustration
-
-    blocks = [block for section in sections if section is not None for block in section.blocks]
-    return drawn((block for block in blocks if isinstance(block, Illustration)), first)
-
-
-def drawings_of(page: Report) -> Figures:
-    """Return the figures of a page."""
-    return drawn(page.illustrations)
+    return drawn(evidence_sections(certification), "run")
 
 
 def _named(heads: Sequence[str], row: Sequence[str]) -> list[str]:

@@ -16,7 +16,9 @@ if TYPE_CHECKING:
     from fractions import Fraction
 
     from nrs_design.api.lyapunov import Counterexample, LyapunovCheck
+    from nrs_design.proof.mode import Time
 
+_LAW = {"continuous": "x' = A x", "discrete": "x+ = A x"}
 # What must be negative, by time and whether a rate is asked for.
 _CHANGE = {
     ("continuous", False): "x' (A'P + PA) x",
@@ -61,24 +63,22 @@ def check_lyapunov(
     time = "discrete" if discrete else proposal.time
     wanted = proposal.rate if rate is None else rate
     found = check(proposal.modes, proposal.P, wanted, time=time)
-    time, names = time or "continuous", list(proposal.modes)
     return Answer(
         lambda: {"file": str(file)} | found.to_dict(),
-        lambda: _show(found, time, names, asked=wanted is not None),
+        lambda: _show(found),
         exit_codes.unless(not found.holds),
     )
 
 
-def _show(found: LyapunovCheck, time: str, modes: list[str], *, asked: bool) -> None:
+def _show(found: LyapunovCheck) -> None:
     from nrs_design.proof.evidence.fields import rate_words
-    from nrs_design.proof.mode import Time
 
-    law = "x' = A x" if time == "continuous" else "x+ = A x"
-    best = None if found.rate is None else rate_words(found.rate, Time(time))
+    asked, law = found.asked is not None, _LAW[found.time]
+    best = None if found.rate is None else rate_words(found.rate, found.time)
     if found.holds:
         say(
             f"HOLDS: x' P x is positive definite and, along {law}, decreases strictly in every "
-            f"mode: {', '.join(modes)}"
+            f"mode: {', '.join(mode.name for mode in found.modes)}"
         )
         if best is None:
             say("  The numbers are too large to look for its rate: ask for one with --rate.")
@@ -90,14 +90,14 @@ def _show(found: LyapunovCheck, time: str, modes: list[str], *, asked: bool) -> 
         + (" at this rate." * asked or ".")
     )
     if found.counterexample is not None:
-        _show_counterexample(found.counterexample, time, asked=asked)
+        _show_counterexample(found.counterexample, found.time, asked=asked)
     if best is not None:
         say(f"  Along {law} it decreases strictly in every mode, proved at {best} only.")
     elif found.weak:
         say("  It increases in no mode, which shows stability but no decay.")
 
 
-def _show_counterexample(failing: Counterexample, time: str, *, asked: bool) -> None:
+def _show_counterexample(failing: Counterexample, time: Time, *, asked: bool) -> None:
     value, *vector = map(_number, (failing.value, *failing.vector))
     if failing.mode is None:
         say(f"  P is not positive definite: x' P x = {value}")

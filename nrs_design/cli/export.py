@@ -15,7 +15,6 @@ from nrs_design.cli.printing import note, progress, say
 from nrs_design.cli.tables import print_table
 from nrs_design.errors import NrsDesignError, OutputError
 from nrs_design.exporters import Format, format_names, format_of, known_format
-from nrs_design.facts.export import export_facts
 
 if TYPE_CHECKING:
     from nrs_design.exporters.export import Execution, Export
@@ -142,6 +141,7 @@ def _export_design(
     out: Path,
     execution: Execution | None,
 ) -> Answer:
+    from nrs_design.api.exported import Exported
     from nrs_design.exporters.export import export_design, export_proof
     from nrs_design.exporters.write import check_places, places, write_export
     from nrs_design.ownership import check_certificate
@@ -169,9 +169,14 @@ def _export_design(
         with placed(loaded):
             remarks = write_export(result, format_, files, None if certificate else proof, spec)
     written = list(files.values()) if result.may_be_written else []
-    summary = export_facts(name, result, written, proof)
+    certified = result.may_be_written and result.certificate is not None
+    placed_at = {
+        "file": str(written[0]) if written else None,
+        "files": list(map(str, written)),
+        "certificate": str(proof) if certified else None,
+    }
     return Answer(
-        lambda: summary | {"remarks": remarks},
+        lambda: Exported(loaded, result).to_dict() | placed_at | {"remarks": remarks},
         lambda: _show(name, result, written, proof, remarks),
         exit_codes.OF_VERDICT.get(result.verdict, exit_codes.REFUTED),
         # Nothing was written, which is an error of its own.

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -15,14 +14,13 @@ from nrs_design.cli.options import Budget, Date, MaxDegree, Memory, SpecFile
 from nrs_design.cli.printing import note, progress, say
 from nrs_design.errors import DesignError, OutputError
 from nrs_design.facts.spec import spec_facts
-from nrs_design.progress import Progress
 
 if TYPE_CHECKING:
     from datetime import date as Day
 
     from nrs_design.certificates.certificate import Certificate
     from nrs_design.design.analysis import DesignAnalysis
-    from nrs_design.pipeline.certification import Overrides, Result
+    from nrs_design.pipeline.certification import Result
     from nrs_design.reporting import Report
     from nrs_design.spec import LoadedSpec
 
@@ -86,7 +84,12 @@ def report(
 
     Example: nrs-design report specs/neuroboscope/soft-tissue.nrs.yaml
     """
-    from nrs_design.pipeline.certification import Overrides
+    from nrs_design.pipeline.blocked import find_blocked
+    from nrs_design.pipeline.certification import Overrides, search_limits
+    from nrs_design.pipeline.margins import run_proof_margins
+    from nrs_design.pipeline.runs import run_certification, run_comparison, run_recorded
+    from nrs_design.reporting import build_report
+    from nrs_design.reporting.next_steps import next_steps
 
     loaded, day = take_spec(spec), date.date() if date else None
     file_format = _format_of(file_format, out)
@@ -95,15 +98,31 @@ def report(
             raise DesignError("a robot has no certificate", remedy="leave --certificate out")
         return _report_robot(loaded, file_format, out, day)
     _check_out(loaded, file_format, out)
-    asked = _Asked(certificate, compare_methods, margin, shortest_dwell, times, day)
+    limits = search_limits(loaded.spec, Overrides(max_degree, budget, memory))
+    asked = {"margin": margin, "shortest_dwell": shortest_dwell}
     with progress(f"reporting {loaded.spec.name}") as step:
-        result, page = _build(loaded, asked, Overrides(max_degree, budget, memory), step)
+        if certificate is None:
+            result = run_certification(loaded, limits=limits, progress=step)
+        else:
+            result = run_recorded(loaded, certificate, step)
+        margins = run_proof_margins(result, limits, step, **asked)
+        blocked = find_blocked(result, limits, step)
+        step("figures")
+        runs = run_comparison(loaded, limits, step, result.designed)[1] if compare_methods else ()
+        page = build_report(
+            result,
+            _analysis(result),
+            comparison=runs,
+            margins=margins,
+            blocked=blocked,
+            times=times,
+            date=day,
+        )
         files = _write(page, file_format, out, spec)
     verdict = str(result.certification.verdict)
-    steps = _next_steps(result, asked)
-    return _answer(
-        loaded, verdict, exit_codes.OF_VERDICT[verdict], files, result.certificate, steps
-    )
+    steps = next_steps(result, **asked, spec=loaded.path)
+    code = exit_codes.OF_VERDICT[verdict]
+    return _answer(loaded, verdict, code, files, result.certificate, steps)
 
 
 def _answer(
@@ -123,8 +142,7 @@ def _answer(
         }
 
     def show() -> None:
-        decided = verdict in exit_codes.OF_VERDICT
-        if decided:
+        if verdict in exit_codes.OF_VERDICT:
             say(f"{loaded.spec.name}: {verdict.upper()}", verdict=verdict)
         else:
             say(f"{loaded.spec.name}: {verdict}")
@@ -154,18 +172,6 @@ def _format_of(file_format: ReportFormat | None, out: Path | None) -> ReportForm
     return file_format or ReportFormat.HTML
 
 
-@dataclass(frozen=True, slots=True)
-class _Asked:
-    """What a report is to hold beside design and proof."""
-
-    certificate: Path | None
-    compare_methods: bool
-    margin: bool
-    shortest_dwell: bool
-    times: bool
-    date: Day | None
-
-
 def _check_out(loaded: LoadedSpec, file_format: ReportFormat, out: Path | None) -> None:
     """Refuse, before minutes of work, a place in which something else stands."""
     from nrs_design.output import PAGE, check_place
@@ -177,50 +183,6 @@ def _check_out(loaded: LoadedSpec, file_format: ReportFormat, out: Path | None) 
         check_page(loaded.path, out)
     if file_format is not ReportFormat.PNG:
         check_place(out or REPORTS / f"{loaded.spec.name}.html", PAGE)
-
-
-def _build(
-    loaded: LoadedSpec, asked: _Asked, overrides: Overrides, step: Progress
-) -> tuple[Result, Report]:
-    """Certify, look for all that is asked for, and lay out the page."""
-    from nrs_design.pipeline.blocked import find_blocked
-    from nrs_design.pipeline.certification import search_limits
-    from nrs_design.pipeline.margins import run_proof_margins
-    from nrs_design.pipeline.runs import run_certification, run_comparison, run_recorded
-    from nrs_design.reporting import build_report
-
-    limits = search_limits(loaded.spec, overrides)
-    if asked.certificate is None:
-        result = run_certification(loaded, limits=limits, progress=step)
-    else:
-        result = run_recorded(loaded, asked.certificate, step)
-    margins = run_proof_margins(
-        result, limits, step, margin=asked.margin, shortest_dwell=asked.shortest_dwell
-    )
-    blocked = find_blocked(result, limits, step)
-    step("figures")
-    runs = (
-        run_comparison(result.loaded, limits, step, result.designed)[1]
-        if asked.compare_methods
-        else ()
-    )
-    return result, build_report(
-        result,
-        _analysis(result),
-        comparison=runs,
-        margins=margins,
-        blocked=blocked,
-        times=asked.times,
-        date=asked.date,
-    )
-
-
-def _next_steps(result: Result, asked: _Asked) -> tuple[str, ...]:
-    from nrs_design.reporting.next_steps import next_steps
-
-    return next_steps(
-        result, margin=asked.margin, shortest_dwell=asked.shortest_dwell, spec=result.loaded.path
-    )
 
 
 def _report_robot(

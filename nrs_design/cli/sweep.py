@@ -101,7 +101,7 @@ def sweep(
 
     Example: nrs-design sweep SPEC --set 'limits.bandwidth=1,2 Hz' --jobs 2 --show Bt optimize
     """
-    from nrs_design.cli.sweep_answer import facts_of, show, table_text, view_of
+    from nrs_design.cli.sweep_answer import facts_of, table_text, view_of
     from nrs_design.output import SWEEP, check_place, write_output
 
     _check_options(jobs, dask, store, no_store=no_store)
@@ -118,8 +118,8 @@ def sweep(
             write_output(table, table_text(job, points), replaces=SWEEP)
             note(f"table written to {table}")
         facts = facts_of(job, points) if wants_json() else {}
-        view = view_of(job, points, shown or ())
-    return Answer(lambda: facts, partial(show, view), worst({point.code for point in points}))
+        show = view_of(job, points, shown or ())
+    return Answer(lambda: facts, show, worst({point.code for point in points}))
 
 
 def _check_options(jobs: int, dask: str | None, store: Path | None, *, no_store: bool) -> None:

@@ -5,8 +5,7 @@ from __future__ import annotations
 import csv
 import io
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from nrs_design.cli import exit_codes
@@ -28,16 +27,6 @@ WORDS: Mapping[int, str] = {
     exit_codes.INCONCLUSIVE: "inconclusive",
     exit_codes.INTERNAL: "defect",
 }
-
-
-@dataclass(frozen=True, slots=True)
-class SweepView:
-    """What is printed for people."""
-
-    title: str  # Above the table
-    columns: tuple[str, ...]  # Headings
-    rows: tuple[tuple[str, ...], ...]  # Cells
-    lines: tuple[str, ...]  # Below the table
 
 
 def facts_of(job: Job, points: Sequence[PointAnswer]) -> dict[str, Any]:
@@ -76,8 +65,8 @@ def table_text(job: Job, points: Sequence[PointAnswer]) -> str:
     return text.getvalue()
 
 
-def view_of(job: Job, points: Sequence[PointAnswer], wanted: Sequence[str]) -> SweepView:
-    """Return what people see: what was set, how it ended, and some facts.
+def view_of(job: Job, points: Sequence[PointAnswer], wanted: Sequence[str]) -> Callable[[], None]:
+    """Return what prints what people see: what was set, how it ended, and some facts.
 
     Without names of facts, the first ones that differ from point to point.
     """
@@ -102,16 +91,15 @@ def view_of(job: Job, points: Sequence[PointAnswer], wanted: Sequence[str]) -> S
         lines.append(f"more facts differ (--show NAME, or --csv FILE for all): {more}")
     lines += _messages(job, points)
     heads = (f"{head}\n{unit}" if unit else head for head, unit in _heads(job))
-    title = f"{job.spec}: {' '.join((*job.command, *job.options))}"
-    return SweepView(title, (*heads, "answer", *short_names(names)), tuple(rows), tuple(lines))
+    columns = (*heads, "answer", *short_names(names))
 
+    def show() -> None:
+        say(f"{job.spec}: {' '.join((*job.command, *job.options))}")
+        print_table("", columns, rows)
+        for line in lines:
+            say(line)
 
-def show(view: SweepView) -> None:
-    """Print for people."""
-    say(view.title)
-    print_table("", view.columns, view.rows)
-    for line in view.lines:
-        say(line)
+    return show
 
 
 def _results(

@@ -11,30 +11,13 @@ from nrs_design.cli.goals import design_answer
 from nrs_design.cli.options import SpecFile
 from nrs_design.cli.printing import progress, say
 from nrs_design.cli.tables import print_table
-from nrs_design.facts.design import motion_summary
-from nrs_design.facts.goals import goals_summary
+from nrs_design.facts.design import goals_summary, motion_summary
 from nrs_design.proof.bounds import lower_float
 
 if TYPE_CHECKING:
     from nrs_design.controllers.controller_design import ControllerDesign
     from nrs_design.design.analysis import DesignAnalysis, ForceAnalysis
 
-FORCE_COLUMNS = (
-    "controller",
-    "k\nN m/rad",
-    "Kp\nrad/(N m)",
-    "poles\n1/s",
-    "damping\nratio",
-    "natural\nfrequency",
-    "steady-state\nerror ratio",
-)
-TORQUE_COLUMNS = (
-    "controller",
-    "K\nN m/rad",
-    "B\nN m s/rad",
-    "stable in the air\nbelow, N m/rad",
-    "passive, margin\nN m s/rad",
-)
 TORQUE_TEXT = (
     "Passive whatever is touched: b > K T/2 + B with the least friction b of the spec, exact for "
     "commands at once (Colgate and Schenkel 1997). The border in the air is that of the nominal "
@@ -149,17 +132,13 @@ def _motion_summary(design: ControllerDesign, analysis: DesignAnalysis) -> dict[
 
 def _print(name: str, design: ControllerDesign, analysis: DesignAnalysis) -> None:
     if analysis.torque:
-        print_table(
-            f"{name}: impedance by torques", _columns(TORQUE_COLUMNS), _torque_rows(analysis)
-        )
-        say(TORQUE_TEXT)
+        _print_torque(name, analysis)
         return
-    columns = _motion_columns(design.command)
-    print_table(f"{name}: motion loop", columns, _motion_rows(design, analysis))
+    _print_motion(name, design, analysis)
     if analysis.motion_source == "given":
         say("The spec states G itself: the poles are those of that G, not of the PD gains.")
     if analysis.force:
-        print_table(f"{name}: force loop, nominal", _columns(FORCE_COLUMNS), _force_rows(analysis))
+        _print_force(name, analysis)
         say(_NOMINAL)
         for item in analysis.force:
             if item.peak is not None:
@@ -168,28 +147,19 @@ def _print(name: str, design: ControllerDesign, analysis: DesignAnalysis) -> Non
                 say(_NO_OFFSET.format(item.name))
 
 
-def _columns(texts: tuple[str, ...]) -> list[str]:
-    """Return columns, with the units of the axis in their last lines."""
-    return [_column(text) for text in texts]
-
-
-def _column(text: str) -> str:
-    *words, last = text.split("\n")
-    before, comma, said = last.rpartition(", ")
-    known = said.startswith(("N m", "rad/(N"))
-    return "\n".join((*words, f"{before}{comma}{unit(said) if known else said}"))
-
-
-def _motion_columns(command: str) -> tuple[str, ...]:
-    per = unit("rad")
-    gains = f"Kd\n{command} s/{per}", "zero\n1/s", f"Kp\n{command}/{per}"
-    return ("motion PD", *gains, "poles\n1/s", "damping\nratio", "overshoot")
-
-
-def _motion_rows(design: ControllerDesign, analysis: DesignAnalysis) -> list[list[str]]:
-    wanted, reached = analysis.wanted, analysis.reached
+def _print_motion(name: str, design: ControllerDesign, analysis: DesignAnalysis) -> None:
+    wanted, reached, per = analysis.wanted, analysis.reached, unit("rad")
     assert wanted is not None, "there is a motion loop"
-    return [
+    columns = (
+        "motion PD",
+        f"Kd\n{design.command} s/{per}",
+        "zero\n1/s",
+        f"Kp\n{design.command}/{per}",
+        "poles\n1/s",
+        "damping\nratio",
+        "overshoot",
+    )
+    rows = [
         [
             "root locus",
             f"{wanted.derivative_gain:.6g}",
@@ -209,6 +179,7 @@ def _motion_rows(design: ControllerDesign, analysis: DesignAnalysis) -> list[lis
             f"{100 * reached.overshoot:.2f} %",
         ],
     ]
+    print_table(f"{name}: motion loop", columns, rows)
 
 
 def _offset_text(item: ForceAnalysis) -> str:
@@ -223,8 +194,17 @@ def _offset_text(item: ForceAnalysis) -> str:
     )
 
 
-def _force_rows(analysis: DesignAnalysis) -> list[list[str]]:
-    return [
+def _print_force(name: str, analysis: DesignAnalysis) -> None:
+    columns = (
+        "controller",
+        f"k\n{unit('N m/rad')}",
+        f"Kp\n{unit('rad/(N m)')}",
+        "poles\n1/s",
+        "damping\nratio",
+        "natural\nfrequency",
+        "steady-state\nerror ratio",
+    )
+    rows = [
         [
             item.name,
             f"{item.stiffness:.6g}",
@@ -236,13 +216,23 @@ def _force_rows(analysis: DesignAnalysis) -> list[list[str]]:
         ]
         for item in analysis.force
     ]
+    print_table(f"{name}: force loop, nominal", columns, rows)
 
 
-def _torque_rows(analysis: DesignAnalysis) -> list[list[str]]:
-    return [
+def _print_torque(name: str, analysis: DesignAnalysis) -> None:
+    columns = (
+        "controller",
+        f"K\n{unit('N m/rad')}",
+        f"B\n{unit('N m s/rad')}",
+        f"stable in the air\nbelow, {unit('N m/rad')}",
+        f"passive, margin\n{unit('N m s/rad')}",
+    )
+    rows = [
         [item.name, f"{item.Kp:.6g}", f"{item.B:.6g}", f"{item.border:.6g}", item.passive_text]
         for item in analysis.torque
     ]
+    print_table(f"{name}: impedance by torques", columns, rows)
+    say(TORQUE_TEXT)
 
 
 def _pairs(poles: tuple[complex, ...]) -> list[list[float]]:

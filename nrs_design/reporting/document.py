@@ -134,6 +134,11 @@ class Section:
     boxed: bool = False
     folded: bool = False  # Whether a page shows its title only, until a reader opens it
 
+    @property
+    def illustrations(self) -> list[Illustration]:
+        """Its figures in reading order."""
+        return [block for block in self.blocks if isinstance(block, Illustration)]
+
 
 @dataclass(frozen=True, slots=True)
 class Report:
@@ -183,6 +188,4 @@ class Report:
     def illustrations(self) -> Iterator[Illustration]:
         """All figures in reading order."""
         for section in self.sections:
-            for block in section.blocks:
-                if isinstance(block, Illustration):
-                    yield block
+            yield from section.illustrations

@@ -11,9 +11,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from nrs_design.loop.assumption import Assumption, AssumptionKind, Standing
+from nrs_design.spec import InteractionDesignSpec
 
 if TYPE_CHECKING:
-    from nrs_design.spec import InteractionDesignSpec
+    from nrs_design.spec import Spec
 
 _LOST = "not in a certificate; report its spec to know"
 _UNKNOWN = AssumptionKind("", "taken for granted", "", "as the sentence says", _LOST, _LOST)
@@ -30,15 +31,13 @@ class Entry:
     standing: Standing
 
 
-def register_of(
-    statements: Iterable[str], spec: InteractionDesignSpec | None = None
-) -> tuple[Entry, ...]:
+def register_of(statements: Iterable[str], spec: Spec | None = None) -> tuple[Entry, ...]:
     """Return the register of assumptions, in order; plain statements (a certificate's) are open.
 
     Motor and environments count as tested where the spec names measured records that they were
     identified from, and no doubt.
     """
-    tested = frozenset() if spec is None else frozenset(_tested(spec))
+    tested = frozenset(_tested(spec)) if isinstance(spec, InteractionDesignSpec) else frozenset()
     return tuple(_entry(statement, tested) for statement in statements)
 
 

@@ -42,9 +42,7 @@ def key_facts(result: Result, analysis: DesignAnalysis | None) -> tuple[tuple[st
 
 def tests_section(result: Result) -> Section | None:
     """List the open assumptions, each with its test; None where all are tested or argued."""
-    spec = result.loaded.spec
-    design = spec if isinstance(spec, InteractionDesignSpec) else None
-    found = register_of(result.certification.granted, design)
+    found = register_of(result.certification.granted, result.loaded.spec)
     kinds = dict.fromkeys(item.kind for item in found if item.standing == "open")
     tests = tuple(f"{kind.name}: {kind.test}" for kind in kinds if kind.id)
     if not tests:

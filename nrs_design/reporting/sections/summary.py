@@ -45,9 +45,8 @@ _PROOF = {
 def summary_of(result: Result) -> tuple[str, str]:
     """Return what was shown, and under which assumptions, in a sentence each."""
     system, evidence = result.certification.system, result.certification.evidence
-    names = "; ".join(
-        dict.fromkeys(item.kind.name for item in register_of(result.certification.granted))
-    )
+    register = register_of(result.certification.granted, result.loaded.spec)
+    names = "; ".join(dict.fromkeys(item.kind.name for item in register))
     granted = f"This takes for granted, each as {ASSUMPTIONS} below says it: {names}."
     if evidence is None:
         said = "Neither proved nor refuted: this report makes no statement about stability."
@@ -195,9 +194,7 @@ def _data(spec: InteractionDesignSpec) -> Light:
 
 
 def _open(result: Result) -> Light:
-    spec = result.loaded.spec
-    design = spec if isinstance(spec, InteractionDesignSpec) else None
-    found = register_of(result.certification.granted, design)
+    found = register_of(result.certification.granted, result.loaded.spec)
     count = sum(item.standing == "open" for item in found)
     state = State.DOUBTFUL if count else State.GOOD
     text = f"{count} of {len(found)} open: to be tested on the robot"

@@ -9,7 +9,6 @@ from nrs_design.reporting.formatting import number
 from nrs_design.reporting.register import register_of
 from nrs_design.reporting.sections.places import assumed_at, linked
 from nrs_design.reporting.sections.titles import ASSUMPTIONS, RECHECK, RUNGS, SPEC
-from nrs_design.spec import InteractionDesignSpec
 
 if TYPE_CHECKING:
     from nrs_design.pipeline.certification import Result
@@ -27,8 +26,6 @@ _STANDINGS = (
 
 def assumptions_section(result: Result) -> Section:
     """List what a statement about the matrices takes for granted, and how to test it."""
-    spec = result.loaded.spec
-    design = spec if isinstance(spec, InteractionDesignSpec) else None
     rows = tuple(
         (
             e.kind.name,
@@ -38,7 +35,7 @@ def assumptions_section(result: Result) -> Section:
             e.kind.test,
             str(e.standing),
         )
-        for e in register_of(result.certification.granted, design)
+        for e in register_of(result.certification.granted, result.loaded.spec)
     )
     columns = ("Assumption", "Statement", "Bound", "If it is false", "Test", "State")
     table = Table("What is taken for granted", columns, rows)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import replace
 from enum import StrEnum
 from pathlib import Path
 from time import perf_counter
@@ -20,12 +21,8 @@ from nrs_design.proof.text import counted
 
 if TYPE_CHECKING:
     from nrs_design.gating.obligations import Caution, GateOutcome
-
-# Budget and memory, as far as they are given.
-SearchLimits = tuple[float | None, float | None]
-
-# Folder of certificates, whether there are reports, and whether all of them.
-OutputFiles = tuple[Path, bool, bool]
+    from nrs_design.gating.run import Files
+    from nrs_design.pipeline.certification import Overrides
 
 # Folders that a note lists by name.
 SHOWN = 5
@@ -107,8 +104,6 @@ def gate(
     if pages and (no_reports or locked):
         given = "--no-reports" if no_reports else "--locked"
         raise NrsDesignError(f"--pages and {given} exclude each other", remedy="keep one of them")
-    search = (budget, memory)
-    files = (reports, not no_reports, pages)
     start = perf_counter()
     if against is not None:
         from nrs_design.gating.against import base_paths
@@ -116,11 +111,16 @@ def gate(
         # What cannot be compared is said before minutes of search. A lock file that is elsewhere
         # would be compared with itself.
         base_paths([*paths, lock], against)
-    outcome = (
-        _re_check(paths, lock)
-        if locked
-        else _certify(paths, lock, files, search, jobs, prune=prune)
-    )
+    if locked:
+        outcome = _re_check(paths, lock)
+    else:
+        from nrs_design.gating.run import Files
+        from nrs_design.pipeline.certification import Overrides
+
+        files = Files(folder=reports, html=not no_reports, every_page=pages)
+        overrides = Overrides(budget=budget, memory=memory)
+        outcome = _certify(paths, lock, files, overrides, jobs, prune=prune)
+    outcome = _with_not_examined(outcome, paths)
     if against is not None:
         from nrs_design.gating.against import compare_with_base
 
@@ -211,8 +211,8 @@ def _show(outcome: GateOutcome) -> None:
 def _certify(
     paths: list[Path],
     lock: Path,
-    wanted: OutputFiles,
-    search: SearchLimits,
+    files: Files,
+    overrides: Overrides,
     jobs: int,
     *,
     prune: bool,
@@ -220,25 +220,19 @@ def _certify(
     from nrs_design.gating.find_specs import find_specs
     from nrs_design.gating.lock import read_lock_if_any
     from nrs_design.gating.renew import certificates_of, check_folder, recorded_in, write_lock
-    from nrs_design.gating.run import Files, run_gate
+    from nrs_design.gating.run import run_gate
     from nrs_design.output import LOCK, check_place
-    from nrs_design.pipeline.certification import Overrides
 
     specs = find_specs(paths)
-    reports, html, every_page = wanted
-    check_folder(reports, lock)
+    check_folder(files.folder, lock)
     check_place(lock, LOCK)
     known = read_lock_if_any(lock)
     with progress("gate") as step:
-        files = Files(
-            folder=reports,
-            html=html,
-            every_page=every_page,
-            locked=certificates_of(known, lock),
-            recorded=recorded_in(known, lock),
+        files = replace(
+            files, locked=certificates_of(known, lock), recorded=recorded_in(known, lock)
         )
-        outcome = run_gate(specs, files, step, Overrides(None, *search), jobs)
-    return _with_not_examined(write_lock(outcome, lock, prune=prune), paths)
+        outcome = run_gate(specs, files, step, overrides, jobs)
+    return write_lock(outcome, lock, prune=prune)
 
 
 def _re_check(paths: list[Path], lock: Path) -> GateOutcome:
@@ -248,8 +242,7 @@ def _re_check(paths: list[Path], lock: Path) -> GateOutcome:
 
     specs, content = find_specs(paths), read_lock(lock)
     with progress("gate") as step:
-        outcome = run_locked(specs, content, lock, step, named=paths)
-    return _with_not_examined(outcome, paths)
+        return run_locked(specs, content, lock, step, named=paths)
 
 
 def _with_not_examined(outcome: GateOutcome, paths: list[Path]) -> GateOutcome:

@@ -88,12 +88,10 @@ def _misses_lines(margins: ProofMargins, at: _At, spec: Spec) -> Iterator[Senten
     if rule is None:
         return
     where = " in a row" if rule.of is None else f" of any {rule.of} {what} in a row"
-    proved, refuted = (
-        None if end is None else at(str(end), *keys) for end in (bracket.proved, bracket.refuted)
+    said = _ends(
+        bracket, lambda n: at(str(n), *keys), f"proved up to *{where}", "refuted from * on"
     )
-    said = ("none is proved",) if proved is None else ("proved up to ", proved, where)
-    end = (bracket.end,) if refuted is None else ("refuted from ", refuted, " on")
-    yield Sentence("most missed deadlines: ", *said, ", ", *end)
+    yield Sentence("most missed deadlines: ", *said)
 
 
 def _loop_lines(margins: ProofMargins, at: _At) -> Iterator[Sentence]:
@@ -102,10 +100,12 @@ def _loop_lines(margins: ProofMargins, at: _At) -> Iterator[Sentence]:
         return
     more = "" if loop.command is None else "; without disturbances, no bound was looked at"
     if loop.delay is not None:
-        said = _delays(loop.delay, at)
+        refuted = f"refuted from *{_in(loop.delay.refuted_in)}"
+        said = _ends(loop.delay, partial(_samples, at), "proved up to *", refuted)
         yield Sentence("longest delay of the force sample: ", *said, more)
     if loop.period is not None:
-        said = _periods(loop.period, at)
+        refuted = f"* is refuted{_in(loop.period.refuted_in)}"
+        said = _ends(loop.period, partial(_period, at), "* is proved", refuted)
         rest = f" (each for itself, nothing is said of those in between{more})"
         yield Sentence("period: ", *said, rest)
     if loop.command is not None:
@@ -130,16 +130,20 @@ def _listed(items: Iterator[tuple[str, ...]]) -> list[str]:
     return list(chain.from_iterable((", ", *item) for item in items))[1:]
 
 
-def _delays(bracket: Bracket, at: _At) -> tuple[str, ...]:
-    """State the largest proved and the smallest refuted delay."""
-    proved, refuted = (
-        None if end is None else at(_samples(end), "sampling", "delay")
-        for end in (bracket.proved, bracket.refuted)
-    )
-    where = _in(bracket.refuted_in)
-    said = ("none is proved",) if proved is None else ("proved up to ", proved)
-    end = (bracket.end,) if refuted is None else ("refuted from ", refuted, where)
-    return (*said, ", ", *end)
+def _ends(
+    bracket: Bracket, shown: Callable[[Fraction], str], proved: str, refuted: str
+) -> Iterator[str]:
+    """Yield what is proved and what is refuted; a star in these texts is where the number stands.
+
+    Where nothing is refuted, yield where the search ended.
+    """
+    for end, text, none in (
+        (bracket.proved, proved, "none is proved"),
+        (bracket.refuted, refuted, bracket.end),
+    ):
+        before, _, after = text.partition("*")
+        yield from (none,) if end is None else (before, shown(end), after)
+        yield ", " * (text is proved)
 
 
 def _in(contact: str) -> str:
@@ -147,17 +151,9 @@ def _in(contact: str) -> str:
     return f" {contact}" if contact else ""
 
 
-def _samples(count: Fraction) -> str:
-    return f"{count} sample{'s' * (count != 1)}"
+def _samples(at: _At, count: Fraction) -> str:
+    return at(f"{count} sample{'s' * (count != 1)}", "sampling", "delay")
 
 
-def _periods(bracket: Bracket, at: _At) -> tuple[str, ...]:
-    """Say which period is proved, and which one is refuted."""
-    proved, refuted = (
-        None if end is None else at(nearly(end, "s"), "sampling", "period")
-        for end in (bracket.proved, bracket.refuted)
-    )
-    where = _in(bracket.refuted_in)
-    said = ("none is proved",) if proved is None else (proved, " is proved")
-    end = (bracket.end,) if refuted is None else (refuted, f" is refuted{where}")
-    return (*said, ", ", *end)
+def _period(at: _At, seconds: Fraction) -> str:
+    return at(nearly(seconds, "s"), "sampling", "period")

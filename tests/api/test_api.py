@@ -7,7 +7,7 @@ import sys
 import pytest
 
 import nrs_design as nrs
-from nrs_design.api import matrices, measured, study
+from nrs_design.api import identified, matrices, study
 from tests.support import ROOT
 
 
@@ -24,7 +24,7 @@ def test_import_loads_nothing_heavy():
 
 def test_examples_in_docstrings(monkeypatch):
     monkeypatch.chdir(ROOT)
-    found = [doctest.testmod(module) for module in (matrices, measured, study)]
+    found = [doctest.testmod(module) for module in (identified, matrices, study)]
     assert all(result.attempted for result in found)
     assert not any(result.failed for result in found)
 

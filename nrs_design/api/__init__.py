@@ -1,37 +1,22 @@
 """The library at the door: what ``import nrs_design as nrs`` offers."""
 
-from nrs_design.api.audit import Audit, AuditCheck
-from nrs_design.api.decision import Decision
-from nrs_design.api.exported import Exported
-from nrs_design.api.identified import FittedRange, Identification, identify
-from nrs_design.api.lyapunov import Counterexample, LyapunovCheck
-from nrs_design.api.matrices import certify, check_lyapunov
-from nrs_design.api.optimum import Optimum
-from nrs_design.api.recheck import Recheck, verify
-from nrs_design.api.simulation import ScenarioRun, Simulation
-from nrs_design.api.study import Study, load
-from nrs_design.api.worst import WorstFound
-from nrs_design.search.gradient_settings import Gradient
-
-__all__ = [
-    "Audit",
-    "AuditCheck",
-    "Counterexample",
-    "Decision",
-    "Exported",
-    "FittedRange",
-    "Gradient",
-    "Identification",
-    "LyapunovCheck",
-    "Optimum",
-    "Recheck",
-    "ScenarioRun",
-    "Simulation",
-    "Study",
-    "WorstFound",
-    "certify",
-    "check_lyapunov",
-    "identify",
-    "load",
-    "verify",
-]
+from nrs_design.api.audit import Audit as Audit
+from nrs_design.api.audit import AuditCheck as AuditCheck
+from nrs_design.api.decision import Decision as Decision
+from nrs_design.api.exported import Exported as Exported
+from nrs_design.api.identified import FittedRange as FittedRange
+from nrs_design.api.identified import Identification as Identification
+from nrs_design.api.identified import identify as identify
+from nrs_design.api.lyapunov import Counterexample as Counterexample
+from nrs_design.api.lyapunov import LyapunovCheck as LyapunovCheck
+from nrs_design.api.matrices import certify as certify
+from nrs_design.api.matrices import check_lyapunov as check_lyapunov
+from nrs_design.api.optimum import Optimum as Optimum
+from nrs_design.api.recheck import Recheck as Recheck
+from nrs_design.api.recheck import verify as verify
+from nrs_design.api.simulation import ScenarioRun as ScenarioRun
+from nrs_design.api.simulation import Simulation as Simulation
+from nrs_design.api.study import Study as Study
+from nrs_design.api.study import load as load
+from nrs_design.api.worst import WorstFound as WorstFound
+from nrs_design.search.gradient_settings import Gradient as Gradient

@@ -26,7 +26,7 @@ def print_error(error: NrsDesignError) -> None:
     """Write every fault to stderr, each with its place and its remedy."""
     faults = error.faults
     blocks = [
-        _block(error.rule, fault, error.path) if fault.line else _line(error)
+        _block(error.rule, fault, error.path) if fault.line else _headed(error.rule, str(error))
         for fault in faults[:MAX_SHOWN]
     ]
     if len(faults) > 1:
@@ -52,10 +52,6 @@ def error_summary(error: NrsDesignError) -> dict[str, Any]:
             for fault in error.faults[:MAX_LISTED]
         ],
     }
-
-
-def _line(error: NrsDesignError) -> str:
-    return _headed(error.rule, str(error))
 
 
 def _headed(rule: str, message: str) -> str:

@@ -78,7 +78,11 @@ def export(
         return _list()
     if spec is None:
         raise NrsDesignError("no spec is named", remedy="name one, or list the formats with --list")
-    chosen = _format(format_)
+    if format_ == "ros2":
+        raise NrsDesignError(
+            f"{format_} is not a format of this command", remedy="use `nrs-design ros2 export`"
+        )
+    chosen = known_format(format_)
     execution = _execution(chosen, sample_time, unproved=unproved)
     return _export_design(spec, format_, certificate, out, execution)
 
@@ -99,14 +103,6 @@ def _list() -> Answer:
         lambda: {"formats": entries},
         lambda: print_table("", ("format", "what for", "needs"), rows),
     )
-
-
-def _format(name: str) -> Format:
-    if name == "ros2":
-        raise NrsDesignError(
-            f"{name} is not a format of this command", remedy="use `nrs-design ros2 export`"
-        )
-    return known_format(name)
 
 
 def _execution(chosen: Format, sample_time: str | None, *, unproved: bool) -> Execution | None:

@@ -183,28 +183,22 @@ def _asked(name: tuple[str, ...], spec: Path, options: tuple[str, ...]) -> tuple
     for parameter, value in sorted(context.params.items()):
         if context.get_parameter_source(parameter).name == "DEFAULT" or parameter == "quiet":
             continue
+        values = value if isinstance(value, list | tuple) else (value,)
         if parameter in ("spec", "specs"):
-            _refuse_more(value)
-        elif any(isinstance(part, Path) for part in (value, *_items(value))):
+            if len(values) > 1:
+                raise NrsDesignError(
+                    "the command of a sweep names no spec of its own",
+                    remedy="leave it out behind COMMAND",
+                )
+        elif any(isinstance(part, Path) for part in values):
             raise NrsDesignError(
                 f"{' '.join(name)} takes no file at the points of a sweep",
                 remedy="leave that option out: a point depends on its spec and on options alone, "
                 "and its answer is in the store",
             )
         else:
-            said.append(f"{parameter}={[*map(str, _items(value) or (value,))]}")
+            said.append(f"{parameter}={[*map(str, values)]}")
     return (*name, *said)
-
-
-def _items(value: object) -> tuple[object, ...]:
-    return tuple(value) if isinstance(value, list | tuple) else ()
-
-
-def _refuse_more(value: object) -> None:
-    if len(_items(value)) > 1:
-        raise NrsDesignError(
-            "the command of a sweep names no spec of its own", remedy="leave it out behind COMMAND"
-        )
 
 
 def _points(job: Job, jobs: int, dask: str | None) -> list[PointAnswer]:

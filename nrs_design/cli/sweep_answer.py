@@ -56,7 +56,8 @@ def table_text(job: Job, points: Sequence[PointAnswer]) -> str:
     columns = _columns(job, points)
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    heads = [_headed(head, unit) for head, unit in _heads(job)]
+    fields = job.grid.fields
+    heads = [f"{field.path} [{field.unit}]" if field.unit else field.path for field in fields]
     writer.writerow(["point", "exit_code", "message", *heads, *columns.every])
     for index, (point, result) in enumerate(_results(job, points)):
         row = _row(result)
@@ -90,7 +91,8 @@ def view_of(job: Job, points: Sequence[PointAnswer], wanted: Sequence[str]) -> C
         more = ", ".join(short_names(telling)[MOST_COLUMNS:][:MOST_NAMED])
         lines.append(f"more facts differ (--show NAME, or --csv FILE for all): {more}")
     lines += _messages(job, points)
-    heads = (f"{head}\n{unit}" if unit else head for head, unit in _heads(job))
+    fields = job.grid.fields
+    heads = (f"{field.path}\n{field.unit}" if field.unit else field.path for field in fields)
     columns = (*heads, "answer", *short_names(names))
 
     def show() -> None:
@@ -126,15 +128,6 @@ def _columns(job: Job, points: Sequence[PointAnswer]) -> Columns:
 
 def _row(result: Mapping[str, Any] | None) -> Row:
     return {} if result is None else dict(flat(result))
-
-
-def _heads(job: Job) -> list[tuple[str, str]]:
-    """Return each field with the unit of all its values; empty if they have several, or none."""
-    return [(field.path, field.unit) for field in job.grid.fields]
-
-
-def _headed(head: str, unit: str) -> str:
-    return f"{head} [{unit}]" if unit else head
 
 
 def _values(job: Job, point: PointAnswer) -> list[str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 from nrs_design.cli.printing import columns as columns_of
 from nrs_design.printable import printable
@@ -16,13 +16,13 @@ SENTENCE = 40
 _GAP = 3
 
 
-def print_table(title: str, columns: Cells, rows: Sequence[Cells]) -> None:
+def print_table(title: str, columns: Cells, given: Iterable[Cells]) -> None:
     """Print a plain table; a second line of a heading is its unit.
 
     Where it is wider than a line may be, rows become columns, side by side as far as they fit; a
     number is never broken.
     """
-    rows = [["\n".join(map(printable, cell.split("\n"))) for cell in row] for row in rows]
+    rows = [["\n".join(map(printable, cell.split("\n"))) for cell in row] for row in given]
     width = columns_of(sys.stdout)
     if _least_width([columns, *rows]) <= width:
         _print(title, columns, rows, width)

@@ -176,15 +176,9 @@ def goals_summary(item: AbstractControllerAnalysis) -> list[dict[str, Any]]:
     return [_goal(found) for found in item.judged]
 
 
-def _safe(found: Achieved) -> float | None:
-    """Return what is proved, rounded to its unfavorable side."""
-    if found.proved is None:
-        return None
-    return upper_float(found.proved) if found.measure.upper else lower_float(found.proved)
-
-
 def _goal(found: Achieved) -> dict[str, Any]:
     measure = found.measure
+    unfavorable = upper_float if measure.upper else lower_float
     return {
         "goal": measure.goal,
         "wanted": found.goal,
@@ -192,7 +186,7 @@ def _goal(found: Achieved) -> dict[str, Any]:
         # what is not computed, as `at` then says.
         "worst": finite(found.value),
         # What no constant values in the ranges are worse than; null is not shown.
-        "proved": _safe(found),
+        "proved": None if found.proved is None else unfavorable(found.proved),
         "unit": measure.si_unit,
         "at": found.where,
         "status": None if found.goal is None else str(found.standing),

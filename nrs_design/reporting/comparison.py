@@ -6,8 +6,8 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from nrs_design.comparison import Part
+from nrs_design.proof.text import counted
 from nrs_design.reporting.document import Block, Bullets, Paragraph, Report, Section, Table
-from nrs_design.reporting.formatting import plural
 
 if TYPE_CHECKING:
     from nrs_design.comparison import Comparison, Difference
@@ -24,11 +24,12 @@ _TITLES = {
 def comparison_report(found: Comparison) -> Report:
     """Return the report of a comparison."""
     count = len(found.differences)
+    said = counted(count, "difference") if count else "No difference in what was compared"
     return Report(
         name="comparison",
         title=f"{found.before.name} and {found.after.name}",
         verdict="different" if count else "same",
-        claim=f"{plural(count, 'difference')}." if count else "No difference in what was compared.",
+        claim=f"{said}.",
         remarks=found.remarks,
         facts=(("A", str(found.before.path)), ("B", str(found.after.path))),
         sections=tuple(_sections(found)),

@@ -42,8 +42,3 @@ def shortened(names: Sequence[str], limit: int = 12) -> str:
     """List names, only the first of many."""
     shown = ", ".join(names[:limit])
     return shown if len(names) <= limit else f"{shown} and {len(names) - limit} more"
-
-
-def plural(count: int, noun: str) -> str:
-    """Write a count with its noun."""
-    return f"{count} {noun}" + ("" if count == 1 else "s")

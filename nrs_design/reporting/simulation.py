@@ -12,20 +12,16 @@ from nrs_design.axis import current, unit
 _NOTHING = 1e-9
 
 
-def metric_rows(metrics: Mapping[str, Any], limits: Mapping[str, float]) -> list[list[str]]:
-    """Return rows of name, value, unit and limit; all are given in SI.
-
-    Limits are those of the scenario; the spec's of the torque is in the metrics.
-    """
-    return list(_rows(metrics, limits))
-
-
 def four_digits_up(value: float) -> str:
     """Return a number with four digits, rounded up."""
     return f"{float(Context(prec=4, rounding=ROUND_CEILING).create_decimal(repr(value))):.4g}"
 
 
-def _rows(m: Mapping[str, Any], limits: Mapping[str, float]) -> Iterator[list[str]]:
+def metric_rows(m: Mapping[str, Any], limits: Mapping[str, float]) -> Iterator[list[str]]:
+    """Yield rows of name, value, unit and limit, of metrics and limits in SI.
+
+    Limits are those of the scenario; the spec's of the torque is in the metrics.
+    """
     limit = f"{limits.get('torque', m['torque_limit']):.4g}"
     # What has a limit is never shown below it, nor as nothing, where it is not.
     yield ["largest torque", four_digits_up(m["peak_torque"]), unit("N m"), limit]

@@ -5,7 +5,7 @@ from math import pi
 
 import pytest
 
-from nrs_design.reporting.formatting import number, plural, polynomial_text, root, roots, shortened
+from nrs_design.reporting.formatting import number, polynomial_text, root, roots, shortened
 from nrs_design.reporting.simulation import four_digits_up
 from nrs_design.reporting.text import drawable, wrapped_label
 from nrs_design.reporting.worst_case import scale_of
@@ -37,8 +37,6 @@ def test_polynomial():
 
 def test_lists():
     assert shortened(["a", "b", "c"], 2) == "a, b and 1 more"
-    assert plural(1, "mode") == "1 mode"
-    assert plural(2, "mode") == "2 modes"
 
 
 @pytest.mark.parametrize(

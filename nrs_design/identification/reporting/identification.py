@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 
 from nrs_design import __version__
 from nrs_design.identification.finding import is_synthetic
+from nrs_design.proof.text import counted
 from nrs_design.reporting.document import Bullets, Light, Report, Section, State, Table
-from nrs_design.reporting.formatting import number, plural
+from nrs_design.reporting.formatting import number
 
 if TYPE_CHECKING:
     from nrs_design.identification.datasets import Source
@@ -30,7 +31,7 @@ def facts_of(sources: Iterable[Source]) -> tuple[tuple[str, str], ...]:
     synthetic = sum(source.synthetic for source in files)
     kind = "SYNTHETIC" if synthetic == len(files) else "mixed" if synthetic else "measured"
     return (
-        ("Data", f"{kind}, {plural(len(files), 'file')}"),
+        ("Data", f"{kind}, {counted(len(files), 'file')}"),
         ("Package", f"nrs-design {__version__}"),
     )
 
@@ -66,7 +67,7 @@ def _lights(found: Finding) -> tuple[Light, Light]:
     if is_synthetic(found.sources):
         data = Light("Data", State.DOUBTFUL, "SYNTHETIC, made by a simulation", FILES)
     if found.caveats:
-        return data, Light("Doubts", State.DOUBTFUL, plural(len(found.caveats), "doubt"))
+        return data, Light("Doubts", State.DOUBTFUL, counted(len(found.caveats), "doubt"))
     return data, Light("Doubts", State.GOOD, "none")
 
 

@@ -22,8 +22,9 @@ from nrs_design.identification.reporting.identification import (
 )
 from nrs_design.identification.statistics import span
 from nrs_design.identification.tissue import OFFSET_UNITS, OFFSET_WORDS
+from nrs_design.proof.text import counted
 from nrs_design.reporting.document import Block, Bullets, Illustration, Report, Section, Table
-from nrs_design.reporting.formatting import number, plural, shortened
+from nrs_design.reporting.formatting import number, shortened
 
 if TYPE_CHECKING:
     from nrs_design.identification.tissue import ModelFit, RecordFit, TissueIdentification
@@ -51,7 +52,7 @@ def tissue_report(
     return identification_page(
         found,
         name=f"tissue-{chosen.law.name}",
-        title=f"Tissue law from {plural(len(found.records), 'record')}",
+        title=f"Tissue law from {counted(len(found.records), 'record')}",
         claim=f"{chosen.law.formula} with {values}. {found.reason}",
         sections=(
             Section("What of the records is used", tuple(_used(found))),
@@ -199,6 +200,6 @@ def _tissue_figures(found: TissueIdentification) -> Iterator[Illustration]:
 def _quality(fit: RecordFit) -> str:
     return (
         f"Fit to this record alone: RMSE {number(fit.rmse)}, whiteness p = "
-        f"{fit.uncertainty.whiteness:.2g}; {fit.agreeing} of {plural(fit.starts, 'start')} ended "
+        f"{fit.uncertainty.whiteness:.2g}; {fit.agreeing} of {counted(fit.starts, 'start')} ended "
         "at this optimum."
     )

@@ -34,10 +34,10 @@ class ConstantsPage(AbstractPage):
             words.decision(self.system),
         )
 
-    def between_corners(self) -> tuple[str, ...]:
+    def between_corners(self) -> str:
         """Say that they are covered, for the other parameters while they change."""
         how = "however fast they change, the constant ones excepted"
-        return (words.all_corners(self.system, self.evidence, how),)
+        return words.all_corners(self.system, self.evidence, how)
 
     def limits(self) -> tuple[str, ...]:
         """Name the parameters that change."""

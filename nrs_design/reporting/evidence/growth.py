@@ -13,6 +13,7 @@ from nrs_design.proof.bounds import lower, nearly
 from nrs_design.proof.constant import system_at
 from nrs_design.proof.switching import ARBITRARY
 from nrs_design.proof.system import SwitchedSystem
+from nrs_design.proof.text import counted
 from nrs_design.reporting.document import Block, Illustration, Paragraph, Section, Table
 from nrs_design.reporting.evidence import words
 from nrs_design.reporting.evidence.offers import Growth, offer_of
@@ -20,7 +21,7 @@ from nrs_design.reporting.evidence.page import AbstractPage
 from nrs_design.reporting.evidence.runs import EUCLIDEAN, euclidean_norms, phase_plane
 from nrs_design.reporting.figures.complex_plane import draw_eigenvalues
 from nrs_design.reporting.figures.run import draw_run
-from nrs_design.reporting.formatting import number, plural, roots
+from nrs_design.reporting.formatting import number, roots
 from nrs_design.simulation.greedy import all_modes
 from nrs_design.simulation.norms import Array
 from nrs_design.simulation.periodic import (
@@ -113,10 +114,6 @@ class GrowthPage(AbstractPage):
             signals=words.allowed_signals(self.system), region=region
         )
         return (said, *self._part.meaning()) if self._shape is _Shape.VALUE else (said,)
-
-    def between_corners(self) -> tuple[str, ...]:
-        """Say nothing: no proof, no question."""
-        return ()
 
     def limits(self) -> tuple[str, ...]:
         """Say that nothing follows for other motions."""
@@ -235,7 +232,7 @@ class GrowthPage(AbstractPage):
         if self.is_discrete or factor is None:
             yield self._steps()
         response, growth_line = run.response, _line(run)
-        periods = plural(round(response.time[-1] / run.period), "period")
+        periods = counted(round(response.time[-1] / run.period), "period")
         figure = draw_run(response, euclidean_norms(response), growth_line, system, EUCLIDEAN)
         yield Illustration("run", f"The witness over {periods}", caption, figure)
         if factor is None:
@@ -250,7 +247,7 @@ class GrowthPage(AbstractPage):
         mean = "" if self.is_discrete else f", a mean growth rate of {rate} 1/s"
         return Paragraph(
             f"One period lasts {run.period:.6g} {self._unit} and has "
-            f"{plural(len(self._growth.steps), 'step')}. Over one period some state grows by the "
+            f"{counted(len(self._growth.steps), 'step')}. Over one period some state grows by the "
             f"factor {number(run.radius, 6)}{mean}. The certificate shows with rigorous enclosures "
             "that the factor is above one; these digits are floating point."
         )

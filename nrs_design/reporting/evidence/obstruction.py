@@ -29,14 +29,6 @@ class ObstructionPage(AbstractPage):
         """Say that it decides nothing about stability."""
         return (_MEANING,)
 
-    def between_corners(self) -> tuple[str, ...]:
-        """Say nothing: nothing is proved about stability."""
-        return ()
-
-    def limits(self) -> tuple[str, ...]:
-        """Say nothing: its meaning is its limit."""
-        return ()
-
     def sections(self, *, first: bool = True) -> tuple[Section, ...]:
         """Say why there is none, and which modes contradict each other."""
         term, decrease = ("A X + X A'", "A'Q + QA")

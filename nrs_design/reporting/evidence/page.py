@@ -34,13 +34,13 @@ class AbstractPage(ABC):
     def meaning(self) -> tuple[str, ...]:
         """Say what the claim means, what it rests on, and how it was decided."""
 
-    def between_corners(self) -> tuple[str, ...]:
-        """Say that values between the corners of declared ranges are covered."""
-        return (words.all_corners(self.system, self.evidence),)
+    def between_corners(self) -> str:
+        """Say of a proof that values between the corners of declared ranges are covered."""
+        return words.all_corners(self.system, self.evidence)
 
-    @abstractmethod
     def limits(self) -> tuple[str, ...]:
-        """Say what does not follow."""
+        """Say what does not follow, beside what the meaning says of it."""
+        return ()
 
     def sections(self, *, first: bool = True) -> tuple[Section, ...]:
         """Show the numbers in tables and figures; by default none beside the run.

@@ -26,8 +26,7 @@ from nrs_design.spec.goals import OF_THE_CERTIFICATE
 if TYPE_CHECKING:
     from nrs_design.design.analysis import DesignAnalysis
     from nrs_design.pipeline.certification import Result
-    from nrs_design.pipeline.design import Designed
-    from nrs_design.spec import Spec
+    from nrs_design.spec import LoadedSpec, Spec
 
 _CERTIFIED = ("Goal", "Wanted", "What the certificate shows", "Result")
 _RESPONSES = ("Controller", "Wanted", "What is shown", "Result")
@@ -110,7 +109,9 @@ def _measured(result: Result, analysis: DesignAnalysis | None) -> Iterator[Block
     if designed is None or analysis is None:
         return
     rows = tuple(
-        _row(designed, item.name, found) for item in analysis.measured for found in item.judged
+        _row(designed.loaded, item.name, found)
+        for item in analysis.measured
+        for found in item.judged
     )
     if not rows:
         return
@@ -126,7 +127,7 @@ def _responses(result: Result, analysis: DesignAnalysis | None) -> Iterator[Bloc
     rows = tuple(
         (
             item.name,
-            linked(result.loaded, found.wanted, *_place(result, item.name, found.key)),
+            linked(result.loaded, found.wanted, *_place(result.loaded, item.name, found.key)),
             found.said,
             found.ends if found.proved else found.ends.upper(),
         )
@@ -138,12 +139,12 @@ def _responses(result: Result, analysis: DesignAnalysis | None) -> Iterator[Bloc
         yield Table("Transparency and accuracy", _RESPONSES, rows)
 
 
-def _place(result: Result, controller: str, goal: str) -> tuple[str, ...]:
+def _place(loaded: LoadedSpec, controller: str, goal: str) -> tuple[str, ...]:
     """Return the keys of the controller's own goal, or of the one for all."""
-    spec = result.loaded.spec
+    spec = loaded.spec
     assert isinstance(spec, InteractionDesignSpec), "it has controllers"
     own = spec.controllers[controller].goals
-    is_own = own is not None and getattr(own, goal) is not None
+    is_own = own is not None and getattr(own, goal, None) is not None
     return ("controllers", controller, "goals", goal) if is_own else ("goals", goal)
 
 
@@ -163,29 +164,19 @@ def _certified(result: Result) -> Iterator[Block]:
         yield Table("Goals that the certificate must show", _CERTIFIED, rows)
 
 
-def _row(designed: Designed, name: str, found: Achieved) -> tuple[str, ...]:
-    measure, loaded = found.measure, designed.loaded
+def _row(loaded: LoadedSpec, name: str, found: Achieved) -> tuple[str, ...]:
+    measure = found.measure
     goal, result = "–", "no goal"
+    where = found.where.replace("*", "·").replace("^2", "²")
     if found.goal is not None:
-        goal = Linked(measure.goal_text(found.goal), _line(designed, name, measure.goal))
+        place = loaded.place(*_place(loaded, name, measure.goal))
+        goal = Linked(measure.goal_text(found.goal), place.line)
         result = found.standing.text
     return (
         name,
         measure.title,
         goal,
         linked(loaded, found.text, "controllers", name),
-        linked(loaded, _pretty(found.where), *contact_at(loaded, found.where)),
+        linked(loaded, where, *contact_at(loaded, found.where)),
         result,
     )
-
-
-def _line(designed: Designed, controller: str, goal: str) -> int:
-    """Return the line of the controller's own goal, or of the one for all."""
-    own = designed.spec.controllers[controller].goals
-    if own is not None and getattr(own, goal, None) is not None:
-        return designed.loaded.place("controllers", controller, "goals", goal).line
-    return designed.loaded.place("goals", goal).line
-
-
-def _pretty(text: str) -> str:
-    return text.replace("*", "·").replace("^2", "²")

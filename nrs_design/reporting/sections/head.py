@@ -12,8 +12,9 @@ from nrs_design.proof.evidence import AbstractEvidence, Shows
 from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import constants_words
 from nrs_design.proof.system import SwitchedSystem
+from nrs_design.proof.text import counted
 from nrs_design.reporting.document import Derived
-from nrs_design.reporting.formatting import plural, shortened
+from nrs_design.reporting.formatting import shortened
 from nrs_design.reporting.sections.places import linked
 from nrs_design.reporting.sections.titles import (
     EVIDENCE,
@@ -67,13 +68,15 @@ def facts(result: Result) -> tuple[tuple[str, str], ...]:
     certification = result.certification
     system = certification.system
     most = "" if system.is_uniform else "at most "
-    count = f"{plural(len(system.modes), 'mode')} of {most}{plural(system.order, 'state')}"
-    rows = [
+    count = f"{counted(len(system.modes), 'mode')} of {most}{counted(system.order, 'state')}"
+    where = certification.refuted_in
+    return (
         ("Spec", linked(result.loaded, result.loaded.spec.name, "name")),
         ("Switching", linked(result.loaded, switching_words(result), "switching")),
         ("Switches among", Derived(f"{count}, in {system.time} time", MODES)),
         ("Common quadratic function", str(certification.common_quadratic)),
-        *_aside(certification),
+        # What is refuted although the verdict is inconclusive.
+        *(() if where is None else (("Refuted", Derived(where, MEANT)),)),
         (
             "Settled by",
             Derived(certification.method if certification.evidence else "nothing", RUNGS),
@@ -81,8 +84,6 @@ def facts(result: Result) -> tuple[tuple[str, str], ...]:
         *_rate(system, certification.evidence),
         *_saturated(certification),
         *_limit(certification),
-    ]
-    rows += [
         *_provenance(result),
         ("Package", f"nrs-design {__version__}"),
         ("SHA-256 of the spec", Derived(result.loaded.sha256, SPEC)),
@@ -90,14 +91,7 @@ def facts(result: Result) -> tuple[tuple[str, str], ...]:
             "Certificate id",
             Derived(result.certificate.id if result.certificate else "no certificate", RECHECK),
         ),
-    ]
-    return tuple(rows)
-
-
-def _aside(certification: Certification) -> _Facts:
-    """Return what is refuted although the verdict is inconclusive."""
-    where = certification.refuted_in
-    return [] if where is None else [("Refuted", Derived(where, MEANT))]
+    )
 
 
 def switching_words(result: Result) -> str:
@@ -176,7 +170,7 @@ def _provenance(result: Result) -> Iterator[tuple[str, str]]:
         name = at[-1]
         if item.provenance:
             kinds = " and ".join(sorted({source.data.upper() for source in item.provenance}))
-            count = plural(len(item.provenance), "record")
+            count = counted(len(item.provenance), "record")
             files = shortened([source.file for source in item.provenance], 3)
             text = f"{kinds} data, {count}: {files}"
             yield (f"Data for {name}", linked(loaded, text, *at, "provenance"))

@@ -12,8 +12,9 @@ from nrs_design.certificates.bounds import bound_on
 from nrs_design.design.measures import SENSITIVITY_PEAK
 from nrs_design.proof.bounds import lower, upper
 from nrs_design.proof.mode import Time
+from nrs_design.proof.text import counted
 from nrs_design.reporting.document import Bullets, Derived, Paragraph, Section
-from nrs_design.reporting.formatting import plural, shortened
+from nrs_design.reporting.formatting import shortened
 from nrs_design.reporting.register import register_of
 from nrs_design.reporting.sections.head import proved_rate
 from nrs_design.reporting.sections.titles import EVIDENCE, GOALS, MODES
@@ -55,7 +56,7 @@ def _worst(analysis: DesignAnalysis | None) -> Iterator[tuple[str, str]]:
     """Yield what is furthest beyond a limit, and how much else is doubtful."""
     doubts = () if analysis is None else analysis.warnings
     if doubts and doubts[0].beyond:
-        more = f" ({plural(len(doubts) - 1, 'more warning')})" if doubts[1:] else ""
+        more = f" ({counted(len(doubts) - 1, 'more warning')})" if doubts[1:] else ""
         yield "Worst of it", Derived(f"{doubts[0]}{more}", GOALS)
 
 

@@ -66,7 +66,7 @@ def _proved(result: Result, evidence: AbstractEvidence) -> tuple[Block, ...]:
     page, design = page_of(system, evidence), isinstance(result.loaded.spec, InteractionDesignSpec)
     proved = [evidence.claim(system), *page.meaning()]
     if result.loaded.spec.has_ranges:
-        proved += page.between_corners()
+        proved.append(page.between_corners())
     if design:
         proved.append(
             "The gains in the proof are the single-precision numbers listed below, not their "
@@ -104,7 +104,7 @@ def _beside(result: Result) -> list[str]:
         if item.shows is Shows.REGION:
             said.append(item.claim(system))
             if result.loaded.spec.has_ranges:
-                said += page_of(system, item).between_corners()
+                said.append(page_of(system, item).between_corners())
     return said
 
 

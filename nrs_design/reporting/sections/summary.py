@@ -14,10 +14,9 @@ from nrs_design.proof.evidence import AbstractEvidence, Shows
 from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import constants_words
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.proof.text import exact_text
+from nrs_design.proof.text import counted, exact_text
 from nrs_design.reporting.document import Derived, Light, Sentence, State
 from nrs_design.reporting.evidence import page_of
-from nrs_design.reporting.formatting import plural
 from nrs_design.reporting.register import register_of
 from nrs_design.reporting.sections.goals import judged_goals
 from nrs_design.reporting.sections.head import proved_rate, saturated
@@ -80,8 +79,8 @@ def _grown(system: SwitchedSystem, evidence: AbstractEvidence) -> str:
 
 def _proved(result: Result, evidence: AbstractEvidence) -> str:
     system = result.certification.system
-    ranged = bool(page_of(system, evidence).between_corners()) and result.loaded.spec.has_ranges
-    among = plural(len(system.modes), "mode")
+    ranged = result.loaded.spec.has_ranges
+    among = counted(len(system.modes), "mode")
     if system.contact is not None and evidence.covers_lost_contact:
         among += f" in contact and {len(system.contact.free)} of free motion"
     unsaturated = "while no signal saturates, " if system.saturation is not None else ""
@@ -173,14 +172,14 @@ def _warnings(spec: InteractionDesignSpec, analysis: DesignAnalysis | None) -> L
         return Light("Design", State.BAD, "a nominal loop is unstable")
     state, text = State.GOOD, "no warning (floating point, no part of the proof)"
     if count := len(analysis.warnings):
-        state, text = State.DOUBTFUL, f"{plural(count, 'warning')} (no part of the proof)"
+        state, text = State.DOUBTFUL, f"{counted(count, 'warning')} (no part of the proof)"
     return Light("Design", state, text, GOALS)
 
 
 def _data(spec: InteractionDesignSpec) -> Light:
     items = [item for item in spec.identified.values() if item.provenance or item.doubts]
     doubted = [item for item in items if item.doubts]
-    doubts = plural(sum(len(item.doubts) for item in doubted), "doubt")
+    doubts = counted(sum(len(item.doubts) for item in doubted), "doubt")
     state, text = State.GOOD, "the spec names measured records, no doubts"
     if not items:
         state, text = State.UNKNOWN, "no value names the records that it was identified from"

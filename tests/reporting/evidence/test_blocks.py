@@ -63,7 +63,7 @@ def test_the_witness_of_a_block_runs_in_the_whole_family():
 def test_corners_in_discrete_time_are_as_good_as_the_worst_part(part, costs):
     discrete = replace(CASCADE, time=Time.DISCRETE, switching=Switching())
     page = page_of(discrete, BlockTriangular(BLOCKS, ((0, ONE), (1, part))))
-    (text,) = page.between_corners()
+    text = page.between_corners()
     assert text.endswith("up to a constant factor.") is costs
-    (continuous,) = page_of(CASCADE, page.evidence).between_corners()
+    continuous = page_of(CASCADE, page.evidence).between_corners()
     assert "constant factor" not in continuous

@@ -64,7 +64,7 @@ def test_every_page_speaks_in_sentences_and_draws_a_run(example):
     page = page_of(*genuine(example))
     assert page.name
     assert not page.name.endswith(".")
-    sentences = (*page.meaning(), *page.between_corners(), *page.limits())
+    sentences = (*page.meaning(), page.between_corners(), *page.limits())
     assert page.meaning()
     assert all(text.endswith(".") for text in sentences)
     assert all(section.blocks for section in page.sections())
@@ -74,5 +74,5 @@ def test_every_page_speaks_in_sentences_and_draws_a_run(example):
 def test_the_modes_of_a_sampled_loop_are_not_said_to_be_the_corners_of_its_ranges():
     """Of the four corners of a motor's exponentials, one is left out, and one is another."""
     system, evidence = genuine("periodic-quadratic, rounding")
-    (said,) = page_of(system, evidence).between_corners()
+    said = page_of(system, evidence).between_corners()
     assert "corners of what encloses the declared parameter ranges" in said

@@ -43,13 +43,13 @@ def diff(
         found = compare(before, after, step)
     code = exit_codes.unless(found.differences)
     answer = Answer(lambda: _summary(found), lambda: _print(found), code)
-    return outputs.deliver(answer, lambda: _page(found))
 
+    def page() -> Report:
+        from nrs_design.reporting.comparison import comparison_report
 
-def _page(found: Comparison) -> Report:
-    from nrs_design.reporting.comparison import comparison_report
+        return comparison_report(found)
 
-    return comparison_report(found)
+    return outputs.deliver(answer, page)
 
 
 def _summary(found: Comparison) -> dict[str, Any]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -61,14 +60,31 @@ def verify(
 
     Example: nrs-design verify reports/soft-tissue.cert.json specs/neuroboscope/soft-tissue.nrs.yaml
     """
-    _check_arguments(certificate, spec, deployed)
+    if spec is None and deployed is not None:
+        raise typer.BadParameter("needs a SPEC, whose law it is", param_hint="--deployed")
+    if spec is not None and spec.suffix == ".json" and certificate.suffix in (".yaml", ".yml"):
+        raise CertificateError(
+            "the arguments are swapped",
+            remedy=f"the certificate comes first: nrs-design verify {spec} {certificate}",
+        )
     outcome, loaded = _verify(certificate, spec)
     checked = outcome.certificate if outcome.fault is None else None
     found = _deployed(deployed, loaded, checked)
-    differs = found is not None and bool(found.differences)
-    rejected = checked is None or differs
+    rejected = checked is None or (found is not None and bool(found.differences))
     verdict = "rejected" if checked is None or rejected else checked.verdict
     brief = is_quiet()
+
+    def facts() -> dict[str, Any]:
+        from nrs_design.facts.verification import verification_facts
+
+        return {
+            **verification_facts(outcome, certificate, spec),
+            "verdict": verdict,
+            "deployed": None if deployed is None else str(deployed),
+            "differences": None if found is None else list(found.differences),
+            "compared": None if found is None else [file.name for file in found.compared],
+            "not_compared": None if found is None else found.left_out,
+        }
 
     def show() -> None:
         if checked is None:
@@ -80,9 +96,8 @@ def verify(
         if not brief:
             _print(checked, None if loaded is None else loaded.spec)
 
-    given = {"certificate": certificate, "spec": spec, "deployed": deployed}
     return Answer(
-        lambda: _facts(outcome, given, found),
+        facts,
         show,
         exit_codes.OF_VERDICT.get(verdict, exit_codes.REFUTED),
         loud=rejected,
@@ -101,41 +116,6 @@ def _verify(certificate: Path, spec: Path | None) -> tuple[Verification, LoadedS
     with proof_beside(document) as proof:
         loaded = take_spec(spec)
         return verify_document(document, loaded, proof=proof), loaded
-
-
-def _check_arguments(
-    certificate: Path,
-    spec: Path | None,
-    deployed: Path | None,
-) -> None:
-    """Refuse options that nothing would heed, and files in each other's place."""
-    if spec is None and deployed is not None:
-        raise typer.BadParameter("needs a SPEC, whose law it is", param_hint="--deployed")
-    if spec is not None and spec.suffix == ".json" and certificate.suffix in (".yaml", ".yml"):
-        raise CertificateError(
-            "the arguments are swapped",
-            remedy=f"the certificate comes first: nrs-design verify {spec} {certificate}",
-        )
-
-
-def _facts(
-    outcome: Verification,
-    given: Mapping[str, Path | None],
-    found: DeployedFiles | None,
-) -> dict[str, Any]:
-    from nrs_design.facts.verification import verification_facts
-
-    files = {name: None if path is None else str(path) for name, path in given.items()}
-    differences = None if found is None else found.differences
-    facts = verification_facts(outcome, given["certificate"], given["spec"])
-    return {
-        **facts,
-        "verdict": "rejected" if differences else facts["verdict"],
-        "deployed": files["deployed"],
-        "differences": None if differences is None else list(differences),
-        "compared": None if found is None else [file.name for file in found.compared],
-        "not_compared": None if found is None else found.left_out,
-    }
 
 
 _NEXT = {
@@ -184,7 +164,10 @@ def _print(certificate: Certificate, spec: Spec | None) -> None:
 
     verdict, where = certificate.verdict, certificate.refuted_in
     refuted = "" if where is None else f" (refuted {where})"
-    say(f"{verdict.upper()}{refuted}{_extent(spec)}", verdict=verdict)
+    about = "this spec, checked exactly"
+    if spec is None:
+        about = "the modes in the file, checked exactly; name a SPEC to compare them with"
+    say(f"{verdict.upper()}{refuted} for {about}", verdict=verdict)
     for statement in certificate.statements:
         whole = statement.claim(certificate.system)
         say(f"  {whole if wants_details() else brief(statement, certificate.system)}")
@@ -192,13 +175,6 @@ def _print(certificate: Certificate, spec: Spec | None) -> None:
         say(_NEXT[verdict])
     if spec is not None and wants_details():
         _print_gains(certificate, spec)
-
-
-def _extent(spec: Spec | None) -> str:
-    """Say what was checked beside the proof."""
-    if spec is None:
-        return " for the modes in the file, checked exactly; name a SPEC to compare them with"
-    return " for this spec, checked exactly"
 
 
 def _print_gains(certificate: Certificate, spec: Spec) -> None:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
-from typing import TYPE_CHECKING
 
+from nrs_design.api.decision import Decision
 from nrs_design.api.lyapunov import LyapunovCheck, check_quadratic
 from nrs_design.api.study import Study
 from nrs_design.arrays.exact import (
@@ -20,10 +20,7 @@ from nrs_design.errors import NrsDesignError
 from nrs_design.proof.exact import TooLargeError
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode
-
-if TYPE_CHECKING:
-    from nrs_design.api.decision import Decision
-    from nrs_design.search.gradient_settings import Gradient
+from nrs_design.search.gradient_settings import Gradient
 
 DEFAULT_NAME = "switched-system"
 

@@ -5,18 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from nrs_design.api.result import AbstractResult, Figures, evidence_drawings
 from nrs_design.axis import axis_with
+from nrs_design.certificates.certificate import Certificate
 from nrs_design.certificates.prove import Verification
 from nrs_design.certificates.verify import verify as verify_file
 from nrs_design.facts.verification import verification_facts
 from nrs_design.pipeline.certification import recorded_certification
 from nrs_design.spec import read_spec
-
-if TYPE_CHECKING:
-    from nrs_design.certificates.certificate import Certificate
 
 
 @dataclass(frozen=True, repr=False)

@@ -5,14 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 from shlex import quote
-from typing import TYPE_CHECKING
 
 from nrs_design.certificates.certificate import Verdict, refutes_in_contact
+from nrs_design.pipeline.certification import Result
 from nrs_design.proof.mode import Time
 from nrs_design.spec import RobotSpec
-
-if TYPE_CHECKING:
-    from nrs_design.pipeline.certification import Result
 
 
 def next_steps(

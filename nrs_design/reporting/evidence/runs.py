@@ -6,7 +6,6 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from sys import float_info
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -23,13 +22,10 @@ from nrs_design.reporting.figures.run import (
 from nrs_design.reporting.sections.modes import hardest_modes
 from nrs_design.simulation.admissible import active_norms, admissible_run
 from nrs_design.simulation.greedy import all_modes, greedy_run, relative_norms
-from nrs_design.simulation.norms import quadratic_norm, scaled_matrices
+from nrs_design.simulation.norms import Array, Norm, quadratic_norm, scaled_matrices
 from nrs_design.simulation.switched import SwitchedRun, fine_step, worst_direction
 
-if TYPE_CHECKING:
-    from nrs_design.simulation.norms import Array, Norm
-
-    Bound = tuple[str, Array]
+Bound = tuple[str, Array]
 
 # The bound falls by e^7, three decades, where that takes no more steps than are drawn.
 _DECAY = 7.0

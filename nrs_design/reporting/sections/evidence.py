@@ -4,14 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 from nrs_design.reporting.document import Paragraph, Section
 from nrs_design.reporting.evidence import page_of
 from nrs_design.reporting.evidence.runs import unbounded_run
-
-if TYPE_CHECKING:
-    from nrs_design.search.certification import Certification
+from nrs_design.search.certification import Certification
 
 _LINEAR = "Nothing is cut off at a limit in this run, as if no signal ever saturated."
 

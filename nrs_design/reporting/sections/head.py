@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from fractions import Fraction
-from typing import TYPE_CHECKING
 
 from nrs_design import __version__
+from nrs_design.pipeline.certification import Result
 from nrs_design.proof.bounds import at_least, at_most, lower, rounded_down, upper
 from nrs_design.proof.evidence import AbstractEvidence, Shows
 from nrs_design.proof.mode import Time
@@ -25,12 +25,9 @@ from nrs_design.reporting.sections.titles import (
     SATURATION,
     SPEC,
 )
+from nrs_design.search.certification import Certification
 from nrs_design.spec import InteractionDesignSpec, RobotSpec
 from nrs_design.spec.provenance import COVERS, MOTOR_COVERS
-
-if TYPE_CHECKING:
-    from nrs_design.pipeline.certification import Result
-    from nrs_design.search.certification import Certification
 
 # Labels and values.
 _Facts = list[tuple[str, str]]

@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import TYPE_CHECKING
 
 from nrs_design.proof.bounds import lower, upper
 from nrs_design.reporting.document import Paragraph, Section, Table
+from nrs_design.spec import InteractionDesignSpec, Quantity
 from nrs_design.spec.threshold_logic import (
     LogicSwitchSpec,
     ThresholdLogicSpec,
     values_at_switch,
 )
-
-if TYPE_CHECKING:
-    from nrs_design.spec import InteractionDesignSpec, Quantity
 
 _CHATTER_FREE = (
     "No chatter: between two switches a signal that is known up to a noise N, as old as an age D "

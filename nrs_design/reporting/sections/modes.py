@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
@@ -16,16 +16,12 @@ from nrs_design.reporting.figures.complex_plane import draw_eigenvalues
 from nrs_design.reporting.formatting import number, roots, shortened
 from nrs_design.reporting.sections.places import contact_at, linked, mode_at
 from nrs_design.reporting.sections.titles import MODES
+from nrs_design.simulation.norms import Array
 from nrs_design.simulation.rates import mode_rates
 from nrs_design.simulation.switched import mode_eigenvalues
+from nrs_design.spec import LoadedSpec
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from nrs_design.simulation.norms import Array
-    from nrs_design.spec import LoadedSpec
-
-    Spectra = Sequence[NDArray[np.complex128]]
+Spectra = Sequence[NDArray[np.complex128]]
 
 # A page holds no more; those nearest to the limit are shown.
 _LISTED = 24

@@ -3,14 +3,10 @@
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING
 
+from nrs_design.loop.assumption import AssumptionKind
 from nrs_design.reporting.document import Linked, Sentence
-from nrs_design.spec import InteractionDesignSpec, SwitchedSystemSpec
-
-if TYPE_CHECKING:
-    from nrs_design.loop.assumption import AssumptionKind
-    from nrs_design.spec import LoadedSpec
+from nrs_design.spec import InteractionDesignSpec, LoadedSpec, SwitchedSystemSpec
 
 At = tuple[str | int, ...]
 

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from nrs_design.certificates.bounds import keeps_command
 from nrs_design.certificates.certificate import CommonQuadraticStatus
+from nrs_design.pipeline.certification import Result
 from nrs_design.proof.evidence import AbstractEvidence, Shows
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
@@ -13,11 +12,8 @@ from nrs_design.reporting.document import Block, Bullets, Paragraph, Section
 from nrs_design.reporting.evidence import page_of
 from nrs_design.reporting.sections.head import NO_CLAIM
 from nrs_design.reporting.sections.titles import MEANT
+from nrs_design.search.certification import Certification
 from nrs_design.spec import InteractionDesignSpec
-
-if TYPE_CHECKING:
-    from nrs_design.pipeline.certification import Result
-    from nrs_design.search.certification import Certification
 
 _CONTINUOUS = "Sampling, delay and quantization of the controller: the proof is in continuous time."
 _OTHER_TIMES = "Periods, and times of commands, other than those that the spec says."

@@ -4,31 +4,27 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from nrs_design.axis import current, labelled
 from nrs_design.certificates.certificate import Verdict
+from nrs_design.pipeline.certification import Result
 from nrs_design.pipeline.release import physical_outputs
 from nrs_design.proof.mode import Time
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.reporting.document import Illustration, Paragraph, Section, Table
 from nrs_design.reporting.evidence import page_of
 from nrs_design.reporting.figures.bounded_run import BoundedSignal, draw_bounded_run
 from nrs_design.reporting.formatting import number
 from nrs_design.reporting.sections.modes import hardest_modes
 from nrs_design.reporting.sections.places import linked
+from nrs_design.search.certification import Certification
 from nrs_design.simulation.greedy import all_modes
-from nrs_design.simulation.release import certified, simulate_release
-
-if TYPE_CHECKING:
-    from nrs_design.pipeline.certification import Result
-    from nrs_design.proof.system import SwitchedSystem
-    from nrs_design.search.certification import Certification
-    from nrs_design.simulation.norms import Array
-    from nrs_design.simulation.release import Outputs
-    from nrs_design.simulation.switched import SwitchedRun
-    from nrs_design.spec import LoadedSpec
+from nrs_design.simulation.norms import Array
+from nrs_design.simulation.release import Outputs, certified, simulate_release
+from nrs_design.simulation.switched import SwitchedRun
+from nrs_design.spec import LoadedSpec
 
 _TITLE = "Force, deflection and velocity"
 _MODES = 24

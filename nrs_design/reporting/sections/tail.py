@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
+from nrs_design.pipeline.certification import Result
 from nrs_design.reporting.document import Bullets, Listing, Paragraph, Section, Table
 from nrs_design.reporting.formatting import number
 from nrs_design.reporting.register import register_of
 from nrs_design.reporting.sections.places import assumed_at, linked
 from nrs_design.reporting.sections.titles import ASSUMPTIONS, RECHECK, RUNGS, SPEC
-
-if TYPE_CHECKING:
-    from nrs_design.pipeline.certification import Result
-    from nrs_design.search.certification import Certification
-    from nrs_design.spec import LoadedSpec
+from nrs_design.search.certification import Certification
+from nrs_design.spec import LoadedSpec
 
 # A longer spec is left to its file.
 _LINES = 1500

@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from nrs_design.errors import DesignError
+from nrs_design.pipeline.certification import Result
+from nrs_design.pipeline.design import Designed
 from nrs_design.pipeline.worst_case import run_worst_case
 from nrs_design.reporting.document import Illustration, Paragraph, Section, Table
 from nrs_design.reporting.sections.places import linked
 from nrs_design.reporting.worst_case import COLUMNS, LEFT_OUT, draw_worst, meaning, worst_rows
-
-if TYPE_CHECKING:
-    from nrs_design.pipeline.certification import Result
-    from nrs_design.pipeline.design import Designed
 
 _CAPTION = (
     "The worst run that was found for the force. Contact, controller and command change between "

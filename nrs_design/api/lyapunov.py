@@ -12,7 +12,6 @@ from bisect import bisect_left
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from operator import mul
 from typing import TYPE_CHECKING, Any
 
 from nrs_design.api.paper import latex_of
@@ -27,7 +26,7 @@ from nrs_design.proof.exact import (
     lyapunov_decrease,
     stein_decrease,
 )
-from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.matrix import RationalMatrix, multiply
 from nrs_design.proof.mode import Mode, Time
 
 if TYPE_CHECKING:
@@ -270,7 +269,7 @@ def _counterexample(
     rows = P.fractions()
     if mode is None:
         return Counterexample(None, vector, _value(rows, vector, vector))
-    Ax = _times(mode.A.fractions(), vector)
+    Ax = [entry for (entry,) in multiply(mode.A.fractions(), [[entry] for entry in vector])]
     if time is Time.CONTINUOUS:
         value = 2 * _value(rows, vector, Ax) + 2 * rate * _value(rows, vector, vector)
     else:
@@ -293,11 +292,8 @@ def _value(
     rows: Sequence[Sequence[Fraction | int]], left: Sequence[Fraction], right: Sequence[Fraction]
 ) -> Fraction:
     """Return ``left' M right``."""
-    return sum(map(mul, left, _times(rows, right)), Fraction(0))
-
-
-def _times(rows: Sequence[Sequence[Fraction | int]], x: Sequence[Fraction]) -> list[Fraction]:
-    return [sum(map(mul, row, x), Fraction(0)) for row in rows]
+    ((value,),) = multiply([left], multiply(rows, [[entry] for entry in right]))
+    return value
 
 
 def indefinite_vector(M: IntegerMatrix) -> tuple[Fraction, ...]:

@@ -95,12 +95,7 @@ def certify_switching(
     limits = search_limits(loaded.spec, Overrides(max_degree, budget, memory), optimize_rate)
     limits = replace(limits, gradient=gradient)
     with progress(f"certifying {loaded.spec.name}") as step:
-        result = run_certification(
-            loaded,
-            method=method,
-            limits=limits,
-            progress=step,
-        )
+        result = run_certification(loaded, method=method, limits=limits, progress=step)
     # Write and print the proof before looking for margins, which takes minutes.
     written = _write(result, out)
     if wants_text():
@@ -124,13 +119,12 @@ def certify_switching(
     steps = _next_steps(result, **asked)
 
     def facts() -> dict[str, Any]:
-        more: dict[str, Any] = {"gradient_history": history} if history else {}
-        more |= {"relief": list(relief), "next_steps": list(steps)}
         return (
             certification_facts(result, written)
             | radius_facts(growth)
             | margins_facts(margins)
-            | more
+            | ({"gradient_history": history} if history else {})
+            | {"relief": list(relief), "next_steps": list(steps)}
             | ({} if blocked is None else blocked_facts(blocked, loaded.path))
         )
 

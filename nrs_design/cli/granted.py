@@ -17,11 +17,10 @@ def print_granted(result: Result) -> None:
     granted, names = certification.granted, [mode.name for mode in certification.system.modes]
     detail(f"  common quadratic function: {certification.common_quadratic}")
     detail(f"  modes: {', '.join(names)}")
-    if wants_details():
-        say("  taken for granted (nrs-design report says how to test each):")
-        for assumption in granted:
-            say(f"    - {assumption}")
-    elif granted:
+    detail("  taken for granted (nrs-design report says how to test each):")
+    for assumption in granted:
+        detail(f"    - {assumption}")
+    if granted and not wants_details():
         without = "; ".join(result.omits)
         besides = f"; not modelled: {without}" if without else ""
         say(f"  takes {counted(len(granted), 'thing')} for granted (-v){besides}")

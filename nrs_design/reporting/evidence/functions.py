@@ -14,7 +14,6 @@ from nrs_design.reporting.evidence import words
 from nrs_design.reporting.evidence.norms import (
     largest_norm,
     matrix_blocks,
-    norm_with_free_motion,
     step_norms,
 )
 from nrs_design.reporting.evidence.offers import Form
@@ -31,7 +30,7 @@ from nrs_design.reporting.formatting import number
 from nrs_design.reporting.sections.modes import hardest_modes
 from nrs_design.reporting.sections.titles import EVIDENCE
 from nrs_design.simulation.admissible import norm_ratio
-from nrs_design.simulation.norms import Array, scaled_matrices
+from nrs_design.simulation.norms import Array, clipped, scaled_matrices
 from nrs_design.simulation.switched import fine_step, sampled_direction, worst_direction
 
 # A run in the norm of a polynomial, or of many functions, tries no more modes.
@@ -115,7 +114,7 @@ class FunctionsPage(AbstractPage):
             hardest = hardest_modes(system, None, min(trials_per_step(system), _MODES))
             initial = sampled_direction(hardest, norm, fine_step(hardest))
         if self._lost:
-            norm = norm_with_free_motion(forms, system.order)
+            norm = norm if any(form.free for form in forms) else clipped(norm)
             initial = initial if initial[-1] > 0 else -initial
         else:
             hardest = replace(hardest, contact=None)

@@ -62,12 +62,6 @@ def largest_norm(forms: Sequence[Form], order: int) -> Norm:
     return everywhere if free else in_contact
 
 
-def norm_with_free_motion(forms: Sequence[Form], order: int) -> Norm:
-    """Return `largest_norm` for states in contact and free."""
-    norm = largest_norm(forms, order)
-    return norm if any(form.free for form in forms) else clipped(norm)
-
-
 def step_norms(forms: Sequence[Form], system: SwitchedSystem) -> list[Norm]:
     """Return the norm of every step of a round; in free motion without the deflection."""
     norms = norms_of(forms, system.order)

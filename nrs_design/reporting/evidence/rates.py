@@ -32,12 +32,8 @@ _EIGENVALUES = {
 }
 _SAMPLED = f"The slowest of {_DIRECTIONS} directions, in floating point"
 _MEANS = {
-    Time.CONTINUOUS: "the rate at which {norm} decays at least in this mode.",
-    Time.DISCRETE: "the factor by which {norm} shrinks at least in a step of this mode.",
-}
-_SAMPLED_MEANS = {
-    Time.CONTINUOUS: "the rate at which {norm} decays in this mode.",
-    Time.DISCRETE: "the factor by which {norm} shrinks in a step of this mode.",
+    Time.CONTINUOUS: "the rate at which {norm} decays{least} in this mode.",
+    Time.DISCRETE: "the factor by which {norm} shrinks{least} in a step of this mode.",
 }
 _IN_CONTACT = " Free motion has conditions of its own, on the other states."
 
@@ -53,10 +49,10 @@ def rate_blocks(
     norm = "the norm of Q" if quadratic else f"V^(1/{2 * form.degree})"
     if quadratic:
         rates = mode_rates(system, scaled_matrices(form.Q)[0])
-        how, means = _EIGENVALUES[time], _MEANS
+        how, least = _EIGENVALUES[time], " at least"
     else:
-        rates, how, means = sampled_rates(system, form), _SAMPLED, _SAMPLED_MEANS
-    explained = f"{how}: {means[time].format(norm=norm)}{_IN_CONTACT * lost}"
+        rates, how, least = sampled_rates(system, form), _SAMPLED, ""
+    explained = f"{how}: {_MEANS[time].format(norm=norm, least=least)}{_IN_CONTACT * lost}"
     continuous = time is Time.CONTINUOUS
     order = np.argsort(rates if continuous else -rates, kind="stable")[:_LISTED]
     names = [system.modes[i].name for i in order]

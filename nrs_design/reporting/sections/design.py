@@ -153,49 +153,40 @@ def _source(spec: InteractionDesignSpec, analysis: DesignAnalysis) -> str:
     return "It follows from the PD controller that was designed by root locus."
 
 
-# The key of a spec that says most of each row.
-_MOTION_ROWS = (
-    "derivative_gain",
-    "zero",
-    "zero",
-    "settling_time",
-    "damping_ratio",
-    "settling_time",
-    "damping_ratio",
-    "settling_time",
-)
-
-
 def _motion_table(designed: Designed, analysis: DesignAnalysis, wanted: PdDesign) -> Table:
     design = designed.design
     reached, motion = analysis.reached, design.motion
     damping = -wanted.wanted_poles[0].real / wanted.natural_frequency
-    wanted_Kp = wanted.derivative_gain * wanted.zero
+    per, Kp = unit("rad"), wanted.derivative_gain * wanted.zero
+    # The key of the spec that says most of a row, its label, and what is wanted and reached.
     rows = (
         (
-            f"Kd [{design.command}·s/{unit('rad')}]",
+            "derivative_gain",
+            f"Kd [{design.command}·s/{per}]",
             number(wanted.derivative_gain, 6),
             number(float(motion.Kd), 6),
         ),
-        ("Zero Kp/Kd [1/s]", number(wanted.zero, 6), number(float(motion.zero), 6)),
+        ("zero", "Zero Kp/Kd [1/s]", number(wanted.zero, 6), number(float(motion.zero), 6)),
+        ("zero", f"Kp [{design.command}/{per}]", number(Kp, 6), number(float(motion.Kp), 6)),
         (
-            f"Kp [{design.command}/{unit('rad')}]",
-            number(wanted_Kp, 6),
-            number(float(motion.Kp), 6),
+            "settling_time",
+            "Poles [rad/s]",
+            root(wanted.wanted_poles[0], 5),
+            roots(reached.poles, 5),
         ),
-        ("Poles [rad/s]", root(wanted.wanted_poles[0], 5), roots(reached.poles, 5)),
-        ("Damping ratio [1]", number(damping), number(reached.damping_ratio)),
+        ("damping_ratio", "Damping ratio [1]", number(damping), number(reached.damping_ratio)),
         (
+            "settling_time",
             "Natural frequency [rad/s]",
             number(wanted.natural_frequency),
             number(reached.natural_frequency),
         ),
-        ("Overshoot [%]", "–", number(100 * reached.overshoot, 3)),
-        ("Bandwidth [rad/s]", "–", number(reached.bandwidth)),
+        ("damping_ratio", "Overshoot [%]", "–", number(100 * reached.overshoot, 3)),
+        ("settling_time", "Bandwidth [rad/s]", "–", number(reached.bandwidth)),
     )
     cells = tuple(
         (label, *(linked(designed.loaded, text, "motion_loop", key) for text in texts))
-        for (label, *texts), key in zip(rows, _MOTION_ROWS, strict=True)
+        for key, label, *texts in rows
     )
     columns = ("", "Root locus asks for", "G and gains in use")
     return Table("Motion loop: wanted and reached", columns, cells)

@@ -102,12 +102,12 @@ def _gains(result: Result) -> Iterator[tuple[str, str]]:
     if design is None:
         return
     for controller in design.controllers:
-        gains = {
-            gain: f"{float(value):.6g} {design.units.get(controller.name, {}).get(gain, '')}"
+        units = design.units.get(controller.name, {})
+        said = ", ".join(
+            f"{gain} {float(value):.6g} {units.get(gain, '')}".rstrip()
             for gain, value in controller.law.gains.items()
-        }
-        if gains:
-            said = ", ".join(f"{gain} {value}".rstrip() for gain, value in gains.items())
+        )
+        if said:
             yield f"Gains of {controller.name}", Derived(said, "Designed gains")
 
 

@@ -215,13 +215,15 @@ class Simulation(AbstractResult):
         """
         from nrs_design.pipeline.certified_runs import hold_bounds, hold_rate
 
-        if proof is None:
-            return cls(designed, tuple(ScenarioRun(designed, one) for one in found))
-        held = (
-            (one, hold_bounds(designed, proof, one), hold_rate(designed, proof, one))
+        runs = (
+            ScenarioRun(designed, one)
+            if proof is None
+            else ScenarioRun(
+                designed, one, hold_bounds(designed, proof, one), hold_rate(designed, proof, one)
+            )
             for one in found
         )
-        return cls(designed, tuple(ScenarioRun(designed, *parts) for parts in held))
+        return cls(designed, tuple(runs))
 
     def __iter__(self) -> Iterator[ScenarioRun]:
         """Run after run."""

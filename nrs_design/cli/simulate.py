@@ -97,8 +97,7 @@ def simulate(
 
     Example: nrs-design simulate docs/examples/scenarios.nrs.yaml --worst-case
     """
-    from nrs_design.cli.simulate_scenarios import simulate_scenarios
-    from nrs_design.cli.worst_case import worst_case
+    from nrs_design.cli.simulate_scenarios import simulate_scenarios, worst_case
     from nrs_design.pipeline.runs import run_interaction_of
     from nrs_design.pipeline.scenarios import Runs
 

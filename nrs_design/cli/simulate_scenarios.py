@@ -1,4 +1,4 @@
-"""``nrs-design simulate`` without more: the scenarios of a spec, each run once."""
+"""What ``nrs-design simulate`` does: scenarios, each run once, or an adversary; files of runs."""
 
 from __future__ import annotations
 
@@ -10,15 +10,27 @@ from typing import TYPE_CHECKING
 from nrs_design.axis import unit
 from nrs_design.cli import exit_codes
 from nrs_design.cli.command import Answer
-from nrs_design.cli.printing import say, wants_details
-from nrs_design.cli.run_files import check_runs, write_runs
+from nrs_design.cli.printing import note, say, wants_details
 from nrs_design.cli.tables import print_table
+from nrs_design.output import (
+    PNG,
+    RESPONSE,
+    SVG,
+    WORST_RUN,
+    Beginning,
+    Output,
+    check_place,
+    write_outputs,
+)
 from nrs_design.progress import Progress
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable
+
+    from matplotlib.figure import Figure
 
     from nrs_design.api.simulation import ScenarioRun, Simulation
+    from nrs_design.api.worst import WorstFound
     from nrs_design.certificates.certificate import Certificate
     from nrs_design.pipeline.certified_runs import CertifiedRate
     from nrs_design.pipeline.design import Designed
@@ -38,16 +50,15 @@ def simulate_scenarios(
     `prove` returns the certificate whose bounds are shown, if any; it is called when all has run.
     """
     from nrs_design.api.simulation import Simulation
-    from nrs_design.output import RESPONSE
     from nrs_design.pipeline.scenarios import names_of, run_scenarios
 
     name = designed.spec.name
-    check_runs(out, (f"{name}.{one}" for one in names_of(designed.spec, wanted)), RESPONSE)
+    _check_runs(out, (f"{name}.{one}" for one in names_of(designed.spec, wanted)), RESPONSE)
     found = list(run_scenarios(designed, wanted, step))
     runs = Simulation.of(designed, found, prove())
     step("figures")
     drawn = ((f"{name}.{one.name}", one.response.to_csv(), one.plot()) for one in runs)
-    files = write_runs(out, drawn, RESPONSE)
+    files = _write_runs(out, drawn, RESPONSE)
 
     def show() -> None:
         if not wants_details():
@@ -64,6 +75,74 @@ def simulate_scenarios(
         show,
         exit_codes.INCONCLUSIVE if any(one.run.stopped for one in runs) else exit_codes.PROVED,
     )
+
+
+def worst_case(
+    designed: Designed, proof: Certificate | None, out: Path | None, step: Progress
+) -> Answer:
+    """Search, and write the figure and the table of every run."""
+    from nrs_design.api.worst import WorstFound
+    from nrs_design.pipeline.worst_case import run_worst_case
+    from nrs_design.reporting.worst_case import response_of
+    from nrs_design.simulation.worst_outputs import DEFLECTION
+
+    begun = f"{designed.spec.name}.worst-"
+    names = (f"{begun}{name}" for name in ("force", "velocity", DEFLECTION))
+    _check_runs(out, names, WORST_RUN)
+    case = run_worst_case(designed, proof, progress=step)
+    found = WorstFound(designed, case)
+    step("figures")
+    runs = (
+        (f"{begun}{run.output.name}", response_of(case, run).to_csv(), found.plot(run.output.name))
+        for run in case.runs
+    )
+    written = _write_runs(out, runs, WORST_RUN)
+    return Answer(lambda: found.to_dict() | {"files": written}, lambda: _print_worst(found))
+
+
+def _print_worst(found: WorstFound) -> None:
+    from nrs_design.reporting.worst_case import COLUMNS, LEFT_OUT, UNDECLARED, meaning, worst_rows
+
+    case, spec = found.case, found.designed.spec
+    title = f"{spec.name}: the worst that an adversary found"
+    print_table(title, COLUMNS, worst_rows(case, spec))
+    say(meaning(case))
+    if not case.declared:
+        say(UNDECLARED)
+    say(f"not in it: {LEFT_OUT}")
+
+
+def _places(folder: Path, name: str, table: Beginning) -> dict[Path, Beginning]:
+    """Return ``NAME.csv``, ``.svg`` and ``.png``, and how one that may be replaced begins."""
+    kinds: dict[str, Beginning] = {"csv": table, "svg": SVG, "png": PNG}
+    return {folder / f"{name}.{ending}": kind for ending, kind in kinds.items()}
+
+
+def _check_runs(folder: Path | None, names: Iterable[str], table: Beginning) -> None:
+    """Refuse, before the work, a folder in which something else stands at one of the places."""
+    if folder is None:
+        return
+    for name in names:
+        for place, kind in _places(folder, name, table).items():
+            check_place(place, kind)
+
+
+def _write_runs(
+    folder: Path | None, runs: Iterable[tuple[str, str, Figure]], table: Beginning
+) -> list[str]:
+    """Write name, table and figure of all runs, once all of them are there; return their files."""
+    from nrs_design.reporting.images import to_png, to_svg_file
+
+    if folder is None:
+        return []
+    outputs: list[Output] = []
+    for name, text, figure in runs:
+        contents: list[str | bytes] = [text, to_svg_file(figure), to_png(figure)]
+        places = zip(_places(folder, name, table).items(), contents, strict=True)
+        outputs += [(place, content, kind) for (place, kind), content in places]
+    write_outputs(outputs)
+    note(f"written to {folder}")
+    return [str(path) for path, _, _ in outputs]
 
 
 def _print_briefly(runs: Simulation) -> None:

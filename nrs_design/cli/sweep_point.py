@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from nrs_design import __version__
 from nrs_design.axis import about
@@ -20,16 +20,14 @@ from nrs_design.cli import exit_codes
 from nrs_design.cli.errors import error_summary
 from nrs_design.cli.printing import taking_json
 from nrs_design.errors import CertificateError, ClockError, NrsDesignError
+from nrs_design.spec import LoadedSpec
+from nrs_design.spec.document import Data
 from nrs_design.spec.instead import saying_instead
 from nrs_design.spec.load import read_axes
 from nrs_design.spec.task_space import file_of
 from nrs_design.sweeps.claims import is_shown
 from nrs_design.sweeps.grid import Grid
 from nrs_design.sweeps.store import Kept, Store, key_of
-
-if TYPE_CHECKING:
-    from nrs_design.spec import LoadedSpec
-    from nrs_design.spec.document import Data
 
 # Commands that write a certificate, to the place that this option names.
 CERTIFYING = {"certify-switching": "--out"}

@@ -3,14 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING
 
-from nrs_design.comparison import Part
+from nrs_design.comparison import Comparison, Difference, Part
 from nrs_design.proof.text import counted
 from nrs_design.reporting.document import Block, Bullets, Paragraph, Report, Section, Table
-
-if TYPE_CHECKING:
-    from nrs_design.comparison import Comparison, Difference
 
 _TITLES = {
     Part.SPEC: "What the specs say",

@@ -16,7 +16,7 @@ from nrs_design.proof.system import SwitchedSystem
 from nrs_design.proof.text import counted
 from nrs_design.reporting.document import Block, Illustration, Paragraph, Section, Table
 from nrs_design.reporting.evidence import words
-from nrs_design.reporting.evidence.offers import Growth, offer_of
+from nrs_design.reporting.evidence.offers import offer_of
 from nrs_design.reporting.evidence.page import AbstractPage
 from nrs_design.reporting.evidence.runs import EUCLIDEAN, euclidean_norms, phase_plane
 from nrs_design.reporting.figures.complex_plane import draw_eigenvalues
@@ -135,30 +135,25 @@ class GrowthPage(AbstractPage):
         return Section("Simulated witness", blocks)
 
     @property
-    def _growth(self) -> Growth:
-        assert self.offer.growth is not None  # it shows instability
-        return self.offer.growth
-
-    @property
     def _shape(self) -> _Shape:
-        growth = self._growth
-        if growth.shares:
+        offer = self.offer
+        if offer.shares:
             return _Shape.VALUE
-        if self.offer.weights:
+        if offer.weights:
             return _Shape.AVERAGE
-        if growth.factor is not None:
+        if offer.factor is not None:
             return _Shape.CONTACT
-        return _Shape.MODE if [time for _, time in growth.steps] == [0] else _Shape.PERIOD
+        return _Shape.MODE if [time for _, time in offer.steps] == [0] else _Shape.PERIOD
 
     @property
     def _part(self) -> GrowthPage:
         """The page of what happens at one value of the constant parameters."""
-        (_, part), shares = self.offer.parts[0], self._growth.shares
-        return GrowthPage(system_at(self.system, shares), part, offer_of(part))
+        ((_, part),) = self.offer.parts
+        return GrowthPage(system_at(self.system, self.offer.shares), part, offer_of(part))
 
     def _in_a_mode(self) -> Iterator[Block]:
         """Stay in the mode, from the eigenvector of its worst eigenvalue."""
-        ((name, _),) = self._growth.steps
+        ((name, _),) = self.offer.steps
         modes = (*self.system.modes, *self.system.free_motions())
         index = next(i for i, mode in enumerate(modes) if mode.name == name)
         single = alone(replace(self.system, modes=modes), index)
@@ -212,10 +207,10 @@ class GrowthPage(AbstractPage):
 
     def _repeated(self) -> Iterator[Block]:
         """Repeat the sequence, from the direction that grows the most, or that keeps its signs."""
-        system, growth, factor = self.system, self._growth, self._growth.factor
+        system, offer, factor = self.system, self.offer, self.offer.factor
         if factor is None:
-            steps = [(name, float(time)) for name, time in growth.steps]
-            run = periodic_run(system, _indexed(system, steps), growth.edges)
+            steps = [(name, float(time)) for name, time in offer.steps]
+            run = periodic_run(system, _indexed(system, steps), offer.edges)
             resets = " and the reset of each switch" if system.switching.resets else ""
             caption = f"{_FROM_THE_FASTEST}{resets}. {_CARRIED_ON}"
             yield self._factor(run)
@@ -225,7 +220,7 @@ class GrowthPage(AbstractPage):
             # In continuous time the sequence is one mode, and the factor is a rate in 1/s.
             low = float(factor)
             time, low = (1.0, low) if self.is_discrete else (1 / max(low, 1e-9), math.e)
-            steps = [(name, time * float(count)) for name, count in growth.steps]
+            steps = [(name, time * float(count)) for name, count in offer.steps]
             run = periodic_run(system, _indexed(system, steps), eigenvalue=low)
             unit = "each time" if self.is_discrete else "1/s"
             caption = f"{_BY_SIGNS} It grows by {lower(factor)} {unit} at least. {_CARRIED_ON}"
@@ -247,7 +242,7 @@ class GrowthPage(AbstractPage):
         mean = "" if self.is_discrete else f", a mean growth rate of {rate} 1/s"
         return Paragraph(
             f"One period lasts {run.period:.6g} {self._unit} and has "
-            f"{counted(len(self._growth.steps), 'step')}. Over one period some state grows by the "
+            f"{counted(len(self.offer.steps), 'step')}. Over one period some state grows by the "
             f"factor {number(run.radius, 6)}{mean}. The certificate shows with rigorous enclosures "
             "that the factor is above one; these digits are floating point."
         )
@@ -258,7 +253,7 @@ class GrowthPage(AbstractPage):
 
     def _steps(self) -> Table:
         """List the modes of one period, their times, and the resets between them."""
-        steps = self._growth.steps
+        steps = self.offer.steps
         names = [name for name, _ in steps]
         resets = self._resets(list(zip(names, (*names[1:], *names[:1]), strict=True)))
         columns = ("Step", "Mode", f"Time in it [{self._unit}]")
@@ -273,7 +268,7 @@ class GrowthPage(AbstractPage):
 
     def _resets(self, switches: Sequence[tuple[str, str]]) -> list[str]:
         """Say what each switch does to the state; nothing where it leaves it as it is."""
-        maps, edges = self.system.switching.maps(), self._growth.edges or (0,) * len(switches)
+        maps, edges = self.system.switching.maps(), self.offer.edges or (0,) * len(switches)
         texts = []
         for switch, edge in zip(switches, edges, strict=True):
             count = len(maps.get(switch, ()))

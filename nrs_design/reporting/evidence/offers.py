@@ -27,16 +27,6 @@ class Form:
 
 
 @dataclass(frozen=True)
-class Growth:
-    """A closed sequence along which some state does not decay."""
-
-    steps: tuple[tuple[str, Fraction], ...] = ()  # mode, and time in it in s (or steps)
-    edges: tuple[int, ...] = ()  # which reset each switch takes; empty: no choice
-    factor: Fraction | None = None  # lower bound of the growth per sequence, signs of contact kept
-    shares: tuple[Fraction, ...] = ()  # value of constant parameters, 0 low end, 1 high end
-
-
-@dataclass(frozen=True)
 class Offer:
     """What a page can show of some evidence, whatever its kind."""
 
@@ -44,7 +34,11 @@ class Offer:
     denominator_log2: int = 0  # of all forms
     leaving: tuple[str, ...] = ()  # modes that must be left, in which a form may grow
     weights: tuple[tuple[str, Fraction], ...] = ()  # of modes, with sum one
-    growth: Growth | None = None
+    # Of a closed sequence along which some state does not decay:
+    steps: tuple[tuple[str, Fraction], ...] = ()  # mode, and time in it in s (or steps)
+    edges: tuple[int, ...] = ()  # which reset each switch takes; empty: no choice
+    factor: Fraction | None = None  # lower bound of the growth per sequence, signs of contact kept
+    shares: tuple[Fraction, ...] = ()  # value of constant parameters, 0 low end, 1 high end
     blocks: tuple[tuple[int, ...], ...] = ()  # states of each diagonal block
     parts: tuple[tuple[int, AbstractEvidence], ...] = ()  # evidence of a block, or of a value
 
@@ -91,12 +85,12 @@ def _traces(e: Any) -> Offer:
 
 def _sequence(e: Any) -> Offer:
     if e.shares:
-        return Offer(growth=Growth(shares=e.shares), parts=((0, replace(e, shares=())),))
+        return Offer(shares=e.shares, parts=((0, replace(e, shares=())),))
     if e.names_unstable_mode:
-        return Offer(growth=Growth(((e.steps[0][0], Fraction(0)),)))
+        return Offer(steps=((e.steps[0][0], Fraction(0)),))
     if e.is_average:
-        return Offer(weights=e.steps, growth=Growth())
-    return Offer(growth=Growth(e.steps, e.edges, None if e.factor is None else e.factor[0]))
+        return Offer(weights=e.steps)
+    return Offer(steps=e.steps, edges=e.edges, factor=None if e.factor is None else e.factor[0])
 
 
 # By kind of evidence.

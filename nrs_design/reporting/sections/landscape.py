@@ -92,7 +92,13 @@ def landscape_section(designed: Designed, items: tuple[ImpedanceAnalysis, ...]) 
 
 def _map(item: ImpedanceAnalysis) -> Illustration:
     found = map_cost(item.problem, item.requirement, item.Mt, item.Bt)
-    remarks = [f"{gain} is on its {side} bound." for gain, side in _on_bounds(item)]
+    remarks = [
+        f"{gain} is on its {side} bound."
+        for gain in _GAINS
+        if not (bounds := getattr(item.given, gain)).fixed
+        for side, end in (("lower", bounds.min), ("upper", bounds.max))
+        if getattr(item.optimum, gain) == end.si
+    ]
     if given := _given(item):
         verb = "is" if len(given) == 1 else "are"
         remarks.append(f"{' and '.join(given)} {verb} given by the spec, not optimized.")
@@ -107,18 +113,6 @@ def _map(item: ImpedanceAnalysis) -> Illustration:
 
 def _given(item: ImpedanceAnalysis) -> list[str]:
     return [gain for gain in _GAINS if getattr(item.given, gain).fixed]
-
-
-def _on_bounds(item: ImpedanceAnalysis) -> list[tuple[str, str]]:
-    found = []
-    for gain, bounds, value in (
-        ("Mt", item.given.Mt, item.optimum.Mt),
-        ("Bt", item.given.Bt, item.optimum.Bt),
-    ):
-        if not bounds.fixed:
-            ends = (("lower", bounds.min), ("upper", bounds.max))
-            found += [(gain, side) for side, end in ends if value == end.si]
-    return found
 
 
 def _table(loaded: LoadedSpec, item: ImpedanceAnalysis) -> Table:

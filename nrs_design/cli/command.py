@@ -50,12 +50,15 @@ class Answer:
         """Print what is wanted, and end with the exit code."""
         if wants_json():
             print_json(self.name or name, self.facts())
-        elif self.loud:
+        else:
+            self.tell()
+        raise typer.Exit(self.code)
+
+    def tell(self) -> None:
+        """Print it for people; under --quiet only what it does not silence."""
+        if self.loud or wants_text():
             with output(as_json=False, quiet=False, verbose=wants_details()):
                 self.show()
-        elif wants_text():
-            self.show()
-        raise typer.Exit(self.code)
 
 
 def command(
@@ -136,7 +139,5 @@ def _for_each_axis(function: Callable[..., Answer], arguments: dict[str, Any]) -
         if wants_json():
             answers[str(axis)] = answer.facts()
         else:
-            quiet = not (wants_text() or answer.loud)
-            with output(as_json=False, quiet=quiet, verbose=wants_details()):
-                answer.show()
+            answer.tell()
     return Answer(lambda: {"axes": answers}, code=worst(codes))

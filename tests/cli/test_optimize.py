@@ -223,6 +223,11 @@ def test_an_axis_of_several_is_written_as_a_spec_of_its_own(tmp_path):
     assert "name: z\n" in (tmp_path / written).read_text()
 
 
+def test_quiet_of_several_axes_prints_no_table(tmp_path):
+    done = run("optimize", ROOT / "docs" / "examples" / "six-axes.nrs.yaml", "-q", cwd=tmp_path)
+    assert (done.stdout, done.stderr) == ("", "")
+
+
 def test_the_global_optimum_is_proved(tmp_path):
     """One line for each controller; where the gains are given, none is to be proved."""
     given = "environment: soft\n    Mt: 0.01 kg*m^2\n    Bt: 2.15 N*m*s/rad"

@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from nrs_design.cli.command import Answer, command, take_spec
-from nrs_design.cli.options import SpecFile
+from nrs_design.cli.options import SpecFile, seconds
 from nrs_design.cli.printing import progress
-from nrs_design.cli.seconds import seconds
 from nrs_design.progress import Progress
 
 if TYPE_CHECKING:

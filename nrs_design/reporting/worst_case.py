@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
@@ -45,7 +44,6 @@ ABOVE = " (above)"
 # Which effects the adversary does not use.
 LEFT_OUT = "roundings of the law, jitter, noise without a bound, and the limit of the command"
 _COMMAND = "velocity command"
-_TURN = 180 / math.pi
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,7 +3,7 @@
 import pytest
 import typer
 
-from nrs_design.cli.seconds import seconds
+from nrs_design.cli.options import seconds
 
 
 @pytest.mark.parametrize(

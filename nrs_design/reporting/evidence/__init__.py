@@ -33,6 +33,3 @@ def page_of(system: SwitchedSystem, evidence: AbstractEvidence) -> AbstractPage:
     if any(form.corner is not None for form in offer.forms):
         return ConstantsPage(system, evidence, offer)
     return _PAGES[evidence.shows](system, evidence, offer)
-
-
-__all__ = ["AbstractPage", "page_of"]

@@ -44,12 +44,11 @@ class Answer:
     show: Callable[[], object] = _nothing  # Prints the same for people
     code: int = exit_codes.PROVED
     loud: bool = False  # Whether it is an error, which --quiet does not silence
-    name: str | None = None  # Of the JSON document, where it is not that of the command
 
     def deliver(self, name: str) -> None:
         """Print what is wanted, and end with the exit code."""
         if wants_json():
-            print_json(self.name or name, self.facts())
+            print_json(name, self.facts())
         else:
             self.tell()
         raise typer.Exit(self.code)

@@ -11,12 +11,12 @@ from nrs_design.cli import exit_codes
 from nrs_design.cli.command import Answer, command
 from nrs_design.cli.destinations import Destinations
 from nrs_design.cli.options import Date, ReportTo
-from nrs_design.cli.printing import progress, say, wants_details
+from nrs_design.cli.printing import detail, progress, say, wants_details
 from nrs_design.cli.tables import print_table
 from nrs_design.proof.text import counted
 
 if TYPE_CHECKING:
-    from nrs_design.comparison import Comparison, Difference, Side
+    from nrs_design.comparison import Comparison, Side
     from nrs_design.reporting import Report
 
 
@@ -75,26 +75,19 @@ def _print(found: Comparison) -> None:
     say(f"B: {found.after.name} ({found.after.path})")
     for part in found.compared:
         items = [item for item in found.differences if item.part is part]
-        rows = [_row(item) for item in items if not item.is_text]
+        rows = [
+            [item.what, item.before or "-", item.after or "-"] for item in items if not item.is_text
+        ]
         if rows:
             print_table(str(part), ["", "A", "B"], rows)
         texts = [item for item in items if item.is_text]
-        for item in texts if wants_details() else ():
-            _print_text(item)
+        for item in texts:
+            for side, text in (("A", item.before), ("B", item.after)):
+                if text is not None:
+                    detail(f"{part}, {side}: {text}")
         if texts and not wants_details():
             say(f"{part}: {counted(len(texts), 'text')} differ (-v shows them)")
     if found.same:
         say(f"the same: {', '.join(found.same)}")
     for remark in found.remarks:
         say(remark)
-
-
-def _print_text(item: Difference) -> None:
-    """Print what would be too long for a cell, side by side."""
-    for side, text in (("A", item.before), ("B", item.after)):
-        if text is not None:
-            say(f"{item.part}, {side}: {text}")
-
-
-def _row(item: Difference) -> list[str]:
-    return [item.what, item.before or "-", item.after or "-"]

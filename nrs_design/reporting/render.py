@@ -96,14 +96,10 @@ def _block(block: Block) -> dict[str, Any]:
 
 def _look(table: Table) -> str:
     """Say which columns do not fit: on a telephone, or, as those of sentences, on any page."""
-    letters = _letters(table)
+    rows = [table.columns, *table.rows]
+    # What the widest row takes, if every column is as wide as its longest cell.
+    letters = sum(_GAP + max(map(len, column)) for column in zip(*rows, strict=True))
     if letters <= _LINE:
         return "wide" if letters > _NARROW else ""
     last = max((len(row[-1]) for row in table.rows), default=0)
     return "wide prose brief" if last <= _WORD else "wide prose"
-
-
-def _letters(table: Table) -> int:
-    """Return how many letters the widest row takes, if every column is as wide as its longest."""
-    rows = [table.columns, *table.rows]
-    return sum(_GAP + max(map(len, column)) for column in zip(*rows, strict=True))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
@@ -78,7 +77,10 @@ class CertifiedGains:
 
     def facts(self) -> dict[str, Any]:
         """Return the same for JSON, in SI units."""
+        from nrs_design.certificates.goals import decay_rate
+
         found = self.found
+        rate = decay_rate(found.result.certificate)
         return {
             "gains": {f"{name}.{gain}": text for (name, gain), text in found.gains.items()},
             "cost": found.cost,
@@ -90,7 +92,7 @@ class CertifiedGains:
                 {"goal": goal.key, "wanted": goal.wanted, "shown": goal.said, "met": goal.met}
                 for goal in self.goals
             ],
-            "decay_rate": None if self.rate is None else lower_float(self.rate),
+            "decay_rate": None if rate is None else lower_float(rate),
             "designs_tried": found.tried,
             "at_bounds": dict(found.at_bounds),
             "declares_delay": self._declared,
@@ -149,13 +151,6 @@ class CertifiedGains:
         """The ages of the force that were declared beyond those of the spec."""
         certificate = self.found.result.certificate
         return None if certificate is None or certificate.ages is None else [*certificate.ages]
-
-    @property
-    def rate(self) -> Fraction | None:
-        """The proved decay rate, 1/s."""
-        from nrs_design.certificates.goals import decay_rate
-
-        return decay_rate(self.found.result.certificate)
 
 
 def name_for(loaded: LoadedSpec, out: Path) -> str:

@@ -110,9 +110,9 @@ class GrowthPage(AbstractPage):
     def meaning(self) -> tuple[str, ...]:
         """Say why one motion is enough."""
         region = "unit disk" if self.is_discrete else "left half plane"
-        said = self._shape.value[1].format(
-            signals=words.allowed_signals(self.system), region=region
-        )
+        arbitrary = self.system.switching.is_arbitrary
+        signals = "arbitrary switching" if arbitrary else "the declared switching"
+        said = self._shape.value[1].format(signals=signals, region=region)
         return (said, *self._part.meaning()) if self._shape is _Shape.VALUE else (said,)
 
     def limits(self) -> tuple[str, ...]:

@@ -151,11 +151,6 @@ def all_corners(
     return text
 
 
-def allowed_signals(system: SwitchedSystem) -> str:
-    """Say under which switching a refuted claim would have been made."""
-    return "arbitrary switching" if system.switching.is_arbitrary else "the declared switching"
-
-
 def function(system: SwitchedSystem, *, lost: bool, each: bool) -> Iterator[str]:
     """Say what the functions measure, where they are not simply a norm of all states.
 

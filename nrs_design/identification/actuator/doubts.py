@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -13,7 +14,10 @@ from nrs_design.identification.actuator.time_fit import TimeFit
 from nrs_design.identification.datasets import ActuatorRecord
 from nrs_design.identification.held import Held
 from nrs_design.identification.numeric import Array, beyond, column_sizes
+from nrs_design.identification.statistics import WHITE
 
+# A fit that misses more than this part of the output, in errors that are not white, has failed.
+_MISSED = 0.01
 # A cause is named where it alone explains so much of the power of the errors.
 _EXPLAINS = 0.3
 # Causes that explain the same to this part are all named.
@@ -27,19 +31,15 @@ _LARGE = 0.1
 _UNSURE = 0.5
 
 
-def find_doubts(
-    records: Sequence[ActuatorRecord], found: TimeFit, *, failed: bool
-) -> Iterator[str]:
-    """Yield what speaks against a fit, with its evidence; `failed` if it misses more than noise."""
-    step = min(record.step for record in records)
-    half = 2 * float(found.uncertainty.errors[-1])
-    if found.motor.delay < -half:
+def find_doubts(records: Sequence[ActuatorRecord], found: TimeFit) -> Iterator[str]:
+    """Yield what speaks against a fit, with its evidence."""
+    motor, step = found.motor, min(record.step for record in records)
+    if motor.delay < -2 * float(found.uncertainty.errors[-1]):
         yield (
-            f"the output comes {-found.motor.delay:.3g} s before its command "
-            f"({-found.motor.delay / step:.2g} samples): the clocks of the columns "
+            f"the output comes {-motor.delay:.3g} s before its command "
+            f"({-motor.delay / step:.2g} samples): the clocks of the columns "
             "differ, or command and output are swapped"
         )
-    motor = found.motor
     if motor.friction is None and not tells_friction(records, motor.time_constant, motor.delay):
         yield (
             "the command has one level only: friction cannot be told from a smaller gain, and the "
@@ -49,10 +49,10 @@ def find_doubts(
     for name, error in zip(names, found.uncertainty.errors.tolist(), strict=False):
         if error > _UNSURE:
             yield f"the records do not determine the {name}: its relative error is {error:.2g}"
-    if not failed:
-        return
     spread = np.sqrt(sum(float(np.sum((r.output - r.output.mean()) ** 2)) for r in records))
     missed = float(np.linalg.norm(found.errors)) / spread
+    if found.uncertainty.whiteness >= WHITE or missed <= _MISSED:
+        return
     yield f"the model misses {100 * missed:.2g} % of the motion, in errors that are not noise"
     causes = sorted(_causes(records, found), reverse=True)
     if causes and causes[0][0] >= _EXPLAINS:
@@ -91,12 +91,7 @@ def _explained(
     records: Sequence[ActuatorRecord], found: TimeFit, signature: Callable[[ActuatorRecord], Array]
 ) -> tuple[float, float]:
     """Return which part of the errors a signal explains, beside a better fit, and its factor."""
-    rows = []
-    for record in records:
-        free, _ = np.linalg.qr(found.motor.free(record))
-        signal = signature(record)
-        rows.append(beyond(free, signal))
-    x = np.concatenate(rows)
+    x = np.concatenate([found.motor.beyond_start(record, signature(record)) for record in records])
     J = np.concatenate([found.motor.derivatives(record) for record in records])
     basis, _ = np.linalg.qr(J / column_sizes(J))
     x = beyond(basis, x)
@@ -112,8 +107,7 @@ def _cut(motor: MotorModel, level: float, record: ActuatorRecord) -> Array:
     """Return the output of what a limit would cut off."""
     held, _ = motor.hold(record)
     over = held.command - np.clip(held.command, -level, level)
-    plain = MotorModel(motor.gain, motor.time_constant, None, motor.delay, motor.damping)
-    return plain.forced(record, Held(held.grid, over, held.samples), None)
+    return motor.forced(record, replace(held, command=over), None)
 
 
 def _constant(record: ActuatorRecord) -> tuple[Held, None]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -24,8 +25,6 @@ from nrs_design.progress import Progress, silent
 from nrs_design.spec.plausible import doubt_size
 from nrs_design.spec.provenance import MOTOR_COVERS, Coverage
 
-# A fit that misses more than this part of the output, in errors that are not white, has failed.
-_MISSED = 0.01
 # A second order must explain so much of what the first misses.
 _WORTHWHILE = 0.2
 
@@ -199,7 +198,7 @@ def _from_records(
         response=_response(phasors, chosen),
         doubts=(
             *_slips(chosen, records[0].unit, step),
-            *find_doubts(records, found, failed=_has_failed(records, found)),
+            *find_doubts(records, found),
         ),
         unit=records[0].unit,
         ranges=chosen.ranges,
@@ -223,14 +222,12 @@ def _from_phasors(
     records: Sequence[ActuatorRecord],
 ) -> tuple[tuple[Phasors, ...], list[ActuatorFit]]:
     """Return amplitudes and the fit to them, where the records are sinusoids."""
-    try:
+    phasors: tuple[Phasors, ...] = ()
+    fits: list[ActuatorFit] = []
+    with suppress(DataError):
         phasors = tuple(phasors_of(record) for record in records)
-    except DataError:
-        return (), []
-    try:
-        return phasors, [fit_phasors(phasors)]
-    except DataError:
-        return phasors, []
+        fits = [fit_phasors(phasors)]
+    return phasors, fits
 
 
 def _response(phasors: Sequence[Phasors], fit: ActuatorFit) -> Complex:
@@ -238,12 +235,6 @@ def _response(phasors: Sequence[Phasors], fit: ActuatorFit) -> Complex:
     V = np.array([p.velocity for p in phasors])
     U = np.array([p.command for p in phasors])
     return np.asarray(V / (U - 4 / np.pi * friction * V / np.abs(V)))
-
-
-def _has_failed(records: Sequence[ActuatorRecord], found: TimeFit) -> bool:
-    spread = sum(float(np.sum((r.output - r.output.mean()) ** 2)) for r in records)
-    missed = float(np.sqrt(found.errors @ found.errors / spread))
-    return found.uncertainty.whiteness < WHITE and missed > _MISSED
 
 
 def _first_order(records: Sequence[ActuatorRecord]) -> TimeFit:
@@ -269,15 +260,10 @@ def _first_order(records: Sequence[ActuatorRecord]) -> TimeFit:
 
 def _second_order(records: Sequence[ActuatorRecord], first: TimeFit) -> TimeFit | None:
     """Return a motor of second order if it explains clearly more."""
-    best: TimeFit | None = None
+    tried = []
     for damping in (1.5, 0.4):
-        try:
-            tried = fit_in_time(records, replace(first.motor, damping=damping))
-        except DataError:
-            continue
-        if best is None or tried.bic < best.bic:
-            best = tried
+        with suppress(DataError):
+            tried.append(fit_in_time(records, replace(first.motor, damping=damping)))
+    best = min(tried, key=lambda fit: fit.bic, default=first)
     before = float(first.errors @ first.errors)
-    if best is None or float(best.errors @ best.errors) > (1 - _WORTHWHILE) * before:
-        return None
-    return best
+    return best if float(best.errors @ best.errors) <= (1 - _WORTHWHILE) * before else None

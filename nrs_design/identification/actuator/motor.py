@@ -78,7 +78,7 @@ class MotorModel:
 
     def errors(self, record: ActuatorRecord) -> Array:
         """Return measured less fitted output, shape (n,)."""
-        return self._beyond_start(record, record.output - self.forced(record, *self.hold(record)))
+        return self.beyond_start(record, record.output - self.forced(record, *self.hold(record)))
 
     def derivatives(self, record: ActuatorRecord) -> Array:
         """Return the derivatives of the fitted output by the parameters, shape (n, p).
@@ -96,9 +96,9 @@ class MotorModel:
 
         steps = np.diag(sizes)
         columns = [(output(x + h) - output(x - h)) / (2 * h.sum()) for h in steps]
-        return self._beyond_start(record, np.column_stack(columns))
+        return self.beyond_start(record, np.column_stack(columns))
 
-    def _beyond_start(self, record: ActuatorRecord, values: Array) -> Array:
+    def beyond_start(self, record: ActuatorRecord, values: Array) -> Array:
         """Return what no initial state explains."""
         free, _ = np.linalg.qr(self.free(record))
         return beyond(free, values)

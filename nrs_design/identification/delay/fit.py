@@ -97,17 +97,15 @@ def fit_held(record: SignalRecord, delay: float, rows: Rows) -> DelayFit:
     """Find the whole number of samples by which a copy is late, near a delay in s."""
     follower, near = HeldCopy(()), round(delay / record.step)
 
-    def columns(late: int) -> Array:
-        return follower.columns(record, late * record.step)
-
     def missed(late: int) -> float:
-        error = _errors_at(record, follower, late * record.step, rows)
+        error = errors_at(record, follower, late * record.step, rows)
         return float(error @ error)
 
     best = min(range(near - _AROUND, near + _AROUND + 1), key=lambda k: (missed(k), abs(k - near)))
-    solution = solve(columns(best)[rows], record.seen[rows])
-    fitted = columns(best) @ solution
-    slope = (columns(best + 1) - columns(best - 1))[rows] @ solution / 2
+    before, at, after = (follower.columns(record, (best + k) * record.step) for k in (-1, 0, 1))
+    solution = solve(at[rows], record.seen[rows])
+    fitted = at @ solution
+    slope = (after - before)[rows] @ solution / 2
     error = record.seen[rows] - fitted[rows]
     known = uncertainty(slope[:, None], error)
     return DelayFit(follower, best * record.step, known, slope, error, rows, fitted, solution)
@@ -120,7 +118,7 @@ def solve(columns: Array, seen: Array) -> Array:
     return np.asarray(found / sizes, float)
 
 
-def _errors_at(record: SignalRecord, follower: AbstractFollower, delay: float, rows: Rows) -> Array:
+def errors_at(record: SignalRecord, follower: AbstractFollower, delay: float, rows: Rows) -> Array:
     """Return measured less fitted output, with the best gain, offset and start."""
     columns = follower.columns(record, delay)[rows]
     basis, _ = np.linalg.qr(columns / column_sizes(columns))
@@ -129,7 +127,7 @@ def _errors_at(record: SignalRecord, follower: AbstractFollower, delay: float, r
 
 def _errors(record: SignalRecord, follower: AbstractFollower, x: Array, rows: Rows) -> Array:
     shaped = replace(follower, shape=tuple(x[1:].tolist()))
-    return _errors_at(record, shaped, float(x[0]) * record.step, rows)
+    return errors_at(record, shaped, float(x[0]) * record.step, rows)
 
 
 def _sensitivities(record: SignalRecord, follower: AbstractFollower, x: Array, rows: Rows) -> Array:

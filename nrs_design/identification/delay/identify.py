@@ -18,7 +18,7 @@ from nrs_design.identification.datasets.checks import (
     gaps_in,
     pauses_text,
 )
-from nrs_design.identification.delay.fit import DelayFit, fit_delay, fit_held, solve
+from nrs_design.identification.delay.fit import DelayFit, errors_at, fit_delay, fit_held
 from nrs_design.identification.delay.models import (
     AbstractFollower,
     FirstOrder,
@@ -106,7 +106,7 @@ class DelayIdentification:
     @property
     def whole_samples(self) -> tuple[int, int]:
         """What is held, in whole samples of the record."""
-        return self._outward(Fraction(1))
+        return self.in_periods(Fraction(self.record.step))
 
     @property
     def is_lag(self) -> bool:
@@ -154,18 +154,14 @@ class DelayIdentification:
 
     def in_periods(self, period: Fraction) -> tuple[int, int]:
         """Return what is held, in whole periods of another length in s, rounded outward."""
-        return self._outward(Fraction(self.record.step) / period)
+        low, high = (end / period for end in self.held_s)
+        return math.floor(low + _SAME), math.ceil(high - _SAME)
 
     @property
     def held_s(self) -> tuple[Fraction, Fraction]:
         """What is held, in s."""
         low, high = (Fraction(end) * Fraction(self.record.step) for end in self.held)
         return low, high
-
-    def _outward(self, sample: Fraction) -> tuple[int, int]:
-        """Return what is held, where a sample is so many of what is counted."""
-        low, high = (Fraction(end) * sample for end in self.held)
-        return math.floor(low + _SAME), math.ceil(high - _SAME)
 
 
 def identify_delay(record: SignalRecord) -> DelayIdentification:
@@ -189,26 +185,24 @@ def identify_delay(record: SignalRecord) -> DelayIdentification:
     fits = (copy, *others)
     chosen = _simplest(fits)
     _check_explained(record, chosen)
-    step = record.step
-    value = chosen.delay / step
-    told = _interval(record, chosen)
+    value, told = chosen.delay / record.step, _interval(record, chosen)
     half = (told.high - told.low) / 2
     # A delay is not negative; what is left of an interval is a sample where one is the least.
     low = max(told.low, 0.0)
     samples = Estimate(max(value, 0.0), low, max(told.high, low + _unknown(chosen), 0.0))
-    parts = tuple(_parts(record, chosen, value))
+    parts = tuple(_parts(record, chosen))
     held = [samples, *(part for _, part in parts)]
     one_frequency = _other_than_one_frequency(record) < _OTHER
     if one_frequency:
         held.append(Estimate(0.0, 0.0, 0.0))
     if one_frequency or chosen.uncertainty.whiteness < WHITE:
-        held += [part for _, part in _parts(record, copy, copy.delay / step)]
+        held += [part for _, part in _parts(record, copy)]
     ends = max(min(e.low for e in held), 0.0), max(*(e.high for e in held), 0.0)
     return DelayIdentification(
         record, fits, chosen, samples, peak, parts, smooth, ends,
         (
             *_rivals(record, fits, chosen, half, one_frequency=one_frequency),
-            *_doubts(record, chosen, value, half, peak[0], parts, _untold(record, samples)),
+            *_doubts(record, chosen, half, peak[0], parts, _untold(record, samples)),
         ),
     )  # fmt: skip
 
@@ -285,7 +279,7 @@ def _interval(record: SignalRecord, fit: DelayFit) -> Estimate:
     """Return the delay in samples with its 95 % interval; it may be below zero."""
     value = fit.delay / record.step
     if isinstance(fit.follower, HeldCopy):
-        return _held_interval(record, fit, fit.rows, round(value), joint_level(1))
+        return _held_interval(record, fit, fit.rows, joint_level(1))
     half = student_quantile(fit.uncertainty.degrees) * float(fit.uncertainty.errors[0])
     if unknown := _unknown(fit):
         # A search ends a little off, also where no noise shows it.
@@ -302,9 +296,7 @@ def _unknown(fit: DelayFit) -> float:
     return 0.0 if isinstance(fit.follower, SmoothCopy) else 1.0
 
 
-def _held_interval(
-    record: SignalRecord, fit: DelayFit, rows: Rows, near: int, confidence: float
-) -> Estimate:
+def _held_interval(record: SignalRecord, fit: DelayFit, rows: Rows, confidence: float) -> Estimate:
     """Return the best whole number of samples, and all delays that the rows do not reject.
 
     That a copy is k samples late says of its delay that it is between k - 1 and k + 1: the command
@@ -312,7 +304,7 @@ def _held_interval(
     """
     from scipy.special import chdtri
 
-    late = np.arange(near - _AROUND, near + _AROUND + 1)
+    late = round(fit.delay / record.step) + np.arange(-_AROUND, _AROUND + 1)
     errors = [record.seen[rows] - fit.output(record, k * record.step)[rows] for k in late]
     powers = np.array([float(error @ error) for error in errors])
     best = int(np.argmin(powers))
@@ -395,7 +387,7 @@ def _starts(
     inside = rows[rows < len(part.time)]
     for family in families:
         pairs = [(follower, delay) for follower in family for delay in delays]
-        yield min(pairs, key=lambda pair: _missed(part, pair[0], pair[1], inside))
+        yield min(pairs, key=lambda pair: _missed(part, *pair, inside))
 
 
 def _beginning(record: SignalRecord) -> SignalRecord:
@@ -406,12 +398,11 @@ def _beginning(record: SignalRecord) -> SignalRecord:
 
 
 def _missed(record: SignalRecord, follower: AbstractFollower, delay: float, rows: Rows) -> float:
-    columns = follower.columns(record, delay)[rows]
-    solution = solve(columns, record.seen[rows])
-    return float(np.sum((record.seen[rows] - columns @ solution) ** 2))
+    error = errors_at(record, follower, delay, rows)
+    return float(error @ error)
 
 
-def _parts(record: SignalRecord, fit: DelayFit, value: float) -> Iterator[tuple[float, Estimate]]:
+def _parts(record: SignalRecord, fit: DelayFit) -> Iterator[tuple[float, Estimate]]:
     """Yield the delay in parts of the record, beside the dynamics of the whole."""
     edges = np.arange(_PARTS + 1) * len(fit.rows) // _PARTS
     noise = float(fit.errors @ fit.errors) / max(len(fit.errors) - len(fit.follower.shape) - 3, 1)
@@ -424,20 +415,17 @@ def _parts(record: SignalRecord, fit: DelayFit, value: float) -> Iterator[tuple[
         rows = fit.rows[first:last]
         middle = float(record.time[rows].mean())
         if isinstance(fit.follower, HeldCopy):
-            level = joint_level(_PARTS)
-            yield middle, _held_interval(record, fit, rows, round(value), level)
+            yield middle, _held_interval(record, fit, rows, joint_level(_PARTS))
             continue
-        own, power = _own_delay(record, fit, rows, value)
+        own, power = _own_delay(record, fit, rows)
         if power:
             half = quantile * math.sqrt(noise / power)
             yield middle, Estimate(own, own - half, own + half + _unknown(fit))
 
 
-def _own_delay(
-    record: SignalRecord, fit: DelayFit, rows: Rows, value: float
-) -> tuple[float, float]:
+def _own_delay(record: SignalRecord, fit: DelayFit, rows: Rows) -> tuple[float, float]:
     """Return the delay in samples that fits some rows best, and how much they tell about it."""
-    own, power = value, 0.0
+    own, power = fit.delay / record.step, 0.0
     for _ in range(_PART_STEPS):
         late, early = (
             fit.output(record, (own + d) * record.step)[rows] for d in (_PART_SHIFT, -_PART_SHIFT)
@@ -511,13 +499,13 @@ def _untold(record: SignalRecord, samples: Estimate) -> str | None:
 def _doubts(
     record: SignalRecord,
     fit: DelayFit,
-    value: float,
     half: float,
     peak: float,
     parts: Sequence[tuple[float, Estimate]],
     untold: str | None,
 ) -> Iterator[str]:
     yield from doubt_step(record.step)
+    value = fit.delay / record.step
     late = max(value, 0.0) * record.step
     if asked := doubt_size("delay", late, "s"):
         yield f"the delay is {late:.4g} s: {asked}"

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from nrs_design.identification.tissue import fit_model, fit_record
+from nrs_design.identification.tissue import fit_model, fit_record, prepare
 from nrs_design.models.contact import Elastic, HuntCrossley, KelvinVoigt, Maxwell, Motion
 from tests.identification import synthetic
 from tests.identification.coverage import OPTIONS, SEEDS, TISSUES, rates
@@ -109,5 +109,5 @@ def test_pooled_over_three_records(spread):
             record(Elastic(750.0 * f), quick(3 * seed + i), 0.12, 3 * seed + i, synthetic.COUNT)
             for i, f in enumerate(factors)
         ]
-        hits += holds(fit_model(Elastic, data).estimates, [750.0])
+        hits += holds(fit_model(Elastic, [*map(prepare, data)]).estimates, [750.0])
     assert 0.92 <= np.mean(hits) <= 0.98, np.mean(hits)

@@ -387,7 +387,7 @@ def _starts(
     inside = rows[rows < len(part.time)]
     for family in families:
         pairs = [(follower, delay) for follower in family for delay in delays]
-        yield min(pairs, key=lambda pair: _missed(part, *pair, inside))
+        yield min(pairs, key=lambda pair: _missed(part, pair[0], pair[1], inside))
 
 
 def _beginning(record: SignalRecord) -> SignalRecord:

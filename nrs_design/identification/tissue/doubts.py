@@ -41,10 +41,9 @@ def doubts(
     wrong = (*_units(trial), *doubt_signs(trial, residuals, sensitivities[:, len(law.values) :]))
     # What comes of a record that was read wrongly has no size of its own.
     read = wrong or tuple(_sizes(law, rotational=trial.record.rotational))
-    left = doubt_residuals(trial, residuals, sensitivities, len(law.values))
     return (
         *read,
-        *(doubt for doubt in left if doubt not in read),
+        *doubt_residuals(trial, residuals, sensitivities),
         *_bounds(law, bounds),
         *_errors(law, found),
         *_times(law, trial),

@@ -11,7 +11,7 @@ from nrs_design.identification.statistics import Estimate
 from nrs_design.identification.tissue.pool import ModelFit, fit_model
 from nrs_design.identification.tissue.ranges import check_spread
 from nrs_design.identification.tissue.tangent import Tangent, check_preload, tangent_of
-from nrs_design.identification.tissue.trial import Preparation, Trial, prepare
+from nrs_design.identification.tissue.trial import Preparation, prepare
 from nrs_design.models.contact import (
     LAWS,
     AbstractContactLaw,
@@ -65,11 +65,6 @@ class TissueIdentification:
             f"(BIC {self.chosen.bic - best.bic:.4g} less)"
         )
         return (better, *self.chosen.doubts)
-
-    @property
-    def trials(self) -> tuple[Trial, ...]:
-        """The records as they were fitted."""
-        return tuple(fit.trial for fit in self.chosen.fits)
 
     @property
     def covers(self) -> str:

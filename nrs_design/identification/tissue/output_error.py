@@ -20,11 +20,7 @@ from nrs_design.identification.statistics import (
     uncertainty,
 )
 from nrs_design.identification.tissue.doubts import doubts, reaches_zero
-from nrs_design.identification.tissue.offsets import (
-    Offset,
-    estimate_offsets,
-    fits_zero,
-)
+from nrs_design.identification.tissue.offsets import Offset, estimate_offsets, fits_zero
 from nrs_design.identification.tissue.problem import LeastSquaresProblem, Point
 from nrs_design.identification.tissue.starts import box
 from nrs_design.identification.tissue.trial import Trial, prepare
@@ -91,25 +87,17 @@ class RecordFit:
     @property
     def aic(self) -> float:
         """Akaike's criterion ``n log(SSE/n) + 2 (p + 1)``."""
-        return self._fidelity + 2 * self._count
+        return self._criterion(2.0)
 
     @property
     def bic(self) -> float:
         """Schwarz's criterion ``n log(SSE/n) + (p + 1) log n``."""
-        return self._fidelity + self._count * float(np.log(self._samples))
+        return self._criterion(float(np.log(self.trial.used.sum())))
 
-    @property
-    def _samples(self) -> int:
-        return int(self.trial.used.sum())
-
-    @property
-    def _fidelity(self) -> float:
-        return 2 * self._samples * float(np.log(max(self.rmse, TINY)))
-
-    @property
-    def _count(self) -> int:
-        """Parameters, offsets, and the variance of the noise."""
-        return self.free + 1
+    def _criterion(self, price: float) -> float:
+        """Return the misfit, with a price for parameters, offsets and the variance of the noise."""
+        fidelity = 2 * int(self.trial.used.sum()) * float(np.log(max(self.rmse, TINY)))
+        return fidelity + (self.free + 1) * price
 
 
 def fit_record(kind: type[AbstractContactLaw], record: TissueRecord | Trial) -> RecordFit:
@@ -123,19 +111,18 @@ def fit_record(kind: type[AbstractContactLaw], record: TissueRecord | Trial) -> 
     bounds = box(kind, trial)
     problem = LeastSquaresProblem(kind, trial)
     coarse = LeastSquaresProblem(kind, trial.thinned(COARSE))
-    candidates = sorted(map(coarse.at, coarse.starts()), key=lambda start: start.cost)
+    candidates = sorted(coarse.starts(), key=lambda start: start.cost)
     ends = [_search(start, bounds, _ROUGHLY) for start in candidates[:STARTS]]
     best = min(ends, key=lambda end: end.cost)
     agreeing = sum(end.cost <= best.cost * (1 + _SAME) for end in ends)
-    point = _search(problem.at(best.values), bounds, _EXACTLY)
+    point = _search(Point(problem, best.values), bounds, _EXACTLY)
     return _judge(point, bounds, agreeing, len(ends))
 
 
-def rmse(law: AbstractContactLaw, record: TissueRecord | Trial) -> float:
+def rmse(law: AbstractContactLaw, trial: Trial) -> float:
     """Return the root of the mean squared force error, with the best offsets for this law."""
-    trial = record if isinstance(record, Trial) else prepare(record)
     problem = LeastSquaresProblem(type(law), trial)
-    point = problem.at(np.append(np.log(law.values), problem.no_shift))
+    point = Point(problem, np.append(np.log(law.values), problem.no_shift))
     if fits_zero(type(law), trial):
         point = _place(point)
     return float(np.sqrt(point.cost))
@@ -181,7 +168,7 @@ def _place(point: Point) -> Point:
     from scipy.optimize import minimize_scalar
 
     def at(shift: float) -> Point:
-        return point.problem.at(np.append(point.values[:-1], shift))
+        return Point(point.problem, np.append(point.values[:-1], shift))
 
     grid = np.linspace(-_REACH, _REACH, 41)
     near = float(grid[int(np.argmin([at(shift).cost for shift in grid]))])
@@ -209,7 +196,7 @@ def _search(start: Point, bounds: tuple[Array, Array], accuracy: float) -> Point
     def at(x: Array) -> Point:
         # Derivatives are asked for where the error was.
         if not np.array_equal(x, last[0].values):
-            last[0] = problem.at(x.copy())
+            last[0] = Point(problem, x.copy())
         return last[0]
 
     def error(x: Array) -> Array:

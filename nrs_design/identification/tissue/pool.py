@@ -8,7 +8,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from nrs_design.identification.datasets import TissueRecord
 from nrs_design.identification.numeric import Array
 from nrs_design.identification.statistics import (
     CONFIDENCE,
@@ -17,12 +16,8 @@ from nrs_design.identification.statistics import (
     student_quantile,
 )
 from nrs_design.identification.tissue.output_error import RecordFit, fit_record, rmse
-from nrs_design.identification.tissue.ranges import (
-    box_remark,
-    hull,
-    spread_ranges,
-)
-from nrs_design.identification.tissue.trial import Trial, prepare
+from nrs_design.identification.tissue.ranges import box_remark, hulls, spread_ranges
+from nrs_design.identification.tissue.trial import Trial
 from nrs_design.models.contact import AbstractContactLaw
 from nrs_design.spec.provenance import Coverage
 
@@ -50,8 +45,7 @@ class ModelFit:
         if self.coverage != "confidence":
             logs = np.log([fit.law.values for fit in self.fits])
             return spread_ranges(self.coverage, logs, single)
-        pooled = pool(self.fits, level)
-        return tuple(hull(e, [row[i] for row in single]) for i, e in enumerate(pooled))
+        return hulls(pool(self.fits, level), single)
 
     @property
     def box(self) -> str:
@@ -77,15 +71,14 @@ class ModelFit:
 
 def fit_model(
     kind: type[AbstractContactLaw],
-    records: Sequence[TissueRecord | Trial],
+    trials: Sequence[Trial],
     coverage: Coverage = "confidence",
 ) -> ModelFit:
     """Fit a law to every record, and pool the parameters."""
-    trials = [item if isinstance(item, Trial) else prepare(item) for item in records]
     fits = tuple(fit_record(kind, trial) for trial in trials)
-    law = kind(*(estimate.value for estimate in pool(fits)))
-    errors = tuple(rmse(law, trial) for trial in trials)
-    return ModelFit(fits, law, pool(fits), errors, coverage)
+    pooled = pool(fits)
+    law = kind(*(estimate.value for estimate in pooled))
+    return ModelFit(fits, law, pooled, tuple(rmse(law, trial) for trial in trials), coverage)
 
 
 def pool(fits: Sequence[RecordFit], confidence: float = CONFIDENCE) -> tuple[Estimate, ...]:

@@ -43,10 +43,6 @@ class LeastSquaresProblem:
     kind: type[AbstractContactLaw]
     trial: Trial
 
-    def at(self, values: Array) -> Point:
-        """Return the point with these logarithms of the parameters, and this move of the zero."""
-        return Point(self, values)
-
     @cached_property
     def names(self) -> tuple[str, ...]:
         """Which offsets are fitted."""
@@ -56,11 +52,6 @@ class LeastSquaresProblem:
     def offsets(self) -> Array:
         """What a unit of each offset adds to the force, shape (n, m)."""
         return offset_columns(self.names, self.trial)
-
-    @cached_property
-    def factors(self) -> tuple[Array, Array]:
-        """The offsets as an orthonormal basis and a triangle."""
-        return _factors(self.offsets)
 
     @cached_property
     def begins(self) -> tuple[slice, ...]:
@@ -83,29 +74,26 @@ class LeastSquaresProblem:
         """The move of the zero at a start: one number, or none for a law without it."""
         return np.zeros(int(fits_zero(self.kind, self.trial)))
 
-    def starts(self) -> Iterator[Array]:
+    def starts(self) -> Iterator[Point]:
         """Yield points to start from, with the position of contact here and there."""
         for shift in _SHIFTS if len(self.no_shift) else (0.0,):
             trial = self.trial
             if shift:
-                trial = replace(trial, motion=self.moved(shift * self.travel))
+                trial = replace(trial, motion=self.position.moved(shift * self.travel))
             for law in scan(self.kind, trial, self.offsets):
-                yield np.append(np.log(law.values), self.no_shift + shift)
+                yield Point(self, np.append(np.log(law.values), self.no_shift + shift))
 
     @cached_property
-    def _position(self) -> Motion:
+    def position(self) -> Motion:
+        """The probe, in air too."""
         return Motion(self.trial.motion.time, self.trial.position)
-
-    def moved(self, shift: float) -> Motion:
-        """Return the deflection from a position of contact that lies by so much deeper."""
-        return self._position.moved(shift)
 
     @cached_property
     def reached(self) -> Flags:
         """Samples in contact; where its position is sought, the way in to it, too."""
         if not len(self.no_shift):
             return self.trial.touching
-        return np.asarray(self.trial.touching | (self._position.velocity > 0))
+        return np.asarray(self.trial.touching | (self.position.velocity > 0))
 
     @cached_property
     def ages(self) -> Array:
@@ -123,12 +111,6 @@ class LeastSquaresProblem:
         for column, rows in zip(members.T, self.begins, strict=True):
             column[rows] = 1.0
         return members
-
-    @cached_property
-    def used_members(self) -> tuple[Array, Array]:
-        """Ages and stretches of the used samples."""
-        used = self.trial.used
-        return self.ages[used], self.members[used]
 
 
 @dataclass(frozen=True, eq=False)
@@ -155,7 +137,7 @@ class Point:
     def motion(self) -> Motion:
         """The deflection from the moved zero."""
         shift = self.shift
-        return self.problem.moved(shift) if shift else self.problem.trial.motion
+        return self.problem.position.moved(shift) if shift else self.problem.trial.motion
 
     @cached_property
     def force(self) -> Array:
@@ -173,23 +155,24 @@ class Point:
 
         The force of a relaxing element at the beginning is not known; it fades exponentially.
         """
-        return self._fading(*self.problem.used_members)
+        return self._fading[self.problem.trial.used]
 
-    def _fading(self, ages: Array, members: Array) -> Array:
-        tau = self.law.relaxation_time
-        return np.exp(-ages / tau)[:, None] * members if tau else 0.0 * members
+    @cached_property
+    def _fading(self) -> Array:
+        """The same in all samples."""
+        members, tau = self.problem.members, self.law.relaxation_time
+        return np.exp(-self.problem.ages / tau)[:, None] * members if tau else 0.0 * members
 
     @cached_property
     def constants(self) -> Array:
         """All that adds to the force in proportion: offsets, then states."""
-        problem = self.problem
-        return (
-            np.column_stack([problem.offsets, self.states]) if problem.begins else problem.offsets
-        )
+        return np.column_stack([self.problem.offsets, self.states])
 
     @cached_property
     def _factors(self) -> tuple[Array, Array]:
-        return _factors(self.constants) if self.problem.begins else self.problem.factors
+        """An orthonormal basis of them, and a triangle."""
+        basis, triangle = np.linalg.qr(self.constants)
+        return np.asarray(basis), np.asarray(triangle)
 
     @cached_property
     def _rest(self) -> Array:
@@ -210,10 +193,7 @@ class Point:
     @cached_property
     def left(self) -> Array:
         """What no constants explain of the error: the residuals, where all constants are told."""
-        return self._less_constants(self._rest)
-
-    def _less_constants(self, values: Array) -> Array:
-        return beyond(self._factors[0], values)
+        return beyond(self._factors[0], self._rest)
 
     @cached_property
     def cost(self) -> float:
@@ -223,7 +203,7 @@ class Point:
     @property
     def slopes(self) -> Array:
         """The derivatives of the force at constants that follow (Kaufman 1975)."""
-        return self._less_constants(self.sensitivities)
+        return beyond(self._factors[0], self.sensitivities)
 
     @cached_property
     def sensitivities(self) -> Array:
@@ -242,9 +222,12 @@ class Point:
         if not tau:
             return np.zeros((len(problem.force), len(self.values)))
         # A state exp(-t/tau) grows by t/tau exp(-t/tau) with the logarithm of tau.
-        ages = problem.used_members[0]
-        grows = ages / tau * (self.states @ self.best[problem.offsets.shape[1] :])
-        near = (problem.at(self.values + step).law for step in _STEP * np.eye(len(self.values)))
+        grows = (
+            problem.ages[problem.trial.used]
+            / tau
+            * (self.states @ self.best[problem.offsets.shape[1] :])
+        )
+        near = (Point(problem, self.values + step).law for step in _STEP * np.eye(len(self.values)))
         slopes = [math.log((law.relaxation_time or tau) / tau) / _STEP for law in near]
         return np.outer(grows, slopes)
 
@@ -255,12 +238,7 @@ class Point:
         trial = problem.trial
         offsets = offset_columns(problem.names, trial.everything())
         # Stretches without a used sample have no state of their own.
-        constants = np.column_stack([offsets, self._fading(problem.ages, problem.members)])
+        constants = np.column_stack([offsets, self._fading])
         force = self._pushing(self.law.simulate(self.motion)) + constants @ self.best
         tare = trial.preparation.tare
         return force if tare is None else force + trial.side * tare
-
-
-def _factors(columns: Array) -> tuple[Array, Array]:
-    basis, triangle = np.linalg.qr(columns)
-    return np.asarray(basis), np.asarray(triangle)

@@ -46,10 +46,8 @@ def spread_ranges(
     else:
         factor = student_quantile(n - 1, level) * math.sqrt(1 + 1 / n)
     means, scatter = logarithms.mean(axis=0), logarithms.std(axis=0, ddof=1)
-    return tuple(
-        hull(Estimate.from_log(float(m), factor * float(s)), [row[i] for row in single])
-        for i, (m, s) in enumerate(zip(means, scatter, strict=True))
-    )
+    halves = zip(means.tolist(), (factor * scatter).tolist(), strict=True)
+    return hulls([Estimate.from_log(mean, half) for mean, half in halves], single)
 
 
 def check_spread(coverage: Coverage, count: int) -> None:
@@ -62,11 +60,12 @@ def check_spread(coverage: Coverage, count: int) -> None:
         )
 
 
-def hull(pooled: Estimate, single: Sequence[Estimate]) -> Estimate:
-    """Widen an interval to those of single records."""
-    low = min(pooled.low, *(estimate.low for estimate in single))
-    high = max(pooled.high, *(estimate.high for estimate in single))
-    return Estimate(pooled.value, low, high)
+def hulls(pooled: Sequence[Estimate], single: Sequence[Sequence[Estimate]]) -> tuple[Estimate, ...]:
+    """Widen the interval of each parameter to those of single records."""
+    return tuple(
+        Estimate(own.value, min(e.low for e in (own, *row)), max(e.high for e in (own, *row)))
+        for own, *row in zip(pooled, *single, strict=True)
+    )
 
 
 def box_remark(names: Sequence[str], covariances: Sequence[Array]) -> str:

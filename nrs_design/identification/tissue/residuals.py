@@ -28,11 +28,8 @@ _SPREADS = 3.0
 _BIC = 10.0
 
 
-def doubt_residuals(
-    trial: Trial, residuals: Array, sensitivities: Array, count: int
-) -> Iterator[str]:
+def doubt_residuals(trial: Trial, residuals: Array, sensitivities: Array) -> Iterator[str]:
     """Yield in words what the residuals say against a fit."""
-    yield from doubt_signs(trial, residuals, sensitivities[:, count:])
     yield from _size(trial, residuals)
     yield from _structure(trial, residuals)
     yield from _given_offsets(trial, residuals, sensitivities)

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from nrs_design.errors import DataError
-from nrs_design.identification.statistics import Estimate, Uncertainty, joint_level
+from nrs_design.identification.statistics import Estimate, joint_level
 from nrs_design.identification.tissue.output_error import RecordFit
 from nrs_design.identification.tissue.pool import ModelFit
-from nrs_design.identification.tissue.ranges import hull, spread_ranges
+from nrs_design.identification.tissue.ranges import spread_ranges
 from nrs_design.identification.tissue.trial import Trial
 from nrs_design.models.contact import AbstractContactLaw, AbstractNonlinearLaw, KelvinVoigt
 
@@ -68,8 +68,7 @@ def tangent_of(model: ModelFit, preload: tuple[float, float]) -> Tangent:
     )
     about = min(max(float(f"{(low + high) / 2:.{_DIGITS}g}"), low), high)
     stiffness, damping, exponent = _ranges_at(model, about, with_exponent=True)
-    power = (stiffness, damping, exponent)
-    return Tangent(middle, ranges, low, high, about, power)
+    return Tangent(middle, ranges, low, high, about, (stiffness, damping, exponent))
 
 
 def _ranges_at(model: ModelFit, depth: float, *, with_exponent: bool = False) -> Sequence[Estimate]:
@@ -77,16 +76,15 @@ def _ranges_at(model: ModelFit, depth: float, *, with_exponent: bool = False) ->
 
     With the exponent beside them, each has a smaller share of the 5 % that may fail.
     """
-    level = joint_level(2 + with_exponent)
     count = 2 + with_exponent
+    level = joint_level(count)
     single = [_estimates(fit, depth, level)[:count] for fit in model.fits]
-    logs = np.log([[e.value for e in row] for row in single])
     if len(single) == 1:
         return single[0]
+    logs = np.log([[e.value for e in row] for row in single])
     # The mean of few records is sure by what would hold the next one, too.
     coverage = "prediction" if model.coverage == "confidence" else model.coverage
-    spread = spread_ranges(coverage, logs, single)
-    return [hull(e, [row[i] for row in single]) for i, e in enumerate(spread)]
+    return spread_ranges(coverage, logs, single)
 
 
 def _estimates(fit: RecordFit, depth: float, level: float) -> tuple[Estimate, ...]:
@@ -96,5 +94,5 @@ def _estimates(fit: RecordFit, depth: float, level: float) -> tuple[Estimate, ..
     alone = np.eye(len(law.values))[-1:]
     chain = np.vstack([law.tangent_sensitivities(depth), alone])
     covariance = chain @ fit.uncertainty.covariance @ chain.T
-    known = Uncertainty(covariance, fit.uncertainty.degrees, fit.uncertainty.whiteness)
+    known = replace(fit.uncertainty, covariance=covariance)
     return known.estimates(np.log([*law.tangent(depth), law.values[-1]]), level)

@@ -7,7 +7,7 @@ import pytest
 
 from nrs_design.errors import DataError
 from nrs_design.identification.statistics import student_quantile
-from nrs_design.identification.tissue import fit_model, identify_tissue
+from nrs_design.identification.tissue import fit_model, identify_tissue, prepare
 from nrs_design.models.contact import LAWS, Elastic, HuntCrossley, KelvinVoigt, Maxwell, Motion
 from tests.identification import synthetic
 from tests.identification.support import holds, quick, record, slow
@@ -88,7 +88,7 @@ def specimens(fits):
 # Thesis 6.1 and reference means 747.14 and 1070.53 N/m.
 @pytest.mark.parametrize(("fits", "mean"), [(synthetic.SOFT, 747.14), (synthetic.STIFF, 1070.53)])
 def test_silicone(fits, mean):
-    model = fit_model(Elastic, specimens(fits))
+    model = fit_model(Elastic, [*map(prepare, specimens(fits))])
     (pooled,), (wide,) = model.estimates, model.ranges
     assert pooled.covers(mean)
     assert pooled.value == pytest.approx(mean, rel=5e-3)
@@ -103,5 +103,5 @@ def test_silicone(fits, mean):
 
 
 def test_one_record_stands_for_itself():
-    model = fit_model(Elastic, specimens(synthetic.SOFT[:1]))
+    model = fit_model(Elastic, [*map(prepare, specimens(synthetic.SOFT[:1]))])
     assert model.estimates == model.fits[0].estimates == model.ranges

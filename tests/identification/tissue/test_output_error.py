@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from nrs_design.identification.tissue import fit_record, output_error
-from nrs_design.identification.tissue.problem import LeastSquaresProblem
+from nrs_design.identification.tissue.problem import LeastSquaresProblem, Point
 from nrs_design.identification.tissue.trial import Preparation, prepare
 from nrs_design.models.contact import (
     Elastic,
@@ -75,12 +75,12 @@ def test_a_touch_that_only_grazes_the_tissue():
 def test_derivatives_of_stretches_that_do_not_begin_at_rest(law):
     """Of the law and of what fades from the beginning of each touch, at constants that stay."""
     problem = LeastSquaresProblem(type(law), prepare(robot_record(law, slow(1), 0.005, 1)))
-    point = problem.at(np.log(law.values) + 0.1)
+    point = Point(problem, np.log(law.values) + 0.1)
     values = point.best[problem.offsets.shape[1] :]
     assert len(values) > 1
 
     def force(x):
-        return problem.at(x).force + problem.at(x).states @ values
+        return Point(problem, x).force + Point(problem, x).states @ values
 
     steps = 1e-5 * np.eye(len(point.values))
     slopes = [(force(point.values + h) - force(point.values - h)) / 2e-5 for h in steps]

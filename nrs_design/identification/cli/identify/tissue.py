@@ -105,7 +105,7 @@ def tissue(
             progress=step,
             declared=asked is None,
         )
-        series = [fit_series(trial) for trial in found.trials] if prony else None
+        series = [fit_series(fit.trial) for fit in found.chosen.fits] if prony else None
     texts = [item.text(rotational=found.rotational) for item in series or ()]
     return deliver(
         outputs,

@@ -120,7 +120,7 @@ def _peer(kind: type[AbstractContactLaw], record: TissueRecord) -> float:
     surface has no deflection, and no force is negative. Returns the root of the mean square error.
     """
     trial = prepare(record)
-    offsets = offset_columns(offset_names(kind, trial), trial)
+    offsets = offset_columns(offset_names(kind, trial), trial)[trial.used]
     start = min(scan(kind, trial, offsets), key=lambda law: rmse(law, trial))
     low, high = box(kind, trial)
     parameters = np.clip(np.log(start.values), low + 1e-6, high - 1e-6)

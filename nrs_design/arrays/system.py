@@ -98,16 +98,11 @@ def _holds_a_name(matrix: object) -> bool:
 
 
 def _entry(entry: object, label: str) -> str:
-    return entry if isinstance(entry, str) else _text(read_number(entry, f"mode {label}"))
+    return entry if isinstance(entry, str) else exact_text(read_number(entry, f"mode {label}"))
 
 
 def _texts(rows: Sequence[Sequence[Fraction]]) -> list[list[str]]:
-    return [[_text(entry) for entry in row] for row in rows]
-
-
-def _text(number: Fraction) -> str:
-    """Write a number in full: a decimal only where that is exact."""
-    return exact_text(number)
+    return [[exact_text(entry) for entry in row] for row in rows]
 
 
 def _resets(resets: Mapping[tuple[str, str], object]) -> Iterator[Document]:
@@ -157,16 +152,16 @@ def _dwell_times(value: object, key: str, unit: str) -> object:
     if isinstance(value, Mapping):
         return {str(name): _dwell_times(time, key, unit) for name, time in value.items()}
     is_text = isinstance(value, str) and " " in value
-    return value if is_text else f"{_text(read_number(value, key))} {unit}"
+    return value if is_text else f"{exact_text(read_number(value, key))} {unit}"
 
 
 def _parameter(value: object) -> Document:
     """Return what a spec says of a parameter that is given as such, or by its two ends."""
     if isinstance(value, Mapping):
         return {
-            key: [_text(read_number(end)) for end in entry]
+            key: [exact_text(read_number(end)) for end in entry]
             if key == "range"
-            else (entry if key == "varies" else _text(read_number(entry)))
+            else (entry if key == "varies" else exact_text(read_number(entry)))
             for key, entry in value.items()
         }
     if not isinstance(value, Sequence) or isinstance(value, str) or len(value) != 2:
@@ -174,7 +169,7 @@ def _parameter(value: object) -> Document:
             "a parameter is given by two ends", remedy="write parameters={'k': (lowest, highest)}"
         )
     low, high = (read_number(end) for end in value)
-    return {"nominal": _text((low + high) / 2), "range": [_text(low), _text(high)]}
+    return {"nominal": exact_text((low + high) / 2), "range": [exact_text(low), exact_text(high)]}
 
 
 def _validated(document: Document, name: str) -> LoadedSpec:

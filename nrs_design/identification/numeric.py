@@ -32,6 +32,12 @@ def beyond(basis: Array, values: Array) -> Array:
     return np.asarray(values - basis @ (basis.T @ values), float)
 
 
+def smoothed(values: Array, count: int) -> Array:
+    """Return the mean of so many values about each; those at the ends go on beyond them."""
+    padded = np.pad(values, (count // 2, count - 1 - count // 2), mode="edge")
+    return np.convolve(padded, np.full(count, 1 / count), "valid")
+
+
 def bic(errors: Array, count: int) -> float:
     """Return the Bayesian information criterion of a fit, up to a constant of its data."""
     n = len(errors)

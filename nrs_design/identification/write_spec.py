@@ -40,6 +40,7 @@ FEW, MUCH = 3, 10
 NARROWER = "narrower than the declared one"
 # Ends are rounded outwards.
 ROUNDED = 1.01
+_WITH_A_PLACE = f"--model {' or --model '.join(TISSUE_LAWS)}"
 # What only a power law has in a spec.
 _POWER_KEYS = ("exponent", "about", "preload")
 
@@ -116,8 +117,7 @@ def law_to_write(
         raise SpecError(
             f"the environment {name} is a {law}, which no record of a press tells",
             path=loaded.path,
-            remedy="name the law that shall replace it: "
-            f"--model {' or --model '.join(TISSUE_LAWS)}",
+            remedy=f"name the law that shall replace it: {_WITH_A_PLACE}",
         )
     if law not in TISSUE_LAWS and not preloaded:
         raise _no_place(law, declared.preload_range)
@@ -129,7 +129,7 @@ def _no_place(law: str, preload: tuple[Quantity, Quantity] | None = None) -> Dat
     return DataError(
         f"the law {law} has no place in a spec without a preload",
         remedy=f"say by --preload at which deflections{said}, or choose one that has a place: "
-        f"--model {' or --model '.join(TISSUE_LAWS)}",
+        f"{_WITH_A_PLACE}",
     )
 
 
@@ -230,7 +230,14 @@ def _put_origin(
     document: SpecDocument, node: Any, sources: Sequence[Source], caveats: Sequence[str]
 ) -> None:
     """Note files and doubts; a reason that was given for other doubts does not hold for them."""
-    provenance = [_provenance(source) for source in sources]
+    provenance = [
+        {
+            "file": source.path.name,
+            "sha256": source.sha256,
+            "data": "synthetic" if source.synthetic else "measured",
+        }
+        for source in sources
+    ]
     texts = [_one_line(caveat) for caveat in caveats]
     if [dict(item) for item in node.get("provenance", ())] == provenance:
         # The range that was declared before the same records is not there any more.
@@ -323,11 +330,10 @@ def check_actuator(loaded: LoadedSpec, unit: str) -> InteractionDesignSpec:
             path=loaded.path,
             remedy="leave --write out, and copy the time constant into velocity_interface",
         )
-    friction = None if spec.disturbances is None else spec.disturbances.friction
     written = {
         "derivative_gain": spec.motion_loop.derivative_gain,
         "the largest command": spec.limits.command,
-        "friction": friction,
+        "friction": None if spec.disturbances is None else spec.disturbances.friction,
     }
     for name, quantity in written.items():
         if quantity is not None and spec.actuator.command != unit:
@@ -360,11 +366,7 @@ def merge_delay(loaded: LoadedSpec, found: DelayIdentification) -> str:
             f"the force is up to {high} periods old, a spec takes {LONGEST_DELAY} at most",
             remedy="record longer or livelier forces, or sample with a longer period",
         )
-    document = SpecDocument(loaded)
-    node = document.root["sampling"]
-    document.put(node, "delay", low if low == high else [low, high])
-    _put_origin(document, node, found.sources, found.caveats)
-    return document.text()
+    return _with_sampling(loaded, found, "delay", low if low == high else [low, high])
 
 
 def merge_latency(loaded: LoadedSpec, found: DelayIdentification) -> str:
@@ -387,13 +389,15 @@ def merge_latency(loaded: LoadedSpec, found: DelayIdentification) -> str:
             f"{LONGEST_DELAY} periods, and none before",
             remedy="see that the columns are not swapped, and record more rows in a period",
         )
+    least = max(float(low), 0.0)
+    latency = _outwards(Estimate(least, least, float(high)), "s")["range"]
+    return _with_sampling(loaded, found, "latency", latency)
+
+
+def _with_sampling(loaded: LoadedSpec, found: DelayIdentification, key: str, value: Any) -> str:
     document = SpecDocument(loaded)
     node = document.root["sampling"]
-    ends = (
-        few_digits(max(float(low), 0.0), _DIGITS, ROUND_FLOOR),
-        few_digits(float(high), _DIGITS, ROUND_CEILING),
-    )
-    document.put(node, "latency", [f"{_plain(end) if end else 0} s" for end in ends])
+    document.put(node, key, value)
     _put_origin(document, node, found.sources, found.caveats)
     return document.text()
 
@@ -455,17 +459,16 @@ def check_turning(spec: object, path: Path) -> None:
 
 def _environment(spec: InteractionDesignSpec, name: str | None, path: Path) -> str:
     names = list(spec.environments)
+    if name in names:
+        return name
     if name is None and len(names) == 1:
         return names[0]
-    if name not in names:
-        said = "there is no environment to write to" if name is None else f"no environment {name!r}"
-        listed = ", ".join(names) or "no environments"
-        raise SpecError(
-            said if len(names) == 0 or name else "there are several environments",
-            path=path,
-            remedy=f"name one with --environment; the spec has {listed}",
-        )
-    return name
+    said = "there are several environments" if names else "there is no environment to write to"
+    raise SpecError(
+        f"no environment {name!r}" if name else said,
+        path=path,
+        remedy=f"name one with --environment; the spec has {', '.join(names) or 'no environments'}",
+    )
 
 
 def _put_range(document: SpecDocument, node: Any, key: str, value: dict[str, Any]) -> None:
@@ -496,13 +499,5 @@ def _is_limited(estimate: Estimate) -> bool:
 
 
 def _plain(number: Decimal) -> str:
-    return f"{number:f}" if 1e-3 <= number < 10**_DIGITS else _exponential(number)
-
-
-def _exponential(number: Decimal) -> str:
-    return f"{number.normalize():e}"
-
-
-def _provenance(source: Source) -> dict[str, str]:
-    data = "synthetic" if source.synthetic else "measured"
-    return {"file": source.path.name, "sha256": source.sha256, "data": data}
+    usual = not number or 1e-3 <= number < 10**_DIGITS
+    return f"{number:f}" if usual else f"{number.normalize():e}"

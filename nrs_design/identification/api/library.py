@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -11,18 +10,14 @@ from typing import TYPE_CHECKING
 from nrs_design.api.audit import Audit, AuditCheck
 from nrs_design.api.identified import FittedRange, Identification
 from nrs_design.errors import DataError
-from nrs_design.identification.actuator import (
-    THESIS_MOTOR,
-    ActuatorIdentification,
-    identify_actuator,
-)
+from nrs_design.identification.actuator import THESIS_MOTOR, identify_actuator
 from nrs_design.identification.datasets import (
     FrequencyResponse,
     read_actuator,
     read_signals,
     read_tissue,
 )
-from nrs_design.identification.delay import DelayIdentification, identify_delay
+from nrs_design.identification.delay import identify_delay
 from nrs_design.identification.facts.actuator import actuator_facts
 from nrs_design.identification.facts.delay import delay_facts
 from nrs_design.identification.facts.finding import Facts, finding_facts
@@ -37,7 +32,7 @@ from nrs_design.identification.reporting.tissue import tissue_report
 from nrs_design.identification.running import Check, judge_run, read_run, read_run_bounds
 from nrs_design.identification.running.proof import proof_of
 from nrs_design.identification.tables.columns import parse_mapping
-from nrs_design.identification.tissue import TissueIdentification, identify_tissue
+from nrs_design.identification.tissue import identify_tissue
 from nrs_design.identification.write_spec import check_turning
 from nrs_design.models.contact import LAWS
 
@@ -50,17 +45,6 @@ Columns = Mapping[str, str]  # From a name in the file to ours
 
 # How the columns of a delay are called by those who name them.
 _OF_DELAY = {"command": "input_any", "measured": "output_any"}
-
-
-@dataclass(frozen=True, slots=True)
-class _Answer:
-    """What is taken of an identification of any kind."""
-
-    chosen: str
-    reason: str
-    ranges: Mapping[str, FittedRange]
-    facts: Facts
-    page: Callable[[], Report]
 
 
 def identify_records(
@@ -87,19 +71,30 @@ def identify_records(
     _check(files, kind, law)
     named_ours = {_OF_DELAY.get(k, k) if kind == "delay" else k: v for k, v in columns.items()}
     mapping = parse_mapping([f"{ours}={theirs}" for ours, theirs in named_ours.items()])
-    found, answer = _KINDS[kind]([Path(file) for file in files], mapping, law)
+    return _KINDS[kind]([Path(file) for file in files], mapping, law)
+
+
+def _identification(
+    found: Finding,
+    kind: str,
+    chosen: str,
+    reason: str,
+    ranges: Mapping[str, FittedRange],
+    facts: Facts,
+    page: Callable[[], Report],
+) -> Identification:
     return Identification(
         kind=kind,
-        chosen=answer.chosen,
-        reason=answer.reason,
-        ranges=answer.ranges,
+        chosen=chosen,
+        reason=reason,
+        ranges=ranges,
         files=tuple(source.path for source in found.sources),
         synthetic=is_synthetic(found.sources),
         remarks=tuple(found.remarks),
         doubts=tuple(found.doubts),
         caveats=tuple(found.caveats),
-        facts=finding_facts(found, answer.facts),
-        page=answer.page,
+        facts=finding_facts(found, facts),
+        page=page,
     )
 
 
@@ -120,23 +115,15 @@ def _check(files: Sequence[str | Path], kind: object, law: str | None) -> None:
         raise DataError("a delay is that of one record", remedy="name one file")
 
 
-def _tissue(
-    files: Sequence[Path], mapping: Columns, law: str | None
-) -> tuple[TissueIdentification, _Answer]:
+def _tissue(files: Sequence[Path], mapping: Columns, law: str | None) -> Identification:
     found = identify_tissue([read_tissue(file, mapping) for file in files], law)
     parameters = named(found.chosen.law, found.chosen.ranges, found.rotational)
-    return found, _Answer(
-        found.chosen.law.name,
-        found.reason,
-        {name: _range(estimate, unit) for name, estimate, unit in parameters},
-        tissue_facts(found),
-        partial(tissue_report, found),
-    )
+    ranges = {name: _range(estimate, unit) for name, estimate, unit in parameters}
+    chosen, page = found.chosen.law.name, partial(tissue_report, found)
+    return _identification(found, "tissue", chosen, found.reason, ranges, tissue_facts(found), page)
 
 
-def _actuator(
-    files: Sequence[Path], mapping: Columns, law: str | None
-) -> tuple[ActuatorIdentification, _Answer]:
+def _actuator(files: Sequence[Path], mapping: Columns, law: str | None) -> Identification:
     items = [read_actuator(file, mapping) for file in files]
     series = [(item,) if isinstance(item, FrequencyResponse) else item for item in items]
     found = identify_actuator([record for group in series for record in group], THESIS_MOTOR)
@@ -145,26 +132,27 @@ def _actuator(
         "gain": _range(gain, f"(rad/s)/{found.unit}"),
         "time_constant": _range(time_constant, "s"),
     }
-    page = partial(actuator_report, found)
-    return found, _Answer(found.chosen.method, found.reason, ranges, actuator_facts(found), page)
+    chosen, page = found.chosen.method, partial(actuator_report, found)
+    return _identification(
+        found, "actuator", chosen, found.reason, ranges, actuator_facts(found), page
+    )
 
 
-def _delay(
-    files: Sequence[Path], mapping: Columns, law: str | None
-) -> tuple[DelayIdentification, _Answer]:
+def _delay(files: Sequence[Path], mapping: Columns, law: str | None) -> Identification:
     (file,) = files
     found = identify_delay(read_signals(file, mapping))
     sent, seen = found.record.names
     ranges = {"delay": _range(found.delay, "s"), "samples": _range(found.samples, "samples")}
     chosen, about = found.chosen.follower.name, f"from {sent} to {seen}"
-    return found, _Answer(chosen, about, ranges, delay_facts(found), partial(delay_report, found))
+    page = partial(delay_report, found)
+    return _identification(found, "delay", chosen, about, ranges, delay_facts(found), page)
 
 
 def _range(estimate: Estimate, unit: str) -> FittedRange:
     return FittedRange(estimate.value, estimate.low, estimate.high, unit)
 
 
-_KINDS: Mapping[str, Callable[[Sequence[Path], Columns, str | None], tuple[Finding, _Answer]]] = {
+_KINDS: Mapping[str, Callable[[Sequence[Path], Columns, str | None], Identification]] = {
     "tissue": _tissue,
     "actuator": _actuator,
     "delay": _delay,
@@ -191,7 +179,7 @@ def judge_log(log: Path, loaded: LoadedSpec, certificate: Path | None) -> Audit:
     check_turning(loaded.spec, loaded.path)
     reason, losable = proof_of(certificate, loaded)
     found = judge_run(read_run(log), read_run_bounds(loaded), proved=not reason, losable=losable)
-    checks = {id(check): told for check, told in _told(found.checks)}
+    checks = {id(check): _told(check) for check in found.checks}
     return Audit(
         name=loaded.spec.name,
         verdict=found.verdict,
@@ -204,19 +192,8 @@ def judge_log(log: Path, loaded: LoadedSpec, certificate: Path | None) -> Audit:
     )
 
 
-def _told(checks: Sequence[Check]) -> Iterator[tuple[Check, AuditCheck]]:
-    for check in checks:
-        first = check.first
-        when, what = (None, "") if first is None else (first.time, first.words)
-        yield (
-            check,
-            AuditCheck(
-                check.name,
-                str(check.status),
-                check.measured,
-                check.allowed,
-                check.basis,
-                when,
-                what,
-            ),
-        )
+def _told(check: Check) -> AuditCheck:
+    first = check.first
+    when, what = (None, "") if first is None else (first.time, first.words)
+    status = str(check.status)
+    return AuditCheck(check.name, status, check.measured, check.allowed, check.basis, when, what)

@@ -18,16 +18,17 @@ from nrs_design.identification.facts.running import run_judgement_facts
 
 if TYPE_CHECKING:
     from nrs_design.identification.running import Check, RunJudgement
-    from nrs_design.reporting import Report
 
 _EXIT = {
     "inside": exit_codes.PROVED,
     "outside": exit_codes.REFUTED,
     "inconclusive": exit_codes.INCONCLUSIVE,
 }
-UNPROVED = "UNPROVED SPEC: {reason}; its ranges are only declared."
-
-
+_CLAIM = {
+    "inside": "the run stayed inside what was proved",
+    "outside": "the run left its bounds",
+    "inconclusive": "no bound was left as far as could be judged",
+}
 # Letters of what a cell says, in a pipe, too.
 _WIDEST = 60
 
@@ -67,6 +68,7 @@ def audit(
 
     Example: nrs-design audit run.csv soft-tissue.nrs.yaml --certificate soft-tissue.cert.json
     """
+    from nrs_design.identification.reporting.running import run_report
     from nrs_design.identification.running import judge_run, read_run, read_run_bounds
     from nrs_design.identification.running.bounds import parse_command_limit
     from nrs_design.identification.running.proof import proof_of
@@ -95,14 +97,8 @@ def audit(
             lambda: _print(found, loaded.spec.name, reason),
             _EXIT[found.verdict],
         ),
-        page=lambda: _page(found, loaded.spec.name, reason),
+        page=lambda: run_report(found, loaded.spec.name, reason),
     )
-
-
-def _page(found: RunJudgement, name: str, reason: str) -> Report:
-    from nrs_design.identification.reporting.running import run_report
-
-    return run_report(found, name, reason)
 
 
 # What a check that is not modelled takes for granted.
@@ -116,18 +112,15 @@ def _print(found: RunJudgement, name: str, reason: str) -> None:
     if found.log.source.synthetic:
         say(SYNTHETIC)
     if reason:
-        say(UNPROVED.format(reason=reason))
-    word = found.verdict.upper()
-    claim = "the run stayed inside what was proved"
-    if found.verdict == "outside":
-        claim = "the run left its bounds"
-    elif found.verdict == "inconclusive":
-        claim = "no bound was left as far as could be judged"
-    say(f"{name}: {word}: {claim}")
+        say(f"UNPROVED SPEC: {reason}; its ranges are only declared.")
+    say(f"{name}: {found.verdict.upper()}: {_CLAIM[found.verdict]}")
     first = found.first
     if first is not None and first.first is not None:
         say(f"first at t = {first.first.time:.6g} s: {first.name}: {first.first.words}")
-    rows = [[c.name, c.status, _measured(c), _cell(c.allowed), _when(c)] for c in found.checks]
+    rows = []
+    for c in found.checks:
+        when = f"{c.first.time:.6g}" if c.first else ""
+        rows.append([c.name, c.status, _measured(c), _cell(c.allowed), when])
     print_table("", ["check", "outcome", "measured", "allowed", "first at s"], rows)
     for basis in dict.fromkeys(c.basis for c in found.checks if c.basis):
         of = ", ".join(c.name for c in found.checks if c.basis == basis)
@@ -159,7 +152,3 @@ def _measured(check: Check) -> str:
 def _cell(text: str) -> str:
     """Return what fits into a cell; what is longer stands below the table."""
     return text if len(text) <= _WIDEST else _below()
-
-
-def _when(check: Check) -> str:
-    return "" if check.first is None else f"{check.first.time:.6g}"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -65,16 +65,10 @@ class RunBounds:
         """Return the source of the bounds; without a certificate it does not mention a proof."""
         return "the proof" if self.proved else "the spec, which is not proved"
 
-    def stiffness_in(self, mode: str | None) -> Stiffness | None:
-        """Return what a controller may meet; for None, what any of them may."""
-        if mode is not None:
-            return self.stiffness[mode]
-        known = [item for item in self.stiffness.values() if item is not None]
-        if len(known) < len(self.stiffness):
-            return None
-        ranges = dict.fromkeys(pair for item in known for pair in item.ranges)
-        foreign = dict.fromkeys(name for item in known for name in item.foreign)
-        return Stiffness(tuple(ranges), tuple(foreign))
+    def ranges_of(self, controllers: Iterable[str]) -> tuple[tuple[float, float], ...]:
+        """Return the ranges of stiffness that some controllers may meet, each once."""
+        met = [stiffness for name in controllers if (stiffness := self.stiffness[name])]
+        return tuple(dict.fromkeys(pair for item in met for pair in item.ranges))
 
 
 def read_run_bounds(loaded: LoadedSpec) -> RunBounds:

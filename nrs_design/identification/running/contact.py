@@ -96,8 +96,8 @@ def _felt(log: RunLog, bounds: RunBounds) -> Flags:
     """Tell in which rows the controller in force may touch something."""
     if log.modes is None:
         return np.ones(len(log.time), dtype=bool)
-    felt = np.array([bounds.stiffness[label] is not None for label in log.labels], dtype=np.bool_)
-    return np.asarray(felt[log.modes], dtype=np.bool_)
+    felt = np.array([bounds.stiffness[label] is not None for label in log.labels], dtype=bool)
+    return np.asarray(felt[log.modes])
 
 
 def _spans(log: RunLog, zero: Flags, felt: Flags, length: float) -> Iterator[tuple[int, int]]:
@@ -110,20 +110,14 @@ def _spans(log: RunLog, zero: Flags, felt: Flags, length: float) -> Iterator[tup
 
 def _missing(log: RunLog, bounds: RunBounds) -> str:
     """Say why no window tells a stiffness, or nothing."""
-    if {"angle", "torque"} <= log.columns.keys():
-        return _strangers(log, bounds)
-    if not {"deflection", "force"} <= log.columns.keys():
-        turning = {"angle", "torque"} & log.columns.keys()
-        pair = ("angle", "torque") if turning else ("deflection", "force")
-        gone = [name for name in pair if name not in log.columns]
-        return f"no column for {' and '.join(gone)}"
-    if bounds.lever_arm is None:
-        return "the log is linear, and the spec names no lever arm that all environments share"
-    return _strangers(log, bounds)
-
-
-def _strangers(log: RunLog, bounds: RunBounds) -> str:
-    """Say which names of modes are none of the spec, or which law no window tells."""
+    if not {"angle", "torque"} <= log.columns.keys():
+        if not {"deflection", "force"} <= log.columns.keys():
+            turning = {"angle", "torque"} & log.columns.keys()
+            pair = ("angle", "torque") if turning else ("deflection", "force")
+            gone = [name for name in pair if name not in log.columns]
+            return f"no column for {' and '.join(gone)}"
+        if bounds.lever_arm is None:
+            return "the log is linear, and the spec names no lever arm that all environments share"
     unknown = [label for label in log.labels if label not in bounds.stiffness]
     if unknown:
         known = ", ".join(bounds.stiffness)
@@ -133,26 +127,20 @@ def _strangers(log: RunLog, bounds: RunBounds) -> str:
         return f"{', '.join(sorted(foreign))} remembers: a window has no stiffness of its own"
     if all(s is None for s in bounds.stiffness.values()):
         return "no controller has contact"
-    if log.modes is None and bounds.stiffness_in(None) is None:
+    if log.modes is None and None in bounds.stiffness.values():
         return "no column for mode, and not every controller has contact"
     return ""
 
 
 def _is_free(window: Window, bounds: RunBounds, log: RunLog) -> bool:
-    allowed = bounds.stiffness_in(None if log.modes is None else _mode(log, window))
-    least = 0.0 if allowed is None else min(low for low, _ in allowed.ranges)
+    named = bounds.stiffness if log.modes is None else [log.labels[log.modes[window.first]]]
+    least = min((low for low, _ in bounds.ranges_of(named)), default=0.0)
     return max(abs(window.low), abs(window.high)) < _FREE * least
-
-
-def _mode(log: RunLog, window: Window) -> str:
-    return log.labels[int(log.columns["mode"][window.first])]
 
 
 def _stiffness(log: RunLog, bounds: RunBounds, touching: list[Window]) -> Check:
     basis = "proved range" if bounds.proved else "range of the spec, not proved"
-    named = log.labels or tuple(bounds.stiffness)
-    met = [s for name in named if (s := bounds.stiffness[name]) is not None]
-    ranges = dict.fromkeys(pair for item in met for pair in item.ranges)
+    ranges = bounds.ranges_of(log.labels or bounds.stiffness)
     allowed = " or ".join(span(*ends, "N m/rad", 5) for ends in ranges)
     if not touching:
         words = "no window in contact in which something moves"

@@ -8,7 +8,7 @@ from math import inf
 
 import numpy as np
 
-from nrs_design.identification.numeric import parted
+from nrs_design.identification.numeric import Rows, parted
 from nrs_design.identification.running.bounds import RunBounds
 from nrs_design.identification.running.check import BoundStatus, Check, Violation
 from nrs_design.identification.running.log import RunLog
@@ -40,11 +40,11 @@ def judge_stays(log: RunLog, bounds: RunBounds) -> Check:
     if bounds.names_contacts:
         reason = "the rules name contacts, and a log does not say what is touched"
         return Check.open(_NAME, reason, "", basis)
-    if log.modes is None:
+    if (modes := log.modes) is None:
         if not allowed:
             return Check(_NAME, BoundStatus.INSIDE, "any switching is allowed", "arbitrary", basis)
         return Check.open(_NAME, "no column for mode", allowed, basis)
-    stays = list(_stays(log))
+    stays = list(_stays(log, modes))
     unknown = [stay.mode for stay in stays if stay.mode not in bounds.stays]
     if unknown:
         reason = f"{unknown[0]!r} is no controller of the spec"
@@ -75,10 +75,7 @@ def _allowed(bounds: RunBounds) -> str:
     return ", ".join(rules)
 
 
-def _stays(log: RunLog) -> Iterator[_Stay]:
-    modes = log.modes
-    if modes is None:
-        return
+def _stays(log: RunLog, modes: Rows) -> Iterator[_Stay]:
     time = log.begin + log.time
     # No switch is before the first row, and none after the last.
     before, after = np.append(time[0], time), np.append(time, time[-1])
@@ -86,13 +83,13 @@ def _stays(log: RunLog) -> Iterator[_Stay]:
         ended = last < len(time)
         begin, logged = float(time[first]), float(after[last] - before[first])
         yield _Stay(
-            log.labels[modes[first]],
-            begin,
-            float(time[last - 1]) - begin,
-            logged if first and ended else inf,
-            logged,
-            ended,
-            bool(log.gaps[max(first - 1, 0) : last].any()),
+            mode=log.labels[modes[first]],
+            begin=begin,
+            shortest=float(time[last - 1]) - begin,
+            longest=logged if first and ended else inf,
+            logged=logged,
+            ended=ended,
+            gap=bool(log.gaps[max(first - 1, 0) : last].any()),
         )
 
 
@@ -106,9 +103,8 @@ def _violations(stays: list[_Stay], bounds: RunBounds) -> Iterator[Violation]:
         if not ordered and not stay.gap:
             yield Violation(stay.begin, f"{before} was followed by {stay.mode}")
         if stay.longest < shortest:
-            yield Violation(
-                stay.begin, f"{stay.mode} lasted {stay.longest:.4g} s at most, not {shortest:g} s"
-            )
+            words = f"{stay.mode} lasted {stay.longest:.4g} s at most, not {shortest:g} s"
+            yield Violation(stay.begin, words)
         if stay.shortest > longest and not stay.gap:
             words = f"{stay.mode} lasted {stay.shortest:.4g} s at least, not {longest:g} s"
             yield Violation(stay.begin, words)

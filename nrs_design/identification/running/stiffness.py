@@ -33,15 +33,12 @@ class Window:
     high: float
 
 
-def cut_windows(time: Array, states: Rows | None, length: float) -> Iterator[tuple[int, int]]:
+def cut_windows(time: Array, states: Rows, length: float) -> Iterator[tuple[int, int]]:
     """Yield first row and end of windows, of a length in s, that span neither a gap nor a change.
 
     What stays the same in a window is the state of its rows: the mode, and whether a torque acts.
     """
-    breaks = gaps_in(time)
-    if states is not None:
-        breaks |= np.diff(states) != 0
-    for begin, end in parted(breaks):
+    for begin, end in parted(gaps_in(time) | (np.diff(states) != 0)):
         count = max(round(float(time[end - 1] - time[begin]) / length), 1)
         cuts = np.linspace(begin, end, count + 1).astype(int).tolist()
         for first, last in itertools.pairwise(cuts):

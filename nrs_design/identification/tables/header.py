@@ -123,7 +123,10 @@ def _find(
         if separator != "":
             if last is None:
                 raise _nameless(path, at + 1, example)
-            return _above_units(lines, last, separator), separator
+            # This line may hold the units of the names above.
+            units, names = _cells(lines[last], separator), _cells(lines[last - 1], separator)
+            below = last > 0 and _are_units(units, len(names))
+            return last - 1 if below else last, separator
         last = at
     if last is None:
         raise DataError("has no header line", path=path, remedy="name the columns in a line")
@@ -140,12 +143,6 @@ def _nameless(path: Path, line: int, example: str) -> DataError:
         line=line,
         remedy=f"add a header such as {example}",
     )
-
-
-def _above_units(lines: Sequence[str], at: int, separator: str | None) -> int:
-    """Return the line above, if this one holds the units of its names."""
-    units, names = _cells(lines[at], separator), _cells(lines[at - 1], separator)
-    return at - 1 if at and _are_units(units, len(names)) else at
 
 
 def _below_blanks(lines: Sequence[str], at: int) -> int:

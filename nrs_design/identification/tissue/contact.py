@@ -13,7 +13,7 @@ from functools import cached_property
 import numpy as np
 
 from nrs_design.identification.datasets import TissueRecord
-from nrs_design.identification.numeric import Array, Flags, Rows, runs
+from nrs_design.identification.numeric import Array, Flags, runs, smoothed
 from nrs_design.identification.statistics import independent
 from nrs_design.identification.tissue.cycles import find_cycles
 
@@ -93,11 +93,11 @@ class _Corner:
 def find_contact(record: TissueRecord) -> DetectedContact | None:
     """Find where contact begins; None if no air shows in the record."""
     x, force = record.motion.deflection, record.force
-    velocity = _smoothed(record.motion.velocity)
+    velocity = smoothed(record.motion.velocity, _SMOOTH)
     corners: dict[int, list[_Corner]] = {1: [], -1: []}
     for cycle in find_cycles(x)[:_CYCLES]:
         for side, row in corners.items():
-            row += _corner(*_way_in(record, velocity, side, cycle))
+            row += _corner(*_way_in(side * x, side * velocity, force, cycle))
         gain, side = max((_evidence(row), side) for side, row in corners.items())
         if gain >= _BETTER:
             # A touch may meet a tissue that has not come back: the least position tells best.
@@ -114,21 +114,13 @@ def _evidence(corners: Sequence[_Corner]) -> float:
     return sum(max(corner.gain, 0.0) for corner in corners if corner.flat)
 
 
-def _loading(u: Array, velocity: Array, cycle: slice) -> Rows:
-    """Pick samples on the way in: a tissue that relaxes lets go elsewhere than it was met."""
+def _way_in(u: Array, velocity: Array, force: Array, cycle: slice) -> tuple[Array, Array, Array]:
+    """Return what there is on the way in: a tissue that relaxes lets go elsewhere."""
     rows = np.arange(len(u))[cycle]
     way_in = rows[velocity[cycle] > 0.02 * np.abs(velocity[cycle]).max()]
     rows = way_in if len(way_in) >= 5 * _FEWEST else rows
-    return rows[:: -(-len(rows) // _COARSE)]
-
-
-def _way_in(
-    record: TissueRecord, velocity: Array, side: int, cycle: slice
-) -> tuple[Array, Array, Array]:
-    """Return position, velocity and force on the way in, positive towards the side."""
-    x = record.motion.deflection
-    rows = _loading(side * x, side * velocity, cycle)
-    return side * x[rows], velocity[rows], record.force[rows]
+    rows = rows[:: -(-len(rows) // _COARSE)]
+    return u[rows], velocity[rows], force[rows]
 
 
 def _corner(u: Array, velocity: Array, force: Array) -> Iterator[_Corner]:
@@ -223,10 +215,5 @@ def _clear(force: Array, beyond: Flags) -> Flags:
     """Find where the force is clearly not that of the air."""
     air = force[~beyond]
     noise = float(np.std(air)) / np.sqrt(_SMOOTH)
-    away = np.abs(_smoothed(force) - float(np.median(air)))
+    away = np.abs(smoothed(force, _SMOOTH) - float(np.median(air)))
     return np.asarray(beyond & (away > _CLEAR * noise))
-
-
-def _smoothed(values: Array) -> Array:
-    padded = np.pad(values, _SMOOTH // 2, mode="edge")
-    return np.convolve(padded, np.full(_SMOOTH, 1 / _SMOOTH), "valid")

@@ -17,10 +17,7 @@ def find_cycles(deflection: Array) -> tuple[slice, ...]:
 
     Together they are all rows; there is one at least.
     """
-    least = _TURN * float(np.ptp(deflection))
-    if least == 0.0:
-        return (slice(0, len(deflection)),)
-    lows = _lows(deflection, least)
+    lows = _lows(deflection, _TURN * float(np.ptp(deflection)))
     edges = [0, *lows, len(deflection)]
     return tuple(slice(a, b) for a, b in pairwise(edges))
 

@@ -56,15 +56,13 @@ def offset_names(kind: type[AbstractContactLaw], trial: Trial) -> tuple[str, ...
 
 
 def offset_columns(names: Sequence[str], trial: Trial) -> Array:
-    """Return the force that a unit of each offset adds to the used samples, shape (n, m)."""
-    used = trial.used
+    """Return the force that a unit of each offset adds to all samples, shape (n, m)."""
     columns = {
-        TARE: np.ones(len(used)),
+        TARE: np.ones(len(trial.used)),
         CONTACT: trial.touching.astype(float),
         DRIFT: trial.motion.time - trial.motion.time[0],
     }
-    made = [columns[name][used] for name in names]
-    return np.column_stack(made) if made else np.zeros((int(used.sum()), 0))
+    return np.column_stack([np.empty((len(trial.used), 0)), *(columns[name] for name in names)])
 
 
 def measured_force(trial: Trial) -> Array:

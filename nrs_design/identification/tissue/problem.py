@@ -51,7 +51,7 @@ class LeastSquaresProblem:
     @cached_property
     def offsets(self) -> Array:
         """What a unit of each offset adds to the force, shape (n, m)."""
-        return offset_columns(self.names, self.trial)
+        return offset_columns(self.names, self.trial)[self.trial.used]
 
     @cached_property
     def begins(self) -> tuple[slice, ...]:
@@ -236,7 +236,7 @@ class Point:
         """The force in all samples, used or not, with its tare."""
         problem = self.problem
         trial = problem.trial
-        offsets = offset_columns(problem.names, trial.everything())
+        offsets = offset_columns(problem.names, trial)
         # Stretches without a used sample have no state of their own.
         constants = np.column_stack([offsets, self._fading])
         force = self._pushing(self.law.simulate(self.motion)) + constants @ self.best

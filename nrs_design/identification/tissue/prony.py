@@ -157,5 +157,5 @@ def _constants(trial: Trial, times: Array) -> Array:
             column = np.zeros(len(time))
             column[rows] = np.exp(-(time[rows] - time[rows.start]) / tau)
             columns.append(column[trial.used])
-    offsets = offset_columns(offset_names(Elastic, trial), trial)
+    offsets = offset_columns(offset_names(Elastic, trial), trial)[trial.used]
     return np.column_stack([offsets, *columns])

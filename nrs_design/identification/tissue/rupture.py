@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from nrs_design.identification.datasets.checks import gaps_in
-from nrs_design.identification.numeric import Array
+from nrs_design.identification.numeric import Array, smoothed
 from nrs_design.models.contact import Motion
 
 # The force falls by this part of its range ...
@@ -50,7 +50,7 @@ def find_rupture(motion: Motion, force: Array) -> Rupture | None:
     if n < 4 * window:
         return None
     x = motion.deflection
-    size = _smoothed(force - np.median(force[:window]), max(window // 2, 1))
+    size = smoothed(force - np.median(force[:window]), max(window // 2, 1))
     # Into the tissue, and against it: where the force is largest.
     top = int(np.argmax(np.abs(size)))
     size = size * np.sign(size[top])
@@ -90,8 +90,3 @@ def _direction(x: Array, size: Array) -> float:
     grown = size - size.mean()
     shares = (float(y @ grown) / (float(np.linalg.norm(y)) or 1.0) for y in (way, speed))
     return float(np.sign(sum(shares)))
-
-
-def _smoothed(values: Array, count: int) -> Array:
-    padded = np.pad(values, (count // 2, count - 1 - count // 2), mode="edge")
-    return np.convolve(padded, np.full(count, 1 / count), "valid")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -130,27 +129,20 @@ class Trial:
     @property
     def remarks(self) -> tuple[str, ...]:
         """What was found about contact, tare and parts that are not used, in words."""
-        return tuple(self._remarks())
-
-    def _remarks(self) -> Iterator[str]:
+        said = []
         if self.found is not None:
             part = 100 * float(np.mean(~self.touching))
-            count = len(self.found.touches)
-            yield f"{counted(count, 'touch')}; {part:.0f} % of it is air"
+            said.append(f"{counted(len(self.found.touches), 'touch')}; {part:.0f} % of it is air")
         elif self.preparation.contact == "auto":
-            yield (
+            said.append(
                 "no air shows: all of it is taken as in contact, and a tare that moves with time "
                 "would pass for relaxation"
             )
-        if said := pauses_text(self.record.motion.time):
-            yield said
+        if pauses := pauses_text(self.record.motion.time):
+            said.append(pauses)
         if self.drift:
-            yield "the tare is fitted as moving in proportion to time"
-        yield from map(str, self.cuts)
-
-    def everything(self) -> Trial:
-        """Return the trial with all samples used."""
-        return replace(self, used=np.ones(len(self.force), bool))
+            said.append("the tare is fitted as moving in proportion to time")
+        return (*said, *map(str, self.cuts))
 
     def thinned(self, most: int) -> Trial:
         """Return the trial with at most so many samples, or more where few of them are used."""
@@ -286,8 +278,6 @@ def _reference(x: Array, side: int, wanted: Preparation, found: DetectedContact 
 
 def _skipped(time: Array, cycles: tuple[slice, ...], wanted: Preparation, cuts: list[Cut]) -> Flags:
     skipped = np.zeros(len(time), bool)
-    if not wanted.skip_cycles:
-        return skipped
     if wanted.skip_cycles >= len(cycles):
         raise DataError(
             f"{wanted.skip_cycles} cycles are to be set apart, and there are {len(cycles)}",

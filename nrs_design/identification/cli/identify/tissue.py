@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from enum import StrEnum
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -22,22 +23,52 @@ from nrs_design.identification.cli.identify.common import (
     print_fits,
     read_all,
 )
-from nrs_design.identification.cli.identify.tissue_options import (
-    Covers,
-    EnvironmentName,
-    LeverArm,
-    Model,
-    ModelOption,
-    Preload,
-    Prony,
-    Settings,
-)
 from nrs_design.identification.facts.tissue import tissue_facts
+from nrs_design.models.contact import LAWS
 from nrs_design.proof.text import counted
 
 if TYPE_CHECKING:
     from nrs_design.identification.tissue import RecordFit, TissueIdentification
     from nrs_design.identification.tissue.tangent import Tangent
+
+
+class ModelOption(StrEnum):
+    """Laws by name, from their table."""
+
+    _ignore_ = "law"
+    AUTO = "auto"
+    for law in LAWS:
+        vars()[law.replace("-", "_").upper()] = law
+
+
+Model = Annotated[ModelOption, typer.Option(help="Law to choose; auto compares them all.")]
+Settings = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set",
+        metavar="NAME=VALUE",
+        help="What is used of a record: start, end (s), contact (auto, given), zero, tare (fit, or "
+        "such as '0.1 m', '-1.3 N'), drift (auto, fit, none), skip_cycles, negate (true).",
+    ),
+]
+Covers = Annotated[
+    CoversOption,
+    typer.Option(help="What the range holds: the mean, 95 % of specimens, or the next one."),
+]
+Preload = Annotated[
+    str | None,
+    typer.Option(metavar="LOW..HIGH", help="Deflections of a power law, as in '1 mm..3 mm'."),
+]
+Prony = Annotated[
+    bool, typer.Option("--prony", help="Fit a Prony series, too: is one relaxation enough?")
+]
+LeverArm = Annotated[
+    str | None,
+    typer.Option(metavar="LENGTH", help="Distance from pivot to contact, as in '0.24 m'."),
+]
+EnvironmentName = Annotated[
+    str | None, typer.Option(metavar="NAME", help="Environment of the spec to write to.")
+]
 
 
 @command("identify-tissue")

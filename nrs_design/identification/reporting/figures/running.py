@@ -37,8 +37,7 @@ def draw_stiffness(found: RunJudgement) -> Figure:
     """Draw the slope in every window over time, and the ranges of the spec."""
     log = found.log
     figure, axes = new_axes(3.6)
-    known = [s for s in found.bounds.stiffness.values() if s is not None]
-    ranges = dict.fromkeys(pair for item in known for pair in item.ranges)
+    ranges = found.bounds.ranges_of(found.bounds.stiffness)
     top = 1.8 * max((high for _, high in ranges), default=1.0)
     bottom = -0.2 * top
     for low, high in ranges:

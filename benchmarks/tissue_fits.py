@@ -13,7 +13,8 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import least_squares
 
 from benchmarks.measure import Comparison, Size
-from nrs_design.identification.datasets import Source, TissueRecord
+from nrs_design.identification.datasets.records import TissueRecord
+from nrs_design.identification.tables.table import Source
 from nrs_design.identification.tissue.offsets import offset_columns, offset_names
 from nrs_design.identification.tissue.output_error import RecordFit, fit_record, rmse
 from nrs_design.identification.tissue.starts import box, scan

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Protocol
 
 if TYPE_CHECKING:
-    from nrs_design.identification.datasets import Source
+    from nrs_design.identification.tables.table import Source
 
 
 class Finding(Protocol):

@@ -10,11 +10,11 @@ from typing import Any
 
 from nrs_design.axis import AxisType
 from nrs_design.errors import DataError, SpecError
-from nrs_design.identification.actuator import ActuatorIdentification
-from nrs_design.identification.datasets import Source
-from nrs_design.identification.delay import DelayIdentification
+from nrs_design.identification.actuator.identify import ActuatorIdentification
+from nrs_design.identification.delay.identify import DelayIdentification
 from nrs_design.identification.statistics import Estimate, few_digits, span
-from nrs_design.identification.tissue import TissueIdentification
+from nrs_design.identification.tables.table import Source
+from nrs_design.identification.tissue.identify import TissueIdentification
 from nrs_design.identification.tissue.tangent import Tangent
 from nrs_design.models.contact import (
     LAWS,

@@ -8,7 +8,9 @@ import pytest
 
 from nrs_design.exporters.formats.monitor import KINDS, render
 from nrs_design.exporters.monitor_limits import monitor_limits
-from nrs_design.identification.running import bounds_of_spec, judge_run, read_run
+from nrs_design.identification.running.bounds import bounds_of_spec
+from nrs_design.identification.running.judge import judge_run
+from nrs_design.identification.running.log import read_run
 from tests.exporters.monitor_study import sources
 from tests.exporters.monitored import Monitor, spec_with
 from tests.exporters.programs import (

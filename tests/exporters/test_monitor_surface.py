@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 
 from nrs_design.controllers.sector import Sector, sector_of
 from nrs_design.exporters.sector_numbers import FACTORS, sector_words
-from nrs_design.identification.running import bounds_of_spec, read_run
+from nrs_design.identification.running.bounds import bounds_of_spec
+from nrs_design.identification.running.log import read_run
 from nrs_design.identification.running.sector import judge_sector
 from tests.exporters.monitor_study import (
     SAMPLING,

@@ -11,8 +11,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.signal import lfilter
 
-from nrs_design.identification.datasets import TissueRecord
-from nrs_design.identification.tissue import Preparation, fit_record, prepare
+from nrs_design.identification.datasets.records import TissueRecord
+from nrs_design.identification.tissue.output_error import fit_record
+from nrs_design.identification.tissue.trial import Preparation, prepare
 from nrs_design.models.contact import (
     AbstractContactLaw,
     AbstractLinearLaw,

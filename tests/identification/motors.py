@@ -5,7 +5,7 @@ from collections import deque
 
 import numpy as np
 
-from nrs_design.identification.datasets import ActuatorRecord
+from nrs_design.identification.datasets.records import ActuatorRecord
 from tests.identification.support import source
 
 RATE = 500.0

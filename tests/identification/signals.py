@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
-from nrs_design.identification.datasets import SignalRecord
+from nrs_design.identification.datasets.records import SignalRecord
 from tests.identification import motors
 from tests.identification.support import source
 

@@ -6,7 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
-from nrs_design.identification.datasets import ActuatorRecord, Source, TissueRecord
+from nrs_design.identification.datasets.records import ActuatorRecord, TissueRecord
+from nrs_design.identification.tables.table import Source
 from nrs_design.models.actuator import MotorConstants
 from nrs_design.models.contact import AbstractContactLaw, Motion
 from tests.identification import synthetic

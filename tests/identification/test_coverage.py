@@ -8,7 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from nrs_design.identification.tissue import fit_model, fit_record, prepare
+from nrs_design.identification.tissue.output_error import fit_record
+from nrs_design.identification.tissue.pool import fit_model
+from nrs_design.identification.tissue.trial import prepare
 from nrs_design.models.contact import Elastic, HuntCrossley, KelvinVoigt, Maxwell, Motion
 from tests.identification import synthetic
 from tests.identification.coverage import OPTIONS, SEEDS, TISSUES, rates

@@ -7,9 +7,9 @@ from functools import cache
 import pytest
 
 from nrs_design.errors import DataError, SpecError
-from nrs_design.identification.actuator import identify_actuator
-from nrs_design.identification.delay import identify_delay
-from nrs_design.identification.tissue import identify_tissue
+from nrs_design.identification.actuator.identify import identify_actuator
+from nrs_design.identification.delay.identify import identify_delay
+from nrs_design.identification.tissue.identify import identify_tissue
 from nrs_design.identification.write_spec import (
     law_to_write,
     merge_actuator,

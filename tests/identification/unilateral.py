@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from nrs_design.identification.datasets import TissueRecord
+from nrs_design.identification.datasets.records import TissueRecord
 from nrs_design.models.contact import (
     AbstractContactLaw,
     Elastic,

@@ -11,7 +11,7 @@ import numpy as np
 from nrs_design.identification.actuator.motor import MotorModel
 from nrs_design.identification.actuator.scan import tells_friction
 from nrs_design.identification.actuator.time_fit import TimeFit
-from nrs_design.identification.datasets import ActuatorRecord
+from nrs_design.identification.datasets.records import ActuatorRecord
 from nrs_design.identification.held import Held
 from nrs_design.identification.numeric import Array, beyond, column_sizes
 from nrs_design.identification.statistics import WHITE

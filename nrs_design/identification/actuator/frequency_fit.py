@@ -11,7 +11,7 @@ from nrs_design.errors import DataError
 from nrs_design.identification.actuator.friction import friction_shape
 from nrs_design.identification.actuator.model import ActuatorFit, actuator_fit
 from nrs_design.identification.actuator.phasors import Phasors, held_amplitude
-from nrs_design.identification.datasets import FrequencyResponse
+from nrs_design.identification.datasets.records import FrequencyResponse
 from nrs_design.identification.held import Held
 from nrs_design.identification.numeric import Array, Complex
 from nrs_design.identification.statistics import Uncertainty, uncertainty

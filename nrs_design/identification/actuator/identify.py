@@ -15,10 +15,11 @@ from nrs_design.identification.actuator.model import FROM_THE_ROW, ActuatorFit, 
 from nrs_design.identification.actuator.phasors import Phasors, phasors_of
 from nrs_design.identification.actuator.scan import longest_delay, scan_motor
 from nrs_design.identification.actuator.time_fit import TimeFit, fit_in_time
-from nrs_design.identification.datasets import ActuatorRecord, FrequencyResponse, Source
 from nrs_design.identification.datasets.checks import doubt_step
+from nrs_design.identification.datasets.records import ActuatorRecord, FrequencyResponse
 from nrs_design.identification.numeric import Array, Complex
 from nrs_design.identification.statistics import WHITE, Estimate, span
+from nrs_design.identification.tables.table import Source
 from nrs_design.identification.tissue.ranges import check_spread, spread_ranges
 from nrs_design.models.actuator import MotorConstants
 from nrs_design.progress import Progress, silent

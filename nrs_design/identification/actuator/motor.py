@@ -8,7 +8,7 @@ from typing import Self
 import numpy as np
 
 from nrs_design.identification.actuator.friction import friction_shape
-from nrs_design.identification.datasets import ActuatorRecord
+from nrs_design.identification.datasets.records import ActuatorRecord
 from nrs_design.identification.held import Held, Lags
 from nrs_design.identification.numeric import Array, beyond
 

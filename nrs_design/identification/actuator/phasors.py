@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from nrs_design.errors import DataError
-from nrs_design.identification.datasets import ActuatorRecord
+from nrs_design.identification.datasets.records import ActuatorRecord
 from nrs_design.identification.numeric import Array
 
 # The response is taken as periodic after this part of a record.

@@ -8,7 +8,7 @@ import numpy as np
 
 from nrs_design.errors import DataError
 from nrs_design.identification.actuator.motor import MotorModel
-from nrs_design.identification.datasets import ActuatorRecord
+from nrs_design.identification.datasets.records import ActuatorRecord
 from nrs_design.identification.held import Held, Lags
 from nrs_design.identification.numeric import TINY, Array, beyond
 

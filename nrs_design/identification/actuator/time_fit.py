@@ -9,7 +9,7 @@ import numpy as np
 
 from nrs_design.errors import DataError
 from nrs_design.identification.actuator.motor import MotorModel
-from nrs_design.identification.datasets import ActuatorRecord
+from nrs_design.identification.datasets.records import ActuatorRecord
 from nrs_design.identification.numeric import Array, bic, limited_step
 from nrs_design.identification.rounding import rounding_scatter
 from nrs_design.identification.statistics import Uncertainty, uncertainty

@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING
 from nrs_design.api.audit import Audit, AuditCheck
 from nrs_design.api.identified import FittedRange, Identification
 from nrs_design.errors import DataError
-from nrs_design.identification.actuator import THESIS_MOTOR, identify_actuator
-from nrs_design.identification.datasets import (
+from nrs_design.identification.actuator.identify import identify_actuator
+from nrs_design.identification.datasets.records import (
     FrequencyResponse,
     read_actuator,
     read_signals,
     read_tissue,
 )
-from nrs_design.identification.delay import identify_delay
+from nrs_design.identification.delay.identify import identify_delay
 from nrs_design.identification.facts.actuator import actuator_facts
 from nrs_design.identification.facts.delay import delay_facts
 from nrs_design.identification.facts.finding import Facts, finding_facts
@@ -29,11 +29,15 @@ from nrs_design.identification.reporting.actuator import actuator_report
 from nrs_design.identification.reporting.delay import delay_report
 from nrs_design.identification.reporting.running import run_report
 from nrs_design.identification.reporting.tissue import tissue_report
-from nrs_design.identification.running import Check, judge_run, read_run, read_run_bounds
+from nrs_design.identification.running.bounds import read_run_bounds
+from nrs_design.identification.running.check import Check
+from nrs_design.identification.running.judge import judge_run
+from nrs_design.identification.running.log import read_run
 from nrs_design.identification.running.proof import proof_of
 from nrs_design.identification.tables.columns import parse_mapping
-from nrs_design.identification.tissue import identify_tissue
+from nrs_design.identification.tissue.identify import identify_tissue
 from nrs_design.identification.write_spec import check_turning
+from nrs_design.models.actuator import THESIS_MOTOR
 from nrs_design.models.contact import LAWS
 
 if TYPE_CHECKING:

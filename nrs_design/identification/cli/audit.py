@@ -17,7 +17,8 @@ from nrs_design.identification.cli.identify.common import SYNTHETIC, ColumnMap, 
 from nrs_design.identification.facts.running import run_judgement_facts
 
 if TYPE_CHECKING:
-    from nrs_design.identification.running import Check, RunJudgement
+    from nrs_design.identification.running.check import Check
+    from nrs_design.identification.running.judge import RunJudgement
 
 _EXIT = {
     "inside": exit_codes.PROVED,
@@ -69,8 +70,9 @@ def audit(
     Example: nrs-design audit run.csv soft-tissue.nrs.yaml --certificate soft-tissue.cert.json
     """
     from nrs_design.identification.reporting.running import run_report
-    from nrs_design.identification.running import judge_run, read_run, read_run_bounds
-    from nrs_design.identification.running.bounds import parse_command_limit
+    from nrs_design.identification.running.bounds import parse_command_limit, read_run_bounds
+    from nrs_design.identification.running.judge import judge_run
+    from nrs_design.identification.running.log import read_run
     from nrs_design.identification.running.proof import proof_of
     from nrs_design.identification.write_spec import check_turning
     from nrs_design.spec import read_spec

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from nrs_design.identification.datasets import SignalRecord
+from nrs_design.identification.datasets.records import SignalRecord
 from nrs_design.identification.delay.models import AbstractFollower, HeldCopy
 from nrs_design.identification.numeric import (
     Array,

@@ -11,13 +11,13 @@ from itertools import pairwise
 import numpy as np
 
 from nrs_design.errors import DataError
-from nrs_design.identification.datasets import SignalRecord, Source
 from nrs_design.identification.datasets.checks import (
     FEWEST_ROWS,
     doubt_step,
     gaps_in,
     pauses_text,
 )
+from nrs_design.identification.datasets.records import SignalRecord
 from nrs_design.identification.delay.fit import DelayFit, errors_at, fit_delay, fit_held
 from nrs_design.identification.delay.models import (
     AbstractFollower,
@@ -35,6 +35,7 @@ from nrs_design.identification.statistics import (
     joint_level,
     student_quantile,
 )
+from nrs_design.identification.tables.table import Source
 from nrs_design.spec.plausible import doubt_size
 
 # Largest delay that is looked for, as a part of the record.

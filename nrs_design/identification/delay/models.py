@@ -9,7 +9,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from nrs_design.identification.datasets import SignalRecord
+from nrs_design.identification.datasets.records import SignalRecord
 from nrs_design.identification.held import Held, Lags
 from nrs_design.identification.numeric import Array
 

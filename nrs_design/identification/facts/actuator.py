@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 from nrs_design.identification.facts.finding import Facts, estimate_numbers
 
 if TYPE_CHECKING:
-    from nrs_design.identification.actuator import ActuatorFit, ActuatorIdentification
+    from nrs_design.identification.actuator.identify import ActuatorIdentification
+    from nrs_design.identification.actuator.model import ActuatorFit
 
 
 def actuator_facts(found: ActuatorIdentification) -> Facts:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from nrs_design.identification.facts.finding import Facts, estimate_numbers
 
 if TYPE_CHECKING:
-    from nrs_design.identification.delay import DelayIdentification
+    from nrs_design.identification.delay.identify import DelayIdentification
 
 
 def delay_facts(found: DelayIdentification) -> Facts:

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 from nrs_design.identification.finding import Finding, is_synthetic
 
 if TYPE_CHECKING:
-    from nrs_design.identification.datasets import Source
     from nrs_design.identification.statistics import Estimate
+    from nrs_design.identification.tables.table import Source
 
 # Of JSON.
 Facts = dict[str, Any]

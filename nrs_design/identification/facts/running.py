@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 from nrs_design.identification.facts.finding import Facts, source_facts
 
 if TYPE_CHECKING:
-    from nrs_design.identification.running import Check, RunJudgement
+    from nrs_design.identification.running.check import Check
+    from nrs_design.identification.running.judge import RunJudgement
     from nrs_design.spec import LoadedSpec
 
 

@@ -9,7 +9,9 @@ from nrs_design.identification.facts.finding import Facts, estimate_numbers
 
 if TYPE_CHECKING:
     from nrs_design.identification.statistics import Estimate
-    from nrs_design.identification.tissue import ModelFit, RecordFit, TissueIdentification
+    from nrs_design.identification.tissue.identify import TissueIdentification
+    from nrs_design.identification.tissue.output_error import RecordFit
+    from nrs_design.identification.tissue.pool import ModelFit
     from nrs_design.identification.tissue.prony import Series
     from nrs_design.identification.tissue.tangent import Tangent
     from nrs_design.models.contact import AbstractContactLaw

@@ -21,7 +21,7 @@ from nrs_design.reporting.document import Block, Bullets, Illustration, Report, 
 from nrs_design.reporting.formatting import number
 
 if TYPE_CHECKING:
-    from nrs_design.identification.actuator import ActuatorIdentification
+    from nrs_design.identification.actuator.identify import ActuatorIdentification
     from nrs_design.identification.actuator.model import ActuatorFit
 
 

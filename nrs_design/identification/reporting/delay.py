@@ -16,7 +16,7 @@ from nrs_design.reporting.document import Illustration, Report, Section, Table
 from nrs_design.reporting.formatting import number
 
 if TYPE_CHECKING:
-    from nrs_design.identification.delay import DelayIdentification
+    from nrs_design.identification.delay.identify import DelayIdentification
 
 _MEANING = (
     "The delay is dead time beyond the dynamics of the model beside it; a loop of another model "

@@ -13,9 +13,9 @@ from nrs_design.reporting.document import Bullets, Light, Report, Section, State
 from nrs_design.reporting.formatting import number
 
 if TYPE_CHECKING:
-    from nrs_design.identification.datasets import Source
     from nrs_design.identification.finding import Finding
     from nrs_design.identification.statistics import Estimate
+    from nrs_design.identification.tables.table import Source
 
 IDENTIFIED = "identified"
 FOOTER = "Page of nrs-design. An identification is an estimate, not a proof."

@@ -10,7 +10,7 @@ from nrs_design.identification.reporting.identification import facts_of, label_o
 from nrs_design.reporting.document import Block, Bullets, Illustration, Report, Section, Table
 
 if TYPE_CHECKING:
-    from nrs_design.identification.running import RunJudgement
+    from nrs_design.identification.running.judge import RunJudgement
 
 _FOOTER = "Page of nrs-design. A run is one run, not a proof."
 _PROVED = "A run inside its bounds is one run; the proof is about all of them."

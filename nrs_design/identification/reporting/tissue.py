@@ -21,13 +21,15 @@ from nrs_design.identification.reporting.identification import (
     marked,
 )
 from nrs_design.identification.statistics import span
-from nrs_design.identification.tissue import OFFSET_UNITS, OFFSET_WORDS
+from nrs_design.identification.tissue.offsets import OFFSET_UNITS, OFFSET_WORDS
 from nrs_design.proof.text import counted
 from nrs_design.reporting.document import Block, Bullets, Illustration, Report, Section, Table
 from nrs_design.reporting.formatting import number, shortened
 
 if TYPE_CHECKING:
-    from nrs_design.identification.tissue import ModelFit, RecordFit, TissueIdentification
+    from nrs_design.identification.tissue.identify import TissueIdentification
+    from nrs_design.identification.tissue.output_error import RecordFit
+    from nrs_design.identification.tissue.pool import ModelFit
 _MEANING = (
     "Intervals are 95 % confidence intervals of the pooled parameters; with several records they "
     "hold the spread between records.",

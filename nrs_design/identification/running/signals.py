@@ -7,8 +7,8 @@ from fractions import Fraction
 import numpy as np
 
 from nrs_design.errors import DataError
-from nrs_design.identification.datasets import SignalRecord
-from nrs_design.identification.delay import identify_delay
+from nrs_design.identification.datasets.records import SignalRecord
+from nrs_design.identification.delay.identify import identify_delay
 from nrs_design.identification.running.bounds import RunBounds
 from nrs_design.identification.running.check import BoundStatus, Check, Violation
 from nrs_design.identification.running.log import RunLog

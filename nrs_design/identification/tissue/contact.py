@@ -12,7 +12,7 @@ from functools import cached_property
 
 import numpy as np
 
-from nrs_design.identification.datasets import TissueRecord
+from nrs_design.identification.datasets.records import TissueRecord
 from nrs_design.identification.numeric import Array, Flags, runs, smoothed
 from nrs_design.identification.statistics import independent
 from nrs_design.identification.tissue.cycles import find_cycles

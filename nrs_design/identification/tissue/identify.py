@@ -6,8 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from nrs_design.errors import DataError
-from nrs_design.identification.datasets import Source, TissueRecord
+from nrs_design.identification.datasets.records import TissueRecord
 from nrs_design.identification.statistics import Estimate
+from nrs_design.identification.tables.table import Source
 from nrs_design.identification.tissue.pool import ModelFit, fit_model
 from nrs_design.identification.tissue.ranges import check_spread
 from nrs_design.identification.tissue.tangent import Tangent, check_preload, tangent_of

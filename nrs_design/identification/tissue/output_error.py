@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from nrs_design.identification.datasets import TissueRecord
+from nrs_design.identification.datasets.records import TissueRecord
 from nrs_design.identification.numeric import TINY, Array
 from nrs_design.identification.rounding import rounding_scatter
 from nrs_design.identification.statistics import (

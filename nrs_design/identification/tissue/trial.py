@@ -8,8 +8,8 @@ from typing import Literal
 import numpy as np
 
 from nrs_design.errors import DataError
-from nrs_design.identification.datasets import TissueRecord
 from nrs_design.identification.datasets.checks import long_stretches, pauses_text, stretches_in
+from nrs_design.identification.datasets.records import TissueRecord
 from nrs_design.identification.numeric import Array, Flags, Rows, parted
 from nrs_design.identification.statistics import span
 from nrs_design.identification.tissue.contact import DetectedContact, find_contact, inner

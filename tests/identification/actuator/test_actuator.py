@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from nrs_design.errors import DataError
-from nrs_design.identification.actuator import identify_actuator
+from nrs_design.identification.actuator.identify import identify_actuator
 from nrs_design.identification.actuator.phasors import phasors_of
-from nrs_design.identification.datasets import FrequencyResponse, read_actuator
+from nrs_design.identification.datasets.records import FrequencyResponse, read_actuator
 from tests.identification import motors
 from tests.identification.support import MOTOR, sinusoids, source
 

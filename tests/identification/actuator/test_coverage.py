@@ -7,7 +7,7 @@ others it is 96 %, as `coverage.md` says.
 import numpy as np
 import pytest
 
-from nrs_design.identification.actuator import identify_actuator
+from nrs_design.identification.actuator.identify import identify_actuator
 from tests.identification import motors
 from tests.identification.support import MOTOR, holds
 

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from nrs_design.errors import DataError
-from nrs_design.identification.actuator import identify_actuator
+from nrs_design.identification.actuator.identify import identify_actuator
 from nrs_design.identification.actuator.model import fit_of
 from nrs_design.identification.actuator.motor import MotorModel
 from nrs_design.identification.actuator.scan import longest_delay, scan_motor
 from nrs_design.identification.actuator.time_fit import fit_in_time
-from nrs_design.identification.datasets import ActuatorRecord
+from nrs_design.identification.datasets.records import ActuatorRecord
 from tests.identification import motors, synthetic
 from tests.identification.support import MOTOR, sinusoids, source
 

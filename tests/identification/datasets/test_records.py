@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from nrs_design.errors import DataError
-from nrs_design.identification.datasets import (
+from nrs_design.identification.datasets.records import (
     FrequencyResponse,
     read_actuator,
     read_signals,

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from nrs_design.errors import DataError
-from nrs_design.identification.datasets import read_tissue
+from nrs_design.identification.datasets.records import read_tissue
 from nrs_design.identification.tables.columns import find_columns, parse_mapping
 from nrs_design.identification.tables.names import Name, read_name, read_stamp
 

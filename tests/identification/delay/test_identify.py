@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from nrs_design.errors import DataError
-from nrs_design.identification.delay import identify_delay
-from nrs_design.identification.delay.identify import is_smooth
+from nrs_design.identification.delay.identify import identify_delay, is_smooth
 from tests.identification import motors, signals
 
 SEEDS = 200

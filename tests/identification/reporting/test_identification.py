@@ -4,11 +4,11 @@ import shutil
 
 import pytest
 
-from nrs_design.identification.actuator import identify_actuator
-from nrs_design.identification.datasets import read_actuator, read_tissue
+from nrs_design.identification.actuator.identify import identify_actuator
+from nrs_design.identification.datasets.records import read_actuator, read_tissue
 from nrs_design.identification.reporting.actuator import actuator_report
 from nrs_design.identification.reporting.tissue import tissue_report
-from nrs_design.identification.tissue import identify_tissue
+from nrs_design.identification.tissue.identify import identify_tissue
 from nrs_design.reporting import render_html
 from tests.identification.support import MOTOR
 from tests.support import ROOT

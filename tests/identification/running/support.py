@@ -1,6 +1,8 @@
 """Logs of tests, and what is judged of them."""
 
-from nrs_design.identification.running import judge_run, read_run, read_run_bounds
+from nrs_design.identification.running.bounds import read_run_bounds
+from nrs_design.identification.running.judge import judge_run
+from nrs_design.identification.running.log import read_run
 from nrs_design.identification.tables.columns import parse_mapping
 from nrs_design.spec import read_spec
 from tests.identification import runs

@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 
 from nrs_design.errors import DataError, DesignError
-from nrs_design.identification.running import BoundStatus, judge_run, read_run, read_run_bounds
-from nrs_design.identification.running.bounds import Stiffness
+from nrs_design.identification.running.bounds import Stiffness, read_run_bounds
+from nrs_design.identification.running.check import BoundStatus
+from nrs_design.identification.running.judge import judge_run
+from nrs_design.identification.running.log import read_run
 from nrs_design.identification.running.stiffness import cut_windows, stiffness_of
 from nrs_design.spec import read_spec
 from tests.identification import runs

@@ -6,7 +6,8 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from nrs_design.identification.running import bounds_of_spec, judge_run
+from nrs_design.identification.running.bounds import bounds_of_spec
+from nrs_design.identification.running.judge import judge_run
 from nrs_design.identification.running.sector import judge_sector
 from nrs_design.spec import parse_spec
 from tests.identification import runs

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from nrs_design.identification.running import read_run_bounds
+from nrs_design.identification.running.bounds import read_run_bounds
 from nrs_design.spec import read_spec
 from tests.identification import runs
 from tests.identification.running.support import check, judged, log

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from nrs_design.identification.tissue import fit_record
+from nrs_design.identification.tissue.output_error import fit_record
 from nrs_design.models.contact import (
     Elastic,
     HuntCrossley,

@@ -5,8 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from nrs_design.identification.datasets import TissueRecord
-from nrs_design.identification.tissue import Preparation, fit_record, prepare
+from nrs_design.identification.datasets.records import TissueRecord
+from nrs_design.identification.tissue.output_error import fit_record
+from nrs_design.identification.tissue.trial import Preparation, prepare
 from nrs_design.models.contact import Elastic, KelvinBoltzmann, Motion
 from tests.identification import synthetic
 from tests.identification.support import quick, record, slow, source

@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 
-from nrs_design.identification.datasets import TissueRecord
-from nrs_design.identification.tissue import fit_record
+from nrs_design.identification.datasets.records import TissueRecord
+from nrs_design.identification.tissue.output_error import fit_record
 from nrs_design.models.contact import KelvinBoltzmann, Motion
 from tests.identification.support import holds, source
 

@@ -2,8 +2,10 @@
 
 import pytest
 
-from nrs_design.identification.datasets import TissueRecord
-from nrs_design.identification.tissue import Preparation, fit_record, identify_tissue
+from nrs_design.identification.datasets.records import TissueRecord
+from nrs_design.identification.tissue.identify import identify_tissue
+from nrs_design.identification.tissue.output_error import fit_record
+from nrs_design.identification.tissue.trial import Preparation
 from nrs_design.models.contact import Elastic, HuntCrossley, KelvinVoigt, Motion
 from tests.identification.support import holds, quick, record, source
 from tests.identification.unilateral import robot_record

@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from nrs_design.identification.tissue import fit_record, output_error
+from nrs_design.identification.tissue import output_error
+from nrs_design.identification.tissue.output_error import fit_record
 from nrs_design.identification.tissue.problem import LeastSquaresProblem, Point
 from nrs_design.identification.tissue.trial import Preparation, prepare
 from nrs_design.models.contact import (

@@ -5,8 +5,8 @@ from math import pi
 import pytest
 
 from nrs_design.errors import DataError, DesignError
-from nrs_design.identification.tissue import Preparation
 from nrs_design.identification.tissue.preparation_settings import read_preparation
+from nrs_design.identification.tissue.trial import Preparation
 
 
 def test_every_field_can_be_set():

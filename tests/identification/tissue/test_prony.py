@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from nrs_design.identification.datasets import TissueRecord
-from nrs_design.identification.tissue import prepare
+from nrs_design.identification.datasets.records import TissueRecord
 from nrs_design.identification.tissue.prony import fit_series
+from nrs_design.identification.tissue.trial import prepare
 from nrs_design.models.contact import KelvinBoltzmann, Motion
 from nrs_design.models.contact.relaxation import Relaxation
 from tests.identification import synthetic

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from nrs_design.identification.datasets import TissueRecord
-from nrs_design.identification.tissue import fit_record
+from nrs_design.identification.datasets.records import TissueRecord
+from nrs_design.identification.tissue.output_error import fit_record
 from nrs_design.identification.tissue.residuals import structure
 from nrs_design.models.contact import LAWS, Elastic, KelvinVoigt, Maxwell, Motion
 from tests.identification.support import quick, record, slow, source

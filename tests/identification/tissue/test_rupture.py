@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from nrs_design.identification.datasets import TissueRecord
+from nrs_design.identification.datasets.records import TissueRecord
 from nrs_design.identification.tissue.rupture import find_rupture
 from nrs_design.identification.tissue.trial import prepare
 from nrs_design.models.contact import Elastic, HuntCrossley, KelvinVoigt, Maxwell, Motion

@@ -7,7 +7,7 @@ from functools import cache
 import pytest
 
 from nrs_design.errors import DataError
-from nrs_design.identification.tissue import identify_tissue
+from nrs_design.identification.tissue.identify import identify_tissue
 from nrs_design.identification.tissue.tangent import tangent_of
 from nrs_design.identification.write_spec import merge_tissue
 from nrs_design.models.contact import Elastic, HuntCrossley

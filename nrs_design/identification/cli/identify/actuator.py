@@ -25,7 +25,7 @@ from nrs_design.identification.cli.identify.common import (
 from nrs_design.identification.facts.actuator import actuator_facts
 
 if TYPE_CHECKING:
-    from nrs_design.identification.actuator import ActuatorIdentification
+    from nrs_design.identification.actuator.identify import ActuatorIdentification
 
 
 @command("identify-actuator")
@@ -58,8 +58,9 @@ def actuator(
 
     Example: nrs-design identify actuator specs/data/actuator-*hz.csv --report reports/actuator.html
     """
-    from nrs_design.identification.actuator import THESIS_MOTOR, identify_actuator
-    from nrs_design.identification.datasets import FrequencyResponse, read_actuator
+    from nrs_design.identification.actuator import THESIS_MOTOR
+    from nrs_design.identification.actuator.identify import identify_actuator
+    from nrs_design.identification.datasets.records import FrequencyResponse, read_actuator
     from nrs_design.identification.reporting.actuator import actuator_report
     from nrs_design.identification.write_spec import check_actuator, merge_actuator
 

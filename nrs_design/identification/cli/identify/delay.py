@@ -22,7 +22,7 @@ from nrs_design.identification.cli.identify.common import (
 from nrs_design.identification.facts.delay import delay_facts
 
 if TYPE_CHECKING:
-    from nrs_design.identification.delay import DelayIdentification
+    from nrs_design.identification.delay.identify import DelayIdentification
 
 INPUT, OUTPUT = "input_any", "output_any"
 
@@ -63,8 +63,8 @@ def delay(
 
     Example: nrs-design identify delay run.csv --command force_raw --measured force_used
     """
-    from nrs_design.identification.datasets import read_signals
-    from nrs_design.identification.delay import identify_delay
+    from nrs_design.identification.datasets.records import read_signals
+    from nrs_design.identification.delay.identify import identify_delay
     from nrs_design.identification.reporting.delay import delay_report
     from nrs_design.identification.write_spec import (
         check_delay_place,

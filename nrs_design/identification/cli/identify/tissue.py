@@ -28,7 +28,8 @@ from nrs_design.models.contact import LAWS
 from nrs_design.proof.text import counted
 
 if TYPE_CHECKING:
-    from nrs_design.identification.tissue import RecordFit, TissueIdentification
+    from nrs_design.identification.tissue.identify import TissueIdentification
+    from nrs_design.identification.tissue.output_error import RecordFit
     from nrs_design.identification.tissue.tangent import Tangent
 
 
@@ -100,10 +101,10 @@ def tissue(
 
     Example: nrs-design identify tissue specs/data/silicone-soft-*.csv --lever-arm '0.24 m'
     """
-    from nrs_design.identification.datasets import read_tissue
+    from nrs_design.identification.datasets.records import read_tissue
     from nrs_design.identification.lever import parse_arm, parse_preload
     from nrs_design.identification.reporting.tissue import tissue_report
-    from nrs_design.identification.tissue import identify_tissue
+    from nrs_design.identification.tissue.identify import identify_tissue
     from nrs_design.identification.tissue.preparation_settings import read_preparation
     from nrs_design.identification.tissue.prony import fit_series
     from nrs_design.identification.write_spec import law_to_write, merge_tissue
@@ -188,7 +189,7 @@ def _print_tangent(about: Tangent, rotational: bool) -> None:
 
 
 def _offsets(fit: RecordFit, rotational: bool) -> list[str]:
-    from nrs_design.identification.tissue import OFFSET_UNITS, OFFSET_WORDS
+    from nrs_design.identification.tissue.offsets import OFFSET_UNITS, OFFSET_WORDS
 
     texts = []
     for offset in fit.offsets:

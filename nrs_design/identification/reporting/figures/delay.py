@@ -19,7 +19,7 @@ from nrs_design.reporting.style import (
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from nrs_design.identification.delay import DelayIdentification
+    from nrs_design.identification.delay.identify import DelayIdentification
 
 _MEASURED = "#7d8894"
 # Samples that are drawn, about where the command changes most.

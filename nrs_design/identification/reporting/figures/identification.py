@@ -23,7 +23,7 @@ from nrs_design.reporting.style import (
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from nrs_design.identification.actuator import ActuatorIdentification
+    from nrs_design.identification.actuator.identify import ActuatorIdentification
     from nrs_design.identification.statistics import Estimate
 
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from nrs_design.identification.running import RunJudgement
+    from nrs_design.identification.running.judge import RunJudgement
 
 _POINTS = 1500
 _LABELS = {

@@ -18,7 +18,7 @@ MAX_BYTES = 16 * 2**20
 # Of all matrices together.
 MAX_ENTRIES = 200_000
 _NUMBERED = re.compile("A[0-9]{1,6}")
-_OPTIONAL = ("rate", "time")
+_KNOWN = ("P", "A", "rate", "time")
 _CONTENT = "it holds `P`, and the modes as `A` (or A1, A2, ...), and may hold `rate` and `time`"
 
 
@@ -91,10 +91,6 @@ def _modes(content: Mapping[str, Any], path: Path) -> dict[str, object]:
     raise DataError("holds no modes", path=path, remedy=_CONTENT)
 
 
-def _is_matrix_name(key: str) -> bool:
-    return key in ("A", "P") or _NUMBERED.fullmatch(key) is not None
-
-
 def _read_json(raw: bytes) -> dict[str, Any]:
     content = json.loads(
         read_json_text(raw),
@@ -105,7 +101,7 @@ def _read_json(raw: bytes) -> dict[str, Any]:
     )
     if not isinstance(content, dict):
         raise ValueError("expected a JSON object")
-    if foreign := [key for key in content if key not in _OPTIONAL and not _is_matrix_name(key)]:
+    if foreign := [key for key in content if key not in _KNOWN and not _NUMBERED.fullmatch(key)]:
         raise ValueError(f"{quoted(foreign[0])} is not known here")
     if _count(content) > MAX_ENTRIES:
         raise ValueError(f"it holds more than {MAX_ENTRIES} entries")

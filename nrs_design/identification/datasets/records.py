@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -55,11 +55,6 @@ class TissueRecord:
         """File name without its ending."""
         return self.source.path.stem
 
-    @property
-    def duration(self) -> float:
-        """From first to last sample, in s."""
-        return float(self.motion.time[-1] - self.motion.time[0])
-
 
 @dataclass(frozen=True, eq=False)
 class ActuatorRecord:
@@ -108,8 +103,7 @@ def read_tissue(
     of time, a value that is not finite and a saturated sensor are a `DataError` with the row.
     """
     table = read_table(path, (LINEAR, ROTATIONAL), mapping or {}, progress)
-    (columns,) = _one_group(table)
-    time, deflection, force = (columns[quantity] for quantity in table.layout)
+    time, deflection, force = _one_group(table)
     check_time(table, time)
     check_varies(table, table.layout[1], deflection)
     check_varies(table, table.layout[2], force)
@@ -174,9 +168,8 @@ def read_signals(
     chosen = {"input_any", "output_any"} & set(mapping.values())
     layouts = [("time", *pair) for pair in (FREE if chosen else FOLLOWED)]
     table = read_table(path, layouts, mapping, progress)
-    (columns,) = _one_group(table)
+    time, sent, seen = _one_group(table)
     (found,) = table.columns.values()
-    time, sent, seen = (columns[quantity] for quantity in table.layout)
     check_time(table, time)
     names = found[table.layout[1]].name, found[table.layout[2]].name
     if table.layout[2] == "angle":
@@ -186,14 +179,16 @@ def read_signals(
     return SignalRecord(table.source, time - time[0], sent, seen, names)
 
 
-def _one_group(table: MeasurementTable) -> Sequence[dict[str, Array]]:
+def _one_group(table: MeasurementTable) -> list[Array]:
+    """Return the columns of a file that holds one record, in the order of the layout."""
     if len(table.groups) > 1:
         raise DataError(
             f"holds {len(table.groups)} groups of columns",
             path=table.source.path,
             remedy="write one record per file",
         )
-    return list(table.groups.values())
+    (columns,) = table.groups.values()
+    return [columns[quantity] for quantity in table.layout]
 
 
 def _actuator(table: MeasurementTable, group: str) -> list[ActuatorRecord]:
@@ -218,8 +213,7 @@ def _actuator(table: MeasurementTable, group: str) -> list[ActuatorRecord]:
 
 
 def _response(table: MeasurementTable) -> FrequencyResponse:
-    (columns,) = _one_group(table)
-    frequency, magnitude, phase = (columns[quantity] for quantity in RESPONSE)
+    frequency, magnitude, phase = _one_group(table)
     if len(frequency) < 3:
         table.fail(
             f"{len(frequency)} frequencies are too few",

@@ -188,7 +188,9 @@ def _tissue_figures(found: TissueIdentification) -> Iterator[Illustration]:
         yield Illustration(
             f"fit-{name}",
             fit.record.name,
-            f"{note}{_quality(fit)}",
+            f"{note}Fit to this record alone: RMSE {number(fit.rmse)}, whiteness p = "
+            f"{fit.uncertainty.whiteness:.2g}; {fit.agreeing} of {counted(fit.starts, 'start')} "
+            "ended at this optimum.",
             draw_fit(trial.motion.time, trial.force, fit.fitted, force, used),
         )
         yield Illustration(
@@ -197,11 +199,3 @@ def _tissue_figures(found: TissueIdentification) -> Iterator[Illustration]:
             f"{note}The area of the loop is the energy that the tissue takes up.",
             draw_loop(trial.deflection, trial.measured, fit.fitted[used], (deflection, force)),
         )
-
-
-def _quality(fit: RecordFit) -> str:
-    return (
-        f"Fit to this record alone: RMSE {number(fit.rmse)}, whiteness p = "
-        f"{fit.uncertainty.whiteness:.2g}; {fit.agreeing} of {counted(fit.starts, 'start')} ended "
-        "at this optimum."
-    )

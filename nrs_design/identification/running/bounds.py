@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
-from typing import NamedTuple
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
 
 from nrs_design.controllers.sector import Sector, sector_of
 from nrs_design.errors import DesignError
@@ -21,14 +20,6 @@ class Stiffness:
 
     ranges: tuple[tuple[float, float], ...]  # Of the environments that it touches
     foreign: tuple[str, ...]  # Environments among them that no window can tell
-
-
-class Unseen(NamedTuple):
-    """What a spec takes for granted and no log shows: its name, why, and what is allowed."""
-
-    name: str
-    why: str
-    allowed: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +41,8 @@ class RunBounds:
     # the proof.
     losable: bool | None
     command: str  # Unit of the motor's command
-    unseen: tuple[Unseen, ...] = ()  # What else must hold, and no log shows
+    # By environment, deflections that are taken for granted, in words; no log shows them.
+    preloads: Mapping[str, str] = field(default_factory=dict)
     # Command at which the driver saturates, in that unit; None if the spec does not say.
     saturates: float | None = None
     # What torque and angle keep in every row; a text says why that is not known.
@@ -64,6 +56,11 @@ class RunBounds:
     def source(self) -> str:
         """Return the source of the bounds; without a certificate it does not mention a proof."""
         return "the proof" if self.proved else "the spec, which is not proved"
+
+    @property
+    def granted(self) -> str:
+        """The basis of what no check shows."""
+        return f"taken for granted by {self.source}"
 
     def ranges_of(self, controllers: Iterable[str]) -> tuple[tuple[float, float], ...]:
         """Return the ranges of stiffness that some controllers may meet, each once."""
@@ -119,7 +116,11 @@ def bounds_of_spec(spec: InteractionDesignSpec) -> RunBounds:
         period=_period(spec),
         losable=None if spec.contact is None else spec.contact == "losable",
         command=spec.command,
-        unseen=tuple(_unseen(spec)),
+        preloads={
+            name: " to ".join(end.text for end in preload)
+            for name in spec.touched
+            if (preload := spec.environments[name].preload_range) is not None
+        },
         saturates=None if spec.limits.command is None else spec.limits.command.si,
         sector=sector_of(spec),
         oldest=0.0 if spec.sampling is None else float(spec.sampling.oldest),
@@ -132,13 +133,6 @@ def _late(spec: InteractionDesignSpec) -> str:
         return ""
     first, last = (f"{float(end):g} s" for end in spec.late)
     return first if first == last else f"{first} to {last}"
-
-
-def _unseen(spec: InteractionDesignSpec) -> Iterator[Unseen]:
-    for name in spec.touched:
-        if (preload := spec.environments[name].preload_range) is not None:
-            why = "a log does not say where its surface is"
-            yield Unseen(f"preload of {name}", why, " to ".join(end.text for end in preload))
 
 
 def _period(spec: InteractionDesignSpec) -> float | None:

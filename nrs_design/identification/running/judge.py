@@ -22,6 +22,7 @@ from nrs_design.identification.running.stiffness import Window
 
 # In s; long enough for some rows of any loop, short beside the motion of a hand.
 WINDOW = 0.5
+_NO_SURFACE = "a log does not say where its surface is"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -110,8 +111,8 @@ def judge_run(
         judge_saturation(log, bounds, bounds.saturates if command_limit is None else command_limit),
         judge_force(log, bounds),
         *(
-            Check.open(name, why, allowed, f"taken for granted by {bounds.source}")
-            for name, why, allowed in bounds.unseen
+            Check.open(f"preload of {name}", _NO_SURFACE, allowed, bounds.granted)
+            for name, allowed in bounds.preloads.items()
         ),
     )
     judged = None if sector is None else sector.judged

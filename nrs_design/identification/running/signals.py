@@ -20,10 +20,6 @@ from nrs_design.proof.bounds import lower, upper
 _UNEVEN = 0.01
 
 
-def _assumed(bounds: RunBounds) -> str:
-    return f"taken for granted by {bounds.source}"
-
-
 def judge_delay(log: RunLog, bounds: RunBounds) -> Check:
     """Judge how late the motion follows the command."""
     seen = next((name for name in ("angle", "velocity") if name in log.columns), None)
@@ -43,7 +39,7 @@ def judge_delay(log: RunLog, bounds: RunBounds) -> Check:
     if found.doubts:
         return Check.open("delay", f"{words}, in doubt: {found.doubts[0]}")
     if bounds.delay is None:
-        return Check("delay", BoundStatus.NOT_MODELLED, words, _time_of(bounds), _assumed(bounds))
+        return Check("delay", BoundStatus.NOT_MODELLED, words, _time_of(bounds), bounds.granted)
     status = BoundStatus.UNDECIDED if high >= bounds.delay else BoundStatus.INSIDE
     first = None
     if low > bounds.delay:
@@ -58,7 +54,7 @@ def judge_jitter(log: RunLog, bounds: RunBounds) -> Check:
     words = f"steps of {span(steps.min(), steps.max(), 's')}, usually {log.step:.4g} s"
     if bounds.period is not None and not _holds_whole(log.step, bounds.period):
         words += f": no whole number of periods of {bounds.period:g} s"
-    return Check("jitter", BoundStatus.NOT_MODELLED, words, _time_of(bounds), _assumed(bounds))
+    return Check("jitter", BoundStatus.NOT_MODELLED, words, _time_of(bounds), bounds.granted)
 
 
 def _holds_whole(step: float, period: float) -> bool:
@@ -94,10 +90,10 @@ def judge_saturation(log: RunLog, bounds: RunBounds, limit: float | None) -> Che
     allowed = f"below {limit:g} {log.command_unit}"
     met = np.flatnonzero(size >= limit)
     if not len(met):
-        return Check("saturation", BoundStatus.INSIDE, largest, allowed, _assumed(bounds))
+        return Check("saturation", BoundStatus.INSIDE, largest, allowed, bounds.granted)
     words = f"the command is {log.columns['command'][met[0]]:.5g} {log.command_unit}"
     first = Violation(log.begin + float(log.time[met[0]]), words)
-    return Check("saturation", BoundStatus.OUTSIDE, largest, allowed, _assumed(bounds), first)
+    return Check("saturation", BoundStatus.OUTSIDE, largest, allowed, bounds.granted, first)
 
 
 def judge_force(log: RunLog, bounds: RunBounds) -> Check:

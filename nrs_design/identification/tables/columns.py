@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
 from functools import partial
+from itertools import islice
 from pathlib import Path
 
 from nrs_design.errors import DataError
@@ -140,26 +141,20 @@ def _grouped(
             )
         found[name.group][name.quantity] = Column(index, text, name.factor, name.read_as)
     if "time" in wanted and not any("time" in group for group in found.values()):
-        _add_stamp(header, found)
-    return found, faults
-
-
-def _add_stamp(header: Sequence[str], found: dict[str, dict[str, Column]]) -> None:
-    """Take the first time stamp of a bag for the time."""
-    for index, text in enumerate(header):
-        name = read_stamp(text)
-        if name is not None:
+        # The first time stamp of a bag is taken for the time.
+        stamps = ((at, text, name) for at, text in enumerate(header) if (name := read_stamp(text)))
+        for index, text, name in islice(stamps, 1):
             found.setdefault("", {})["time"] = Column(index, text, name.factor, name.read_as)
-            return
+    return found, faults
 
 
 def _complete(
     found: dict[str, dict[str, Column]], layout: tuple[str, ...], optional: tuple[str, ...]
 ) -> dict[str, dict[str, Column]]:
-    shared = {layout[0]: found.get("", {}).get(layout[0])}
+    shared = {key: column for key, column in found.get("", {}).items() if key == layout[0]}
     groups: dict[str, dict[str, Column]] = {}
     for group, columns in found.items():
-        available = {key: column for key, column in shared.items() if column} | columns
+        available = shared | columns
         if set(layout) <= set(available):
             taken = (*layout, *(key for key in optional if key in available))
             groups[group] = {quantity: available[quantity] for quantity in taken}

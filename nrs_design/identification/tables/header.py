@@ -27,6 +27,8 @@ MAX_PREAMBLE = 100
 SYNTHETIC = "synthetic"
 # Blanks, None, come last: names may hold them.
 SEPARATORS = (",", ";", "\t", None)
+# What a line of units may be about.
+_MEASURED = ("time", "deflection", "force", "angle", "torque", "velocity", "command")
 
 _DECIMAL_COMMA = re.compile(r"^[+-]?\d+,\d+([eE][+-]?\d+)?$")
 _THOUSANDS = re.compile(r"^[+-]?[1-9]\d{0,2}(,\d{3})+$")
@@ -210,12 +212,10 @@ def _are_units(cells: Sequence[str], width: int) -> bool:
     """Tell whether a line below the names holds their units, such as ``(s);(mm);(N)``."""
     if len(cells) != width or not any(cells) or any(is_decimal(cell) for cell in cells):
         return False
-    return all(not cell or _BRACKETS.match(cell) or _is_unit(cell) for cell in cells)
-
-
-def _is_unit(cell: str) -> bool:
-    quantities = ("time", "deflection", "force", "angle", "torque", "velocity", "command")
-    return any(read_unit(cell, quantity) in UNITS[quantity] for quantity in quantities)
+    return all(
+        not cell or _BRACKETS.match(cell) or any(read_unit(cell, q) in UNITS[q] for q in _MEASURED)
+        for cell in cells
+    )
 
 
 def _with_unit(name: str, unit: str, mapped: Collection[str]) -> str:

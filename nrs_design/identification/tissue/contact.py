@@ -6,7 +6,7 @@ corner of a curve that is flat on one side, found by least squares over a grid o
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -98,7 +98,10 @@ def find_contact(record: TissueRecord) -> DetectedContact | None:
     for cycle in find_cycles(x)[:_CYCLES]:
         for side, row in corners.items():
             row += _corner(*_way_in(side * x, side * velocity, force, cycle))
-        gain, side = max((_evidence(row), side) for side, row in corners.items())
+        # Independent touches add up what they tell of air.
+        gain, side = max(
+            (sum(max(c.gain, 0.0) for c in row if c.flat), side) for side, row in corners.items()
+        )
         if gain >= _BETTER:
             # A touch may meet a tissue that has not come back: the least position tells best.
             likely = (c for c in corners[side] if c.flat or c.gain >= _PLAUSIBLE)
@@ -107,11 +110,6 @@ def find_contact(record: TissueRecord) -> DetectedContact | None:
             ends = corner.low - corner.at, corner.high - corner.at
             return DetectedContact(side * corner.at, ends, side, beyond, _clear(force, beyond))
     return None
-
-
-def _evidence(corners: Sequence[_Corner]) -> float:
-    """Add up what independent touches tell of air."""
-    return sum(max(corner.gain, 0.0) for corner in corners if corner.flat)
 
 
 def _way_in(u: Array, velocity: Array, force: Array, cycle: slice) -> tuple[Array, Array, Array]:

@@ -102,21 +102,16 @@ def _fit(trial: Trial, terms: int) -> _Fit:
     from scipy.optimize import least_squares
 
     low, high = np.log(trial.step), np.log(3 * trial.duration)
-    ends = []
 
     def error_at(logs: Array) -> Array:
         return _solve(trial, np.exp(logs))[1]
 
-    for start in _starts(trial, terms, low, high):
-        found = least_squares(
-            error_at,
-            start,
-            bounds=(low, high),
-            diff_step=np.full(terms, 1e-4),
-            xtol=1e-8,
-        )
-        ends.append((float(found.cost), np.exp(found.x)))
-    times = min(ends, key=lambda end: end[0])[1]
+    step = np.full(terms, 1e-4)
+    ends = [
+        least_squares(error_at, start, bounds=(low, high), diff_step=step, xtol=1e-8)
+        for start in _starts(trial, terms, low, high)
+    ]
+    times = np.exp(min(ends, key=lambda end: end.cost).x)
     values, error = _solve(trial, times)
     n = len(error)
     count = 1 + 2 * terms + len(offset_names(Elastic, trial)) + terms * len(trial.unrested) + 1

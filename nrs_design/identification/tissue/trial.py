@@ -250,7 +250,7 @@ def _window(record: TissueRecord, wanted: Preparation) -> tuple[TissueRecord, li
         raise DataError(
             f"{inside.sum()} samples lie between start and end, at least {FEWEST} are needed",
             path=record.source.path,
-            remedy=f"the record lasts from 0 s to {record.duration:.6g} s",
+            remedy=f"the record lasts from 0 s to {time[-1]:.6g} s",
         )
     kept = _rows(record, inside)
     if wanted.negate:

@@ -208,7 +208,7 @@ def test_what_no_log_shows_is_not_judged_so_the_run_is_not_inside(tmp_path):
     bounds = read_run_bounds(read_spec(ROBOT / "concha.nrs.yaml"))
     unseen = check(judged(log(tmp_path), bounds, command_limit=3000), "preload of concha")
     assert (unseen.status, unseen.allowed) == ("not judged", "0.1 rad to 0.3 rad")
-    assert SOFT.unseen == ()
+    assert SOFT.preloads == {}
 
 
 def test_a_tissue_that_remembers(tmp_path):

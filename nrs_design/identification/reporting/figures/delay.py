@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from nrs_design.identification.reporting.figures.identification import MEASURED
 from nrs_design.reporting.style import (
     BLUE,
     INK,
@@ -21,7 +22,6 @@ if TYPE_CHECKING:
 
     from nrs_design.identification.delay.identify import DelayIdentification
 
-_MEASURED = "#7d8894"
 # Samples that are drawn, about where the command changes most.
 _DRAWN = 400
 # In samples: delays that spread less differ by the arithmetic of the fit only.
@@ -41,7 +41,7 @@ def draw_following(found: DelayIdentification) -> Figure:
     above.step(record.time[pick], record.sent[pick], where="post", color=INK, linewidth=1.2)
     above.set_ylabel(record.names[0])
     below.plot(
-        record.time[pick], record.seen[pick], ".", color=_MEASURED, markersize=4.0, label="data"
+        record.time[pick], record.seen[pick], ".", color=MEASURED, markersize=4.0, label="data"
     )
     fitted = found.chosen.fitted[pick]
     below.plot(record.time[pick], fitted, color=BLUE, linewidth=1.4, label="fitted")

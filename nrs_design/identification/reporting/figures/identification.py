@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 # More points than these cannot be told apart on a page.
 _POINTS = 1500
-_MEASURED = "#7d8894"
+MEASURED = "#7d8894"
 _UNUSED = "#d9b7a0"
 
 
@@ -45,12 +45,12 @@ def draw_fit(
 
     Samples that were not used for the fit are pale.
     """
-    pick = _thin(len(time))
+    pick = thinned(len(time))
     kept = np.ones(len(time), bool)[pick] if used is None else used[pick]
     figure = new_figure(4.4)
     above, below = figure.subplots(2, 1, sharex=True, height_ratios=[2.4, 1.0])
     t, data, curve = time[pick], measured[pick], fitted[pick]
-    above.plot(t[kept], data[kept], ".", color=_MEASURED, markersize=4.0, label="data")
+    above.plot(t[kept], data[kept], ".", color=MEASURED, markersize=4.0, label="data")
     if not kept.all():
         above.plot(t[~kept], data[~kept], "x", color=_UNUSED, markersize=3.5, label="not used")
     above.plot(t, np.where(kept, curve, np.nan), color=BLUE, label="fitted", linewidth=1.4)
@@ -67,9 +67,9 @@ def draw_fit(
 @styled
 def draw_loop(deflection: Array, measured: Array, fitted: Array, labels: tuple[str, str]) -> Figure:
     """Draw force over deflection, whose area is the energy that the tissue takes."""
-    pick = _thin(len(deflection))
+    pick = thinned(len(deflection))
     figure, axes = new_axes(3.9)
-    axes.plot(deflection[pick], measured[pick], ".", color=_MEASURED, markersize=4.0, label="data")
+    axes.plot(deflection[pick], measured[pick], ".", color=MEASURED, markersize=4.0, label="data")
     axes.plot(deflection[pick], fitted[pick], color=BLUE, label="fitted", linewidth=1.4)
     axes.set_xlabel(labels[0])
     axes.set_ylabel(labels[1])
@@ -136,5 +136,6 @@ def _decibel(values: Complex) -> Array:
     return np.asarray(20 * np.log10(np.abs(values)))
 
 
-def _thin(count: int) -> slice:
+def thinned(count: int) -> slice:
+    """Return which of many points are drawn."""
     return slice(None, None, max(1, -(-count // _POINTS)))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from nrs_design.identification.reporting.figures.identification import thinned
 from nrs_design.reporting.style import (
     ALARM,
     BLUE,
@@ -20,7 +21,6 @@ if TYPE_CHECKING:
 
     from nrs_design.identification.running.judge import RunJudgement
 
-_POINTS = 1500
 _LABELS = {
     "angle": "Angle [rad]",
     "torque": "Torque [N m]",
@@ -61,7 +61,7 @@ def draw_judgement(found: RunJudgement) -> Figure:
     names = [name for name in _LABELS if name in log.columns]
     figure = new_figure(0.8 + 1.15 * len(names))
     rows = figure.subplots(len(names), 1, sharex=True, squeeze=False)[:, 0]
-    pick = slice(None, None, max(1, -(-len(log.time) // _POINTS)))
+    pick = thinned(len(log.time))
     for axes, name in zip(rows, names, strict=True):
         values = log.columns[name][pick]
         axes.step(log.begin + log.time[pick], values, where="post", color=INK, linewidth=1.0)

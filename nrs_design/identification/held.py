@@ -83,11 +83,8 @@ class Lags:
 
         An angle is the integral of the model's output, and may begin anywhere.
         """
-        ends = [np.exp(-(time - time[0]) / t) for t in self.times]
-        columns = [part for end in ends for part in (end.real, end.imag)]
-        kept = [c for c in columns[: 2 * len(self.times)] if np.any(np.abs(c) > 0)]
-        if self.times[0].imag:
-            kept = kept[:2]
+        ends = [np.exp(-(time - time[0]) / t) for t, _ in self._pairs()]
+        kept = [part for end in ends for part in (end.real, end.imag) if part.any()]
         return np.column_stack([np.ones_like(time), *kept] if angle else kept)
 
     def _pairs(self) -> Iterator[tuple[complex, complex]]:

@@ -34,9 +34,9 @@ def parse_arm(text: str | None, *, rotational: bool) -> float | None:
     return arm
 
 
-def parse_offset(setting: str, text: str | None, *, rotational: bool) -> float | None:
-    """Read ``zero``, a position, or ``tare``, a force, in SI; ``fit`` or nothing is None."""
-    if text is None or text == "fit":
+def parse_offset(setting: str, text: str, *, rotational: bool) -> float | None:
+    """Read ``zero``, a position, or ``tare``, a force, in SI; ``fit`` is None."""
+    if text == "fit":
         return None
     kinds = {"zero": (LENGTH, ANGLE), "tare": (FORCE, TORQUE)}
     return _parse(setting, text, kinds[setting][rotational])

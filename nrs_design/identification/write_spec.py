@@ -70,8 +70,8 @@ def merge_tissue(
             remedy="choose a simpler law with --model, or record again as the message says",
         )
     declared = check_interaction(loaded).environments[name].parameters()
-    narrow = _narrowed(declared, dict(zip(law.keys, ranges, strict=True)), found.sources)
-    _ask_for(narrow, replace=replace)
+    by_key = dict(zip(law.keys, ranges, strict=True))
+    narrow = _narrowed(declared, by_key, found.sources, replace=replace)
     document = SpecDocument(loaded)
     node = document.root["environments"][name]
     power = found.tangent is not None and has_place(found.tangent)
@@ -202,28 +202,30 @@ def _narrowed(
     declared: Mapping[str, RangedQuantity],
     found: Mapping[str, Estimate],
     sources: Sequence[Source],
-) -> tuple[str, ...]:
-    """Say which ranges, relative to the nominal value, get narrower by few records or by much."""
+    *,
+    replace: bool,
+) -> list[str]:
+    """Say which ranges, relative to the nominal value, get narrower by few records or by much.
+
+    Unless these may replace the declared ones, that is a `DataError`.
+    """
     records = len({source.sha256 for source in sources})
     few = records < FEW
     texts = []
-    for key in found.keys() & declared.keys():
+    for key in sorted(found.keys() & declared.keys()):
         low, high = (end.si for end in declared[key].range)
         before = (high - low) / declared[key].nominal.si
         after = (found[key].high - found[key].low) / found[key].value
         if ROUNDED * after < before and (few or MUCH * after <= before):
             times = f"{before / after:.3g} times {NARROWER}"
             texts.append(f"{key}: the range from {counted(records, 'record')} is {times}")
-    return tuple(sorted(texts))
-
-
-def _ask_for(narrow: Sequence[str], *, replace: bool) -> None:
-    if narrow and not replace:
+    if texts and not replace:
         raise DataError(
-            "; ".join(narrow),
+            "; ".join(texts),
             remedy=f"give {FEW} records or more that show how much it varies, or take it all the "
             "same with --replace, which keeps the doubt in the spec",
         )
+    return texts
 
 
 def _put_origin(
@@ -284,9 +286,11 @@ def merge_actuator(
     units = f"rad/s/{found.unit}", "s"
     ranges = found.ranges if covered else found.chosen.ranges
     names = ("gain", "time_constant")
-    declared = {name: getattr(spec.actuator, name) for name in names}
-    narrow = _narrowed(declared, dict(zip(names, ranges, strict=True)), found.sources)
-    _ask_for(narrow if covered else (), replace=replace)
+    narrow: Sequence[str] = ()
+    if covered:
+        declared = {name: getattr(spec.actuator, name) for name in names}
+        by_name = dict(zip(names, ranges, strict=True))
+        narrow = _narrowed(declared, by_name, found.sources, replace=replace)
     for name, estimate, unit in zip(names, ranges, units, strict=True):
         written = _ranged(estimate, unit, name)
         if covered:
@@ -305,7 +309,7 @@ def merge_actuator(
     if found.late is not None and spec.takes_dead_time:
         document.put(node, "dead_time", _outwards(found.late, "s")["range"])
         caveats = found.doubts
-    _put_origin(document, node, found.sources, (*caveats, *(narrow if covered else ())))
+    _put_origin(document, node, found.sources, (*caveats, *narrow))
     rewritten = _rewritten(document, node)
     if covered:
         assert rewritten.actuator is not None

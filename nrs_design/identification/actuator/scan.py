@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from nrs_design.errors import DataError
 from nrs_design.identification.actuator.motor import MotorModel
 from nrs_design.identification.datasets.records import ActuatorRecord
-from nrs_design.identification.held import Held, Lags
-from nrs_design.identification.numeric import TINY, Array, beyond
+from nrs_design.identification.numeric import TINY, Array
 
 _TIME_CONSTANTS = 14
 # In samples.
@@ -96,11 +96,10 @@ def _solve(
 
 
 def _regressors(record: ActuatorRecord, tau: float, delay: float) -> tuple[Array, Array]:
-    held = Held.of(record.time, record.command, delay)
-    lags = Lags.first_order(tau)
-    against = -np.sign(lags.velocity(held, held.command)[:-1])
-    output = lags.angle if record.is_angle else lags.velocity
-    columns = [output(held, inputs)[held.samples] for inputs in (held.command, against)]
-    free, _ = np.linalg.qr(lags.free(record.time, angle=record.is_angle))
-    both = beyond(free, np.column_stack([*columns, record.output]))
+    """Return what a command and what its friction make of a motor of unit gain, and the output."""
+    motor = MotorModel(1.0, tau, None, delay)
+    held, _ = motor.hold(record)
+    against = replace(held, command=-np.sign(motor.lags.velocity(held, held.command)[:-1]))
+    columns = [motor.forced(record, inputs, None) for inputs in (held, against)]
+    both = motor.beyond_start(record, np.column_stack([*columns, record.output]))
     return both[:, :2], both[:, 2]

@@ -66,16 +66,27 @@ def fit_delay(
 
     Gain, offset and initial state are eliminated in every step.
     """
+
+    def shaped(x: Array) -> tuple[AbstractFollower, float]:
+        return replace(follower, shape=tuple(x[1:].tolist())), float(x[0]) * record.step
+
+    def errors(x: Array) -> Array:
+        return errors_at(record, *shaped(x), rows)
+
+    def sensitivities(x: Array) -> Array:
+        steps = _DIFFERENCE * np.eye(len(x))
+        changes = [(errors(x - h) - errors(x + h)) / (2 * _DIFFERENCE) for h in steps]
+        return np.column_stack(changes)
+
     x = np.array([delay / record.step, *follower.shape])
     limit = np.array([2.0, *[0.5] * len(follower.shape)])
-    error = _errors(record, follower, x, rows)
+    error = errors(x)
     for _ in range(_STEPS):
-        J = _sensitivities(record, follower, x, rows)
-        newton = np.asarray(np.linalg.lstsq(J, error, rcond=None)[0], dtype=np.float64)
+        newton = np.asarray(np.linalg.lstsq(sensitivities(x), error, rcond=None)[0], float)
         step = limited_step(newton, limit)
         for halving in range(_HALVINGS):
             tried = x + step / 2**halving
-            found = _errors(record, follower, tried, rows)
+            found = errors(tried)
             if found @ found < error @ error:
                 x, error = tried, found
                 break
@@ -83,14 +94,11 @@ def fit_delay(
             break
         if np.abs(step).max() < _CONVERGED:
             break
-    J = _sensitivities(record, follower, x, rows)
-    shaped = replace(follower, shape=tuple(x[1:].tolist()))
-    columns = shaped.columns(record, float(x[0]) * record.step)
+    J, (model, late) = sensitivities(x), shaped(x)
+    columns = model.columns(record, late)
     solution = solve(columns[rows], record.seen[rows])
-    return DelayFit(
-        shaped, float(x[0]) * record.step, uncertainty(J, error), J[:, 0], error, rows,
-        columns @ solution, solution,
-    )  # fmt: skip
+    fitted, known = columns @ solution, uncertainty(J, error)
+    return DelayFit(model, late, known, J[:, 0], error, rows, fitted, solution)
 
 
 def fit_held(record: SignalRecord, delay: float, rows: Rows) -> DelayFit:
@@ -123,18 +131,3 @@ def errors_at(record: SignalRecord, follower: AbstractFollower, delay: float, ro
     columns = follower.columns(record, delay)[rows]
     basis, _ = np.linalg.qr(columns / column_sizes(columns))
     return beyond(basis, record.seen[rows])
-
-
-def _errors(record: SignalRecord, follower: AbstractFollower, x: Array, rows: Rows) -> Array:
-    shaped = replace(follower, shape=tuple(x[1:].tolist()))
-    return errors_at(record, shaped, float(x[0]) * record.step, rows)
-
-
-def _sensitivities(record: SignalRecord, follower: AbstractFollower, x: Array, rows: Rows) -> Array:
-    """Return derivatives of the fitted output by the parameters."""
-    columns = [
-        (_errors(record, follower, x - h, rows) - _errors(record, follower, x + h, rows))
-        / (2 * _DIFFERENCE)
-        for h in _DIFFERENCE * np.eye(len(x))
-    ]
-    return np.column_stack(columns)

@@ -29,11 +29,10 @@ from nrs_design.identification.reporting.actuator import actuator_report
 from nrs_design.identification.reporting.delay import delay_report
 from nrs_design.identification.reporting.running import run_report
 from nrs_design.identification.reporting.tissue import tissue_report
-from nrs_design.identification.running.bounds import read_run_bounds
+from nrs_design.identification.running.bounds import proof_of, read_run_bounds
 from nrs_design.identification.running.check import Check
 from nrs_design.identification.running.judge import judge_run
 from nrs_design.identification.running.log import read_run
-from nrs_design.identification.running.proof import proof_of
 from nrs_design.identification.tables.columns import parse_mapping
 from nrs_design.identification.tissue.identify import identify_tissue
 from nrs_design.identification.write_spec import check_turning

@@ -70,10 +70,13 @@ def audit(
     Example: nrs-design audit run.csv soft-tissue.nrs.yaml --certificate soft-tissue.cert.json
     """
     from nrs_design.identification.reporting.running import run_report
-    from nrs_design.identification.running.bounds import parse_command_limit, read_run_bounds
+    from nrs_design.identification.running.bounds import (
+        parse_command_limit,
+        proof_of,
+        read_run_bounds,
+    )
     from nrs_design.identification.running.judge import judge_run
     from nrs_design.identification.running.log import read_run
-    from nrs_design.identification.running.proof import proof_of
     from nrs_design.identification.write_spec import check_turning
     from nrs_design.spec import read_spec
 

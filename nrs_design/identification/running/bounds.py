@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 
+from nrs_design.certificates.verify import verify
 from nrs_design.controllers.sector import Sector, sector_of
-from nrs_design.errors import DesignError
+from nrs_design.errors import CertificateError, DesignError
+from nrs_design.proof.evidence import Shows
 from nrs_design.spec import InteractionDesignSpec, LoadedSpec, SwitchingSpec, kinds
 from nrs_design.spec.build_plant import build_environments
 from nrs_design.spec.controllers import contact_names, touched_in
@@ -78,6 +81,29 @@ def read_run_bounds(loaded: LoadedSpec) -> RunBounds:
             remedy="name a spec of kind interaction-design",
         )
     return bounds_of_spec(spec)
+
+
+def proof_of(certificate: Path | None, loaded: LoadedSpec) -> tuple[str, bool]:
+    """Say why the spec is not proved, and whether a proof holds while contact is lost.
+
+    The reason is empty if the certificate proves it; one that is rejected is a `CertificateError`.
+    """
+    if certificate is None:
+        return "no certificate is named", False
+    outcome = verify(certificate, loaded)
+    if outcome.certificate is None or outcome.fault is not None:
+        raise CertificateError(
+            f"the certificate is rejected: {outcome.fault}",
+            path=certificate,
+            remedy="make it anew with certify-switching --out, or name the spec that it is for",
+        )
+    verdict, statements = outcome.certificate.verdict, outcome.certificate.statements
+    if verdict != "proved":
+        return f"its certificate says {verdict}", False
+    # A proof of a spec that asks for it holds while contact is lost, whatever its evidence.
+    asked = loaded.spec.kind == "interaction-design" and loaded.spec.contact == "losable"
+    covered = any(s.shows is Shows.STABILITY and s.covers_lost_contact for s in statements)
+    return "", asked or covered
 
 
 def parse_command_limit(text: str, command: str) -> float:

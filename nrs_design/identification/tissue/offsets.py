@@ -19,13 +19,13 @@ from nrs_design.identification.statistics import Estimate, Uncertainty, quotient
 from nrs_design.identification.tissue.trial import Trial
 from nrs_design.models.contact import AbstractContactLaw, AbstractLinearLaw, Motion
 
-TARE, CONTACT, DRIFT = "tare", "contact", "drift"
+ZERO, TARE, CONTACT, DRIFT = "zero", "tare", "contact", "drift"
 # In words, and with the units of a linear motion and of a rotation.
 OFFSET_WORDS: Mapping[str, str] = MappingProxyType(
-    {"zero": "position of contact", "tare": "force in air", "drift": "drift of the force"}
+    {ZERO: "position of contact", TARE: "force in air", DRIFT: "drift of the force"}
 )
 OFFSET_UNITS: Mapping[str, tuple[str, str]] = MappingProxyType(
-    {"zero": ("m", "rad"), "tare": ("N", "N m"), "drift": ("N/s", "N m/s")}
+    {ZERO: ("m", "rad"), TARE: ("N", "N m"), DRIFT: ("N/s", "N m/s")}
 )
 
 
@@ -37,11 +37,6 @@ class Offset:
     estimate: Estimate  # In m, N or N/s (rad, N m, N m/s)
     fitted: bool  # Whether it was fitted; else it is as given
     provided: str = ""  # What it rests on, empty for the record alone
-
-
-def fits_zero(kind: type[AbstractContactLaw], trial: Trial) -> bool:
-    """Tell whether the position of contact is a parameter that enters nonlinearly."""
-    return not issubclass(kind, AbstractLinearLaw) and trial.preparation.zero is None
 
 
 def offset_names(kind: type[AbstractContactLaw], trial: Trial) -> tuple[str, ...]:
@@ -83,76 +78,56 @@ def estimate_offsets(
 
     `known` is of p logarithms, the move of the contact if there is one, and the m constants.
     """
-    first = len(law.values) + (shift is not None)
-    at = {name: first + i for i, name in enumerate(names)}
-    value = dict(zip(names, values.tolist(), strict=True))
-    reader = _Reader(trial, known)
-    is_rest = isinstance(law, AbstractLinearLaw) and _static(law)[0] > 0
-    offsets = [_zero(law, trial, at, value, shift, reader)]
-    wanted = trial.preparation
-    if wanted.tare is not None:
-        offsets.append(Offset("tare", Estimate(wanted.tare, wanted.tare, wanted.tare), False))
-    elif trial.found is None and wanted.zero is None and is_rest:
-        offsets.append(Offset("tare", Estimate(0.0, 0.0, 0.0), False, "taken as zero"))
-    else:
-        offsets.append(Offset("tare", reader.signed(at[TARE], value[TARE]), True))
-    if DRIFT in at:
-        offsets.append(Offset("drift", reader.signed(at[DRIFT], value[DRIFT]), True))
-    return tuple(offset for offset in offsets if offset is not None)
+    moved = [] if shift is None else [(ZERO, shift)]
+    constants = [*moved, *zip(names, values.tolist(), strict=True)]
+    fitted = {name: (at, value) for at, (name, value) in enumerate(constants, len(law.values))}
+    quantile, wanted = student_quantile(known.degrees), trial.preparation
 
+    def signed(name: str, reference: float = 0.0) -> Offset:
+        at, value = fitted[name]
+        half = quantile * math.sqrt(max(float(known.covariance[at, at]), 0.0))
+        middle = reference + trial.side * value
+        return Offset(name, Estimate(middle, middle - half, middle + half), True)
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _Reader:
-    """Turns fitted values into intervals in the signs of the record."""
-
-    trial: Trial
-    known: Uncertainty
-
-    def signed(self, at: int, value: float, reference: float = 0.0) -> Estimate:
-        variance = float(self.known.covariance[at, at])
-        half = student_quantile(self.known.degrees) * math.sqrt(max(variance, 0.0))
-        middle = reference + self.trial.side * value
-        return Estimate(middle, middle - half, middle + half)
-
-    def divided(self, law: AbstractContactLaw, at: int, value: float) -> Estimate:
-        """Return the position where a constant force is balanced by the stiffness at rest.
-
-        The interval is Fieller's (1954): all quotients that the data do not reject. Where the
-        stiffness may be 0, it has no end.
-        """
-        stiffness, slopes = _static(law)
-        gradients = np.zeros((2, len(self.known.covariance)))
-        gradients[0, : len(slopes)] = slopes
-        gradients[1, at] = 1.0
-        covariance = gradients @ self.known.covariance @ gradients.T
-        quantile = student_quantile(self.known.degrees)
-        # A push by the constant is a deflection to the other side.
-        side = -self.trial.side
-        ends = (side * end for end in quotients((stiffness, value), covariance, quantile))
-        low, high = sorted(ends)
-        middle = side * value / stiffness
-        return Estimate(*(self.trial.reference + part for part in (middle, low, high)))
-
-
-def _zero(
-    law: AbstractContactLaw,
-    trial: Trial,
-    at: dict[str, int],
-    value: dict[str, float],
-    shift: float | None,
-    reader: _Reader,
-) -> Offset | None:
-    wanted = trial.preparation
+    offsets, constant = [], CONTACT if CONTACT in fitted else TARE
+    # Only the sum of both shows.
+    assumed = False
     if wanted.zero is not None:
-        return Offset("zero", Estimate(wanted.zero, wanted.zero, wanted.zero), False)
-    if shift is not None:
-        return Offset("zero", reader.signed(len(law.values), shift, trial.reference), True)
-    name = CONTACT if CONTACT in at else TARE
-    if not _static(law)[0] or name not in at:
-        # A law without rest does not tell.
-        return None
-    provided = "" if trial.found is not None or wanted.tare is not None else "if the tare is 0"
-    return Offset("zero", reader.divided(law, at[name], value[name]), True, provided)
+        offsets.append(Offset(ZERO, Estimate(wanted.zero, wanted.zero, wanted.zero), False))
+    elif shift is not None:
+        offsets.append(signed(ZERO, trial.reference))
+    elif constant in fitted and _static(law)[0]:
+        assumed = trial.found is None and wanted.tare is None
+        balanced = _balanced(law, trial, known, *fitted[constant])
+        offsets.append(Offset(ZERO, balanced, True, "if the tare is 0" if assumed else ""))
+    if wanted.tare is not None:
+        offsets.append(Offset(TARE, Estimate(wanted.tare, wanted.tare, wanted.tare), False))
+    elif assumed:
+        offsets.append(Offset(TARE, Estimate(0.0, 0.0, 0.0), False, "taken as zero"))
+    else:
+        offsets.append(signed(TARE))
+    return (*offsets, signed(DRIFT)) if DRIFT in fitted else tuple(offsets)
+
+
+def _balanced(
+    law: AbstractContactLaw, trial: Trial, known: Uncertainty, at: int, value: float
+) -> Estimate:
+    """Return the position where a constant force is balanced by the stiffness at rest.
+
+    The interval is Fieller's (1954): all quotients that the data do not reject. Where the stiffness
+    may be 0, it has no end.
+    """
+    stiffness, slopes = _static(law)
+    gradients = np.zeros((2, len(known.covariance)))
+    gradients[0, : len(slopes)] = slopes
+    gradients[1, at] = 1.0
+    covariance = gradients @ known.covariance @ gradients.T
+    # A push by the constant is a deflection to the other side.
+    side = -trial.side
+    ends = quotients((stiffness, value), covariance, student_quantile(known.degrees))
+    low, high = sorted(side * end for end in ends)
+    middle = side * value / stiffness
+    return Estimate(*(trial.reference + part for part in (middle, low, high)))
 
 
 def _static(law: AbstractContactLaw) -> tuple[float, Array]:

@@ -20,7 +20,7 @@ from nrs_design.identification.statistics import (
     uncertainty,
 )
 from nrs_design.identification.tissue.doubts import doubts, reaches_zero
-from nrs_design.identification.tissue.offsets import Offset, estimate_offsets, fits_zero
+from nrs_design.identification.tissue.offsets import Offset, estimate_offsets
 from nrs_design.identification.tissue.problem import LeastSquaresProblem, Point
 from nrs_design.identification.tissue.starts import box
 from nrs_design.identification.tissue.trial import Trial, prepare
@@ -123,7 +123,7 @@ def rmse(law: AbstractContactLaw, trial: Trial) -> float:
     """Return the root of the mean squared force error, with the best offsets for this law."""
     problem = LeastSquaresProblem(type(law), trial)
     point = Point(problem, np.append(np.log(law.values), problem.no_shift))
-    if fits_zero(type(law), trial):
+    if len(problem.no_shift):
         point = _place(point)
     return float(np.sqrt(point.cost))
 

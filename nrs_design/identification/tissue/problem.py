@@ -16,7 +16,6 @@ import numpy as np
 
 from nrs_design.identification.numeric import Array, Flags, beyond
 from nrs_design.identification.tissue.offsets import (
-    fits_zero,
     measured_force,
     offset_columns,
     offset_names,
@@ -71,8 +70,9 @@ class LeastSquaresProblem:
 
     @property
     def no_shift(self) -> Array:
-        """The move of the zero at a start: one number, or none for a law without it."""
-        return np.zeros(int(fits_zero(self.kind, self.trial)))
+        """The move of the zero at a start, a number if it is fitted and enters nonlinearly."""
+        moves = self.trial.preparation.zero is None and not issubclass(self.kind, AbstractLinearLaw)
+        return np.zeros(int(moves))
 
     def starts(self) -> Iterator[Point]:
         """Yield points to start from, with the position of contact here and there."""

@@ -14,7 +14,6 @@ from nrs_design.identification.numeric import Array, Flags, Rows, parted
 from nrs_design.identification.statistics import span
 from nrs_design.identification.tissue.contact import DetectedContact, find_contact, inner
 from nrs_design.identification.tissue.cycles import find_cycles
-from nrs_design.identification.tissue.drift import shows_drift
 from nrs_design.identification.tissue.rupture import find_rupture
 from nrs_design.identification.tissue.surface import surface
 from nrs_design.models.contact import Motion
@@ -27,6 +26,8 @@ _LEAST_USED = 4 * FEWEST
 _EDGE = 0.02
 # Farther from it, more would be lost by leaving samples out than by a few that are in air.
 _FARTHEST = 0.25
+# Air tells a drift: so many samples, over so much of the record, with so many in contact between.
+_FEWEST_IN_AIR, _SPREAD, _BETWEEN = 30, 0.3, 20
 # A record that begins at this part of its deflection need not begin relaxed.
 _LOADED = 0.1
 
@@ -204,12 +205,26 @@ def _assemble(
         )
     force = side * kept.force
     air = used & ~touching
-    moving = wanted.drift == "fit" or (wanted.drift == "auto" and shows_drift(time, air))
+    moving = wanted.drift == "fit" or (wanted.drift == "auto" and _shows_drift(time, air))
     motion = Motion(time, deflection)
     return Trial(
         record, wanted, motion, position, force, used, touching, reference, side, found, moving,
         tuple(cuts), cycles, stretch,
     )  # fmt: skip
+
+
+def _shows_drift(time: Array, air: Flags) -> bool:
+    """Tell whether there is air before and after a contact, far enough apart.
+
+    Where there is, the drift is fitted, however small: one that is left out because no test sees it
+    would still move the tare, by more than the interval of a tare that is taken to rest (Leeb and
+    Poetscher 2005, on inference after a choice of the model). Within one stretch of air, a tissue
+    that is soft at first would pass for a drift.
+    """
+    rows = np.flatnonzero(air)
+    if len(rows) < _FEWEST_IN_AIR or np.ptp(time[rows]) < _SPREAD * np.ptp(time):
+        return False
+    return bool(np.diff(rows).max() >= _BETWEEN)
 
 
 def _pauses(time: Array) -> tuple[Rows, Flags]:

@@ -22,19 +22,24 @@ _FRICTION_STEPS = 5
 _CONVERGED = 1e-12
 
 
-def fit_phasors(phasors: Sequence[Phasors]) -> ActuatorFit:
+def fit_phasors(phasors: Sequence[Phasors]) -> ActuatorFit | None:
     """Fit gain, time constant and friction to sinusoid records of three frequencies or more.
+
+    None for fewer, or where the responses are not those of such a motor.
 
     ``U = V (1 + j w tau)/gain + friction S``, linear in ``1/gain``, ``tau/gain`` and the friction:
     a complex least-squares problem. S is the first harmonic of the friction over its largest
     value: ``4/pi V/|V|`` for a square wave, and then that of the fitted motor, which also sticks.
     Equations are weighted for angles with white noise.
     """
-    check_frequencies(np.array([p.frequency for p in phasors]))
+    if _frequencies(np.array([p.frequency for p in phasors])) < FEWEST:
+        return None
     V = np.array([p.velocity for p in phasors])
     S, tau = 4 / pi * V / np.abs(V), 0.0
     for _ in range(_FRICTION_STEPS):
         solution, X, error = _solve(phasors, V, S, tau)
+        if not (solution > 0).all():
+            return None
         gain, tau, friction = 1 / solution[0], solution[1] / solution[0], solution[2]
         S = np.array([_friction_phasor(p, gain, tau, friction) for p in phasors])
     known = uncertainty(X * solution, error)
@@ -55,11 +60,6 @@ def _solve(
     rows = np.column_stack([V, 1j * w * V, S]) * weights[:, None]
     X, y = _stacked(rows), _stacked(U * weights)
     solution = np.linalg.lstsq(X, y, rcond=None)[0]
-    if not (solution > 0).all():
-        raise DataError(
-            "the responses are not those of a first-order velocity model with friction",
-            remedy="check the columns, their units and signs",
-        )
     return np.asarray(solution, float), X, np.asarray(y - X @ solution, float)
 
 
@@ -76,7 +76,12 @@ def fit_response(data: FrequencyResponse) -> ActuatorFit:
     Minimizes the logarithm of data over model, whose real part is the magnitude ratio and whose
     imaginary part is the phase difference. Friction cannot be told from a ratio.
     """
-    check_frequencies(data.frequency)
+    count = _frequencies(data.frequency)
+    if count < FEWEST:
+        raise DataError(
+            f"the data have {count} different frequencies, at least {FEWEST} are needed",
+            remedy="record sinusoids below and above the break frequency",
+        )
     logs = np.array([np.log(np.abs(data.response).max()), -np.log(np.median(data.frequency))])
     for _ in range(_MANY_STEPS):
         gain, tau = np.exp(logs)
@@ -97,14 +102,9 @@ def fit_response(data: FrequencyResponse) -> ActuatorFit:
     return actuator_fit("ready frequency response", logs, known)
 
 
-def check_frequencies(frequency: Array) -> None:
-    """Refuse fewer than three different frequencies."""
-    count = len(np.unique(np.round(np.log(frequency), 3)))
-    if count < FEWEST:
-        raise DataError(
-            f"the data have {count} different frequencies, at least {FEWEST} are needed",
-            remedy="record sinusoids below and above the break frequency",
-        )
+def _frequencies(frequency: Array) -> int:
+    """Return how many different ones there are."""
+    return len(np.unique(np.round(np.log(frequency), 3)))
 
 
 def _stacked(values: Complex) -> Array:

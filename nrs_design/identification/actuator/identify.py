@@ -219,16 +219,15 @@ def _slips(fit: ActuatorFit, unit: str, step: float | None) -> tuple[str, ...]:
     return tuple(said)
 
 
-def _from_phasors(
-    records: Sequence[ActuatorRecord],
-) -> tuple[tuple[Phasors, ...], list[ActuatorFit]]:
+def _from_phasors(records: Sequence[ActuatorRecord]) -> tuple[list[Phasors], list[ActuatorFit]]:
     """Return amplitudes and the fit to them, where the records are sinusoids."""
-    phasors: tuple[Phasors, ...] = ()
-    fits: list[ActuatorFit] = []
-    with suppress(DataError):
-        phasors = tuple(phasors_of(record) for record in records)
-        fits = [fit_phasors(phasors)]
-    return phasors, fits
+    phasors: list[Phasors] = []
+    for record in records:
+        if (found := phasors_of(record)) is None:
+            return [], []
+        phasors.append(found)
+    fit = fit_phasors(phasors)
+    return phasors, [] if fit is None else [fit]
 
 
 def _response(phasors: Sequence[Phasors], fit: ActuatorFit) -> Complex:

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from nrs_design.errors import DataError
 from nrs_design.identification.datasets.records import ActuatorRecord
 from nrs_design.identification.numeric import Array
 
@@ -29,8 +28,10 @@ class Phasors:
     velocity: complex  # Amplitude in rad/s
 
 
-def phasors_of(record: ActuatorRecord) -> Phasors:
+def phasors_of(record: ActuatorRecord) -> Phasors | None:
     """Find frequency and amplitudes of a sinusoid of two periods or more by least squares.
+
+    None for any other command.
 
     The angle may drift, has harmonics from friction, and begins with a transient that is left
     out. Its amplitude times ``j omega`` is that of the velocity: nothing is differentiated.
@@ -39,18 +40,10 @@ def phasors_of(record: ActuatorRecord) -> Phasors:
     late = record.time >= _TRANSIENT * record.time[-1]
     periods = float(np.ptp(record.time[late])) * frequency / (2 * np.pi)
     if periods < _FEWEST_PERIODS:
-        raise DataError(
-            f"{record.name} holds {periods / (1 - _TRANSIENT):.1f} periods of its command",
-            path=record.source.path,
-            remedy="record at least three",
-        )
+        return None
     (command,), share = _amplitudes(record.time, record.command, frequency, (1,))
     if share < _PURE:
-        raise DataError(
-            f"{record.name}: only {100 * share:.0f} % of the command's power is in one sinusoid",
-            path=record.source.path,
-            remedy="record one frequency at a time",
-        )
+        return None
     (output, *_), _ = _amplitudes(record.time[late], record.output[late], frequency, _HARMONICS)
     velocity = 1j * frequency * output if record.is_angle else output
     return Phasors(record, frequency, command * _hold(record, frequency), velocity)

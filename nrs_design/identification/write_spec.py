@@ -59,8 +59,8 @@ def merge_tissue(
     Its range is written, which covers the pooled interval and that of every record. Linear records
     need a lever arm such as ``0.24 m``, by default the one of the spec.
     """
-    model = found.chosen
-    law, ranges = found.written
+    model, about = found.chosen, found.tangent
+    law, ranges = (model.law, model.ranges) if about is None else (about.law, about.ranges)
     name = _place(loaded, environment, arm, rotational=found.rotational)
     if not isinstance(law, AbstractLinearLaw):
         raise _no_place(law.name)
@@ -74,9 +74,9 @@ def merge_tissue(
     narrow = _narrowed(declared, by_key, found.sources, replace=replace)
     document = SpecDocument(loaded)
     node = document.root["environments"][name]
-    power = found.tangent is not None and has_place(found.tangent)
-    if found.tangent is not None and power:
-        kept = _put_power_law(document, node, found.tangent, law, rotational=found.rotational)
+    power = about is not None and has_place(about)
+    if about is not None and power:
+        kept = _put_power_law(document, node, about, law, rotational=found.rotational)
     else:
         kept = _put_law(document, node, law.name, law, ranges, rotational=found.rotational)
     known = {key for other in LINEAR_LAWS.values() for key in other.keys}
@@ -87,10 +87,10 @@ def merge_tissue(
     elif arm is not None:
         document.put(node, "lever_arm", arm)
     document.put(node, "range_covers", model.coverage)
-    if found.tangent is None or power:
+    if about is None or power:
         document.drop(node, "linearized_about")
     else:
-        ends = span(found.tangent.low, found.tangent.high, "rad" if found.rotational else "m", 6)
+        ends = span(about.low, about.high, "rad" if found.rotational else "m", 6)
         document.put(node, "linearized_about", f"deflections of {ends}")
     _put_origin(document, node, found.sources, (*found.caveats, *narrow))
     document.put(node, "range_id", _rewritten(document, node).environments[name].values_id())

@@ -102,7 +102,7 @@ def _record(fit: RecordFit, rotational: bool) -> Facts:
         },
         "used": int(fit.trial.used.sum()),
         "samples": len(fit.record.force),
-        "cuts": list(map(str, fit.trial.cuts)),
+        "cuts": list(fit.trial.cuts),
         "remarks": list(fit.trial.remarks),
         "r2": fit.r2,
         "residual_over_range": fit.rmse / fit.trial.span,

@@ -100,10 +100,10 @@ def judge_run(
     _check_unit(log, bounds)
     bounds = replace(bounds, proved=proved)
     touch = estimate_contact(log, bounds, window, losable=losable if proved else bounds.losable)
-    sector = judge_sector(log, bounds)
     estimated, contact = touch.checks
+    tested, judged = judge_sector(log, bounds) or ((estimated,), None)
     checks = (
-        *((estimated,) if sector is None else sector.checks),
+        *tested,
         contact,
         judge_stays(log, bounds),
         judge_delay(log, bounds),
@@ -115,5 +115,4 @@ def judge_run(
             for name, allowed in bounds.preloads.items()
         ),
     )
-    judged = None if sector is None else sector.judged
     return RunJudgement(log, bounds, checks, touch.windows, touch.share, judged)

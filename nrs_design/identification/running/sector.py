@@ -27,14 +27,6 @@ _SCATTERS = 6.0
 _EVEN = 0.05
 
 
-@dataclass(frozen=True, slots=True)
-class SectorJudgement:
-    """What the rows of a log leave of the surface."""
-
-    checks: tuple[Check, ...]  # Of the stiffness, and of the speed where the spec bounds it
-    judged: float  # Share of rows in which `JUDGED` times the range would have been told
-
-
 @dataclass(frozen=True, slots=True, eq=False)
 class _Rows:
     """What the rows say, shape (n,) each."""
@@ -50,8 +42,12 @@ class _Rows:
     last: Array
 
 
-def judge_sector(log: RunLog, bounds: RunBounds) -> SectorJudgement | None:
-    """Hold a log against the range of stiffness; None if the spec, or the log, does not tell."""
+def judge_sector(log: RunLog, bounds: RunBounds) -> tuple[tuple[Check, ...], float] | None:
+    """Hold a log against the range of stiffness; None if the spec, or the log, does not tell.
+
+    The checks are of the stiffness, and of the speed where the spec bounds it; the share is of the
+    rows in which `JUDGED` times the range would have been told.
+    """
     sector, columns = bounds.sector, _columns(log, bounds)
     if isinstance(sector, str) or columns is None:
         return None
@@ -60,7 +56,7 @@ def judge_sector(log: RunLog, bounds: RunBounds) -> SectorJudgement | None:
     every = bounds.period or bounds.oldest or inf
     if (bounds.oldest or sector.surface != "fixed") and log.step > _SAME * every:
         words = "rows are missing that the age of a torque, or a contact, is told by: log all"
-        return SectorJudgement((Check.open("stiffness", words, allowed, basis),), 0.0)
+        return (Check.open("stiffness", words, allowed, basis),), 0.0
     rows = _rows(log, columns, sector, ceil(bounds.oldest / log.step - _EVEN))
     certain = rows.least > 0
     first, judged = inf, np.zeros(len(log.time), dtype=np.bool_)
@@ -73,7 +69,7 @@ def judge_sector(log: RunLog, bounds: RunBounds) -> SectorJudgement | None:
     judged[int(min(first, len(judged))) :] = False
     share = float((judged & certain).mean())
     check = _stiffness(log, columns[1], first, share, allowed, basis)
-    return SectorJudgement((check, *_speed(log, columns[0], sector, basis)), share)
+    return (check, *_speed(log, columns[0], sector, basis)), share
 
 
 def hint(log: RunLog, bounds: RunBounds) -> str:

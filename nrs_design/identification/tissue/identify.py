@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 from nrs_design.errors import DataError
 from nrs_design.identification.datasets.records import TissueRecord
-from nrs_design.identification.statistics import Estimate
 from nrs_design.identification.tables.table import Source
 from nrs_design.identification.tissue.pool import ModelFit, fit_model
 from nrs_design.identification.tissue.ranges import check_spread
@@ -15,7 +14,6 @@ from nrs_design.identification.tissue.tangent import Tangent, check_preload, tan
 from nrs_design.identification.tissue.trial import Preparation, prepare
 from nrs_design.models.contact import (
     LAWS,
-    AbstractContactLaw,
     AbstractNonlinearLaw,
     HuntCrossley,
 )
@@ -32,13 +30,6 @@ class TissueIdentification:
     chosen: ModelFit  # One of them
     reason: str  # Why that one
     tangent: Tangent | None = None  # Of the chosen law about a preload, if one is given
-
-    @property
-    def written(self) -> tuple[AbstractContactLaw, tuple[Estimate, ...]]:
-        """The law and the ranges for a spec: of the chosen law, or of its tangent."""
-        if self.tangent is not None:
-            return self.tangent.law, self.tangent.ranges
-        return self.chosen.law, self.chosen.ranges
 
     @property
     def sources(self) -> tuple[Source, ...]:

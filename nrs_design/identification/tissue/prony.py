@@ -6,7 +6,7 @@ Designs know one relaxation. The series says whether one is enough, and what is 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -60,19 +60,9 @@ def fit_series(trial: Trial) -> Series:
     fits = [_fit(thin, terms) for terms in range(1, MOST_TERMS + 1)]
     best = fits[0]
     for fit in fits[1:]:
-        if fit.bic < best.bic - _BIC and np.all(fit.values[1:] > 0):
+        if fit.bic[0] < best.bic[0] - _BIC and min(fit.arms) > 0:
             best = fit
-    order = np.argsort(best.times)
-    rest, arms, times = float(best.values[0]), best.values[1:][order], best.times[order]
-    return Series(
-        trial.record.name,
-        rest,
-        tuple(arms.tolist()),
-        tuple(times.tolist()),
-        best.rmse,
-        tuple(fit.bic for fit in fits),
-        _reduced(rest, arms, times),
-    )
+    return replace(best, bic=tuple(fit.bic[0] for fit in fits))
 
 
 def _reduced(rest: float, arms: Array, times: Array) -> AbstractLinearLaw | None:
@@ -88,17 +78,8 @@ def _reduced(rest: float, arms: Array, times: Array) -> AbstractLinearLaw | None
     return KelvinBoltzmann.from_eta(rest, (rest + total) * tau, tau)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _Fit:
-    """Stiffness at rest and of the arms, with their relaxation times."""
-
-    values: Array
-    times: Array
-    rmse: float
-    bic: float
-
-
-def _fit(trial: Trial, terms: int) -> _Fit:
+def _fit(trial: Trial, terms: int) -> Series:
+    """Return the series of so many terms, with its own criterion only."""
     from scipy.optimize import least_squares
 
     low, high = np.log(trial.step), np.log(3 * trial.duration)
@@ -117,7 +98,10 @@ def _fit(trial: Trial, terms: int) -> _Fit:
     count = 1 + 2 * terms + len(offset_names(Elastic, trial)) + terms * len(trial.unrested) + 1
     rmse = float(np.sqrt(np.mean(error**2)))
     bic = 2 * n * float(np.log(max(rmse, TINY))) + count * float(np.log(n))
-    return _Fit(values, times, rmse, bic)
+    order = np.argsort(times)
+    rest, arms, times = float(values[0]), values[1:][order], times[order]
+    shown = tuple(arms.tolist()), tuple(times.tolist())
+    return Series(trial.record.name, rest, *shown, rmse, (bic,), _reduced(rest, arms, times))
 
 
 def _starts(trial: Trial, terms: int, low: float, high: float) -> Sequence[Array]:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from nrs_design.identification.datasets.checks import gaps_in
@@ -26,25 +24,8 @@ _NOISE = 5.0
 _GROWTH = 0.02
 
 
-@dataclass(frozen=True, slots=True)
-class Rupture:
-    """Where a tissue tears."""
-
-    peak: int  # Last row before the force falls
-    fall: float  # By which part of its range
-    time: float  # In s
-
-    @property
-    def reason(self) -> str:
-        """In words."""
-        return (
-            f"rupture at {self.time:.4g} s: the force falls by {100 * self.fall:.0f} % of its "
-            "range while the probe goes on"
-        )
-
-
-def find_rupture(motion: Motion, force: Array) -> Rupture | None:
-    """Find the first rupture, None if there is none."""
+def find_rupture(motion: Motion, force: Array) -> tuple[int, str] | None:
+    """Return the last row before the force falls, and what happens; None if nothing tears."""
     n = len(force)
     window = max(round(_WINDOW * n), _FEWEST)
     if n < 4 * window:
@@ -76,7 +57,8 @@ def find_rupture(motion: Motion, force: Array) -> Rupture | None:
     peak = first + int(np.argmax(size[first : first + window]))
     # Before the peak, a tissue may already give way.
     fall = float(size[peak] - size[peak : peak + 2 * window].min()) / span
-    return Rupture(peak, fall, float(motion.time[peak]))
+    words = f"the force falls by {100 * fall:.0f} % of its range while the probe goes on"
+    return peak, f"rupture at {motion.time[peak]:.4g} s: {words}"
 
 
 def _direction(x: Array, size: Array) -> float:

@@ -49,22 +49,6 @@ class Preparation:
     negate: bool = False  # Change the sign of the force
 
 
-@dataclass(frozen=True, slots=True)
-class Cut:
-    """A part of a record that is not used."""
-
-    # first, last: time in s from the beginning of the record.
-    first: float
-    last: float
-    reason: str  # Why
-    samples: int  # How many there are
-
-    def __str__(self) -> str:
-        """Return it in words."""
-        when = span(self.first, self.last, "s")
-        return f"{counted(self.samples, 'sample')} at {when}: {self.reason}"
-
-
 @dataclass(frozen=True, slots=True, eq=False)
 class Trial:
     """A record as it is fitted."""
@@ -80,7 +64,7 @@ class Trial:
     side: int  # 1 if the tissue is where positions are larger, else -1
     found: DetectedContact | None  # None if no air shows, or was not looked for
     drift: bool  # Whether the tare is fitted as moving
-    cuts: tuple[Cut, ...]  # What is not used, and why
+    cuts: tuple[str, ...]  # What is not used, and why, in words
     cycles: tuple[slice, ...]  # Loading cycles, among all samples
     stretch: Rows  # Shape (n,). Counts up at every pause of the record.
 
@@ -143,7 +127,7 @@ class Trial:
             said.append(pauses)
         if self.drift:
             said.append("the tare is fitted as moving in proportion to time")
-        return (*said, *map(str, self.cuts))
+        return (*said, *self.cuts)
 
     def thinned(self, most: int) -> Trial:
         """Return the trial with at most so many samples, or more where few of them are used."""
@@ -165,9 +149,9 @@ def prepare(record: TissueRecord, preparation: Preparation | None = None) -> Tri
     kept, cuts = _window(record, wanted)
     rupture = find_rupture(kept.motion, kept.force)
     if rupture is not None:
-        torn = np.arange(len(kept.force)) >= rupture.peak
-        cuts += _cut(kept.motion.time, torn, rupture.reason)
-        kept = _rows(kept, slice(0, rupture.peak))
+        peak, words = rupture
+        cuts += _cut(kept.motion.time, np.arange(len(kept.force)) >= peak, words)
+        kept = _rows(kept, slice(0, peak))
     found = find_contact(kept) if wanted.contact == "auto" else None
     return _assemble(record, kept, wanted, found, cuts)
 
@@ -177,7 +161,7 @@ def _assemble(
     kept: TissueRecord,
     wanted: Preparation,
     found: DetectedContact | None,
-    cuts: list[Cut],
+    cuts: list[str],
 ) -> Trial:
     x, time = kept.motion.deflection, kept.motion.time
     side = _side(x) if found is None else found.side
@@ -256,7 +240,7 @@ def _edge(position: Array, width: float, wanted: Preparation, found: DetectedCon
     return np.asarray((position > low) & (position < high))
 
 
-def _window(record: TissueRecord, wanted: Preparation) -> tuple[TissueRecord, list[Cut]]:
+def _window(record: TissueRecord, wanted: Preparation) -> tuple[TissueRecord, list[str]]:
     time = record.motion.time
     start = -np.inf if wanted.start is None else wanted.start
     end = np.inf if wanted.end is None else wanted.end
@@ -291,7 +275,7 @@ def _reference(x: Array, side: int, wanted: Preparation, found: DetectedContact 
     return side * float(np.min(side * x))
 
 
-def _skipped(time: Array, cycles: tuple[slice, ...], wanted: Preparation, cuts: list[Cut]) -> Flags:
+def _skipped(time: Array, cycles: tuple[slice, ...], wanted: Preparation, cuts: list[str]) -> Flags:
     skipped = np.zeros(len(time), bool)
     if wanted.skip_cycles >= len(cycles):
         raise DataError(
@@ -303,7 +287,10 @@ def _skipped(time: Array, cycles: tuple[slice, ...], wanted: Preparation, cuts: 
     return skipped
 
 
-def _cut(time: Array, flags: Flags, reason: str) -> list[Cut]:
-    """Sum up all samples with one reason: they may be many short stretches."""
+def _cut(time: Array, flags: Flags, reason: str) -> list[str]:
+    """Say which samples are not used, if there are some: they may be many short stretches."""
     inside = time[flags]
-    return [Cut(float(inside[0]), float(inside[-1]), reason, len(inside))] if len(inside) else []
+    if not len(inside):
+        return []
+    when = span(inside[0], inside[-1], "s")
+    return [f"{counted(len(inside), 'sample')} at {when}: {reason}"]

@@ -131,9 +131,9 @@ def test_a_linear_log_is_turned(tmp_path):
     rows = zip(t, angle * 0.24, torque / 0.24, strict=True)
     text = "time_s,deflection_m,force_N\n" + "\n".join(f"{a},{b},{c}" for a, b, c in rows) + "\n"
     record = log(tmp_path, text=text)
-    assert judge_sector(record, bounds()).checks[0].first is None
+    assert judge_sector(record, bounds())[0][0].first is None
     record.columns["force"][:] *= 1.5
-    assert judge_sector(record, bounds()).checks[0].first is not None
+    assert judge_sector(record, bounds())[0][0].first is not None
 
 
 def test_without_bounds_or_columns_the_stiffness_is_estimated(tmp_path):

@@ -29,7 +29,7 @@ def torn(seed, side=1):
 @pytest.mark.parametrize("seed", range(10))
 def test_where_the_force_falls_while_the_probe_goes_on(seed, side):
     motion, force, at = torn(seed, side)
-    assert find_rupture(motion, force).peak == pytest.approx(at, abs=30)
+    assert find_rupture(motion, force)[0] == pytest.approx(at, abs=30)
 
 
 @pytest.mark.parametrize(
@@ -61,13 +61,13 @@ def test_a_tissue_that_pulls_most_where_the_probe_is_back_is_not_torn():
 def test_a_tissue_that_is_torn_at_once_and_feels_nothing_from_then_on(side):
     motion, force, _ = torn(0, side)
     force[600:] = 0.02 * np.random.default_rng(1).standard_normal(ROWS - 600)
-    assert find_rupture(motion, force).peak == pytest.approx(600, abs=30)
+    assert find_rupture(motion, force)[0] == pytest.approx(600, abs=30)
 
 
 def test_what_follows_is_cut_and_said():
     motion, force, at = torn(3)
     trial = prepare(TissueRecord(source("torn"), motion, force, False))
     (cut,) = trial.cuts
-    assert "rupture at" in str(cut)
+    assert "rupture at" in cut
     assert len(trial.force) == pytest.approx(at, abs=30)
-    assert cut.samples + len(trial.force) == ROWS
+    assert cut.startswith(f"{ROWS - len(trial.force)} samples")

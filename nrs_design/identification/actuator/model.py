@@ -113,9 +113,9 @@ def fit_of(method: str, found: TimeFit, longest: float) -> ActuatorFit:
     One that may be beyond the longest, in s, is not determined.
     """
     motor, known = found.motor, found.uncertainty
-    positive = [*known.estimates(motor.parameters)[:-1]]
+    gain, time_constant, *others = known.estimates(motor.parameters)[:-1]
     half = student_quantile(known.degrees) * float(known.errors[-1])
     ends = (motor.delay, motor.delay - half, motor.delay + half)
     late = Estimate(*(max(end, 0.0) for end in ends)) if ends[-1] <= longest else None
-    friction = positive[2] if motor.friction is not None else None
-    return ActuatorFit(method, positive[0], positive[1], friction, known, late, motor)
+    friction = None if motor.friction is None else others[0]
+    return ActuatorFit(method, gain, time_constant, friction, known, late, motor)

@@ -12,7 +12,6 @@ from nrs_design.api.identified import FittedRange, Identification
 from nrs_design.errors import DataError
 from nrs_design.identification.actuator.identify import identify_actuator
 from nrs_design.identification.datasets.records import (
-    FrequencyResponse,
     read_actuator,
     read_signals,
     read_tissue,
@@ -127,9 +126,8 @@ def _tissue(files: Sequence[Path], mapping: Columns, law: str | None) -> Identif
 
 
 def _actuator(files: Sequence[Path], mapping: Columns, law: str | None) -> Identification:
-    items = [read_actuator(file, mapping) for file in files]
-    series = [(item,) if isinstance(item, FrequencyResponse) else item for item in items]
-    found = identify_actuator([record for group in series for record in group], THESIS_MOTOR)
+    records = [record for file in files for record in read_actuator(file, mapping)]
+    found = identify_actuator(records, THESIS_MOTOR)
     gain, time_constant = found.ranges
     ranges = {
         "gain": _range(gain, f"(rad/s)/{found.unit}"),

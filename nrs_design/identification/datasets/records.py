@@ -115,7 +115,7 @@ def read_tissue(
 
 def read_actuator(
     path: Path, mapping: Mapping[str, str] | None = None, progress: Progress = lambda done: None
-) -> tuple[ActuatorRecord, ...] | FrequencyResponse:
+) -> tuple[ActuatorRecord | FrequencyResponse, ...]:
     """Read records of the actuator, one or several groups of columns, or a frequency response.
 
     Columns are ``time_s, command_rpm`` and ``angle_rad`` or ``velocity_rad_s`` (with suffixes
@@ -123,7 +123,7 @@ def read_actuator(
     """
     table = read_table(path, (ANGLE, VELOCITY, RESPONSE), mapping or {}, progress)
     if table.layout == RESPONSE:
-        return _response(table)
+        return (_response(table),)
     return tuple(record for group in table.groups for record in _actuator(table, group))
 
 

@@ -97,6 +97,7 @@ class DelayIdentification:
     # not noise, they hold those of a copy, too: then a lag may stand for a part of the delay. Of a
     # command of one frequency, they hold all from zero to those of a copy.
     held: tuple[float, float]
+    untold: str | None  # Why the record does not tell the delay, if it does not
     doubts: tuple[str, ...]  # What speaks against it
 
     @property
@@ -113,11 +114,6 @@ class DelayIdentification:
     def is_lag(self) -> bool:
         """Whether dynamics lie between the columns: they leave nothing but noise."""
         return not self._is_copy and self.chosen.uncertainty.whiteness >= WHITE
-
-    @property
-    def untold(self) -> str | None:
-        """Why the record does not tell the delay, if it does not."""
-        return _untold(self.record, self.samples)
 
     @property
     def _is_copy(self) -> bool:
@@ -191,7 +187,7 @@ def identify_delay(record: SignalRecord) -> DelayIdentification:
     # A delay is not negative; what is left of an interval is a sample where one is the least.
     low = max(told.low, 0.0)
     samples = Estimate(max(value, 0.0), low, max(told.high, low + _unknown(chosen), 0.0))
-    parts = tuple(_parts(record, chosen))
+    parts, untold = tuple(_parts(record, chosen)), _untold(record, samples)
     held = [samples, *(part for _, part in parts)]
     one_frequency = _other_than_one_frequency(record) < _OTHER
     if one_frequency:
@@ -199,13 +195,13 @@ def identify_delay(record: SignalRecord) -> DelayIdentification:
     if one_frequency or chosen.uncertainty.whiteness < WHITE:
         held += [part for _, part in _parts(record, copy)]
     ends = max(min(e.low for e in held), 0.0), max(*(e.high for e in held), 0.0)
+    doubts = (
+        *_rivals(record, fits, chosen, half, one_frequency=one_frequency),
+        *_doubts(record, chosen, half, peak[0], parts, untold),
+    )
     return DelayIdentification(
-        record, fits, chosen, samples, peak, parts, smooth, ends,
-        (
-            *_rivals(record, fits, chosen, half, one_frequency=one_frequency),
-            *_doubts(record, chosen, half, peak[0], parts, _untold(record, samples)),
-        ),
-    )  # fmt: skip
+        record, fits, chosen, samples, peak, parts, smooth, ends, untold, doubts
+    )
 
 
 def _check_explained(record: SignalRecord, fit: DelayFit) -> None:

@@ -52,15 +52,12 @@ def judge_jitter(log: RunLog, bounds: RunBounds) -> Check:
     """Judge how even the steps of time are."""
     steps = np.diff(log.time)
     words = f"steps of {span(steps.min(), steps.max(), 's')}, usually {log.step:.4g} s"
-    if bounds.period is not None and not _holds_whole(log.step, bounds.period):
-        words += f": no whole number of periods of {bounds.period:g} s"
+    if bounds.period is not None:
+        # Rows come at every sample of the loop, or at every second one, and so on.
+        count = max(round(log.step / bounds.period), 1)
+        if abs(log.step - count * bounds.period) > _UNEVEN * bounds.period:
+            words += f": no whole number of periods of {bounds.period:g} s"
     return Check("jitter", BoundStatus.NOT_MODELLED, words, _time_of(bounds), bounds.granted)
-
-
-def _holds_whole(step: float, period: float) -> bool:
-    """Tell whether rows come at every sample of the loop, or at every second one, and so on."""
-    count = max(round(step / period), 1)
-    return abs(step - count * period) <= _UNEVEN * period
 
 
 def _time_of(bounds: RunBounds) -> str:

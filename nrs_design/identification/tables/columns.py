@@ -7,7 +7,6 @@ from collections.abc import Callable, Mapping, Sequence
 from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
 from functools import partial
-from itertools import islice
 from pathlib import Path
 
 from nrs_design.errors import DataError
@@ -142,9 +141,10 @@ def _grouped(
         found[name.group][name.quantity] = Column(index, text, name.factor, name.read_as)
     if "time" in wanted and not any("time" in group for group in found.values()):
         # The first time stamp of a bag is taken for the time.
-        stamps = ((at, text, name) for at, text in enumerate(header) if (name := read_stamp(text)))
-        for index, text, name in islice(stamps, 1):
-            found.setdefault("", {})["time"] = Column(index, text, name.factor, name.read_as)
+        for index, text in enumerate(header):
+            if stamp := read_stamp(text):
+                found.setdefault("", {})["time"] = Column(index, text, stamp.factor, stamp.read_as)
+                break
     return found, faults
 
 

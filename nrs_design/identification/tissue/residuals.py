@@ -24,6 +24,9 @@ LEAST_R2 = 0.9
 _CONDITIONING = 0.05
 _BINS = 12
 _SPREADS = 3.0
+_NOT_LINEAR = "follow the deflection: the tissue is not linear in it"
+_OTHERWISE_DAMPED = "follow the velocity: the law has another damping"
+_WANDERING = "are not white but wander with time"
 # An offset that was given disagrees where another lowers BIC by this much.
 _BIC = 10.0
 
@@ -113,24 +116,18 @@ def _structure(trial: Trial, residuals: Array) -> Iterator[str]:
     touching = trial.touching[trial.used]
     inside = residuals[touching]
     motion, span = trial.motion, trial.span
-    for values, what in (
-        (trial.deflection[touching], "the deflection: the tissue is not linear in it"),
-        (motion.velocity[trial.used][touching], "the velocity: the law has another damping"),
+    velocity = motion.velocity[trial.used][touching]
+    wander, _ = structure(motion.time[trial.used], residuals)
+    for (size, p), test, what in (
+        (structure(trial.deflection[touching], inside), "F-test", _NOT_LINEAR),
+        (structure(velocity, inside), "F-test", _OTHERWISE_DAMPED),
+        ((wander, ljung_box(residuals)), "Ljung-Box", _WANDERING),
     ):
-        size, p = structure(values, inside)
         if size > LARGEST_STRUCTURE * span and p < WHITE:
-            part = f"{100 * size / span:.2g} % of the range of the force, F-test {_p(p)}"
-            yield f"the residuals follow {what} ({part})"
-    size, _ = structure(motion.time[trial.used], residuals)
-    p = ljung_box(residuals)
-    if size > LARGEST_STRUCTURE * span and p < WHITE:
-        part = f"{100 * size / span:.2g} % of the range of the force, Ljung-Box {_p(p)}"
-        yield f"the residuals are not white but wander with time ({part})"
-
-
-def _p(value: float) -> str:
-    """Return a p-value in words; one that leaves the floats is not 0."""
-    return f"p = {value:.1g}" if value > 1e-99 else "p < 1e-99"
+            # A p-value that leaves the floats is not 0.
+            said = f"p = {p:.1g}" if p > 1e-99 else "p < 1e-99"
+            part = f"{100 * size / span:.2g} % of the range of the force, {test} {said}"
+            yield f"the residuals {what} ({part})"
 
 
 def _given_offsets(trial: Trial, residuals: Array, sensitivities: Array) -> Iterator[str]:

@@ -165,7 +165,9 @@ def _assemble(
 ) -> Trial:
     x, time = kept.motion.deflection, kept.motion.time
     side = _side(x) if found is None else found.side
-    reference = _reference(x, side, wanted, found)
+    reference = side * float(np.min(side * x)) if found is None else found.zero
+    if wanted.zero is not None:
+        reference = wanted.zero
     deflection = position = side * (x - reference)
     used = touching = np.ones(len(x), bool)
     if found is not None:
@@ -265,14 +267,6 @@ def _rows(record: TissueRecord, rows: slice | Flags) -> TissueRecord:
 def _side(x: Array) -> int:
     """Take the tissue where positions are larger, unless all of them are negative."""
     return -1 if x.max() < 0.05 * np.ptp(x) and x.min() < -0.5 * np.ptp(x) else 1
-
-
-def _reference(x: Array, side: int, wanted: Preparation, found: DetectedContact | None) -> float:
-    if wanted.zero is not None:
-        return wanted.zero
-    if found is not None:
-        return found.zero
-    return side * float(np.min(side * x))
 
 
 def _skipped(time: Array, cycles: tuple[slice, ...], wanted: Preparation, cuts: list[str]) -> Flags:

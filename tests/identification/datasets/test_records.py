@@ -96,7 +96,7 @@ def test_commands_and_outputs(tmp_path, header, scale, unit, is_angle):
 def test_ready_response(tmp_path):
     path = write(tmp_path, "frequency_hz,magnitude_db,phase_deg", [1, 2, 4], [-66, -67, -70],
                  [-10, -20, -40])  # fmt: skip
-    found = read_actuator(path)
+    (found,) = read_actuator(path)
     assert isinstance(found, FrequencyResponse)
     assert np.abs(found.response[0]) == pytest.approx(10 ** (-66 / 20))
     assert found.frequency[1] == pytest.approx(4 * np.pi)

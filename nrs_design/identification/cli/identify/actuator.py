@@ -60,7 +60,7 @@ def actuator(
     """
     from nrs_design.identification.actuator import THESIS_MOTOR
     from nrs_design.identification.actuator.identify import identify_actuator
-    from nrs_design.identification.datasets.records import FrequencyResponse, read_actuator
+    from nrs_design.identification.datasets.records import read_actuator
     from nrs_design.identification.reporting.actuator import actuator_report
     from nrs_design.identification.write_spec import check_actuator, merge_actuator
 
@@ -72,9 +72,8 @@ def actuator(
         "reduction": reduction,
     }
     motor = replace(THESIS_MOTOR, **{key: v for key, v in given.items() if v is not None})
-    items = read_all(data, read_actuator, columns or [])
-    series = [(item,) if isinstance(item, FrequencyResponse) else item for item in items]
-    records = [record for group in series for record in group]
+    files = read_all(data, read_actuator, columns or [])
+    records = [record for file in files for record in file]
     if outputs.spec is not None:
         for record in records:
             check_actuator(outputs.spec, record.unit)

@@ -104,14 +104,6 @@ class LeastSquaresProblem:
             ages[rows] = time[rows] - time[rows.start]
         return ages
 
-    @cached_property
-    def members(self) -> Array:
-        """Whether a sample, used or not, is in a stretch, 1 or 0, shape (n, s)."""
-        members = np.zeros((len(self.trial.force), len(self.begins)))
-        for column, rows in zip(members.T, self.begins, strict=True):
-            column[rows] = 1.0
-        return members
-
 
 @dataclass(frozen=True, eq=False)
 class Point:
@@ -160,8 +152,11 @@ class Point:
     @cached_property
     def _fading(self) -> Array:
         """The same in all samples."""
-        members, tau = self.problem.members, self.law.relaxation_time
-        return np.exp(-self.problem.ages / tau)[:, None] * members if tau else 0.0 * members
+        problem, tau = self.problem, self.law.relaxation_time
+        left = np.zeros((len(problem.ages), len(problem.begins)))
+        for column, rows in zip(left.T, problem.begins, strict=True):
+            column[rows] = np.exp(-problem.ages[rows] / tau) if tau else 0.0
+        return left
 
     @cached_property
     def constants(self) -> Array:

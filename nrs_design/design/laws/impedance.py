@@ -45,7 +45,6 @@ from nrs_design.models.interval import Interval
 from nrs_design.proof.bounds import lower, upper_float
 from nrs_design.spec import Doubt, GainSpec, ImpedanceControllerSpec, InteractionDesignSpec
 from nrs_design.spec.controllers import contact_names, names_in, touched_in
-from nrs_design.spec.goals import AccuracySpec
 from nrs_design.spec.quantity import Quantity
 
 

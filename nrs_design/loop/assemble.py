@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from itertools import chain
@@ -26,11 +26,11 @@ from nrs_design.loop.cases import in_cases
 from nrs_design.loop.constant_parameters import (
     constant_lateness,
     constants_of,
-    corners_by_name,
     with_constants,
     within,
 )
 from nrs_design.loop.constraints import assemble_switching
+from nrs_design.loop.located import grouped
 from nrs_design.loop.parameters import (
     constant_parameters,
     corner_modes,
@@ -96,25 +96,23 @@ def assemble_matrices(spec: SwitchedSystemSpec, scale: Fraction = DECLARED) -> S
     _check_scale(scale)
     parameters = read_parameters(spec, scale)
     resets = ((r.source, r.target, RationalMatrix.from_rows(r.map)) for r in spec.resets)
-    corners = {mode.name: corner_modes(mode, parameters) for mode in spec.modes}
+    items = tuple(chain.from_iterable(corner_modes(mode, parameters) for mode in spec.modes))
     if spec.misses is not None:
         from nrs_design.loop.misses import modes_with_misses
 
-        modes, switching = modes_with_misses(corners, spec.misses)
+        items, switching = modes_with_misses(items, spec.misses)
     else:
-        groups = {name: tuple(mode.name for mode in modes) for name, modes in corners.items()}
-        modes = tuple(chain.from_iterable(corners.values()))
-        switching = assemble_switching(spec.switching, groups, resets)
+        switching = assemble_switching(spec.switching, grouped(items), resets)
     system = SwitchedSystem(
         name=spec.name,
         time=Time(spec.time),
         states=tuple(f"x{i + 1}" for i in range(spec.dimension)),
-        modes=modes,
+        modes=tuple(item.mode for item in items),
         assumptions=assume_matrices(spec, parameters, scale),
         switching=switching,
     )
-    constants = tuple(constant_parameters(parameters))
-    return with_constants(system, constants, tuple(_corners(system, constants)))
+    constants = constant_parameters(parameters)
+    return with_constants(system, constants, tuple(item.corner for item in items))
 
 
 def assemble(
@@ -157,7 +155,7 @@ def assemble(
     unit = spec.axis.unit
     constants = tuple(replace(c, said=replace(c.said, unit=unit(c.said.unit))) for c in constants)
     system, corners = _closed(conditions, plant, design, constants, points)
-    system = with_constants(system, constants, tuple(corners))
+    system = with_constants(system, constants, corners)
     constant = tuple(constant_texts(system.switching))
     if cuts:
         whole = {c.said.name: (c.said.low, c.said.high) for c in constants}
@@ -207,19 +205,15 @@ def _closed(
     design: ControllerDesign,
     constants: Sequence[ConstantParameter] = (),
     points: str = "",
-) -> tuple[SwitchedSystem, Iterable[Corner]]:
+) -> tuple[SwitchedSystem, tuple[Corner, ...]]:
     """Return the closed loop as if no range were constant, and where its modes are in them."""
     if conditions.sampling is None:
-        system = _assemble_continuous(conditions, plant, state_of(conditions, plant, design))
-        return system, _corners(system, constants)
+        state = state_of(conditions, plant, design)
+        return _assemble_continuous(conditions, plant, state, constants)
     from nrs_design.loop.system import close_sampled_loop
 
     sampling = conditions.sampling
     return close_sampled_loop(conditions, sampling, plant, design, constants, points=bool(points))
-
-
-def _corners(system: SwitchedSystem, constants: Sequence[ConstantParameter]) -> Iterable[Corner]:
-    return corners_by_name((mode.name for mode in system.modes), constants)
 
 
 def _on_axis(system: SwitchedSystem, axis: AxisType) -> SwitchedSystem:
@@ -233,11 +227,16 @@ def _on_axis(system: SwitchedSystem, axis: AxisType) -> SwitchedSystem:
 
 
 def _assemble_continuous(
-    conditions: OperatingConditions, plant: Plant, state: SharedState
-) -> SwitchedSystem:
+    conditions: OperatingConditions,
+    plant: Plant,
+    state: SharedState,
+    constants: Sequence[ConstantParameter],
+) -> tuple[SwitchedSystem, tuple[Corner, ...]]:
     from nrs_design.loop.close_loop import close_loop
 
-    system = close_loop(conditions.name, state, conditions.switching, conditions.contact)
+    system, corners = close_loop(
+        conditions.name, state, conditions.switching, conditions.contact, constants
+    )
     if conditions.disturbances is not None:
         from nrs_design.loop.commanded import check_memory, with_command
 
@@ -247,7 +246,7 @@ def _assemble_continuous(
         from nrs_design.loop.saturation import with_saturation
 
         system = with_saturation(system, conditions, plant.actuator, state)
-    return system
+    return system, corners
 
 
 def state_of(

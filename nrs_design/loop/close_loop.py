@@ -9,24 +9,26 @@ decreases in the corners decreases there, however fast the parameters move.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from functools import partial
-from itertools import chain, permutations
+from itertools import permutations
 
 from nrs_design.controllers.controller_design import Controller
+from nrs_design.loop.constant_parameters import ConstantParameter, Corner
 from nrs_design.loop.constraints import assemble_switching, leaving_impedance, zeroing
 from nrs_design.loop.free_motion import (
     adds_free_motion,
-    flights_among,
     free_modes,
     lost_contact,
     pulls_of,
 )
+from nrs_design.loop.located import MatrixMode, enclosures_of, flights_of, grouped
 from nrs_design.loop.loop_assumptions import assume_loop
 from nrs_design.loop.shared_state import SharedState
+from nrs_design.loop.spot import Spot, spot_of
 from nrs_design.models.contact.environment import Environment
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.mode import Mode, Time
+from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.spec import SwitchingSpec
 
@@ -36,8 +38,9 @@ def close_loop(
     state: SharedState,
     rules: SwitchingSpec | None = None,
     contact: str | None = None,
-) -> SwitchedSystem:
-    """Assemble every mode of an interaction design.
+    constants: Sequence[ConstantParameter] = (),
+) -> tuple[SwitchedSystem, tuple[Corner, ...]]:
+    """Assemble every mode of an interaction design; say at which ends of constants each is.
 
     Without rules any controller may follow any other at any time. Contact, losable or kept, may by
     default be lost where that is modelled, and a statement says whether it covers it. An
@@ -47,41 +50,23 @@ def close_loop(
     sprung = any(controller.law.spring for controller in controllers)
     free = sprung and adds_free_motion(state, contact, rules)
     losable = None if sprung or contact == "kept" else lost_contact(state, contact)
-    parts = {c.name: tuple(_all_modes(c, state, free=free)) for c in controllers}
-    if rules.names_contacts:
-        parts = _by_contact(chain.from_iterable(parts.values()))
-    groups = {key: tuple(mode.name for mode in part) for key, part in parts.items()}
-    modes = tuple(chain.from_iterable(parts.values()))
-    flights = None
-    if free:
-        names = (mode.name for mode in modes)
-        flights = flights_among(names, state.environments, pulls_of(state))
-    return SwitchedSystem(
+    items: list[MatrixMode] = []
+    for c in controllers:
+        items += _in_contact(c, state, constants, by_contact=rules.names_contacts)
+        items += free_modes(c, state, constants) if free else ()
+    pulls = tuple(pulls_of(state)) if free else ()
+    system = SwitchedSystem(
         name=name,
         time=Time.CONTINUOUS,
         states=state.names,
-        modes=modes,
+        modes=tuple(item.mode for item in items),
         assumptions=assume_loop(state, rules, losable=losable is not None, free=free),
-        switching=assemble_switching(rules, groups, _resets(state)),
+        switching=assemble_switching(rules, grouped(items), _resets(state)),
         contact=losable,
-        flights=flights,
-        enclosures=tuple(_enclosures(state)),
+        flights=flights_of(items, state.environments, pulls) if free else None,
+        enclosures=tuple(enclosures_of(items)),
     )
-
-
-def _enclosures(state: SharedState) -> Iterator[tuple[str, ...]]:
-    """Yield the modes that enclose one motion, where stiffness and damping depend on each other."""
-    for controller in state.design.controllers:
-        for environment in state.contacts(controller):
-            name = f"{controller.name}/{environment.name}"
-            box = state.contact_box(environment).beside(state.motor_box)
-            found: dict[str, list[str]] = {}
-            for point, (corner, _) in zip(
-                box.points(name, state.motor_box.ranges), box.named_values(name), strict=True
-            ):
-                found.setdefault(point, []).append(corner)
-            if environment.depends:
-                yield from (tuple(names) for names in found.values() if len(names) > 1)
+    return system, tuple(item.corner for item in items)
 
 
 def _resets(state: SharedState) -> Iterator[tuple[str, str, RationalMatrix]]:
@@ -100,25 +85,29 @@ def _resets(state: SharedState) -> Iterator[tuple[str, str, RationalMatrix]]:
     return ((source, target, map_) for source, target in switches)
 
 
-def _by_contact(modes: Iterable[Mode]) -> dict[str, tuple[Mode, ...]]:
-    """Return the modes by controller and contact, such as ``tissue/soft``, with all corners."""
-    found: dict[str, tuple[Mode, ...]] = {}
-    for mode in modes:
-        name = "/".join(mode.name.split("/")[:2])
-        found[name] = (*found.get(name, ()), mode)
-    return found
-
-
-def _all_modes(controller: Controller, state: SharedState, *, free: bool) -> Iterator[Mode]:
-    """Yield the modes of a controller in all its contacts, and free ones if they are asked for."""
+def _in_contact(
+    controller: Controller,
+    state: SharedState,
+    constants: Sequence[ConstantParameter],
+    *,
+    by_contact: bool,
+) -> Iterator[MatrixMode]:
+    """Yield the modes of a controller in all its contacts, or in none if it takes no force."""
     touched: list[Environment | None] = [*state.contacts(controller)]
     if not touched:
         # What takes no force is the same everywhere, unless something else feels it.
         touched = [None, *(state.environments if state.feels else ())]
-    for environment in touched:
-        name = controller.name if environment is None else f"{controller.name}/{environment.name}"
-        box = state.contact_box(environment).beside(state.motor_box)
-        for corner, rows in box.corners(partial(state.rows, controller.law, environment), name):
-            yield Mode(corner, RationalMatrix.from_rows(rows))
-    if free:
-        yield from free_modes(controller, state)
+    for e in touched:
+        where = () if e is None else (e.name,)
+        name = "/".join((controller.name, *where))
+        box, known = state.contact_box(e).beside(state.motor_box), (None, *where)
+        # Where stiffness and damping depend on each other, not every corner is attained.
+        real = state.motor_box.ranges if e is not None and e.depends else box.ranges
+        own = [constant for constant in constants if constant.contact in known]
+        for labels, rows in box.corners(partial(state.rows, controller.law, e), name):
+            yield MatrixMode(
+                name if by_contact else controller.name,
+                Spot.named(controller.name, *where) + spot_of(labels, real, own),
+                "".join(where),
+                RationalMatrix.from_rows(rows),
+            )

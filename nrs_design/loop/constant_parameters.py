@@ -36,17 +36,6 @@ class ConstantParameter:
         """What labels call it."""
         return self.labels[0].rpartition("-")[0]
 
-    @property
-    def first_label(self) -> int:
-        """Where its labels begin in a name: a contact, too, may be called like one of them."""
-        return 1 if self.contact is None else 2
-
-    def is_at(self, mode: Sequence[str]) -> str | None:
-        """Return at which corner a mode is, by its name and labels; None if it is not in it."""
-        if self.contact is not None and self.contact not in mode[1:2]:
-            return None
-        return next((label for label in self.labels if label in mode[self.first_label :]), None)
-
 
 def constant_lateness(
     name: str, late: tuple[Fraction, Fraction], period: Fraction
@@ -158,25 +147,6 @@ class Corner(NamedTuple):
     mode: str
     varying: tuple[str, ...]  # What its name says, but for the ends of constant parameters
     ends: Mapping[str, int]  # Of each constant parameter: low before high, or which curve point
-
-
-def corners_by_name(
-    names: Iterable[str], parameters: Sequence[ConstantParameter]
-) -> Iterator[Corner]:
-    """Yield at which ends modes are, as their names say it."""
-    for name in names:
-        mode = name.split("/")
-        ends = {parameter: parameter.is_at(mode) for parameter in parameters}
-        constant = {
-            (label, place)
-            for parameter, end in ends.items()
-            if end is not None
-            for place, label in enumerate(mode)
-            if place >= parameter.first_label and label == end
-        }
-        varying = tuple(label for k, label in enumerate(mode) if (label, k) not in constant)
-        corner = {p.said.name: p.labels.index(end) for p, end in ends.items() if end is not None}
-        yield Corner(name, varying, corner)
 
 
 def corner_counts(corners: Sequence[Corner], parameters: Iterable[ConstantParameter]) -> list[int]:

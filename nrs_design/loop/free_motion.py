@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
-from itertools import chain
 
 from nrs_design.controllers.controller_design import Controller
 from nrs_design.errors import AssemblyError
 from nrs_design.loop.assumption import say
+from nrs_design.loop.constant_parameters import ConstantParameter
+from nrs_design.loop.located import MatrixMode
 from nrs_design.loop.modes import Rows, velocity_mode
 from nrs_design.loop.shared_state import SharedState
+from nrs_design.loop.spot import Spot, spot_of
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.contact.kelvin_voigt import KelvinVoigt
 from nrs_design.models.linear_form import LinearForm, coordinates
 from nrs_design.proof.channels import Output
-from nrs_design.proof.contact import Contact, Flights
+from nrs_design.proof.contact import Contact
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode
 from nrs_design.spec import SwitchingSpec
@@ -34,7 +36,7 @@ def lost_contact(state: SharedState, contact: str | None) -> Contact | None:
         if contact == "losable":
             raise _not_losable("")
         return None
-    free = chain.from_iterable(free_modes(c, state) for c in state.design.controllers)
+    free = (item.mode for c in state.design.controllers for item in free_modes(c, state))
     return lost_on_surface(free, pulls_of(state), contact)
 
 
@@ -88,36 +90,19 @@ def _not_losable(which: str) -> AssemblyError:
     )
 
 
-def free_modes(controller: Controller, state: SharedState) -> Iterator[Mode]:
+def free_modes(
+    controller: Controller, state: SharedState, constants: Sequence[ConstantParameter] = ()
+) -> Iterator[MatrixMode]:
     """Yield the modes of a controller that touches nothing, at every corner of the motor."""
 
     def rows_at(values: Mapping[str, Fraction]) -> Rows:
         return velocity_mode(state.motion_at(values), controller.law, NOTHING, state.low_pass)
 
-    for corner, rows in state.motor_box.corners(rows_at, f"{controller.name}/{FREE}"):
-        yield Mode(corner, RationalMatrix.from_rows(rows))
-
-
-def flights_among(
-    names: Iterable[str],
-    environments: Iterable[Environment],
-    pulls: Iterable[RationalMatrix],
-    controllers: Container[str] = (),
-) -> Flights:
-    """Tell which modes are free motion, where it is among them.
-
-    `pulls` are forces of what could pull; modes of `controllers` without contact are free motion,
-    too.
-    """
-    known = {environment.name for environment in environments}
-    touching, flying = [], []
-    for name in names:
-        controller, where = (*name.split("/"), "")[:2]
-        if where in known:
-            touching.append(name)
-        elif where == FREE or controller in controllers:
-            flying.append(name)
-    return Flights(tuple(touching), tuple(flying), tuple(pulls))
+    head = Spot.named(controller.name, FREE)
+    everywhere = [constant for constant in constants if constant.contact is None]
+    for labels, rows in state.motor_box.corners(rows_at, f"{controller.name}/{FREE}"):
+        spot = head + spot_of(labels, state.motor_box.ranges, everywhere)
+        yield MatrixMode(controller.name, spot, FREE, RationalMatrix.from_rows(rows))
 
 
 def pulls_of(state: SharedState) -> Iterator[RationalMatrix]:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
+from dataclasses import replace
 from fractions import Fraction
 
 from nrs_design.errors import AssemblyError
-from nrs_design.proof.mode import Mode
+from nrs_design.loop.located import MatrixMode
+from nrs_design.loop.spot import Spot
 from nrs_design.proof.switching import NOWHERE, Clock, Stay, Switching
 from nrs_design.spec.misses import MissAutomaton, MissesSpec, automaton_of
 
@@ -15,8 +17,8 @@ ONCE = Stay(Fraction(1), Fraction(1))
 
 
 def modes_with_misses(
-    groups: Mapping[str, Sequence[Mode]], rule: MissesSpec
-) -> tuple[tuple[Mode, ...], Switching]:
+    items: Sequence[MatrixMode], rule: MissesSpec
+) -> tuple[tuple[MatrixMode, ...], Switching]:
     """Return the modes by what they lead to, and the switches that a rule for misses allows.
 
     What may follow depends on the state of the automaton alone, so a mode is named by the state
@@ -25,17 +27,12 @@ def modes_with_misses(
     """
     automaton = automaton_of(*rule.window)
     # By the state that they lead to, and whether they are a miss; each in the order of states.
-    reached: dict[tuple[bool, int], tuple[Mode, ...]] = {}
+    reached: dict[tuple[bool, int], tuple[MatrixMode, ...]] = {}
     for missed, targets in ((False, automaton.hit), (True, automaton.miss)):
-        corners = [
-            mode
-            for name, modes in groups.items()
-            if (name == rule.mode) is missed
-            for mode in modes
-        ]
+        corners = [item for item in items if (item.group == rule.mode) is missed]
         for target in sorted({t for t in targets if t is not None}):
             reached[missed, target] = tuple(
-                Mode(f"{mode.name}/s{target}", mode.A) for mode in corners
+                replace(item, spot=item.spot + Spot.named(f"s{target}")) for item in corners
             )
     transitions: list[tuple[str, str]] = []
     stays: list[tuple[str, Stay]] = []

@@ -8,12 +8,13 @@ The weights are products of such shares: not negative, with sum one, the same fo
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import product, starmap
 
 from nrs_design.errors import InternalError
+from nrs_design.loop.spot import labelled_ends
 from nrs_design.models.interval import Interval
 
 Rows = Sequence[Sequence[Fraction]]
@@ -45,29 +46,16 @@ class Box:
             return interval.middle
         return 2 / (1 / interval.low + 1 / interval.high)
 
-    def named_values(self, name: str) -> Iterator[tuple[str, dict[str, Fraction]]]:
-        """Yield the corners of a mode with their values, the last parameter turning fastest.
+    def corners(self, rows_at: RowsAt, name: str) -> Iterator[tuple[tuple[str, ...], Rows]]:
+        """Yield the labels and matrices of the corners, the last parameter turning fastest.
 
-        A corner is named after its ends, such as ``a/soft/k-min``; a point has the name of the
-        mode.
-        """
-        for at, values in self._grid(between=False):
-            yield _named(name, self.ranges, at), values
-
-    def points(self, name: str, attained: Collection[str]) -> Iterator[str]:
-        """Yield, for the corners in their order, the names of what they are corners of."""
-        for at, _ in self._grid(between=False):
-            yield _named(name, self.ranges, at, attained)
-
-    def corners(self, rows_at: RowsAt, name: str) -> Iterator[tuple[str, Rows]]:
-        """Yield the corners of a mode with their matrices, the last parameter turning fastest.
-
-        Named as in `named_values`. An `InternalError` if the matrix is not affine along each axis.
+        An `InternalError`, about the mode of that name, if the matrix is not affine along each
+        axis.
         """
         found = {at: rows_at(values) for at, values in self._grid(between=False)}
         self._check_corners_suffice(rows_at, found, name)
-        for at, rows in found.items():
-            yield _named(name, self.ranges, at), rows
+        for (labels, _), rows in zip(labelled_ends(self.ranges), found.values(), strict=True):
+            yield labels, rows
 
     def _check_corners_suffice(
         self, rows_at: RowsAt, corners: Mapping[tuple[str, ...], Rows], name: str
@@ -104,15 +92,6 @@ class Box:
         for at in product(*axes):
             values = zip(self.ranges, (value for _, value in at), strict=True)
             yield tuple(label for label, _ in at), dict(values)
-
-
-def _named(
-    name: str, symbols: Collection[str], at: Sequence[str], among: Collection[str] | None = None
-) -> str:
-    labels = zip(symbols, at, strict=True)
-    return "/".join(
-        [name, *(f"{s}-{end}" for s, end in labels if end and (among is None or s in among))]
-    )
 
 
 def _is_mean(row: Sequence[Fraction], a: Sequence[Fraction], b: Sequence[Fraction]) -> bool:

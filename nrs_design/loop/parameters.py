@@ -12,10 +12,10 @@ from fractions import Fraction
 
 from nrs_design.errors import InternalError
 from nrs_design.loop.constant_parameters import ConstantParameter
-from nrs_design.loop.parameter_box import Box
+from nrs_design.loop.located import MatrixMode
+from nrs_design.loop.spot import Spot, labelled_ends, spot_of
 from nrs_design.models.interval import Interval
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.mode import Mode
 from nrs_design.proof.switching import FixedParameter
 from nrs_design.spec import ModeSpec, SwitchedSystemSpec
 
@@ -51,15 +51,16 @@ def constant_parameters(
     )
 
 
-def corner_modes(mode: ModeSpec, parameters: Sequence[UncertainParameter]) -> tuple[Mode, ...]:
+def corner_modes(
+    mode: ModeSpec, parameters: Sequence[UncertainParameter]
+) -> tuple[MatrixMode, ...]:
     """Return the corners of one mode; parameters that it does not depend on make none.
 
     An `InternalError` if the matrix halfway is not the mean of the corners.
     """
-    axes = [p for p in parameters if p.name in mode.parameters]
+    own = {p.name: p.interval for p in parameters if p.name in mode.parameters}
     others = {p.name: p.interval.nominal for p in parameters}
-    box = Box({p.name: p.interval for p in axes})
-    corners = [(name, mode.matrix(others | at)) for name, at in box.named_values(mode.name)]
+    corners = [(labels, mode.matrix(others | at)) for labels, at in labelled_ends(own)]
     middle = mode.matrix({p.name: p.interval.middle for p in parameters})
     sums = [
         [sum(column) for column in zip(*rows, strict=True)]
@@ -67,4 +68,10 @@ def corner_modes(mode: ModeSpec, parameters: Sequence[UncertainParameter]) -> tu
     ]
     if [[len(corners) * entry for entry in row] for row in middle] != sums:
         raise InternalError(f"mode {mode.name} is not affine in the parameters")
-    return tuple(Mode(name, RationalMatrix.from_rows(A)) for name, A in corners)
+    head, constants = Spot.named(mode.name), constant_parameters(parameters)
+    return tuple(
+        MatrixMode(
+            mode.name, head + spot_of(labels, own, constants), "", RationalMatrix.from_rows(A)
+        )
+        for labels, A in corners
+    )

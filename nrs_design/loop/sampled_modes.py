@@ -9,16 +9,16 @@ from itertools import product
 from nrs_design.controllers.controller_design import Controller
 from nrs_design.controllers.laws import DiscreteLaw
 from nrs_design.loop.calendar import Turn
-from nrs_design.loop.constant_parameters import ConstantParameter, Corner
+from nrs_design.loop.constant_parameters import ConstantParameter
 from nrs_design.loop.flow import AGAIN, HeldDrive
+from nrs_design.loop.located import AbstractLocatedMode
 from nrs_design.loop.sampled import Contact, Period, Rows, SampledLoop
-from nrs_design.loop.spot import Label, Spot, labelled_ends, spot_of
+from nrs_design.loop.spot import Spot, labelled_ends, spot_of
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.drive import GAIN, LOAD
 from nrs_design.models.interval import Interval
 from nrs_design.models.linear_form import ZERO
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.mode import Mode
 from nrs_design.spec.interaction_parts import FREE
 from nrs_design.spec.misses import MISS
 
@@ -26,37 +26,17 @@ NOWHERE = Spot()
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class SampledMode:
-    """One mode, with what it is a corner of: nobody reads that from its name."""
+class SampledMode(AbstractLocatedMode):
+    """One mode; what it touches is what its force sample shows."""
 
-    group: str  # The name that rules of switching know: a controller, or what is done instead
-    spot: Spot
-    touches: str  # The environment of the force sample; `FREE`; or nothing, where none matters
     begins: bool  # Whether a round begins with it
     period: Period
 
     @property
-    def name(self) -> str:
-        """Its name in certificates."""
-        return "/".join(label.text for label in self.spot.labels)
-
-    @property
-    def point(self) -> tuple[str, ...]:
-        """What it is a corner of, with others: of them all, one map is attained."""
-        return tuple(label.text for label in self.spot.labels if label.attained)
-
-    @property
-    def corner(self) -> Corner:
-        """At which ends of the constant numbers it is, and what else its name says."""
-        varying = (label.text for label in self.spot.labels if not label.constant)
-        return Corner(self.name, tuple(varying), dict(self.spot.corner))
-
-    @property
-    def mode(self) -> Mode:
-        """Its map, as a proof is about it."""
+    def A(self) -> RationalMatrix:
+        """Its map."""
         n = len(self.period.moves)
-        rows = [row[:n] for row in self.period.moves]
-        return Mode(self.name, RationalMatrix.from_rows(rows))
+        return RationalMatrix.from_rows([row[:n] for row in self.period.moves])
 
     def column(self, i: int) -> RationalMatrix:
         """Return what the i-th of inputs and, after them, roundings does to the states."""
@@ -138,7 +118,7 @@ class Modes:
     ) -> Iterator[SampledMode]:
         """Yield the modes of a law while something is touched, or of turns that have none."""
         turns = turns or tuple(turn for turn in self.loop.calendar.turns if turn.has_law)
-        head = Spot(tuple(Label(name, attained=True, constant=False) for name in names))
+        head = Spot.named(*names)
         # The force of a sample that no law takes matters where it is still on its way.
         sampled = turns[0].has_law or (turns[0].is_miss and self.loop.calendar.ages[1] > 0)
         for touched in self._touching(e, contacts, sampled=sampled):
@@ -170,7 +150,7 @@ class Modes:
         for turn, age in product(turns, range(first, last + 1)):
             said = [f"delay-{age}"] if last > first else []
             said += [str(turn)] if turn is Turn.ADMITTANCE else []
-            yield turn, age, Spot(tuple(Label(text, True, False) for text in said))
+            yield turn, age, Spot.named(*said)
 
     def _touching(
         self, e: Environment | None, contacts: Sequence[Environment], *, sampled: bool

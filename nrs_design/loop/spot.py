@@ -28,6 +28,11 @@ class Spot:
     # At which end each constant number is, low before high, by its name; or which curve point.
     corner: tuple[tuple[str, int], ...] = ()
 
+    @classmethod
+    def named(cls, *names: str) -> Spot:
+        """Return where what has such names is, whatever its ranges are."""
+        return cls(tuple(Label(name, attained=True, constant=False) for name in names))
+
     def __add__(self, other: Spot) -> Spot:
         """Return where two things are that have no range in common."""
         return Spot(self.labels + other.labels, self.corner + other.corner)

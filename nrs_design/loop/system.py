@@ -19,6 +19,7 @@ from nrs_design.loop.constant_parameters import ConstantParameter, Corner
 from nrs_design.loop.constraints import assemble_switching, leaving_impedance, zeroing
 from nrs_design.loop.flow import HeldDrive
 from nrs_design.loop.free_motion import could_pull, force_rows, lost_on_surface, outputs_of
+from nrs_design.loop.located import enclosures_of, flights_of, grouped
 from nrs_design.loop.loss import Loss
 from nrs_design.loop.misses import clock_of
 from nrs_design.loop.motor_command import motor_command
@@ -27,12 +28,10 @@ from nrs_design.loop.sampled import SampledLoop
 from nrs_design.loop.sampled_assumptions import assume_sampled
 from nrs_design.loop.sampled_modes import Modes, SampledMode
 from nrs_design.loop.saturation import with_sampled_saturation
-from nrs_design.models.contact.environment import Environment
 from nrs_design.models.drive import Drive
 from nrs_design.models.linear_form import LinearForm, coordinates
 from nrs_design.models.plant import Plant
 from nrs_design.proof.channels import Channel, Rounding
-from nrs_design.proof.contact import Flights
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Clock
@@ -81,9 +80,6 @@ def close_sampled_loop(
     )
     modes, free = _modes(every, design, laws, loss)
     items = (*modes, *free)
-    groups: dict[str, list[str]] = {}
-    for item in modes:
-        groups.setdefault(item.group, []).append(item.name)
     channels = tuple(_channels(conditions, design.sensor.lasting, items))
     velocity = coordinates(len(loop.states))[loop.states.index(drive.states[0])]
     pulls = tuple(force_rows(velocity, loop.states, could_pull(environments)))
@@ -103,7 +99,7 @@ def close_sampled_loop(
             *(() if driven is None else (driven.text,)),
         ),
         switching=assemble_switching(
-            conditions.switching, groups, _resets(conditions.idle, loop, design)
+            conditions.switching, grouped(modes), _resets(conditions.idle, loop, design)
         ),
         contact=lost_on_surface((item.mode for item in free), pulls, conditions.contact)
         if free
@@ -113,8 +109,8 @@ def close_sampled_loop(
         outputs=(*outputs, *(() if driven is None else (driven.output,))),
         roundings=tuple(_roundings(loop, channels, items)),
         clock=_clock(sampling, items),
-        flights=_flights(modes, environments, pulls) if loss.anywhere else None,
-        enclosures=tuple(_enclosures(items)),
+        flights=flights_of(modes, environments, pulls) if loss.anywhere else None,
+        enclosures=tuple(enclosures_of(items)),
     )
     if conditions.initial_force is not None and not points:
         system = with_sampled_saturation(system, conditions, loop, items, environments)
@@ -192,34 +188,12 @@ def _modes(
     return tuple(modes), tuple(beside)
 
 
-def _flights(
-    modes: Sequence[SampledMode],
-    environments: Iterable[Environment],
-    pulls: tuple[RationalMatrix, ...],
-) -> Flights:
-    """Return which modes are in contact, which are free motion, and what could pull."""
-    known = {e.name for e in environments}
-    return Flights(
-        tuple(m.name for m in modes if m.touches in known),
-        tuple(m.name for m in modes if m.touches == FREE),
-        pulls,
-    )
-
-
 def _clock(sampling: SamplingSpec, items: Iterable[SampledMode]) -> Clock | None:
     """Return which modes may be in force: some begin a round, or are those in time."""
     begins = tuple(item.name for item in items if item.begins)
     if sampling.misses is not None:
         return clock_of(automaton_of(*sampling.misses.window), begins)
     return Clock(sampling.round, begins) if sampling.round > 1 else None
-
-
-def _enclosures(items: Iterable[SampledMode]) -> Iterator[tuple[str, ...]]:
-    """Yield the modes that enclose one map together."""
-    found: dict[tuple[str, ...], list[str]] = {}
-    for item in items:
-        found.setdefault(item.point, []).append(item.name)
-    yield from (tuple(names) for names in found.values() if len(names) > 1)
 
 
 def _channels(

@@ -176,8 +176,8 @@ def close_axis(law: AdmittanceLaw, axis: Axis, around: Surroundings) -> Switched
 def _modes(frame: _Frame, box: Box, delays: tuple[int, int], name: str) -> Iterator[Mode]:
     for delay in range(delays[0], delays[1] + 1) if frame.moves else (0,):
         late = f"{name}/age-{delay}" if delays[0] < delays[1] else name
-        for corner, rows in box.corners(partial(frame.rows, delay), late):
-            yield Mode(corner, RationalMatrix.from_rows(rows))
+        for labels, rows in box.corners(partial(frame.rows, delay), late):
+            yield Mode("/".join((late, *labels)), RationalMatrix.from_rows(rows))
 
 
 def assumptions(around: Surroundings) -> tuple[str, ...]:

@@ -46,7 +46,7 @@ def assembled(*controllers, contact=None):
     )
     plant = Plant(MOTOR, (soft, hand), ActuatorRanges.point(MOTOR))
     design = ControllerDesign(ProportionalDerivative(F(1), F(1)), controllers)
-    return close_loop("robot", shared_state(plant, LOOP, design), contact=contact)
+    return close_loop("robot", shared_state(plant, LOOP, design), contact=contact)[0]
 
 
 @dataclass(frozen=True, slots=True)
@@ -202,7 +202,7 @@ def viscoelastic(*contacts, Mt="0.01", law=None):
     law = law or Admittance(F(Mt), F(2))
     controller = Controller("in", law, contacts[0], contacts)
     design = ControllerDesign(ProportionalDerivative(F(1), F(1)), (controller,))
-    return close_loop("robot", shared_state(plant, LOOP, design))
+    return close_loop("robot", shared_state(plant, LOOP, design))[0]
 
 
 def product_of(*polynomials):
@@ -301,4 +301,4 @@ def touched_at_once(other, *, losable):
     plant = Plant(MOTOR, (soft, other, both), ActuatorRanges.point(MOTOR))
     controller = Controller("a", Admittance(F(1), F(2)), "soft", (both.name,))
     design = ControllerDesign(ProportionalDerivative(F(1), F(1)), (controller,))
-    return close_loop("robot", shared_state(plant, LOOP, design))
+    return close_loop("robot", shared_state(plant, LOOP, design))[0]

@@ -9,12 +9,14 @@ from nrs_design.loop import constant_parameters
 from nrs_design.loop.constant_parameters import (
     ConstantParameter,
     constant_sets,
-    corners_by_name,
 )
+from nrs_design.loop.located import MatrixMode
+from nrs_design.loop.spot import Spot, spot_of
 from nrs_design.pipeline.certification import assemble_spec
 from nrs_design.pipeline.runs import run_design
 from nrs_design.proof.constant import corner_weights, system_at
 from nrs_design.proof.contradiction import find_contradiction
+from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.switching import FixedParameter
 from nrs_design.search.certification import Limits
 from nrs_design.search.certify import Verdict, certify
@@ -51,7 +53,14 @@ def constant(*ranges):
 
 
 def sets_of(names, *parameters):
-    return [*constant_sets([*corners_by_name(names, parameters)], parameters)]
+    """The sets of modes with two names each, before the ends that they are at."""
+    items = []
+    for name in names:
+        head, where, *labels = name.split("/")
+        own = [p for p in parameters if p.contact in (None, where)]
+        spot = Spot.named(head, where) + spot_of(labels, (), own)
+        items.append(MatrixMode(head, spot, where, RationalMatrix.from_rows([[1]])))
+    return [*constant_sets([item.corner for item in items], parameters)]
 
 
 def test_a_mode_is_the_same_at_the_ends_of_what_it_does_not_touch():

@@ -140,7 +140,6 @@ COMBINATIONS: tuple[Row[Spec], ...] = (
         SAMPLED,
         because="what slows the motor is lost within a period, too",
     ),
-    not_together(LOADED, SATURATED, SAMPLED),
     not_together(
         MOTOR_RANGE,
         OTHERS,
@@ -154,11 +153,13 @@ COMBINATIONS: tuple[Row[Spec], ...] = (
         CONSTANT_TISSUE, AT_ONCE, MEMORY, PRELOADED, because="its numbers are no longer constant"
     ),
     # The sampled loop.
-    not_together(OFFSET, SAMPLED),
+    not_together(OFFSET, SAMPLED, because="the program that ships keeps none"),
     not_together(GIVEN_LOOP, SAMPLED, because="its program is not known"),
-    not_together(SAMPLED_DWELL, SAMPLED),
+    not_together(SAMPLED_DWELL, SAMPLED, because=_DWELLS),
     *(not_together(DWELL, *features, because=_DWELLS) for features in CHANGING),
-    *_beside(TWO_PERIODS, OTHERS, RULES),
+    *_beside(
+        TWO_PERIODS, OTHERS, RULES, because="it is not said in which of the periods it counts"
+    ),
     *_beside(MISSES, TWO_PERIODS, RULES, because=_MISSES),
     *_beside(MISSES, CONSTANT_MOTOR, CONSTANT_TISSUE, because=_CONSTANTS),
     not_together(
@@ -174,15 +175,25 @@ COMBINATIONS: tuple[Row[Spec], ...] = (
         because="its command is a velocity, and nothing stands where a reference would",
     ),
     *_beside(STREAMED, TWO_PERIODS, SATURATED, because="its motion loop is not ours"),
-    not_together(STREAMED, MOTOR_RANGE, CONTINUOUS),
+    not_together(
+        STREAMED,
+        MOTOR_RANGE,
+        CONTINUOUS,
+        because="a change of it would move the states of its transfer function",
+    ),
     not_together(LIMITED, STREAMED, because="nothing is known of the motor"),
     *_beside(
         TORQUES, TWO_PERIODS, COMMAND, because="its law makes the torque, and moves no reference"
     ),
-    not_together(TORQUES, CONTINUOUS),
-    not_together(TIMED, CONTINUOUS),
+    not_together(TORQUES, CONTINUOUS, because="its law counts the error from sample to sample"),
+    not_together(TIMED, CONTINUOUS, because="what is on its way for a time is no state there"),
     *_beside(SLIDING, MODE_LOGIC, TOOL, because="it is about a pivot"),
-    not_together(COMMAND, OTHERS, SAMPLED),
+    not_together(
+        COMMAND,
+        OTHERS,
+        SAMPLED,
+        because="the hand then commands a position, and nothing is said of its size",
+    ),
     not_together(
         COMMAND, SPRUNG, SAMPLED, because="it would move the position that the spring draws to"
     ),
@@ -199,13 +210,35 @@ COMBINATIONS: tuple[Row[Spec], ...] = (
         SAMPLED,
         because="the position is added to the reference at every sample, which rounds once more",
     ),
-    *_beside(CONTACT_RULES, IDLE, SAMPLED, OFFSET),
+    *_beside(
+        CONTACT_RULES,
+        IDLE,
+        OFFSET,
+        because="a controller that touches nothing has no contact to be named",
+    ),
+    not_together(
+        CONTACT_RULES, SAMPLED, because="contact changes between samples, which no rule keeps"
+    ),
     not_together(
         CONTACT_RULES, LOSABLE, SPRUNG, because="free motion is a mode that no rule names"
     ),
-    not_together(SATURATED, OTHERS, CONTINUOUS),
-    *_beside(SATURATED, TWO_PERIODS, GIVEN_LOOP, SPRUNG, IDLE_RESET),
-    *_beside(SATURATED, AT_ONCE, TORQUES, MISSES),
-    *_beside(SATURATED, MEMORY, HAND, PRELOADED),
-    not_together(SATURATED, DAMPED, NOT_KEPT),
+    not_together(
+        SATURATED,
+        OTHERS,
+        CONTINUOUS,
+        because="a reference that jumps commands the motor without bound",
+    ),
+    *_beside(SATURATED, TWO_PERIODS, MISSES, because="what is held was cut off in a period before"),
+    not_together(SATURATED, GIVEN_LOOP, because="what it commands its motor is not known"),
+    not_together(SATURATED, SPRUNG, because="where the spring draws to at first is not said"),
+    not_together(SATURATED, IDLE_RESET, because="a reset takes the state out of its region"),
+    not_together(SATURATED, AT_ONCE, because="which of them carries the first force is not said"),
+    not_together(SATURATED, TORQUES, because="the limit is that of a motor, and it takes torques"),
+    *_beside(
+        SATURATED, MEMORY, HAND, because="its first force depends on more than the deflection"
+    ),
+    not_together(SATURATED, PRELOADED, because="its motion ends outside of the preload"),
+    not_together(
+        SATURATED, DAMPED, NOT_KEPT, because="what is damped lets go while its spring still pushes"
+    ),
 )

@@ -1,4 +1,4 @@
-"""Run the tests of `nrs_design/proof/` once for every mutant."""
+"""Run the tests of `nrs_design/proof/`, and of what encloses a loop, once for every mutant."""
 
 from __future__ import annotations
 
@@ -23,7 +23,8 @@ from tests.mutation.graft import graft
 from tests.mutation.mutants import Mutant, mutants
 
 ROOT = Path(__file__).parents[2]
-PROOF = ROOT / "nrs_design" / "proof"
+PACKAGE = ROOT / "nrs_design"
+PROOF = PACKAGE / "proof"
 TESTS = ROOT / "tests" / "proof"
 KINDS = TESTS / "evidence"
 EQUIVALENT = Path(__file__).with_name("equivalent.toml")
@@ -40,6 +41,17 @@ BESIDE = {
     "saturation": (KINDS / "test_saturated_ellipsoid.py",),
     "switching": (TESTS / "test_clock.py", KINDS / "test_growing_sequence.py"),
     "system": (TESTS / "test_clock.py", TESTS / "test_contact.py"),
+}
+# Modes that enclose too little prove too much.
+LOOP = {
+    PACKAGE / "loop" / f"{name}.py": [str(ROOT / "tests" / test) for test in tests]
+    for name, tests in {
+        "entries": ("loop/test_entries.py", "loop/test_flow.py"),
+        "flow": ("loop/test_flow.py",),
+        "hull": ("loop/test_flow.py",),
+        "modes": ("loop/test_modes.py", "loop/test_offset.py", "simulation/test_exact.py"),
+        "sampled": ("oracle/test_hull.py", "loop/test_sampled_frame.py"),
+    }.items()
 }
 # A mutant may loop for ever, or count to the end of memory. A test gets so many times what it
 # takes without a change, and so many seconds more.
@@ -136,7 +148,7 @@ class Examination:
 
 
 def main(names: list[str]) -> int:
-    """Examine some modules of `proof`, or all; return how many mutants nobody noticed."""
+    """Examine some modules, such as ``proof/graph``, or all; return how many nobody noticed."""
     os.environ["OPENBLAS_NUM_THREADS"] = "1"
     os.chdir(ROOT)
     total = sum((examine(path, listed()) for path in chosen(names)), Counter())
@@ -147,9 +159,10 @@ def main(names: list[str]) -> int:
 def chosen(names: list[str]) -> Iterator[Path]:
     """Yield the modules that are asked for; without names, all that hold a function."""
     if not names:
-        yield from (path for path in sorted(PROOF.rglob("*.py")) if mutants(path.read_text()))
+        every = (*sorted(PROOF.rglob("*.py")), *LOOP)
+        yield from (path for path in every if mutants(path.read_text()))
     for name in names:
-        yield PROOF / f"{name}.py"
+        yield PACKAGE / f"{name}.py"
 
 
 def listed() -> dict[str, dict[str, str]]:
@@ -159,11 +172,11 @@ def listed() -> dict[str, dict[str, str]]:
 
 def examine(path: Path, reasons: dict[str, dict[str, str]]) -> Counter[str]:
     """Run every mutant of a module that is not listed, and print those that no test noticed."""
-    module = path.relative_to(PROOF).with_suffix("").as_posix()
-    known = reasons.get(module, {})
+    module = path.relative_to(PACKAGE).with_suffix("").as_posix()
+    known = reasons.get(module.removeprefix("proof/"), {})
     every = mutants(path.read_text(encoding="utf-8"))
     candidates = [mutant for mutant in every if mutant.name not in known]
-    name = f"nrs_design.proof.{module.replace('/', '.')}".removesuffix(".__init__")
+    name = f"nrs_design.{module.replace('/', '.')}".removesuffix(".__init__")
     examination = Examination(name, path, candidates)
     if pytest.main([*OPTIONS, *QUIET, *own_tests(path)], plugins=[examination]):
         sys.exit(f"{module}: its tests fail without any change")
@@ -186,6 +199,8 @@ def in_words(count: Counter[str]) -> str:
 
 def own_tests(path: Path) -> list[str]:
     """Return what mirrors a module, and for a kind of evidence the tests of all kinds, too."""
+    if path in LOOP:
+        return LOOP[path]
     path = path.with_stem(DECIDES_FOR.get(path.stem, path.stem))
     mirror = TESTS / path.relative_to(PROOF).with_name(f"test_{path.name}")
     if path.parent == PROOF or path.stem in SHARED:

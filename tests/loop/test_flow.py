@@ -34,6 +34,7 @@ from nrs_design.models.drive import (
 from nrs_design.models.interval import Interval
 from nrs_design.models.motion_loop import MotionLoop
 from tests.loop.frames import Frame
+from tests.loop.test_entries import DRIVES
 
 F = Fraction
 T = F(1, 500)
@@ -223,6 +224,26 @@ def test_what_is_a_hundredth_beyond_a_range_is_beyond_the_points(name):
 
 
 SHAKEN = CommandTiming(T, jitter=T / 5)
+
+
+@pytest.mark.parametrize("name", DRIVES)
+def test_what_is_known_is_near_one_point(name):
+    """Also entries that others give, of drives of every kind, and with what they touch."""
+    drive, touched = DRIVES[name], {"k": KNOWN(F(40)), "b": KNOWN(F(1, 4))}
+    points = HeldDrive(drive, CommandTiming(T, T / 3, T / 3)).flow(touched)
+    with mp.workdps(60):
+        known = {**drive.ranges, **touched}
+        values = {s: mp.mpf(i.low.numerator) / i.low.denominator for s, i in known.items()}
+        period = mp.mpf(T.numerator) / T.denominator
+        rows = true_rows(drive, [period, period * 2 / 3], [True, True], [(1, values)])
+        assert far(points, rows) < 1e-7
+        for point in points:
+            for state, row in rows.items():
+                found = [mp.mpf(x.numerator) / x.denominator for x in point.rows[state]]
+                size = max(map(abs, row))
+                assert max(abs(a - b) for a, b in zip(found, row, strict=True)) < 1e-9 * size
+
+
 COUNTS = {
     "known motor": (motor_drive(KNOWN(F(2)), KNOWN(F(1, 30))), CommandTiming(T), AIR, 2),
     "motor": (BEYOND["motor"][0], CommandTiming(T), AIR, 3),

@@ -48,7 +48,7 @@ LOOP = {
     for name, tests in {
         "entries": ("loop/test_entries.py", "loop/test_flow.py"),
         "flow": ("loop/test_flow.py",),
-        "hull": ("loop/test_flow.py",),
+        "hull": ("loop/test_simplex.py", "loop/test_flow.py"),
         "modes": ("loop/test_modes.py", "loop/test_offset.py", "simulation/test_exact.py"),
         "sampled": ("oracle/test_hull.py", "loop/test_sampled_frame.py"),
     }.items()

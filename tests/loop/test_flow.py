@@ -14,6 +14,7 @@ from scipy.optimize import linprog
 from nrs_design.controllers.laws import Admittance
 from nrs_design.controllers.step_law import StepFrame
 from nrs_design.errors import AssemblyError
+from nrs_design.loop import hull
 from nrs_design.loop.command_timing import CommandTiming
 from nrs_design.loop.flow import AGAIN, HeldDrive
 from nrs_design.loop.hull import around
@@ -242,6 +243,73 @@ def test_what_is_known_is_near_one_point(name):
                 found = [mp.mpf(x.numerator) / x.denominator for x in point.rows[state]]
                 size = max(map(abs, row))
                 assert max(abs(a - b) for a, b in zip(found, row, strict=True)) < 1e-9 * size
+
+
+ONE_RANGE = {
+    "memory": (
+        DRIVES["motor"].remembering("d", [TOUCHED["k"], KNOWN(F(9))]),
+        CommandTiming(T),
+        AIR,
+    ),
+    "load": (TORQUE, CommandTiming(T), TOUCHED | {"b": KNOWN(F(0))}),
+    "motor, jitter": (DRIVES["motor"], CommandTiming(T, jitter=T / 5), AIR),
+    "velocity, jitter": (DRIVES["velocity"], CommandTiming(T, jitter=T / 5), AIR),
+    "late lag": (DRIVES["lag"], CommandTiming(T, F(0), T / 2), AIR),
+    "lag, late lag": (BEYOND["lag"][0], CommandTiming(T, T / 3, T / 3), AIR),
+    "load, late": (DRIVES["loaded"], CommandTiming(T, T / 3, T * 3 / 2), TOUCHED),
+}
+
+
+@pytest.mark.parametrize("name", ONE_RANGE)
+def test_a_range_at_a_time(name):
+    """What changes within a period is on no curve; what lasts needs a period that is known."""
+    drive, timing, touched = ONE_RANGE[name]
+    points, rng = HeldDrive(drive, timing).flow(touched), random.Random(0)
+    with mp.workdps(60):
+        for _ in range(20):
+            assert far(points, draw_rows(rng, drive, timing, touched)) < 1e-7
+
+
+NARROW = {
+    "torque": torque_drive(Interval(F(1), F(1), F("1.001")), Interval(F(2), F(2), F("2.001"))),
+    "motor": motor_drive(KNOWN(F(1)), Interval(F(1), F(1, 31), F(1, 30))),
+}
+
+
+def middles(drive, lengths, loads):
+    known = {s: (i.low + i.high) / 2 for s, i in drive.ranges.items()}
+    for s in drive.inverse & known.keys():
+        known[s] = 2 / (1 / drive.ranges[s].low + 1 / drive.ranges[s].high)
+    exact = [
+        {s: mp.mpf(v.numerator) / v.denominator for s, v in (known | load).items()}
+        for load in loads
+    ]
+    period = mp.mpf(sum(lengths).numerator) / sum(lengths).denominator / 2
+    return true_rows(drive, [period], [True], [(mp.mpf(1) / len(loads), v) for v in exact])
+
+
+@pytest.mark.parametrize("name", NARROW)
+def test_what_bends_is_just_inside_halfway(name, monkeypatch):
+    """Where the second derivative hardly changes, that is as far as what interpolates is off."""
+    monkeypatch.setattr(hull, "RANGED_BITS", 40)
+    drive, still = NARROW[name], {"k": F(0), "b": F(0)}
+    timing = CommandTiming(T, jitter=T / 2**10)
+    points = HeldDrive(drive, timing).flow()
+    with mp.workdps(60):
+        ends = T - T / 2**10, T + T / 2**10
+        assert far(points, middles(drive, ends, [still])) < 1e-9
+
+
+@pytest.mark.parametrize("order", [1, -1])
+def test_a_load_that_jumps_halfway_is_just_inside(order, monkeypatch):
+    """Of all that has the same mean, it is off the most."""
+    monkeypatch.setattr(hull, "RANGED_BITS", 40)
+    short, k = F(1, 2000), Interval(F(5000), F(0), F(10_000))
+    drive = torque_drive(KNOWN(F(1)), KNOWN(F(1)))
+    points = HeldDrive(drive, CommandTiming(short)).flow({"k": k, "b": KNOWN(F(0))})
+    loads = [{"k": end, "b": F(0)} for end in (k.low, k.high)[::order]]
+    with mp.workdps(60):
+        assert far(points, middles(drive, (short, short), loads)) < 1e-9
 
 
 COUNTS = {

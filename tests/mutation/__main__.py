@@ -47,10 +47,7 @@ LOOP = {
     PACKAGE / "loop" / f"{name}.py": [str(ROOT / "tests" / test) for test in tests]
     for name, tests in {
         "entries": ("loop/test_entries.py", "loop/test_flow.py"),
-        "flow": ("loop/test_flow.py",),
         "hull": ("loop/test_simplex.py", "loop/test_flow.py"),
-        "modes": ("loop/test_modes.py", "loop/test_offset.py", "simulation/test_exact.py"),
-        "sampled": ("oracle/test_hull.py", "loop/test_sampled_frame.py"),
     }.items()
 }
 # A mutant may loop for ever, or count to the end of memory. A test gets so many times what it

@@ -164,6 +164,7 @@ def assemble(
         system = in_cases(system, parts)
         constant = (*constant, say("constant.cases", cases=len(system.cases)))
     period = None if conditions.sampling is None else conditions.sampling.outer
+    touched = plant.among(design.contacts)
     sensed = sensor_texts(
         design.sensor,
         period,
@@ -177,7 +178,7 @@ def assemble(
         *identified_texts(spec),
         *preload_texts(conditions.preloads, scale),
         *scale_texts(scale),
-        *points_texts(points),
+        *points_texts(points, remembers=any(e.law.remembers for e in touched)),
         *constant,
     )
     return _on_axis(replace(system, assumptions=texts), spec.axis)

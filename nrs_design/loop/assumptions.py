@@ -148,11 +148,17 @@ def scale_texts(scale: Fraction) -> tuple[Assumption, ...]:
     return () if scale == 1 else (say("range.scaled", scale=scale),)
 
 
-def points_texts(points: str) -> tuple[Assumption, ...]:
-    """Say at which points of the ranges the modes are, unless they are about all of them."""
+def points_texts(points: str, *, remembers: bool) -> tuple[Assumption, ...]:
+    """Say at which points of the ranges the modes are, unless they are about all of them.
+
+    What `remembers` is always looked at in one place.
+    """
     if not points:
         return ()
-    return (say("range.points", points="ends" if points == "ends" else "nominal values"),)
+    but = ", and those of what remembers at their nominal values" if remembers else ""
+    if points == "ends":
+        return (say("range.points", points="ends", but=but),)
+    return (say("range.points", points="nominal values", but=""),)
 
 
 def command_texts(command: str, axis: AxisType) -> Iterator[Assumption]:

@@ -81,7 +81,7 @@ def _resets(state: SharedState) -> Iterator[tuple[str, str, RationalMatrix]]:
         switches = permutations((c.name for c in controllers), 2)
     elif state.idle is not None and state.idle.reset:
         switches = leaving_impedance(controllers)
-    map_ = zeroing(state.names, state.names[state.kept :])
+    map_ = zeroing(state.names, state.zeroed)
     return ((source, target, map_) for source, target in switches)
 
 

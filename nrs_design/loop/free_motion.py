@@ -84,8 +84,7 @@ def _not_losable(which: str) -> AssemblyError:
     return AssemblyError(
         "loss of contact is modelled for impedance controllers on elastic and damped environments"
         f"{which}",
-        remedy="use `contact: kept`; for position and force controllers on elastic environments, "
-        "or prove the sampled loop: add `sampling: {period: 2 ms, delay: 0}`",
+        remedy="use `contact: kept`",
         at=("contact",),
     )
 

@@ -84,7 +84,7 @@ def _input_texts(loop: SharedState, *, losable: bool) -> Iterator[Assumption]:
 def _contact_texts(loop: SharedState) -> Iterator[Assumption]:
     yield from contact_texts(loop.design)
     if loop.feels and not all(c.contacts for c in loop.design.controllers):
-        yield say("contacts.in-position", "the environments of the spec")
+        yield say("contacts.in-position", "what other controllers touch")
     yield from at_once_texts(loop.environments)
     which = "tissue.linear" if loop.offset == "none" else "tissue.offset"
     yield say(which, ranges_text(loop.environments, loop.design.axis))

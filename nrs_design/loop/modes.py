@@ -172,6 +172,9 @@ def position_mode(
     left = [] if bleeding is None else [(ONE, w["w"])]
     pulled = [(law.spring, w["r"])] if moves else []
     size, heard = len(w.nothing), lags[-1] if lags else "sensed"
+    own = [w[name] for name in law.states]
+    # What takes no force does not depend on itself by it.
+    takes_force = law.respond(w.nothing, own) != law.respond(coordinates(size)[0], own)
     w.rule("command", lambda: w.sum((ONE, w["r"] if moves else respond()[0]), *left))
     w.rule("velocity", lambda: motion.velocity(w.nothing, lambda: w["command"]))
     w.rule("force", lambda: react()[0])
@@ -186,7 +189,7 @@ def position_mode(
         return contact.react(w["velocity"] if takes else w.nothing, deflection)
 
     def respond() -> Response:
-        return law.respond(w["felt"], [w[name] for name in law.states])
+        return law.respond(w["felt"] if takes_force else w.nothing, own)
 
     command, rates = respond()
     return [

@@ -209,7 +209,7 @@ def _placed_texts(
     if streams and program.idle is not None:
         yield say("rest-position.streamed-beside")
     if not all(c.contacts for c in design.controllers):
-        yield say("contacts.in-position", "the environments of the spec")
+        yield say("contacts.in-position", "what other controllers touch")
     for text in dict.fromkeys(c.law.sampled_text for c in design.controllers):
         if text:
             yield say("idle.sampled-law", text=text)

@@ -134,9 +134,9 @@ class SharedState:
         return self.joint is not None or self.low_pass is not None or bool(self.memories)
 
     @property
-    def kept(self) -> int:
-        """How many of the states, from the first on, a switch that resets leaves alone."""
-        return self.realization.order - (self.offset == "measured")
+    def zeroed(self) -> tuple[str, ...]:
+        """The states that a switch sets to zero, where switches reset any."""
+        return self.names[-1:] if self.offset == "measured" else self.beside
 
     def contact_box(self, environment: Environment | None) -> Box:
         """Return the parameters of a contact, and the rates of the memories that it leaves alone.

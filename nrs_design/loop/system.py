@@ -26,7 +26,7 @@ from nrs_design.loop.motor_command import motor_command
 from nrs_design.loop.program import INPUTS, SampledProgram
 from nrs_design.loop.sampled import SampledLoop
 from nrs_design.loop.sampled_assumptions import assume_sampled
-from nrs_design.loop.sampled_modes import Modes, SampledMode
+from nrs_design.loop.sampled_modes import Modes, SampledMode, damping_of
 from nrs_design.loop.saturation import with_sampled_saturation
 from nrs_design.models.drive import Drive
 from nrs_design.models.linear_form import LinearForm, coordinates
@@ -86,7 +86,8 @@ def close_sampled_loop(
     outputs = outputs_of(velocity, loop.states, environments, conditions.torque) if channels else ()
     if drive.speed is not None:
         # It jumps after the sample, and the force of what is damped with it.
-        outputs = () if pulls else tuple(one for one in outputs if one.name == "force")
+        damped = any(damping_of(environment).high for environment in environments)
+        outputs = () if damped else tuple(one for one in outputs if one.name == "force")
     driven = motor_command(conditions.largest_command, conditions.command, loop, channels)
     system = SwitchedSystem(
         name=conditions.name,

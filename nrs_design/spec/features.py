@@ -16,6 +16,7 @@ from nrs_design.spec.controllers import ControllerSpec, contact_name, names_in
 from nrs_design.spec.environment import AbstractEnvironmentSpec
 from nrs_design.spec.interaction_parts import AbstractInteractionSpec as Spec
 from nrs_design.spec.sampling import SamplingSpec
+from nrs_design.spec.sensor import SensorSpec
 
 
 class Touched(NamedTuple):
@@ -128,6 +129,8 @@ def _constant(
     return find
 
 
+# What is advised where a force is not filtered.
+_FILTERED = SensorSpec.model_validate({"filter": {"cutoff": "30 Hz"}})
 # What is advised where a loop is not sampled.
 _SAMPLES = SamplingSpec.model_validate({"period": "2 ms", "delay": 0})
 
@@ -375,6 +378,7 @@ UNFILTERED = _F(
     "sensor.filter",
     "add `sensor: {{filter: {{cutoff: 30 Hz}}}}`",
     lambda s: s.sensor is None or s.sensor.filter is None,
+    lambda s: s.model_copy(update={"sensor": _FILTERED}),
 )
 
 DISTURBED = _F(

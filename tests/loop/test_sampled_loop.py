@@ -328,7 +328,7 @@ def test_what_position_control_touches_is_sampled(tmp_path):
     ]
     assert free[2] == [0] * 4
     assert touching[2] == [0, 0, 0, Fraction("768.17") * Fraction("0.24") ** 2]
-    assert "any of the environments may be touched" in " ".join(system.assumptions)
+    assert "anything that other controllers touch may be touched" in " ".join(system.assumptions)
     at_once = system_of(tmp_path, "{period: 2 ms, delay: 0}", text=FORCE)
     assert [m.name for m in at_once.modes if "position" in m.name] == [
         "position/flow-0",

@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from nrs_design.controllers.laws import Admittance
+from nrs_design.design.design import design_controllers
 from nrs_design.loop.assemble import assemble
 from nrs_design.loop.modes import position_mode, velocity_mode
 from nrs_design.models.actuator import Actuator
@@ -78,6 +79,27 @@ def test_resets_lead_from_impedance_controllers_to_the_others():
     assert "they are set to zero" in texts
     assert "start from the rest position, with vm = 0." in texts
     assert "All other states are continuous" in texts
+
+
+def test_a_reset_leaves_what_shows_the_force_and_what_remembers_it():
+    text = MIXED.read_text().replace("decay: 20 1/s", "decay: 20 1/s, reset: true")
+    creeping = (
+        "    model: kelvin-boltzmann\n    parallel_stiffness: 60 N*m/rad\n"
+        "    series_stiffness: 80 N*m/rad\n    damping: 5 N*m*s/rad\n"
+    )
+    begin, end = text.index("    model: elastic"), text.index("\ncontrollers:")
+    text = f"{text[:begin]}{creeping}{text[end:]}sensor: {{filter: {{cutoff: 30 Hz}}}}\n"
+    spec = parse_spec(text)
+    plant = build_plant(spec)
+    system = assemble(spec, plant, design_controllers(spec, plant))
+    zeroed = {"vm [rad/s]", "reference [rad]"}
+    assert {*system.states} - zeroed == {
+        *("xi1", "xi2", "filtered 1 [N*m]", "soft: damper deflection [rad]")
+    }
+    for reset in system.switching.resets:
+        for i, row in enumerate(reset.map.fractions()):
+            kept = system.states[i] not in zeroed
+            assert row == [F(i == j and kept) for j in range(len(system.states))]
 
 
 def test_what_is_held_is_said_to_be():

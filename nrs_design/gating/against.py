@@ -41,7 +41,7 @@ from nrs_design.proof.bounds import lower, upper
 from nrs_design.spec import LoadedSpec, read_spec
 from nrs_design.spec.load import is_there
 from nrs_design.spec.task_space import file_of
-from nrs_design.spec.weaker import Change, find_changes, meaning_of
+from nrs_design.spec.weaker import Change, find_changes
 
 _GONE = "this spec of the base is gone: what it asked for is no longer shown"
 # Verdicts, from the one that shows most.
@@ -163,7 +163,7 @@ def _of_spec(path: Path, now: SpecOutcome) -> Iterator[Change]:
     except NrsDesignError as error:
         yield Change((), f"cannot be compared: that of the base cannot be read ({error})", True)
         return
-    yield from find_changes(meaning_of(before.spec), meaning_of(after.spec))
+    yield from find_changes(before.spec, after.spec)
     yield from _of_recorded(before, after)
 
 

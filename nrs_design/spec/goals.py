@@ -18,7 +18,16 @@ from nrs_design.spec import quantity_fields as field
 from nrs_design.spec.check import Row
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import AboveOne, BelowTwo, Label, UnitFraction
-from nrs_design.spec.model import ReadBy, SpecModel, optional, pair_schema, required
+from nrs_design.spec.model import (
+    ReadBy,
+    SpecModel,
+    Stronger,
+    Unsaid,
+    at_most,
+    optional,
+    pair_schema,
+    required,
+)
 from nrs_design.spec.quantity import Quantity, is_less
 from nrs_design.spec.quantity_fields import quantity_schema, read_quantity
 
@@ -36,7 +45,9 @@ def _read_band(value: object) -> tuple[Quantity, Quantity]:
 
 
 Band = Annotated[
-    tuple[Quantity, Quantity], ReadBy(_read_band, pair_schema(quantity_schema(kinds.BANDWIDTH)))
+    tuple[Quantity, Quantity],
+    ReadBy(_read_band, pair_schema(quantity_schema(kinds.BANDWIDTH))),
+    Stronger.WIDER,
 ]
 _BAND = "[lowest, highest] frequency, such as [0 Hz, 2 Hz]; sampled, below half the sampling rate"
 _ORDERED = Row[SpecModel](
@@ -47,7 +58,7 @@ _ORDERED = Row[SpecModel](
 )
 
 
-class TransparencySpec(SpecModel):
+class TransparencySpec(SpecModel, stronger=Stronger.SMALLER):
     """How little the surgeon shall feel of the robot, in free motion."""
 
     max_impedance: field.Impedance = required(
@@ -69,7 +80,7 @@ class TransparencySpec(SpecModel):
         return self.max_impedance.text
 
 
-class AccuracySpec(SpecModel):
+class AccuracySpec(SpecModel, stronger=Stronger.SMALLER):
     """How well the tool shall follow the commanded velocity."""
 
     max_error: UnitFraction = required(
@@ -77,7 +88,9 @@ class AccuracySpec(SpecModel):
     )
     band: Band = required(_BAND)
     environment: Label | None = optional(
-        "what is touched meanwhile, elastic or Kelvin-Voigt; default: nothing"
+        "what is touched meanwhile, elastic or Kelvin-Voigt; default: nothing",
+        stronger=Stronger.UNKNOWN,
+        unsaid=Unsaid.OTHER,
     )
 
     checks = (_ORDERED,)
@@ -116,10 +129,10 @@ def _below_half_turn(angle: Quantity) -> Quantity:
     return angle
 
 
-class GoalsSpec(SpecModel):
+class GoalsSpec(SpecModel, stronger=Stronger.LARGER):
     """Goals of the design; docs/design/goals.md defines each, and where it is evaluated."""
 
-    max_sensitivity_peak: AboveOne | None = optional(
+    max_sensitivity_peak: AboveOne | None = at_most(
         "largest Ms = max |1/(1 + L)|, above 1, no unit"
     )
     min_gain_margin: AboveOne | None = optional(
@@ -134,7 +147,7 @@ class GoalsSpec(SpecModel):
     min_disk_margin: BelowTwo | None = optional(
         "smallest balanced disk margin, between 0 and 2, no unit"
     )
-    max_impedance_error: AboveOne | None = optional(
+    max_impedance_error: AboveOne | None = at_most(
         "largest factor between displayed and desired impedance up to the bandwidth, "
         "above 1, no unit; impedance controllers only"
     )
@@ -143,15 +156,15 @@ class GoalsSpec(SpecModel):
         "|L/(1 + L)| up to the bandwidth, between 0 and 1, no unit; impedance controllers whose "
         "environment is the hand"
     )
-    max_hand_effort: field.Impedance | None = optional(
+    max_hand_effort: field.Impedance | None = at_most(
         "largest torque of the hand over the velocity that it intends, |Ze/(1 + L)| "
         "up to the bandwidth in N*m*s/rad; impedance controllers whose environment is the hand"
     )
-    max_creep: field.AngularVelocity | None = optional(
+    max_creep: field.AngularVelocity | None = at_most(
         "largest lasting velocity in free motion by errors of the force signal, such "
         "as 0.5 deg/s; impedance controllers only, and with sensor"
     )
-    max_creep_angle: field.Angle | None = optional(
+    max_creep_angle: field.Angle | None = at_most(
         "largest angle that the robot creeps in free motion by errors of the force "
         "signal, such as 2 deg; impedance controllers with a spring Kt only, and with sensor"
     )
@@ -163,11 +176,11 @@ class GoalsSpec(SpecModel):
         "proved: how far the tool is off the commanded velocity over a band, such as "
         "{max_error: 0.1, band: [0 Hz, 1 Hz]}; impedance controllers only"
     )
-    max_force_error: UnitFraction | None = optional(
+    max_force_error: UnitFraction | None = at_most(
         "largest steady force error over the commanded force, between 0 and 1, no "
         "unit; force controllers only"
     )
-    peak_torque: field.Torque | None = optional(
+    peak_torque: field.Torque | None = at_most(
         "largest torque in N*m that the proved bound under all disturbances of the "
         "spec may have; for the whole spec, not for one controller"
     )

@@ -27,7 +27,7 @@ from nrs_design.spec.fields import Digits, Label, Name, Title
 from nrs_design.spec.free import FreeGainsSpec
 from nrs_design.spec.goals import GoalsSpec
 from nrs_design.spec.misses import MISS
-from nrs_design.spec.model import ReadBefore, SpecModel, optional, required
+from nrs_design.spec.model import ReadBefore, SpecModel, Stronger, Unsaid, optional, required
 from nrs_design.spec.monitoring import MonitoringSpec
 from nrs_design.spec.motion import (
     ActuatorSpec,
@@ -65,7 +65,7 @@ NOT_CONTROLLERS = {
 OF_CORNERS = re.compile(r"([A-Za-z]|tau|Km|(h|in)\d+)-(min|max)|(delay|flow|case)-\d+")
 
 
-class DesignSpec(SpecModel):
+class DesignSpec(SpecModel, stronger=Stronger.BESIDE):
     """How gains are written down."""
 
     significant_digits: Digits = optional(
@@ -79,7 +79,7 @@ class DesignSpec(SpecModel):
     )
 
 
-class AbstractInteractionSpec(SpecModel):
+class AbstractInteractionSpec(SpecModel, stronger=Stronger.UNKNOWN):
     """The keys of such a spec, and what follows from them."""
 
     kind: Literal["interaction-design"] = required("what this file describes")
@@ -140,7 +140,8 @@ class AbstractInteractionSpec(SpecModel):
     )
     contact: Literal["losable", "kept"] | None = optional(
         "whether a proof must hold while contact is lost and made again (losable), or "
-        "takes for granted that it is kept; default: losable where that can be proved"
+        "takes for granted that it is kept; default: losable where that can be proved",
+        stronger=("kept", None, "losable"),
     )
     coordinates: Literal["deflection"] = optional(
         "state of the contact: the deflection, which stays continuous when the stiffness switches",
@@ -148,7 +149,8 @@ class AbstractInteractionSpec(SpecModel):
     )
     mode_logic: Annotated[ThresholdLogicSpec, ReadBefore(check_type)] | None = optional(
         "what decides which controller is active; `switching: mode-logic` lets the "
-        "proof be about the switching signals that it can give"
+        "proof be about the switching signals that it can give",
+        unsaid=Unsaid.MOST,
     )
     switching: LogicalRule = required(
         "when controllers change: arbitrary, mode-logic (as mode_logic says), or rules "

@@ -13,7 +13,7 @@ from nrs_design.spec import quantity_fields as field
 from nrs_design.spec.check import Row, S, exactly_one, refuse
 from nrs_design.spec.faults import Location
 from nrs_design.spec.fields import Exact, UnitFraction
-from nrs_design.spec.model import SpecModel, optional, required
+from nrs_design.spec.model import SpecModel, Stronger, at_most, optional, required
 from nrs_design.spec.provenance import Coverage, IdentifiedRangesSpec
 from nrs_design.spec.quantity import Quantity, is_less
 from nrs_design.spec.quantity_fields import RangedQuantity
@@ -25,7 +25,7 @@ CommandUnit = Literal["rpm", "V", "A", "counts"]
 Coefficients = Annotated[tuple[Exact, ...], Field(min_length=1, max_length=MAX_COEFFICIENTS)]
 
 
-class ActuatorIntervals(SpecModel):
+class ActuatorIntervals(SpecModel, stronger=Stronger.NEITHER):
     """Confidence intervals of an identified actuator, for the record.
 
     The design and the proof take the nominal values.
@@ -60,7 +60,7 @@ def commands_in(
     return refuse(others, "{0} is about commands in {1}, and the motor takes {2}", "{3}")
 
 
-class ActuatorSpec(IdentifiedRangesSpec):
+class ActuatorSpec(IdentifiedRangesSpec, stronger=Stronger.WIDER):
     """Velocity actuator ``theta_m/delta = Km/(s (tau s + 1))`` (thesis 4.1)."""
 
     command: CommandUnit = optional(
@@ -128,7 +128,7 @@ _DEAD_TIME = (
 _COVERS = "what the identified ranges hold: confidence, tolerance or prediction, each with 95 %"
 
 
-class TransferFunctionSpec(SpecModel):
+class TransferFunctionSpec(SpecModel, stronger=Stronger.NEITHER):
     """Strictly proper transfer function, coefficients with the highest power first."""
 
     numerator: Coefficients = required(
@@ -154,7 +154,7 @@ class TransferFunctionSpec(SpecModel):
     )
 
 
-class FollowingSpec(IdentifiedRangesSpec):
+class FollowingSpec(IdentifiedRangesSpec, stronger=Stronger.WIDER):
     """A robot that closes its own motion loop, and follows what is streamed."""
 
     time_constant: field.RangedDuration | None = optional(
@@ -205,7 +205,7 @@ class PositionInterfaceSpec(FollowingSpec):
     )
 
 
-class TorqueInterfaceSpec(IdentifiedRangesSpec):
+class TorqueInterfaceSpec(IdentifiedRangesSpec, stronger=Stronger.WIDER):
     """A robot that takes torques, its gravity compensated: ``J omega' = u - B omega - F``."""
 
     inertia: field.RangedInertia = required("J of the joint and all that it moves, in kg*m^2")
@@ -219,7 +219,7 @@ class TorqueInterfaceSpec(IdentifiedRangesSpec):
         return {"inertia": self.inertia, "friction": self.friction}
 
 
-class MotionLoopSpec(SpecModel):
+class MotionLoopSpec(SpecModel, stronger=Stronger.NEITHER):
     """Motion loop around the actuator, closed by a PD controller (thesis 4.3)."""
 
     damping_ratio: UnitFraction = required(
@@ -242,13 +242,15 @@ class MotionLoopSpec(SpecModel):
 MOTOR_COMMAND = "motor command"
 
 
-class LimitsSpec(SpecModel):
+class LimitsSpec(SpecModel, stronger=Stronger.UNKNOWN):
     """What the interaction must respect (thesis 6.3.1)."""
 
     velocity: field.AngularVelocity = required("largest commanded angular velocity in rad/s")
-    torque: field.Torque = required("largest interaction torque in N*m")
-    bandwidth: field.Bandwidth = required("highest frequency of the operator's motion, Hz")
-    command: field.LargestCommand | None = optional(
+    torque: field.Torque = required("largest interaction torque in N*m", Stronger.SMALLER)
+    bandwidth: field.Bandwidth = required(
+        "highest frequency of the operator's motion, Hz", Stronger.LARGER
+    )
+    command: field.LargestCommand | None = at_most(
         "largest command that the motor's driver takes, such as rpm, for the error "
         "that derivative_gain is for: where the driver closes its loop on an encoder that turns "
         "five times as far as the joint, and the gains are for the joint, a fifth of the "

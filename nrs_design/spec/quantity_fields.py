@@ -18,6 +18,7 @@ from nrs_design.spec.model import (
     ReadBefore,
     ReadBy,
     SpecModel,
+    Stronger,
     keys_schema,
     optional,
     pair_schema,
@@ -114,7 +115,7 @@ AnyQuantity = Annotated[
 ]
 
 
-class Bounds(SpecModel):
+class Bounds(SpecModel, stronger=Stronger.UNKNOWN):
     """Closed interval."""
 
     min: AnyQuantity = required("smallest admissible value")
@@ -123,7 +124,7 @@ class Bounds(SpecModel):
     checks = BOUND_CHECKS
 
 
-class GainSpec(SpecModel):
+class GainSpec(SpecModel, stronger=Stronger.NEITHER):
     """A gain: fixed, with ``min == max``, or to be designed within bounds."""
 
     min: AnyQuantity = required("smallest value that the design may choose")

@@ -12,7 +12,15 @@ from nrs_design.spec.check import Row
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import read_exact
 from nrs_design.spec.misses import DeadlinesSpec
-from nrs_design.spec.model import ReadBy, SpecModel, optional, pair_schema, required
+from nrs_design.spec.model import (
+    ReadBy,
+    SpecModel,
+    Stronger,
+    Unsaid,
+    optional,
+    pair_schema,
+    required,
+)
 from nrs_design.spec.provenance import IdentifiedSpec
 from nrs_design.spec.quantity_fields import ends_of
 from nrs_design.spec.units import command_unit
@@ -57,7 +65,7 @@ Delay = Annotated[
 ]
 
 
-class SamplingSpec(IdentifiedSpec):
+class SamplingSpec(IdentifiedSpec, stronger=Stronger.FARTHER):
     """The law as a processor runs it: once a period, with float32 coefficients.
 
     The derivative of the motion controller is a backward difference, the command is held between
@@ -79,7 +87,8 @@ class SamplingSpec(IdentifiedSpec):
     outer_period: field.Duration | None = optional(
         "time between two samples of the outer loop (filter of the force and "
         "admittance) in s, where it is not that of the motion loop: a whole number of its "
-        "periods, or a whole part of one; `delay` counts samples of the force, so these"
+        "periods, or a whole part of one; `delay` counts samples of the force, so these",
+        unsaid=Unsaid.OTHER,
     )
     misses: DeadlinesSpec | None = optional(
         "how many periods may miss their deadline, and what happens in these; default: none"
@@ -88,6 +97,7 @@ class SamplingSpec(IdentifiedSpec):
         "how Mt vm' + Bt vm = F becomes a step: exact for a force held over the "
         "period, or one step of Euler's method",
         "exact",
+        stronger=Stronger.NEITHER,
     )
 
     @property
@@ -155,7 +165,7 @@ class SamplingSpec(IdentifiedSpec):
     )
 
 
-class DisturbancesSpec(SpecModel):
+class DisturbancesSpec(SpecModel, stronger=Stronger.LARGER):
     """Bounds on what acts on the loop from outside; what is left out is zero."""
 
     command: field.AngularVelocity | None = optional(

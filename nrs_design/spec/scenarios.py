@@ -15,7 +15,15 @@ from nrs_design.spec import quantity_fields as field
 from nrs_design.spec.check import Row
 from nrs_design.spec.faults import all_of, as_text, fault
 from nrs_design.spec.fields import LABEL_PATTERN, Label, Title, UnitFraction, whole
-from nrs_design.spec.model import ReadBy, SpecModel, optional, pair_schema, required
+from nrs_design.spec.model import (
+    ReadBy,
+    SpecModel,
+    Stronger,
+    Unsaid,
+    optional,
+    pair_schema,
+    required,
+)
 from nrs_design.spec.quantity import Quantity, is_less
 from nrs_design.spec.quantity_fields import quantity_schema, read_quantity
 
@@ -99,7 +107,11 @@ def one_of(message: str, remedy: str) -> tuple[Row[Any], ...]:
     return (Row("", lambda s: sum(v is not None for _, v in s) != 1, message, remedy),)
 
 
-class SinusoidSpec(SpecModel):
+class PartOfRunSpec(SpecModel, stronger=Stronger.UNKNOWN, unsaid=Unsaid.OTHER):
+    """What makes another run where it is another, or is said and was not."""
+
+
+class SinusoidSpec(PartOfRunSpec):
     """A velocity ``offset + amplitude sin(omega t)``."""
 
     amplitude: field.AngularVelocity = required("amplitude in rad/s")
@@ -107,7 +119,7 @@ class SinusoidSpec(SpecModel):
     offset: field.SignedAngularVelocity | None = optional("mean in rad/s; default: none")
 
 
-class CommandProfileSpec(SpecModel):
+class CommandProfileSpec(PartOfRunSpec):
     """The velocity that the surgeon commands, in one of four ways; positive raises the angle."""
 
     constant: field.SignedAngularVelocity | None = optional("one velocity all the time, in rad/s")
@@ -124,7 +136,7 @@ class CommandProfileSpec(SpecModel):
     checks = one_of("a command is given in one way", "write constant, points, sinusoid or csv")
 
 
-class SurfaceSpec(SpecModel):
+class SurfaceSpec(PartOfRunSpec):
     """Where an environment begins; it pushes and never pulls."""
 
     environment: Label = required("name of the environment")
@@ -146,14 +158,14 @@ class SurfaceSpec(SpecModel):
 Surfaces = Annotated[tuple[SurfaceSpec, ...], Field(max_length=MAX_SURFACES)]
 
 
-class SignControlSpec(SpecModel):
+class SignControlSpec(PartOfRunSpec):
     """Insertion and withdrawal by the signs of command and torque (thesis 6.3.2)."""
 
     insertion: Label = required("controller while the command goes into the tissue")
     withdrawal: Label = required("controller while the command goes out of tissue that pushes")
 
 
-class ThresholdControlSpec(SpecModel):
+class ThresholdControlSpec(PartOfRunSpec):
     """Position control up to a torque, force control from there on (thesis 6.3.3)."""
 
     position: Label = required("controller below the threshold")
@@ -161,7 +173,7 @@ class ThresholdControlSpec(SpecModel):
     torque: field.Torque = required("the threshold T_th in N*m")
 
 
-class ControlSpec(SpecModel):
+class ControlSpec(PartOfRunSpec):
     """Which controller is in force when, in one of six ways."""
 
     fixed: Label | None = optional("one controller all the time")
@@ -201,7 +213,7 @@ class ControlSpec(SpecModel):
         return found
 
 
-class ErrorsSpec(SpecModel):
+class ErrorsSpec(SpecModel, stronger=Stronger.LARGER):
     """What acts on the sampled loop and its sensors; what is left out is zero."""
 
     friction: field.DriveCommand | None = optional(
@@ -217,7 +229,7 @@ class ErrorsSpec(SpecModel):
     )
 
 
-class ScenarioLimitsSpec(SpecModel):
+class ScenarioLimitsSpec(SpecModel, stronger=Stronger.SMALLER):
     """What the gate wants a simulated run to keep; what is left out is not looked at."""
 
     torque: field.Torque | None = optional("largest torque of the tissue in N*m")
@@ -236,13 +248,14 @@ class ScenarioLimitsSpec(SpecModel):
         return {name: value for name, value in self if value is not None}
 
 
-class ScenarioSpec(SpecModel):
+class ScenarioSpec(PartOfRunSpec):
     """One run of the robot against its surroundings."""
 
     title: Title = optional("one line for people, at most 200 characters", "")
     command: CommandProfileSpec = required("velocity that the surgeon commands")
     duration: field.Duration | None = optional(
-        "length of the run in s, at most an hour; default: that of points or csv"
+        "length of the run in s, at most an hour; default: that of points or csv",
+        stronger=Stronger.LARGER,
     )
     start: field.SignedAngle | None = optional(
         "angle at which the axis rests at first, in rad; default: 0"
@@ -257,11 +270,12 @@ class ScenarioSpec(SpecModel):
         "Fd of force controllers in N*m, towards rising angles; default: limits.torque"
     )
     errors: ErrorsSpec | None = optional(
-        "friction, resolutions, noise and jitter; for the sampled engine"
+        "friction, resolutions, noise and jitter; for the sampled engine", unsaid=Unsaid.NOTHING
     )
     limits: ScenarioLimitsSpec | None = optional(
         "what the run must keep for the gate to pass (NRS109), such as "
-        "{torque: 0.3 N*m, deflection: 1 deg}; without it, the gate does not simulate it"
+        "{torque: 0.3 N*m, deflection: 1 deg}; without it, the gate does not simulate it",
+        unsaid=Unsaid.NOTHING,
     )
     seed: Seed = optional("of noise, jitter and varying delay", 0)
 

@@ -21,7 +21,7 @@ from nrs_design.spec import quantity_fields as field
 from nrs_design.spec.check import Reference, Row, each, refuse
 from nrs_design.spec.faults import Location, as_text, did_you_mean, fault
 from nrs_design.spec.fields import Label
-from nrs_design.spec.model import ReadBy, SpecModel, optional, required
+from nrs_design.spec.model import ReadBy, SpecModel, Stronger, Unsaid, at_most, optional, required
 from nrs_design.spec.quantity import Quantity
 from nrs_design.spec.switching import (
     DWELL_SCHEMA,
@@ -44,7 +44,11 @@ _ABOVE = "the value that the logic sees is at least this, in {unit}"
 _BELOW = "the value that the logic sees is at most this, in {unit}"
 
 
-class CommandSignalSpec(SpecModel):
+class PartOfLogicSpec(SpecModel, stronger=Stronger.UNKNOWN, unsaid=Unsaid.MOST):
+    """What is assumed of switching: with it, less is shown."""
+
+
+class CommandSignalSpec(SpecModel, stronger=Stronger.LARGER):
     """The velocity command of the surgeon, positive towards the tissue."""
 
     noise: field.AngularVelocity = required(_NOISE.format(unit="rad/s"))
@@ -52,7 +56,7 @@ class CommandSignalSpec(SpecModel):
     largest_rate: field.AngularAcceleration = required(_RATE.format(unit="rad/s^2"))
 
 
-class TorqueSignalSpec(SpecModel):
+class TorqueSignalSpec(SpecModel, stronger=Stronger.LARGER):
     """The torque of the tissue on the robot, positive where it is pushed."""
 
     noise: field.Torque = required(_NOISE.format(unit="N*m"))
@@ -63,7 +67,7 @@ class TorqueSignalSpec(SpecModel):
 SignalSpec = CommandSignalSpec | TorqueSignalSpec
 
 
-class LogicSignalsSpec(SpecModel):
+class LogicSignalsSpec(PartOfLogicSpec):
     """What the logic sees."""
 
     command: CommandSignalSpec | None = optional("velocity command, positive towards the tissue")
@@ -80,7 +84,7 @@ _ONE_SIDE = Row[Any](
 )
 
 
-class CommandCondition(SpecModel):
+class CommandCondition(PartOfLogicSpec):
     """One side of a threshold on the command."""
 
     above: field.SignedAngularVelocity | None = optional(_ABOVE.format(unit="rad/s"))
@@ -89,7 +93,7 @@ class CommandCondition(SpecModel):
     checks = (_ONE_SIDE,)
 
 
-class TorqueCondition(SpecModel):
+class TorqueCondition(PartOfLogicSpec):
     """One side of a threshold on the torque."""
 
     above: field.SignedTorque | None = optional(_ABOVE.format(unit="N*m"))
@@ -101,7 +105,7 @@ class TorqueCondition(SpecModel):
 Condition = CommandCondition | TorqueCondition
 
 
-class LogicSwitchSpec(SpecModel):
+class LogicSwitchSpec(PartOfLogicSpec):
     """A switch, and what must hold when it is made."""
 
     source: Label = Field(alias="from", description="controller that is left")
@@ -151,7 +155,7 @@ def check_type(given: object) -> object:
     return given
 
 
-class ThresholdLogicSpec(SpecModel):
+class ThresholdLogicSpec(PartOfLogicSpec):
     """Controllers that follow each other by thresholds on command and torque."""
 
     type: Literal["thresholds"] = required(
@@ -160,9 +164,11 @@ class ThresholdLogicSpec(SpecModel):
     start: Label = required("controller that is active at first")
     signals: LogicSignalsSpec = required("what the logic sees, and how well")
     switches: Annotated[
-        tuple[LogicSwitchSpec, ...], Field(min_length=1, max_length=MAX_SWITCHES)
+        tuple[LogicSwitchSpec, ...],
+        Field(min_length=1, max_length=MAX_SWITCHES),
+        Unsaid.NOTHING,
     ] = required("switches from one controller to another; the first that may be made is")
-    hold: Annotated[DwellTimes | None, ReadBy(read_dwell_times, DWELL_SCHEMA)] = optional(
+    hold: Annotated[DwellTimes | None, ReadBy(read_dwell_times, DWELL_SCHEMA)] = at_most(
         "shortest time in s for which a controller is held whatever the signals "
         "say; one for all, or by name. Default: what thresholds, noise and age give anyway"
     )

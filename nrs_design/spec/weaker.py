@@ -1,83 +1,34 @@
 """In which places a spec asks for less, or takes more for granted, than another one did.
 
-The two are compared by what they mean: as models, defaults filled in. That something is weaker is
-decided by rules about the kind of a place: a range that no longer covers the other, a limit of a
-goal, something that is not said any more. What makes another robot or another law, such as the gain
-of a motor, is neither more nor less. Whatever else cannot be compared is weaker, and so is another
-value where nobody has said which of two asks for more.
+The two are compared as they are read: field by field, defaults filled in, however it is written.
+Every field declares which of two values asks for more (`nrs_design.spec.model.Stronger`). What
+cannot be compared is weaker, and so is another value where nobody knows which of two asks for more.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, fields, is_dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass
 from fractions import Fraction
+from typing import Any
 
-from pydantic import BaseModel
-
-from nrs_design.errors import SpecError
 from nrs_design.proof.text import exact_text, quoted
-from nrs_design.spec.document import Data
-from nrs_design.spec.edits import in_one_line
-from nrs_design.spec.exact import is_number, parse_exact
+from nrs_design.spec.affine import Affine
+from nrs_design.spec.controllers import ControllerSpec
+from nrs_design.spec.goals import GoalsSpec
+from nrs_design.spec.interaction_parts import AbstractInteractionSpec
+from nrs_design.spec.model import Declared, SpecModel, Stronger, Unsaid, declared
+from nrs_design.spec.parameters import ParameterSpec
 from nrs_design.spec.places import dotted
+from nrs_design.spec.preload import ExponentSpec
 from nrs_design.spec.quantity import Quantity, is_less
-from nrs_design.spec.quantity_fields import Times
-from nrs_design.spec.switching import ARBITRARY, DwellTime, SwitchingSpec
-
-# What is assumed of switching, and why a doubt does not count: with it, less is shown.
-_ASSUMED = frozenset(
-    {"dwell_time", "longest_dwell_time", "transitions", "mode_logic", "accept_doubt", "misses"}
-)
-# What a proof is not about: words for people, where values come from, how long is searched.
-_BESIDE = frozenset({"title", "description", "provenance", "certification", "design"})
-# Parts that make another robot, another law or another system, beside what is said of goals and of
-# contacts: neither more nor less than those of before.
-_ANOTHER = frozenset(
-    {
-        *("name", "actuator", "motion_loop", "idle_states", "anti_windup", "controllers"),
-        *("velocity_interface", "position_interface", "torque_interface", "modes", "resets"),
-        *("gravity", "base_tilt", "legs", "platform", "drive", "control", "balance"),
-    }
-)
-_ANOTHER_BELOW = (("sensor", "filter"), ("sampling", "admittance"))
-# Words for people.
-_WORDS = frozenset({"accept_doubt", "range_covers", "linearized_about"})
-_WANTED = frozenset({"desired_impedance", "desired_impedance_ratio"})
-_ASKED = _WANTED | {"goals", "contacts", "environment"}
-# Parts whose keys are names that somebody has given, and no words of ours.
-_NAMED = frozenset({"environments", "controllers", "parameters", "modes", "scenarios"})
-_OF_MODES = frozenset({"dwell_time", "longest_dwell_time", "hold"})
-# Limits below which something must stay, and above which: of a goal, a scenario, an assumption.
-_AT_MOST = frozenset({"peak_torque", "dwell_time", "hold", "of"})
-# How many deadlines may be missed is what must be borne.
-_AT_LEAST = frozenset(
-    {"decay_rate", "delay", "initial_force", "longest_dwell_time", "at_most", "consecutive"}
-)
-_LIMITS = "limits"
-# What a motor gives at most: to count on more is weaker.
-_HIGHEST = ([_LIMITS, "torque"], [_LIMITS, "command"])
-# Parts whose numbers must be borne: disturbances, errors of signals, the age of a sample. Of the
-# sensor, those below it are parts of the loop.
-_BORNE = frozenset({"disturbances", "sampling"})
-_ERRORS = frozenset({"signals", "errors"})
-# Of two words, the one that asks for more; what stands there unless it is said, in two of them.
-_STRONGER = {
-    "contact": "losable",
-    "switching": "arbitrary",
-    "varies": "true",
-}
-_UNSAID = frozenset({"contact", "varies"})
-# Lists that say what may occur; whatever is left out is not shown.
-_SETS = frozenset({"contacts", "doubts"})
-# What an environment says about its values, and not of what is touched.
-_ABOUT_VALUES = _BESIDE | {
-    *("doubts", "accept_doubt", "range_covers", "range_id", "linearized_about"),
-}
-# Ranges that stand alone, as lists of their ends.
-_RANGES = frozenset({"range", "band", "delay", "latency", "dead_time", "preload"})
+from nrs_design.spec.quantity_fields import RangedQuantity, Times
+from nrs_design.spec.scenarios import ControlSpec
+from nrs_design.spec.switching import DwellTime, SwitchingSpec
 
 Place = tuple[str | int, ...]
+Ranged = RangedQuantity | ExponentSpec | ParameterSpec
+_RANGES = (Stronger.WIDER, Stronger.FARTHER, Stronger.HOLDING)
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,319 +42,222 @@ class Change:
     weaker: bool
 
 
-def meaning_of(value: object) -> Data:
-    """Return what a part of a spec says, defaults filled in: however it is written, the same."""
-    if isinstance(value, SwitchingSpec) and value.is_arbitrary:
-        return ARBITRARY
-    if isinstance(value, Times):
-        ends = (value.shortest.text, value.longest.text)
-        return _ranged({"range": ends, "varies": meaning_of(value.varies)})
-    if isinstance(value, BaseModel):
-        fields_of = type(value).model_fields.items()
-        named = ((f.alias or name, getattr(value, name)) for name, f in fields_of)
-        said = {key: meaning_of(item) for key, item in named if item is not None and item != ""}
-        return _ranged(said) if "nominal" in said else said
-    if isinstance(value, Quantity | DwellTime):
-        return value.text
-    if isinstance(value, Fraction):
-        return exact_text(value)
-    if isinstance(value, bool):
-        return str(value).lower()
-    if isinstance(value, dict):
-        return {str(key): meaning_of(item) for key, item in value.items()}
-    if isinstance(value, tuple | list):
-        return tuple(meaning_of(item) for item in value)
-    if is_dataclass(value):
-        return {field.name: meaning_of(getattr(value, field.name)) for field in fields(value)}
-    return str(value)
-
-
-def _ranged(said: dict[str, Data]) -> Data:
-    """Return one value as its text, whose range is that value, and more of them as they are."""
-    known = _without(said, {"varies"}).values()
-    points = {end for item in known for end in (item if isinstance(item, tuple) else (item,))}
-    point = points.pop() if len(points) == 1 else None
-    return point if isinstance(point, str) else said
-
-
-def find_changes(before: Data, after: Data) -> Iterator[Change]:
+def find_changes(before: SpecModel, after: SpecModel) -> Iterator[Change]:
     """Yield where a spec differs from an earlier one."""
-    yield from _changes(_written_out(before, after), _written_out(after, before), ())
+    how = Stronger.UNKNOWN, Unsaid.NOTHING
+    yield from _changes(_written_out(before, after), _written_out(after, before), (), how)
 
 
-def _written_out(said: Data, other: Data) -> Data:
-    """Write out what holds unsaid, where the other spec says it or changes what it follows from.
+def _written_out(said: SpecModel, other: SpecModel) -> SpecModel:
+    """Write out what holds unsaid: who is in force in a run, and goals that the other replaces."""
+    if not (
+        isinstance(said, AbstractInteractionSpec) and isinstance(other, AbstractInteractionSpec)
+    ):
+        return said
+    first = ControlSpec(fixed=next(iter(said.controllers)))
+    unsaid = first if said.mode_logic is None else ControlSpec(logic="mode-logic")
+    runs = {
+        name: run.model_copy(update={"control": _in_order(run.control or unsaid)})
+        for name, run in said.scenarios.items()
+    }
+    controllers = {
+        name: _with_goals(controller, other.controllers.get(name), said.goals)
+        for name, controller in said.controllers.items()
+    }
+    return said.model_copy(update={"scenarios": runs, "controllers": controllers})
 
-    A controller touches its own environment, and has the goals of the whole spec. The first one is
-    in force in a run.
+
+def _in_order(control: ControlSpec) -> ControlSpec:
+    """Return what says who is in force when, where the first contact is in force before any."""
+    contact = None if control.contact is None else tuple(control.contact.items())
+    return control.model_copy(update={"contact": contact})
+
+
+def _with_goals(
+    controller: ControllerSpec, beside: ControllerSpec | None, goals: GoalsSpec | None
+) -> ControllerSpec:
+    """Return a controller with the goals of the whole spec that the one beside it has as its own.
+
+    So has a controller without goals of its own, of whatever type.
     """
-    if not isinstance(said, dict) or not isinstance(other, dict):
-        return said
-    said = _with_control(said)
-    controllers, others = said.get("controllers"), other.get("controllers")
-    if not isinstance(controllers, dict) or not isinstance(others, dict):
-        return said
-    goals = said.get("goals")
-    found: dict[str, Data] = {}
-    for name, controller in controllers.items():
-        beside = others.get(name)
-        found[name] = controller
-        if not isinstance(controller, dict) or not isinstance(beside, dict):
-            continue
-        whole = dict(controller)
-        environment = whole.get("environment")
-        moved = beside.get("contacts") or beside.get("environment") != environment
-        if isinstance(environment, str) and not whole.get("contacts") and moved:
-            whole["contacts"] = (environment,)
-        own, theirs = whole.get("goals", {}), beside.get("goals")
-        if isinstance(goals, dict) and isinstance(own, dict) and isinstance(theirs, dict):
-            common = {key: goals[key] for key in theirs if key in goals and key not in own}
-            if common:
-                whole["goals"] = own | common
-        found[name] = whole
-    return said | {"controllers": found}
-
-
-def _with_control(said: dict[str, Data]) -> dict[str, Data]:
-    """Write out which controller is in force in every run; what contact brings about, in order."""
-    runs, controllers = said.get("scenarios"), said.get("controllers")
-    if not isinstance(runs, dict) or not isinstance(controllers, dict):
-        return said
-    first: Data = (
-        {"logic": "mode-logic"} if "mode_logic" in said else {"fixed": next(iter(controllers), "")}
+    theirs = None if beside is None else beside.goals
+    own, whole, replaced = (
+        {} if part is None else dict(part.given()) for part in (controller.goals, goals, theirs)
     )
-    found: dict[str, Data] = {}
-    for name, run in runs.items():
-        found[name] = run
-        if isinstance(run, dict):
-            control = run.get("control", first)
-            contact = control.get("contact") if isinstance(control, dict) else None
-            if isinstance(control, dict) and isinstance(contact, dict):
-                control = control | {"contact": tuple(contact.items())}
-            found[name] = run | {"control": control}
-    return said | {"scenarios": found}
+    common = {key: whole[key] for key in replaced if key in whole and key not in own}
+    if not common:
+        return controller
+    written = GoalsSpec.model_construct().model_copy(update=own | common)
+    return controller.model_copy(update={"goals": written})
 
 
-def _changes(before: Data, after: Data, at: Place) -> Iterator[Change]:
-    key = next((part for part in reversed(at) if isinstance(part, str)), "")
+def _changes(before: object, after: object, at: Place, how: Declared) -> Iterator[Change]:
+    """Compare two values; None where nothing is said."""
+    stronger, _ = how
+    was, now = (_parts(value, stronger) for value in (before, after))
     if before == after:
         return
-    was, now = _range_of(before, key), _range_of(after, key)
-    two_values = isinstance(before, str) and isinstance(after, str) and not _is_touched(at)
-    if was is not None and now is not None and not two_values:
-        yield from _of_ranges(was, now, at, (_said(before), _said(after)))
-        if isinstance(before, dict) and isinstance(after, dict):
-            beside = {"range", "nominal"}
-            if not is_less(*was):
-                # One value has no way to vary.
-                beside.add("varies")
-            yield from _of_keys(_without(before, beside), _without(after, beside), at)
-    elif isinstance(before, dict) and isinstance(after, dict):
-        yield from _of_keys(before, after, at)
-    elif isinstance(before, tuple) and isinstance(after, tuple):
-        yield from _of_lists(before, after, at, key)
+    if before is None or after is None:
+        yield _of_unsaid(before, after, at, how)
+    elif _arbitrary(before) is not _arbitrary(after):
+        yield Change(at, _differs(before, after, at), _arbitrary(before))
+    elif was is not None and now is not None:
+        known = {key: how for part in (after, before) for key, how in _declared(part).items()}
+        for key in sorted({**was, **now}, key=lambda key: key not in was):
+            yield from _changes(was.get(key), now.get(key), (*at, key), known.get(key, how))
+    elif stronger is Stronger.WHOLE and isinstance(before, tuple) and isinstance(after, tuple):
+        for what, items, others in (("no longer has", before, after), ("now has", after, before)):
+            for item in (item for item in items if item not in others):
+                yield Change(at, f"{_name(at)} {what} {_said(item)}", items is before)
     else:
-        weaker = _is_weaker(before, after, at)
-        yield Change(at, f"{_name(at)}: {_said(before)} before, {_said(after)} now", weaker)
+        yield from _of_values(before, after, at, stronger)
 
 
-def _of_keys(before: dict[str, Data], after: dict[str, Data], at: Place) -> Iterator[Change]:
-    for key, said in before.items():
-        here = (*at, key)
-        if key in after:
-            yield from _changes(said, after[key], here)
-        else:
-            keys = _keys(here)
-            weaker = not _is_assumed(keys) and _BESIDE.isdisjoint(keys)
-            if _is_unsaid(keys):
-                weaker &= _word(said) == _STRONGER[keys[-1]]
-            yield Change(here, f"{_name(here)} is gone, {_said(said)} before", weaker)
-    for key, said in after.items():
-        if key not in before:
-            here = (*at, key)
-            keys = _keys(here)
-            weaker = _is_assumed(keys)
-            weaker |= _is_unsaid(keys) and _word(said) != _STRONGER[keys[-1]]
-            weaker |= _is_instead(keys)
-            yield Change(here, f"{_name(here)} is new: {_said(said)}", weaker)
+def _of_unsaid(before: object, after: object, at: Place, how: Declared) -> Change:
+    """Compare with what holds where nothing is said."""
+    stronger, unsaid = how
+    new = before is None
+    weaker = unsaid is not (Unsaid.NOTHING if new else Unsaid.MOST)
+    weaker &= stronger is not Stronger.BESIDE
+    if isinstance(stronger, tuple):
+        weaker = stronger.index(after) < stronger.index(before)
+    message = f"is new: {_said(after)}" if new else f"is gone, {_said(before)} before"
+    return Change(at, f"{_name(at)} {message}", weaker)
 
 
-def _is_unsaid(keys: Sequence[str]) -> bool:
-    """Tell whether something holds where nothing is said; other keys may be named `contact`."""
-    return keys[-1] in _UNSAID and keys not in (["sensor", "contact"],)
-
-
-def _is_instead(keys: Sequence[str]) -> bool:
-    """Tell whether something else holds where nothing is said, and nobody knows which asks more.
-
-    All but limits and errors makes another run; unsaid, a force is sampled with the motion loop.
-    """
-    run = keys[0] == "scenarios" and not {*keys[1:2]} <= {"limits", "errors", "title"}
-    goal = "goals" in keys and keys[-1] == "environment"
-    return run or goal or keys[-1] in _WANTED | {"outer_period"}
-
-
-def _is_assumed(keys: Sequence[str]) -> bool:
-    """Tell whether a part is assumed of switching; that a sampled loop misses must be borne."""
-    return not (_ASSUMED - {"misses" if "sampling" in keys else ""}).isdisjoint(keys)
-
-
-def _of_lists(
-    before: tuple[Data, ...], after: tuple[Data, ...], at: Place, key: str
+def _of_values(
+    before: object, after: object, at: Place, stronger: Stronger | tuple[object, ...]
 ) -> Iterator[Change]:
-    """Compare lists: what may occur as sets, named items by name, others by place."""
-    if key == "transitions" or key in _SETS:
-        lost = [item for item in before if item not in after]
-        new = [item for item in after if item not in before]
-        for what, items in (("no longer has", lost), ("now has", new)):
-            for item in items:
-                yield Change(at, f"{_name(at)} {what} {_said(item)}", items is lost)
-        return
-    names = [_named(items) for items in (before, after)]
-    if names[0] and names[1]:
-        yield from _of_keys(names[0], names[1], at)
-        return
-    for index, pair in enumerate(zip(before, after, strict=False)):
-        yield from _changes(*pair, (*at, index))
-    for index, item in enumerate(before[len(after) :], len(after)):
-        yield Change((*at, index), f"{_name((*at, index))} is gone, {_said(item)} before", True)
-    for index, item in enumerate(after[len(before) :], len(before)):
-        weaker = _is_instead(_keys(at))
-        yield Change((*at, index), f"{_name((*at, index))} is new: {_said(item)}", weaker)
+    """Compare two numbers, ranges or words."""
+    (_, *was), (_, *now) = (points := [_points(value) for value in (before, after)])
+    single = [_is_single(value) for value in (before, after)]
+    if [*map(_exact, points[0])] != [*map(_exact, points[1])]:
+        weaker, message = _is_weaker(was, now, stronger), _differs(before, after, at)
+        compared = _less(was[0], now[0]) is not None and stronger in _RANGES
+        if weaker and compared and (stronger is Stronger.HOLDING or not all(single)):
+            message += " (values of before are not covered)"
+        yield Change(at, message, weaker)
+    varied, varies = (getattr(value, "varies", True) for value in (before, after))
+    # One value has no way to vary.
+    if varied != varies and not any(single):
+        at = (*at, "varies")
+        yield Change(at, _differs(varied, varies, at), varied)
 
 
-def _named(items: tuple[Data, ...]) -> dict[str, Data]:
-    """Return items by their names; nothing if one has none."""
-    found: dict[str, Data] = {
-        str(item["name"]): item for item in items if isinstance(item, dict) and "name" in item
-    }
-    return found if len(found) == len(items) else {}
-
-
-def _of_ranges(
-    before: tuple[Quantity, Quantity],
-    after: tuple[Quantity, Quantity],
-    at: Place,
-    said: tuple[str, str],
-) -> Iterator[Change]:
-    """Compare what values are covered: less than before is weaker, if it was more than one."""
+def _is_weaker(
+    before: list[Any], after: list[Any], stronger: Stronger | tuple[object, ...]
+) -> bool:
+    """Tell whether a range, or a value as both its ends, asks for less than another one."""
     (low, high), (new_low, new_high) = before, after
-    if low.dimension != new_low.dimension:
-        yield Change(at, f"{_name(at)}: {said[0]} before, {said[1]} now", True)
-        return
-    was_point = not is_less(low, high)
-    covers = not is_less(low, new_low) and not is_less(new_high, high)
-    same = covers and not is_less(new_low, low) and not is_less(high, new_high)
-    if not (same and said[0] == said[1]):
-        message = f"{_name(at)}: {said[0]} before, {said[1]} now"
-        lower = _is_borne(_keys(at)) and is_less(new_high, high)
-        weaker = not covers and (not was_point or _is_touched(at) or lower)
-        yield Change(at, message + weaker * " (values of before are not covered)", weaker)
-
-
-def _is_weaker(before: Data, after: Data, at: Place) -> bool:
-    """Tell whether one value, or one way to say it, asks for less than another."""
-    path = _keys(at)
-    key = path[-1] if path else ""
-    if not _BESIDE.isdisjoint(path):
+    if isinstance(stronger, tuple):
+        return stronger.index(new_low) < stronger.index(low)
+    if stronger is Stronger.LARGER:
+        return _less(new_low, low) is not False
+    if stronger is Stronger.SMALLER:
+        return _less(low, new_low) is not False
+    if stronger not in _RANGES:
+        return stronger not in (Stronger.NEITHER, Stronger.BESIDE)
+    if _less(low, new_low) is False and _less(new_high, high) is False:
         return False
-    if stronger := _STRONGER.get(key):
-        return _word(after) != stronger
-    if _is_another(path):
-        return False
-    if isinstance(before, str) is not isinstance(after, str) or (
-        _is_touched(at) and key == "model"
-    ):
+    if stronger is Stronger.HOLDING or _exact(low) != _exact(high):
         return True
-    goal = "goals" in path
-    most = (goal and key.startswith("max_")) or not _AT_MOST.isdisjoint(path) or _is_limit(path)
-    borne = _is_borne(path) and key not in _AT_MOST
-    least = (goal and key.startswith("min_")) or not _AT_LEAST.isdisjoint(path) or borne
-    was, now = _number(before), _number(after)
-    if was is None or now is None or was.dimension != now.dimension or not (most or least):
-        return True
-    return (most and is_less(was, now)) or (least and is_less(now, was))
+    if stronger is Stronger.FARTHER:
+        return _less(new_high, high) is not False
+    # Another single value is neither.
+    return _exact(new_low) != _exact(new_high) and _less(low, new_low) is None
 
 
-def _is_another(path: list[str]) -> bool:
-    """Tell whether a part makes another robot, law or system, and asks for nothing."""
-    if tuple(path[:2]) in _ANOTHER_BELOW or (path[-1:] and path[-1] in _WORDS):
-        return True
-    return bool(path) and path[0] in _ANOTHER and _ASKED.isdisjoint(path)
+def _parts(value: object, stronger: object) -> dict[Any, object] | None:
+    """Return what a value consists of, by its keys or places; None for a single value or range."""
+    if isinstance(value, dict):
+        return value
+    if isinstance(value, Affine):
+        return {"constant": value.constant, "slopes": value.slopes}
+    if isinstance(value, SpecModel) and not isinstance(value, Ranged):
+        return _fields(value)
+    if not isinstance(value, tuple) or stronger is Stronger.WHOLE or stronger in _RANGES:
+        return None
+    names = [getattr(item, "name", None) for item in value]
+    return dict(enumerate(value) if None in names else zip(names, value, strict=True))
 
 
-def _keys(at: Place) -> list[str]:
-    """Return the words of ours on the way to a place, without names that somebody has given."""
-    named = [i + 1 for i, part in enumerate(at[:2]) if part in (_OF_MODES if i else _NAMED)]
-    return [part for i, part in enumerate(at) if isinstance(part, str) and i not in named]
+def _fields(model: SpecModel) -> dict[str, object]:
+    """Return what a model says, by the keys of the file."""
+    keys = {name: field.alias for name, field in type(model).model_fields.items()}
+    return {keys.get(k) or k: item for k, item in model if item is not None and item != ""}
 
 
-def _word(said: Data) -> Data:
-    return said.lower() if isinstance(said, str) else said
+def _declared(part: object) -> dict[str, Declared]:
+    return declared(type(part)) if isinstance(part, SpecModel) else {}
 
 
-def _is_touched(at: Place) -> bool:
-    """Tell whether a place says what is touched, words for people aside.
-
-    A proof for one value says nothing of another one, not even where there is no range.
-    """
-    return at[:1] == ("environments",) and len(at) > 2 and at[2] not in _ABOUT_VALUES
+def _arbitrary(value: object) -> bool:
+    return isinstance(value, SwitchingSpec) and value.is_arbitrary
 
 
-def _is_borne(path: list[str]) -> bool:
-    """Tell whether a number says how much must be borne: a proof for less is a proof of less."""
-    return (
-        path[0] in _BORNE
-        or (path[0] == "sensor" and len(path) == 2)
-        or not _ERRORS.isdisjoint(path)
-        or path in ([_LIMITS, "bandwidth"], ["scenarios", "duration"])
-    )
+def _points(value: object) -> tuple[Any, Any, Any]:
+    """Return the value that a design takes, and both ends of what it covers."""
+    if isinstance(value, Ranged):
+        return value.nominal, *value.range
+    low, high = value[:2] if isinstance(value, tuple) else (value, value)
+    return low, low, high
 
 
-def _is_limit(path: list[str]) -> bool:
-    """Tell whether a place is a limit that a scenario must keep, or the one of the torque."""
-    return (_LIMITS in path and "scenarios" in path) or path in _HIGHEST
+def _is_single(value: object) -> bool:
+    _, low, high = map(_exact, _points(value))
+    return low == high
 
 
-def _range_of(said: Data, key: str) -> tuple[Quantity, Quantity] | None:
-    """Return the ends of what is said of a value with a range; None if that is something else."""
-    if isinstance(said, dict) and "range" in said and "nominal" not in said:
-        return _range_of(said["range"], "range")
-    if isinstance(said, dict) and "nominal" in said:
-        ends = said.get("range", (said["nominal"], said["nominal"]))
-        return _range_of(ends, "range")
-    if isinstance(said, tuple) and len(said) == 2 and key in _RANGES:
-        low, high = map(_number, said)
-        return None if low is None or high is None else (low, high)
-    if isinstance(said, str):
-        value = _number(said)
-        return None if value is None else (value, value)
+def _exact(value: object) -> object:
+    """Return what is the same for all ways to write one value."""
+    if isinstance(value, Quantity):
+        return value.dimension, value.pi_power if value.value else 0, value.rational_part
+    return (value.unit, value.value) if isinstance(value, DwellTime) else value
+
+
+def _less(a: object, b: object) -> bool | None:
+    """Tell whether a number is less than another one; None if the two cannot be compared."""
+    if isinstance(a, Quantity) and isinstance(b, Quantity):
+        return is_less(a, b) if a.dimension == b.dimension else None
+    if isinstance(a, DwellTime) and isinstance(b, DwellTime):
+        return a.value < b.value if a.unit == b.unit else None
+    if isinstance(a, Fraction | int) and isinstance(b, Fraction | int):
+        return a < b
     return None
 
 
-def _number(said: Data) -> Quantity | None:
-    """Return a number with its unit, if that is what is said; without one, its unit is 1."""
-    if not isinstance(said, str):
-        return None
-    number, _, unit = said.partition(" ")
-    unit = "1" if unit.strip() in ("step", "steps") else unit
-    try:
-        value: Fraction | None = parse_exact(number) if is_number(number) else None
-        return None if value is None else Quantity(said, value, unit.strip() or "1")
-    except SpecError:
-        return None
-
-
-def _without(said: dict[str, Data], keys: set[str]) -> dict[str, Data]:
-    return {key: value for key, value in said.items() if key not in keys}
+def _differs(before: object, after: object, at: Place) -> str:
+    return f"{_name(at)}: {_said(before)} before, {_said(after)} now"
 
 
 def _name(at: Place) -> str:
     return dotted(at) or "the spec"
 
 
-def _said(said: Data) -> str:
+def _said(value: object) -> str:
     """Return what is said as one short text."""
-    if isinstance(said, dict) and "nominal" in said and "range" in said:
-        return quoted(f"{in_one_line(said['nominal'])} in {in_one_line(said['range'])}")
-    return quoted(in_one_line(said))
+    if isinstance(value, Ranged) and not _is_single(value):
+        return quoted(f"{_text(value.nominal)} in {_text(value.range)}")
+    return quoted(_text(value))
+
+
+def _text(value: object) -> str:
+    """Write a value in one line."""
+    if isinstance(value, Quantity | DwellTime):
+        return value.text
+    if isinstance(value, Fraction):
+        return exact_text(value)
+    if isinstance(value, bool):
+        return str(value).lower()
+    if _arbitrary(value):
+        return str(value)
+    if isinstance(value, Ranged | Times) and _is_single(value):
+        return _text(_points(value)[0])
+    if isinstance(value, Times):
+        return _text({"range": value[:2], "varies": value.varies})
+    if isinstance(value, tuple):
+        return f"[{', '.join(map(_text, value))}]"
+    parts = _fields(value) if isinstance(value, SpecModel) else _parts(value, None)
+    if parts is None:
+        return str(value)
+    return f"{{{', '.join(f'{key}: {_text(item)}' for key, item in parts.items())}}}"

@@ -8,7 +8,7 @@ from typing import Annotated, Any
 from nrs_design.proof.text import quoted
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import read_exact
-from nrs_design.spec.model import ReadBy, SpecModel, Stronger, optional
+from nrs_design.spec.model import ReadBy, SpecModel, optional
 
 HIGHEST_DEGREE = 64
 # A spec may come from anyone: who runs the command may allow more, the spec may not.
@@ -47,7 +47,7 @@ def _read_budget(value: object) -> Fraction:
     return budget
 
 
-class CertificationSpec(SpecModel, stronger=Stronger.BESIDE):
+class CertificationSpec(SpecModel, stronger="beside"):
     """How far the search for a proof goes; options of the commands override it."""
 
     max_degree: Annotated[int | None, ReadBy(_read_degree, _DEGREE_SCHEMA)] = optional(

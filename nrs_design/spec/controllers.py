@@ -20,7 +20,7 @@ from nrs_design.spec.check import Row, exactly_one, exclusive
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import Contact, Label, Positive, TouchedAtOnce, UnitFraction, Weight
 from nrs_design.spec.goals import GoalsSpec
-from nrs_design.spec.model import SpecModel, Stronger, Unsaid, optional, required
+from nrs_design.spec.model import Declared, SpecModel, optional, required
 from nrs_design.spec.parameters import Switch
 from nrs_design.spec.quantity import Quantity
 from nrs_design.spec.quantity_fields import GainSpec
@@ -77,11 +77,11 @@ _TOUCHED = (
         description=_CONTACTS,
     ),
     AfterValidator(_distinct),
-    Stronger.WHOLE,
+    Declared("whole"),
 )
 
 
-class CostWeights(SpecModel, stronger=Stronger.NEITHER):
+class CostWeights(SpecModel, stronger="neither"):
     """Weights of the parts of the impedance cost: the two of thesis 6.7, and two for a band."""
 
     displayed: Weight = optional(
@@ -107,7 +107,7 @@ class CostWeights(SpecModel, stronger=Stronger.NEITHER):
     )
 
 
-class AbstractControllerSpec(SpecModel, stronger=Stronger.NEITHER):
+class AbstractControllerSpec(SpecModel, stronger="neither"):
     """What all controllers have in common."""
 
     # The motion loop integrates a velocity, and follows a position.
@@ -158,17 +158,17 @@ class ImpedanceControllerSpec(AbstractControllerSpec):
     freeable: ClassVar[Mapping[str, str | None]] = MappingProxyType({"Kt": None})
 
     type: Literal["impedance"] = required("impedance: admittance Y = 1/(Mt s + Bt + Kt/s)")
-    environment: Label = required(_ENVIRONMENT, Stronger.UNKNOWN)
+    environment: Label = required(_ENVIRONMENT, "unknown")
     contacts: Annotated[tuple[TouchedAtOnce, ...], *_TOUCHED]
     desired_impedance: field.Impedance | None = optional(
         "impedance to display in N*m*s/rad; default: limits.torque/limits.velocity",
-        stronger=Stronger.UNKNOWN,
-        unsaid=Unsaid.OTHER,
+        stronger="unknown",
+        unsaid="other",
     )
     desired_impedance_ratio: Positive | None = optional(
         "multiplies limits.torque/limits.velocity, no unit; not with desired_impedance",
-        stronger=Stronger.UNKNOWN,
-        unsaid=Unsaid.OTHER,
+        stronger="unknown",
+        unsaid="other",
     )
     Mt: field.InertiaGain = required(
         "admittance inertia in kg*m^2: one quantity, or {min: ..., max: ...} "
@@ -229,7 +229,7 @@ class ForceControllerSpec(AbstractControllerSpec):
     freeable: ClassVar[Mapping[str, str | None]] = MappingProxyType({"Kp": "damping_ratio"})
 
     type: Literal["force"] = required("force: u = X_i + Kp (Fd - F), see offset")
-    environment: Label = required(_ENVIRONMENT, Stronger.UNKNOWN)
+    environment: Label = required(_ENVIRONMENT, "unknown")
     contacts: Annotated[tuple[TouchedAtOnce, ...], *_TOUCHED]
     proportional_gain: field.ForceGain | None = optional(
         "Kp in rad/(N*m); exactly one of proportional_gain and damping_ratio"
@@ -269,7 +269,7 @@ class IntegralControllerSpec(AbstractControllerSpec):
         "pi-force: u = X + Kp (Fd - F) + w with w' = Ki (Fd - F); while another "
         "controller is active, w decays as idle_states says, and stays in the command meanwhile"
     )
-    environment: Label = required(_ENVIRONMENT, Stronger.UNKNOWN)
+    environment: Label = required(_ENVIRONMENT, "unknown")
     contacts: Annotated[tuple[TouchedAtOnce, ...], *_TOUCHED]
     proportional_gain: field.ForceGain | None = optional(
         "Kp in rad/(N*m); exactly one of proportional_gain and damping_ratio"
@@ -301,7 +301,7 @@ class TorqueImpedanceSpec(AbstractControllerSpec):
         "torque-impedance: the joint moves as one of inertia_ratio times its inertia "
         "on a spring and a damper to the commanded position; for a torque_interface"
     )
-    environment: Label = required("name of the environment that it touches", Stronger.UNKNOWN)
+    environment: Label = required("name of the environment that it touches", "unknown")
     contacts: Annotated[tuple[TouchedAtOnce, ...], *_TOUCHED]
     stiffness: field.RotationalStiffness = required("of the spring, in N*m/rad")
     damping: field.NonnegativeImpedance = required("of the damper, in N*m*s/rad; 0 allowed")
@@ -323,7 +323,7 @@ class PositionControllerSpec(AbstractControllerSpec):
     type: Literal["position"] = required("position: the motion loop alone, no contact")
 
 
-class IdleStatesSpec(SpecModel, stronger=Stronger.NEITHER):
+class IdleStatesSpec(SpecModel, stronger="neither"):
     """What the states of impedance and pi-force controllers do while others are active."""
 
     decay: field.Decay = required(
@@ -338,7 +338,7 @@ class IdleStatesSpec(SpecModel, stronger=Stronger.NEITHER):
     )
 
 
-class AntiWindupSpec(SpecModel, stronger=Stronger.NEITHER):
+class AntiWindupSpec(SpecModel, stronger="neither"):
     """What keeps the integral of pi-force controllers from winding up."""
 
     clamp: field.Angle = required(

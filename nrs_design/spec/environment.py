@@ -25,7 +25,7 @@ from nrs_design.spec import quantity_fields as field
 from nrs_design.spec.check import Row, refuse
 from nrs_design.spec.faults import Location
 from nrs_design.spec.fields import Title
-from nrs_design.spec.model import Stronger, optional, required
+from nrs_design.spec.model import optional, required
 from nrs_design.spec.preload import RangedExponent, power_box
 from nrs_design.spec.provenance import Coverage, IdentifiedRangesSpec
 from nrs_design.spec.quantity import Quantity
@@ -51,7 +51,7 @@ _COVERS = (
 _LENGTHS = "write lengths with a lever_arm, and angles without one"
 
 
-class AbstractEnvironmentSpec(IdentifiedRangesSpec, stronger=Stronger.HOLDING):
+class AbstractEnvironmentSpec(IdentifiedRangesSpec, stronger="holding"):
     """What all environments have in common; parameters of the law are the ranged quantities."""
 
     # The law that designs and proofs take, and its own where that is not linear: the former stands
@@ -62,11 +62,11 @@ class AbstractEnvironmentSpec(IdentifiedRangesSpec, stronger=Stronger.HOLDING):
     model: str
 
     lever_arm: field.LeverArm | None = optional(_LEVER_ARM)
-    range_covers: Coverage | None = optional(_COVERS, stronger=Stronger.NEITHER)
+    range_covers: Coverage | None = optional(_COVERS, stronger="neither")
     linearized_about: Title | None = optional(
         "deflections that a nonlinear law was linearized about, in words: the ranges "
         "hold small motions there",
-        stronger=Stronger.NEITHER,
+        stronger="neither",
     )
 
     def _without_arm(self) -> Iterator[tuple[Location, str]]:

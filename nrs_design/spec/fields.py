@@ -11,7 +11,7 @@ from nrs_design.files import is_device_name
 from nrs_design.proof.text import quoted
 from nrs_design.spec.exact import DECIMAL_PATTERN, RATIO_PATTERN, parse_exact
 from nrs_design.spec.faults import as_text, fault, reported
-from nrs_design.spec.model import ReadBy, Stronger
+from nrs_design.spec.model import ReadBy
 
 NAME_PATTERN = "^[a-z0-9][a-z0-9._-]{0,63}$"
 LABEL_PATTERN = "^[A-Za-z0-9][A-Za-z0-9._-]{0,63}$"
@@ -114,9 +114,7 @@ AboveOne = Annotated[Fraction, _number(lambda x: x > 1, "above 1")]
 BelowTwo = Annotated[Fraction, _number(lambda x: 0 < x < 2, "between 0 and 2")]
 # Significant digits: a float32 holds no more.
 Digits = Annotated[int, whole(1, 7)]
-Name = Annotated[
-    str, _text(NAME_PATTERN, {"type": "string", "pattern": NAME_PATTERN}), Stronger.NEITHER
-]
+Name = Annotated[str, _text(NAME_PATTERN, {"type": "string", "pattern": NAME_PATTERN})]
 Label = Annotated[str, _text(LABEL_PATTERN, _LABEL)]
 
 
@@ -143,9 +141,7 @@ TouchedAtOnce = Annotated[
         {"anyOf": [*_LABEL["anyOf"], {"type": "array", "items": _LABEL, "minItems": 2}]},
     ),
 ]
-Title = Annotated[
-    str, ReadBy(read_title, {"type": "string", "maxLength": MAX_TITLE}), Stronger.BESIDE
-]
+Title = Annotated[str, ReadBy(read_title, {"type": "string", "maxLength": MAX_TITLE})]
 Hash = Annotated[
     str,
     ReadBy(read_hash, {"type": "string", "pattern": HASH_PATTERN}),

@@ -6,10 +6,10 @@ from collections.abc import Iterator
 
 from nrs_design.spec.check import Row
 from nrs_design.spec.fields import Positive
-from nrs_design.spec.model import SpecModel, Stronger, optional, required
+from nrs_design.spec.model import SpecModel, optional, required
 
 
-class FactorBounds(SpecModel, stronger=Stronger.BESIDE):
+class FactorBounds(SpecModel, stronger="beside"):
     """Bounds of a gain, as factors on the one that the spec gives."""
 
     min: Positive = required("smallest factor on the given gain, no unit")
@@ -25,7 +25,7 @@ class FactorBounds(SpecModel, stronger=Stronger.BESIDE):
     )
 
 
-class FreeGainsSpec(SpecModel, stronger=Stronger.BESIDE):
+class FreeGainsSpec(SpecModel, stronger="beside"):
     """Which gains of one controller are free, and how far."""
 
     Kp: FactorBounds | None = optional("of the motion loop, or of the force")

@@ -18,16 +18,7 @@ from nrs_design.spec import quantity_fields as field
 from nrs_design.spec.check import Row
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import AboveOne, BelowTwo, Label, UnitFraction
-from nrs_design.spec.model import (
-    ReadBy,
-    SpecModel,
-    Stronger,
-    Unsaid,
-    at_most,
-    optional,
-    pair_schema,
-    required,
-)
+from nrs_design.spec.model import ReadBy, SpecModel, at_most, optional, pair_schema, required
 from nrs_design.spec.quantity import Quantity, is_less
 from nrs_design.spec.quantity_fields import quantity_schema, read_quantity
 
@@ -45,9 +36,7 @@ def _read_band(value: object) -> tuple[Quantity, Quantity]:
 
 
 Band = Annotated[
-    tuple[Quantity, Quantity],
-    ReadBy(_read_band, pair_schema(quantity_schema(kinds.BANDWIDTH))),
-    Stronger.WIDER,
+    tuple[Quantity, Quantity], ReadBy(_read_band, pair_schema(quantity_schema(kinds.BANDWIDTH)))
 ]
 _BAND = "[lowest, highest] frequency, such as [0 Hz, 2 Hz]; sampled, below half the sampling rate"
 _ORDERED = Row[SpecModel](
@@ -58,13 +47,13 @@ _ORDERED = Row[SpecModel](
 )
 
 
-class TransparencySpec(SpecModel, stronger=Stronger.SMALLER):
+class TransparencySpec(SpecModel, stronger="smaller"):
     """How little the surgeon shall feel of the robot, in free motion."""
 
     max_impedance: field.Impedance = required(
         "largest force of the hand over the velocity of the tool, N*m*s/rad"
     )
-    band: Band = required(_BAND)
+    band: Band = required(_BAND, "wider")
     environment: ClassVar[str | None] = None  # Nothing is touched
 
     checks = (_ORDERED,)
@@ -80,17 +69,17 @@ class TransparencySpec(SpecModel, stronger=Stronger.SMALLER):
         return self.max_impedance.text
 
 
-class AccuracySpec(SpecModel, stronger=Stronger.SMALLER):
+class AccuracySpec(SpecModel, stronger="smaller"):
     """How well the tool shall follow the commanded velocity."""
 
     max_error: UnitFraction = required(
         "largest |1 - V/Vcmd|, a share of the commanded velocity, between 0 and 1"
     )
-    band: Band = required(_BAND)
+    band: Band = required(_BAND, "wider")
     environment: Label | None = optional(
         "what is touched meanwhile, elastic or Kelvin-Voigt; default: nothing",
-        stronger=Stronger.UNKNOWN,
-        unsaid=Unsaid.OTHER,
+        stronger="unknown",
+        unsaid="other",
     )
 
     checks = (_ORDERED,)
@@ -129,7 +118,7 @@ def _below_half_turn(angle: Quantity) -> Quantity:
     return angle
 
 
-class GoalsSpec(SpecModel, stronger=Stronger.LARGER):
+class GoalsSpec(SpecModel, stronger="larger"):
     """Goals of the design; docs/design/goals.md defines each, and where it is evaluated."""
 
     max_sensitivity_peak: AboveOne | None = at_most(

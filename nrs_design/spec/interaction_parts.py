@@ -27,7 +27,7 @@ from nrs_design.spec.fields import Digits, Label, Name, Title
 from nrs_design.spec.free import FreeGainsSpec
 from nrs_design.spec.goals import GoalsSpec
 from nrs_design.spec.misses import MISS
-from nrs_design.spec.model import ReadBefore, SpecModel, Stronger, Unsaid, optional, required
+from nrs_design.spec.model import ReadBefore, SpecModel, optional, required
 from nrs_design.spec.monitoring import MonitoringSpec
 from nrs_design.spec.motion import (
     ActuatorSpec,
@@ -65,7 +65,7 @@ NOT_CONTROLLERS = {
 OF_CORNERS = re.compile(r"([A-Za-z]|tau|Km|(h|in)\d+)-(min|max)|(delay|flow|case)-\d+")
 
 
-class DesignSpec(SpecModel, stronger=Stronger.BESIDE):
+class DesignSpec(SpecModel, stronger="beside"):
     """How gains are written down."""
 
     significant_digits: Digits = optional(
@@ -79,12 +79,12 @@ class DesignSpec(SpecModel, stronger=Stronger.BESIDE):
     )
 
 
-class AbstractInteractionSpec(SpecModel, stronger=Stronger.UNKNOWN):
+class AbstractInteractionSpec(SpecModel, stronger="unknown"):
     """The keys of such a spec, and what follows from them."""
 
     kind: Literal["interaction-design"] = required("what this file describes")
-    name: Name = required("short name: lower-case letters, digits, '.', '_', '-'")
-    title: Title = optional("one line for people, at most 200 characters", "")
+    name: Name = required("short name: lower-case letters, digits, '.', '_', '-'", "neither")
+    title: Title = optional("one line for people, at most 200 characters", "", stronger="beside")
     axis: AxisType = optional(
         "rotary: it turns about a pivot, in rad, N*m and kg*m^2; prismatic: it slides, "
         "in m, N and kg wherever a rotary one has those",
@@ -150,7 +150,7 @@ class AbstractInteractionSpec(SpecModel, stronger=Stronger.UNKNOWN):
     mode_logic: Annotated[ThresholdLogicSpec, ReadBefore(check_type)] | None = optional(
         "what decides which controller is active; `switching: mode-logic` lets the "
         "proof be about the switching signals that it can give",
-        unsaid=Unsaid.MOST,
+        unsaid="most",
     )
     switching: LogicalRule = required(
         "when controllers change: arbitrary, mode-logic (as mode_logic says), or rules "

@@ -12,7 +12,7 @@ from typing import Annotated, Any, Literal, Self
 
 from nrs_design.spec.check import Row
 from nrs_design.spec.fields import Label, whole
-from nrs_design.spec.model import SpecModel, Stronger, optional, required
+from nrs_design.spec.model import SpecModel, optional, required
 
 MOST_STEPS = 1000
 MOST_STATES = 1000
@@ -58,15 +58,13 @@ def _checks(example: str, otherwise: str) -> tuple[Row[Any], ...]:
     )
 
 
-class MissRuleSpec(SpecModel, stronger=Stronger.UNKNOWN):
+class MissRuleSpec(SpecModel, stronger="larger"):
     """In any so many steps in a row, at most some are missed."""
 
-    at_most: _Count | None = optional(
-        "how many of `of` steps in a row may be missed", stronger=Stronger.LARGER
-    )
-    of: _Count | None = optional("length of the window, in steps", stronger=Stronger.SMALLER)
+    at_most: _Count | None = optional("how many of `of` steps in a row may be missed")
+    of: _Count | None = optional("length of the window, in steps", stronger="smaller")
     consecutive: _Count | None = optional(
-        "in the place of both: how many steps in a row may be missed", stronger=Stronger.LARGER
+        "in the place of both: how many steps in a row may be missed"
     )
 
     @property

@@ -3,40 +3,37 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from enum import Enum, auto
 from functools import cache, partial
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar, Literal, NamedTuple, Self
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 from pydantic_core import CoreSchema, core_schema
 
 from nrs_design.spec.check import Row, run_checks
 
-
-class Stronger(Enum):
-    """Which of two values of a field asks for more; every field says so, or its model does."""
-
-    LARGER = auto()
-    SMALLER = auto()
-    WIDER = auto()  # A range that holds the other one; of two single values, neither
-    FARTHER = auto()  # The same; of two single values, the larger
-    HOLDING = auto()  # The same; a single value holds no other
-    WHOLE = auto()  # A list that has all that the other one has
-    NEITHER = auto()  # They make another robot, law or system
-    UNKNOWN = auto()  # Nobody knows, so another value is weaker
-    BESIDE = auto()  # No proof is about it, not even if it is left out
+# Which of two values of a field asks for more. Of ranges: wider, the one that holds the other, and
+# of two single values neither; farther, the same, and of two single values the larger; holding, the
+# same, and a single value holds no other. Of lists: whole, the one that has all of the other.
+# neither: they make another robot, law or system. unknown: another value is weaker, as is whatever
+# cannot be compared. beside: no proof is about it, not even if it is left out.
+Stronger = Literal[
+    "larger", "smaller", "wider", "farther", "holding", "whole", "neither", "unknown", "beside"
+]
+# What is asked for where nothing is said: nothing; most, as what is said is assumed; or something
+# other, and nobody knows whether that is more.
+Unsaid = Literal["nothing", "most", "other"]
 
 
-class Unsaid(Enum):
-    """What a field asks for that is left out."""
+class Declared(NamedTuple):
+    """What a field says of how its values compare, or a model of all its fields."""
 
-    NOTHING = auto()
-    MOST = auto()  # What is said is assumed
-    OTHER = auto()  # Something else, and nobody knows whether that is more
+    # Words in a tuple go from the least on; None is where nothing is said.
+    stronger: Stronger | tuple[object, ...] | None = None
+    unsaid: Unsaid | None = None
 
-
-# Words stand in the order of what they ask for, least first; None where nothing is said.
-Declared = tuple[Stronger | tuple[object, ...], Unsaid]
+    def over(self, other: Declared) -> Declared:
+        """Return this, and what another one says where it says nothing."""
+        return Declared(self.stronger or other.stronger, self.unsaid or other.unsaid)
 
 
 class SpecModel(BaseModel):
@@ -47,25 +44,20 @@ class SpecModel(BaseModel):
         extra="forbid", frozen=True, arbitrary_types_allowed=True, defer_build=True
     )
 
-    # Of the fields that do not say it themselves.
-    stronger: ClassVar[Stronger]
-    unsaid: ClassVar[Unsaid] = Unsaid.NOTHING
-
-    def __init_subclass__(
-        cls, *, stronger: Stronger | None = None, unsaid: Unsaid | None = None, **config: Any
-    ) -> None:
-        """Keep what a class says in its first line."""
-        super().__init_subclass__(**config)
-        if stronger is not None:
-            cls.stronger = stronger
-        if unsaid is not None:
-            cls.unsaid = unsaid
-
+    # Of fields that say nothing of it themselves: what the first line of a class says.
+    declared: ClassVar[Declared] = Declared()
     # What must not be, whatever its fields are for themselves. Each row asks for the fields that it
     # is about only, so that faults between valid fields are told although others are not valid.
     checks: ClassVar[tuple[Row[Any], ...]] = ()
     # What is allowed, and probably not meant.
     warnings: ClassVar[tuple[Row[Any], ...]] = ()
+
+    def __init_subclass__(
+        cls, *, stronger: Stronger | None = None, unsaid: Unsaid | None = None, **config: Any
+    ) -> None:
+        """Keep what a class declares of its fields."""
+        super().__init_subclass__(**config)
+        cls.declared = Declared(stronger, unsaid).over(cls.declared)
 
     @model_validator(mode="after")
     def _run_checks(self) -> Self:
@@ -75,7 +67,7 @@ class SpecModel(BaseModel):
 
 def required(description: str, stronger: Stronger | None = None) -> Any:
     """Return a field that a spec must have."""
-    return _marked(Field(description=description), stronger)
+    return _declaring(Declared(stronger), Field(description=description))
 
 
 def optional(
@@ -86,30 +78,26 @@ def optional(
     unsaid: Unsaid | None = None,
 ) -> Any:
     """Return a field that a spec may leave out, and what it is then."""
-    return _marked(Field(default=default, description=description), stronger, unsaid)
+    return _declaring(Declared(stronger, unsaid), Field(default=default, description=description))
 
 
-def _marked(field: Any, *declared: object) -> Any:
-    """Return a field with what it declares beside its type, where pydantic keeps such things."""
-    field.metadata += [mark for mark in declared if mark is not None]
+def _declaring(declared: Declared, field: Any) -> Any:
+    # Where pydantic keeps what stands beside a type.
+    field.metadata.append(declared)
     return field
 
 
-# Of a limit below which something must stay.
-at_most = partial(optional, stronger=Stronger.SMALLER)
+# A limit below which something must stay.
+at_most = partial(optional, stronger="smaller")
 
 
 @cache
-def declared(model: type[SpecModel]) -> dict[str, Declared]:
+def declared_in(model: type[SpecModel]) -> dict[str, Declared]:
     """Return how values of each field compare, by its key in a file."""
     found: dict[str, Declared] = {}
     for name, field in model.model_fields.items():
-        marks = field.metadata
-        stronger = next((m for m in marks if isinstance(m, Stronger | tuple)), None)
-        unsaid = next((m for m in marks if isinstance(m, Unsaid)), model.unsaid)
-        if stronger is None:
-            stronger = getattr(model, "stronger", Stronger.UNKNOWN)
-        found[field.alias or name] = stronger, unsaid
+        said = next((mark for mark in field.metadata if isinstance(mark, Declared)), Declared())
+        found[field.alias or name] = said.over(model.declared).over(Declared("unknown", "nothing"))
     return found
 
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 from typing import Literal
 
 from nrs_design.spec.check import Row
-from nrs_design.spec.model import SpecModel, Stronger, optional, required
+from nrs_design.spec.model import SpecModel, optional, required
 from nrs_design.spec.quantity_fields import Angle, AngularVelocity, Duration, Torque
 
 Surface = Literal["fixed", "free", "touched"]
 
 
-class MonitoringSpec(SpecModel, stronger=Stronger.UNKNOWN):
+class MonitoringSpec(SpecModel, stronger="unknown"):
     """Bounds on readings, not standard deviations: of each sample, whatever the others are.
 
     No proof depends on them. `export --format monitor` and `audit` test the stiffness within them.

@@ -13,7 +13,7 @@ from nrs_design.spec import quantity_fields as field
 from nrs_design.spec.check import Row, S, exactly_one, refuse
 from nrs_design.spec.faults import Location
 from nrs_design.spec.fields import Exact, UnitFraction
-from nrs_design.spec.model import SpecModel, Stronger, at_most, optional, required
+from nrs_design.spec.model import SpecModel, at_most, optional, required
 from nrs_design.spec.provenance import Coverage, IdentifiedRangesSpec
 from nrs_design.spec.quantity import Quantity, is_less
 from nrs_design.spec.quantity_fields import RangedQuantity
@@ -25,7 +25,7 @@ CommandUnit = Literal["rpm", "V", "A", "counts"]
 Coefficients = Annotated[tuple[Exact, ...], Field(min_length=1, max_length=MAX_COEFFICIENTS)]
 
 
-class ActuatorIntervals(SpecModel, stronger=Stronger.NEITHER):
+class ActuatorIntervals(SpecModel, stronger="neither"):
     """Confidence intervals of an identified actuator, for the record.
 
     The design and the proof take the nominal values.
@@ -60,7 +60,7 @@ def commands_in(
     return refuse(others, "{0} is about commands in {1}, and the motor takes {2}", "{3}")
 
 
-class ActuatorSpec(IdentifiedRangesSpec, stronger=Stronger.WIDER):
+class ActuatorSpec(IdentifiedRangesSpec, stronger="wider"):
     """Velocity actuator ``theta_m/delta = Km/(s (tau s + 1))`` (thesis 4.1)."""
 
     command: CommandUnit = optional(
@@ -128,7 +128,7 @@ _DEAD_TIME = (
 _COVERS = "what the identified ranges hold: confidence, tolerance or prediction, each with 95 %"
 
 
-class TransferFunctionSpec(SpecModel, stronger=Stronger.NEITHER):
+class TransferFunctionSpec(SpecModel, stronger="neither"):
     """Strictly proper transfer function, coefficients with the highest power first."""
 
     numerator: Coefficients = required(
@@ -154,7 +154,7 @@ class TransferFunctionSpec(SpecModel, stronger=Stronger.NEITHER):
     )
 
 
-class FollowingSpec(IdentifiedRangesSpec, stronger=Stronger.WIDER):
+class FollowingSpec(IdentifiedRangesSpec, stronger="wider"):
     """A robot that closes its own motion loop, and follows what is streamed."""
 
     time_constant: field.RangedDuration | None = optional(
@@ -205,7 +205,7 @@ class PositionInterfaceSpec(FollowingSpec):
     )
 
 
-class TorqueInterfaceSpec(IdentifiedRangesSpec, stronger=Stronger.WIDER):
+class TorqueInterfaceSpec(IdentifiedRangesSpec, stronger="wider"):
     """A robot that takes torques, its gravity compensated: ``J omega' = u - B omega - F``."""
 
     inertia: field.RangedInertia = required("J of the joint and all that it moves, in kg*m^2")
@@ -219,7 +219,7 @@ class TorqueInterfaceSpec(IdentifiedRangesSpec, stronger=Stronger.WIDER):
         return {"inertia": self.inertia, "friction": self.friction}
 
 
-class MotionLoopSpec(SpecModel, stronger=Stronger.NEITHER):
+class MotionLoopSpec(SpecModel, stronger="neither"):
     """Motion loop around the actuator, closed by a PD controller (thesis 4.3)."""
 
     damping_ratio: UnitFraction = required(
@@ -242,13 +242,13 @@ class MotionLoopSpec(SpecModel, stronger=Stronger.NEITHER):
 MOTOR_COMMAND = "motor command"
 
 
-class LimitsSpec(SpecModel, stronger=Stronger.UNKNOWN):
+class LimitsSpec(SpecModel, stronger="unknown"):
     """What the interaction must respect (thesis 6.3.1)."""
 
     velocity: field.AngularVelocity = required("largest commanded angular velocity in rad/s")
-    torque: field.Torque = required("largest interaction torque in N*m", Stronger.SMALLER)
+    torque: field.Torque = required("largest interaction torque in N*m", "smaller")
     bandwidth: field.Bandwidth = required(
-        "highest frequency of the operator's motion, Hz", Stronger.LARGER
+        "highest frequency of the operator's motion, Hz", "larger"
     )
     command: field.LargestCommand | None = at_most(
         "largest command that the motor's driver takes, such as rpm, for the error "

@@ -13,7 +13,7 @@ from pydantic import Field
 from nrs_design.spec.check import Row
 from nrs_design.spec.edits import NOT_IDENTIFIED
 from nrs_design.spec.fields import Hash, Title
-from nrs_design.spec.model import SpecModel, Stronger, Unsaid, optional, required
+from nrs_design.spec.model import SpecModel, optional, required
 from nrs_design.spec.plausible import unusual
 from nrs_design.spec.quantity import Quantity
 
@@ -40,7 +40,7 @@ MOTOR_COVERS: Mapping[Coverage, str] = MappingProxyType(
 )
 
 
-class ProvenanceSpec(SpecModel, stronger=Stronger.BESIDE):
+class ProvenanceSpec(SpecModel, stronger="beside"):
     """A file of measured data, as `nrs-design identify --write` notes it down."""
 
     file: Title = required("name of the data file, one line, no unit")
@@ -59,19 +59,19 @@ class IdentifiedSpec(SpecModel):
     provenance: Provenance = optional(
         "data files that the values were identified from, by nrs-design identify",
         (),
-        stronger=Stronger.NEITHER,
+        stronger="neither",
     )
     doubts: Annotated[tuple[Title, ...], Field(max_length=MAX_DOUBTS)] = optional(
         "why the records may not determine the values, by nrs-design identify; the "
         "gate fails on them (NRS107)",
         (),
-        stronger=Stronger.WHOLE,
+        stronger="whole",
     )
     accept_doubt: Title | None = optional(
         "why the values are used despite the doubts, or without any despite their "
         "unusual sizes: one line, which is printed with every proof; the gate then passes",
-        stronger=Stronger.NEITHER,
-        unsaid=Unsaid.MOST,
+        stronger="neither",
+        unsaid="most",
     )
 
     checks: ClassVar[tuple[Row[Any], ...]] = (
@@ -97,7 +97,7 @@ class IdentifiedRangesSpec(IdentifiedSpec):
     range_id: Hash | None = optional(
         "SHA-256 over identified values and doubts, by nrs-design identify: what was "
         "changed by hand since is refused",
-        stronger=Stronger.NEITHER,
+        stronger="neither",
     )
 
     checks: ClassVar[tuple[Row[Any], ...]] = (

@@ -18,7 +18,6 @@ from nrs_design.spec.model import (
     ReadBefore,
     ReadBy,
     SpecModel,
-    Stronger,
     keys_schema,
     optional,
     pair_schema,
@@ -115,7 +114,7 @@ AnyQuantity = Annotated[
 ]
 
 
-class Bounds(SpecModel, stronger=Stronger.UNKNOWN):
+class Bounds(SpecModel, stronger="unknown"):
     """Closed interval."""
 
     min: AnyQuantity = required("smallest admissible value")
@@ -124,7 +123,7 @@ class Bounds(SpecModel, stronger=Stronger.UNKNOWN):
     checks = BOUND_CHECKS
 
 
-class GainSpec(SpecModel, stronger=Stronger.NEITHER):
+class GainSpec(SpecModel, stronger="neither"):
     """A gain: fixed, with ``min == max``, or to be designed within bounds."""
 
     min: AnyQuantity = required("smallest value that the design may choose")

@@ -9,7 +9,7 @@ from nrs_design.spec import quantity_fields as field
 from nrs_design.spec.check import Row
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import Name, Positive, Title, read_exact, whole
-from nrs_design.spec.model import ReadBy, SpecModel, Stronger, optional, required
+from nrs_design.spec.model import ReadBy, SpecModel, optional, required
 from nrs_design.spec.motion import CommandUnit, MotionLoopSpec, commands_in
 
 MAX_COUNTS = 1 << 24
@@ -28,7 +28,7 @@ ElbowSign = Annotated[int, ReadBy(_read_elbow_sign, {"type": "integer", "enum": 
 Counts = Annotated[int, whole(2, MAX_COUNTS)]
 
 
-class TensorSpec(SpecModel, stronger=Stronger.NEITHER):
+class TensorSpec(SpecModel, stronger="neither"):
     """Inertia tensor about the center of mass; products with the sign they have in the tensor."""
 
     xx: field.MomentOfInertia = required("moment about x in kg*m^2")
@@ -54,7 +54,7 @@ class TensorSpec(SpecModel, stronger=Stronger.NEITHER):
     )
 
 
-class BodySpec(SpecModel, stronger=Stronger.NEITHER):
+class BodySpec(SpecModel, stronger="neither"):
     """A rigid body: mass, center of mass, and inertia as a tensor or as that of a rod."""
 
     mass: field.Mass = required("mass in kg, >= 0")
@@ -77,7 +77,7 @@ class BodySpec(SpecModel, stronger=Stronger.NEITHER):
     )
 
 
-class LegSpec(SpecModel, stronger=Stronger.NEITHER):
+class LegSpec(SpecModel, stronger="neither"):
     """One leg: crank and coupler move in a plane that turns about the leg's base axis."""
 
     azimuth: field.SignedAngle = required(
@@ -107,7 +107,7 @@ class LegSpec(SpecModel, stronger=Stronger.NEITHER):
     )
 
 
-class LegsSpec(SpecModel, stronger=Stronger.NEITHER):
+class LegsSpec(SpecModel, stronger="neither"):
     """The three legs; the middle one carries the platform."""
 
     left: LegSpec = required("side leg of theta1, the angle of its plane")
@@ -134,7 +134,7 @@ class PlatformSpec(BodySpec):
     length: field.Length = required("length along the endoscope axis, for slender-rod, in m")
 
 
-class RobotWorkspaceSpec(SpecModel, stronger=Stronger.UNKNOWN):
+class RobotWorkspaceSpec(SpecModel, stronger="unknown"):
     """Poses that the robot is made for."""
 
     phi: field.Angle = required("largest |phi| (yaw)")
@@ -142,7 +142,7 @@ class RobotWorkspaceSpec(SpecModel, stronger=Stronger.UNKNOWN):
     d: field.LengthBounds = required("depth along the endoscope axis, {min: ..., max: ...}")
 
 
-class TaskLimitsSpec(SpecModel, stronger=Stronger.UNKNOWN):
+class TaskLimitsSpec(SpecModel, stronger="unknown"):
     """Largest motion of the endoscope that the task asks for (thesis 3.3)."""
 
     angular_velocity: field.AngularVelocity = required("of phi and psi, in rad/s")
@@ -151,7 +151,7 @@ class TaskLimitsSpec(SpecModel, stronger=Stronger.UNKNOWN):
     linear_acceleration: field.LinearAcceleration = required("of d, in m/s^2")
 
 
-class DriveSpec(SpecModel, stronger=Stronger.NEITHER):
+class DriveSpec(SpecModel, stronger="neither"):
     """Motor with driver, gearhead, capstan and encoder; the same for all three joints."""
 
     gain: field.ActuatorGain = required(
@@ -177,7 +177,7 @@ class DriveSpec(SpecModel, stronger=Stronger.NEITHER):
     )
 
 
-class RobotControlSpec(SpecModel, stronger=Stronger.NEITHER):
+class RobotControlSpec(SpecModel, stronger="neither"):
     """Motion control of the joints (thesis 4.2 and 4.3)."""
 
     motion_loop: MotionLoopSpec = required("the position loop around each motor")
@@ -191,7 +191,7 @@ class RobotControlSpec(SpecModel, stronger=Stronger.NEITHER):
     )
 
 
-class BalancedLegSpec(SpecModel, stronger=Stronger.NEITHER):
+class BalancedLegSpec(SpecModel, stronger="neither"):
     """Counter-masses and spring of one side leg (thesis 4.4)."""
 
     arm_center_of_mass: field.Length = required(
@@ -207,7 +207,7 @@ class BalancedLegSpec(SpecModel, stronger=Stronger.NEITHER):
     spring_on_base: field.Length = required("A0D0, spring on the base from the base joint, in m")
 
 
-class BalanceSpec(SpecModel, stronger=Stronger.NEITHER):
+class BalanceSpec(SpecModel, stronger="neither"):
     """Passive balance of the side legs (thesis 4.4)."""
 
     payload: field.Mass = required("m_p, share of the platform that each side leg carries")
@@ -216,18 +216,18 @@ class BalanceSpec(SpecModel, stronger=Stronger.NEITHER):
     right: BalancedLegSpec = required("right leg")
 
 
-class RobotSpec(SpecModel, stronger=Stronger.UNKNOWN):
+class RobotSpec(SpecModel, stronger="unknown"):
     """A parallel robot that moves an endoscope about a pivot point (thesis 3 and 4)."""
 
     # Nothing is certified about it, so no range is covered.
     has_ranges: ClassVar[bool] = False
 
     kind: Literal["robot"] = required("what this file describes")
-    name: Name = required("short name: lower-case letters, digits, '.', '_', '-'")
-    title: Title = optional("one line for people, at most 200 characters", "")
-    gravity: field.Gravity = required("gravitational acceleration, m/s^2", Stronger.NEITHER)
+    name: Name = required("short name: lower-case letters, digits, '.', '_', '-'", "neither")
+    title: Title = optional("one line for people, at most 200 characters", "", stronger="beside")
+    gravity: field.Gravity = required("gravitational acceleration, m/s^2", "neither")
     base_tilt: field.SignedAngle = required(
-        "theta4, rotation of the base against the vertical (thesis 3.40)", Stronger.NEITHER
+        "theta4, rotation of the base against the vertical (thesis 3.40)", "neither"
     )
     legs: LegsSpec = required("the three legs")
     platform: PlatformSpec = required("mobile platform with the endoscope")

@@ -12,15 +12,7 @@ from nrs_design.spec.check import Row
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import read_exact
 from nrs_design.spec.misses import DeadlinesSpec
-from nrs_design.spec.model import (
-    ReadBy,
-    SpecModel,
-    Stronger,
-    Unsaid,
-    optional,
-    pair_schema,
-    required,
-)
+from nrs_design.spec.model import ReadBy, SpecModel, optional, pair_schema, required
 from nrs_design.spec.provenance import IdentifiedSpec
 from nrs_design.spec.quantity_fields import ends_of
 from nrs_design.spec.units import command_unit
@@ -65,7 +57,7 @@ Delay = Annotated[
 ]
 
 
-class SamplingSpec(IdentifiedSpec, stronger=Stronger.FARTHER):
+class SamplingSpec(IdentifiedSpec, stronger="farther"):
     """The law as a processor runs it: once a period, with float32 coefficients.
 
     The derivative of the motion controller is a backward difference, the command is held between
@@ -88,7 +80,7 @@ class SamplingSpec(IdentifiedSpec, stronger=Stronger.FARTHER):
         "time between two samples of the outer loop (filter of the force and "
         "admittance) in s, where it is not that of the motion loop: a whole number of its "
         "periods, or a whole part of one; `delay` counts samples of the force, so these",
-        unsaid=Unsaid.OTHER,
+        unsaid="other",
     )
     misses: DeadlinesSpec | None = optional(
         "how many periods may miss their deadline, and what happens in these; default: none"
@@ -97,7 +89,7 @@ class SamplingSpec(IdentifiedSpec, stronger=Stronger.FARTHER):
         "how Mt vm' + Bt vm = F becomes a step: exact for a force held over the "
         "period, or one step of Euler's method",
         "exact",
-        stronger=Stronger.NEITHER,
+        stronger="neither",
     )
 
     @property
@@ -165,7 +157,7 @@ class SamplingSpec(IdentifiedSpec, stronger=Stronger.FARTHER):
     )
 
 
-class DisturbancesSpec(SpecModel, stronger=Stronger.LARGER):
+class DisturbancesSpec(SpecModel, stronger="larger"):
     """Bounds on what acts on the loop from outside; what is left out is zero."""
 
     command: field.AngularVelocity | None = optional(

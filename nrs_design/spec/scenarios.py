@@ -15,15 +15,7 @@ from nrs_design.spec import quantity_fields as field
 from nrs_design.spec.check import Row
 from nrs_design.spec.faults import all_of, as_text, fault
 from nrs_design.spec.fields import LABEL_PATTERN, Label, Title, UnitFraction, whole
-from nrs_design.spec.model import (
-    ReadBy,
-    SpecModel,
-    Stronger,
-    Unsaid,
-    optional,
-    pair_schema,
-    required,
-)
+from nrs_design.spec.model import ReadBy, SpecModel, optional, pair_schema, required
 from nrs_design.spec.quantity import Quantity, is_less
 from nrs_design.spec.quantity_fields import quantity_schema, read_quantity
 
@@ -107,11 +99,7 @@ def one_of(message: str, remedy: str) -> tuple[Row[Any], ...]:
     return (Row("", lambda s: sum(v is not None for _, v in s) != 1, message, remedy),)
 
 
-class PartOfRunSpec(SpecModel, stronger=Stronger.UNKNOWN, unsaid=Unsaid.OTHER):
-    """What makes another run where it is another, or is said and was not."""
-
-
-class SinusoidSpec(PartOfRunSpec):
+class SinusoidSpec(SpecModel, stronger="unknown", unsaid="other"):
     """A velocity ``offset + amplitude sin(omega t)``."""
 
     amplitude: field.AngularVelocity = required("amplitude in rad/s")
@@ -119,7 +107,7 @@ class SinusoidSpec(PartOfRunSpec):
     offset: field.SignedAngularVelocity | None = optional("mean in rad/s; default: none")
 
 
-class CommandProfileSpec(PartOfRunSpec):
+class CommandProfileSpec(SpecModel, stronger="unknown", unsaid="other"):
     """The velocity that the surgeon commands, in one of four ways; positive raises the angle."""
 
     constant: field.SignedAngularVelocity | None = optional("one velocity all the time, in rad/s")
@@ -136,7 +124,7 @@ class CommandProfileSpec(PartOfRunSpec):
     checks = one_of("a command is given in one way", "write constant, points, sinusoid or csv")
 
 
-class SurfaceSpec(PartOfRunSpec):
+class SurfaceSpec(SpecModel, stronger="unknown", unsaid="other"):
     """Where an environment begins; it pushes and never pulls."""
 
     environment: Label = required("name of the environment")
@@ -158,14 +146,14 @@ class SurfaceSpec(PartOfRunSpec):
 Surfaces = Annotated[tuple[SurfaceSpec, ...], Field(max_length=MAX_SURFACES)]
 
 
-class SignControlSpec(PartOfRunSpec):
+class SignControlSpec(SpecModel, stronger="unknown", unsaid="other"):
     """Insertion and withdrawal by the signs of command and torque (thesis 6.3.2)."""
 
     insertion: Label = required("controller while the command goes into the tissue")
     withdrawal: Label = required("controller while the command goes out of tissue that pushes")
 
 
-class ThresholdControlSpec(PartOfRunSpec):
+class ThresholdControlSpec(SpecModel, stronger="unknown", unsaid="other"):
     """Position control up to a torque, force control from there on (thesis 6.3.3)."""
 
     position: Label = required("controller below the threshold")
@@ -173,7 +161,7 @@ class ThresholdControlSpec(PartOfRunSpec):
     torque: field.Torque = required("the threshold T_th in N*m")
 
 
-class ControlSpec(PartOfRunSpec):
+class ControlSpec(SpecModel, stronger="unknown", unsaid="other"):
     """Which controller is in force when, in one of six ways."""
 
     fixed: Label | None = optional("one controller all the time")
@@ -213,7 +201,7 @@ class ControlSpec(PartOfRunSpec):
         return found
 
 
-class ErrorsSpec(SpecModel, stronger=Stronger.LARGER):
+class ErrorsSpec(SpecModel, stronger="larger"):
     """What acts on the sampled loop and its sensors; what is left out is zero."""
 
     friction: field.DriveCommand | None = optional(
@@ -229,7 +217,7 @@ class ErrorsSpec(SpecModel, stronger=Stronger.LARGER):
     )
 
 
-class ScenarioLimitsSpec(SpecModel, stronger=Stronger.SMALLER):
+class ScenarioLimitsSpec(SpecModel, stronger="smaller"):
     """What the gate wants a simulated run to keep; what is left out is not looked at."""
 
     torque: field.Torque | None = optional("largest torque of the tissue in N*m")
@@ -248,14 +236,14 @@ class ScenarioLimitsSpec(SpecModel, stronger=Stronger.SMALLER):
         return {name: value for name, value in self if value is not None}
 
 
-class ScenarioSpec(PartOfRunSpec):
+class ScenarioSpec(SpecModel, stronger="unknown", unsaid="other"):
     """One run of the robot against its surroundings."""
 
-    title: Title = optional("one line for people, at most 200 characters", "")
+    title: Title = optional("one line for people, at most 200 characters", "", stronger="beside")
     command: CommandProfileSpec = required("velocity that the surgeon commands")
     duration: field.Duration | None = optional(
         "length of the run in s, at most an hour; default: that of points or csv",
-        stronger=Stronger.LARGER,
+        stronger="larger",
     )
     start: field.SignedAngle | None = optional(
         "angle at which the axis rests at first, in rad; default: 0"
@@ -270,12 +258,12 @@ class ScenarioSpec(PartOfRunSpec):
         "Fd of force controllers in N*m, towards rising angles; default: limits.torque"
     )
     errors: ErrorsSpec | None = optional(
-        "friction, resolutions, noise and jitter; for the sampled engine", unsaid=Unsaid.NOTHING
+        "friction, resolutions, noise and jitter; for the sampled engine", unsaid="nothing"
     )
     limits: ScenarioLimitsSpec | None = optional(
         "what the run must keep for the gate to pass (NRS109), such as "
         "{torque: 0.3 N*m, deflection: 1 deg}; without it, the gate does not simulate it",
-        unsaid=Unsaid.NOTHING,
+        unsaid="nothing",
     )
     seed: Seed = optional("of noise, jitter and varying delay", 0)
 

@@ -8,7 +8,7 @@ from typing import Annotated
 from nrs_design.spec import quantity_fields as field
 from nrs_design.spec.check import Row
 from nrs_design.spec.fields import whole
-from nrs_design.spec.model import SpecModel, Stronger, optional, required
+from nrs_design.spec.model import SpecModel, optional, required
 from nrs_design.spec.quantity import Quantity
 
 # Every lag is a state more.
@@ -16,7 +16,7 @@ HIGHEST_ORDER = 4
 _AT = "{axis} of {what}, in m along the axes of the sensor"
 
 
-class FilterSpec(SpecModel, stronger=Stronger.NEITHER):
+class FilterSpec(SpecModel, stronger="neither"):
     """A low-pass of so many equal lags in a row, ``1/(s/cutoff + 1)^order``."""
 
     order: Annotated[int, whole(1, HIGHEST_ORDER)] = optional(
@@ -25,7 +25,7 @@ class FilterSpec(SpecModel, stronger=Stronger.NEITHER):
     cutoff: field.Bandwidth = required("corner frequency of each lag, such as 30 Hz")
 
 
-class PointSpec(SpecModel, stronger=Stronger.UNKNOWN):
+class PointSpec(SpecModel, stronger="unknown"):
     """A point, from the origin of the sensor."""
 
     x: field.Coordinate = required(_AT.format(axis="x", what="the point"))
@@ -38,7 +38,7 @@ class PointSpec(SpecModel, stronger=Stronger.UNKNOWN):
         return (self.x.exact, self.y.exact, self.z.exact)
 
 
-class CenterSpec(SpecModel, stronger=Stronger.HOLDING):
+class CenterSpec(SpecModel, stronger="holding"):
     """A center of mass that is known within ranges, from the origin of the sensor."""
 
     x: field.RangedCoordinate = required(_AT.format(axis="x", what="the center of mass"))
@@ -46,7 +46,7 @@ class CenterSpec(SpecModel, stronger=Stronger.HOLDING):
     z: field.RangedCoordinate = required(_AT.format(axis="z", what="the center of mass"))
 
 
-class ToolSpec(SpecModel, stronger=Stronger.HOLDING):
+class ToolSpec(SpecModel, stronger="holding"):
     """What hangs on the sensor. Its weight is taken off the signal, with the nominal values."""
 
     mass: field.RangedMass = required(
@@ -70,7 +70,7 @@ _WITH = (
 )
 
 
-class SensorSpec(SpecModel, stronger=Stronger.LARGER):
+class SensorSpec(SpecModel, stronger="larger"):
     """The force signal: what filters it, and how far it may be off.
 
     Errors that last move the robot in free motion, as an admittance integrates them: the creep.

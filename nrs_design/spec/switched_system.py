@@ -13,7 +13,7 @@ from nrs_design.spec.check import NO_SUCH, Reference, Row, each, refuse
 from nrs_design.spec.faults import Location, did_you_mean
 from nrs_design.spec.fields import Label, Name, Title
 from nrs_design.spec.misses import MissesSpec
-from nrs_design.spec.model import SpecModel, Stronger, Unsaid, optional, required
+from nrs_design.spec.model import SpecModel, optional, required
 from nrs_design.spec.parameters import MAX_PARAMETERS, Entry, ParameterName, ParameterSpec
 from nrs_design.spec.switching import (
     MAX_DIMENSION,
@@ -34,7 +34,7 @@ _Row = Annotated[tuple[Entry, ...], Field(min_length=1, max_length=MAX_DIMENSION
 _Matrix = Annotated[tuple[_Row, ...], Field(min_length=1, max_length=MAX_DIMENSION)]
 
 
-class ModeSpec(SpecModel, stronger=Stronger.NEITHER):
+class ModeSpec(SpecModel, stronger="neither"):
     """One mode ``x' = A x`` (or ``x+ = A x``)."""
 
     name: Label = required("name of the mode, unique in this file")
@@ -78,18 +78,18 @@ class ModeSpec(SpecModel, stronger=Stronger.NEITHER):
     )
 
 
-class SwitchedSystemSpec(SpecModel, stronger=Stronger.UNKNOWN):
+class SwitchedSystemSpec(SpecModel, stronger="unknown"):
     """A finite family of linear modes, or of boxes of modes."""
 
     kind: Literal["switched-system"] = required("what this file describes")
-    name: Name = required("short name: lower-case letters, digits, '.', '_', '-'")
-    title: Title = optional("one line for people, at most 200 characters", "")
+    name: Name = required("short name: lower-case letters, digits, '.', '_', '-'", "neither")
+    title: Title = optional("one line for people, at most 200 characters", "", stronger="beside")
     time: Literal["continuous", "discrete"] = required("continuous: x' = A x; discrete: x+ = A x")
     parameters: Annotated[dict[ParameterName, ParameterSpec], Field(max_length=MAX_PARAMETERS)] = (
         optional(
             "uncertain numbers that the matrices depend on: name -> nominal and range",
             {},
-            stronger=Stronger.HOLDING,
+            stronger="holding",
         )
     )
     modes: Annotated[tuple[ModeSpec, ...], Field(min_length=1, max_length=MAX_MODES)] = required(
@@ -101,7 +101,7 @@ class SwitchedSystemSpec(SpecModel, stronger=Stronger.UNKNOWN):
     misses: MissesSpec | None = optional(
         "how many steps may miss their deadline, in discrete time, in the place of rules of "
         "switching; the other modes are what a step in time brings about",
-        unsaid=Unsaid.MOST,
+        unsaid="most",
     )
     resets: Annotated[tuple[ResetSpec, ...], Field(max_length=MAX_TRANSITIONS)] = optional(
         "what switches do to the state; the others leave it as it is. Several from one "

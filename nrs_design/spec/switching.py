@@ -17,17 +17,7 @@ from nrs_design.spec.check import NO_SUCH, Reference, Row, each, refuse
 from nrs_design.spec.exact import parse_exact
 from nrs_design.spec.faults import Location, as_text, fault, reported
 from nrs_design.spec.fields import Exact, Label
-from nrs_design.spec.model import (
-    ReadBefore,
-    ReadBy,
-    SpecModel,
-    Stronger,
-    Unsaid,
-    at_most,
-    optional,
-    pair_schema,
-    required,
-)
+from nrs_design.spec.model import ReadBefore, ReadBy, SpecModel, optional, pair_schema, required
 from nrs_design.spec.quantity import QUANTITY_PATTERN, parse_quantity
 
 MAX_TRANSITIONS = 20_000
@@ -143,19 +133,19 @@ _TRANSITIONS_SCHEMA: dict[str, Any] = {
 }
 
 
-class SwitchingSpec(SpecModel, unsaid=Unsaid.MOST):
+class SwitchingSpec(SpecModel, unsaid="most"):
     """Rules for the switching signal; without any, it is arbitrary."""
 
-    dwell_time: Annotated[DwellTimes | None, ReadBy(read_dwell_times, DWELL_SCHEMA)] = at_most(
-        _DWELL_TIME
+    dwell_time: Annotated[DwellTimes | None, ReadBy(read_dwell_times, DWELL_SCHEMA)] = optional(
+        _DWELL_TIME, stronger="smaller"
     )
     longest_dwell_time: Annotated[DwellTimes | None, ReadBy(read_dwell_times, DWELL_SCHEMA)] = (
-        optional(_LONGEST_DWELL_TIME, stronger=Stronger.LARGER)
+        optional(_LONGEST_DWELL_TIME, stronger="larger")
     )
     transitions: Annotated[
         tuple[Transition, ...] | None,
         ReadBy(_read_transitions, _TRANSITIONS_SCHEMA),
-    ] = optional(_TRANSITIONS, stronger=Stronger.WHOLE)
+    ] = optional(_TRANSITIONS, stronger="whole")
 
     @property
     def is_arbitrary(self) -> bool:
@@ -288,7 +278,7 @@ def matrix_checks(
     )
 
 
-class ResetSpec(SpecModel, stronger=Stronger.NEITHER):
+class ResetSpec(SpecModel, stronger="neither"):
     """What a switch does to the state, ``x+ = map x`` (thesis 5.9)."""
 
     source: Label = Field(alias="from", description="name of the mode before the switch")

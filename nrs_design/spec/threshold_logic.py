@@ -21,7 +21,7 @@ from nrs_design.spec import quantity_fields as field
 from nrs_design.spec.check import Reference, Row, each, refuse
 from nrs_design.spec.faults import Location, as_text, did_you_mean, fault
 from nrs_design.spec.fields import Label
-from nrs_design.spec.model import ReadBy, SpecModel, Stronger, Unsaid, at_most, optional, required
+from nrs_design.spec.model import ReadBy, SpecModel, at_most, optional, required
 from nrs_design.spec.quantity import Quantity
 from nrs_design.spec.switching import (
     DWELL_SCHEMA,
@@ -44,11 +44,7 @@ _ABOVE = "the value that the logic sees is at least this, in {unit}"
 _BELOW = "the value that the logic sees is at most this, in {unit}"
 
 
-class PartOfLogicSpec(SpecModel, stronger=Stronger.UNKNOWN, unsaid=Unsaid.MOST):
-    """What is assumed of switching: with it, less is shown."""
-
-
-class CommandSignalSpec(SpecModel, stronger=Stronger.LARGER):
+class CommandSignalSpec(SpecModel, stronger="larger"):
     """The velocity command of the surgeon, positive towards the tissue."""
 
     noise: field.AngularVelocity = required(_NOISE.format(unit="rad/s"))
@@ -56,7 +52,7 @@ class CommandSignalSpec(SpecModel, stronger=Stronger.LARGER):
     largest_rate: field.AngularAcceleration = required(_RATE.format(unit="rad/s^2"))
 
 
-class TorqueSignalSpec(SpecModel, stronger=Stronger.LARGER):
+class TorqueSignalSpec(SpecModel, stronger="larger"):
     """The torque of the tissue on the robot, positive where it is pushed."""
 
     noise: field.Torque = required(_NOISE.format(unit="N*m"))
@@ -67,7 +63,7 @@ class TorqueSignalSpec(SpecModel, stronger=Stronger.LARGER):
 SignalSpec = CommandSignalSpec | TorqueSignalSpec
 
 
-class LogicSignalsSpec(PartOfLogicSpec):
+class LogicSignalsSpec(SpecModel, stronger="unknown", unsaid="most"):
     """What the logic sees."""
 
     command: CommandSignalSpec | None = optional("velocity command, positive towards the tissue")
@@ -84,7 +80,7 @@ _ONE_SIDE = Row[Any](
 )
 
 
-class CommandCondition(PartOfLogicSpec):
+class CommandCondition(SpecModel, stronger="unknown", unsaid="most"):
     """One side of a threshold on the command."""
 
     above: field.SignedAngularVelocity | None = optional(_ABOVE.format(unit="rad/s"))
@@ -93,7 +89,7 @@ class CommandCondition(PartOfLogicSpec):
     checks = (_ONE_SIDE,)
 
 
-class TorqueCondition(PartOfLogicSpec):
+class TorqueCondition(SpecModel, stronger="unknown", unsaid="most"):
     """One side of a threshold on the torque."""
 
     above: field.SignedTorque | None = optional(_ABOVE.format(unit="N*m"))
@@ -105,7 +101,7 @@ class TorqueCondition(PartOfLogicSpec):
 Condition = CommandCondition | TorqueCondition
 
 
-class LogicSwitchSpec(PartOfLogicSpec):
+class LogicSwitchSpec(SpecModel, stronger="unknown", unsaid="most"):
     """A switch, and what must hold when it is made."""
 
     source: Label = Field(alias="from", description="controller that is left")
@@ -155,7 +151,7 @@ def check_type(given: object) -> object:
     return given
 
 
-class ThresholdLogicSpec(PartOfLogicSpec):
+class ThresholdLogicSpec(SpecModel, stronger="unknown"):
     """Controllers that follow each other by thresholds on command and torque."""
 
     type: Literal["thresholds"] = required(
@@ -164,13 +160,12 @@ class ThresholdLogicSpec(PartOfLogicSpec):
     start: Label = required("controller that is active at first")
     signals: LogicSignalsSpec = required("what the logic sees, and how well")
     switches: Annotated[
-        tuple[LogicSwitchSpec, ...],
-        Field(min_length=1, max_length=MAX_SWITCHES),
-        Unsaid.NOTHING,
+        tuple[LogicSwitchSpec, ...], Field(min_length=1, max_length=MAX_SWITCHES)
     ] = required("switches from one controller to another; the first that may be made is")
     hold: Annotated[DwellTimes | None, ReadBy(read_dwell_times, DWELL_SCHEMA)] = at_most(
         "shortest time in s for which a controller is held whatever the signals "
-        "say; one for all, or by name. Default: what thresholds, noise and age give anyway"
+        "say; one for all, or by name. Default: what thresholds, noise and age give anyway",
+        unsaid="most",
     )
 
     def _unsaid(self) -> Iterator[tuple[Location, str]]:

@@ -8,7 +8,7 @@ cannot be compared is weaker, and so is another value where nobody knows which o
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
@@ -17,7 +17,7 @@ from nrs_design.spec.affine import Affine
 from nrs_design.spec.controllers import ControllerSpec
 from nrs_design.spec.goals import GoalsSpec
 from nrs_design.spec.interaction_parts import AbstractInteractionSpec
-from nrs_design.spec.model import Declared, SpecModel, Stronger, Unsaid, declared
+from nrs_design.spec.model import Declared, SpecModel, Stronger, declared_in
 from nrs_design.spec.parameters import ParameterSpec
 from nrs_design.spec.places import dotted
 from nrs_design.spec.preload import ExponentSpec
@@ -28,7 +28,7 @@ from nrs_design.spec.switching import DwellTime, SwitchingSpec
 
 Place = tuple[str | int, ...]
 Ranged = RangedQuantity | ExponentSpec | ParameterSpec
-_RANGES = (Stronger.WIDER, Stronger.FARTHER, Stronger.HOLDING)
+_RANGES = ("wider", "farther", "holding")
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,8 +44,8 @@ class Change:
 
 def find_changes(before: SpecModel, after: SpecModel) -> Iterator[Change]:
     """Yield where a spec differs from an earlier one."""
-    how = Stronger.UNKNOWN, Unsaid.NOTHING
-    yield from _changes(_written_out(before, after), _written_out(after, before), (), how)
+    whole = _written_out(before, after), _written_out(after, before)
+    yield from _changes(*whole, (), Declared("unknown", "nothing"))
 
 
 def _written_out(said: SpecModel, other: SpecModel) -> SpecModel:
@@ -93,75 +93,72 @@ def _with_goals(
 
 def _changes(before: object, after: object, at: Place, how: Declared) -> Iterator[Change]:
     """Compare two values; None where nothing is said."""
-    stronger, _ = how
+    stronger, unsaid = how
     was, now = (_parts(value, stronger) for value in (before, after))
     if before == after:
         return
-    if before is None or after is None:
-        yield _of_unsaid(before, after, at, how)
-    elif _arbitrary(before) is not _arbitrary(after):
-        yield Change(at, _differs(before, after, at), _arbitrary(before))
+    if isinstance(stronger, tuple):
+        yield _change(before, after, at, stronger.index(after) < stronger.index(before))
+    elif before is None or after is None:
+        weaker = unsaid != ("nothing" if before is None else "most")
+        yield _change(before, after, at, weaker and stronger != "beside")
+    elif _is_arbitrary(before) is not _is_arbitrary(after):
+        yield _change(before, after, at, _is_arbitrary(before))
     elif was is not None and now is not None:
         known = {key: how for part in (after, before) for key, how in _declared(part).items()}
         for key in sorted({**was, **now}, key=lambda key: key not in was):
             yield from _changes(was.get(key), now.get(key), (*at, key), known.get(key, how))
-    elif stronger is Stronger.WHOLE and isinstance(before, tuple) and isinstance(after, tuple):
+    elif stronger == "whole" and isinstance(before, tuple) and isinstance(after, tuple):
         for what, items, others in (("no longer has", before, after), ("now has", after, before)):
             for item in (item for item in items if item not in others):
-                yield Change(at, f"{_name(at)} {what} {_said(item)}", items is before)
+                yield Change(at, f"{dotted(at)} {what} {_said(item)}", items is before)
     else:
         yield from _of_values(before, after, at, stronger)
 
 
-def _of_unsaid(before: object, after: object, at: Place, how: Declared) -> Change:
-    """Compare with what holds where nothing is said."""
-    stronger, unsaid = how
-    new = before is None
-    weaker = unsaid is not (Unsaid.NOTHING if new else Unsaid.MOST)
-    weaker &= stronger is not Stronger.BESIDE
-    if isinstance(stronger, tuple):
-        weaker = stronger.index(after) < stronger.index(before)
-    message = f"is new: {_said(after)}" if new else f"is gone, {_said(before)} before"
-    return Change(at, f"{_name(at)} {message}", weaker)
-
-
 def _of_values(
-    before: object, after: object, at: Place, stronger: Stronger | tuple[object, ...]
+    before: object, after: object, at: Place, stronger: Stronger | None
 ) -> Iterator[Change]:
     """Compare two numbers, ranges or words."""
     (_, *was), (_, *now) = (points := [_points(value) for value in (before, after)])
     single = [_is_single(value) for value in (before, after)]
     if [*map(_exact, points[0])] != [*map(_exact, points[1])]:
-        weaker, message = _is_weaker(was, now, stronger), _differs(before, after, at)
+        change = _change(before, after, at, _is_weaker(was, now, stronger))
         compared = _less(was[0], now[0]) is not None and stronger in _RANGES
-        if weaker and compared and (stronger is Stronger.HOLDING or not all(single)):
-            message += " (values of before are not covered)"
-        yield Change(at, message, weaker)
+        if change.weaker and compared and (stronger == "holding" or not all(single)):
+            message = f"{change.message} (values of before are not covered)"
+            change = replace(change, message=message)
+        yield change
     varied, varies = (getattr(value, "varies", True) for value in (before, after))
     # One value has no way to vary.
     if varied != varies and not any(single):
-        at = (*at, "varies")
-        yield Change(at, _differs(varied, varies, at), varied)
+        yield _change(varied, varies, (*at, "varies"), varied)
 
 
-def _is_weaker(
-    before: list[Any], after: list[Any], stronger: Stronger | tuple[object, ...]
-) -> bool:
+def _change(before: object, after: object, at: Place, weaker: bool) -> Change:
+    if before is None:
+        said = f" is new: {_said(after)}"
+    elif after is None:
+        said = f" is gone, {_said(before)} before"
+    else:
+        said = f": {_said(before)} before, {_said(after)} now"
+    return Change(at, (dotted(at) or "the spec") + said, weaker)
+
+
+def _is_weaker(before: list[Any], after: list[Any], stronger: Stronger | None) -> bool:
     """Tell whether a range, or a value as both its ends, asks for less than another one."""
     (low, high), (new_low, new_high) = before, after
-    if isinstance(stronger, tuple):
-        return stronger.index(new_low) < stronger.index(low)
-    if stronger is Stronger.LARGER:
+    if stronger == "larger":
         return _less(new_low, low) is not False
-    if stronger is Stronger.SMALLER:
+    if stronger == "smaller":
         return _less(low, new_low) is not False
     if stronger not in _RANGES:
-        return stronger not in (Stronger.NEITHER, Stronger.BESIDE)
+        return stronger not in ("neither", "beside")
     if _less(low, new_low) is False and _less(new_high, high) is False:
         return False
-    if stronger is Stronger.HOLDING or _exact(low) != _exact(high):
+    if stronger == "holding" or _exact(low) != _exact(high):
         return True
-    if stronger is Stronger.FARTHER:
+    if stronger == "farther":
         return _less(new_high, high) is not False
     # Another single value is neither.
     return _exact(new_low) != _exact(new_high) and _less(low, new_low) is None
@@ -175,7 +172,7 @@ def _parts(value: object, stronger: object) -> dict[Any, object] | None:
         return {"constant": value.constant, "slopes": value.slopes}
     if isinstance(value, SpecModel) and not isinstance(value, Ranged):
         return _fields(value)
-    if not isinstance(value, tuple) or stronger is Stronger.WHOLE or stronger in _RANGES:
+    if not isinstance(value, tuple) or stronger == "whole" or stronger in _RANGES:
         return None
     names = [getattr(item, "name", None) for item in value]
     return dict(enumerate(value) if None in names else zip(names, value, strict=True))
@@ -188,10 +185,10 @@ def _fields(model: SpecModel) -> dict[str, object]:
 
 
 def _declared(part: object) -> dict[str, Declared]:
-    return declared(type(part)) if isinstance(part, SpecModel) else {}
+    return declared_in(type(part)) if isinstance(part, SpecModel) else {}
 
 
-def _arbitrary(value: object) -> bool:
+def _is_arbitrary(value: object) -> bool:
     return isinstance(value, SwitchingSpec) and value.is_arbitrary
 
 
@@ -226,14 +223,6 @@ def _less(a: object, b: object) -> bool | None:
     return None
 
 
-def _differs(before: object, after: object, at: Place) -> str:
-    return f"{_name(at)}: {_said(before)} before, {_said(after)} now"
-
-
-def _name(at: Place) -> str:
-    return dotted(at) or "the spec"
-
-
 def _said(value: object) -> str:
     """Return what is said as one short text."""
     if isinstance(value, Ranged) and not _is_single(value):
@@ -249,7 +238,7 @@ def _text(value: object) -> str:
         return exact_text(value)
     if isinstance(value, bool):
         return str(value).lower()
-    if _arbitrary(value):
+    if _is_arbitrary(value):
         return str(value)
     if isinstance(value, Ranged | Times) and _is_single(value):
         return _text(_points(value)[0])

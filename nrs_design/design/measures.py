@@ -10,6 +10,8 @@ from enum import StrEnum
 from fractions import Fraction
 
 from nrs_design.axis import current, unit
+from nrs_design.spec.goals import GoalsSpec
+from nrs_design.spec.model import declared_in
 
 _DIGITS = 4
 
@@ -90,9 +92,12 @@ class Measure:
     unit: str = ""
     scale: float = 1.0
     turning: bool = False  # Whether both are those of an axis that turns, in deg
-    # Whether a goal is the largest value that is accepted; else it is the smallest.
-    upper: bool = False
     doubtful: float | None = None  # SI value beyond which a design without a goal is doubted
+
+    @property
+    def upper(self) -> bool:
+        """Whether a goal is the largest value that is accepted; else it is the smallest."""
+        return declared_in(GoalsSpec)[self.goal].stronger == "smaller"
 
     def text(self, value: float | Fraction) -> str:
         """Write a value with four digits, rounded to its unfavorable side."""
@@ -150,7 +155,7 @@ class Measure:
 # are called reasonable by Astrom and Murray, Feedback Systems, 2nd ed., section 10.3; Ms of 1.2 to
 # 2.0 is usual in Astrom and Hagglund, Advanced PID Control (2006). The two errors have limits of
 # ours, see docs/design/goals.md; a delay margin is to be held against the delay that there is.
-SENSITIVITY_PEAK = Measure("max_sensitivity_peak", "sensitivity peak Ms", upper=True, doubtful=2.0)
+SENSITIVITY_PEAK = Measure("max_sensitivity_peak", "sensitivity peak Ms", doubtful=2.0)
 GAIN_MARGIN = Measure("min_gain_margin", "gain margin", doubtful=2.0)
 PHASE_MARGIN = Measure(
     "min_phase_margin",
@@ -161,21 +166,13 @@ PHASE_MARGIN = Measure(
 )
 DELAY_MARGIN = Measure("min_delay_margin", "delay margin", unit="ms", scale=1e3)
 DISK_MARGIN = Measure("min_disk_margin", "disk margin")
-IMPEDANCE_ERROR = Measure(
-    "max_impedance_error", "factor off the desired impedance", upper=True, doubtful=2.0
-)
-CREEP = Measure("max_creep", "creep in free motion", "deg/s", turning=True, upper=True)
-CREEP_ANGLE = Measure(
-    "max_creep_angle", "way of creep in free motion", "deg", turning=True, upper=True
-)
-FORCE_ERROR = Measure(
-    "max_force_error", "steady force error over command", upper=True, doubtful=0.5
-)
+IMPEDANCE_ERROR = Measure("max_impedance_error", "factor off the desired impedance", doubtful=2.0)
+CREEP = Measure("max_creep", "creep in free motion", "deg/s", turning=True)
+CREEP_ANGLE = Measure("max_creep_angle", "way of creep in free motion", "deg", turning=True)
+FORCE_ERROR = Measure("max_force_error", "steady force error over command", doubtful=0.5)
 # Of a hand that moves the robot: shown where they are asked for.
 TRANSPARENCY = Measure("min_transparency", "share of the motion of the hand that is followed")
-HAND_EFFORT = Measure(
-    "max_hand_effort", "effort of the hand", unit="N*m*s/rad", turning=True, upper=True
-)
+HAND_EFFORT = Measure("max_hand_effort", "effort of the hand", unit="N*m*s/rad", turning=True)
 
 MARGINS = (SENSITIVITY_PEAK, GAIN_MARGIN, PHASE_MARGIN, DELAY_MARGIN, DISK_MARGIN)
 IMPEDANCE_MEASURES = (*MARGINS, IMPEDANCE_ERROR)

@@ -18,6 +18,7 @@ from pathlib import Path
 from nrs_design.spec.check import find_faults
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.quantity import Quantity
+from nrs_design.spec.quantity_fields import Bounds, GainSpec, RangedQuantity
 from nrs_design.spec.units import parse_unit
 
 _Asked = tuple[tuple[str, ...], str]  # Keys that lead to a field, and the question
@@ -86,10 +87,6 @@ def doubt_size(field: str, value: float, unit: str, number: str | None = None) -
     return None if size is None else size.doubt(value, number or f"{value:.4g}", unit)
 
 
-# Ends of a range, and bounds: they are what the key above says.
-_ENDS = frozenset({"nominal", "range", "min", "max"})
-
-
 def doubt_sizes(spec: SpecModel) -> Iterator[_Asked]:
     """Yield fields of a spec with implausible sizes, as keys that lead there, and a question.
 
@@ -123,8 +120,9 @@ def _walk(value: object, at: tuple[str, ...], field: str) -> Iterator[_Asked]:
 
 
 def _parts(model: SpecModel, at: tuple[str, ...], field: str) -> Iterator[_Asked]:
+    # They are what the key above says.
+    ends = isinstance(model, RangedQuantity | GainSpec | Bounds)
     for key in type(model).model_fields:
-        ends = key in _ENDS
         value = getattr(model, key)
         yield from _once(_walk(value, at if ends else (*at, key), field if ends else key))
 

@@ -93,10 +93,10 @@ def _with_goals(
 
 def _changes(before: object, after: object, at: Place, how: Declared) -> Iterator[Change]:
     """Compare two values; None where nothing is said."""
-    stronger, unsaid = how
-    was, now = (_parts(value, stronger) for value in (before, after))
     if before == after:
         return
+    stronger, unsaid = how
+    was, now = (_parts(value, stronger) for value in (before, after))
     if isinstance(stronger, tuple):
         yield _change(before, after, at, stronger.index(after) < stronger.index(before))
     elif before is None or after is None:
@@ -105,7 +105,7 @@ def _changes(before: object, after: object, at: Place, how: Declared) -> Iterato
     elif _is_arbitrary(before) is not _is_arbitrary(after):
         yield _change(before, after, at, _is_arbitrary(before))
     elif was is not None and now is not None:
-        known = {key: how for part in (after, before) for key, how in _declared(part).items()}
+        known = _declared(after) | _declared(before)
         for key in sorted({**was, **now}, key=lambda key: key not in was):
             yield from _changes(was.get(key), now.get(key), (*at, key), known.get(key, how))
     elif stronger == "whole" and isinstance(before, tuple) and isinstance(after, tuple):

@@ -69,7 +69,7 @@ def merge_tissue(
             f"a range is unlimited, the records do not determine it: {model.doubts[0]}",
             remedy="choose a simpler law with --model, or record again as the message says",
         )
-    declared = check_interaction(loaded).environments[name].parameters()
+    declared = check_interaction(loaded).environments[name].ranges
     by_key = dict(zip(law.keys, ranges, strict=True))
     narrow = _narrowed(declared, by_key, found.sources, replace=replace)
     document = SpecDocument(loaded)

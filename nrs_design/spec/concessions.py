@@ -100,7 +100,7 @@ def _of_interaction(
     spec: InteractionDesignSpec, root: Node, slowest: float | None
 ) -> Iterator[Concession]:
     for name in sorted(spec.touched):
-        for key in ("exponent", *spec.environments[name].parameters()):
+        for key in ("exponent", *spec.environments[name].ranges):
             yield from _range(root, ("environments", name, key))
     for at in spec.motor_ranges:
         yield from _range(root, at)

@@ -174,7 +174,7 @@ def _sampling(sampling: SamplingSpec) -> Iterator[Line]:
 def _environment(name: str, environment: EnvironmentSpec) -> Iterator[Line]:
     yield Line(f"{name}.model", environment.model, "", "")
     turned = environment.at_pivot()
-    parameters = environment.parameters()
+    parameters = environment.ranges
     for key, written in parameters.items():
         unit = unit_at_pivot(written.nominal)
         yield from _ranged(f"{name}.{key}", written, turned[key], unit)

@@ -72,14 +72,14 @@ class AbstractEnvironmentSpec(IdentifiedRangesSpec, stronger="holding"):
     def _without_arm(self) -> Iterator[tuple[Location, str]]:
         """Yield what is linear without a lever arm, about a pivot."""
         if self.lever_arm is None and current() is AxisType.ROTARY:
-            for name, quantity in self.parameters().items():
+            for name, quantity in self.ranges.items():
                 if is_translational(quantity.nominal):
                     yield (name,), quantity.nominal.text
 
     def _with_arm(self) -> Iterator[tuple[Location, str]]:
         """Yield what is rotational beside a lever arm."""
         if self.lever_arm is not None:
-            for name, quantity in self.parameters().items():
+            for name, quantity in self.ranges.items():
                 if not is_translational(quantity.nominal):
                     yield (name,), quantity.nominal.text
 
@@ -107,7 +107,7 @@ class AbstractEnvironmentSpec(IdentifiedRangesSpec, stronger="holding"):
     @property
     def fixed(self) -> bool:
         """Whether every parameter has a single value."""
-        return all(quantity.fixed for quantity in self.parameters().values())
+        return all(quantity.fixed for quantity in self.ranges.values())
 
     @property
     def remembers(self) -> bool:
@@ -132,7 +132,7 @@ class AbstractEnvironmentSpec(IdentifiedRangesSpec, stronger="holding"):
     @property
     def is_spring(self) -> bool:
         """Whether the force follows from the deflection of the moment, in the whole range."""
-        damping = self.parameters().get("damping")
+        damping = self.ranges.get("damping")
         if self.remembers or self.has_mass:
             return False
         return damping is None or not any(q.exact for q in (damping.nominal, *damping.range))
@@ -151,10 +151,6 @@ class AbstractEnvironmentSpec(IdentifiedRangesSpec, stronger="holding"):
         """Return the parameters of that law with their ranges for a rotation."""
         return self.exact_at_pivot()
 
-    def parameters(self) -> dict[str, RangedQuantity]:
-        """Return the parameters of the law as written, by their keys."""
-        return {name: value for name, value in self if isinstance(value, RangedQuantity)}
-
     def exact_at_pivot(self) -> dict[str, Interval]:
         """Return the parameters with their ranges for a rotation, in N*m/rad and N*m*s/rad.
 
@@ -169,7 +165,7 @@ class AbstractEnvironmentSpec(IdentifiedRangesSpec, stronger="holding"):
                 turn(value.range[1].exact, radius),
                 value.varies,
             )
-            for name, value in self.parameters().items()
+            for name, value in self.ranges.items()
         }
 
     def drawn_at_pivot(self, pick: Callable[[Interval], float]) -> dict[str, float]:
@@ -183,11 +179,11 @@ class AbstractEnvironmentSpec(IdentifiedRangesSpec, stronger="holding"):
     def at_pivot(self) -> dict[str, RangedQuantity]:
         """Return the parameters for a rotation as quantities, for people to read."""
         if self.lever_arm is None:
-            return self.parameters()
+            return self.ranges
         turned = self.exact_at_pivot()
         return {
             name: _quantities(turned[name], unit_at_pivot(value.nominal))
-            for name, value in self.parameters().items()
+            for name, value in self.ranges.items()
         }
 
 

@@ -251,7 +251,7 @@ class AbstractInteractionSpec(SpecModel, stronger="unknown"):
         found: dict[tuple[str, ...], RangedQuantity] = {
             ("environments", name, key): quantity
             for name in sorted(self.touched & self.environments.keys())
-            for key, quantity in self.environments[name].parameters().items()
+            for key, quantity in self.environments[name].ranges.items()
         }
         for at, quantity in self.motor_ranges.items():
             found[at] = quantity

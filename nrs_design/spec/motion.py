@@ -16,7 +16,6 @@ from nrs_design.spec.fields import Exact, UnitFraction
 from nrs_design.spec.model import SpecModel, at_most, optional, required
 from nrs_design.spec.provenance import Coverage, IdentifiedRangesSpec
 from nrs_design.spec.quantity import Quantity, is_less
-from nrs_design.spec.quantity_fields import RangedQuantity
 from nrs_design.spec.units import command_unit
 
 MAX_COEFFICIENTS = 10
@@ -90,11 +89,6 @@ class ActuatorSpec(IdentifiedRangesSpec, stronger="wider"):
         "the nominal values"
     )
 
-    @property
-    def ranges(self) -> dict[str, RangedQuantity]:
-        """Its numbers with ranges, by key."""
-        return {"gain": self.gain, "time_constant": self.time_constant}
-
     def _about_commands(self) -> Iterator[tuple[Location, Quantity]]:
         yield ("gain",), self.gain.nominal
         for i, end in enumerate(self.intervals.gain if self.intervals else ()):
@@ -166,11 +160,6 @@ class FollowingSpec(IdentifiedRangesSpec, stronger="wider"):
     dead_time: field.TimeRange | None = optional(_DEAD_TIME)
     range_covers: Coverage | None = optional(_COVERS)
 
-    @property
-    def ranges(self) -> dict[str, RangedQuantity]:
-        """Its numbers with ranges, by key."""
-        return {} if self.time_constant is None else {"time_constant": self.time_constant}
-
     checks = (
         *IdentifiedRangesSpec.checks,
         *exactly_one(
@@ -212,11 +201,6 @@ class TorqueInterfaceSpec(IdentifiedRangesSpec, stronger="wider"):
     friction: field.RangedImpedance = required("B, viscous friction of the joint, N*m*s/rad")
     dead_time: field.TimeRange | None = optional(_DEAD_TIME)
     range_covers: Coverage | None = optional(_COVERS)
-
-    @property
-    def ranges(self) -> dict[str, RangedQuantity]:
-        """Its numbers with ranges, by key."""
-        return {"inertia": self.inertia, "friction": self.friction}
 
 
 class MotionLoopSpec(SpecModel, stronger="neither"):

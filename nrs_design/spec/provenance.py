@@ -16,6 +16,7 @@ from nrs_design.spec.fields import Hash, Title
 from nrs_design.spec.model import SpecModel, optional, required
 from nrs_design.spec.plausible import unusual
 from nrs_design.spec.quantity import Quantity
+from nrs_design.spec.quantity_fields import RangedQuantity
 
 MAX_SOURCES = 1000
 MAX_DOUBTS = 100
@@ -99,6 +100,11 @@ class IdentifiedRangesSpec(IdentifiedSpec):
         "changed by hand since is refused",
         stronger="neither",
     )
+
+    @property
+    def ranges(self) -> dict[str, RangedQuantity]:
+        """Its numbers that may have ranges, as written, by their keys."""
+        return {name: value for name, value in self if isinstance(value, RangedQuantity)}
 
     checks: ClassVar[tuple[Row[Any], ...]] = (
         *IdentifiedSpec.checks,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from functools import cache, partial
+from functools import cache, partial, reduce
 from typing import Any, ClassVar, Literal, NamedTuple, Self
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
@@ -96,8 +96,9 @@ def declared_in(model: type[SpecModel]) -> dict[str, Declared]:
     """Return how values of each field compare, by its key in a file."""
     found: dict[str, Declared] = {}
     for name, field in model.model_fields.items():
-        said = next((mark for mark in field.metadata if isinstance(mark, Declared)), Declared())
-        found[field.alias or name] = said.over(model.declared).over(Declared("unknown", "nothing"))
+        said = [mark for mark in field.metadata if isinstance(mark, Declared)]
+        said += [model.declared, Declared("unknown", "nothing")]
+        found[field.alias or name] = reduce(Declared.over, said)
     return found
 
 

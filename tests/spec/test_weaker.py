@@ -6,25 +6,58 @@ from types import NoneType
 from typing import get_args
 
 import pytest
-from pydantic import TypeAdapter
+from pydantic import TypeAdapter, ValidationError
 
 from nrs_design.spec import parse_spec
+from nrs_design.spec.controllers import (
+    ForceControllerSpec,
+    ImpedanceControllerSpec,
+    IntegralControllerSpec,
+    TorqueImpedanceSpec,
+)
 from nrs_design.spec.document import parse_document, to_data
-from nrs_design.spec.environment import HuntCrossleySpec, KelvinBoltzmannSpec
-from nrs_design.spec.goals import GoalsSpec, TransparencySpec
+from nrs_design.spec.environment import (
+    ElasticSpec,
+    HandSpec,
+    HuntCrossleySpec,
+    KelvinBoltzmannSpec,
+    KelvinVoigtSpec,
+    MaxwellSpec,
+)
+from nrs_design.spec.goals import AccuracySpec, GoalsSpec, TransparencySpec
 from nrs_design.spec.interaction import InteractionDesignSpec
 from nrs_design.spec.interaction_parts import AbstractInteractionSpec
 from nrs_design.spec.load import read_axes
 from nrs_design.spec.model import Declared, SpecModel, declared_in
+from nrs_design.spec.monitoring import MonitoringSpec
+from nrs_design.spec.motion import (
+    ActuatorSpec,
+    PositionInterfaceSpec,
+    TorqueInterfaceSpec,
+    VelocityInterfaceSpec,
+)
 from nrs_design.spec.parameters import ParameterSpec
 from nrs_design.spec.preload import ExponentSpec
+from nrs_design.spec.provenance import IdentifiedRangesSpec
 from nrs_design.spec.quantity_fields import RangedQuantity
-from nrs_design.spec.robot import RobotSpec
+from nrs_design.spec.robot import RobotSpec, TaskLimitsSpec
 from nrs_design.spec.sampling import DisturbancesSpec, SamplingSpec
-from nrs_design.spec.scenarios import ErrorsSpec, ScenarioLimitsSpec
-from nrs_design.spec.sensor import SensorSpec, ToolSpec
+from nrs_design.spec.scenarios import (
+    ErrorsSpec,
+    ScenarioLimitsSpec,
+    SignControlSpec,
+    SinusoidSpec,
+    SurfaceSpec,
+    ThresholdControlSpec,
+)
+from nrs_design.spec.sensor import CenterSpec, PointSpec, SensorSpec, ToolSpec
 from nrs_design.spec.switched_system import SwitchedSystemSpec
-from nrs_design.spec.threshold_logic import CommandSignalSpec, TorqueSignalSpec
+from nrs_design.spec.threshold_logic import (
+    CommandCondition,
+    CommandSignalSpec,
+    TorqueCondition,
+    TorqueSignalSpec,
+)
 from nrs_design.spec.weaker import find_changes
 from tests.support import ROOT
 
@@ -103,6 +136,7 @@ HARD = TEXT[TEXT.index("  hard:") : TEXT.index("controllers:")]
 WITHDRAWAL = "  withdrawal: {type: force, environment: soft, proportional_gain: 0.02 rad/(N*m)}\n"
 ELSEWHERE = "7.5 N/mm, range: [7 N/mm, 8 N/mm]"
 LIGHTER = "mass: {nominal: 0.5 kg, range: [0.4 kg, 0.6 kg]}"
+SLOWER = "{constant: 4 deg/s}, limits"
 SWAPPED = "{hard: withdrawal, soft: own}"
 OWN_HARD = "own: {type: force, environment: hard"
 WEAKER = {
@@ -158,6 +192,9 @@ WEAKER = {
     "own environment not in contacts": ("0.03 rad/(N*m)}", "0.03 rad/(N*m), contacts: [hard]}"),
     "own environment": ("own: {type: force, environment: soft", OWN_HARD),
     "limit that is no number": ("initial_force: 0.4 N*m", "initial_force: largest"),
+    "bandwidth": ("bandwidth: 2 Hz", "bandwidth: 1 Hz"),
+    "command of a run": ("{constant: 8 deg/s}, limits", SLOWER),
+    "start of the logic": ("start: design", "start: own"),
     "one mass of the tool": ("mass: 0.8 kg", LIGHTER),
     "who is in force in a run": ("contact: {soft: own, hard: withdrawal}", "fixed: own"),
     "who is in force in a run at first": ("{soft: own, hard: withdrawal}", SWAPPED),
@@ -166,7 +203,15 @@ WEAKER = {
 }
 NEITHER = {
     *("[0.73 N/mm, 0.8 N/mm]", ELSEWHERE, "stiffness: 9 N/m", "model: maxwell", "0.1 m"),
-    *(LIGHTER, "fixed: own", SWAPPED, OWN_HARD, "0.03 rad/(N*m), contacts: [hard]}"),
+    *(
+        SLOWER,
+        "start: own",
+        LIGHTER,
+        "fixed: own",
+        SWAPPED,
+        OWN_HARD,
+        "0.03 rad/(N*m), contacts: [hard]}",
+    ),
     *("dwell_time: {fast: 0.2 s, slow: 0.2 s}", "initial_force: largest"),
 }
 OTHER = {
@@ -228,6 +273,7 @@ modes: [{name: works, A: [[0.5]]}, {name: title, A: [[0.4]]}]
 switching: {dwell_time: {title: 2 steps, works: 2 steps}, longest_dwell_time: {title: 900 steps}}
 """
 ARBITRARY = SPEC.replace("{SWITCHING}", "arbitrary")
+DISPLAYED = ARBITRARY.replace("Mt:", "desired_impedance: 2 N*m*s/rad, Mt:")
 # Spec, an edit of it, and whether it is weaker there and back.
 READ = [
     (UNCERTAIN, ", {name: n, A: [[-1, 0], [0, -1]]}", "", True, False),
@@ -250,6 +296,8 @@ READ = [
     (ARBITRARY, "delay: 0", "delay: 0, admittance: exact", False, False),
     (ARBITRARY, "delay: 0", "delay: [0, 0]", False, False),
     (ARBITRARY, "delay: 0", "delay: 2", False, True),
+    (DISPLAYED, "desired_impedance: 2", "desired_impedance: 3", True, True),
+    (DISPLAYED, "desired_impedance: 2 N*m*s/rad", "desired_impedance_ratio: 2", True, True),
     (ARBITRARY, "period: 2 ms", "period: 0.002 s", False, False),
     (ARBITRARY, "velocity: 8 deg/s", "velocity: 8.0 deg/s", False, False),
     (ARBITRARY, "lever_arm: 0.24 m", "lever_arm: 240 mm", False, False),
@@ -360,33 +408,87 @@ def test_a_name_is_no_word_of_ours():
     assert any(change.weaker for change in changes(before, without))
 
 
-HELD = (HuntCrossleySpec, KelvinBoltzmannSpec, ToolSpec)
-BORNE = (
-    *(DisturbancesSpec, SensorSpec, SamplingSpec, GoalsSpec, TransparencySpec, TorqueSignalSpec),
-    *(CommandSignalSpec, ErrorsSpec, ScenarioLimitsSpec, *HELD),
+RANGED = {RangedQuantity, ExponentSpec, ParameterSpec}
+# Of these any other value is weaker, of the others one that is larger or smaller.
+EITHER = (
+    *(ElasticSpec, KelvinVoigtSpec, HandSpec, MaxwellSpec, HuntCrossleySpec, KelvinBoltzmannSpec),
+    *(ToolSpec, CenterSpec, PointSpec, MonitoringSpec, TaskLimitsSpec, SinusoidSpec, SurfaceSpec),
+    *(CommandCondition, TorqueCondition, ThresholdControlSpec, SignControlSpec),
 )
+BORNE = (
+    *(DisturbancesSpec, SensorSpec, SamplingSpec, GoalsSpec, TransparencySpec, AccuracySpec),
+    *(TorqueSignalSpec, CommandSignalSpec, ErrorsSpec, ScenarioLimitsSpec),
+)
+WORDS = {*IdentifiedRangesSpec.model_fields, "linearized_about", "admittance"}
 
 
-@pytest.mark.parametrize("model", BORNE)
-def test_every_number_of_what_must_be_borne_is_weaker_in_one_direction(model):
+def values_of(model, key, *each):
+    """Read a field once for each of some values."""
+    field = TypeAdapter(model.model_fields[key].rebuild_annotation())
+    return [model.model_construct(**{key: field.validate_python(value)}) for value in each]
+
+
+def two_values(model, key, schema):
+    """Read a field twice, a larger value and a smaller one; nothing if it is no such field."""
+    unit = re.search(r'"examples": \["\S+ ([^"]+)"', json.dumps(schema))
+    low, high = (f"{n} {unit[1]}" if unit else n for n in ("1", "2"))
+    for each in ((low, high), ((low, low), (low, high)), ("1.25", "1.5"), ("0.25", "0.5")):
+        try:
+            return values_of(model, key, *each)
+        except ValidationError:
+            continue
+    return None
+
+
+def is_weaker(before, after):
+    return any(change.weaker for change in find_changes(before, after))
+
+
+@pytest.mark.parametrize("model", [*BORNE, *EITHER])
+def test_every_value_of_what_must_be_borne_is_weaker_in_a_direction(model):
     """By its value: a part that nobody has thought of here is not passed over."""
     for key, schema in model.model_json_schema()["properties"].items():
-        unit = re.search(r'"examples": \["\S+ ([^"]+)"', json.dumps(schema))
-        if unit is None:
+        said = None if key in WORDS else two_values(model, key, schema)
+        if said is None:
             continue
-        low, high = f"1 {unit[1]}", f"2 {unit[1]}"
-        pair = schema.get("maxItems") == 2
-        field = TypeAdapter(model.model_fields[key].rebuild_annotation())
-        said = [
-            model.model_construct(**{key: field.validate_python(value)})
-            for value in (((low, low), (low, high)) if pair else (low, high))
-        ]
-        rises, falls = (
-            any(change.weaker for change in find_changes(*two)) for two in (said, said[::-1])
-        )
+        value = getattr(said[1], key)
+        wider = isinstance(value, tuple) and model not in (SamplingSpec, SurfaceSpec)
+        either = (model in EITHER or isinstance(value, str)) and not wider
         limit = key.startswith("max_") or key == "peak_torque" or model is ScenarioLimitsSpec
-        assert rises is (limit or (model in HELD and not pair)), key
-        assert falls is not limit, key
+        assert is_weaker(*said) is (limit or either), key
+        assert is_weaker(*reversed(said)) is (either or not limit), key
+
+
+@pytest.mark.parametrize(
+    "model", [ActuatorSpec, VelocityInterfaceSpec, PositionInterfaceSpec, TorqueInterfaceSpec]
+)
+def test_a_narrower_range_of_a_drive_is_weaker_and_another_drive_is_not(model):
+    for key, field in model.model_fields.items():
+        if RANGED & models_in(field.annotation):
+            unit = re.search(
+                r'"examples": \["\S+ ([^"]+)"',
+                json.dumps(model.model_json_schema()["properties"][key]),
+            )[1]
+            low, middle, high = (f"{n} {unit}" for n in (1, 2, 3))
+            wide = {"nominal": middle, "range": (low, high)}
+            said = values_of(model, key, wide, wide | {"range": (low, middle)}, low, high)
+            assert [is_weaker(said[0], other) for other in said] == [False, True, True, True]
+            assert [is_weaker(other, said[0]) for other in said] == [False] * 4
+            assert not is_weaker(said[2], said[3])
+    said = values_of(model, "dead_time", ("1 ms", "2 ms"), ("1 ms", "1.5 ms"), "1 ms", "3 ms")
+    assert [is_weaker(said[0], other) for other in said] == [False, True, True, True]
+    assert not is_weaker(said[3], said[2])
+
+
+@pytest.mark.parametrize(
+    "model",
+    [ImpedanceControllerSpec, ForceControllerSpec, IntegralControllerSpec, TorqueImpedanceSpec],
+)
+def test_what_a_controller_touches(model):
+    assert is_weaker(*values_of(model, "environment", "soft", "hard"))
+    both, one = values_of(model, "contacts", ("soft", "hard"), ("soft",))
+    assert is_weaker(both, one)
+    assert not is_weaker(one, both)
 
 
 def models_in(annotation):
@@ -404,7 +506,6 @@ def all_models():
     return sorted(found - RANGED, key=str)
 
 
-RANGED = {RangedQuantity, ExponentSpec, ParameterSpec}
 RANGES = {"wider", "farther", "holding"}
 
 

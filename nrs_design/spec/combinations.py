@@ -66,6 +66,8 @@ def _beside(first: Feature[Spec], *others: Feature[Spec], because: str = "") -> 
     return (not_together(first, other, because=because) for other in others)
 
 
+# Beside these it counts what is touched by a controller that takes no force.
+_FELT = FILTER, LOADED, MEMORY
 # What may change while one controller is active.
 CHANGING: tuple[tuple[Feature[Spec], ...], ...] = (
     (LOSABLE, SPRUNG),
@@ -73,6 +75,7 @@ CHANGING: tuple[tuple[Feature[Spec], ...], ...] = (
     (SEVERAL_CONTACTS,),
     (AT_ONCE,),
     (TISSUE_RANGE,),
+    *((ANY_CONTACT, felt) for felt in _FELT),
 )
 _DWELLS = "a dwell time holds for a mode that stays as it is, and environments obey no rule of ours"
 _CONSTANTS = "proofs that rest on constants do not know it"
@@ -215,6 +218,12 @@ COMBINATIONS: tuple[Row[Spec], ...] = (
         IDLE,
         OFFSET,
         because="a controller that touches nothing has no contact to be named",
+    ),
+    *(
+        not_together(
+            CONTACT_RULES, ANY_CONTACT, felt, because="what it touches counts, and obeys no rule"
+        )
+        for felt in _FELT
     ),
     not_together(
         CONTACT_RULES, SAMPLED, because="contact changes between samples, which no rule keeps"

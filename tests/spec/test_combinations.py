@@ -28,6 +28,12 @@ IMPEDANCE = {
 FORCE = {"type": "force", "environment": "soft", "proportional_gain": "0.02 rad/(N*m)"}
 PI = FORCE | {"type": "pi-force", "integral_gain": "0.5 rad/(N*m*s)"}
 ELASTIC = {"model": "elastic", "stiffness": "43 N*m/rad"}
+CREEPING = {
+    "model": "kelvin-boltzmann",
+    "parallel_stiffness": "30 N*m/rad",
+    "series_stiffness": "25 N*m/rad",
+    "damping": "3 N*m*s/rad",
+}
 SAMPLING = {"period": "2 ms", "delay": 0}
 LOAD = {"load_inertia": "1.213 kg*m^2"}
 TWO = {"environments": {"soft": ELASTIC, "stiff": ELASTIC}}
@@ -100,7 +106,10 @@ CHANGES = {
     f.MEMORY: tissue("maxwell", damping="10 N*m*s/rad"),
     f.OTHER_TISSUE: {"environments": {"stiff": ELASTIC}}
     | {"controllers": {"second": {"environment": "stiff"}}},
-    f.ANY_CONTACT: {"controllers": {"second": {"type": "position"}}},
+    f.ANY_CONTACT: {
+        "controllers": {"second": {"type": "position"}},
+        "idle_states": {"decay": "20 1/s"},
+    },
     f.PRELOADED: tissue(
         "hunt-crossley",
         damping="1 N*m*s/rad",
@@ -273,7 +282,11 @@ def test_a_limit_of_torques_says_nothing_of_the_speed_of_a_motor():
 @pytest.mark.parametrize("features", CHANGING, ids=lambda items: items[0].phrase)
 def test_no_dwell_time_is_searched_where_something_may_change(features):
     assert parse_spec(spec_with()).find_dwell_obstacle() is None
-    found = parse_spec(spec_with(*features)).find_dwell_obstacle()
+    said = json.loads(spec_with(*features))
+    if f.MEMORY in features:
+        # One that has a place of rest, beside what is given positions.
+        said["environments"]["soft"] = CREEPING
+    found = parse_spec(json.dumps(said)).find_dwell_obstacle()
     assert "a dwell time beside" in found.message
     assert found.remedy
 

@@ -18,11 +18,12 @@ from nrs_design.loop.constant_parameters import ConstantParameter, Corner
 from nrs_design.loop.constraints import assemble_switching, leaving_impedance, zeroing
 from nrs_design.loop.free_motion import (
     adds_free_motion,
+    flights_of,
     free_modes,
     lost_contact,
     pulls_of,
 )
-from nrs_design.loop.located import MatrixMode, enclosures_of, flights_of, grouped
+from nrs_design.loop.located import MatrixMode, enclosures_of, grouped
 from nrs_design.loop.loop_assumptions import assume_loop
 from nrs_design.loop.shared_state import SharedState
 from nrs_design.loop.spot import Spot, spot_of

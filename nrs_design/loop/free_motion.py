@@ -9,7 +9,7 @@ from nrs_design.controllers.controller_design import Controller
 from nrs_design.errors import AssemblyError
 from nrs_design.loop.assumption import say
 from nrs_design.loop.constant_parameters import ConstantParameter
-from nrs_design.loop.located import MatrixMode
+from nrs_design.loop.located import AbstractLocatedMode, MatrixMode
 from nrs_design.loop.modes import Rows, velocity_mode
 from nrs_design.loop.shared_state import SharedState
 from nrs_design.loop.spot import Spot, spot_of
@@ -17,7 +17,7 @@ from nrs_design.models.contact.environment import Environment
 from nrs_design.models.contact.kelvin_voigt import KelvinVoigt
 from nrs_design.models.linear_form import LinearForm, coordinates
 from nrs_design.proof.channels import Output
-from nrs_design.proof.contact import Contact
+from nrs_design.proof.contact import Contact, Flights
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode
 from nrs_design.spec import SwitchingSpec
@@ -102,6 +102,20 @@ def free_modes(
     for labels, rows in state.motor_box.corners(rows_at, f"{controller.name}/{FREE}"):
         spot = head + spot_of(labels, state.motor_box.ranges, everywhere)
         yield MatrixMode(controller.name, spot, FREE, RationalMatrix.from_rows(rows))
+
+
+def flights_of(
+    items: Sequence[AbstractLocatedMode],
+    environments: Iterable[Environment],
+    pulls: tuple[RationalMatrix, ...],
+) -> Flights:
+    """Return which modes are in contact, which are free motion, and what could pull."""
+    known = {environment.name for environment in environments}
+    return Flights(
+        tuple(item.name for item in items if item.touches in known),
+        tuple(item.name for item in items if item.touches == FREE),
+        pulls,
+    )
 
 
 def pulls_of(state: SharedState) -> Iterator[RationalMatrix]:

@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from nrs_design.loop.constant_parameters import Corner
 from nrs_design.loop.spot import Spot
-from nrs_design.models.contact.environment import Environment
-from nrs_design.proof.contact import Flights
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode
-from nrs_design.spec.interaction_parts import FREE
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -21,7 +18,7 @@ class AbstractLocatedMode(ABC):
 
     group: str  # The name that rules of switching know: a controller, or what is done instead
     spot: Spot
-    touches: str  # The environment that it is about; `FREE`; or nothing, where none matters
+    touches: str  # The environment that it is about; free motion; or nothing, where none matters
 
     @property
     @abstractmethod
@@ -76,17 +73,3 @@ def enclosures_of(items: Iterable[AbstractLocatedMode]) -> Iterator[tuple[str, .
     for item in items:
         found.setdefault(item.point, []).append(item.name)
     yield from (tuple(names) for names in found.values() if len(names) > 1)
-
-
-def flights_of(
-    items: Sequence[AbstractLocatedMode],
-    environments: Iterable[Environment],
-    pulls: tuple[RationalMatrix, ...],
-) -> Flights:
-    """Return which modes are in contact, which are free motion, and what could pull."""
-    known = {environment.name for environment in environments}
-    return Flights(
-        tuple(item.name for item in items if item.touches in known),
-        tuple(item.name for item in items if item.touches == FREE),
-        pulls,
-    )

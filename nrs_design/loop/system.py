@@ -18,8 +18,14 @@ from nrs_design.loop.command_timing import timing_of
 from nrs_design.loop.constant_parameters import ConstantParameter, Corner
 from nrs_design.loop.constraints import assemble_switching, leaving_impedance, zeroing
 from nrs_design.loop.flow import HeldDrive
-from nrs_design.loop.free_motion import could_pull, force_rows, lost_on_surface, outputs_of
-from nrs_design.loop.located import enclosures_of, flights_of, grouped
+from nrs_design.loop.free_motion import (
+    could_pull,
+    flights_of,
+    force_rows,
+    lost_on_surface,
+    outputs_of,
+)
+from nrs_design.loop.located import enclosures_of, grouped
 from nrs_design.loop.loss import Loss
 from nrs_design.loop.misses import clock_of
 from nrs_design.loop.motor_command import motor_command

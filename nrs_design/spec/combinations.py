@@ -153,7 +153,11 @@ COMBINATIONS: tuple[Row[Spec], ...] = (
     *_beside(CONSTANT_MOTOR, LOSABLE, TWO_PERIODS, because=_CONSTANTS),
     *_beside(CONSTANT_TISSUE, LOSABLE, TWO_PERIODS, because=_CONSTANTS),
     *_beside(
-        CONSTANT_TISSUE, AT_ONCE, MEMORY, PRELOADED, because="its numbers are no longer constant"
+        CONSTANT_TISSUE,
+        AT_ONCE,
+        MEMORY,
+        PRELOADED,
+        because="sums or rates of its numbers take their place",
     ),
     # The sampled loop.
     not_together(OFFSET, SAMPLED, because="the program that ships keeps none"),

@@ -270,11 +270,10 @@ class ProcessorAxis(AbstractAxis):
 
 def _touches(contact: AbstractLinearLaw) -> tuple[tuple[Contact, Contact, Memory], ...]:
     """Return what is sensed and carried of a contact, and its rates: opened, closed, not acting."""
-    if contact.creep is not None and contact.follow is not None:
-        front = contact.exact[contact.parameters().index(contact.front)]
-        touched, memory = (front, ZERO), (contact.creep, contact.follow)
-    else:
-        touched, memory = (contact.exact[0], (*contact.exact, ZERO)[1]), None
+    memory = contact.memory_rates
+    front = contact.exact[contact.parameters().index(contact.front)]
+    # Of what remembers, the second number is behind the spring.
+    touched = front, ZERO if memory else (*contact.exact, ZERO)[1]
     return (NOTHING, touched, memory), (touched, touched, memory), (NOTHING, NOTHING, memory)
 
 

@@ -35,7 +35,6 @@ from nrs_design.loop.modes import (
 )
 from nrs_design.loop.parameter_box import Box
 from nrs_design.models.contact.environment import Environment
-from nrs_design.models.interval import Interval
 from nrs_design.models.motion_loop import (
     JointMotionLoop,
     LoadedMotionLoop,
@@ -99,7 +98,7 @@ class SharedState:
     @property
     def memories(self) -> tuple[Environment, ...]:
         """The environments that have a memory of their own."""
-        return tuple(e for e in self.environments if e.creep is not None)
+        return tuple(e for e in self.environments if e.memory_rates is not None)
 
     @property
     def beside(self) -> tuple[str, ...]:
@@ -143,10 +142,10 @@ class SharedState:
 
         A rate is a ratio of parameters, but they occur nowhere else in this mode: it is one axis.
         """
-        creeps: dict[str, Interval] = {
-            _rate(other): other.creep
+        creeps = {
+            _rate(other): other.memory_rates[0]
             for other in self.memories
-            if other != environment and other.creep is not None
+            if other != environment and other.memory_rates is not None
         }
         if environment is None:
             return Box(creeps)

@@ -40,11 +40,11 @@ class Plant:
 
     def held_at(self, touched: Sequence[Environment]) -> Drive:
         """Return what moves the joint between samples, and with it what remembers, if any does."""
-        remembering = next((e for e in touched if e.law.remembers), None)
-        if remembering is None or remembering.creep is None or remembering.follow is None:
-            return self.held
-        memory = f"{remembering.name}: {remembering.law.states[-1]}"
-        return self.held.remembering(memory, (remembering.creep, remembering.follow))
+        for environment in touched:
+            if (rates := environment.memory_rates) is not None:
+                memory = f"{environment.name}: {environment.law.states[-1]}"
+                return self.held.remembering(memory, rates)
+        return self.held
 
     def motion_loop(self, Kp: Fraction, Kd: Fraction) -> MotionLoop:
         """Return G: the one that the spec states, else the one that the PD gains make.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import product
@@ -64,18 +64,14 @@ class Environment:
         return self.ranges[self.law.parameters().index(self.law.front)]
 
     @property
-    def creep(self) -> Interval | None:
-        """Range of the rate in 1/s at which it creeps back without force; None if at once."""
-        return self._rate(lambda law: law.creep)
-
-    @property
-    def follow(self) -> Interval | None:
-        """Range of the rate in 1/s at which its memory follows the deflection; None without one."""
-        return self._rate(lambda law: law.follow)
-
-    def _rate(self, of: Callable[[AbstractLinearLaw], Fraction | None]) -> Interval | None:
-        rates = [rate for law in (self.nominal, *self.corners) if (rate := of(law)) is not None]
-        return Interval(rates[0], min(rates), max(rates)) if rates else None
+    def memory_rates(self) -> tuple[Interval, Interval] | None:
+        """Ranges of the rates of its law in 1/s; None where it has no memory of its own."""
+        each = [law.memory_rates for law in (self.nominal, *self.corners)]
+        found = [rates for rates in each if rates is not None]
+        if not found:
+            return None
+        decays, follows = (Interval(r[0], min(r), max(r)) for r in zip(*found, strict=True))
+        return decays, follows
 
     def scaled(self, scale: Fraction) -> Environment:
         """Return the environment with its ranges stretched about the nominal values.

@@ -126,13 +126,7 @@ class KelvinBoltzmann(AbstractLinearLaw):
         return combine((k2, delta), (-k2, d)), [velocity, rate]
 
     @property
-    def follow(self) -> Fraction:
-        """``k2/b`` in 1/s: the spring k2 pulls the damper along."""
-        _, k2, b = self.exact
-        return k2 / b
-
-    @property
-    def creep(self) -> Fraction:
-        """``k1/b`` in 1/s: without force, the spring k1 pulls the damper back."""
-        k1, _, b = self.exact
-        return k1 / b
+    def memory_rates(self) -> tuple[Fraction, Fraction]:
+        """``k1/b``, at which the spring k1 pulls the damper back, and ``k2/b`` of k2, in 1/s."""
+        k1, k2, b = self.exact
+        return k1 / b, k2 / b

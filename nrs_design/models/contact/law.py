@@ -193,13 +193,11 @@ class AbstractLinearLaw(AbstractContactLaw):
         return not self.remembers
 
     @property
-    def creep(self) -> Fraction | None:
-        """Rate in 1/s at which a second state decays while no force acts; None without one."""
-        return None
+    def memory_rates(self) -> tuple[Fraction, Fraction] | None:
+        """Rates in 1/s at which a memory decays, and follows the deflection; None without one.
 
-    @property
-    def follow(self) -> Fraction | None:
-        """Rate in 1/s at which a second state follows the deflection; None without one."""
+        While no force acts it decays, ``d' = -r1 d``; otherwise ``d' = r2 (delta - d) - r1 d``.
+        """
         return None
 
     @classmethod

@@ -12,6 +12,7 @@ with each parameter throughout, so that a corner is the worst.
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -375,9 +376,20 @@ class ForceRequirement(AbstractRequirement):
     approach: Approach  # How the limit is reached, for the steady error
 
     def _at(self, corner: ContactCorner, measure: Measure, *gains: FloatArray) -> FloatArray:
-        gain, stiffness = float(self.law.gains["Kp"]), corner.contact.stiffness
-        error = steady_force_error(self.motion, stiffness, gain, self.approach)
+        error = self.steady_error(corner.contact, corner.place)
         return np.where(self.loops(corner).stable, error, np.inf)
+
+    def steady_error(self, contact: AbstractLinearLaw, place: Place) -> float:
+        """Return the force error that is left in the end, over Fd.
+
+        Without offset it is what the loop as it is proved makes of a lasting force: ``D/(D + N)``
+        at rest, with the relaxation of the contact and what it pushes a motor with a load back.
+        """
+        if self.approach.offset != "none" or self.axis is None:
+            gain = float(self.law.gains["Kp"])
+            return steady_force_error(self.motion, contact.stiffness, gain, self.approach)
+        cut = self.axis.cut(self.law, contact, place)
+        return abs(float(cut.opened[-1] / cut.closed[-1])) if cut.closed[-1] else math.inf
 
     def loops(self, corner: ContactCorner, *gains: FloatArray) -> Loops:
         """Return the open loop at a corner."""

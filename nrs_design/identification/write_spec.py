@@ -25,6 +25,7 @@ from nrs_design.models.contact import (
 )
 from nrs_design.proof.text import counted
 from nrs_design.spec import InteractionDesignSpec, LoadedSpec, parse_spec
+from nrs_design.spec.features import MOTOR_RANGE
 from nrs_design.spec.fields import MAX_TITLE
 from nrs_design.spec.preload import FINEST, LARGEST, LEAST
 from nrs_design.spec.provenance import MAX_DOUBTS
@@ -281,7 +282,7 @@ def merge_actuator(
     node = document.root["actuator"]
     if found.unit != spec.actuator.command:
         document.put(node, "command", found.unit)
-    covered = spec.takes_motor_ranges
+    covered = spec.combines(MOTOR_RANGE)
     intervals = {}
     units = f"rad/s/{found.unit}", "s"
     ranges = found.ranges if covered else found.chosen.ranges

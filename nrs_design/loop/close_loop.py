@@ -9,9 +9,9 @@ decreases in the corners decreases there, however fast the parameters move.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import partial
-from itertools import permutations
+from itertools import permutations, product
 
 from nrs_design.controllers.controller_design import Controller
 from nrs_design.loop.constant_parameters import ConstantParameter, Corner
@@ -52,9 +52,12 @@ def close_loop(
     free = sprung and adds_free_motion(state, contact, rules)
     losable = None if sprung or contact == "kept" else lost_contact(state, contact)
     items: list[MatrixMode] = []
+    groups: dict[str, dict[str, None]] = {}
     for c in controllers:
-        items += _in_contact(c, state, constants, by_contact=rules.names_contacts)
-        items += free_modes(c, state, constants) if free else ()
+        own = [*_in_contact(c, state, constants, by_contact=rules.names_contacts)]
+        own += free_modes(c, state, constants) if free else ()
+        groups[c.name] = dict.fromkeys(item.group for item in own)
+        items += own
     pulls = tuple(pulls_of(state)) if free else ()
     system = SwitchedSystem(
         name=name,
@@ -62,7 +65,7 @@ def close_loop(
         states=state.names,
         modes=tuple(item.mode for item in items),
         assumptions=assume_loop(state, rules, losable=losable is not None, free=free),
-        switching=assemble_switching(rules, grouped(items), _resets(state)),
+        switching=assemble_switching(rules, grouped(items), _resets(state, groups)),
         contact=losable,
         flights=flights_of(items, state.environments, pulls) if free else None,
         enclosures=tuple(enclosures_of(items)),
@@ -70,8 +73,10 @@ def close_loop(
     return system, tuple(item.corner for item in items)
 
 
-def _resets(state: SharedState) -> Iterator[tuple[str, str, RationalMatrix]]:
-    """Yield the switches that set states to zero, and the maps.
+def _resets(
+    state: SharedState, groups: Mapping[str, Iterable[str]]
+) -> Iterator[tuple[str, str, RationalMatrix]]:
+    """Yield the switches that set states to zero, and the maps, by the groups of a controller.
 
     From an impedance controller to others the idle states are, if the spec says so; where force
     control takes the measured position, the lead is.
@@ -83,7 +88,8 @@ def _resets(state: SharedState) -> Iterator[tuple[str, str, RationalMatrix]]:
     elif state.idle is not None and state.idle.reset:
         switches = leaving_impedance(controllers)
     map_ = zeroing(state.names, state.zeroed)
-    return ((source, target, map_) for source, target in switches)
+    for source, target in switches:
+        yield from ((*pair, map_) for pair in product(groups[source], groups[target]))
 
 
 def _in_contact(
@@ -109,6 +115,6 @@ def _in_contact(
             yield MatrixMode(
                 name if by_contact else controller.name,
                 Spot.named(controller.name, *where) + spot_of(labels, real, own),
-                "".join(where),
+                "" if e is None else e.name,
                 RationalMatrix.from_rows(rows),
             )

@@ -60,11 +60,7 @@ def constants_of(
     """
     drive, tissue = plant.held, tuple(_of_tissue(plant, touched))
     if sampled and tissue and drive.loaded and len(touched) > 1:
-        raise AssemblyError(
-            f"{tissue[0].said.name} is constant, but within a period the drive may go from one "
-            "contact to another, and their ends are not told apart",
-            remedy="leave out `varies: false` of what is touched, or touch one environment",
-        )
+        raise InternalError("the ends of constants of several contacts are not told apart")
     for symbol, interval in drive.ranges.items():
         if interval.is_constant:
             key, unit = _DRIVEN[symbol]

@@ -3,8 +3,9 @@
 Where all controllers give the motion loop a velocity, the state is ``[xp, own, contact]``: the
 motion loop from velocity to velocity, the states of the law (after them those of a filter of the
 force) and those of the contact. Otherwise it is ``[xi, own, r]``, the motion loop from position to
-position; r is the position reference that the robot integrates from a velocity, and only
-controllers that command one have it.
+position, and after them an integral that bleeds, the filter of the force and the memory of the
+contact; r is the position reference that the robot integrates from a velocity, and only controllers
+that command one have it.
 
 The offset X_i of force control (thesis 6.41) is a memory that every switch takes anew.
 The command of the motion loop is ``u = r`` in position mode and ``u = X_i + Kp (Fd - F)`` in force

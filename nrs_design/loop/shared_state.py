@@ -114,7 +114,7 @@ class SharedState:
             return (*(f"dxp{i + 1}" for i in range(order - 1)), "lead [rad]")
         memories = (f"{e.name}: {name}" for e in self.environments for name in e.law.states[1:])
         sensed = () if self.low_pass is None else self.low_pass.states
-        # Continuous when the stiffness changes in contact.
+        # The deflection: continuous when the stiffness changes in contact.
         contact = () if self.is_placed else self.environments[0].law.states[:1]
         own = self.beside if self.idle is not None else self.law.states
         moving = self.placed.states if self.is_placed else self.motion.states

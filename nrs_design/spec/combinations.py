@@ -77,8 +77,8 @@ CHANGING: tuple[tuple[Feature[Spec], ...], ...] = (
     (TISSUE_RANGE,),
     *((ANY_CONTACT, felt) for felt in _FELT),
 )
-_DWELLS = "a dwell time holds for a mode that stays as it is, and environments obey no rule of ours"
-_CONSTANTS = "proofs that rest on constants do not know it"
+_DWELLS = "a dwell time holds for a mode that stays as it is"
+_CONSTANTS = "a proof about a constant lets every mode follow every other"
 _MISSES = "the rule for misses decides what may follow what"
 
 COMBINATIONS: tuple[Row[Spec], ...] = (
@@ -101,11 +101,16 @@ COMBINATIONS: tuple[Row[Spec], ...] = (
         )
         for comes in (LOSABLE, OTHER_TISSUE, ANY_CONTACT)
     ),
-    not_together(
-        RESTLESS, SAMPLED, because="positions count from the place where it rests, and it has none"
+    *_beside(
+        RESTLESS,
+        SAMPLED,
+        OTHERS,
+        because="positions count from the place where it rests, and it has none",
     ),
     not_together(
-        RESTLESS, OTHERS, because="positions count from the place where it rests, and it has none"
+        RESTLESS,
+        OTHER_TISSUE,
+        because="without a place of rest it shares no deflection with another",
     ),
     not_together(
         DAMPED_FORCE,
@@ -126,7 +131,7 @@ COMBINATIONS: tuple[Row[Spec], ...] = (
         FILTER,
         LOADED,
         MEMORY,
-        because="what decays is the motion of the motion loop alone",
+        because="an offset moves the place of rest, which only the motion loop does not feel",
     ),
     not_together(IDLE_RESET, BLEEDING, because="what bleeds is not zero after a switch"),
     *_beside(GIVEN_LOOP, MOTOR_RANGE, LOADED, because="its motor is not known"),
@@ -159,14 +164,25 @@ COMBINATIONS: tuple[Row[Spec], ...] = (
         PRELOADED,
         because="sums or rates of its numbers take their place",
     ),
+    *(
+        not_together(
+            CONSTANT_TISSUE,
+            carried,
+            OTHER_TISSUE,
+            SAMPLED,
+            because="within a period the load may go from one to another",
+        )
+        for carried in (LOADED, TORQUES)
+    ),
     # The sampled loop.
-    not_together(OFFSET, SAMPLED, because="the program that ships keeps none"),
+    not_together(OFFSET, SAMPLED, because="the program that ships stores no offset"),
     not_together(GIVEN_LOOP, SAMPLED, because="its program is not known"),
     not_together(SAMPLED_DWELL, SAMPLED, because=_DWELLS),
     *(not_together(DWELL, *features, because=_DWELLS) for features in CHANGING),
-    *_beside(
-        TWO_PERIODS, OTHERS, RULES, because="it is not said in which of the periods it counts"
+    not_together(
+        TWO_PERIODS, OTHERS, because="it is not said in which of them a position is taken"
     ),
+    not_together(TWO_PERIODS, RULES, because="it is not said in which of them a rule counts"),
     *_beside(MISSES, TWO_PERIODS, RULES, because=_MISSES),
     *_beside(MISSES, CONSTANT_MOTOR, CONSTANT_TISSUE, because=_CONSTANTS),
     not_together(
@@ -179,7 +195,7 @@ COMBINATIONS: tuple[Row[Spec], ...] = (
         OTHERS,
         SPRUNG,
         IDLE,
-        because="its command is a velocity, and nothing stands where a reference would",
+        because="a robot that takes velocities keeps no position reference",
     ),
     *_beside(STREAMED, TWO_PERIODS, SATURATED, because="its motion loop is not ours"),
     not_together(
@@ -216,12 +232,6 @@ COMBINATIONS: tuple[Row[Spec], ...] = (
         IDLE,
         SAMPLED,
         because="the position is added to the reference at every sample, which rounds once more",
-    ),
-    *_beside(
-        CONTACT_RULES,
-        IDLE,
-        OFFSET,
-        because="a controller that touches nothing has no contact to be named",
     ),
     *(
         not_together(

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from nrs_design.spec.check import find_faults, not_together
-from nrs_design.spec.combinations import CHANGING
+from nrs_design.spec.check import Feature, find_faults, not_together
+from nrs_design.spec.combinations import CHANGING, COMBINATIONS
 from nrs_design.spec.interaction_checks import INTERACTION_CHECKS
 from nrs_design.spec.interaction_doubts import INTERACTION_DOUBTS
 from nrs_design.spec.interaction_parts import AbstractInteractionSpec
@@ -15,6 +15,14 @@ class InteractionDesignSpec(AbstractInteractionSpec):
 
     checks = INTERACTION_CHECKS
     warnings = INTERACTION_DOUBTS
+
+    def combines(self, feature: Feature[AbstractInteractionSpec]) -> bool:
+        """Tell whether nothing that the spec has refuses a feature beside it."""
+        return not any(
+            all(part is feature or part.find(self) for part in row.features)
+            for row in COMBINATIONS
+            if feature in row.features
+        )
 
     def find_dwell_obstacle(self) -> DwellObstacle | None:
         """Say why no dwell time can be claimed for this spec, or None."""

@@ -18,7 +18,6 @@ from nrs_design.spec.features import (
     IDLE,
     SATURATED,
     Touched,
-    touched,
 )
 from nrs_design.spec.goals import (
     OF_THE_CERTIFICATE,
@@ -102,14 +101,6 @@ def _other_offset(spec: Spec) -> tuple[str, ...] | None:
     """Return a controller whose offset is not that of the first one that has one."""
     offsets = [(name, c.own_offset) for name, c in spec.controllers.items() if c.own_offset]
     return next(((*item, *offsets[0]) for item in offsets if item[1] != offsets[0][1]), None)
-
-
-def _restless(spec: Spec) -> tuple[str, ...] | None:
-    """Return an environment without a rest position, its law, and the others that are touched."""
-    names = {item.name: item.law for item in touched(spec)}
-    name = next((name for name, law in names.items() if not law.has_rest), None)
-    others = ", ".join(other for other in names if other != name)
-    return (name, names[name].model, others) if name and others else None
 
 
 def _undriven(spec: Spec) -> str | None:
@@ -395,12 +386,6 @@ INTERACTION_CHECKS: tuple[Row[Spec], ...] = (
         "{1.name!r} is a hand with a mass, whose force depends on itself where the admittance has "
         "no inertia",
         "give Mt a smallest value above zero",
-    ),
-    Row(
-        "environments.{0}.model",
-        _restless,
-        "{1} has no rest position, so {0!r} shares no deflection with {2}",
-        "let the controllers touch no other environment, or write a spec for each",
     ),
     # Goals.
     *each(_common_goals, *_GOALS),

@@ -294,14 +294,6 @@ class AbstractInteractionSpec(SpecModel, stronger="unknown"):
         )
 
     @property
-    def takes_motor_ranges(self) -> bool:
-        """Whether a proof can be about ranges of the actuator."""
-        driven = all(c.commands == "velocity" for c in self.controllers.values())
-        dwells = any(True for _ in self.switching.dwell_times())
-        given = self.motion_loop is not None and self.motion_loop.transfer_function is not None
-        return not given and not dwells and (self.sampling is not None or driven)
-
-    @property
     def has_ranges(self) -> bool:
         """Whether the actuator or a touched environment has a range."""
         if any(not item.fixed for item in self.motor_ranges.values()):

@@ -8,12 +8,22 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
+from nrs_design.design.analysis import analyze_design
+from nrs_design.design.design import design_controllers
 from nrs_design.design.force_limit import Approach, peak_force, steady_force_error
 from nrs_design.design.transfer import TransferFunction
 from nrs_design.errors import DesignError
+from nrs_design.spec import parse_spec
+from nrs_design.spec.build_plant import build_plant
 from tests.design.motion_loops import GAIN, LOOP, TAU
+from tests.simulation.interactions import text_of
 
 SOFT, KP, FD = 43.0356, 0.02, 0.3
+SOFT_TISSUE = "{model: elastic, stiffness: 43 N*m/rad}"
+CREEPING = (
+    "{model: kelvin-boltzmann, parallel_stiffness: 30 N*m/rad, series_stiffness: 20 N*m/rad, "
+    "damping: 5 N*m*s/rad}"
+)
 
 
 def at(offset, speed):
@@ -79,3 +89,24 @@ def test_a_loop_that_does_not_rest_at_its_command_is_refused(offset):
     loop = TransferFunction((0.9, 50.0), LOOP.denominator)
     with pytest.raises(DesignError, match=r"G\(0\) = 0\.8"):
         peak_force(loop, SOFT, KP, Approach(offset, 0.1, FD))
+
+
+@pytest.mark.parametrize("more", ["", "sampling: {period: 2 ms, delay: 1}\n"])
+@pytest.mark.parametrize("filtered", ["", "sensor: {filter: {cutoff: 30 Hz}}\n"])
+@pytest.mark.parametrize(("tissue", "loaded"), [(CREEPING, False), (SOFT_TISSUE, True)])
+def test_what_is_left_is_that_of_tissue_at_rest_and_of_a_motor_that_yields(
+    tissue, loaded, filtered, more
+):
+    """A spring that creeps has k1 k2/(k1 + k2) in the end; a loaded motor yields by c = tau F/J."""
+    laws = {"hold": "{type: force, environment: soft, proportional_gain: 0.02 rad/(N*m)}"}
+    text = text_of(laws, {"soft": tissue}, more=filtered + more)
+    if loaded:
+        text = text.replace("0.0351 s", "0.0351 s, load_inertia: 0.5 kg*m^2")
+    spec = parse_spec(text)
+    plant = build_plant(spec)
+    design = design_controllers(spec, plant)
+    (hold,) = analyze_design(spec, plant, design).force
+    k = 30 * 20 / (30 + 20) if tissue == CREEPING else 43.0
+    # Per torque: the error of motion that makes the motor carry it.
+    c = TAU / (0.5 * 4.8417e-4 * float(design.motion.Kp)) if loaded else 0.0
+    assert hold.steady_error == pytest.approx((1 + k * c) / (1 + k * c + k * KP), rel=1e-6)

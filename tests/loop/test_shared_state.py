@@ -81,6 +81,16 @@ def test_resets_lead_from_impedance_controllers_to_the_others():
     assert "All other states are continuous" in texts
 
 
+def test_resets_are_between_all_contacts_that_rules_name():
+    rules = "{transitions: [[insertion/soft, hold/soft], [hold/soft, insertion/soft]]}"
+    changes = {"reset": ("decay: 20 1/s", "decay: 20 1/s, reset: true")}
+    system = mixed(**changes, rules=("switching: arbitrary", f"switching: {rules}"))
+    assert {(r.source, r.target) for r in system.switching.resets} == {
+        (reset.source, reset.target) for reset in mixed(**changes).switching.resets
+    }
+    assert ("insertion/soft/k-min", "approach") not in system.switching.transitions
+
+
 def test_a_reset_leaves_what_shows_the_force_and_what_remembers_it():
     text = MIXED.read_text().replace("decay: 20 1/s", "decay: 20 1/s, reset: true")
     creeping = (

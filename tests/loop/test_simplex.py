@@ -108,7 +108,7 @@ def test_a_curve_that_is_off_as_far_as_may_be_is_inside(seed, coarse, monkeypatc
 
 
 def test_numbers_that_are_off_are_in_the_simplex_around_them():
-    middle, errors = {(0, 0, 0): F(1), (0, 0, 1): F(-2), (0, 0, 2): F(3)}, {}
+    middle = {(0, 0, 0): F(1), (0, 0, 1): F(-2), (0, 0, 2): F(3)}
     errors = {(0, 0, 0): F(1, 10), (0, 0, 1): F(0), (0, 0, 2): F(1, 7)}
     points = around(middle, errors)
     assert len(points) == 3

@@ -104,8 +104,6 @@ CHANGES = {
     f.HAND: tissue("hand", damping="7 N*m*s/rad", mass="0.1 kg*m^2"),
     f.RESTLESS: tissue("maxwell", damping="10 N*m*s/rad"),
     f.MEMORY: tissue("maxwell", damping="10 N*m*s/rad"),
-    f.OTHER_TISSUE: {"environments": {"stiff": ELASTIC}}
-    | {"controllers": {"second": {"environment": "stiff"}}},
     f.ANY_CONTACT: {
         "controllers": {"second": {"type": "position"}},
         "idle_states": {"decay": "20 1/s"},
@@ -196,6 +194,8 @@ CHANGES = {
         "environments": {"soft": {"stiffness": CONSTANT | {"nominal": "43 N*m/rad"}}}
     },
     f.CONSTANT_MOTOR: {"actuator": {"time_constant": CONSTANT_LAG}},
+    f.OTHER_TISSUE: {"environments": {"stiff": ELASTIC}}
+    | {"controllers": {"second": {"environment": "stiff"}}},
 }
 
 

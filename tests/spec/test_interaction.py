@@ -281,7 +281,7 @@ def test_idle_states() -> None:
     ("changes", "place", "reason"),
     [
         (((SOFT, MAXWELL), ("environment: soft", "environment: soft\n    contacts: [soft, hand]")),
-         "maxwell", "has no rest position, so 'soft' shares no deflection with hand"),
+         "maxwell", "has no rest position, beside several environments"),
         (((SOFT, BOLTZMANN), ("nominal: 400", "nominal: 0"), ("300", "0")), "0 N*s/m",
          "must be positive"),
         (((SOFT, BOLTZMANN), ("    series_stiffness: 17 N/m\n", "")), "soft",

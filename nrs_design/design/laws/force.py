@@ -8,7 +8,7 @@ from fractions import Fraction
 from nrs_design.controllers.controller_design import Controller
 from nrs_design.controllers.float32 import round_significant, to_float32
 from nrs_design.controllers.laws import ProportionalForce
-from nrs_design.design.force_limit import Approach, peak_force, steady_force_error
+from nrs_design.design.force_limit import Approach, peak_force
 from nrs_design.design.force_loop import ForceLoop, design_force_gain, force_loop_response
 from nrs_design.design.goals import ForceRequirement
 from nrs_design.design.laws.law import (
@@ -47,7 +47,7 @@ def proportional_gain(task: Task, given: ForceControllerSpec | IntegralControlle
     if given.proportional_gain is not None:
         return to_float32(given.proportional_gain.exact)
     stiffness = task.stiffness(given)
-    gain = design_force_gain(task.motion, stiffness, float(given.damping_ratio or 0))
+    gain = design_force_gain(task.followed(given), stiffness, float(given.damping_ratio or 0))
     return to_float32(round_significant(gain, task.digits))
 
 
@@ -60,7 +60,8 @@ def analyze(task: Task, given: ForceControllerSpec, controller: Controller) -> F
     """Close the loop in nominal contact, which must be stable, and measure it in all contacts."""
     limits = task.spec.limits
     approach = Approach(given.offset, limits.velocity.si, limits.torque.si)
-    return analyze_approach(task, given, controller, task.motion, approach, FORCE_MEASURES)
+    forward = task.followed(given)
+    return analyze_approach(task, given, controller, forward, approach, FORCE_MEASURES)
 
 
 def analyze_approach(
@@ -84,7 +85,8 @@ def analyze_approach(
     with naming(controller.name):
         loop = force_loop_response(forward, stiffness, gain)
         if FORCE_ERROR in measures:
-            left = steady_force_error(task.motion, stiffness, gain, approach)
+            contact = task.plant.environment(str(given.environment)).nominal
+            left = requirement.steady_error(contact, requirement.corners[0].place)
         peak = peak_force(task.motion, stiffness, gain, approach)
         achieved = requirement.achieved(measures)
     if isinstance(task.axis, ContinuousAxis) and task.plant.actuator_ranges.fixed:

@@ -10,6 +10,8 @@ from fractions import Fraction
 from functools import cached_property
 from typing import Any
 
+import numpy as np
+
 from nrs_design.controllers.controller_design import Controller, ImpedanceOptimum
 from nrs_design.controllers.float32 import to_float32
 from nrs_design.controllers.laws import LAWS, CompliantLaw, ProportionalDerivative
@@ -78,6 +80,20 @@ class Task:
         """Return that of nominal contact with what a controller is designed for, in N m/rad."""
         assert given.environment is not None  # Of a controller with contact.
         return self.plant.environment(given.environment).nominal.stiffness
+
+    def followed(self, given: ControllerSpec) -> TransferFunction:
+        """Return G, and how a filter and the relaxation of nominal contact let the force follow."""
+        assert given.environment is not None  # Of a controller with contact.
+        numerator, denominator = self.motion.numerator, self.motion.denominator
+        rates = self.plant.environment(given.environment).nominal.memory_rates
+        if rates is not None:
+            decays, follows = map(float, rates)
+            numerator = tuple(np.polymul(numerator, (1.0, decays)))
+            denominator = tuple(np.polymul(denominator, (1.0, decays + follows)))
+        if (low_pass := self.sensor.filter) is not None:
+            for _ in range(low_pass.order):
+                denominator = tuple(np.polymul(denominator, (1 / float(low_pass.pole), 1.0)))
+        return TransferFunction(numerator, denominator)
 
     @property
     def digits(self) -> int:

@@ -67,7 +67,9 @@ def choose(task: Task, given: IntegralControllerSpec) -> Choice:
             remedy="ask for another damping ratio, or give proportional_gain",
             at=("damping_ratio",),
         )
-    gain = integral_gain(task.motion, task.stiffness(given), float(Kp), given.settling_time.si)
+    gain = integral_gain(
+        task.followed(given), task.stiffness(given), float(Kp), given.settling_time.si
+    )
     return IntegralForce(Kp, to_float32(round_significant(gain, task.digits))), None
 
 
@@ -77,7 +79,7 @@ def analyze(task: Task, given: IntegralControllerSpec, controller: Controller) -
     limits = task.spec.limits
     # The position command waits, and the integral is what it was: the command does not step.
     approach = Approach("reference", limits.velocity.si, limits.torque.si, Ki)
-    forward = with_integral(task.motion, Ki / Kp)
+    forward = with_integral(task.followed(given), Ki / Kp)
     return analyze_approach(task, given, controller, forward, approach, MARGINS)
 
 

@@ -24,11 +24,15 @@ def test_stiffness_is_that_of_a_sudden_motion():
     assert Environment("nose", KelvinBoltzmann, (POINT, SPAN, POINT)).stiffness == SPAN
 
 
-def test_creep_reaches_from_the_softest_spring_to_the_stiffest():
-    """k1 in [1, 3] and b in [1, 3]: k1/b in [1/3, 3]."""
+def test_rates_of_a_memory_reach_from_the_softest_spring_to_the_stiffest():
+    """k1 in [1, 3] and b in [1, 3]: k1/b in [1/3, 3], and k2/b of one k2."""
     nose = Environment("nose", KelvinBoltzmann, (SPAN, POINT, SPAN))
-    assert nose.creep == Interval(F(1), F(1, 3), F(3))
-    assert Environment("gel", Maxwell, (SPAN, SPAN)).creep is None
+    k2 = POINT.nominal
+    assert nose.memory_rates == (
+        Interval(F(1), F(1, 3), F(3)),
+        Interval(k2 / SPAN.nominal, k2 / 3, k2),
+    )
+    assert Environment("gel", Maxwell, (SPAN, SPAN)).memory_rates is None
 
 
 @pytest.mark.parametrize(

@@ -9,6 +9,7 @@ from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from nrs_design.certificates.catalogue import sentences
 from nrs_design.certificates.units import gain_units
 from nrs_design.errors import DesignError
 from nrs_design.pipeline.analysis import run_analysis
@@ -182,7 +183,7 @@ def _proof_parts(certificate: Certificate) -> dict[Part, Mapping[str, str]]:
         for gain, value in values.items()
     }
     # Each assumption is its own name: it is there or it is not.
-    assumptions = {text: text for text in certificate.granted}
+    assumptions = {text: text for text in sentences(certificate.granted)}
     return {Part.GAINS: gains, Part.VERDICT: verdict, Part.ASSUMPTIONS: assumptions}
 
 

@@ -21,6 +21,7 @@ import pytest
 import typer
 from flint import fmpq, fmpq_mat
 
+from nrs_design.certificates.catalogue import sentences
 from nrs_design.cli import main
 from nrs_design.proof.evidence import AbstractEvidence, FormsOnGraph
 from nrs_design.proof.evidence.abstract import AbstractFunction
@@ -174,6 +175,11 @@ def replaced(text: str, *changes: tuple[str, str]) -> str:
         assert old in text, old
         text = text.replace(old, new)
     return text
+
+
+def words_of(system: SwitchedSystem) -> tuple[str, ...]:
+    """Return what a system takes for granted, in words."""
+    return sentences(system.assumptions)
 
 
 def number_in(text: str) -> Fraction:

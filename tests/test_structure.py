@@ -257,7 +257,6 @@ def test_a_report_assembles_and_searches_nothing():
         "nrs_design.search.gradient_settings",
         "nrs_design.search.loop_margin",
         "nrs_design.search.method_run",
-        "nrs_design.loop.assumption",
     }
 
 

@@ -1,4 +1,4 @@
-"""Re-check a certificate of nrs-design, schema 8, with nothing but Python's own integers.
+"""Re-check a certificate of nrs-design, schema 9, with nothing but Python's own integers.
 
 Usage: python check_elsewhere.py CERTIFICATE.json. Exit code: 0 if every statement holds, 1 if one
 does not, 3 if one is not checked here. format.md says what each number means and what must hold.
@@ -236,7 +236,7 @@ with open(sys.argv[1], encoding="utf-8") as file:
 signed = {key: o[key] for key in o.keys() - {"id", "origin"}}
 text = json.dumps(signed, sort_keys=True, separators=(",", ":"))
 need(hashlib.sha256(text.encode()).hexdigest() == o["id"], "it was altered")
-need(o["schema"][-2:] == "/8" and o["time"] in ("continuous", "discrete"), "another schema")
+need(o["schema"][-2:] == "/9" and o["time"] in ("continuous", "discrete"), "another schema")
 n, contact, flow = len(o["states"]), o.get("contact", {}), o["time"] == "continuous"
 kinds = ("graph", "no-common-quadratic", "constants-quadratic")
 kinds = () if {"cases", "clock", "pulls", "couplings"} & {*o, *contact} else kinds

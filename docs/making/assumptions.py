@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from making.tables import cell
-from nrs_design.loop.assumption import kinds
+from nrs_design.certificates.catalogue import kinds
 
 
 def assumptions_table() -> str:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from nrs_design.api.paper import form_of, latex_of, latex_of_gains
 from nrs_design.api.result import AbstractResult, Figures, drawn, evidence_drawings
+from nrs_design.certificates.catalogue import sentences
 from nrs_design.certificates.certificate import dump
 from nrs_design.errors import DesignError, OutputError, SpecError
 from nrs_design.facts.certification import certification_facts
@@ -82,7 +83,7 @@ class Decision(AbstractResult):
     @property
     def assumptions(self) -> tuple[str, ...]:
         """What the claim takes for granted."""
-        return self.result.certification.granted
+        return sentences(self.result.certification.granted)
 
     @property
     def attempts(self) -> tuple[Attempt, ...]:

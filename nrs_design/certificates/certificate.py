@@ -10,12 +10,13 @@ from enum import StrEnum
 from typing import Any
 
 from nrs_design.models.cut import RangeCut
+from nrs_design.proof.assumption import Assumption
 from nrs_design.proof.evidence import AbstractEvidence, Shows
 from nrs_design.proof.evidence.abstract import AT_ANY_DEFLECTION, IN_KEPT_CONTACT
 from nrs_design.proof.evidence.fields import system_fields, written
 from nrs_design.proof.system import SwitchedSystem
 
-SCHEMA = "nrs-design/certificate/8"
+SCHEMA = "nrs-design/certificate/9"
 # What says nothing about the claim, so that the id does not cover it.
 UNSIGNED = frozenset({"id", "origin"})
 
@@ -80,7 +81,7 @@ class Certificate:
         return refuted_in(self.system, self.statements)
 
     @property
-    def granted(self) -> tuple[str, ...]:
+    def granted(self) -> tuple[Assumption, ...]:
         """What the statements take for granted."""
         return granted(self.system, self.statements)
 
@@ -132,13 +133,15 @@ def refutes_in_contact(
     return next(growing, None)
 
 
-def granted(system: SwitchedSystem, statements: Iterable[AbstractEvidence]) -> tuple[str, ...]:
+def granted(
+    system: SwitchedSystem, statements: Iterable[AbstractEvidence]
+) -> tuple[Assumption, ...]:
     """Return what is taken for granted: how contact is lost, only by what covers its loss.
 
     Of a system about whose stability nothing is shown, all that was to be taken for granted.
     """
     contact = system.contact
-    if contact is None or not contact.loss:
+    if contact is None or contact.loss is None:
         return system.assumptions
     about = [s for s in statements if s.shows in (Shows.STABILITY, Shows.INSTABILITY)]
     if about and not any(item.covers_loss(system) for item in about):
@@ -163,14 +166,13 @@ def common_quadratic_of(
 
 def to_document(certificate: Certificate) -> dict[str, Any]:
     """Return the JSON document of a certificate, without its id."""
-    system, own = certificate.system, system_fields(certificate.system)
+    own = system_fields(certificate.system)
     if not is_of_growth(certificate):
         # Which modes are attained matters only where something grows.
         own.pop("enclosures", None)
     return {
         "schema": SCHEMA,
         "verdict": certificate.verdict,
-        **({} if certificate.refuted_in is None else {"refuted_in": certificate.refuted_in}),
         "spec": {"name": certificate.spec_name, "sha256": certificate.spec_sha256},
         "coordinates": certificate.coordinates,
         "gains": {name: dict(values) for name, values in certificate.gains.items()},
@@ -178,10 +180,7 @@ def to_document(certificate: Certificate) -> dict[str, Any]:
         **({} if not certificate.cuts else {"cuts": written(certificate.cuts)}),
         **({} if certificate.ages is None else {"ages": [*certificate.ages]}),
         **own,
-        "statements": [
-            {"kind": item.kind, "claim": item.claim(system), **item.to_fields()}
-            for item in certificate.statements
-        ],
+        "statements": [{"kind": item.kind, **item.to_fields()} for item in certificate.statements],
         "package": {"name": "nrs-design", "version": certificate.version},
     }
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from nrs_design.certificates.catalogue import sentences
 from nrs_design.cli.printing import detail, say, wants_details
 from nrs_design.proof.text import counted
 
@@ -18,8 +19,8 @@ def print_granted(result: Result) -> None:
     detail(f"  common quadratic function: {certification.common_quadratic}")
     detail(f"  modes: {', '.join(names)}")
     detail("  taken for granted (nrs-design report says how to test each):")
-    for assumption in granted:
-        detail(f"    - {assumption}")
+    for text in sentences(granted):
+        detail(f"    - {text}")
     if granted and not wants_details():
         without = "; ".join(result.omits)
         besides = f"; not modelled: {without}" if without else ""

@@ -14,9 +14,12 @@ from fractions import Fraction
 from itertools import product
 from math import comb, isqrt
 
-from nrs_design.controllers.float32 import to_float32
+from nrs_design.axis import AxisType
+from nrs_design.controllers.float32 import exact_decimal, to_float32
 from nrs_design.errors import DesignError
 from nrs_design.models.linear_form import LinearForm, combine
+from nrs_design.proof.assumption import Assumption
+from nrs_design.proof.bounds import rounded_up
 from nrs_design.proof.taylor import exponential_between
 from nrs_design.spec.quantity_fields import RangedQuantity
 from nrs_design.spec.sensor import SensorSpec, ToolSpec
@@ -98,6 +101,35 @@ class Sensor:
     def lasting(self) -> Fraction:
         """Bound on the lasting error of the torque about the pivot, N m."""
         return sum(self.errors.values(), ZERO)
+
+    def assumptions(
+        self, period: Fraction | None, *, disturbed: bool, axis: AxisType = AxisType.ROTARY
+    ) -> Iterator[Assumption]:
+        """Yield how the law gets the force, and what a proof leaves out of its errors.
+
+        The period is that of the processor in s, if there is one; `disturbed`: bounds on
+        disturbances are stated.
+        """
+        if self.filter is not None:
+            order = self.filter.order
+            row = {"lags": "one"} if order == 1 else {"lags": "row", "order": str(order)}
+            if period is None:
+                yield Assumption.of("sensor.filter", **row, pole=exact_decimal(self.filter.pole))
+            else:
+                step = self.filter.discretize(period)
+                numbers = {"p": exact_decimal(step.p), "q": exact_decimal(step.q)}
+                yield Assumption.of("sensor.sampled-filter", **row, **numbers)
+        if self.errors:
+            unit = axis.unit("N*m")
+            yield Assumption.of(
+                "sensor.errors-disturbed" if disturbed else "sensor.errors",
+                lasting=rounded_up(self.lasting, unit),
+                parts=tuple(f"{name}: {rounded_up(e, unit)}" for name, e in self.errors.items()),
+            )
+        if self.carries:
+            yield Assumption.of("sensor.tool")
+        if self.noisy:
+            yield Assumption.of("sensor.noise")
 
 
 def build_sensor(spec: SensorSpec | None) -> Sensor:

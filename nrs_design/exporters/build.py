@@ -7,6 +7,7 @@ from fractions import Fraction
 from typing import Any
 
 from nrs_design import __version__
+from nrs_design.certificates.catalogue import sentences
 from nrs_design.certificates.certificate import Certificate
 from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.controllers.float32 import exact_decimal
@@ -121,7 +122,7 @@ def _proof(certificate: Certificate) -> Proof:
                 {"exact": str(rate), "rounded": rate_text(rate, system.time), "unit": unit}
             ),
             "coordinates": certificate.coordinates,
-            "assumptions": certificate.granted,
+            "assumptions": sentences(certificate.granted),
         }
     )
 

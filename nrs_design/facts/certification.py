@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from nrs_design.axis import unit
+from nrs_design.certificates.catalogue import sentences
 from nrs_design.facts.spec import spec_facts
 from nrs_design.proof.bounds import lower_float, upper_float
 
@@ -46,7 +47,7 @@ def certification_facts(result: Result, path: Path | None) -> dict[str, Any]:
             }
             for a in found.attempts
         ],
-        "assumptions": list(found.granted),
+        "assumptions": list(sentences(found.granted)),
         "certificate": None if path is None else str(path),
         "certificate_id": certificate.id if certificate else None,
     }
@@ -63,7 +64,7 @@ def shown_facts(certificate: Certificate, spec: Spec) -> dict[str, Any]:
         "states": list(system.states),
         "modes": [mode.name for mode in system.modes],
         "gains": dict(certificate.gains),
-        "assumptions": list(certificate.granted),
+        "assumptions": list(sentences(certificate.granted)),
         "certificate_id": certificate.id,
     }
 

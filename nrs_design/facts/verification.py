@@ -6,7 +6,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from nrs_design.certificates.verify import Verification
+    from nrs_design.certificates.catalogue import sentences
+from nrs_design.certificates.verify import Verification
 
 
 def verification_facts(
@@ -24,7 +25,7 @@ def verification_facts(
         "claims": [item.claim(checked.system) for item in checked.statements] if checked else None,
         "gains": dict(compared.gains) if compared else None,
         "gain_units": gain_units(compared) if compared else None,
-        "assumptions": list(compared.granted) if compared else None,
+        "assumptions": list(sentences(compared.granted)) if compared else None,
         "certificate": None if certificate is None else str(certificate),
         "certificate_id": checked.id if checked else None,
         "spec": None if spec is None else str(spec),

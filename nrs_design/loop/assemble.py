@@ -10,17 +10,16 @@ from typing import TYPE_CHECKING
 
 from nrs_design.axis import AxisType
 from nrs_design.errors import AssemblyError
-from nrs_design.loop.assumption import say
 from nrs_design.loop.assumptions import (
     GIVEN_MATRICES,
-    assume_matrices,
-    constant_texts,
-    identified_texts,
-    logic_texts,
-    points_texts,
-    preload_texts,
-    scale_texts,
-    sensor_texts,
+    assume,
+    of_constants,
+    of_data,
+    of_logic,
+    of_matrices,
+    of_points,
+    of_preloads,
+    of_scale,
 )
 from nrs_design.loop.cases import in_cases
 from nrs_design.loop.constant_parameters import (
@@ -108,7 +107,7 @@ def assemble_matrices(spec: SwitchedSystemSpec, scale: Fraction = DECLARED) -> S
         time=Time(spec.time),
         states=tuple(f"x{i + 1}" for i in range(spec.dimension)),
         modes=tuple(item.mode for item in items),
-        assumptions=assume_matrices(spec, parameters, scale),
+        assumptions=of_matrices(spec, parameters, scale),
         switching=switching,
     )
     constants = constant_parameters(parameters)
@@ -156,32 +155,27 @@ def assemble(
     constants = tuple(replace(c, said=replace(c.said, unit=unit(c.said.unit))) for c in constants)
     system, corners = _closed(conditions, plant, design, constants, points)
     system = with_constants(system, constants, corners)
-    constant = tuple(constant_texts(system.switching))
+    constant = tuple(of_constants(system.switching))
     if cuts:
         whole = {c.said.name: (c.said.low, c.said.high) for c in constants}
         each = cut_ranges(whole, cuts)
         parts = parts or [closed_part(conditions, plant, design, drive, part) for part in each]
         system = in_cases(system, parts)
-        constant = (*constant, say("constant.cases", cases=len(system.cases)))
+        constant = (*constant, assume("constant.cases", cases=len(system.cases)))
     period = None if conditions.sampling is None else conditions.sampling.outer
     touched = plant.among(design.contacts)
-    sensed = sensor_texts(
-        design.sensor,
-        period,
-        disturbed=bool(system.channels) and period is not None,
-        axis=spec.axis,
-    )
-    texts = (
+    disturbed = bool(system.channels) and period is not None
+    assumptions = (
         *system.assumptions,
-        *sensed,
-        *logic_texts(spec),
-        *identified_texts(spec),
-        *preload_texts(conditions.preloads, scale),
-        *scale_texts(scale),
-        *points_texts(points, remembers=any(e.law.remembers for e in touched)),
+        *design.sensor.assumptions(period, disturbed=disturbed, axis=spec.axis),
+        *of_logic(spec),
+        *of_data(spec),
+        *of_preloads(conditions.preloads, scale),
+        *of_scale(scale),
+        *of_points(points, remembers=any(e.law.remembers for e in touched)),
         *constant,
     )
-    return _on_axis(replace(system, assumptions=texts), spec.axis)
+    return _on_axis(replace(system, assumptions=assumptions), spec.axis)
 
 
 def closed_part(
@@ -235,15 +229,16 @@ def _assemble_continuous(
 ) -> tuple[SwitchedSystem, tuple[Corner, ...]]:
     from nrs_design.loop.close_loop import close_loop
 
+    limited = conditions.initial_force is not None
     system, corners = close_loop(
-        conditions.name, state, conditions.switching, conditions.contact, constants
+        conditions.name, state, conditions.switching, conditions.contact, constants, limited=limited
     )
     if conditions.disturbances is not None:
         from nrs_design.loop.commanded import check_memory, with_command
 
         check_memory(state.environments)
         system = with_command(system, state, conditions.disturbances, conditions.torque)
-    if conditions.initial_force is not None:
+    if limited:
         from nrs_design.loop.saturation import with_saturation
 
         system = with_saturation(system, conditions, plant.actuator, state)

@@ -16,6 +16,7 @@ from itertools import permutations, product
 from nrs_design.controllers.controller_design import Controller
 from nrs_design.loop.constant_parameters import ConstantParameter, Corner
 from nrs_design.loop.constraints import assemble_switching, leaving_impedance, zeroing
+from nrs_design.loop.continuous_assumptions import of_loop
 from nrs_design.loop.free_motion import (
     adds_free_motion,
     flights_of,
@@ -24,7 +25,6 @@ from nrs_design.loop.free_motion import (
     pulls_of,
 )
 from nrs_design.loop.located import MatrixMode, enclosures_of, grouped
-from nrs_design.loop.loop_assumptions import assume_loop
 from nrs_design.loop.shared_state import SharedState
 from nrs_design.loop.spot import Spot, spot_of
 from nrs_design.models.contact.environment import Environment
@@ -40,12 +40,15 @@ def close_loop(
     rules: SwitchingSpec | None = None,
     contact: str | None = None,
     constants: Sequence[ConstantParameter] = (),
+    *,
+    limited: bool = False,
 ) -> tuple[SwitchedSystem, tuple[Corner, ...]]:
     """Assemble every mode of an interaction design; say at which ends of constants each is.
 
     Without rules any controller may follow any other at any time. Contact, losable or kept, may by
-    default be lost where that is modelled, and a statement says whether it covers it. An
-    `AssemblyError` if it may be lost, and that is not modelled.
+    default be lost where that is modelled, and a statement says whether it covers it. `limited`:
+    some statement is about signals that saturate. An `AssemblyError` if contact may be lost, and
+    that is not modelled.
     """
     rules, controllers = rules or SwitchingSpec(), state.design.controllers
     sprung = any(controller.law.spring for controller in controllers)
@@ -64,7 +67,9 @@ def close_loop(
         time=Time.CONTINUOUS,
         states=state.names,
         modes=tuple(item.mode for item in items),
-        assumptions=assume_loop(state, rules, losable=losable is not None, free=free),
+        assumptions=tuple(
+            of_loop(state, rules, losable=losable is not None, free=free, limited=limited)
+        ),
         switching=assemble_switching(rules, grouped(items), _resets(state, groups)),
         contact=losable,
         flights=flights_of(items, state.environments, pulls) if free else None,

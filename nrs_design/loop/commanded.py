@@ -7,19 +7,19 @@ from dataclasses import replace
 from fractions import Fraction
 
 from nrs_design.errors import AssemblyError
-from nrs_design.loop.assumption import say
 from nrs_design.loop.free_motion import outputs_of
 from nrs_design.loop.shared_state import SharedState
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.linear_form import coordinates
 from nrs_design.models.motion_loop import JointMotionLoop, Realization
+from nrs_design.proof.assumption import Assumption
 from nrs_design.proof.channels import Channel
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.spec.operating import Bounds
 
-_ASSUMED = say("inputs.command")
+_ASSUMED = Assumption("inputs.command")
 
 
 def with_command(

@@ -7,7 +7,6 @@ from fractions import Fraction
 
 from nrs_design.controllers.controller_design import Controller
 from nrs_design.errors import AssemblyError
-from nrs_design.loop.assumption import say
 from nrs_design.loop.constant_parameters import ConstantParameter
 from nrs_design.loop.located import AbstractLocatedMode, MatrixMode
 from nrs_design.loop.modes import Rows, velocity_mode
@@ -16,6 +15,7 @@ from nrs_design.loop.spot import Spot, spot_of
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.contact.kelvin_voigt import KelvinVoigt
 from nrs_design.models.linear_form import LinearForm, coordinates
+from nrs_design.proof.assumption import Assumption
 from nrs_design.proof.channels import Output
 from nrs_design.proof.contact import Contact, Flights
 from nrs_design.proof.matrix import RationalMatrix
@@ -44,7 +44,7 @@ def lost_on_surface(
     free: Iterable[Mode], pulls: Iterable[RationalMatrix], contact: str | None
 ) -> Contact:
     """Return that contact is lost where the tissue ends, or would have to pull."""
-    losable, loss = contact == "losable", say("contact-lost.surface")
+    losable, loss = contact == "losable", Assumption("contact-lost.surface")
     return Contact(tuple(free), tuple(pulls), required=losable, loss=loss)
 
 

@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 
-from nrs_design.axis import AxisType
 from nrs_design.controllers.laws import ProportionalDerivative
-from nrs_design.loop.assumption import Assumption, say
-from nrs_design.loop.assumptions import motor_text
 from nrs_design.loop.parameter_box import Box
 from nrs_design.models.actuator import ActuatorRanges
 from nrs_design.models.motion_loop import JointMotionLoop
 from nrs_design.models.plant import Plant
-from nrs_design.proof.text import exact_text
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,15 +44,3 @@ class Joint:
         """Return the loop at the values of ``Km`` and ``tau``."""
         gains = self.motion.Kp, self.motion.Kd
         return JointMotionLoop(*gains, values["Km"], values["tau"], self.load_inertia)
-
-    def texts(self, axis: AxisType) -> Iterator[Assumption]:
-        """Say what is taken for granted about the motor."""
-        moving = self.ranges.may_change("arbitrarily fast")
-        motor = motor_text(self.ranges, axis)
-        which = "nominal-motor.joint" if self.ranges.fixed else "motor.joint"
-        yield say(which, motor, motor=motor, moving=moving)
-        if self.load_inertia is None:
-            yield say("unloaded.continuous")
-        else:
-            inertia = f"{exact_text(self.load_inertia)} {axis.unit('kg*m^2')}"
-            yield say("load.inertia", inertia, inertia=inertia)

@@ -13,10 +13,10 @@ from fractions import Fraction
 from itertools import product
 
 from nrs_design.controllers.float32 import float32_not_above
-from nrs_design.loop.assumption import Assumption, say
 from nrs_design.loop.program import INPUTS
 from nrs_design.loop.sampled import NOTHING, SampledLoop
 from nrs_design.models.linear_form import LinearForm
+from nrs_design.proof.assumption import Assumption
 from nrs_design.proof.bounds import rounded_down, rounded_up
 from nrs_design.proof.channels import Channel, Output
 from nrs_design.proof.matrix import RationalMatrix
@@ -33,17 +33,16 @@ class MotorCommand:
     limit: Fraction  # Of the driver, as a single-precision number
 
     @property
-    def text(self) -> Assumption:
+    def assumption(self) -> Assumption:
         """What a bound on it says of saturation."""
         unit = self.output.unit
-        less = ""
-        if self.at_once:
-            less = (
-                f", less {rounded_up(self.at_once, unit)} that errors of a sample may add to its "
-                "own command"
-            )
-        limit = rounded_down(self.limit, unit)
-        return say("not-quantized.command", limit=limit, less=less, output=self.output.name)
+        return Assumption.of(
+            "not-quantized.command",
+            limit=rounded_down(self.limit, unit),
+            less=self.at_once > 0 and "errors",
+            at_once=self.at_once > 0 and rounded_up(self.at_once, unit),
+            output=self.output.name,
+        )
 
 
 def motor_command(

@@ -13,8 +13,6 @@ from dataclasses import replace
 from fractions import Fraction
 
 from nrs_design.controllers.float32 import float32_not_above
-from nrs_design.loop.assumption import say
-from nrs_design.loop.loop_assumptions import NOT_MODELLED, NOT_MODELLED_BUT_LIMITS
 from nrs_design.loop.program import BEFORE, CUT_OFF, INPUTS
 from nrs_design.loop.sampled import SampledLoop
 from nrs_design.loop.sampled_modes import SampledMode
@@ -23,6 +21,7 @@ from nrs_design.models.actuator import Actuator
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.linear_form import LinearForm, combine, coordinates, zero
 from nrs_design.models.motion_loop import JointMotionLoop, Realization
+from nrs_design.proof.assumption import Assumption
 from nrs_design.proof.bounds import rounded_up
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode
@@ -33,21 +32,8 @@ from nrs_design.spec.operating import OperatingConditions
 
 # States of a motion loop in its physical state, `nrs_design.models.motion_loop.JointMotionLoop`.
 _ERROR, _OMEGA = 0, 1
-_FILTERED = (
-    " Where a motion begins with a contact force, the filter shows none of it, all of it, or any "
-    "part, each lag the same."
-)
-_LATE = (
-    " Where a motion begins with a contact force, the force samples before it, and a filter, show "
-    "none of it, all of it, or any part, all the same."
-)
-_HELD = ", the error of motion a sample ago being what it is then under one of the controllers"
 INTEGRAL = "integral [rad]"
-# What is said of quantization where nothing saturates, and where something does.
-SATURATED_TEXTS: dict[str, str] = {
-    say(f"not-quantized.{key}"): f"{key}-limited"
-    for key in ("sampled", "sampled-disturbed", "sensor", "sensor-disturbed")
-}
+_KEPT = "error of motion a sample ago"
 
 
 def with_saturation(
@@ -89,15 +75,14 @@ def with_saturation(
     )
     lags = () if low_pass is None else low_pass.states
     start = _start(conditions, _rest(system.states, state.environments, lags))
-    texts = (
-        NOT_MODELLED_BUT_LIMITS if text == NOT_MODELLED else text for text in system.assumptions
+    limited = Assumption.of(
+        "limited.signals",
+        velocity=rounded_up(velocity_limit, conditions.axis.unit("rad/s")),
+        command=rounded_up(command_limit, conditions.command),
+        filtered=low_pass and "filter",
     )
-    filtered = "" if low_pass is None else _FILTERED
-    velocity = rounded_up(velocity_limit, conditions.axis.unit("rad/s"))
-    command = rounded_up(command_limit, conditions.command)
-    bound = f"{velocity} and {command}, or more"
-    limited = say("limited.signals", bound, velocity=velocity, command=command, filtered=filtered)
-    return replace(system, saturation=Saturation(signals, start), assumptions=(*texts, limited))
+    assumptions = (*system.assumptions, limited)
+    return replace(system, saturation=Saturation(signals, start), assumptions=assumptions)
 
 
 def with_sampled_saturation(
@@ -130,20 +115,18 @@ def with_sampled_saturation(
     rest = _rest(system.states, environments, loop.shown_later)
     if placed:
         rest = list(_held(loop, modes, rest))
-    texts = (
-        say(f"not-quantized.{SATURATED_TEXTS[text]}") if text in SATURATED_TEXTS else text
-        for text in system.assumptions
+    integral = [rounded_up(other.limit, other.unit) for other in signals[1:]]
+    limited = Assumption.of(
+        "limited.sampled",
+        command=rounded_up(limit, conditions.command),
+        clamped=bool(integral) and "integral",
+        integral=tuple(integral),
+        filtered=bool(loop.shown_later) and "samples",
     )
-    bound = rounded_up(limit, conditions.command)
-    filtered = _LATE if loop.shown_later else ""
-    clamped = ""
-    for other in signals[1:]:
-        angle = rounded_up(other.limit, other.unit)
-        clamped = f"; the {other.name} likewise at {angle}"
-    said = f"{bound}{clamped}, or more"
-    limited = say("limited.sampled", said, command=bound, clamped=clamped, filtered=filtered)
-    what = Saturation(signals, _start(conditions, rest, _HELD if placed else ""))
-    return replace(system, saturation=what, assumptions=(*texts, limited))
+    start = _start(conditions, rest, _KEPT if placed else "")
+    return replace(
+        system, saturation=Saturation(signals, start), assumptions=(*system.assumptions, limited)
+    )
 
 
 def _clamped(

@@ -12,7 +12,6 @@ from nrs_design.controllers.laws import DiscreteLaw
 from nrs_design.controllers.step_analysis import rounding_share
 from nrs_design.controllers.step_law import StepFrame
 from nrs_design.errors import AssemblyError
-from nrs_design.loop.assumptions import at_once_texts
 from nrs_design.loop.calendar import Calendar, Turn, turns_of
 from nrs_design.loop.command_timing import timing_of
 from nrs_design.loop.constant_parameters import ConstantParameter, Corner
@@ -31,7 +30,7 @@ from nrs_design.loop.misses import clock_of
 from nrs_design.loop.motor_command import motor_command
 from nrs_design.loop.program import INPUTS, SampledProgram
 from nrs_design.loop.sampled import SampledLoop
-from nrs_design.loop.sampled_assumptions import assume_sampled
+from nrs_design.loop.sampled_assumptions import of_sampled_loop
 from nrs_design.loop.sampled_modes import Modes, SampledMode, damping_of
 from nrs_design.loop.saturation import with_sampled_saturation
 from nrs_design.models.drive import Drive
@@ -71,6 +70,8 @@ def close_sampled_loop(
     if points:
         # The rates of a memory depend on its stiffness, so ends of them are none of a loop.
         environments = tuple(e.scaled(Fraction(0)) if e.law.remembers else e for e in environments)
+        # What saturates is looked at in what encloses all.
+        conditions = replace(conditions, initial_force=None)
     drive = plant.held_at(environments)
     loop = _wired(conditions, sampling, drive, design, tuple(laws.values()))
     held = HeldDrive(drive, loop.calendar.timing)
@@ -101,9 +102,8 @@ def close_sampled_loop(
         states=loop.states,
         modes=tuple(item.mode for item in modes),
         assumptions=(
-            *assume_sampled(conditions, sampling, plant, loop, laws, design, loss),
-            *at_once_texts(environments),
-            *(() if driven is None else (driven.text,)),
+            *of_sampled_loop(conditions, sampling, plant, loop, laws, design, loss),
+            *(() if driven is None else (driven.assumption,)),
         ),
         switching=assemble_switching(
             conditions.switching, grouped(modes), _resets(conditions.idle, loop, design)
@@ -119,7 +119,7 @@ def close_sampled_loop(
         flights=flights_of(modes, environments, pulls) if loss.anywhere else None,
         enclosures=tuple(enclosures_of(items)),
     )
-    if conditions.initial_force is not None and not points:
+    if conditions.initial_force is not None:
         system = with_sampled_saturation(system, conditions, loop, items, environments)
     return system, tuple(item.corner for item in modes)
 

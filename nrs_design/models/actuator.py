@@ -6,8 +6,9 @@ from dataclasses import dataclass
 from fractions import Fraction
 from math import pi
 
+from nrs_design.axis import AxisType
 from nrs_design.errors import AssemblyError
-from nrs_design.models.interval import Interval, may_change
+from nrs_design.models.interval import Interval, moving
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,9 +46,13 @@ class ActuatorRanges:
         """Whether both are known."""
         return all(len(interval.ends) == 1 for interval in (self.gain, self.time_constant))
 
-    def may_change(self, when: str) -> str:
-        """Say when its numbers may change; as `nrs_design.models.interval.may_change`."""
-        return may_change((self.gain, self.time_constant), when)
+    def said(self, axis: AxisType) -> dict[str, str]:
+        """Return what an assumption says of its numbers: where they are, and which may move."""
+        return {
+            "gain": f"{self.gain.text} {axis.unit('rad/s')}/{self.command}",
+            "tau": f"{self.time_constant.text} s",
+            "moving": moving((self.gain, self.time_constant)),
+        }
 
     def scaled(self, scale: Fraction) -> ActuatorRanges:
         """Return the ranges stretched about the nominal values; all must stay positive."""

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import TypeVar
 
+from nrs_design.proof.text import exact_text
+
 Number = TypeVar("Number", float, Fraction)
 
 
@@ -49,6 +51,18 @@ class Interval:
         return Interval(min(max(self.nominal, low), high), low, high, self.varies)
 
     @property
+    def text(self) -> str:
+        """Its one value, or its ends in brackets, exactly."""
+        if self.low == self.high:
+            return exact_text(self.low)
+        return f"[{exact_text(self.low)}, {exact_text(self.high)}]"
+
+    @property
+    def where(self) -> str:
+        """Where it is, after its name: ``= 2``, or ``in [1, 3]``."""
+        return f"{'in' if self.ends[1:] else '='} {self.text}"
+
+    @property
     def is_constant(self) -> bool:
         """Whether it has a range, and one value there that does not change."""
         return not self.varies and self.low != self.high
@@ -59,10 +73,9 @@ def turn(value: Number, radius: Number) -> Number:
     return value * radius**2
 
 
-def may_change(numbers: Iterable[Interval], when: str) -> str:
-    """Say when numbers may change, after what says where they are; nothing if never."""
+def moving(numbers: Iterable[Interval]) -> str:
+    """Return whether ``all`` numbers with a range may move there, or ``some``; empty if none."""
     ranged = [number for number in numbers if number.low != number.high]
     if not any(number.varies for number in ranged):
         return ""
-    some = " the one that is not constant" if any(n.is_constant for n in ranged) else ""
-    return f", and{some} may change {when}"
+    return "some" if any(n.is_constant for n in ranged) else "all"

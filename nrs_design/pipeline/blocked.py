@@ -13,6 +13,7 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from nrs_design.certificates.catalogue import sentences
 from nrs_design.certificates.certificate import Gains, Verdict
 from nrs_design.errors import AssemblyError, DesignError, SpecError
 from nrs_design.pipeline.certification import Result, assemble_spec, gains_text, search_limits
@@ -254,7 +255,7 @@ class _Search:
         return Proved(
             tuple(self._blocking(*item) for item in lines),
             evidence.claim(proof.system),
-            tuple(text for text in proof.granted if text not in known),
+            sentences(item for item in proof.granted if item not in known),
             decided.loaded.sha256,
             any(
                 self._gains.get(name) != gains

@@ -9,9 +9,9 @@ from time import perf_counter
 from typing import TYPE_CHECKING
 
 from nrs_design import __version__
+from nrs_design.certificates.catalogue import omitted
 from nrs_design.certificates.certificate import Certificate, Gains, Verdict, common_quadratic_of
 from nrs_design.errors import AssemblyError, DesignError
-from nrs_design.loop.assumption import omitted
 from nrs_design.models.cut import RangeCut
 from nrs_design.pipeline.design import Designed, placed
 from nrs_design.pipeline.goal_ranges import for_goal

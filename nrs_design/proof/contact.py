@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from nrs_design.proof.assumption import Assumption
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode
 
@@ -28,9 +29,8 @@ class Contact:
     # Stability must be shown through any loss of contact; otherwise a proof may take for granted
     # that contact is kept, and its claim says so.
     required: bool = False
-    # All this in words: what is taken for granted by what covers the loss of contact, and by
-    # nothing else.
-    loss: str = ""
+    # What is taken for granted by what covers the loss of contact, and by nothing else.
+    loss: Assumption | None = None
 
 
 @dataclass(frozen=True, slots=True)

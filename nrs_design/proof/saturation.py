@@ -46,8 +46,15 @@ class Start:
     states: tuple[RationalMatrix, ...]
     # The size that a statement is meant to reach; for words and searches only.
     wanted: Fraction | None = None
-    # What of such a state is neither at rest nor zero, in words that begin with a comma.
+    # What of such a state is neither at rest nor zero: it is that under one of the controllers.
     beside: str = ""
+
+    @property
+    def said(self) -> str:
+        """Its exception in words that begin with a comma; empty if there is none."""
+        if not self.beside:
+            return ""
+        return f", the {self.beside} being what it is then under one of the controllers"
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import compress
 
+from nrs_design.proof.assumption import Assumption
 from nrs_design.proof.channels import Channel, Output, Rounding
 from nrs_design.proof.contact import Contact, Flights
 from nrs_design.proof.matrix import RationalMatrix, leading
@@ -25,7 +26,7 @@ class SwitchedSystem:
     # At least one; all of the same size, unless resets link states of different sizes.
     modes: tuple[Mode, ...]
     # What a statement about these matrices takes for granted about the robot.
-    assumptions: tuple[str, ...]
+    assumptions: tuple[Assumption, ...]
     switching: Switching = ARBITRARY  # The signals that are possible
     # How contact is lost; None where it is kept, where there is none to lose, or where free motion
     # is among the modes.

@@ -15,6 +15,7 @@ from fractions import Fraction
 from pathlib import Path
 
 from nrs_design import __version__
+from nrs_design.certificates.catalogue import sentences
 from nrs_design.certificates.certificate import Certificate
 from nrs_design.controllers.controller_design import Controller
 from nrs_design.errors import DesignError, SpecError
@@ -290,7 +291,7 @@ def _about(axis: str, designed: Designed, met: Range, certificate: Certificate) 
     yield f"axis {axis}: units: {unit('kg*m^2')}, {unit('N*m/rad')}, joint_damping in 1/s"
     # A claim says that contact is kept only where its loss is modelled.
     kept = ("contact is not lost",) if certificate.system.contact is None else ()
-    for text in (*certificate.granted, *kept):
+    for text in (*sentences(certificate.granted), *kept):
         yield f"axis {axis}: taken for granted: {text}"
 
 

@@ -12,6 +12,7 @@ from nrs_design.certificates.certificate import (
     granted,
     refuted_in,
 )
+from nrs_design.proof.assumption import Assumption
 from nrs_design.proof.evidence import AbstractEvidence
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.gradient_settings import Gradient
@@ -78,6 +79,6 @@ class Certification:
         return self.verdict is Verdict.INCONCLUSIVE and self.refuted_in is None
 
     @property
-    def granted(self) -> tuple[str, ...]:
+    def granted(self) -> tuple[Assumption, ...]:
         """What the statements take for granted."""
         return granted(self.system, self.statements)

@@ -42,9 +42,13 @@ class LagForce(AbstractCompliantLaw[Any]):
     units: ClassVar[Mapping[str, str]] = MappingProxyType({"Kp": "rad/(N*m)", "tau": "s"})
     commands: ClassVar[Command] = "position"
     fixed: ClassVar[Mapping[str, str]] = MappingProxyType({"Kp": "gain", "tau": "lag"})
-    sampled_text: ClassVar[str] = (
-        "A lag-force controller adds x, and a sample makes it p x + q times the difference of the "
-        "wanted force and its sample."
+    sampled: ClassVar[str | None] = "idle.sampled-lag-force"
+    sentences: ClassVar[Mapping[str, str]] = MappingProxyType(
+        {
+            "contact-kept.lag-force": "Contact is not lost while force is controlled by the lag.",
+            "idle.sampled-lag-force": "A lag-force controller adds x, and a sample makes it p x + "
+            "q times the difference of the wanted force and its sample.",
+        }
     )
 
     Kp: Fraction
@@ -72,9 +76,9 @@ class LagForce(AbstractCompliantLaw[Any]):
         return PROPORTIONAL, LAG
 
     @classmethod
-    def contact_text(cls, *, alone: bool) -> str:
-        """Say that contact is not lost."""
-        return "Contact is not lost while force is controlled through the lag."
+    def contact_kept(cls, *, alone: bool) -> str:
+        """Return that contact is not lost."""
+        return "lag-force"
 
 
 LAW = LagForce

@@ -96,7 +96,7 @@ def leave_out_the_proof(document):
 
 
 def change_schema(document):
-    document["schema"] = "nrs-design/certificate/9"
+    document["schema"] = "nrs-design/certificate/8"
 
 
 def spoil_vanishing(document):

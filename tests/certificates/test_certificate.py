@@ -88,7 +88,7 @@ def test_growth_through_resets_says_nothing_about_quadratic_functions():
 def test_file_and_id(path, verdict, kinds):
     certificate = run_certification(read_spec(path)).certificate
     document = json.loads(dump(certificate))
-    assert document["schema"] == SCHEMA == "nrs-design/certificate/8"
+    assert document["schema"] == SCHEMA == "nrs-design/certificate/9"
     assert [item["kind"] for item in document["statements"]] == kinds
     assert certificate.evidence is certificate.statements[0]
     assert document["verdict"] == certificate.verdict == verdict

@@ -24,7 +24,7 @@ from tests.support import ROOT, ends_soon, program_named
 
 DECIDED = ("time", "states", "modes", "contact", "roundings", "clock", "switching", "statements")
 # What says nothing, or only of how forms are scaled or values are distributed.
-TOLD = ("claim", "denominator_log2", "fixed_parameters")
+TOLD = ("denominator_log2", "fixed_parameters")
 DEAR = ("growing-sequence, steps", "growing-sequence, left", "growing-sequence, two ways")
 NODE = """
 for (const text of require("fs").readFileSync(0, "utf8").trim().split("\\n")) {

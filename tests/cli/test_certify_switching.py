@@ -211,13 +211,17 @@ def test_json(tmp_path):
         "decay_rate_exact": statement["rate"],
         "modes": [mode["name"] for mode in certificate["modes"]],
         "gains": certificate["gains"],
-        "assumptions": [*certificate["assumptions"], certificate["contact"]["loss"]],
-        "claim": statement["claim"],
         "certificate": "c.json",
         "certificate_id": certificate["id"],
         "spec_sha256": read_spec(SOFT_TISSUE).sha256,
     }
     assert {name: document[name] for name in wanted} == wanted
+    # The answer says in words what the certificate holds as data.
+    assert "claim" not in statement
+    granted = [*certificate["assumptions"], certificate["contact"]["loss"]]
+    assert len(document["assumptions"]) == len(granted)
+    assert granted[-1] == {"id": "contact-lost.surface"}
+    assert document["assumptions"][-1].startswith("Contact is lost where the deflection")
     assert document["decay_rate"] <= document["decay_rate_limit"]
 
 

@@ -2,7 +2,7 @@
 
 from making.assumptions import assumptions_table
 
-from nrs_design.loop.assumption import kinds
+from nrs_design.certificates.catalogue import kinds
 from tests.support import ROOT
 
 

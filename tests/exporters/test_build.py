@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from nrs_design.certificates.catalogue import sentences
 from nrs_design.controllers.float32 import exact_decimal
 from nrs_design.controllers.shipped import shipped_law
 from nrs_design.errors import CertificateError
@@ -13,7 +14,7 @@ from nrs_design.exporters.build import build_record
 from nrs_design.exporters.export import export_design
 from nrs_design.pipeline.runs import run_certification
 from nrs_design.spec import LoadedSpec, parse_spec, read_spec
-from tests.support import ROOT
+from tests.support import ROOT, words_of
 
 SPECS = ROOT / "specs"
 
@@ -28,7 +29,7 @@ def test_the_same_motor_in_volts(continuous_export):
     )
     system, before = found.certificate.system, continuous_export.certificate.system
     assert [mode.A for mode in system.modes] == [mode.A for mode in before.modes]
-    assert set(system.assumptions) - set(before.assumptions) == {
+    assert set(words_of(system)) - set(words_of(before)) == {
         "The motor takes commands in V: Kp of the motion controller is in V/rad, Kd in V*s/rad."
     }
     Kp, Kd = build_record(found.design, found.certificate, found.designed.spec).motion.gains
@@ -49,7 +50,7 @@ def test_the_same_motor_in_volts(continuous_export):
 def test_proof_is_that_of_the_certificate(record, continuous_export):
     proof = record.proof
     assert proof.certificate_id == continuous_export.certificate.id
-    assert proof.assumptions == continuous_export.certificate.granted
+    assert proof.assumptions == sentences(continuous_export.certificate.granted)
     assert Fraction(proof.decay_rate.exact) == continuous_export.certificate.evidence.rate
     assert Fraction(proof.decay_rate.rounded) <= continuous_export.certificate.evidence.rate
     assert proof.coordinates == "deflection"

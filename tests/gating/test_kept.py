@@ -96,7 +96,7 @@ def test_who_sets_how_far_a_search_goes_wants_one(gate, overrides):
 
 def _altered(document):
     (statement, *_) = document["statements"]
-    statement["claim"] = "Every solution decays at once."
+    statement["rate"] = "1000"
 
 
 @pytest.mark.parametrize(

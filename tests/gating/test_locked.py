@@ -139,7 +139,7 @@ TAMPERED = {
     "a certificate that is no JSON": (write(PROOF, "{"), [("NRS004", "error")], ""),
     "an edited certificate": (
         lambda project: (project / PROOF).write_text(
-            (project / PROOF).read_text().replace("Every solution", "No solution")
+            (project / PROOF).read_text().replace("matrices.given", "matrices.guessed")
         ),
         [("NRS104", "missed")],
         "is rejected",

@@ -1,16 +1,24 @@
 """Every assumption that a spec makes is a row of the table, and none gets lost."""
 
-import pickle
 import string
 from dataclasses import fields
 
 import pytest
 
+from nrs_design.certificates.catalogue import (
+    Standing,
+    bound_of,
+    catalogue_kind,
+    kinds,
+    omitted,
+    sentence,
+)
 from nrs_design.loop.assemble import assemble, assemble_matrices
-from nrs_design.loop.assumption import Assumption, Standing, kinds, omitted, say
 from nrs_design.pipeline.runs import run_design
+from nrs_design.proof.assumption import Assumption
 from nrs_design.spec import read_spec
 from nrs_design.spec.load import axes_at
+from nrs_design.spec.provenance import COVERS, MOTOR_COVERS
 from tests.support import ROOT
 
 SPECS = [
@@ -39,59 +47,87 @@ def named(path):
 
 @pytest.mark.parametrize("path", [named(path) for path in SPECS])
 def test_a_spec_takes_for_granted_what_the_table_says(path):
-    for sentence in assumed(path):
-        assert isinstance(sentence, Assumption), sentence
-        assert sentence.kind.id == sentence.id.split(".")[0]
-        assert sentence.bound
+    for assumption in assumed(path):
+        assert sentence(assumption).endswith(".")
+        assert bound_of(assumption)
 
 
 def test_kinds_have_names_of_their_own_and_no_empty_field():
     rows = kinds().values()
     assert len({kind.name for kind in rows}) == len(rows) > 30
     for kind in rows:
-        needed = {field.name for field in fields(kind)} - {"field", "argued", "omits"}
+        needed = {field.name for field in fields(kind)} - {
+            *("about", "argued", "omits", "bounds", "words")
+        }
         assert all(getattr(kind, name) for name in needed), kind.id
 
 
 def test_what_is_not_modelled_is_said_once_and_in_a_few_words():
-    quiet = say("uncoupled.axes")
-    assert omitted([quiet, quiet, "a plain text", say("not-sampled.continuous")]) == (
+    quiet = Assumption("uncoupled.axes")
+    assert omitted([quiet, quiet, Assumption("not-sampled.continuous")]) == (
         "other axes",
         "sampling, delay, quantization, friction, saturation",
     )
 
 
-def test_every_sentence_of_the_table_is_said_somewhere():
+def test_every_sentence_of_the_catalogue_is_said_somewhere():
     """A name that no code has is of a sentence that nobody says any more."""
     code = "".join(p.read_text(encoding="utf-8") for p in (ROOT / "nrs_design").rglob("*.py"))
     for kind in kinds().values():
-        for name, sentence in kind.says:
-            whole = f'"{kind.id}.{name}"' in code
+        for name in kind.says:
+            whole = f'"{kind.id}.{name}"' in code or f'"{kind.id}", "{name}"' in code
             # The rest of the id is put together where it is said.
-            assert whole or f'f"{kind.id}.{{' in code, f"{kind.id}.{name}"
-            assert sentence.endswith((".", "}")), sentence
-            assert all(field != "" for _, field, _, _ in string.Formatter().parse(sentence))
+            assert whole or f'f"{kind.id}.' in code or f'}}.{name}"' in code, f"{kind.id}.{name}"
 
 
-def test_an_assumption_is_its_sentence():
-    said = say("uncoupled.axes")
-    assert said == "The axes of the robot do not act on each other."
-    assert (said.id, said.bound, said.kind.standing) == (
-        "uncoupled.axes",
-        "zero coupling",
-        Standing.OPEN,
-    )
-    assert say("uncoupled.axes", "nearly zero").bound == "nearly zero"
+def test_fields_of_bounds_and_words_are_those_of_a_sentence():
+    """What a bound is filled with stands beside the sentence, and words are for fields it has."""
+    for kind in kinds().values():
+        said = {field for text in kind.says.values() for field in fields_in(text)}
+        assert set(kind.bounds) <= {*kind.says}, kind.id
+        assert set(kind.words) <= said, kind.id
+        for text in kind.says.values():
+            assert text.endswith((".", "}")), text
+            assert "" not in fields_in(text)
 
 
-def test_a_copy_keeps_id_and_bound():
-    copy = pickle.loads(pickle.dumps(say("load.inertia", "at night", inertia=2)))
-    assert (copy.id, copy.kind.id, copy.bound) == ("load.inertia", "load", "at night")
-    assert "against an inertia of 2." in copy
+def fields_in(text):
+    return {field for _, field, _, _ in string.Formatter().parse(text) if field is not None}
+
+
+def test_an_assumption_has_its_words_in_the_catalogue():
+    axes = Assumption("uncoupled.axes")
+    assert sentence(axes) == "The axes of the robot do not act on each other."
+    assert (bound_of(axes), catalogue_kind(axes).standing) == ("zero coupling", Standing.OPEN)
+    load = Assumption.of("load.sampled", inertia="2 kg*m^2", but="constant")
+    assert "against an inertia of 2 kg*m^2. " in sentence(load)
+    assert "within a period too, but for what is constant." in sentence(load)
+    assert bound_of(load) == "2 kg*m^2"
+
+
+@pytest.mark.parametrize(
+    "unknown",
+    [
+        Assumption.of("uncoupled.legs", legs=("a", "b")),
+        Assumption.of("legs.two", legs=("a", "b")),
+        Assumption.of("load.sampled", legs=("a", "b")),
+        Assumption.of("load.sampled", but="sometimes", legs=("a", "b")),
+        Assumption.of("at-a-switch.resets", switches=("a",), legs=("a", "b")),
+    ],
+)
+def test_what_the_catalogue_does_not_know_is_shown_as_it_is(unknown):
+    assert sentence(unknown).startswith(f"{unknown.id} (")
+    assert "legs: a, b" in sentence(unknown)
+    assert "this version does not know" in sentence(unknown)
+
+
+def test_coverage_is_called_in_certificates_as_in_specs():
+    words = kinds()["coverage"].words["covered"]
+    assert words == {**COVERS, **{f"motor-{key}": text for key, text in MOTOR_COVERS.items()}}
 
 
 def test_what_disturbances_bound_is_not_said_to_be_left_out():
-    plain, disturbed = say("not-quantized.sampled"), say("not-quantized.sampled-disturbed")
+    plain, disturbed = (Assumption(f"not-quantized.sampled{s}") for s in ("", "-disturbed"))
     assert omitted([plain]) == ("quantization, friction, saturation",)
     (words,) = omitted([disturbed])
     assert words == "quantization, friction beyond what disturbances bound, saturation"

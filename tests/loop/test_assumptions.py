@@ -11,7 +11,7 @@ from nrs_design.models.motion_loop import realize
 from nrs_design.pipeline.runs import run_certification, run_design
 from nrs_design.spec import LoadedSpec, parse_spec, read_spec
 from nrs_design.spec.build_plant import build_plant
-from tests.support import ROBOT
+from tests.support import ROBOT, words_of
 
 CONCHA = ROBOT / "concha.nrs.yaml"
 LOW, HIGH, ABOUT = 0.1, 0.3, 0.2
@@ -38,7 +38,7 @@ def test_what_the_range_of_a_motor_holds_is_assumed():
             LoadedSpec(path=ROBOT, sha256="", text=written, spec=parse_spec(written))
         )
         system = assemble(designed.spec, designed.plant, designed.design)
-        assert said + end in system.assumptions
+        assert said + end in words_of(system)
 
 
 def hunt_crossley(rng):
@@ -100,7 +100,7 @@ def test_ranges_scaled_below_one_do_not_cover_the_law(scale, covered):
     loaded = read_spec(CONCHA)
     designed = run_design(loaded)
     system = assemble(loaded.spec, designed.plant, designed.design, Fraction(scale))
-    texts = " ".join(system.assumptions)
+    texts = " ".join(words_of(system))
     assert ("motions need not be small" in texts) is covered
     assert ("that law is not covered" in texts) is not covered
 

@@ -30,6 +30,7 @@ from nrs_design.models.interval import Interval
 from nrs_design.models.linear_form import combine
 from nrs_design.models.plant import Plant
 from tests.loop.support import LOOP, MOTION, objects, polynomial, positive, stable
+from tests.support import words_of
 
 F = Fraction
 MOTOR = Actuator(F(1), F(1))
@@ -70,7 +71,7 @@ class Lagged(AbstractCompliantLaw):
         raise NotImplementedError
 
     @classmethod
-    def contact_text(cls, *, alone):
+    def contact_kept(cls, *, alone):
         return None
 
 
@@ -118,7 +119,7 @@ class TestAssembly:
         ],
     )
     def test_what_is_taken_for_granted(self, controller, options, said, unsaid):
-        texts = " ".join(assembled(controller, **options).assumptions)
+        texts = " ".join(words_of(assembled(controller, **options)))
         assert all(text in texts for text in said)
         assert not any(text in texts for text in unsaid)
 
@@ -140,12 +141,12 @@ class TestAssembly:
         law = Admittance(F("0.01"), F(2), F("0.5"))
         system = assembled(impedance("in", "0.01"), Controller("out", law, "soft", ("soft",)))
         assert system.states == ("xp1", "xp2", "vm [rad/s]", "delta [rad]")
-        texts = " ".join(system.assumptions)
+        texts = " ".join(words_of(system))
         assert "the integral of vm over all controllers, which no switch resets" in texts
         assert "bounded inputs, if the integral of the velocity command is bounded too," in texts
         # Without a spring of its own, `in` stays anywhere in the air.
         assert "Contact is not lost" in texts
-        assert "spring" not in " ".join(assembled(impedance("in", "0.01")).assumptions)
+        assert "spring" not in " ".join(words_of(assembled(impedance("in", "0.01"))))
 
     def test_with_a_spring_free_motion_is_a_mode_like_others(self):
         sprung = Controller("in", Admittance(F("0.01"), F(2), F("0.5")), "soft", ("soft",))
@@ -153,7 +154,7 @@ class TestAssembly:
         assert [mode.name for mode in system.modes] == ["in/soft/k-min", "in/soft/k-max", "in/free"]
         assert system.contact is None
         assert all(stable(mode.A.fractions()) for mode in system.modes)
-        assert "at any moment" in " ".join(system.assumptions)
+        assert "at any moment" in " ".join(words_of(system))
         for contact in (None, "kept"):
             assert len(assembled(sprung, contact=contact).modes) == 2
         plain = impedance("out", "0.01")
@@ -263,12 +264,12 @@ class TestViscoelastic:
         assert concha[5] == [0, 0, 0, F(3, 30), 0, F(-4, 30)]
 
     def test_assumptions(self):
-        alone = " ".join(viscoelastic("nose").assumptions)
+        alone = " ".join(words_of(viscoelastic("nose")))
         assert "The damper of nose keeps its deflection at a switch" in alone
         assert "creeps back" not in alone
-        both = " ".join(viscoelastic("nose", "tool").assumptions)
+        both = " ".join(words_of(viscoelastic("nose", "tool")))
         assert "While another environment is touched, nose is free of force" in both
-        gel = " ".join(viscoelastic("gel").assumptions)
+        gel = " ".join(words_of(viscoelastic("gel")))
         assert "that the deflection itself returns to zero is not claimed" in gel
         assert "nor that it stays bounded under a command" in gel
         assert "The deflection is continuous" not in gel
@@ -287,12 +288,12 @@ def test_things_touched_at_once():
     rows = [velocity_mode(MOTION, Admittance(F(1), F(2)), Elastic(F(k))) for k in (41, 106)]
     assert [mode.A.fractions() for mode in springs.modes] == rows
     assert springs.contact is not None
-    assert any("each may be lost on its own" in text for text in springs.assumptions)
+    assert any("each may be lost on its own" in text for text in words_of(springs))
     damped = Environment("hand", KelvinVoigt, (Interval.point(F(61)), Interval.point(F(1))))
     kept = touched_at_once(damped, losable=False)
     assert kept.contact is None
-    assert any("none of them is lost on its own" in text for text in kept.assumptions)
-    assert any("Contact is not lost" in text for text in kept.assumptions)
+    assert any("none of them is lost on its own" in text for text in words_of(kept))
+    assert any("Contact is not lost" in text for text in words_of(kept))
 
 
 def touched_at_once(other, *, losable):

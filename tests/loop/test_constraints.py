@@ -4,6 +4,7 @@ from fractions import Fraction
 
 import pytest
 
+from nrs_design.certificates.catalogue import sentence
 from nrs_design.controllers.gains import gains_of
 from nrs_design.errors import AssemblyError
 from nrs_design.loop import constraints
@@ -12,6 +13,7 @@ from nrs_design.pipeline.runs import run_design
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.switching import Reset, Stay
 from nrs_design.spec import LoadedSpec, parse_spec
+from tests.support import words_of
 
 HEAD = "kind: switched-system\nname: s\ntime: continuous\n"
 TWO = "modes:\n  - {name: a, A: [[-1]]}\n  - {name: b, A: [[-2]]}\n"
@@ -62,7 +64,7 @@ def test_dwell_time_in_seconds():
     assert system.switching.dwell_time == Fraction("2.76")
     assert system.switching.transitions is None
     assert not system.switching.is_arbitrary
-    assert system.assumptions[1:] == (
+    assert words_of(system)[1:] == (
         "The state is continuous at a switch (identity resets).",
         "Every mode stays active for at least 2.76 s before the next switch.",
         "Any mode may follow any other.",
@@ -73,9 +75,9 @@ def test_dwell_time_in_steps():
     system = given(TWO, "{dwell_time: 3 steps, transitions: [[a, b]]}", "discrete")
     assert system.switching.dwell_time == 3
     assert "Every mode stays active for at least 3 steps before the next switch." in (
-        system.assumptions
+        words_of(system)
     )
-    assert system.assumptions[-1] == "The mode changes only from a to b."
+    assert words_of(system)[-1] == "The mode changes only from a to b."
 
 
 def test_transitions():
@@ -92,7 +94,7 @@ def test_corners_of_one_mode_follow_each_other_freely():
         ("a/k-min", "b"),
         ("a/k-max", "b"),
     }
-    assert "Parameter k stays in [0, 2] and may change arbitrarily fast." in system.assumptions
+    assert "Parameter k stays in [0, 2] and may change arbitrarily fast." in words_of(system)
 
 
 def test_a_constant_parameter_is_kept_apart_from_the_transitions():
@@ -103,10 +105,10 @@ def test_a_constant_parameter_is_kept_apart_from_the_transitions():
     assert not system.switching.is_arbitrary
     assert len(system.edges()) == 12
     assert system.switching.fixed_ends == (("a/m-min", "a/m-max"), ("b/m-min", "b/m-max"))
-    assert system.assumptions[1:] == (
+    assert words_of(system)[1:] == (
         "Parameter m is unknown in [0, 2], but constant: it has one value in all modes and at all "
         "times.",
-        GIVEN_MATRICES[1],
+        sentence(GIVEN_MATRICES[1]),
     )
 
 
@@ -120,7 +122,7 @@ def test_resets_hold_for_all_corners():
     assert maps[low, b] == half
     assert maps[low, high] is None
     assert maps[b, low] is None
-    assert system.assumptions[2:] == (
+    assert words_of(system)[2:] == (
         "At a switch from a to b the state is mapped as the resets of the spec say; at every other "
         "switch it is continuous.",
         "Any switching signal is possible.",
@@ -157,7 +159,7 @@ def test_long_lists_are_counted():
     pairs = ", ".join(f"[m{i}, m{i + 1}]" for i in range(30))
     modes = "modes:\n" + "".join(f"  - {{name: m{i}, A: [[-1]]}}\n" for i in range(31))
     system = given(modes, f"{{transitions: [{pairs}]}}")
-    assert system.assumptions[-1] == (
+    assert words_of(system)[-1] == (
         "The mode changes only along the 30 transitions that the spec lists."
     )
 
@@ -186,7 +188,7 @@ def test_controllers_in_order():
         "The controller changes only from insertion to withdrawal.",
         "While a controller is active, the environment that it touches may change among its "
         "contacts at any time.",
-    } <= set(system.assumptions)
+    } <= set(words_of(system))
 
 
 def test_contacts_change_freely():
@@ -205,7 +207,7 @@ def test_controllers_with_a_dwell_time():
     assert {
         "Every controller stays active for at least 0.5 s before the next switch.",
         "Any controller may follow any other.",
-    } <= set(system.assumptions)
+    } <= set(words_of(system))
 
 
 def test_times_by_mode():
@@ -214,7 +216,7 @@ def test_times_by_mode():
     assert system.switching.dwell_time == 0
     assert system.stays() == {"a": Stay(Fraction(1), Fraction(1)), "b": Stay(Fraction(2))}
     assert [mode.name for mode in system.lasting_modes()] == ["b"]
-    assert system.assumptions[-3:] == (
+    assert words_of(system)[-3:] == (
         "Mode b stays active for at least 2 steps before the next switch.",
         "Mode a is left after at most 1 step.",
         "Any mode may follow any other.",
@@ -233,7 +235,7 @@ def test_each_reset_is_an_edge():
     system = given(TWO, f"arbitrary\nresets: {resets}")
     edges = [(e.source.name, e.target.name, e.map and e.map.fractions()) for e in system.edges()]
     assert edges == [("a", "b", [[2]]), ("a", "b", [[3]]), ("b", "a", None)]
-    assert system.assumptions[1] == (
+    assert words_of(system)[1] == (
         "At a switch from a to b the state is mapped as the resets of the spec say; at every other "
         "switch it is continuous. Where several resets lead from one mode to another, any one of "
         "them may happen, and always one of them does."
@@ -243,4 +245,4 @@ def test_each_reset_is_an_edge():
 def test_controllers_that_must_be_left():
     system = pair("{longest_dwell_time: {insertion: 5 s}}")
     assert system.switching.stays == (("insertion/soft", Stay(Fraction(0), Fraction(5))),)
-    assert "Controller insertion is left after at most 5 s." in system.assumptions
+    assert "Controller insertion is left after at most 5 s." in words_of(system)

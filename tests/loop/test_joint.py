@@ -14,6 +14,7 @@ from nrs_design.search.certify import Limits, certify
 from nrs_design.search.method import Method
 from tests.proof.graphs import shape_of
 from tests.search.support import thesis_robot
+from tests.support import words_of
 
 SOFT, BOTH, INSERTION = ("41.5", "44.2"), ("2.15", "1.04"), ("2.15",)
 ANY_RATE = Limits(optimize_rate=False)
@@ -58,13 +59,13 @@ def test_states_and_assumptions():
     assert system.states == ("e [rad]", "omega [rad/s]", "vm [rad/s]", "delta [rad]")
     assert len(system.modes) == 16
     assert len(system.contact.free) == 8
-    text = " ".join(system.assumptions)
+    text = " ".join(words_of(system))
     assert "its gain stays in [0.0004744866, 0.0004938534] rad/s/rpm" in text
     assert "its time constant stays in [0.034398, 0.035802] s, and may change" in text
     assert "against an inertia of 1.213 kg*m^2" in text
     assert system.assumptions[0].id == "motor.joint"
     unloaded = thesis_robot(SOFT, BOTH, "0.01", "0.02")
-    assert "does not slow the motor" in " ".join(unloaded.assumptions)
+    assert "does not slow the motor" in " ".join(words_of(unloaded))
 
 
 def test_a_load_alone_makes_physical_states_and_no_corners():

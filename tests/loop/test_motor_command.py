@@ -14,7 +14,7 @@ from nrs_design.pipeline.certification import assemble_spec, search_limits
 from nrs_design.pipeline.runs import run_certification, run_design
 from nrs_design.reporting.sections.proof import proof_section
 from nrs_design.spec import read_spec
-from tests.support import SOFT_TISSUE
+from tests.support import SOFT_TISSUE, words_of
 
 TEXT = SOFT_TISSUE.read_text(encoding="utf-8")
 Kp, D = Fraction(np.float32(117359.436).item()), Fraction(1_030_000)
@@ -73,7 +73,7 @@ def test_errors_of_the_sample_are_taken_off_the_limit(tmp_path):
     taken = float(2000 - output.limit)
     assert taken == pytest.approx(float(Kp + D) * half, rel=2e-2)
     assert taken > float(Kp + D) * half
-    (text,) = (t for t in system.assumptions if "it does not saturate" in t)
+    (text,) = (t for t in words_of(system) if "it does not saturate" in t)
     assert f"less {taken:.5g}"[:8] in text
     # So large an error leaves nothing of the limit, and none is shown.
     small = command_of(system_of(spec_of(tmp_path, ERRORS, limit="50 rpm")))
@@ -85,7 +85,7 @@ def test_where_it_is_not_asked_for(tmp_path):
     for loaded in (spec_of(tmp_path, COMMANDED, limit=None), spec_of(tmp_path, "")):
         system = system_of(loaded)
         assert all("motor command" not in o.name for o in system.outputs)
-        assert "does not saturate" not in " ".join(system.assumptions)
+        assert "does not saturate" not in " ".join(words_of(system))
 
 
 def worst_signs(system, mode):

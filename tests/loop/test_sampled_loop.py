@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
+from nrs_design.certificates.catalogue import catalogue_kind, omitted
 from nrs_design.certificates.certificate import Verdict
 from nrs_design.loop.assemble import assemble
-from nrs_design.loop.assumption import omitted
 from nrs_design.pipeline.certification import assemble_spec
 from nrs_design.pipeline.runs import run_design
 from nrs_design.proof.contradiction import find_contradiction
@@ -19,7 +19,7 @@ from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.certify import Limits, certify
 from nrs_design.spec import read_spec
 from tests.proof.graphs import shape_of
-from tests.support import FORCE_LIMIT, ROOT, SOFT_TISSUE
+from tests.support import FORCE_LIMIT, ROOT, SOFT_TISSUE, words_of
 
 TEXT = SOFT_TISSUE.read_text(encoding="utf-8")
 TOLERANCE = (
@@ -67,7 +67,7 @@ def test_modes_and_states_of_the_thesis_robot(tmp_path):
     assert find_contradiction(system) is None
     terms = ["e", "Kp e", "D (e - e before)", "a vm", "b F", "T (v - vm)"]
     assert [item.name for item in system.roundings] == terms
-    texts = " ".join(system.assumptions)
+    texts = " ".join(words_of(system))
     assert "0 to 1 sample old" in texts
     assert "D (e - e before) 3" in texts
     assert "without jitter" in texts
@@ -77,14 +77,14 @@ def test_modes_and_states_of_the_thesis_robot(tmp_path):
 
 
 def kinds_of(system):
-    return {item.kind.id for item in system.assumptions}
+    return {catalogue_kind(item).id for item in system.assumptions}
 
 
 def test_a_tolerance_of_the_motor_gives_its_corners(tmp_path):
     system = system_of(tmp_path, "{period: 2 ms, delay: [0, 1]}", *TOLERANCE)
     # Controllers, ages of the sample, ends of k and Km, and a triangle of E and s.
     assert len(system.modes) == 2 * 2 * 2 * 2 * 3
-    assert "may change at every sample, not in between" in " ".join(system.assumptions)
+    assert "may change at every sample, not in between" in " ".join(words_of(system))
     assert "motor" in kinds_of(system)
     assert "nominal-motor" not in kinds_of(system)
 
@@ -109,9 +109,9 @@ def test_with_a_spring_free_motion_is_a_mode_like_others(tmp_path):
     system = system_of(tmp_path, "{period: 2 ms, delay: 0}\ncontact: losable", sprung)
     assert system.contact is None
     assert sum("/free/" in mode.name for mode in system.modes) == 4
-    assert "at any moment" in " ".join(system.assumptions)
+    assert "at any moment" in " ".join(words_of(system))
     kept = system_of(tmp_path, "{period: 2 ms, delay: 0}", sprung)
-    assert "before the reference moves on" in " ".join(kept.assumptions)
+    assert "before the reference moves on" in " ".join(words_of(kept))
     assert not any("free" in mode.name for mode in kept.modes)
 
 
@@ -157,7 +157,7 @@ def test_whether_contact_is_lost_and_what_is_taken_for_granted(
 ):
     system = system_of(tmp_path, f"{{period: 2 ms, delay: 0}}{contact}", *changes)
     assert (system.contact is None) == kept
-    assert said in " ".join(system.assumptions)
+    assert said in " ".join(words_of(system))
 
 
 DAMPED_TOOL = "  tool: {model: kelvin-voigt, stiffness: 5 N*m/rad, damping: 0.3 N*m*s/rad}\n"
@@ -216,7 +216,7 @@ def test_a_faster_outer_loop_holds_the_command(tmp_path):
         assert (
             (row == keeps) == ("admittance" in mode.name) == (mode.name not in system.clock.first)
         )
-    texts = " ".join(system.assumptions)
+    texts = " ".join(words_of(system))
     assert "The motion loop runs every 0.002 s" in texts
     assert "the admittance runs every 0.0001 s" in texts
     assert "counted in samples of the admittance" in texts
@@ -311,7 +311,7 @@ def test_position_and_force_control_share_the_motion(tmp_path):
     assert len(system.modes) == 2 + 4 + 8
     assert system.contact is None
     assert find_contradiction(system) is None
-    texts = " ".join(system.assumptions)
+    texts = " ".join(words_of(system))
     assert "Contact is not lost while force is controlled" in texts
     assert "set the reference before the error is formed" in texts
     assert "Kp of force = 0.0199999995529651641845703125" in texts
@@ -328,7 +328,7 @@ def test_what_position_control_touches_is_sampled(tmp_path):
     ]
     assert free[2] == [0] * 4
     assert touching[2] == [0, 0, 0, Fraction("768.17") * Fraction("0.24") ** 2]
-    assert "anything that other controllers touch may be touched" in " ".join(system.assumptions)
+    assert "anything that other controllers touch may be touched" in " ".join(words_of(system))
     at_once = system_of(tmp_path, "{period: 2 ms, delay: 0}", text=FORCE)
     assert [m.name for m in at_once.modes if "position" in m.name] == [
         "position/flow-0",
@@ -350,7 +350,7 @@ def test_contact_lost_under_force_control_is_a_mode_without_force(tmp_path):
     late, pushed = modes["force/free/delay-1/flow-0"], modes["position/flow-0"]
     assert [row[2] for row in late] != [row[2] for row in pushed]
     assert [row[:2] + row[3:] for row in late] == [row[:2] + row[3:] for row in pushed]
-    texts = " ".join(system.assumptions)
+    texts = " ".join(words_of(system))
     assert "free motion, in which a force sample is zero" in texts
     assert "environment would pull" not in texts
     found = certify(system)
@@ -367,7 +367,7 @@ def test_an_admittance_beside_others_leaves_its_states_idle(tmp_path):
     assert idle[0] == [left, *[0] * (system.order - 1)]
     assert idle[3][3] == left
     assert all(row[0] == 0 == row[3] for i, row in enumerate(idle) if i not in (0, 3))
-    assert "a sample leaves d = 0.96078944" in " ".join(system.assumptions)
+    assert "a sample leaves d = 0.96078944" in " ".join(words_of(system))
 
 
 def test_a_reset_zeroes_what_an_admittance_leaves(tmp_path):
@@ -378,7 +378,7 @@ def test_a_reset_zeroes_what_an_admittance_leaves(tmp_path):
     for item in system.switching.resets:
         kept = [[Fraction(int(i == j not in (0, 3))) for j in range(5)] for i in range(5)]
         assert item.map.fractions() == kept
-    assert "they are set to zero first" in " ".join(system.assumptions)
+    assert "they are set to zero first" in " ".join(words_of(system))
 
 
 def radius(system, wanted="insertion"):
@@ -407,7 +407,7 @@ def test_a_constant_latency_has_the_roots_of_the_split_period(tmp_path, late):
     mode = next(mode for mode in system.modes if "insertion/soft/k-max" in mode.name)
     numbers = {
         name: float(value)
-        for text in [" ".join(system.assumptions)]
+        for text in [" ".join(words_of(system))]
         for name, value in re.findall(r"(Kp|Kd/T|\w of insertion) = ([0-9.]+[0-9])", text)
     }
     a, b, step = (numbers[f"{name} of insertion"] for name in "abT")
@@ -445,7 +445,7 @@ def streamed(path, sampling, *changes):
 
 
 def numbers_of(system, controller, names):
-    said = " ".join(system.assumptions)
+    said = " ".join(words_of(system))
     return [float(re.search(rf"{n} of {controller} = ([0-9.]+[0-9])", said)[1]) for n in names]
 
 

@@ -13,6 +13,7 @@ from nrs_design.proof.clock import keeps_turns
 from nrs_design.search.certify import Limits, certify
 from nrs_design.spec.misses import automaton_of
 from tests.loop.test_sampled_loop import system_of
+from tests.support import words_of
 
 
 def loop(path, misses, *changes):
@@ -67,7 +68,7 @@ def test_one_miss_after_another_is_proved(tmp_path):
     assert done.evidence.covers_rounding
     claim = done.evidence.claim(system)
     assert "that the rule for missed deadlines allows" in claim
-    text = " ".join(system.assumptions)
+    text = " ".join(words_of(system))
     assert "at most 1 period in a row miss their deadline" in text
     assert "Any switching signal is possible" not in text
 

@@ -20,7 +20,7 @@ from nrs_design.simulation.step_program import StepProgram
 from nrs_design.spec import read_spec
 from nrs_design.work import Allowance
 from tests.proof.systems import pushed_away_in_steps
-from tests.support import ROOT
+from tests.support import ROOT, words_of
 
 KM, TAU, PERIOD = 4.8417e-4, 0.0351, Fraction(1, 500)
 SAMPLED = "switching: arbitrary\nsampling: {period: 2 ms, delay: 1}"
@@ -176,6 +176,6 @@ def test_the_region_of_a_scalar_loop_is_nearly_that_of_its_motions():
 def test_what_is_taken_for_granted():
     for kind, said in (("impedance", "2000 rpm, or at any"), ("force", "the integral of the")):
         system, _, _ = loop(kind)
-        assert said in system.assumptions[-1]
-        assert "saturation only where a statement says so" in " ".join(system.assumptions)
-        assert "friction and saturation are not" not in " ".join(system.assumptions)
+        assert said in words_of(system)[-1]
+        assert "saturation only where a statement says so" in " ".join(words_of(system))
+        assert "friction and saturation are not" not in " ".join(words_of(system))

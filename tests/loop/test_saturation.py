@@ -5,12 +5,13 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
+from nrs_design.certificates.catalogue import catalogue_kind
 from nrs_design.pipeline.certification import assemble_spec
 from nrs_design.pipeline.runs import run_certification, run_design
 from nrs_design.proof.bounds import rounded_down
 from nrs_design.simulation.saturation import saturated_rates
 from nrs_design.spec import read_spec
-from tests.support import ROOT
+from tests.support import ROOT, words_of
 
 TEXT = (ROOT / "docs/examples/saturating.nrs.yaml").read_text("utf-8")
 KP, KD, V, U = 117359.4375, 2060.0, np.deg2rad(8), 2000.0
@@ -118,16 +119,17 @@ def test_the_largest_force_of_the_example(tmp_path):
 
 def test_what_is_taken_for_granted(tmp_path):
     system = system_of(tmp_path, TEXT)
-    (said,) = [text for text in system.assumptions if text.kind.id == "limited"]
+    (said,) = [text for text in words_of(system) if "is cut off at" in text]
     assert "cut off at 0.139627 rad/s (rounded up)" in said
     assert "likewise at 2000 rpm" in said
-    (left,) = [text for text in system.assumptions if text.kind.id == "not-sampled-but-limited"]
+    (left,) = [text for text in words_of(system) if "not modelled" in text]
     assert "friction are not modelled, saturation only where a statement says so" in left
     # Its name must not contradict what is proved of saturation.
-    assert left.kind.name == "no sampling or friction, and saturation only as stated"
+    (kind,) = {k.name for k in map(catalogue_kind, system.assumptions) if "sampling" in k.name}
+    assert kind == "no sampling or friction, and saturation only as stated"
     assert system.saturation.start.wanted == Fraction(1, 2)
     plain = system_of(tmp_path, TEXT.replace("goals:\n  initial_force: 0.5 N*m\n", ""))
     assert plain.saturation is None
-    assert "friction and saturation are not modelled" in " ".join(plain.assumptions)
+    assert "friction and saturation are not modelled" in " ".join(words_of(plain))
     lowest = min(float(x.floats()[-1][0]) for x in system.saturation.start.states)
     assert lowest == pytest.approx(1 / (768.17 * 0.24**2))

@@ -14,6 +14,7 @@ from nrs_design.models.contact.environment import Environment
 from nrs_design.models.interval import Interval
 from nrs_design.pipeline.runs import run_design
 from nrs_design.spec import LoadedSpec, parse_spec
+from tests.support import words_of
 
 BOX = parse_spec(
     "kind: switched-system\nname: s\ntime: continuous\nswitching: arbitrary\n"
@@ -70,12 +71,12 @@ def test_parameters_are_scaled():
     assert {
         "Parameter k stays in [2, 4.5] and may change arbitrarily fast.",
         "All ranges of the spec are scaled about their nominal values by 1/2.",
-    } <= set(half.assumptions)
+    } <= set(words_of(half))
 
 
 def test_scale_one_is_what_the_spec_says():
     assert assemble_from_text(BOX, {}, Fraction(1)) == assemble_from_text(BOX, {})
-    assert not any("scaled" in text for text in assemble_from_text(BOX, {}).assumptions)
+    assert not any("scaled" in text for text in words_of(assemble_from_text(BOX, {})))
 
 
 def test_scale_zero_leaves_the_nominal_values():
@@ -83,7 +84,7 @@ def test_scale_zero_leaves_the_nominal_values():
     assert names(nominal) == ["a"]
     assert nominal.modes[0].A.fractions() == [[-4]]
     assert nominal.switching.is_arbitrary
-    assert "Parameter k is 3." in nominal.assumptions
+    assert "Parameter k is 3." in words_of(nominal)
 
 
 def test_environments_are_scaled(gains):
@@ -99,7 +100,7 @@ def test_environments_are_scaled(gains):
         assert wide.A.fractions()[2][3] - centre == Fraction(4, 3) * (
             mode.A.fractions()[2][3] - centre
         )
-    assert double.assumptions[-1] == (
+    assert words_of(double)[-1] == (
         "All ranges of the spec are scaled about their nominal values by 4/3."
     )
 

@@ -2,23 +2,23 @@
 
 from fractions import Fraction
 
+from nrs_design.certificates.catalogue import sentences
 from nrs_design.controllers.float32 import exact_decimal
 from nrs_design.controllers.sensor import LowPass, Sensor
 from nrs_design.loop.assemble import assemble
-from nrs_design.loop.assumptions import sensor_texts
 from nrs_design.pipeline.runs import run_design
 from nrs_design.spec import read_spec
-from tests.support import SOFT_TISSUE
+from tests.support import SOFT_TISSUE, words_of
 
 SENSOR = Sensor({"bias": Fraction(1, 3), "drift": Fraction(1, 2)}, LowPass(2, Fraction(200)), 1e-8)
 
 
 def test_without_a_sensor_nothing_is_said():
-    assert not list(sensor_texts(Sensor(), None, disturbed=False))
+    assert not list(Sensor().assumptions(None, disturbed=False))
 
 
 def test_errors_are_summed_rounded_up_and_left_out():
-    filtered, errors, noise = sensor_texts(SENSOR, None, disturbed=False)
+    filtered, errors, noise = sentences(SENSOR.assumptions(None, disturbed=False))
     assert "2 equal lags in a row, x' = w (F - x) with w = 200 rad/s" in filtered
     assert "at most 0.833334 N*m (rounded up) (bias: 0.333334 N*m (rounded up); " in errors
     assert "drift: 0.5 N*m)" in errors
@@ -27,12 +27,12 @@ def test_errors_are_summed_rounded_up_and_left_out():
 
 
 def test_the_inertia_of_a_tool_is_left_out():
-    (text,) = sensor_texts(Sensor(carries=True), None, disturbed=False)
+    (text,) = sentences(Sensor(carries=True).assumptions(None, disturbed=False))
     assert "not by its acceleration" in text
 
 
 def test_bounds_on_disturbances_take_them_up():
-    step, errors, _ = sensor_texts(SENSOR, Fraction(1, 500), disturbed=True)
+    step, errors, _ = sentences(SENSOR.assumptions(Fraction(1, 500), disturbed=True))
     assert "x+ = p x + q F with the single-precision numbers p = 0.67" in step
     assert "It is the force error of the statements that name one" in errors
 
@@ -50,7 +50,7 @@ def test_the_filter_runs_with_the_outer_loop(tmp_path):
     sampling = "sampling: {period: 2 ms, outer_period: 0.5 ms, delay: 0}\n"
     designed, system = sensed(tmp_path, f"{sampling}sensor: {{filter: {{cutoff: 60 Hz}}}}\n")
     step = designed.design.sensor.filter.discretize(Fraction(1, 2000))
-    (text,) = (text for text in system.assumptions if "through one lag" in text)
+    (text,) = (text for text in words_of(system) if "through one lag" in text)
     assert f"p = {exact_decimal(step.p)} and" in text
     kept = {mode.A.fractions()[5][5] for mode in system.modes}
     assert kept == {step.p}
@@ -65,6 +65,6 @@ def test_the_sampled_loop_takes_the_errors_for_its_force_error(tmp_path):
     assert system.states[4] == "filtered 1 before [N*m]"
     bounds = {channel.name: channel.bound for channel in system.channels}
     assert bounds["force error"] == Fraction("0.005")
-    texts = " ".join(system.assumptions)
+    texts = " ".join(words_of(system))
     assert "force sensor, friction" not in texts
     assert "the force error of the statements" in texts

@@ -18,7 +18,7 @@ from nrs_design.pipeline.runs import run_design
 from nrs_design.spec import parse_spec, read_spec
 from nrs_design.spec.build_plant import build_plant
 from tests.loop.support import polynomial
-from tests.support import ROOT
+from tests.support import ROOT, words_of
 
 F = Fraction
 MIXED = ROOT / "docs" / "examples" / "mixed-controllers.nrs.yaml"
@@ -55,7 +55,7 @@ def test_the_example_has_one_state_for_all():
     assert [row[:2] for row in approach[:2]] == [list(row) for row in system_motion(system)]
     assert approach[2:] == [[0, 0, -20, 0], [0, 0, 0, -20]]
     assert not system.switching.resets
-    texts = " ".join(system.assumptions)
+    texts = " ".join(words_of(system))
     assert "act on nothing and decay at 20 1/s" in texts
     assert "States are continuous at a switch" in texts
 
@@ -75,7 +75,7 @@ def test_resets_lead_from_impedance_controllers_to_the_others():
     assert found == set(product(ends, others))
     kept = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 0, 0], [0, 0, 0, 0]]
     assert all(reset.map.fractions() == kept for reset in system.switching.resets)
-    texts = " ".join(system.assumptions)
+    texts = " ".join(words_of(system))
     assert "they are set to zero" in texts
     assert "start from the rest position, with vm = 0." in texts
     assert "All other states are continuous" in texts
@@ -113,7 +113,7 @@ def test_a_reset_leaves_what_shows_the_force_and_what_remembers_it():
 
 
 def test_what_is_held_is_said_to_be():
-    texts = " ".join(mixed(held=("decay: 20 1/s", "decay: 0 1/s")).assumptions)
+    texts = " ".join(words_of(mixed(held=("decay: 20 1/s", "decay: 0 1/s"))))
     assert "act on nothing and are held" in texts
 
 
@@ -123,7 +123,7 @@ def test_without_inertia_no_velocity_is_said_to_start_at_zero(tmp_path):
     path.write_text(text.replace("Mt: 0.01 kg*m^2", "Mt: 0 kg*m^2"))
     designed = run_design(read_spec(path))
     system = assemble(designed.spec, designed.plant, designed.design)
-    texts = " ".join(system.assumptions)
+    texts = " ".join(words_of(system))
     assert "impedance controllers start from the rest position." in texts
     assert "vm" not in texts
 
@@ -132,7 +132,7 @@ def test_only_controllers_of_the_spec_are_named():
     spec = parse_spec(MIXED.read_text())
     design = run_design(read_spec(MIXED)).design
     without = replace(design, controllers=design.controllers[:2])
-    texts = " ".join(assemble(spec, build_plant(spec), without).assumptions)
+    texts = " ".join(words_of(assemble(spec, build_plant(spec), without)))
     assert "Impedance controllers integrate" in texts
     assert "While a position controller is active" in texts
     assert "force controller" not in texts
@@ -143,7 +143,7 @@ def test_decay_is_the_single_precision_number_that_the_robot_holds():
     held = F(13421773, 2**27)
     assert abs(held - F("0.1")) < F(1, 10**8)
     assert system.modes[0].A.fractions()[2][2] == -held
-    assert "decay at 0.100000001490116119384765625 1/s" in " ".join(system.assumptions)
+    assert "decay at 0.100000001490116119384765625 1/s" in " ".join(words_of(system))
 
 
 def test_a_spring_acts_on_the_reference_that_others_leave_idle(tmp_path):
@@ -153,6 +153,6 @@ def test_a_spring_acts_on_the_reference_that_others_leave_idle(tmp_path):
     path.write_text(sprung, encoding="utf-8")
     designed = run_design(read_spec(path))
     system = assemble(designed.spec, designed.plant, designed.design)
-    texts = " ".join(system.assumptions)
+    texts = " ".join(words_of(system))
     assert "draws it to zero" in texts
     assert "which no switch resets" not in texts

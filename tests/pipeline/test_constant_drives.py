@@ -10,6 +10,7 @@ from nrs_design.errors import AssemblyError, SpecError
 from nrs_design.pipeline.certification import assemble_spec
 from nrs_design.pipeline.runs import run_certification, run_design
 from nrs_design.spec import parse_spec, read_spec
+from tests.support import words_of
 
 TORQUES = """\
 kind: interaction-design
@@ -122,7 +123,7 @@ def test_a_constant_latency_is_what_is_left_of_the_period(tmp_path):
     other = assemble_spec(varying, run_design(varying))
     assert other.modes == system.modes
     assert not other.switching.fixed_ends
-    texts = " ".join(system.assumptions)
+    texts = " ".join(words_of(system))
     assert "by a time that is unknown from 0.0024 s to 0.0036 s, but always the same" in texts
 
 

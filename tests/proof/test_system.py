@@ -3,6 +3,7 @@ from fractions import Fraction
 
 import pytest
 
+from nrs_design.proof.assumption import Assumption
 from nrs_design.proof.contact import Flights
 from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Clock, Stay, Switching
@@ -68,10 +69,11 @@ def test_edges_follow_transitions_and_take_every_reset():
 
 def test_other_modes_leave_contact_and_channels_behind():
     other = family([[-1]], switching=Switching(HALF))
-    changed = replace(pushed(bouncing_in_steps()), assumptions=("rigid",)).with_modes(
+    rigid = (Assumption("rigid.all"),)
+    changed = replace(pushed(bouncing_in_steps()), assumptions=rigid).with_modes(
         other.modes, other.states, other.switching
     )
-    assert changed == replace(other, time=Time.DISCRETE, assumptions=("rigid",))
+    assert changed == replace(other, time=Time.DISCRETE, assumptions=rigid)
 
 
 def test_what_a_statement_must_cover():

@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from nrs_design.loop.assumption import kinds
+from nrs_design.certificates.catalogue import kinds
 from nrs_design.reporting.document import Linked, Sentence, Table, parts_of
 from nrs_design.reporting.sections.places import assumed_at, contact_at, linked, mode_at, with_line
 from nrs_design.spec import read_spec

@@ -1,9 +1,10 @@
-"""The register: what a sentence carries, what counts as tested, what a certificate lacks."""
+"""The register: what a sentence carries, and what counts as tested."""
 
 import pytest
 
-from nrs_design.loop.assumption import Standing, say
+from nrs_design.certificates.catalogue import Standing
 from nrs_design.pipeline.runs import run_certification
+from nrs_design.proof.assumption import Assumption
 from nrs_design.reporting.register import register_of
 from nrs_design.spec import read_spec
 from tests.reporting.conftest import recorded
@@ -13,17 +14,12 @@ AXES = "The axes of the robot do not act on each other."
 
 
 def test_an_assumption_keeps_its_sentence_and_order():
-    said = say("motor.joint", "at 1 rpm", motor="m", moving="")
-    motor, axes = register_of([said, say("uncoupled.axes")])
-    assert (motor.statement, motor.kind.id, motor.bound) == (said, "motor", "at 1 rpm")
+    said = Assumption.of("motor.joint", gain="[1, 2] rad/s/rpm", tau="1 s", moving="all")
+    motor, axes = register_of([said, Assumption("uncoupled.axes")])
+    bound = "its gain stays in [1, 2] rad/s/rpm and its time constant is 1 s"
+    assert (motor.kind.id, motor.bound) == ("motor", bound)
+    assert motor.statement.endswith(f"{bound}, and may change arbitrarily fast.")
     assert (axes.statement, axes.bound, axes.standing) == (AXES, "zero coupling", Standing.OPEN)
-
-
-def test_what_a_certificate_alone_does_not_tell_is_said():
-    (found,) = register_of([AXES])
-    assert (found.statement, found.standing) == (AXES, Standing.OPEN)
-    assert "report its spec" in found.kind.breaks
-    assert "report its spec" in found.kind.test
 
 
 @pytest.mark.parametrize(

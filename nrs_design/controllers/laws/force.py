@@ -18,6 +18,14 @@ class ProportionalForce(AbstractCompliantLaw[ForceControllerSpec]):
     """Position correction ``Kp (Fd - F)`` of the force mode (thesis 6.32)."""
 
     name: ClassVar[str] = "force"
+    sentences: ClassVar[Mapping[str, str]] = MappingProxyType(
+        {
+            "contact-kept.force": (
+                "Contact is not lost while force is controlled: the environment "
+                "would pull as it pushes."
+            ),
+        }
+    )
     units: ClassVar[Mapping[str, str]] = MappingProxyType({"Kp": "rad/(N*m)"})
     commands: ClassVar[Command] = ForceControllerSpec.commands
     fixed: ClassVar[Mapping[str, str]] = MappingProxyType({"Kp": "proportional_gain"})
@@ -39,12 +47,9 @@ class ProportionalForce(AbstractCompliantLaw[ForceControllerSpec]):
         return AbstractCompliantLaw.find_fault(self, given) or negative
 
     @classmethod
-    def contact_text(cls, *, alone: bool) -> str:
-        """Say that contact is not lost."""
-        return (
-            "Contact is not lost while force is controlled: the environment would pull as it "
-            "pushes."
-        )
+    def contact_kept(cls, *, alone: bool) -> str:
+        """Return that contact is not lost while force is controlled."""
+        return "force"
 
 
 LAW = ProportionalForce

@@ -28,6 +28,14 @@ class Admittance(AbstractCompliantLaw[ImpedanceControllerSpec]):
     """
 
     name: ClassVar[str] = "impedance"
+    sentences: ClassVar[Mapping[str, str]] = MappingProxyType(
+        {
+            "contact-kept.impedance": (
+                "Contact is not lost while an impedance controller is active: "
+                "free motion under one is not one of the modes."
+            ),
+        }
+    )
     units: ClassVar[Mapping[str, str]] = MappingProxyType(
         {"Mt": "kg*m^2", "Bt": "N*m*s/rad", "Kt": "N*m/rad"}
     )
@@ -63,11 +71,6 @@ class Admittance(AbstractCompliantLaw[ImpedanceControllerSpec]):
     def states(self) -> tuple[str, ...]:
         """The velocity; none without inertia."""
         return ("vm [rad/s]",) if self.Mt else ()
-
-    @property
-    def state_words(self) -> tuple[str, ...]:
-        """The velocity in words; none without inertia."""
-        return ("the velocity vm",) if self.Mt else ()
 
     def respond(self, force: LinearForm, states: Sequence[LinearForm]) -> Response:
         """Return ``-vm``, with ``Mt vm' = F - Bt vm``; without inertia ``vm = F / Bt``.
@@ -116,14 +119,9 @@ class Admittance(AbstractCompliantLaw[ImpedanceControllerSpec]):
         return (_admittance(sprung="Kt" in used, inert="a" in used, beside=beside),)
 
     @classmethod
-    def contact_text(cls, *, alone: bool) -> str | None:
-        """Say that contact is not lost."""
-        if alone:
-            return AbstractCompliantLaw.contact_text(alone=alone)
-        return (
-            "Contact is not lost while an impedance controller is active: free motion under one is "
-            "not one of the modes."
-        )
+    def contact_kept(cls, *, alone: bool) -> str:
+        """Return that contact is not lost, beside others only while it is active."""
+        return "never" if alone else "impedance"
 
 
 LAW = Admittance

@@ -58,8 +58,10 @@ class AbstractCompliantLaw(AbstractLaw, Generic[S]):
     holds_hand: ClassVar[bool] = False
     # Gains that a spec may fix, and the fields of the controller that do.
     fixed: ClassVar[Mapping[str, str]] = MappingProxyType({})
-    # What a processor computes of it, beyond its part in the words about all laws.
-    sampled_text: ClassVar[str] = ""
+    # What a processor computes of it, beyond its part in what is said of all laws: an assumption.
+    sampled: ClassVar[str | None] = None
+    # What is said of no other law, by the id of its assumption.
+    sentences: ClassVar[Mapping[str, str]] = MappingProxyType({})
     # Whether its one state stays in the position command of other controllers, and decays there.
     bleeds: ClassVar[bool] = False
 
@@ -67,11 +69,6 @@ class AbstractCompliantLaw(AbstractLaw, Generic[S]):
     def states(self) -> tuple[str, ...]:
         """Names of the states of its own, with units; none by default."""
         return ()
-
-    @property
-    def state_words(self) -> tuple[str, ...]:
-        """The states in words, such as ``the velocity vm``."""
-        return self.states
 
     @property
     def spring(self) -> Fraction:
@@ -126,13 +123,14 @@ class AbstractCompliantLaw(AbstractLaw, Generic[S]):
         return None
 
     @classmethod
-    def contact_text(cls, *, alone: bool) -> str | None:
-        """Say what is taken for granted about contact while it is active; None for nothing.
+    def contact_kept(cls, *, alone: bool) -> str | None:
+        """Return what is taken for granted about contact while it is active; None for nothing.
 
-        By default that it is kept, which no law forgets. `alone`: all controllers give the motion
-        loop the same kind of command.
+        It is the name of a sentence about contact that is kept: by default that it is never lost,
+        which no law forgets. `alone`: all controllers give the motion loop the same kind of
+        command.
         """
-        return "Contact is not lost: free motion is not one of the modes."
+        return "never"
 
 
 # A law that fits its spec: who takes both from one controller need not ask which.

@@ -57,9 +57,20 @@ class IntegralForce(AbstractCompliantLaw[IntegralControllerSpec]):
         {"Kp": "proportional_gain", "Ki": "integral_gain"}
     )
     holds_hand: ClassVar[bool] = True
-    sampled_text: ClassVar[str] = (
-        "A pi-force controller adds the integral w of its force error besides, and a sample adds "
-        "Ki_T times the difference of the wanted force and its sample to w."
+    sampled: ClassVar[str | None] = "idle.sampled-pi-force"
+    sentences: ClassVar[Mapping[str, str]] = MappingProxyType(
+        {
+            "contact-kept.pi-force": (
+                "Contact is not lost under PI force control: without a force "
+                "the integral is driven by the wanted force alone, and the axis "
+                "moves on until it meets something."
+            ),
+            "idle.sampled-pi-force": (
+                "A pi-force controller adds the integral w of its force error "
+                "besides, and a sample adds Ki_T times the difference of the "
+                "wanted force and its sample to w."
+            ),
+        }
     )
     bleeds: ClassVar[bool] = IntegralControllerSpec.bleeds
 
@@ -70,11 +81,6 @@ class IntegralForce(AbstractCompliantLaw[IntegralControllerSpec]):
     def states(self) -> tuple[str, ...]:
         """The integral of the force error."""
         return ("integral [rad]",)
-
-    @property
-    def state_words(self) -> tuple[str, ...]:
-        """The integral in words."""
-        return ("the integral of the force error",)
 
     def respond(self, force: LinearForm, states: Sequence[LinearForm]) -> Response:
         """Return ``w - Kp F``, with ``w' = -Ki F``."""
@@ -98,12 +104,9 @@ class IntegralForce(AbstractCompliantLaw[IntegralControllerSpec]):
         return AbstractCompliantLaw.find_fault(self, given)
 
     @classmethod
-    def contact_text(cls, *, alone: bool) -> str:
-        """Say that contact is not lost."""
-        return (
-            "Contact is not lost under PI force control: without a force the integral is driven by "
-            "the wanted force alone, and the axis moves on until it meets something."
-        )
+    def contact_kept(cls, *, alone: bool) -> str:
+        """Return that contact is not lost while the integral is driven."""
+        return "pi-force"
 
 
 LAW = IntegralForce

@@ -30,7 +30,7 @@ class PositionControl(AbstractCompliantLaw[PositionControllerSpec]):
         return DiscreteLaw(type(self), {})
 
     @classmethod
-    def contact_text(cls, *, alone: bool) -> None:
+    def contact_kept(cls, *, alone: bool) -> None:
         """Take nothing for granted: free motion is this very mode."""
 
 

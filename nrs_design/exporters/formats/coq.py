@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
+from nrs_design.certificates.catalogue import sentences
 from nrs_design.certificates.certificate import Certificate
 from nrs_design.exporters import Format
 from nrs_design.exporters.export import Export
@@ -61,4 +62,4 @@ def _head_lines(export: Export, certificate: Certificate, theorem: Theorem) -> I
         yield f"claim: {evidence.claim(certificate.system)}"
     yield f"states, in this order: {', '.join(theorem.states)}"
     yield from (f"not in the theorem: {text}" for text in (*theorem.left_out, *_LEFT_OUT))
-    yield from (f"taken for granted: {text}" for text in certificate.granted)
+    yield from (f"taken for granted: {text}" for text in sentences(certificate.granted))

@@ -11,9 +11,10 @@ corners suffice, for a mass too that changes as fast as it likes.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from types import MappingProxyType
 from typing import TYPE_CHECKING, ClassVar
 
 from nrs_design.errors import AssemblyError, DesignError
@@ -27,6 +28,7 @@ from nrs_design.models.contact.law import (
     Reaction,
 )
 from nrs_design.models.linear_form import LinearForm, combine
+from nrs_design.proof.assumption import Assumption
 
 if TYPE_CHECKING:
     from nrs_design.models.contact.motion import Array, Motion
@@ -37,6 +39,14 @@ class Hand(AbstractLinearLaw):
     """A spring, a damper and a mass that moves with the contact."""
 
     name: ClassVar[str] = "hand"
+    sentences: ClassVar[Mapping[str, str]] = MappingProxyType(
+        {
+            "tissue.hand": (
+                "{environment} holds the robot, and its mass moves with the "
+                "contact: its force is k delta + b delta' + m delta''."
+            ),
+        }
+    )
     formula: ClassVar[str] = "F = k δ + b δ' + m δ''"
     kinds: ClassVar[tuple[str, ...]] = (STIFFNESS, DAMPING, MASS)
     takes_velocity: ClassVar[bool] = True
@@ -81,12 +91,9 @@ class Hand(AbstractLinearLaw):
         )
 
     @classmethod
-    def memory_texts(cls, environment: str, *, alone: bool) -> Iterator[str]:
-        """Say that its mass moves with the contact."""
-        yield (
-            f"{environment} holds the robot, and its mass moves with the contact: its force is "
-            "k delta + b delta' + m delta''."
-        )
+    def assumptions(cls, environment: str, *, alone: bool) -> Iterator[Assumption]:
+        """Yield that its mass moves with the contact."""
+        yield Assumption.of("tissue.hand", environment=environment)
 
     def react(self, velocity: LinearForm, states: Sequence[LinearForm]) -> Reaction:
         """Refuse to leave out the acceleration."""

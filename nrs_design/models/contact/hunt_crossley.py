@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import TYPE_CHECKING, ClassVar
 
 from nrs_design.models.contact.law import AbstractNonlinearLaw
@@ -21,7 +22,23 @@ class HuntCrossley(AbstractNonlinearLaw):
     """A spring and a damper that both stiffen with the deflection; no force without contact."""
 
     name: ClassVar[str] = "hunt-crossley"
-    title: ClassVar[str] = "a Hunt-Crossley law"
+    sentences: ClassVar[Mapping[str, str]] = MappingProxyType(
+        {
+            "preload.hunt-crossley": (
+                "{environment} is a Hunt-Crossley law whose deflection stays "
+                "between {low} and {high}. About a rest anywhere from its "
+                "surface to {high}, at which the commands hold every mode "
+                "whatever its parameters, its force is then that at rest, plus "
+                "k times the deflection from there, plus b times the velocity, "
+                "exactly, with k and b moving in the ranges of the modes: "
+                "motions need not be small or slow. Nothing is said once the "
+                "deflection has left this preload, nor of the difference of two "
+                "motions of which neither is at rest. The law moves k and b "
+                "together, so what is refuted with any such k and b may hold "
+                "with it."
+            ),
+        }
+    )
     formula: ClassVar[str] = "F = ρ δ^φ + λ δ^φ δ' in contact"
     kinds: ClassVar[tuple[str, ...]] = ("power stiffness", "power damping", "exponent")
     takes_velocity: ClassVar[bool] = True
@@ -77,20 +94,6 @@ class HuntCrossley(AbstractNonlinearLaw):
         """Return the law with this tangent at ``about``."""
         tangent = numbers["stiffness"], numbers["damping"]
         return cls.through(*tangent, numbers["exponent"], numbers["about"])
-
-    @classmethod
-    def preload_text(cls, environment: str, low: str, high: str) -> str:
-        """Say that chords from any rest stay in the box of the modes."""
-        return (
-            f"{environment} is {cls.title} whose deflection stays between {low} and {high}. About "
-            f"a rest anywhere from its surface to {high}, at which the commands hold every mode "
-            "whatever its parameters, its force is then that at rest, plus k "
-            "times the deflection from there, plus b times the velocity, exactly, with k and b "
-            "moving in the ranges of the modes: motions need not be small or slow. Nothing is said "
-            "once the deflection has left this preload, nor of the difference of two motions of "
-            "which neither is at rest. The law moves k and b together, so what is refuted with any "
-            "such k and b may hold with it."
-        )
 
     @classmethod
     def through(cls, k: float, b: float, phi: float, deflection: float) -> HuntCrossley:

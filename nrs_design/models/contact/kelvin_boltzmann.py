@@ -7,9 +7,10 @@ jump with k2; d is a position and stays. Every entry is affine in k1, in k2 and 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from types import MappingProxyType
 from typing import TYPE_CHECKING, ClassVar
 
 from nrs_design.models.contact.law import (
@@ -21,6 +22,7 @@ from nrs_design.models.contact.law import (
     Reaction,
 )
 from nrs_design.models.linear_form import LinearForm, combine
+from nrs_design.proof.assumption import Assumption
 
 if TYPE_CHECKING:
     from nrs_design.models.contact.motion import Array, Motion
@@ -31,6 +33,19 @@ class KelvinBoltzmann(AbstractLinearLaw):
     """A spring k2 in a row with a spring k1 beside a damper b."""
 
     name: ClassVar[str] = "kelvin-boltzmann"
+    sentences: ClassVar[Mapping[str, str]] = MappingProxyType(
+        {
+            "memory.damper": (
+                "The damper of {environment} keeps its deflection at a switch "
+                "and when the parameters change."
+            ),
+            "memory.creeps": (
+                "While another environment is touched, {environment} is free of "
+                "force and its damper creeps back to rest, b d' = -k1 d, with "
+                "parameters in their ranges."
+            ),
+        }
+    )
     formula: ClassVar[str] = "F + η3 F' = η1 δ + η2 δ'"
     kinds: ClassVar[tuple[str, ...]] = (STIFFNESS, STIFFNESS, DAMPING)
     keys: ClassVar[tuple[str, ...]] = ("parallel_stiffness", "series_stiffness", "damping")
@@ -96,17 +111,11 @@ class KelvinBoltzmann(AbstractLinearLaw):
         return np.asarray(inner @ chain)
 
     @classmethod
-    def memory_texts(cls, environment: str, *, alone: bool) -> Iterator[str]:
-        """Say what the damper does at a switch, and while it is left alone."""
-        yield (
-            f"The damper of {environment} keeps its deflection at a switch and when the "
-            "parameters change."
-        )
+    def assumptions(cls, environment: str, *, alone: bool) -> Iterator[Assumption]:
+        """Yield what the damper does at a switch, and while it is left alone."""
+        yield Assumption.of("memory.damper", environment=environment)
         if not alone:
-            yield (
-                f"While another environment is touched, {environment} is free of force and "
-                "its damper creeps back to rest, b d' = -k1 d, with parameters in their ranges."
-            )
+            yield Assumption.of("memory.creeps", environment=environment)
 
     @property
     def impedance(self) -> tuple[tuple[float, ...], tuple[float, ...]]:

@@ -10,10 +10,12 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import astuple, dataclass, fields
 from fractions import Fraction
+from types import MappingProxyType
 from typing import TYPE_CHECKING, ClassVar, Self
 
 from nrs_design.models.interval import turn
 from nrs_design.models.linear_form import LinearForm
+from nrs_design.proof.assumption import Assumption
 
 if TYPE_CHECKING:
     from nrs_design.models.contact.motion import Array, Motion
@@ -56,6 +58,8 @@ class AbstractContactLaw(ABC):
     """
 
     name: ClassVar[str]
+    # What is said of no other law, by the id of its assumption.
+    sentences: ClassVar[Mapping[str, str]] = MappingProxyType({})
     formula: ClassVar[str]
     # What each parameter is, in order: a stiffness, a damping, or something of the law's own.
     kinds: ClassVar[tuple[str, ...]]
@@ -99,18 +103,10 @@ class AbstractContactLaw(ABC):
 class AbstractNonlinearLaw(AbstractContactLaw):
     """A law that enters a design by its tangent: a spring and a damper about a deflection."""
 
-    # What an assumption calls it, with its article.
-    title: ClassVar[str]
-
     @classmethod
     @abstractmethod
     def drawn(cls, numbers: Mapping[str, float]) -> Self:
         """Return the law at the pivot from the numbers of its spec, by their keys."""
-
-    @classmethod
-    @abstractmethod
-    def preload_text(cls, environment: str, low: str, high: str) -> str:
-        """Say what the ranges of its linear law cover of it within a preload."""
 
     @abstractmethod
     def slope(self, motion: Motion) -> Array:
@@ -201,19 +197,15 @@ class AbstractLinearLaw(AbstractContactLaw):
         return None
 
     @classmethod
-    def memory_texts(cls, environment: str, *, alone: bool) -> Iterator[str]:
-        """Say what is taken for granted about an environment that remembers, or has a mass.
+    def assumptions(cls, environment: str, *, alone: bool) -> Iterator[Assumption]:
+        """Yield what holds for an environment that remembers, or has a mass.
 
         `alone`: no other environment is touched.
         """
         if cls.remembers:
-            kept = " and ".join(cls.states)
-            yield f"{environment} keeps {kept} at a switch and when the parameters change."
-        if cls.remembers and not alone:
-            yield (
-                f"While another environment is touched, {environment} is free of force, with "
-                "parameters in their ranges."
-            )
+            yield Assumption.of("memory.kept", environment=environment, states=cls.states)
+            if not alone:
+                yield Assumption.of("memory.free", environment=environment)
 
     @property
     def exact(self) -> tuple[Fraction, ...]:

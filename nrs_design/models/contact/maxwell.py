@@ -7,9 +7,10 @@ from the motion and acts on nothing; as a state it would add an eigenvalue zero.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from types import MappingProxyType
 from typing import TYPE_CHECKING, ClassVar
 
 from nrs_design.models.contact.law import (
@@ -21,6 +22,7 @@ from nrs_design.models.contact.law import (
     Reaction,
 )
 from nrs_design.models.linear_form import LinearForm, combine
+from nrs_design.proof.assumption import Assumption
 
 if TYPE_CHECKING:
     from nrs_design.models.contact.motion import Array, Motion
@@ -31,6 +33,17 @@ class Maxwell(AbstractLinearLaw):
     """A spring and a damper in a row."""
 
     name: ClassVar[str] = "maxwell"
+    sentences: ClassVar[Mapping[str, str]] = MappingProxyType(
+        {
+            "memory.maxwell": (
+                "{environment} has no rest position: a lasting deflection "
+                "leaves no force. Its state is the stretch of its spring, which "
+                "stays at a switch and when the parameters change; that the "
+                "deflection itself returns to zero is not claimed, nor that it "
+                "stays bounded under a command or other input."
+            ),
+        }
+    )
     formula: ClassVar[str] = "F + (b/k) F' = b δ'"
     kinds: ClassVar[tuple[str, ...]] = (STIFFNESS, DAMPING)
     keys: ClassVar[tuple[str, ...]] = ("stiffness", "damping")
@@ -65,15 +78,9 @@ class Maxwell(AbstractLinearLaw):
         return np.column_stack([float(self.k) * (y - slope), float(self.k) * slope])
 
     @classmethod
-    def memory_texts(cls, environment: str, *, alone: bool) -> Iterator[str]:
-        """Say what is known of the deflection, which is no state."""
-        yield (
-            f"{environment} has no rest position: a lasting deflection leaves no force. "
-            "Its state is the stretch of its spring, which stays at a switch and when the "
-            "parameters change; "
-            "that the deflection itself returns to zero is not claimed, nor that it stays "
-            "bounded under a command or other input."
-        )
+    def assumptions(cls, environment: str, *, alone: bool) -> Iterator[Assumption]:
+        """Yield what is known of the deflection, which is no state."""
+        yield Assumption.of("memory.maxwell", environment=environment)
 
     @property
     def impedance(self) -> tuple[tuple[float, ...], tuple[float, ...]]:

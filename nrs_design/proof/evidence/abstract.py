@@ -34,7 +34,7 @@ AT_ANY_DEFLECTION = "where contact is lost and made at any deflection"
 
 
 # What a certificate says of a statement beside its numbers.
-_OF_A_STATEMENT = frozenset({"kind", "claim", "block"})
+_OF_A_STATEMENT = frozenset({"kind", "block"})
 
 
 class Shows(StrEnum):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from nrs_design.loop.assumption import AssumptionKind
+from nrs_design.certificates.catalogue import AssumptionKind
 from nrs_design.reporting.document import Linked, Sentence
 from nrs_design.spec import InteractionDesignSpec, LoadedSpec, SwitchedSystemSpec
 
@@ -48,4 +48,4 @@ def contact_at(loaded: LoadedSpec, text: str) -> At:
 
 def assumed_at(kind: AssumptionKind) -> At:
     """Return where a spec says what an assumption is about, if it does."""
-    return tuple(kind.field.split(".")) if kind.field else ()
+    return tuple(kind.about.split(".")) if kind.about else ()

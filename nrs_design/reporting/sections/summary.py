@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from nrs_design.certificates.catalogue import KEPT, catalogue_kind
 from nrs_design.certificates.certificate import Verdict
-from nrs_design.loop.assumption import KEPT, Assumption
 from nrs_design.proof.bounds import lower, upper
 from nrs_design.proof.evidence import AbstractEvidence, Shows
 from nrs_design.proof.mode import Time
@@ -129,7 +129,7 @@ def _signals(system: SwitchedSystem) -> str:
 
 
 def _contact(system: SwitchedSystem, evidence: AbstractEvidence) -> tuple[str, ...]:
-    kept = any(isinstance(a, Assumption) and a.kind.id == KEPT for a in system.assumptions)
+    kept = any(catalogue_kind(item).id == KEPT for item in system.assumptions)
     if system.contact is None and system.flights is None and not kept:
         return ()
     if not kept and (evidence.covers_lost_contact or system.flights is not None):

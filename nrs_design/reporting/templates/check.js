@@ -237,7 +237,7 @@ const check = (() => {
   // For every statement of a certificate: whether it holds (null: not checked here), and what it says or why not.
   return (text) => {
     const o = parse(text), shown = new Set();
-    need(o.schema === "nrs-design/certificate/8" && o.statements.length, "it is of another schema, or says nothing");
+    need(o.schema === "nrs-design/certificate/9" && o.statements.length, "it is of another schema, or says nothing");
     const results = o.statements.map(({ kind, ...statement }) => {
       try {
         known(Object.hasOwn(CHECKS, kind), "this kind");

@@ -22,7 +22,7 @@ class Unbounded(AbstractCompliantLaw):
         raise NotImplementedError
 
     @classmethod
-    def contact_text(cls, *, alone):
+    def contact_kept(cls, *, alone):
         return None
 
 
@@ -34,7 +34,7 @@ def test_a_gain_that_neither_spec_nor_law_limits_is_not_allowed():
 
 def test_by_default_a_law_has_no_states():
     law = Unbounded(Fraction(1))
-    assert law.states == law.state_words == ()
+    assert law.states == ()
 
 
 def test_gains_are_taken_by_name():

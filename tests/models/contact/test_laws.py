@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
+from nrs_design.certificates.catalogue import sentences
 from nrs_design.models.contact import (
     LINEAR_LAWS,
     Elastic,
@@ -130,7 +131,7 @@ def test_exact_parameters_stay_exact(law):
 
 @pytest.mark.parametrize("law", LINEAR, ids=lambda law: law.name)
 def test_what_remembers_says_what_is_kept(law):
-    alone = list(law.memory_texts("nose", alone=True))
+    alone = sentences(law.assumptions("nose", alone=True))
     assert bool(alone) == law.remembers
     assert all("nose" in text for text in alone)
 
@@ -141,6 +142,6 @@ def test_a_memory_is_spoken_of_even_if_its_law_has_no_words_of_its_own():
         states = ("delta [rad]", "stretch [rad]")
 
     kept = "nose keeps delta [rad] and stretch [rad] at a switch and when the parameters change."
-    assert list(Remembering.memory_texts("nose", alone=True)) == [kept]
-    (_, free) = Remembering.memory_texts("nose", alone=False)
+    assert sentences(Remembering.assumptions("nose", alone=True)) == (kept,)
+    (_, free) = sentences(Remembering.assumptions("nose", alone=False))
     assert "nose is free of force" in free

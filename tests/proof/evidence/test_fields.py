@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from nrs_design.proof.assumption import Assumption
 from nrs_design.proof.channels import Rounding
 from nrs_design.proof.evidence import BlockTriangular
 from nrs_design.proof.evidence.fields import (
@@ -249,7 +250,7 @@ def test_the_largest_family_that_is_read():
 def test_the_largest_motions_without_contact_that_are_read():
     """Each of them is decided once, and once more for each force."""
     pull = {"numerators": [[1] * 10], "denominator": 1}
-    contact = {"free": tens(50), "pulls": [pull], "required": False, "loss": ""}
+    contact = {"free": tens(50), "pulls": [pull], "required": False}
     fields = stored(family([[1]])) | {"states": [f"x{i}" for i in range(10)], "modes": tens(1)}
     assert len(read_system("x", {**fields, "contact": contact}).contact.free) == 50
     with pytest.raises(ValueError, match="too large to check"):
@@ -317,9 +318,9 @@ def test_what_saturates_is_written_only_where_something_does():
 
 def test_how_contact_is_lost_is_written_beside_the_assumptions():
     bounce = bouncing()
-    system = replace(bounce, contact=replace(bounce.contact, loss="as it goes"))
+    system = replace(bounce, contact=replace(bounce.contact, loss=Assumption("as.goes")))
     fields = json.loads(json.dumps(system_fields(system)))
-    assert (fields["contact"]["loss"], fields["assumptions"]) == ("as it goes", [])
+    assert (fields["contact"]["loss"], fields["assumptions"]) == ({"id": "as.goes"}, [])
     assert read_system(system.name, fields) == system
     for odd in ({"contact": 3}, {"contact": None}, {"clock": []}):
         with pytest.raises(TypeError, match="expected an object"):

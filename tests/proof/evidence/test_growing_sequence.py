@@ -18,6 +18,7 @@ from nrs_design.certificates.certificate import (
     refutes_in_contact,
     verdict_of,
 )
+from nrs_design.proof.assumption import Assumption
 from nrs_design.proof.contact import Contact, Flights
 from nrs_design.proof.enclosure import precision
 from nrs_design.proof.evidence import GrowingSequence, Shows, read_evidence
@@ -696,9 +697,12 @@ def test_words_and_fields_of_contact():
         GrowingSequence.from_fields({**fields, "factor": ["2"]}, system)
 
 
+A, LOST = Assumption("a.kind"), Assumption("lost.so")
+
+
 def test_growth_in_kept_contact_alone_is_a_statement_of_its_own():
     system = juggling()
-    system = replace(system, assumptions=("a",), contact=replace(system.contact, loss="lost so"))
+    system = replace(system, assumptions=(A,), contact=replace(system.contact, loss=LOST))
     kept = staying("m0")
     period = GrowingSequence((("m0", Fraction(1)),), 4)
     for evidence in (kept, period):
@@ -707,15 +711,15 @@ def test_growth_in_kept_contact_alone_is_a_statement_of_its_own():
         assert refuted_in(system, (evidence,)) == "in kept contact"
         assert refutes_in_contact(system, (evidence,)) is evidence
         # What it does not cover, it does not take for granted.
-        assert granted(system, (evidence,)) == ("a",)
+        assert granted(system, (evidence,)) == (A,)
         assert evidence.claim(system).endswith("the environment pulling as it pushes.")
         assert common_quadratic_of(system, (evidence,)) is CommonQuadraticStatus.IMPOSSIBLE
     assert refuted_in(system, (kept, BOUNCE)) is refuted_in(system, ()) is None
     assert verdict_of(system, (kept, BOUNCE)) is Verdict.REFUTED
-    assert granted(system, (BOUNCE,)) == granted(system, ()) == ("a", "lost so")
+    assert granted(system, (BOUNCE,)) == granted(system, ()) == (A, LOST)
     may = replace(system, contact=replace(system.contact, required=False))
     assert verdict_of(may, (kept,)) is Verdict.REFUTED
-    assert granted(replace(system, contact=None), (kept,)) == ("a",)
+    assert granted(replace(system, contact=None), (kept,)) == (A,)
 
 
 def test_where_free_motion_is_among_the_modes_signs_count_too():

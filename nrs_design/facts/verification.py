@@ -5,9 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from nrs_design.certificates.catalogue import sentences
+
 if TYPE_CHECKING:
-    from nrs_design.certificates.catalogue import sentences
-from nrs_design.certificates.verify import Verification
+    from nrs_design.certificates.verify import Verification
 
 
 def verification_facts(

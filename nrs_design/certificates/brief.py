@@ -40,7 +40,7 @@ def brief(evidence: AbstractEvidence, system: SwitchedSystem, arm: Fraction | No
             of = ""
             if size is not None:
                 of = f" with a {start.name} up to {lower(size, DIGITS)}{unit}"
-                of += start.said
+                of += start.exception
             return f"although signals saturate, decays from rest{of}{_contact(evidence, system)}"
         case _:
             # The signal that grows; what follows from it stands behind a colon, or a sentence.

@@ -1,7 +1,7 @@
-"""The catalogue of assumptions: each in words, its bound, and how to test it on the robot.
+"""Catalogue of assumptions: the sentence of each, its bound, and a test on the robot.
 
-`assumptions.toml` has every sentence, by its kind and its name. An `Assumption` names one, and says
-what it is about.
+`assumptions.toml` holds the sentences by kind and name. An `Assumption` has the id of a sentence
+and the values of its fields.
 """
 
 from __future__ import annotations
@@ -21,47 +21,51 @@ _JOINED = {"": " and ", "or": " or ", ",": ", ", ";": "; "}
 
 
 class Standing(StrEnum):
-    """How well an assumption is supported."""
+    """Support of an assumption."""
 
     TESTED = "tested"
     ARGUED = "argued"
     OPEN = "open"
 
 
-# The kind that says that contact is kept.
+# Kind of the assumption that contact is maintained.
 KEPT = "contact-kept"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class AssumptionKind:
-    """What is common to the sentences that take one thing for granted."""
+    """A kind of assumption: one thing that its sentences take for granted."""
 
     id: str
     name: str  # In a few words
-    where: str  # Which specs take it for granted
-    within: str  # Its bound, where the sentence has none of its own
-    breaks: str  # What no longer follows if it is false
-    test: str  # How to test it on the robot
-    says: Mapping[str, str]  # Its sentences by name
-    bounds: Mapping[str, str] = field(default_factory=dict)  # Of sentences, by name
-    words: Mapping[str, Mapping[str, str]] = field(default_factory=dict)  # Of keys, by field
-    about: str = ""  # The field of the spec that is about it, such as ``sampling.period``
-    omits: str = ""  # What is not modelled, in a few words
-    argued: bool = False  # It follows from how the controller is made
+    where: str  # Specs with this kind of assumption
+    within: str  # Bound of sentences without a bound of their own
+    breaks: str  # Consequence if the assumption is false
+    test: str  # Test on the robot
+    sentences: Mapping[str, str]  # Templates by name
+    bounds: Mapping[str, str] = field(default_factory=dict)  # Templates of bounds by name
+    words: Mapping[str, Mapping[str, str]] = field(default_factory=dict)  # Texts by field and key
+    about: str = ""  # Field of the spec, such as ``sampling.period``
+    omits: str = ""  # Effects that are not modelled, in a few words
+    argued: bool = False  # The construction of the controller implies it
 
     @property
     def standing(self) -> Standing:
-        """Argued or open; that it was tested, a spec says."""
+        """Support without records of the robot: argued or open."""
         return Standing.ARGUED if self.argued else Standing.OPEN
 
 
-class _Listed(tuple[str, ...]):
-    """What a field says, in the form that the sentence asks for."""
+class _Values(tuple[str, ...]):
+    """Values of a field, with the formats that templates use."""
 
     __slots__ = ()
 
     def __format__(self, form: str) -> str:
-        """Join a list; or say where a number ``is``, or from where to where switches lead."""
+        """Return the values as text.
+
+        ``switches``: pairs of names; ``is``: a number or an interval after its name; ``capital``:
+        with a capital letter; otherwise a list with that conjunction.
+        """
         if form == "switches":
             pairs = zip(self[::2], self[1::2], strict=True)
             return ", ".join(f"from {source} to {target}" for source, target in pairs)
@@ -75,36 +79,36 @@ class _Listed(tuple[str, ...]):
 
 @cache
 def kinds() -> dict[str, AssumptionKind]:
-    """Return the catalogue by ids."""
+    """Return the catalogue by id of the kind."""
     table = tomllib.loads(_TABLE.read_text(encoding="utf-8"))
     return {id: AssumptionKind(id, **row) for id, row in table.items()}
 
 
 def catalogue_kind(assumption: Assumption) -> AssumptionKind:
-    """Return what breaks if an assumption is false, and how to test it; a KeyError if unknown."""
+    """Return the kind of an assumption; a KeyError if the catalogue does not have it."""
     return kinds()[assumption.id.partition(".")[0]]
 
 
 def sentence(assumption: Assumption) -> str:
-    """Return an assumption in words; as it stands, if a certificate names one that is unknown."""
+    """Return the sentence of an assumption; id and fields if the catalogue does not have it."""
     try:
-        said = catalogue_kind(assumption).says.get(_name(assumption)) or _of_laws()[assumption.id]
-        return _in_words(assumption, said)
+        template = catalogue_kind(assumption).sentences.get(_name(assumption))
+        return _rendered(assumption, template or _law_sentences()[assumption.id])
     except (LookupError, ValueError):
-        fields = "; ".join(f"{name}: {', '.join(value)}" for name, value in assumption.said)
+        fields = "; ".join(f"{name}: {', '.join(value)}" for name, value in assumption.fields)
         return f"{assumption.id} ({fields}), which this version does not know"
 
 
 def bound_of(assumption: Assumption) -> str:
-    """Return within what an assumption must hold, in words; a KeyError if its kind is unknown."""
+    """Return the bound of an assumption, as text; a KeyError if its kind is unknown."""
     kind = catalogue_kind(assumption)
     own = kind.bounds.get(_name(assumption))
-    return kind.within if own is None else _in_words(assumption, own)
+    return kind.within if own is None else _rendered(assumption, own)
 
 
-def sentences(granted: Iterable[Assumption]) -> tuple[str, ...]:
-    """Return assumptions in words."""
-    return tuple(map(sentence, granted))
+def sentences(assumptions: Iterable[Assumption]) -> tuple[str, ...]:
+    """Return the sentences of assumptions."""
+    return tuple(map(sentence, assumptions))
 
 
 def _name(assumption: Assumption) -> str:
@@ -112,8 +116,8 @@ def _name(assumption: Assumption) -> str:
 
 
 @cache
-def _of_laws() -> dict[str, str]:
-    """Return what is said of one law alone: it stands in the file of that law."""
+def _law_sentences() -> dict[str, str]:
+    """Return the templates that only one law uses; they stand in the file of the law."""
     from nrs_design.controllers.laws import LAWS as CONTROL
     from nrs_design.models.contact import LAWS as CONTACT
     from nrs_design.models.contact import LINEAR_LAWS
@@ -122,22 +126,23 @@ def _of_laws() -> dict[str, str]:
     return {id: text for law in laws for id, text in law.sentences.items()}
 
 
-def _in_words(assumption: Assumption, text: str) -> str:
-    fields = {name: _Listed(value) for name, value in assumption.said}
+def _rendered(assumption: Assumption, template: str) -> str:
+    """Return a template with the fields of an assumption; keys become the words of the kind."""
+    fields = {name: _Values(values) for name, values in assumption.fields}
     for name, words in catalogue_kind(assumption).words.items():
-        keyed = (words[key].format(**fields) for key in fields.get(name, ()))
-        fields[name] = _Listed(keyed)
-    return text.format(**fields)
+        texts = (words[key].format(**fields) for key in fields.get(name, ()))
+        fields[name] = _Values(texts)
+    return template.format(**fields)
 
 
-def omitted(granted: Iterable[Assumption]) -> tuple[str, ...]:
-    """Return what is not modelled, in a few words each; the sentences say it whole."""
-    return tuple(dict.fromkeys(words for words in map(_omits, granted) if words))
+def omitted(assumptions: Iterable[Assumption]) -> tuple[str, ...]:
+    """Return the effects that are not modelled, in a few words each."""
+    return tuple(dict.fromkeys(words for words in map(_omits, assumptions) if words))
 
 
 def _omits(assumption: Assumption) -> str:
-    words, beside = catalogue_kind(assumption).omits, ", saturation"
+    words, saturation = catalogue_kind(assumption).omits, ", saturation"
     if not words or "-disturbed" not in assumption.id:
         return words
-    # What `disturbances` bound is modelled, and saturation is not among it.
-    return f"{words.removesuffix(beside)} beyond what disturbances bound{beside}"
+    # The bounds of `disturbances` cover the effects before, not saturation.
+    return f"{words.removesuffix(saturation)} beyond what disturbances bound{saturation}"

@@ -114,22 +114,24 @@ class Sensor:
             order = self.filter.order
             row = {"lags": "one"} if order == 1 else {"lags": "row", "order": str(order)}
             if period is None:
-                yield Assumption.of("sensor.filter", **row, pole=exact_decimal(self.filter.pole))
+                yield Assumption.create(
+                    "sensor.filter", **row, pole=exact_decimal(self.filter.pole)
+                )
             else:
                 step = self.filter.discretize(period)
                 numbers = {"p": exact_decimal(step.p), "q": exact_decimal(step.q)}
-                yield Assumption.of("sensor.sampled-filter", **row, **numbers)
+                yield Assumption.create("sensor.sampled-filter", **row, **numbers)
         if self.errors:
             unit = axis.unit("N*m")
-            yield Assumption.of(
+            yield Assumption.create(
                 "sensor.errors-disturbed" if disturbed else "sensor.errors",
                 lasting=rounded_up(self.lasting, unit),
                 parts=tuple(f"{name}: {rounded_up(e, unit)}" for name, e in self.errors.items()),
             )
         if self.carries:
-            yield Assumption.of("sensor.tool")
+            yield Assumption.create("sensor.tool")
         if self.noisy:
-            yield Assumption.of("sensor.noise")
+            yield Assumption.create("sensor.noise")
 
 
 def build_sensor(spec: SensorSpec | None) -> Sensor:

@@ -13,13 +13,13 @@ from nrs_design.errors import AssemblyError
 from nrs_design.loop.assumptions import (
     GIVEN_MATRICES,
     assume,
-    of_constants,
-    of_data,
-    of_logic,
-    of_matrices,
-    of_points,
-    of_preloads,
-    of_scale,
+    assume_constants,
+    assume_data,
+    assume_logic,
+    assume_matrices,
+    assume_points,
+    assume_preloads,
+    assume_scale,
 )
 from nrs_design.loop.cases import in_cases
 from nrs_design.loop.constant_parameters import (
@@ -107,7 +107,7 @@ def assemble_matrices(spec: SwitchedSystemSpec, scale: Fraction = DECLARED) -> S
         time=Time(spec.time),
         states=tuple(f"x{i + 1}" for i in range(spec.dimension)),
         modes=tuple(item.mode for item in items),
-        assumptions=of_matrices(spec, parameters, scale),
+        assumptions=assume_matrices(spec, parameters, scale),
         switching=switching,
     )
     constants = constant_parameters(parameters)
@@ -155,7 +155,7 @@ def assemble(
     constants = tuple(replace(c, said=replace(c.said, unit=unit(c.said.unit))) for c in constants)
     system, corners = _closed(conditions, plant, design, constants, points)
     system = with_constants(system, constants, corners)
-    constant = tuple(of_constants(system.switching))
+    constant = tuple(assume_constants(system.switching))
     if cuts:
         whole = {c.said.name: (c.said.low, c.said.high) for c in constants}
         each = cut_ranges(whole, cuts)
@@ -168,11 +168,11 @@ def assemble(
     assumptions = (
         *system.assumptions,
         *design.sensor.assumptions(period, disturbed=disturbed, axis=spec.axis),
-        *of_logic(spec),
-        *of_data(spec),
-        *of_preloads(conditions.preloads, scale),
-        *of_scale(scale),
-        *of_points(points, remembers=any(e.law.remembers for e in touched)),
+        *assume_logic(spec),
+        *assume_data(spec),
+        *assume_preloads(conditions.preloads, scale),
+        *assume_scale(scale),
+        *assume_points(points, remembers=any(e.law.remembers for e in touched)),
         *constant,
     )
     return _on_axis(replace(system, assumptions=assumptions), spec.axis)

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from nrs_design.spec.provenance import IdentifiedRangesSpec
 
 MAX_LISTED = 20
-assume = Assumption.of
+assume = Assumption.create
 UNCOUPLED = assume("uncoupled.axes")
 GIVEN_MATRICES = (assume("matrices.given"), assume("at-a-switch.any-signal", states="one"))
 _COMMAND = "command-unit.unit"
@@ -33,19 +33,19 @@ _STAYS = {
 }
 
 
-def of_matrices(
+def assume_matrices(
     spec: SwitchedSystemSpec, parameters: Sequence[UncertainParameter], scale: Fraction
 ) -> tuple[Assumption, ...]:
     """Return those of a `switched-system` spec whose parameters are scaled already."""
     return (
         GIVEN_MATRICES[0],
-        *map(_of_parameter, parameters),
-        *of_scale(scale),
-        *_of_switches(spec),
+        *map(_assume_parameter, parameters),
+        *assume_scale(scale),
+        *_assume_switches(spec),
     )
 
 
-def _of_parameter(parameter: UncertainParameter) -> Assumption:
+def _assume_parameter(parameter: UncertainParameter) -> Assumption:
     interval, name = parameter.interval, parameter.name
     if interval.low == interval.high:
         return assume("range.value", name=name, value=exact_text(interval.low))
@@ -53,7 +53,7 @@ def _of_parameter(parameter: UncertainParameter) -> Assumption:
     return assume(how, name=name, ends=interval.text)
 
 
-def _of_switches(spec: SwitchedSystemSpec) -> tuple[Assumption, ...]:
+def _assume_switches(spec: SwitchedSystemSpec) -> tuple[Assumption, ...]:
     if (rule := spec.misses) is not None:
         most, of = rule.window
         missed = assume("rules.misses", mode=rule.mode, at_most=most, of=of)
@@ -66,19 +66,19 @@ def _of_switches(spec: SwitchedSystemSpec) -> tuple[Assumption, ...]:
         distinct = list(dict.fromkeys(switches))
         several = len(distinct) < len(switches) and "yes"
         jump = _listing("at-a-switch.resets", "at-a-switch.many-resets", distinct, several=several)
-    return jump, *of_rules(spec.switching, "mode")
+    return jump, *assume_rules(spec.switching, "mode")
 
 
 def _listing(
-    id: str, counted: str, switches: Sequence[tuple[str, str]], **said: object
+    id: str, counted: str, switches: Sequence[tuple[str, str]], **values: object
 ) -> Assumption:
     """List switches; where they are many, count them."""
     if len(switches) > MAX_LISTED:
-        return assume(counted, count=len(switches), **said)
-    return assume(id, switches=tuple(name for pair in switches for name in pair), **said)
+        return assume(counted, count=len(switches), **values)
+    return assume(id, switches=tuple(name for pair in switches for name in pair), **values)
 
 
-def of_rules(rules: SwitchingSpec, noun: str) -> tuple[Assumption, ...]:
+def assume_rules(rules: SwitchingSpec, noun: str) -> tuple[Assumption, ...]:
     """Return which switching signals are possible, between modes or controllers."""
     if rules.is_arbitrary:
         return (assume("any-signal.all"),)
@@ -104,14 +104,14 @@ def _time_text(dwell: DwellTime) -> str:
     return f"{exact_text(dwell.value)} {unit}"
 
 
-def of_contacts(design: ControllerDesign) -> Iterator[Assumption]:
+def assume_contacts(design: ControllerDesign) -> Iterator[Assumption]:
     """Yield what is touched under which controller."""
     for c in design.controllers:
         if c.contacts:
             yield assume("contacts.controller", controller=c.name, contacts=tuple(c.contacts))
 
 
-def of_parts(environments: Iterable[Environment]) -> Iterator[Assumption]:
+def assume_parts(environments: Iterable[Environment]) -> Iterator[Assumption]:
     """Yield how several environments are touched at once."""
     for e in environments:
         if e.parts:
@@ -119,7 +119,7 @@ def of_parts(environments: Iterable[Environment]) -> Iterator[Assumption]:
             yield assume(how, environment=e.name, parts=tuple(part.name for part in e.parts))
 
 
-def of_tissue(
+def assume_tissue(
     environments: Sequence[Environment], axis: AxisType, name: str = "tissue.linear"
 ) -> Iterator[Assumption]:
     """Yield in which ranges the parameters of environments are."""
@@ -135,13 +135,13 @@ def of_tissue(
     )
 
 
-def of_memory(environments: Sequence[Environment]) -> Iterator[Assumption]:
+def assume_memory(environments: Sequence[Environment]) -> Iterator[Assumption]:
     """Yield what holds for environments that remember, or have a mass."""
     for e in environments:
         yield from e.law.assumptions(e.name, alone=len(environments) == 1)
 
 
-def of_kept_contact(design: ControllerDesign, *, alone: bool) -> Iterator[Assumption]:
+def assume_kept_contact(design: ControllerDesign, *, alone: bool) -> Iterator[Assumption]:
     """Yield what each law of a design takes for granted about contact.
 
     `alone`: all controllers give the motion loop the same kind of command.
@@ -153,12 +153,12 @@ def of_kept_contact(design: ControllerDesign, *, alone: bool) -> Iterator[Assump
     yield from (assume(f"contact-kept.{id}") for id in ids if id is not None)
 
 
-def of_scale(scale: Fraction) -> tuple[Assumption, ...]:
+def assume_scale(scale: Fraction) -> tuple[Assumption, ...]:
     """Return by how much the ranges of the spec are stretched, unless they are as declared."""
     return () if scale == 1 else (assume("range.scaled", scale=scale),)
 
 
-def of_points(points: str, *, remembers: bool) -> tuple[Assumption, ...]:
+def assume_points(points: str, *, remembers: bool) -> tuple[Assumption, ...]:
     """Return at which points of the ranges the modes are, unless they are about all of them.
 
     What `remembers` is always looked at in one place.
@@ -169,19 +169,19 @@ def of_points(points: str, *, remembers: bool) -> tuple[Assumption, ...]:
     return (assume("range.points", points=points, but=but),)
 
 
-def of_command(command: str, axis: AxisType) -> Iterator[Assumption]:
+def assume_command_unit(command: str, axis: AxisType) -> Iterator[Assumption]:
     """Yield the unit in which the motor is commanded, where it is not the rpm of the thesis."""
     if command != THESIS_COMMAND:
         yield assume(_COMMAND, unit=command, per=axis.unit("rad"))
 
 
 def command_in(granted: Iterable[Assumption]) -> str:
-    """Return the unit of commands that `of_command` has put among the assumptions."""
-    found = (dict(item.said)["unit"][0] for item in granted if item.id == _COMMAND)
+    """Return the unit of commands that `assume_command_unit` has put among the assumptions."""
+    found = (dict(item.fields)["unit"][0] for item in granted if item.id == _COMMAND)
     return next(found, THESIS_COMMAND)
 
 
-def of_data(spec: InteractionDesignSpec) -> Iterator[Assumption]:
+def assume_data(spec: InteractionDesignSpec) -> Iterator[Assumption]:
     """Yield what identified ranges hold, and what is doubtful about identified values."""
     from nrs_design.spec.interaction_parts import INTERFACES
     from nrs_design.spec.plausible import unusual
@@ -210,7 +210,7 @@ def _coverage(id: str, name: str, covered: str, item: IdentifiedRangesSpec) -> A
     return assume(id, name=name, covered=covered, since=not item.range_id and "unsigned")
 
 
-def of_preloads(preloads: Mapping[str, Preload], scale: Fraction) -> Iterator[Assumption]:
+def assume_preloads(preloads: Mapping[str, Preload], scale: Fraction) -> Iterator[Assumption]:
     """Yield what linear ranges cover of laws that are known within a preload.
 
     Ranges that are stretched by less than declared do not cover the law.
@@ -222,14 +222,14 @@ def of_preloads(preloads: Mapping[str, Preload], scale: Fraction) -> Iterator[As
             yield assume(f"preload.{law.name}", environment=name, low=low, high=high)
 
 
-def of_logic(spec: InteractionDesignSpec) -> Iterator[Assumption]:
+def assume_logic(spec: InteractionDesignSpec) -> Iterator[Assumption]:
     """Yield what keeps the rules of switching, where they are those of a mode logic."""
     if spec.mode_logic is not None and not spec.switching.is_arbitrary:
         yield assume("logic.timer")
         yield assume("logic.any-signal")
 
 
-def of_constants(switching: Switching) -> Iterator[Assumption]:
+def assume_constants(switching: Switching) -> Iterator[Assumption]:
     """Yield which parameters of a design do not change."""
     for parameter in switching.fixed_parameters:
         ends = f"[{exact_text(parameter.low)}, {exact_text(parameter.high)}] {parameter.unit}"

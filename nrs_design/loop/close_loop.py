@@ -16,7 +16,7 @@ from itertools import permutations, product
 from nrs_design.controllers.controller_design import Controller
 from nrs_design.loop.constant_parameters import ConstantParameter, Corner
 from nrs_design.loop.constraints import assemble_switching, leaving_impedance, zeroing
-from nrs_design.loop.continuous_assumptions import of_loop
+from nrs_design.loop.continuous_assumptions import assume_loop
 from nrs_design.loop.free_motion import (
     adds_free_motion,
     flights_of,
@@ -68,7 +68,7 @@ def close_loop(
         states=state.names,
         modes=tuple(item.mode for item in items),
         assumptions=tuple(
-            of_loop(state, rules, losable=losable is not None, free=free, limited=limited)
+            assume_loop(state, rules, losable=losable is not None, free=free, limited=limited)
         ),
         switching=assemble_switching(rules, grouped(items), _resets(state, groups)),
         contact=losable,

@@ -11,13 +11,13 @@ from nrs_design.controllers.gains import idle_decay
 from nrs_design.loop.assumptions import (
     UNCOUPLED,
     assume,
-    of_command,
-    of_contacts,
-    of_kept_contact,
-    of_memory,
-    of_parts,
-    of_rules,
-    of_tissue,
+    assume_command_unit,
+    assume_contacts,
+    assume_kept_contact,
+    assume_memory,
+    assume_parts,
+    assume_rules,
+    assume_tissue,
 )
 from nrs_design.loop.shared_state import REFERENCE, SharedState
 from nrs_design.proof.assumption import Assumption
@@ -26,7 +26,7 @@ from nrs_design.spec import IdleStatesSpec, SwitchingSpec
 from nrs_design.spec.controllers import Command
 
 
-def of_loop(
+def assume_loop(
     loop: SharedState, rules: SwitchingSpec, *, losable: bool, free: bool, limited: bool
 ) -> Iterator[Assumption]:
     """Yield what holds for an interaction design.
@@ -34,31 +34,31 @@ def of_loop(
     `losable`: the system says how contact is lost, and a statement whether it is kept; `free`: free
     motion is one of the modes; `limited`: some statement is about signals that saturate.
     """
-    yield from _of_motion(loop)
-    yield from _of_inputs(loop, losable=losable)
+    yield from _assume_motion(loop)
+    yield from _assume_inputs(loop, losable=losable)
     yield UNCOUPLED
-    yield from _of_contact(loop)
-    yield from of_memory(loop.environments)
-    yield from () if loop.idle is None else _of_idle(loop, loop.idle)
+    yield from _assume_contact(loop)
+    yield from assume_memory(loop.environments)
+    yield from () if loop.idle is None else _assume_idle(loop, loop.idle)
     # Where contact may be lost, a statement says that itself.
     if free:
         yield assume("contact-lost.anywhere")
     elif not losable:
-        yield from of_kept_contact(loop.design, alone=loop.idle is None)
-    yield from _of_switches(loop, rules)
+        yield from assume_kept_contact(loop.design, alone=loop.idle is None)
+    yield from _assume_switches(loop, rules)
     yield assume(f"not-sampled{'-but-limited' if limited else ''}.continuous")
     yield assume("numbers.gains")
-    yield from of_command(loop.design.command, loop.design.axis)
+    yield from assume_command_unit(loop.design.command, loop.design.axis)
 
 
-def _of_motion(loop: SharedState) -> Iterator[Assumption]:
+def _assume_motion(loop: SharedState) -> Iterator[Assumption]:
     """Yield what the motion loop is, and what loads it."""
     joint, axis = loop.joint, loop.design.axis
     if joint is None:
         yield assume(f"nominal-motor.{'given' if loop.given else 'designed'}")
         return
     kind = "nominal-motor" if joint.ranges.fixed else "motor"
-    yield assume(f"{kind}.joint", **joint.ranges.said(axis))
+    yield assume(f"{kind}.joint", **joint.ranges.assumed(axis))
     if joint.load_inertia is None:
         yield assume("unloaded.continuous")
     else:
@@ -66,7 +66,7 @@ def _of_motion(loop: SharedState) -> Iterator[Assumption]:
         yield assume("load.inertia", inertia=inertia)
 
 
-def _of_inputs(loop: SharedState, *, losable: bool) -> Iterator[Assumption]:
+def _assume_inputs(loop: SharedState, *, losable: bool) -> Iterator[Assumption]:
     """Yield what acts from outside, and what then rests."""
     if loop.offset != "none":
         yield assume("rest-position.moving")
@@ -83,19 +83,19 @@ def _of_inputs(loop: SharedState, *, losable: bool) -> Iterator[Assumption]:
         yield assume("spring.shared" if loop.idle is None else "spring.idle")
 
 
-def _of_contact(loop: SharedState) -> Iterator[Assumption]:
-    yield from of_contacts(loop.design)
+def _assume_contact(loop: SharedState) -> Iterator[Assumption]:
+    yield from assume_contacts(loop.design)
     if loop.feels and not all(c.contacts for c in loop.design.controllers):
         yield assume("contacts.in-position")
-    yield from of_parts(loop.environments)
+    yield from assume_parts(loop.environments)
     which = "tissue.linear" if loop.offset == "none" else "tissue.offset"
-    yield from of_tissue(loop.environments, loop.design.axis, which)
+    yield from assume_tissue(loop.environments, loop.design.axis, which)
     integrated = any(c.law.commands == "velocity" for c in loop.design.controllers)
     if integrated and all(e.law.has_rest for e in loop.environments):
         yield assume("at-a-switch.deflection")
 
 
-def _of_idle(loop: SharedState, idle: IdleStatesSpec) -> Iterator[Assumption]:
+def _assume_idle(loop: SharedState, idle: IdleStatesSpec) -> Iterator[Assumption]:
     """Yield what becomes of the states of controllers that command a velocity."""
     driving, others = (_names(loop.design, command) for command in ("velocity", "position"))
     decay = idle_decay(idle)
@@ -107,14 +107,14 @@ def _of_idle(loop: SharedState, idle: IdleStatesSpec) -> Iterator[Assumption]:
             states=(*loop.law.states, REFERENCE),
             decay=decay and exact_decimal(decay),
         )
-    yield from _of_bleeding(loop.design, decay)
+    yield from _assume_bleeding(loop.design, decay)
     if idle.reset and driving:
         yield assume("at-a-switch.zeroed", driving=driving, others=others, rest=loop.law.states)
     yield assume("rest-position.commanded")
     yield assume("at-a-switch.kick")
 
 
-def _of_bleeding(design: ControllerDesign, decay: Fraction) -> Iterator[Assumption]:
+def _assume_bleeding(design: ControllerDesign, decay: Fraction) -> Iterator[Assumption]:
     """Yield what becomes of an integral while other controllers are active."""
     law = next((c.law for c in design.controllers if c.law.bleeds), None)
     if law is not None:
@@ -134,13 +134,13 @@ def _names(design: ControllerDesign, command: Command) -> tuple[str, ...]:
     return tuple(dict.fromkeys(law.name for law in laws if law.commands == command))
 
 
-def _of_switches(loop: SharedState, rules: SwitchingSpec) -> Iterator[Assumption]:
+def _assume_switches(loop: SharedState, rules: SwitchingSpec) -> Iterator[Assumption]:
     reset = (loop.idle is not None and loop.idle.reset) or loop.offset == "measured"
     states = "others" if reset else "all"
     if rules.is_arbitrary:
         yield assume("at-a-switch.any-signal", states=states)
         return
     yield assume("at-a-switch.continuous", states=states)
-    yield from of_rules(rules, "mode" if rules.names_contacts else "controller")
+    yield from assume_rules(rules, "mode" if rules.names_contacts else "controller")
     if not rules.names_contacts and rules.dwell_time is None:
         yield assume("any-signal.environment")

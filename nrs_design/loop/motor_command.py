@@ -36,7 +36,7 @@ class MotorCommand:
     def assumption(self) -> Assumption:
         """What a bound on it says of saturation."""
         unit = self.output.unit
-        return Assumption.of(
+        return Assumption.create(
             "not-quantized.command",
             limit=rounded_down(self.limit, unit),
             less=self.at_once > 0 and "errors",

@@ -12,13 +12,13 @@ from nrs_design.controllers.laws import DiscreteLaw
 from nrs_design.loop.assumptions import (
     UNCOUPLED,
     assume,
-    of_command,
-    of_contacts,
-    of_kept_contact,
-    of_memory,
-    of_parts,
-    of_rules,
-    of_tissue,
+    assume_command_unit,
+    assume_contacts,
+    assume_kept_contact,
+    assume_memory,
+    assume_parts,
+    assume_rules,
+    assume_tissue,
 )
 from nrs_design.loop.command_timing import CommandTiming
 from nrs_design.loop.loss import Loss
@@ -35,7 +35,7 @@ from nrs_design.spec.operating import OperatingConditions
 from nrs_design.spec.sampling import SamplingSpec
 
 
-def of_sampled_loop(
+def assume_sampled_loop(
     conditions: OperatingConditions,
     sampling: SamplingSpec,
     plant: Plant,
@@ -51,19 +51,19 @@ def of_sampled_loop(
     timing, axis = loop.calendar.timing, conditions.axis
     # Sentences that do not hold for the disturbances of the spec begin with that.
     but = "-disturbed" if disturbed else ""
-    yield _of_period(sampling, design)
+    yield _assume_period(sampling, design)
     if sampling.round > 1:
         yield assume("period.order")
     if (misses := sampling.misses) is not None:
         most, of = misses.window
         yield assume(f"deadlines.{misses.command}", at_most=most, of=of)
-    yield from _of_commands(timing, constant=conditions.constant_late is not None)
+    yield from _assume_commands(timing, constant=conditions.constant_late is not None)
     if plant.drive is not None and plant.drive.speed is not None:
         # What a sample shows of a velocity that jumps at that moment.
         yield assume("command-age.before")
-    yield _of_samples(*sampling.delay)
-    yield _of_motor(plant, loop, axis, environments)
-    yield from _of_load(plant, axis, environments)
+    yield _assume_samples(*sampling.delay)
+    yield _assume_motor(plant, loop, axis, environments)
+    yield from _assume_load(plant, axis, environments)
     if disturbed:
         yield assume("friction.period")
         yield assume("at-samples.force")
@@ -73,41 +73,41 @@ def of_sampled_loop(
     if any(c.law.spring for c in design.controllers):
         yield assume("spring.shared" if program.idle is None else "spring.idle")
         yield assume("spring.sample")
-    yield from _of_positions(program, design, reset=reset)
+    yield from _assume_positions(program, design, reset=reset)
     yield UNCOUPLED
-    yield from of_contacts(design)
-    yield from of_tissue(environments, axis)
-    yield from of_memory(environments)
+    yield from assume_contacts(design)
+    yield from assume_tissue(environments, axis)
+    yield from assume_memory(environments)
     # Where contact is lost on the surface, a statement that covers it says so.
     if loss is Loss.BY_LAWS:
-        yield from of_kept_contact(design, alone=program.idle is None)
+        yield from assume_kept_contact(design, alone=program.idle is None)
     elif loss is not Loss.SURFACE:
         yield assume(loss.value)
     yield assume("at-a-switch.sampled", states="others" if reset else "all")
     if misses is None:
-        yield from of_rules(conditions.switching, "controller")
+        yield from assume_rules(conditions.switching, "controller")
     else:
         yield assume("any-signal.in-time")
-    yield from _of_arithmetic(conditions, loop, laws, design)
+    yield from _assume_arithmetic(conditions, loop, laws, design)
     limited = "" if conditions.initial_force is None else "-limited"
     sensed = "sensor" if conditions.sensed else "sampled"
     yield assume(f"not-quantized.{sensed}{but}{limited}")
-    yield from of_parts(environments)
+    yield from assume_parts(environments)
 
 
-def _of_period(sampling: SamplingSpec, design: ControllerDesign) -> Assumption:
+def _assume_period(sampling: SamplingSpec, design: ControllerDesign) -> Assumption:
     """Return when what is computed."""
-    said: dict[str, object] = {"period": exact_text(sampling.period.exact)}
+    values: dict[str, object] = {"period": exact_text(sampling.period.exact)}
     steady = sampling.jitter is None
     if not steady:
-        said["jitter"] = exact_text(sampling.unsteady)
+        values["jitter"] = exact_text(sampling.unsteady)
     if sampling.round == 1:
-        return assume("period.single" if steady else "period.jitter", **said)
-    said |= {"outer": exact_text(sampling.outer), "filtered": design.sensor.filter and "filter"}
-    return assume("period.double" if steady else "period.double-jitter", **said)
+        return assume("period.single" if steady else "period.jitter", **values)
+    values |= {"outer": exact_text(sampling.outer), "filtered": design.sensor.filter and "filter"}
+    return assume("period.double" if steady else "period.double-jitter", **values)
 
 
-def _of_commands(timing: CommandTiming, *, constant: bool) -> Iterator[Assumption]:
+def _assume_commands(timing: CommandTiming, *, constant: bool) -> Iterator[Assumption]:
     """Yield when commands take effect, unless they do so at once."""
     earliest, late = exact_text(timing.earliest), exact_text(timing.latest)
     if timing.latest and timing.earliest == timing.latest:
@@ -117,7 +117,7 @@ def _of_commands(timing: CommandTiming, *, constant: bool) -> Iterator[Assumptio
         yield assume(f"command-age.{how}", earliest=earliest, late=late)
 
 
-def _of_samples(least: int, most: int) -> Assumption:
+def _assume_samples(least: int, most: int) -> Assumption:
     """Return how old a force sample is."""
     oldest = f"{most} sample{'s' * (most != 1)}"
     if least < most:
@@ -125,17 +125,17 @@ def _of_samples(least: int, most: int) -> Assumption:
     return assume("sample-age.fixed" if most else "sample-age.now", most=oldest)
 
 
-def _of_motor(
+def _assume_motor(
     plant: Plant, loop: SampledLoop, axis: AxisType, environments: Sequence[Environment]
 ) -> Assumption:
     """Return how the motor, or the robot, moves."""
     ranges, timing = plant.actuator_ranges, loop.calendar.timing
-    motor = ranges.said(axis)
+    motor = ranges.assumed(axis)
     motor["moving"] = _at_samples(motor["moving"])
     if plant.slowed:
         return assume("motor.loaded", **motor)
     if plant.drive is not None:
-        return _of_drive(plant.drive, axis, environments)
+        return _assume_drive(plant.drive, axis, environments)
     known = ranges.time_constant.low == ranges.time_constant.high
     motor["corner"] = "times" if timing.varies else "point" if known else "motor"
     if loop.program.step.streams:
@@ -149,7 +149,7 @@ def _at_samples(moves: str) -> str:
     return moves and f"{moves}-sampled"
 
 
-def _of_drive(drive: Drive, axis: AxisType, environments: Sequence[Environment]) -> Assumption:
+def _assume_drive(drive: Drive, axis: AxisType, environments: Sequence[Environment]) -> Assumption:
     """Return how a robot moves that has no motor of the user's."""
     moves = _at_samples(moving(drive.ranges.values()))
     if drive.takes is Takes.TORQUE:
@@ -162,7 +162,7 @@ def _of_drive(drive: Drive, axis: AxisType, environments: Sequence[Environment])
     return assume("motor.followed-function", what=drive.takes)
 
 
-def _of_load(
+def _assume_load(
     plant: Plant, axis: AxisType, environments: Sequence[Environment]
 ) -> Iterator[Assumption]:
     """Yield what loads the motor, unless that is what a drive says of itself."""
@@ -178,7 +178,7 @@ def _constant(environments: Iterable[Environment]) -> str:
     return "constant" if any(number.is_constant for number in touched) else ""
 
 
-def _of_positions(
+def _assume_positions(
     program: SampledProgram, design: ControllerDesign, *, reset: bool
 ) -> Iterator[Assumption]:
     """Yield what position and force controllers do, and what the others do meanwhile."""
@@ -206,7 +206,7 @@ def _of_positions(
             yield assume("at-a-switch.sampled-zeroed")
 
 
-def _of_arithmetic(
+def _assume_arithmetic(
     conditions: OperatingConditions,
     loop: SampledLoop,
     laws: Mapping[str, DiscreteLaw],
@@ -216,7 +216,7 @@ def _of_arithmetic(
     program, axis = loop.program, conditions.axis
     yield assume("numbers.coefficients", coefficients=tuple(_coefficients(program, laws)))
     if not design.takes:
-        yield from of_command(design.command, axis)
+        yield from assume_command_unit(design.command, axis)
     counts = tuple(f"{name} {count}" for name, count in program.counts.items())
     yield assume("arithmetic.rounding", counts=counts)
     if (angle := conditions.largest_angle) is None:

@@ -75,7 +75,7 @@ def with_saturation(
     )
     lags = () if low_pass is None else low_pass.states
     start = _start(conditions, _rest(system.states, state.environments, lags))
-    limited = Assumption.of(
+    limited = Assumption.create(
         "limited.signals",
         velocity=rounded_up(velocity_limit, conditions.axis.unit("rad/s")),
         command=rounded_up(command_limit, conditions.command),
@@ -116,7 +116,7 @@ def with_sampled_saturation(
     if placed:
         rest = list(_held(loop, modes, rest))
     integral = [rounded_up(other.limit, other.unit) for other in signals[1:]]
-    limited = Assumption.of(
+    limited = Assumption.create(
         "limited.sampled",
         command=rounded_up(limit, conditions.command),
         clamped=bool(integral) and "integral",

@@ -30,7 +30,7 @@ from nrs_design.loop.misses import clock_of
 from nrs_design.loop.motor_command import motor_command
 from nrs_design.loop.program import INPUTS, SampledProgram
 from nrs_design.loop.sampled import SampledLoop
-from nrs_design.loop.sampled_assumptions import of_sampled_loop
+from nrs_design.loop.sampled_assumptions import assume_sampled_loop
 from nrs_design.loop.sampled_modes import Modes, SampledMode, damping_of
 from nrs_design.loop.saturation import with_sampled_saturation
 from nrs_design.models.drive import Drive
@@ -102,7 +102,7 @@ def close_sampled_loop(
         states=loop.states,
         modes=tuple(item.mode for item in modes),
         assumptions=(
-            *of_sampled_loop(conditions, sampling, plant, loop, laws, design, loss),
+            *assume_sampled_loop(conditions, sampling, plant, loop, laws, design, loss),
             *(() if driven is None else (driven.assumption,)),
         ),
         switching=assemble_switching(

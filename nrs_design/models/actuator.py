@@ -46,8 +46,8 @@ class ActuatorRanges:
         """Whether both are known."""
         return all(len(interval.ends) == 1 for interval in (self.gain, self.time_constant))
 
-    def said(self, axis: AxisType) -> dict[str, str]:
-        """Return what an assumption says of its numbers: where they are, and which may move."""
+    def assumed(self, axis: AxisType) -> dict[str, str]:
+        """Return the fields of an assumption about the ranges, with units."""
         return {
             "gain": f"{self.gain.text} {axis.unit('rad/s')}/{self.command}",
             "tau": f"{self.time_constant.text} s",

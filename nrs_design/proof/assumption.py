@@ -1,4 +1,4 @@
-"""What a statement takes for granted, as data: no check reads a sentence."""
+"""Assumptions of a statement, as data: no check reads a sentence."""
 
 from __future__ import annotations
 
@@ -8,18 +8,18 @@ from typing import Self
 
 @dataclass(frozen=True, slots=True)
 class Assumption:
-    """One thing that is taken for granted; the catalogue of certificates has it in words."""
+    """One assumption of a statement; `nrs_design.certificates.catalogue` renders its sentence."""
 
     id: str  # Of its sentence, such as ``tissue.linear``
-    # What the sentence is about: names, numbers with units, and keys of words, by field.
-    said: tuple[tuple[str, tuple[str, ...]], ...] = ()
+    # Values of the sentence by field: names, numbers with units, keys of words.
+    fields: tuple[tuple[str, tuple[str, ...]], ...] = ()
 
     @classmethod
-    def of(cls, id: str, /, **said: object) -> Self:
-        """Return an assumption; a tuple is a list of things, and what is empty is left out."""
+    def create(cls, id: str, /, **values: object) -> Self:
+        """Return an assumption; a tuple is a list of values, and empty values are left out."""
         fields = (
             (name, tuple(map(str, value)) if isinstance(value, tuple) else (str(value),))
-            for name, value in said.items()
+            for name, value in values.items()
             if value is not None and value is not False and value not in ("", ())
         )
         return cls(id, tuple(fields))

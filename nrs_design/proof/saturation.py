@@ -50,7 +50,7 @@ class Start:
     beside: str = ""
 
     @property
-    def said(self) -> str:
+    def exception(self) -> str:
         """Its exception in words that begin with a comma; empty if there is none."""
         if not self.beside:
             return ""

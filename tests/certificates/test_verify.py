@@ -350,7 +350,7 @@ class TestForgery:
     def test_other_words_of_what_is_taken_for_granted(self, given):
         document, spec = given
         first, *others = document["assumptions"]
-        for other in ({**first, "id": "matrices.guessed"}, {**first, "said": [["scale", ["2"]]]}):
+        for other in ({**first, "id": "matrices.guessed"}, {**first, "fields": [["scale", ["2"]]]}):
             spoiled = {**document, "assumptions": [other, *others]}
             self.reject(spoiled, spec, "'assumptions'")
         self.reject({**document, "assumptions": ["anything"]}, spec, "malformed")

@@ -74,7 +74,7 @@ def test_every_sentence_of_the_catalogue_is_said_somewhere():
     """A name that no code has is of a sentence that nobody says any more."""
     code = "".join(p.read_text(encoding="utf-8") for p in (ROOT / "nrs_design").rglob("*.py"))
     for kind in kinds().values():
-        for name in kind.says:
+        for name in kind.sentences:
             whole = f'"{kind.id}.{name}"' in code or f'"{kind.id}", "{name}"' in code
             # The rest of the id is put together where it is said.
             assert whole or f'f"{kind.id}.' in code or f'}}.{name}"' in code, f"{kind.id}.{name}"
@@ -83,10 +83,10 @@ def test_every_sentence_of_the_catalogue_is_said_somewhere():
 def test_fields_of_bounds_and_words_are_those_of_a_sentence():
     """What a bound is filled with stands beside the sentence, and words are for fields it has."""
     for kind in kinds().values():
-        said = {field for text in kind.says.values() for field in fields_in(text)}
-        assert set(kind.bounds) <= {*kind.says}, kind.id
+        said = {field for text in kind.sentences.values() for field in fields_in(text)}
+        assert set(kind.bounds) <= {*kind.sentences}, kind.id
         assert set(kind.words) <= said, kind.id
-        for text in kind.says.values():
+        for text in kind.sentences.values():
             assert text.endswith((".", "}")), text
             assert "" not in fields_in(text)
 
@@ -99,7 +99,7 @@ def test_an_assumption_has_its_words_in_the_catalogue():
     axes = Assumption("uncoupled.axes")
     assert sentence(axes) == "The axes of the robot do not act on each other."
     assert (bound_of(axes), catalogue_kind(axes).standing) == ("zero coupling", Standing.OPEN)
-    load = Assumption.of("load.sampled", inertia="2 kg*m^2", but="constant")
+    load = Assumption.create("load.sampled", inertia="2 kg*m^2", but="constant")
     assert "against an inertia of 2 kg*m^2. " in sentence(load)
     assert "within a period too, but for what is constant." in sentence(load)
     assert bound_of(load) == "2 kg*m^2"
@@ -108,11 +108,11 @@ def test_an_assumption_has_its_words_in_the_catalogue():
 @pytest.mark.parametrize(
     "unknown",
     [
-        Assumption.of("uncoupled.legs", legs=("a", "b")),
-        Assumption.of("legs.two", legs=("a", "b")),
-        Assumption.of("load.sampled", legs=("a", "b")),
-        Assumption.of("load.sampled", but="sometimes", legs=("a", "b")),
-        Assumption.of("at-a-switch.resets", switches=("a",), legs=("a", "b")),
+        Assumption.create("uncoupled.legs", legs=("a", "b")),
+        Assumption.create("legs.two", legs=("a", "b")),
+        Assumption.create("load.sampled", legs=("a", "b")),
+        Assumption.create("load.sampled", but="sometimes", legs=("a", "b")),
+        Assumption.create("at-a-switch.resets", switches=("a",), legs=("a", "b")),
     ],
 )
 def test_what_the_catalogue_does_not_know_is_shown_as_it_is(unknown):

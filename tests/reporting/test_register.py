@@ -14,7 +14,7 @@ AXES = "The axes of the robot do not act on each other."
 
 
 def test_an_assumption_keeps_its_sentence_and_order():
-    said = Assumption.of("motor.joint", gain="[1, 2] rad/s/rpm", tau="1 s", moving="all")
+    said = Assumption.create("motor.joint", gain="[1, 2] rad/s/rpm", tau="1 s", moving="all")
     motor, axes = register_of([said, Assumption("uncoupled.axes")])
     bound = "its gain stays in [1, 2] rad/s/rpm and its time constant is 1 s"
     assert (motor.kind.id, motor.bound) == ("motor", bound)

@@ -4,7 +4,7 @@ import pytest
 
 from nrs_design.certificates.catalogue import sentences
 from nrs_design.errors import SpecError
-from nrs_design.loop.assumptions import of_data
+from nrs_design.loop.assumptions import assume_data
 from nrs_design.pipeline.runs import run_design
 from nrs_design.spec import doubt_spec, parse_spec, read_spec
 from nrs_design.spec.describe import describe
@@ -92,7 +92,7 @@ def test_a_size_is_accepted_with_a_reason_which_every_proof_prints():
     accepted = LONG.replace("    lever_arm: 240 m\n", f"    lever_arm: 240 m\n{REASON}")
     spec = parse_spec(accepted)
     assert at not in [doubt.at for doubt in doubt_spec(spec)]
-    (said,) = (text for text in sentences(of_data(spec)) if "crane" in text)
+    (said,) = (text for text in sentences(assume_data(spec)) if "crane" in text)
     assert "Sizes of soft are unusual: lever_arm is 240 m; accepted because: a crane" in said
     # A reason for what the identification left in doubt is none for a size.
     both = accepted.replace(REASON, f"    doubts: [short]\n{REASON}")

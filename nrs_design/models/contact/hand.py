@@ -93,7 +93,7 @@ class Hand(AbstractLinearLaw):
     @classmethod
     def assumptions(cls, environment: str, *, alone: bool) -> Iterator[Assumption]:
         """Yield that its mass moves with the contact."""
-        yield Assumption.of("tissue.hand", environment=environment)
+        yield Assumption.create("tissue.hand", environment=environment)
 
     def react(self, velocity: LinearForm, states: Sequence[LinearForm]) -> Reaction:
         """Refuse to leave out the acceleration."""

@@ -113,9 +113,9 @@ class KelvinBoltzmann(AbstractLinearLaw):
     @classmethod
     def assumptions(cls, environment: str, *, alone: bool) -> Iterator[Assumption]:
         """Yield what the damper does at a switch, and while it is left alone."""
-        yield Assumption.of("memory.damper", environment=environment)
+        yield Assumption.create("memory.damper", environment=environment)
         if not alone:
-            yield Assumption.of("memory.creeps", environment=environment)
+            yield Assumption.create("memory.creeps", environment=environment)
 
     @property
     def impedance(self) -> tuple[tuple[float, ...], tuple[float, ...]]:

@@ -203,9 +203,9 @@ class AbstractLinearLaw(AbstractContactLaw):
         `alone`: no other environment is touched.
         """
         if cls.remembers:
-            yield Assumption.of("memory.kept", environment=environment, states=cls.states)
+            yield Assumption.create("memory.kept", environment=environment, states=cls.states)
             if not alone:
-                yield Assumption.of("memory.free", environment=environment)
+                yield Assumption.create("memory.free", environment=environment)
 
     @property
     def exact(self) -> tuple[Fraction, ...]:

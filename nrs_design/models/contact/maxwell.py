@@ -80,7 +80,7 @@ class Maxwell(AbstractLinearLaw):
     @classmethod
     def assumptions(cls, environment: str, *, alone: bool) -> Iterator[Assumption]:
         """Yield what is known of the deflection, which is no state."""
-        yield Assumption.of("memory.maxwell", environment=environment)
+        yield Assumption.create("memory.maxwell", environment=environment)
 
     @property
     def impedance(self) -> tuple[tuple[float, ...], tuple[float, ...]]:

@@ -219,7 +219,8 @@ class SaturatedEllipsoid(AbstractEvidence):
             f"{decay} with {rate_words(self.rate, system.time)} in the norm "
             f"|w| = sqrt(w' Q w), where w holds {states} switching arbitrarily{lost}, with no "
             f"disturbance. In particular: every motion that begins at rest with a {start.name} up "
-            f"to {rounded_down(self.level, start.unit)}{start.said}, and all else zero.{seconds}"
+            f"to {rounded_down(self.level, start.unit)}{start.exception}, and all else "
+            f"zero.{seconds}"
         )
 
     def find_unsayable(self, system: SwitchedSystem) -> str | None:

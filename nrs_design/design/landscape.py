@@ -1,4 +1,4 @@
-"""Around a chosen admittance: the cost over Mt and Bt, what it gives up, and the delay it bears.
+"""Around a chosen admittance: the cost over Mt and Bt, and what it gives up.
 
 All of it is floating point, and no part of any proof. The cost is that of the thesis, on its loop
 in contact with the nominal environment; stability and dead time are those of the loop that is
@@ -142,23 +142,3 @@ def _priced(problem: ImpedanceProblem, name: str, Mt: float, Bt: float) -> Alter
         for p in (problem, _weighted(problem, 1.0, 0.0), _weighted(problem, 0.0, 1.0))
     )
     return Alternative(name, Mt, Bt, *costs)
-
-
-def delay_borne(
-    requirement: Requirement, Mt: float, Bt: float, stiffness: FloatArray
-) -> FloatArray:
-    """Return the delay margin in s over the stiffness of the contact in N m/rad.
-
-    At the worst corner of all other ranges, with the designed gains in the environment that they
-    are designed for. Zero where the loop is unstable without any; infinite where no dead time
-    destabilizes.
-    """
-    gains = np.full_like(stiffness, Mt), np.full_like(stiffness, Bt)
-    families = {
-        id(f): f
-        for corner in requirement.corners
-        if corner.home
-        for f in (requirement.family(corner),)
-    }
-    borne = [f.loops(*gains, stiffness).delay_margin() for f in families.values()]
-    return np.asarray(np.min(borne, axis=0), dtype=np.float64)

@@ -17,7 +17,6 @@ from nrs_design.reporting.sections.methods import methods_section
 from nrs_design.reporting.sections.mode_logic import logic_section
 from nrs_design.reporting.sections.modes import modes_section
 from nrs_design.reporting.sections.proof import proof_section
-from nrs_design.reporting.sections.release import release_section
 from nrs_design.reporting.sections.remedies import remedies_section
 from nrs_design.reporting.sections.summary import lights_of, summary_of
 from nrs_design.reporting.sections.tail import (
@@ -68,7 +67,6 @@ def build_report(
             logic_section(designed.spec) if designed else None,
             modes_section(result.loaded, system, proved_rate(system, certification.evidence)),
             *evidence_sections(certification),
-            release_section(result),
             worst_case_section(result),
             assumptions_section(result),
             rungs_section(certification, times=times),

@@ -163,10 +163,7 @@ def _shrink(figure: Figure) -> None:
 
 
 def settle(figure: Figure) -> None:
-    """Lay a figure out for good, once; where an aspect is kept, only drawing it does that.
-
-    A drawing function that has to know where its texts are calls it itself, at its end.
-    """
+    """Lay a figure out for good, once; where an aspect is kept, only drawing it does that."""
     from nrs_design.reporting.ticks import write_ticks_in_full
 
     engine = figure.get_layout_engine()

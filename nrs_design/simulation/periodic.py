@@ -63,14 +63,6 @@ def periodic_run(
     return PeriodicRun(response, sum(time for _, time in steps), radius)
 
 
-def one_period(run: PeriodicRun) -> SwitchedRun:
-    """Return the first period of a run."""
-    response = run.response
-    # Sums of dwell times may miss the end of the period by a rounding error.
-    end = max(int(np.searchsorted(response.time, run.period * (1 - 1e-9))), 1)
-    return SwitchedRun(response.time[: end + 1], response.state[: end + 1], response.mode[:end])
-
-
 def mixture_matrix(system: SwitchedSystem, weights: Sequence[tuple[str, Fraction]]) -> Array:
     """Return the weighted sum of modes in floating point."""
     modes = {mode.name: np.array(mode.A.floats()) for mode in system.modes}

@@ -8,12 +8,11 @@ from matplotlib.contour import QuadContourSet
 
 from nrs_design.design.impedance import characteristic_basis, stabilizes
 from nrs_design.design.impedance_optimum import impedance_cost
-from nrs_design.design.landscape import alternatives, cheapest_damping, delay_borne, map_cost
+from nrs_design.design.landscape import alternatives, cheapest_damping, map_cost
 from nrs_design.pipeline.analysis import run_analysis
 from nrs_design.pipeline.runs import run_design
 from nrs_design.reporting.sections.landscape import draw_cost
 from nrs_design.spec import read_spec
-from tests.design.classical import loop_margins
 from tests.support import SOFT_TISSUE
 
 
@@ -93,16 +92,6 @@ def test_a_mass_of_zero_has_a_map(insertion):
     assert found.cost[50, 0] == pytest.approx(
         float(impedance_cost(bounds, found.Mt[0], found.Bt[50]))
     )
-
-
-def test_delay_borne_is_the_delay_margin_at_that_stiffness(insertion):
-    loop, limit = insertion.problem.loop, insertion.lowest_limit
-    gains, nominal = (insertion.Mt, insertion.Bt), loop.contact.stiffness
-    stiffness = np.array([nominal, 0.999 * limit, 1.001 * limit])
-    borne = delay_borne(insertion.requirement, *gains, stiffness)
-    assert borne[0] == pytest.approx(loop_margins(loop, *gains).delay_margin, rel=1e-6)
-    assert 0 < borne[1] < 1e-3
-    assert borne[2] == 0
 
 
 def test_the_cheapest_damping_beside_given_gains(insertion):

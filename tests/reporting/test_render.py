@@ -131,7 +131,7 @@ def test_what_the_gains_give_up_leads_to_the_gains(page):
 
 def test_what_is_named_in_a_figure_can_be_pointed_at(page):
     titles = re.findall(r'data-named=""><title>([^<]+)</title>', page("proved"))
-    assert {"insertion/soft/k-min", "withdrawal/free", "certified bound"} <= set(titles)
+    assert {"insertion/soft/k-min", "withdrawal/free", "limit of the spec"} <= set(titles)
 
 
 def test_hostile_title_is_escaped(page):

@@ -10,7 +10,6 @@ from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Switching
 from nrs_design.simulation.periodic import (
     mixture_matrix,
-    one_period,
     periodic_run,
     steps_of_mixture,
 )
@@ -46,14 +45,6 @@ def test_resets_act_where_the_signal_switches():
         for rule in (Switching(), double)
     )
     assert jumping.radius == pytest.approx(4 * plain.radius)
-
-
-def test_one_period_ends_with_the_period():
-    run = periodic_run(SHEARS, [(0, 0.3), (1, 0.1)])
-    first = one_period(run)
-    assert first.time[-1] == pytest.approx(0.4)
-    assert set(first.mode.tolist()) == {0, 1}
-    assert len(first.state) == len(first.time) == len(first.mode) + 1
 
 
 def test_slow_growth_ends_after_thirty_periods_and_fast_growth_early():

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,31 +12,17 @@ from nrs_design.proof.evidence import AbstractEvidence, Shows
 from nrs_design.proof.evidence.block_triangular import diagonal_block
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.reporting.document import Block, Bullets, Illustration, Paragraph, Section, Table
+from nrs_design.reporting.document import Bullets, Paragraph, Section, Table
 from nrs_design.reporting.evidence import words
-from nrs_design.reporting.evidence.page import AbstractPage
-from nrs_design.reporting.evidence.runs import (
-    BESIDE,
-    EUCLIDEAN,
-    GREEDY,
-    Greedy,
-    phase_plane,
-    simulated,
-    trials_per_step,
-)
+from nrs_design.reporting.evidence.offers import Offer
+from nrs_design.reporting.evidence.page import Page
+from nrs_design.reporting.evidence.runs import BESIDE, EUCLIDEAN, GREEDY, Greedy, trials_per_step
 from nrs_design.reporting.formatting import shortened
 from nrs_design.reporting.sections.modes import hardest_modes
-from nrs_design.reporting.style import BLUE, SKY, VERMILLION, legend, new_axes, styled
-from nrs_design.reporting.text import wrapped_label
 from nrs_design.simulation.norms import quadratic_norm
 from nrs_design.simulation.switched import worst_direction
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-
-_LISTED, _NAMED = 32, 12
+_LISTED = 32
 _STRUCTURE = (
     "In every mode, the states of a block are driven by their own block and by later ones only. "
     "So the last block moves by itself, and each of the others follows it."
@@ -55,10 +40,6 @@ _WITHOUT = (
     "A family in block triangular form has a common quadratic function only if every family of "
     "diagonal blocks has one. Block {number} ({states}) has none."
 )
-_CELLS = (
-    "A filled cell: the state of its column drives the state of its row, in at least one mode. The "
-    "frames are the diagonal blocks, each decided by itself; below them all is zero."
-)
 _RUN = (
     "The dashed line has the rate of the slowest block. The certificate says that every run decays "
     "at any slower rate, up to a constant factor; so the run may lie above the line for a while."
@@ -66,146 +47,77 @@ _RUN = (
 
 
 @dataclass(frozen=True)
-class BlocksPage(AbstractPage):
-    """The blocks with their evidence; a refuted block has the text and run of its own page."""
+class _Family:
+    system: SwitchedSystem
+    offer: Offer
+    page_of: Callable[[SwitchedSystem, AbstractEvidence], Page]  # of what a block shows
 
-    page_of: Callable[[SwitchedSystem, AbstractEvidence], AbstractPage]  # of what a block shows
+    def block(self, index: int) -> SwitchedSystem:
+        return diagonal_block(self.system, self.offer.blocks[index])
 
-    name = "blocks of its own"
+    def structure(self) -> tuple[Section, ...]:
+        """Summarize the evidence for the blocks."""
+        claims = tuple(
+            f"Block {index + 1}: {part.claim(self.block(index))}"
+            for index, part in self.offer.parts[:_LISTED]
+        )
+        blocks = (Paragraph(_STRUCTURE), self._table(), Bullets("Evidence of the blocks", claims))
+        return (Section("Block triangular structure", blocks),)
 
-    def meaning(self) -> tuple[str, ...]:
-        """Say what follows for the family from its blocks."""
-        system = self.system
-        if self.evidence.shows is Shows.STABILITY:
-            unneeded = (*words.unneeded_constant(system), *words.unneeded_rules(system))
-            return (_BOUND, *unneeded, words.decision(system))
-        inner = self._deciding.meaning()
-        return (_UNSTABLE, *inner) if self.evidence.shows is Shows.INSTABILITY else inner
+    def obstruction(self) -> tuple[Section, ...]:
+        """Show the contradiction in the block that has no common quadratic function."""
+        (index, part), *_ = self.offer.parts
+        inner = self.block(index)
+        text = _WITHOUT.format(number=index + 1, states=shortened(inner.states, 6))
+        found = [block for s in self.page_of(inner, part).sections() for block in s.blocks]
+        title = f"No common quadratic function: block {index + 1}"
+        return (Section(title, (Paragraph(text), *found)),)
 
-    def limits(self) -> tuple[str, ...]:
-        """Say what a refutation of one block leaves open."""
-        return () if self.evidence.shows is Shows.STABILITY else self._deciding.limits()
-
-    def sections(self, *, first: bool = True) -> tuple[Section, ...]:
-        """Draw the structure and summarize the evidence for the blocks."""
-        system, title = self.system, "Block triangular structure"
-        blocks: list[Block] = []
-        if first:
-            figure = _draw_blocks(system, self.offer.blocks)
-            drawn = Illustration("blocks", "Which states drive which", _CELLS, figure)
-            blocks = [Paragraph(_STRUCTURE), drawn, self._table()]
-        if self.evidence.shows is Shows.NO_COMMON_QUADRATIC:
-            index, inner, part = next(self._parts())
-            title = f"No common quadratic function: block {index + 1}"
-            states = shortened(inner.states, 6)
-            blocks.append(Paragraph(_WITHOUT.format(number=index + 1, states=states)))
-            for section in self.page_of(inner, part).sections():
-                blocks += section.blocks
-        else:
-            claims = tuple(
-                f"Block {index + 1}: {part.claim(inner)}"
-                for index, inner, part in list(self._parts())[:_LISTED]
-            )
-            blocks.append(Bullets("Evidence of the blocks", claims))
-        return (Section(title, tuple(blocks)),)
-
-    def run(self) -> Section:
+    def run(self, rate: float) -> Section:
         """Draw a run of the whole family, beside the rate of its slowest block."""
-        proved = self.evidence.proved_rate(self.system)
-        if proved is None or self.evidence.shows is not Shows.STABILITY:
-            return self._deciding.run()
-        system, identity, rate = self.system, np.eye(self.system.order), float(proved)
+        system, identity = self.system, np.eye(self.system.order)
         hardest = replace(hardest_modes(system, None, trials_per_step(system)), contact=None)
         initial = worst_direction(hardest, identity)
         greedy = Greedy(system, hardest, quadratic_norm(identity), initial, rate)
-        line = "slope of the slowest block, "
-        response, run = greedy.draw(BESIDE, f"{GREEDY} {_RUN}", EUCLIDEAN, line)
-        return simulated(run, *phase_plane(hardest, response, None))
-
-    @property
-    def _deciding(self) -> AbstractPage:
-        """The page of the part that settles the family, which contains its block."""
-        return self.page_of(self.system, self.offer.parts[0][1])
-
-    def _parts(self) -> Iterator[tuple[int, SwitchedSystem, AbstractEvidence]]:
-        """Yield the number of a block, its family, and its evidence."""
-        for index, part in self.offer.parts:
-            yield index, diagonal_block(self.system, self.offer.blocks[index]), part
+        return greedy.draw(BESIDE, f"{GREEDY} {_RUN}", EUCLIDEAN, "slope of the slowest block, ")
 
     def _table(self) -> Table:
-        system, blocks, parts = self.system, self.offer.blocks, dict(self.offer.parts)
-        rows = []
-        for index, block in list(enumerate(blocks))[:_LISTED]:
-            inner, part = diagonal_block(system, block), parts.get(index)
-            shown = "not needed" if part is None else self.page_of(inner, part).name
-            rate = "" if part is None else _rate(inner, part)
-            rows.append((f"{index + 1}", shortened(inner.states, 6), shown, rate))
-        unit = "rho per step [1]" if self.is_discrete else "alpha [1/s]"
-        some = f" (the first {_LISTED})" if len(blocks) > _LISTED else ""
-        title = f"The {len(blocks)} diagonal blocks{some}"
-        return Table(title, ("Block", "States", "Evidence", f"Proved {unit}"), tuple(rows))
-
-
-def _rate(system: SwitchedSystem, part: AbstractEvidence) -> str:
-    rate = part.proved_rate(system)
-    if rate is None:
-        return ""
-    return rounded_down(rate) if system.time is Time.CONTINUOUS else rounded_up(rate)
-
-
-@styled
-def _draw_blocks(system: SwitchedSystem, blocks: Sequence[Sequence[int]]) -> Figure:
-    """Draw which state drives which in any mode, with the diagonal blocks framed."""
-    order = [state for block in blocks for state in block]
-    label = np.repeat(np.arange(len(blocks)), [len(block) for block in blocks])
-    pattern = _pattern(system)[np.ix_(order, order)]
-    own = label[:, None] == label[None, :]
-    n = len(order)
-    figure, axes = new_axes(3.4 if n <= 4 else 4.6)
-    size = min(700.0, 26_000.0 / n**2)
-    _cells(axes, pattern & own, BLUE, size, "within a block")
-    _cells(axes, pattern & ~own, SKY, size, "from a later block")
-    _frames(axes, blocks)
-    names = [wrapped_label(system.states[i], 14) for i in order]
-    ticks = names if n <= _NAMED else [str(i + 1) for i in order]
-    shown = range(0, n, 1 + n // 40)
-    axes.set_xticks(shown, [ticks[i] for i in shown], rotation=0 if n <= 4 else 60)
-    axes.set_yticks(shown, [ticks[i] for i in shown])
-    axes.set(xlim=(-0.7, n - 0.3), ylim=(n - 0.3, -0.7), aspect="equal")
-    axes.grid(visible=False)
-    axes.set(xlabel="State that drives", ylabel="State driven")
-    legend(figure, axes, 3)
-    return figure
-
-
-def _pattern(system: SwitchedSystem) -> np.ndarray[tuple[int, ...], np.dtype[np.bool_]]:
-    patterns = [[[v != 0 for v in row] for row in mode.A.numerators] for mode in system.modes]
-    return np.asarray(np.any(patterns, axis=0))
-
-
-def _cells(
-    axes: Axes,
-    cells: np.ndarray[tuple[int, ...], np.dtype[np.bool_]],
-    tint: str,
-    size: float,
-    label: str,
-) -> None:
-    rows, columns = np.nonzero(cells)
-    if len(rows):
-        axes.plot(columns, rows, "s", color=tint, markersize=np.sqrt(size))
-        # A marker of the legend's size, whatever the cells' own.
-        axes.plot([], [], "s", color=tint, label=label)
-
-
-def _frames(axes: Axes, blocks: Sequence[Sequence[int]]) -> None:
-    start = 0
-    for index, block in enumerate(blocks):
-        low, high = start - 0.5, start + len(block) - 0.5
-        axes.plot(
-            [low, high, high, low, low],
-            [low, low, high, high, low],
-            color=VERMILLION,
-            linewidth=1.6,
-            label="diagonal block" if index == 0 else None,
+        count, parts, discrete = (
+            len(self.offer.blocks),
+            dict(self.offer.parts),
+            self.system.time is Time.DISCRETE,
         )
-        start += len(block)
+        rows = []
+        for index in range(min(count, _LISTED)):
+            inner, part = self.block(index), parts.get(index)
+            proved = None if part is None else part.proved_rate(inner)
+            shown = "not needed" if part is None else self.page_of(inner, part).name
+            rate = rounded_up(proved) if proved is not None and discrete else ""
+            if proved is not None and not discrete:
+                rate = rounded_down(proved)
+            rows.append((f"{index + 1}", shortened(inner.states, 6), shown, rate))
+        unit = "rho per step [1]" if discrete else "alpha [1/s]"
+        some = f" (the first {_LISTED})" if count > _LISTED else ""
+        columns = ("Block", "States", "Evidence", f"Proved {unit}")
+        return Table(f"The {count} diagonal blocks{some}", columns, tuple(rows))
+
+
+def blocks_page(
+    system: SwitchedSystem,
+    evidence: AbstractEvidence,
+    offer: Offer,
+    page_of: Callable[[SwitchedSystem, AbstractEvidence], Page],
+) -> Page:
+    """Return the page of the blocks; a block that settles the family gives its text and run."""
+    name, family = "blocks of its own", _Family(system, offer, page_of)
+    proved = evidence.proved_rate(system)
+    if evidence.shows is Shows.STABILITY and proved is not None:
+        unneeded = (*words.unneeded_constant(system), *words.unneeded_rules(system))
+        meaning, rate = (_BOUND, *unneeded, words.decision(system)), float(proved)
+        return Page(name, meaning, (), lambda: family.run(rate), family.structure)
+    # It contains its block.
+    deciding = page_of(system, offer.parts[0][1])
+    if evidence.shows is Shows.NO_COMMON_QUADRATIC:
+        return replace(deciding, name=name, sections=family.obstruction)
+    meaning = (_UNSTABLE, *deciding.meaning)
+    return replace(deciding, name=name, meaning=meaning, sections=family.structure)

@@ -2,23 +2,26 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
 import numpy as np
 
 from nrs_design.proof.bounds import at_most
+from nrs_design.proof.evidence import AbstractEvidence
+from nrs_design.proof.evidence.fields import rate_words
+from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Clock
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.reporting.document import Block, Paragraph, Section, Table
 from nrs_design.reporting.evidence import words
 from nrs_design.reporting.evidence.norms import (
     largest_norm,
-    matrix_blocks,
+    matrix_tables,
     step_norms,
 )
-from nrs_design.reporting.evidence.offers import Form
-from nrs_design.reporting.evidence.page import AbstractPage
-from nrs_design.reporting.evidence.rates import rate_blocks
+from nrs_design.reporting.evidence.offers import Form, Offer
+from nrs_design.reporting.evidence.page import Page
 from nrs_design.reporting.evidence.runs import (
     Greedy,
     bounded_run,
@@ -30,12 +33,25 @@ from nrs_design.reporting.formatting import number
 from nrs_design.reporting.sections.modes import hardest_modes
 from nrs_design.reporting.sections.titles import EVIDENCE
 from nrs_design.simulation.admissible import norm_ratio
-from nrs_design.simulation.norms import Array, clipped, scaled_matrices
+from nrs_design.simulation.norms import clipped, scaled_matrices
+from nrs_design.simulation.rates import mode_rates
 from nrs_design.simulation.switched import fine_step, sampled_direction, worst_direction
 
+# A page lists no more modes; those with the least slack are shown.
+_LISTED = 24
+_RATES = {
+    Time.CONTINUOUS: (
+        "Half the smallest eigenvalue of -(A'Q + QA) relative to Q: the rate at which the norm of "
+        "Q decays at least in this mode."
+    ),
+    Time.DISCRETE: (
+        "Root of the largest eigenvalue of A'QA relative to Q: the factor by which the norm of Q "
+        "shrinks at least in a step of this mode."
+    ),
+}
+_IN_CONTACT = " Free motion has conditions of its own, on the other states."
 # A run in the norm of a polynomial, or of many functions, tries no more modes.
 _MODES = 32
-_NESTED = (1.0, 0.75, 0.5, 0.25)
 _MONOMIALS = (
     "V = z' Q z, z being all monomials of degree {degree} in the states. For every decrease it "
     "holds a form in z that vanishes identically; added to the decrease, it makes a positive "
@@ -44,8 +60,17 @@ _MONOMIALS = (
 )
 
 
-class FunctionsPage(AbstractPage):
-    """The matrices, the rate of every mode in them, and a run."""
+def functions_page(system: SwitchedSystem, evidence: AbstractEvidence, offer: Offer) -> Page:
+    """Return the matrices, the rate of every mode in them, and a run."""
+    of = _Functions(system, evidence, offer)
+    return Page(of.name, of.meaning, of.limits, of.run, of.sections)
+
+
+@dataclass(frozen=True)
+class _Functions:
+    system: SwitchedSystem
+    evidence: AbstractEvidence
+    offer: Offer
 
     @property
     def name(self) -> str:
@@ -60,6 +85,7 @@ class FunctionsPage(AbstractPage):
             text = f"common {text}"
         return text + " for contact and free motion" * self._lost
 
+    @property
     def meaning(self) -> tuple[str, ...]:
         """Say what decreases, what the bound means and rests on, and how it was decided."""
         system = self.system
@@ -71,28 +97,23 @@ class FunctionsPage(AbstractPage):
             said += words.unneeded_rules(system)
         return (*said, words.decision(system, ruled=self._ruled))
 
+    @property
     def limits(self) -> tuple[str, ...]:
         """Name signals that break the rules, and what would move the point of rest."""
         outside = words.outside_the_rules(self.system, self.offer.leaving) if self._ruled else ()
         return (*outside, *words.function_limits(self.system, lost=self._lost))
 
-    def sections(self, *, first: bool = True) -> tuple[Section, ...]:
+    def sections(self) -> tuple[Section, ...]:
         """Show the forms of the certificate, and how every mode decreases a common one."""
         system = self.system
         blocks: list[Block] = [Paragraph(self._text())]
         if self._form.degree > 1:
             blocks.append(_size(self.offer.forms, system.order))
-        else:
-            blocks += matrix_blocks(self._touching, system.states)
+            return (Section(EVIDENCE, tuple(blocks)),)
+        blocks += matrix_tables(self._touching, system.states)
         if len(self.offer.forms) == 1:
-            blocks += rate_blocks(system, self._form, self._rate, lost=self._lost)
+            blocks += _rate_blocks(system, self._form, self._rate, lost=self._lost)
         return (Section(EVIDENCE, tuple(blocks)),)
-
-    def quadratic(self) -> tuple[Array, float] | None:
-        """Return the matrix of a single quadratic function, scaled, and its rate."""
-        if len(self.offer.forms) > 1 or self._form.degree > 1:
-            return None
-        return scaled_matrices(self._form.Q)[0], float(self._rate)
 
     def run(self) -> Section:
         """Draw a run below the bound."""
@@ -121,7 +142,6 @@ class FunctionsPage(AbstractPage):
         return bounded_run(
             Greedy(system, hardest, norm, initial, rate),
             label if single else "(largest norm)",
-            levels=(1.0,) if quadratic else _NESTED,
         )
 
     @property
@@ -187,3 +207,22 @@ def _size(forms: tuple[Form, ...], order: int) -> Table:
 def _turn(clock: Clock) -> str:
     """Say what there is a function of."""
     return "step of a round" if clock.is_round else "state of the rule for misses"
+
+
+def _rate_blocks(
+    system: SwitchedSystem, form: Form, claimed: Fraction, *, lost: bool
+) -> tuple[Block, ...]:
+    """Return how fast the modes with the least slack decrease a quadratic function.
+
+    `lost`: the certificate covers the loss of contact, on which these rates say nothing.
+    """
+    continuous = system.time is Time.CONTINUOUS
+    rates = mode_rates(system, scaled_matrices(form.Q)[0])
+    slack = rates - float(claimed) if continuous else float(claimed) - rates
+    order = np.argsort(slack, kind="stable")[:_LISTED]
+    rows = tuple((system.modes[i].name, number(rates[i], 6), number(slack[i], 3)) for i in order)
+    unit, quantity = (" [1/s]", "Decay rate") if continuous else (" [1]", "Contraction")
+    some = "" if len(rows) == len(rates) else f" ({len(rows)} with the least slack)"
+    title = f"Rate of every mode alone{some}; claimed for all: {rate_words(claimed, system.time)}"
+    columns = ("Mode", f"{quantity} in the norm of Q{unit}", f"Slack{unit}")
+    return Paragraph(_RATES[system.time] + _IN_CONTACT * lost), Table(title, columns, rows)

@@ -4,36 +4,38 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
-from enum import Enum
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from nrs_design.proof.bounds import lower, nearly
 from nrs_design.proof.constant import system_at
+from nrs_design.proof.evidence import AbstractEvidence
+from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import ARBITRARY
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.proof.text import counted
 from nrs_design.reporting.document import Block, Illustration, Paragraph, Section, Table
 from nrs_design.reporting.evidence import words
-from nrs_design.reporting.evidence.offers import offer_of
-from nrs_design.reporting.evidence.page import AbstractPage
-from nrs_design.reporting.evidence.runs import EUCLIDEAN, euclidean_norms, phase_plane
-from nrs_design.reporting.figures.complex_plane import draw_eigenvalues
-from nrs_design.reporting.figures.run import draw_run
+from nrs_design.reporting.evidence.offers import Offer, offer_of
+from nrs_design.reporting.evidence.page import Page
+from nrs_design.reporting.evidence.runs import Bound, drawn
 from nrs_design.reporting.formatting import number, roots
 from nrs_design.simulation.greedy import all_modes
-from nrs_design.simulation.norms import Array
 from nrs_design.simulation.periodic import (
     PeriodicRun,
     mixture_matrix,
-    one_period,
     periodic_run,
     steps_of_mixture,
 )
-from nrs_design.simulation.switched import alone, mode_eigenvalues, unstable_run
+from nrs_design.simulation.switched import SwitchedRun, alone, mode_eigenvalues, unstable_run
 
 _LISTED = 24
+_TITLE = "Simulated witness"
+_MODE = "a mode that is not stable"
+_AVERAGE = "an average that is not stable"
+_PERIOD = "a period that grows"
+_CONTACT = "a motion that grows while contact is lost and made"
 _IN_A_MODE = (
     "The mode has an eigenvalue outside the open {region}. Staying in this mode forever is one of "
     "the switching signals that the spec allows, so exponential stability under {signals} is "
@@ -70,10 +72,11 @@ _BY_SIGNS = (
     "Simulated from the enclosed direction, through contact and flight as the signs of the motion "
     "say."
 )
-_CARRIED_ON = "The dashed line is the growth per period, carried on."
-_ONE_PERIOD = (
-    "The first period of the same run: which mode is active when, and what it does to the norm."
+_STAYING = (
+    "Simulated from the eigenvector of the eigenvalue: the state does not decay. No other mode is "
+    "used, which the switching allows."
 )
+_CARRIED_ON = "The dashed line is the growth per period, carried on."
 _OTHER_VALUES = (
     "Nothing is said about other values of the parameter: a narrower range may be stable."
 )
@@ -89,69 +92,52 @@ _ON_THE_BORDER = (
 )
 
 
-class _Shape(Enum):
-    """What grows: its name, and why one such motion is enough."""
+def growth_page(system: SwitchedSystem, evidence: AbstractEvidence, offer: Offer) -> Page:
+    """Return why one motion is enough, and the run that repeats its sequence of modes."""
+    if offer.shares:
+        return _at_a_value(system, offer)
+    witness, at_border = _Witness(system, offer), False
+    if offer.weights:
+        name, meaning, at_border, run = _AVERAGE, _ON_AVERAGE, True, witness.average
+    elif offer.factor is not None:
+        name, meaning, run = _CONTACT, _BY_ITSELF, witness.repeated
+    elif [time for _, time in offer.steps] == [0]:
+        name, meaning, at_border, run = _MODE, _IN_A_MODE, True, witness.in_a_mode
+    else:
+        name, meaning, run = _PERIOD, _PERIODIC, witness.repeated
+    region = "unit disk" if system.time is Time.DISCRETE else "left half plane"
+    arbitrary = system.switching.is_arbitrary
+    signals = "arbitrary switching" if arbitrary else "the declared switching"
+    return Page(
+        name,
+        (meaning.format(signals=signals, region=region),),
+        (words.NO_FORECAST, _OTHERS, _ON_THE_BORDER if at_border else _LINEAR),
+        lambda: Section(_TITLE, tuple(run())),
+    )
 
-    MODE = "a mode that is not stable", _IN_A_MODE
-    AVERAGE = "an average that is not stable", _ON_AVERAGE
-    PERIOD = "a period that grows", _PERIODIC
-    CONTACT = "a motion that grows while contact is lost and made", _BY_ITSELF
-    VALUE = "a value of the parameter that is not stable", _AT_A_VALUE
+
+def _at_a_value(system: SwitchedSystem, offer: Offer) -> Page:
+    """Return the page of what happens at one value of the constant parameters."""
+    ((_, part),) = offer.parts
+    page = growth_page(system_at(system, offer.shares), part, offer_of(part))
+    return Page(
+        "a value of the parameter that is not stable",
+        (_AT_A_VALUE, *page.meaning),
+        (*page.limits, _OTHER_VALUES),
+        lambda: Section(_TITLE, (Paragraph(_AT_THIS_VALUE), *page.run().blocks)),
+    )
 
 
-class GrowthPage(AbstractPage):
-    """The sequence of modes, and the run that repeats it."""
-
-    @property
-    def name(self) -> str:
-        """What it shows."""
-        return self._shape.value[0]
-
-    def meaning(self) -> tuple[str, ...]:
-        """Say why one motion is enough."""
-        region = "unit disk" if self.is_discrete else "left half plane"
-        arbitrary = self.system.switching.is_arbitrary
-        signals = "arbitrary switching" if arbitrary else "the declared switching"
-        said = self._shape.value[1].format(signals=signals, region=region)
-        return (said, *self._part.meaning()) if self._shape is _Shape.VALUE else (said,)
-
-    def limits(self) -> tuple[str, ...]:
-        """Say that nothing follows for other motions."""
-        if self._shape is _Shape.VALUE:
-            return (*self._part.limits(), _OTHER_VALUES)
-        at_border = self._shape in (_Shape.AVERAGE, _Shape.MODE)
-        return (words.NO_FORECAST, _OTHERS, _ON_THE_BORDER if at_border else _LINEAR)
-
-    def run(self) -> Section:
-        """Simulate the motion."""
-        if self._shape is _Shape.VALUE:
-            blocks: tuple[Block, ...] = (Paragraph(_AT_THIS_VALUE), *self._part.run().blocks)
-        elif self._shape is _Shape.AVERAGE:
-            blocks = tuple(self._average())
-        elif self._shape is _Shape.MODE:
-            blocks = tuple(self._in_a_mode())
-        else:
-            blocks = tuple(self._repeated())
-        return Section("Simulated witness", blocks)
+@dataclass(frozen=True)
+class _Witness:
+    system: SwitchedSystem
+    offer: Offer
 
     @property
-    def _shape(self) -> _Shape:
-        offer = self.offer
-        if offer.shares:
-            return _Shape.VALUE
-        if offer.weights:
-            return _Shape.AVERAGE
-        if offer.factor is not None:
-            return _Shape.CONTACT
-        return _Shape.MODE if [time for _, time in offer.steps] == [0] else _Shape.PERIOD
+    def is_discrete(self) -> bool:
+        return self.system.time is Time.DISCRETE
 
-    @property
-    def _part(self) -> GrowthPage:
-        """The page of what happens at one value of the constant parameters."""
-        ((_, part),) = self.offer.parts
-        return GrowthPage(system_at(self.system, self.offer.shares), part, offer_of(part))
-
-    def _in_a_mode(self) -> Iterator[Block]:
+    def in_a_mode(self) -> Iterator[Block]:
         """Stay in the mode, from the eigenvector of its worst eigenvalue."""
         ((name, _),) = self.offer.steps
         modes = (*self.system.modes, *self.system.free_motions())
@@ -162,16 +148,9 @@ class GrowthPage(AbstractPage):
         line = (f"the eigenvalue alone, exp({rate:.4g} t)", np.exp(rate * response.time))
         if self.is_discrete:
             line = (f"the eigenvalue alone, {factor:.4g}^t", factor**response.time)
-        yield Illustration(
-            "run",
-            f"Staying in mode {name}",
-            "Simulated from the eigenvector of the eigenvalue: the state does not decay. No other "
-            "mode is used, which the switching allows.",
-            draw_run(response, euclidean_norms(response), line, single, EUCLIDEAN),
-        )
-        yield from phase_plane(single, response, None)
+        yield from self._drawn(f"Staying in mode {name}", _STAYING, response, single, line)
 
-    def _average(self) -> Iterator[Block]:
+    def average(self) -> Iterator[Block]:
         """Switch fast, with the shares of the average."""
         system, weights = self.system, self.offer.weights
         average = np.linalg.eigvals(mixture_matrix(system, weights)).astype(complex)
@@ -181,31 +160,20 @@ class GrowthPage(AbstractPage):
         shares = tuple((name, str(w), number(float(w), 4)) for name, w in weights)
         yield Paragraph(f"Eigenvalues of the average: {roots(average.tolist(), 6)} 1/s.")
         yield Table("The average", ("Mode", "Share (exact)", "Share [1]"), shares)
-        chosen = dict(weights)
-        mixed = replace(system, modes=tuple(m for m in system.modes if m.name in chosen))
-        names = [*(mode.name for mode in mixed.modes), "average"]
-        yield Illustration(
-            "mixture",
-            "Eigenvalues of the average",
-            "The modes that have a share in it, and their average, which is not stable.",
-            draw_eigenvalues(names, [*mode_eigenvalues(mixed), average], mixed.time, None),
-        )
         grown = (
             f"At this period the state grows by the factor {number(run.radius, 5)} each time."
             if run.radius > 1 and rate > 0
             else "The average is on the border of stability, so the run need not grow; but no rate "
             "of decay holds for all signals."
         )
-        yield Illustration(
-            "run",
-            "Fast switching with these shares",
+        caption = (
             f"Every mode has its share of each period of {run.period:.4g} s. The faster the "
-            f"switching, the nearer it comes to the average, the dashed line. {grown}",
-            draw_run(run.response, euclidean_norms(run.response), line, system, EUCLIDEAN),
+            f"switching, the nearer it comes to the average, the dashed line. {grown}"
         )
-        yield from phase_plane(system, run.response, None)
+        title = "Fast switching with these shares"
+        yield from self._drawn(title, caption, run.response, system, line)
 
-    def _repeated(self) -> Iterator[Block]:
+    def repeated(self) -> Iterator[Block]:
         """Repeat the sequence, from the direction that grows the most, or that keeps its signs."""
         system, offer, factor = self.system, self.offer, self.offer.factor
         if factor is None:
@@ -226,15 +194,18 @@ class GrowthPage(AbstractPage):
             caption = f"{_BY_SIGNS} It grows by {lower(factor)} {unit} at least. {_CARRIED_ON}"
         if self.is_discrete or factor is None:
             yield self._steps()
-        response, growth_line = run.response, _line(run)
+        response = run.response
         periods = counted(round(response.time[-1] / run.period), "period")
-        figure = draw_run(response, euclidean_norms(response), growth_line, system, EUCLIDEAN)
-        yield Illustration("run", f"The witness over {periods}", caption, figure)
-        if factor is None:
-            first = one_period(run)
-            figure = draw_run(first, euclidean_norms(first), None, system, EUCLIDEAN)
-            yield Illustration("one-period", "One period of the witness", _ONE_PERIOD, figure)
-        yield from phase_plane(system, response, None)
+        growth = np.exp(math.log(run.radius) * response.time / run.period)
+        line = (f"factor {number(run.radius, 4)} per period", growth)
+        yield from self._drawn(f"The witness over {periods}", caption, response, system, line)
+
+    @staticmethod
+    def _drawn(
+        title: str, caption: str, response: SwitchedRun, system: SwitchedSystem, line: Bound
+    ) -> tuple[Illustration, ...]:
+        norms = np.linalg.norm(response.state, axis=1)
+        return drawn(title, caption, response, norms / norms[0], system, bound=line)
 
     def _factor(self, run: PeriodicRun) -> Paragraph:
         """Say how long a period is, and by which factor a state grows in it."""
@@ -280,9 +251,3 @@ class GrowthPage(AbstractPage):
 def _indexed(system: SwitchedSystem, steps: Sequence[tuple[str, float]]) -> list[tuple[int, float]]:
     index = {mode.name: k for k, mode in enumerate(system.modes)}
     return [(index[name], time) for name, time in steps]
-
-
-def _line(run: PeriodicRun) -> tuple[str, Array]:
-    """Return the growth per period, carried on along a run, with its label."""
-    label = f"factor {number(run.radius, 4)} per period"
-    return label, np.exp(math.log(run.radius) * run.response.time / run.period)

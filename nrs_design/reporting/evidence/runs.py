@@ -11,14 +11,9 @@ import numpy as np
 
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.reporting.document import Block, Illustration, Section
+from nrs_design.reporting.document import Illustration, Section
 from nrs_design.reporting.evidence.offers import Form
-from nrs_design.reporting.figures.run import (
-    MOTION_STATES,
-    draw_mode_levels,
-    draw_phase_plane,
-    draw_run,
-)
+from nrs_design.reporting.figures.run import draw_phase_plane, draw_run
 from nrs_design.reporting.sections.modes import hardest_modes
 from nrs_design.simulation.admissible import active_norms, admissible_run
 from nrs_design.simulation.greedy import all_modes, greedy_run, relative_norms
@@ -85,13 +80,45 @@ _UNPROVED_ROUNDS = (
 EUCLIDEAN = "|x(t)| / |x(0)|\nEuclidean norm [1]"
 AGAINST = "Switching against the proved bound"
 BESIDE = "Switching beside the proved rate"
-_PATH = "Path of the state, one color for each active mode."
+_BOUND = "proved bound, "
 _PLANE = "The same run in the plane of the two states"
+_PATH = (
+    "Path of the state, one color for each active mode. The axes are the two states themselves, no "
+    "projection. A reset is drawn with the step before it. Dashed, if it is proved: level curves "
+    "of V. The path cannot leave that of all modes; the V of one mode decreases while that mode is "
+    "active, unless the mode must be left."
+)
 
 
-def simulated(*blocks: Block) -> Section:
+def simulated(*blocks: Illustration) -> Section:
     """Return the section of a run that no evidence of instability asks for."""
     return Section("Simulated switching", blocks)
+
+
+def drawn(
+    title: str,
+    caption: str,
+    response: SwitchedRun,
+    values: Array,
+    system: SwitchedSystem,
+    label: str = EUCLIDEAN,
+    bound: Bound | None = None,
+    *,
+    norms: Mapping[str, Norm] | None = None,
+    deflection: str = "",
+) -> tuple[Illustration, ...]:
+    """Draw a norm along a run, and where the system has two states, the path of the run.
+
+    The path is among level curves of norms by mode, or of one for all by no name; where contact may
+    be lost, or modes take turns, it is left out.
+    """
+    figure = draw_run(response, values, bound, system, label, deflection)
+    run = Illustration("run", title, caption, figure)
+    flat = system.order == 2 and system.is_uniform and not deflection and system.clock is None
+    if not flat:
+        return (run,)
+    path = draw_phase_plane(response, system, norms or {})
+    return run, Illustration("phase-plane", _PLANE, _PATH, path)
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,33 +131,30 @@ class Greedy:
     initial: Array  # Shape (n,)
     rate: float | None = None  # Sets the length of the run; None for a fixed length
 
-    def draw(
-        self, title: str, said: str, label: str, line: str = ""
-    ) -> tuple[SwitchedRun, Illustration]:
-        """Return the run, and its norm over time.
+    def draw(self, title: str, caption: str, label: str, line: str = "") -> Section:
+        """Return the section of the run.
 
         `line` says which line has the rate, such as ``proved bound,``; empty for none.
         """
-        drawn, rate = all_modes(self.played), self.rate
-        step, steps = horizon(drawn, rate) if rate else (fine_step(drawn), _UNKNOWN_STEPS)
-        response = greedy_run(self.played, self.norms, self.initial, step, steps)
+        system, rate, norms = all_modes(self.played), self.rate, self.norms
+        step, steps = horizon(system, rate) if rate else (fine_step(system), _UNKNOWN_STEPS)
+        response = greedy_run(self.played, norms, self.initial, step, steps)
         if rate:
-            response = until_small(response, relative_norms(response, self.norms))
-        values = relative_norms(response, self.norms)
-        bound = bound_line(response, rate, drawn.time, line) if rate and line else None
-        caption = f"{said}{freely(self.system)}{some_modes(self.system, self.played)}"
-        deflection = "" if self.played.contact is None else drawn.states[-1]
-        figure = draw_run(response, values, bound, drawn, label, deflection)
-        return response, Illustration("run", title, caption, figure)
+            response = until_small(response, relative_norms(response, norms))
+        values = relative_norms(response, norms)
+        bound = bound_line(response, rate, system.time, line) if rate and line else None
+        # Switching freely is more than declared rules allow.
+        if not self.system.switching.is_arbitrary:
+            caption += " The run switches freely, which is more than the spec allows."
+        caption += some_modes(self.system, self.played)
+        deflection = "" if self.played.contact is None else system.states[-1]
+        inside = {"": norms} if callable(norms) and line == _BOUND else {}
+        shown = (response, values, system, label, bound)
+        return simulated(*drawn(title, caption, *shown, norms=inside, deflection=deflection))
 
 
-def bounded_run(
-    greedy: Greedy, label: str, note: str = "", levels: tuple[float, ...] = (1.0,)
-) -> Section:
-    """Draw a greedy run below its bound, and its path in the plane where contact is kept.
-
-    Level curves are relative to the start.
-    """
+def bounded_run(greedy: Greedy, norm: str, note: str = "") -> Section:
+    """Draw a greedy run below its bound; say in which norm."""
     played = greedy.played
     how, letter = GREEDY, "x"
     if played.clock is not None:
@@ -139,11 +163,7 @@ def bounded_run(
         how, letter = _BOUNCING, "w"
     holds = f"{_HOLDS}{' and any loss of contact' if played.contact is not None else ''}."
     said = " ".join(text for text in (how, note, holds) if text)
-    label = f"|{letter}(t)| / |{letter}(0)|\n{label} [1]"
-    response, run = greedy.draw(AGAINST, said, label, "proved bound, ")
-    if played.contact is not None or not callable(greedy.norms):
-        return simulated(run)
-    return simulated(run, *phase_plane(played, response, greedy.norms, levels))
+    return greedy.draw(AGAINST, said, f"|{letter}(t)| / |{letter}(0)|\n{norm} [1]", _BOUND)
 
 
 def slowest_in_a_round(system: SwitchedSystem, norms: Sequence[Norm]) -> Array:
@@ -168,51 +188,24 @@ def ruled_run(
     """
     names = {form.name for form in forms}
     alone = forms[0].degree == 1 and len(forms) == len(names)  # No form remembers steps
-    of_modes = alone and names >= {mode.name for mode in system.modes}
     hardest = hardest_modes(system, None, _RULED_MODES)
+    of_modes = alone and names >= {mode.name for mode in system.modes}
     functions = euclidean(system)
+    title, said, label, line = BESIDE, _SLOPE, EUCLIDEAN, "slope of the proved bound, "
+    norms: dict[str, Norm] = {}
     if of_modes:
+        title, said, line = AGAINST, _ACTIVE + _RISES * leaving, _BOUND
+        label = "Root of V of the active mode [1]"
         matrices = scaled_matrices(*(form.Q for form in forms))
         functions = {form.name: Q for form, Q in zip(forms, matrices, strict=True)}
+        norms = {name: quadratic_norm(Q) for name, Q in functions.items()}
     step, steps = horizon(hardest, rate)
     response = admissible_run(hardest, functions, step, min(steps, _RULED_STEPS))
     response = until_small(response, active_norms(hardest, response, functions))
     values = active_norms(hardest, response, functions)
-    said, label = (_ACTIVE + _RISES * leaving, "proved bound, ")
-    if not of_modes:
-        said, label = _SLOPE, "slope of the proved bound, "
-    run = Illustration(
-        "run",
-        AGAINST if of_modes else BESIDE,
-        f"{RULED} {said}{some_modes(system, hardest)}",
-        draw_run(
-            response,
-            values,
-            bound_line(response, rate, system.time, label),
-            hardest,
-            "Root of V of the active mode [1]" if of_modes else EUCLIDEAN,
-        ),
-    )
-    if not of_modes:
-        return simulated(run, *phase_plane(hardest, response, None))
-    return simulated(run, *_mode_levels(hardest, response, functions, leaving=leaving))
-
-
-def _mode_levels(
-    system: SwitchedSystem, response: SwitchedRun, functions: Mapping[str, Array], *, leaving: bool
-) -> tuple[Illustration, ...]:
-    """Draw a run among level curves of the modes' functions, if there are two states."""
-    if system.order != 2 or not system.is_uniform:
-        return ()
-    but = ", except in a mode that must be left." if leaving else "."
-    caption = (
-        f"{_PATH} {plane_axes(system)} Dashed is a level curve of each mode's own function, all at "
-        f"one value. While a mode is active, its own function decreases{but}{jumps(system)}"
-    )
-    roots = {name: quadratic_norm(Q) for name, Q in functions.items()}
-    return (
-        Illustration("phase-plane", _PLANE, caption, draw_mode_levels(response, system, roots)),
-    )
+    bound = bound_line(response, rate, system.time, line)
+    caption = f"{RULED} {said}{some_modes(system, hardest)}"
+    return simulated(*drawn(title, caption, response, values, hardest, label, bound, norms=norms))
 
 
 def unbounded_run(system: SwitchedSystem) -> Section:
@@ -220,32 +213,22 @@ def unbounded_run(system: SwitchedSystem) -> Section:
     identity, kept = np.eye(system.order), replace(system, contact=None)
     if system.clock is not None:
         norms = [quadratic_norm(identity)] * system.clock.length
-        _, run = Greedy(kept, kept, norms, identity[-1]).draw(_BAD, _UNPROVED_ROUNDS, EUCLIDEAN)
-        return simulated(run)
+        return Greedy(kept, kept, norms, identity[-1]).draw(_BAD, _UNPROVED_ROUNDS, EUCLIDEAN)
     arbitrary = system.switching.is_arbitrary
     hardest = hardest_modes(kept, None, trials_per_step(system) if arbitrary else _RULED_MODES)
     if arbitrary:
         greedy = Greedy(kept, hardest, quadratic_norm(identity), worst_direction(hardest, identity))
-        response, run = greedy.draw(_BAD, f"{GREEDY} {_UNPROVED}", EUCLIDEAN)
-    else:
-        functions = euclidean(hardest)
-        response = admissible_run(hardest, functions, fine_step(hardest), _UNKNOWN_STEPS)
-        values = active_norms(hardest, response, functions)
-        figure = draw_run(response, values, None, hardest, EUCLIDEAN)
-        said = f"{RULED} {_UNPROVED}{some_modes(system, hardest)}"
-        run = Illustration("run", _BAD, said, figure)
-    return simulated(run, *phase_plane(hardest, response, None))
+        return greedy.draw(_BAD, f"{GREEDY} {_UNPROVED}", EUCLIDEAN)
+    functions = euclidean(hardest)
+    response = admissible_run(hardest, functions, fine_step(hardest), _UNKNOWN_STEPS)
+    values = active_norms(hardest, response, functions)
+    said = f"{RULED} {_UNPROVED}{some_modes(system, hardest)}"
+    return simulated(*drawn(_BAD, said, response, values, hardest))
 
 
 def euclidean(system: SwitchedSystem) -> dict[str, Array]:
     """Return the identity as the function of every mode."""
     return {mode.name: np.eye(mode.A.shape[0]) for mode in system.modes}
-
-
-def euclidean_norms(response: SwitchedRun) -> Array:
-    """Return the norm of the states along a run, relative to the start."""
-    values = np.linalg.norm(response.state, axis=1)
-    return np.asarray(values / values[0])
 
 
 def bound_line(response: SwitchedRun, rate: float, time: Time, label: str) -> Bound:
@@ -282,50 +265,6 @@ def horizon(system: SwitchedSystem, claimed: float) -> tuple[float, int]:
         steps = _FEWEST
         step = _DECAY / rate / steps
     return step, max(steps, 10)
-
-
-def phase_plane(
-    system: SwitchedSystem,
-    response: SwitchedRun,
-    norm: Norm | None,
-    levels: tuple[float, ...] = (),
-) -> tuple[Illustration, ...]:
-    """Draw a run of two states, with the level curves that it cannot leave, if there are any."""
-    if system.order != 2 or not system.is_uniform:
-        return ()
-    inside = " It cannot leave the dashed level curve of V." if norm is not None else ""
-    if len(levels) > 1:
-        inside += " The dotted ones are level curves further in: no run crosses one outward."
-    caption = f"{_PATH} {plane_axes(system)}{inside}{jumps(system)}"
-    figure = draw_phase_plane(response, system, norm, levels)
-    return (Illustration("phase-plane", _PLANE, caption, figure),)
-
-
-def plane_axes(system: SwitchedSystem) -> str:
-    """Say what the axes of a plane of two states are."""
-    first, second = system.states
-    if system.states == MOTION_STATES:
-        return (
-            f"The axes are the two states themselves, no projection: {first} and {second} of the "
-            f"motion loop G in controllable canonical form, {first}' = {second}, which have no "
-            "unit of their own."
-        )
-    return (
-        f"The axes are the two states themselves, no projection: {first} and {second} in the "
-        "coordinates of the matrices that the spec gives."
-    )
-
-
-def jumps(system: SwitchedSystem) -> str:
-    """Say how resets are drawn, if there are any."""
-    return " A reset is drawn with the step before it." if system.switching.resets else ""
-
-
-def freely(system: SwitchedSystem) -> str:
-    """Say that the run needs no rules, if any are declared."""
-    if system.switching.is_arbitrary:
-        return ""
-    return " The run switches freely, which is more than the spec allows."
 
 
 def some_modes(system: SwitchedSystem, hardest: SwitchedSystem) -> str:

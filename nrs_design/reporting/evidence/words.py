@@ -130,9 +130,7 @@ def decision(system: SwitchedSystem, *, ruled: bool = False) -> str:
     return f"{text}; a second library agreed."
 
 
-def all_corners(
-    system: SwitchedSystem, evidence: AbstractEvidence, how: str = "however fast they change"
-) -> str:
+def all_corners(system: SwitchedSystem, evidence: AbstractEvidence, how: str) -> str:
     """Say that values between the corners of declared ranges are covered."""
     text = (
         "Every corner of the declared parameter ranges is a mode. The matrices are affine in each "

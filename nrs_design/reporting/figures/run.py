@@ -34,8 +34,6 @@ if TYPE_CHECKING:
     from nrs_design.simulation.norms import Array
     from nrs_design.simulation.switched import SwitchedRun
 
-# States of a family that is nothing but its motion loop.
-MOTION_STATES = ("xp1", "xp2")
 # More modes than these share a row, and a color; so many at most have one each by all means.
 _ROWS, _ALONE = 24, 6
 
@@ -92,45 +90,38 @@ def _draw_deflection(axes: Axes, response: SwitchedRun, name: str) -> None:
 
 
 @styled
-def draw_mode_levels(
+def draw_phase_plane(
     response: SwitchedRun, system: SwitchedSystem, norms: Mapping[str, Norm]
 ) -> Figure:
-    """Draw a run in the plane with a level curve of every mode's own function.
+    """Draw a run of a system with two states among level curves, all at the value of the start.
 
-    All are at the value of the first active one at the start.
+    Norms, roots of Lyapunov functions, are by mode, or one for all modes by no name.
     """
-    figure, axes = new_axes(4.6)
+    figure, axes = new_axes(4.5)
+    # In discrete time only the points are states; the lines lead from one to the next.
+    shape = "o" if system.time is Time.DISCRETE else "None"
     groups = groups_of(response, _names(system))
-    start = float(norms[system.modes[int(response.mode[0])].name](response.state[0]))
-    _draw_paths(axes, response, system, groups)
-    named = [group for group in groups if len(group.modes) == 1]
-    for row, group in enumerate(named):
-        x, y = level_curve(norms[group.name], start)
-        # Dashes in turn, so that level curves on top of each other show all their colors.
-        dashes = (5.0 * row, (5.0, 5.0 * max(min(len(named), 3) - 1, 1)))
-        label = f"level of V, {group.name}"
-        axes.plot(x, y, linestyle=dashes, color=group.tint, linewidth=1.2, label=label)
-    _finish_plane(figure, axes, response, system)
-    return figure
-
-
-@styled
-def draw_phase_plane(
-    response: SwitchedRun,
-    system: SwitchedSystem,
-    norm: Norm | None = None,
-    levels: Sequence[float] = (1.0,),
-) -> Figure:
-    """Draw a run of a system with two states, and the level curves that it cannot leave.
-
-    Levels are relative to the start; the first is named. The norm is the root of the Lyapunov
-    function, where there is one.
-    """
-    figure, axes = new_axes(4.4)
-    if norm is not None:
-        _draw_levels(axes, norm, float(norm(response.state[0])), levels)
-    _draw_paths(axes, response, system, groups_of(response, _names(system)))
-    _finish_plane(figure, axes, response, system)
+    for row, group in enumerate(groups):
+        dashes = DASHES[row // len(CYCLE) % len(DASHES)]
+        label = f"mode {group.name}" if len(group.modes) == 1 else group.name
+        path = _path_in(response, group.modes)
+        axes.plot(
+            *path.T, marker=shape, linestyle=dashes, color=group.tint, markersize=3, label=label
+        )
+    first, tints = system.modes[int(response.mode[0])].name, {g.name: g.tint for g in groups}
+    shown = {name: norm for name, norm in norms.items() if not name or name in tints}
+    start = float(norms.get(first, norms.get("", np.linalg.norm))(response.state[0]))
+    for name, norm in shown.items():
+        tint, label = tints.get(name, VERMILLION), f"level of V{name and f', {name}'}"
+        axes.plot(*level_curve(norm, start), "--", color=tint, linewidth=1.2, label=label)
+    axes.plot(*response.state[0], "o", color=INK, label="start")
+    axes.plot(0, 0, "+", color=MUTED, markersize=11, label="rest")
+    x, y = (
+        f"State {wrapped_label(name, 40)}{'' if '[' in name else ' [no unit given]'}"
+        for name in system.states
+    )
+    axes.set(xlabel=x, ylabel=y)
+    legend(figure, axes, 3)
     return figure
 
 
@@ -171,37 +162,6 @@ def _names(system: SwitchedSystem) -> list[str]:
     return [mode.name for mode in system.modes]
 
 
-def _draw_paths(
-    axes: Axes, response: SwitchedRun, system: SwitchedSystem, groups: Sequence[Group]
-) -> None:
-    # In discrete time only the points are states; the lines lead from one to the next.
-    shape = "o" if system.time is Time.DISCRETE else "None"
-    for row, group in enumerate(groups):
-        path = _path_in(response, group.modes)
-        label = f"mode {group.name}" if len(group.modes) == 1 else group.name
-        dashes = DASHES[row // len(CYCLE) % len(DASHES)]
-        axes.plot(
-            *path.T, marker=shape, linestyle=dashes, color=group.tint, markersize=3, label=label
-        )
-
-
-def _finish_plane(
-    figure: Figure, axes: Axes, response: SwitchedRun, system: SwitchedSystem
-) -> None:
-    axes.plot(*response.state[0], "o", color=INK, label="start")
-    axes.plot(0, 0, "+", color=MUTED, markersize=11, label="rest")
-    axes.set(xlabel=_axis_label(system.states, 0), ylabel=_axis_label(system.states, 1))
-    legend(figure, axes, 3)
-
-
-def _axis_label(states: tuple[str, ...], index: int) -> str:
-    """Label a state; given matrices and the canonical form of G come without units."""
-    name = wrapped_label(states[index], 40)
-    if states == MOTION_STATES:
-        return f"State {name} of G, canonical form [no unit]"
-    return f"State {name}" if "[" in name else f"State {name} [no unit given]"
-
-
 def draw_modes(
     axes: Axes, response: SwitchedRun, groups: Sequence[Group], labels: Sequence[str]
 ) -> None:
@@ -232,18 +192,3 @@ def _path_in(response: SwitchedRun, modes: tuple[int, ...]) -> Array:
     gaps = np.full_like(begins, np.nan)
     gaps[:-1][inside[1:]] = begins[1:][inside[1:]]
     return np.stack([begins, ends, gaps], axis=1).reshape(-1, 2)
-
-
-def _draw_levels(axes: Axes, norm: Norm, start: float, levels: Sequence[float]) -> None:
-    for index, level in enumerate(levels):
-        x, y = level_curve(norm, level * start)
-        outer = index == 0
-        axes.plot(
-            x,
-            y,
-            "--" if outer else ":",
-            color=VERMILLION,
-            linewidth=1.3 if outer else 1.0,
-            label="V(x) = V(x(0))" if outer else None,
-            zorder=1.5,
-        )

@@ -16,10 +16,8 @@ _LINEAR = "Nothing is cut off at a limit in this run, as if no signal ever satur
 def evidence_sections(certification: Certification) -> Iterator[Section]:
     """Yield a section for every statement, and one with a run."""
     system, evidence = certification.system, certification.evidence
-    seen: set[str] = set()
     for statement in certification.statements:
-        yield from page_of(system, statement).sections(first=statement.kind not in seen)
-        seen.add(statement.kind)
+        yield from page_of(system, statement).sections()
     run = page_of(system, evidence).run() if evidence else unbounded_run(system)
     if system.saturation is not None:
         run = replace(run, blocks=(Paragraph(_LINEAR), *run.blocks))

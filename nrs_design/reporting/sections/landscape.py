@@ -1,8 +1,7 @@
-"""Trade-offs between the gains of an admittance, and its delay margin over stiffness."""
+"""Trade-offs between the gains of an admittance."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,7 +11,6 @@ from nrs_design.design.landscape import (
     CostMap,
     alternatives,
     cheapest_damping,
-    delay_borne,
     map_cost,
 )
 from nrs_design.reporting.document import Block, Illustration, Paragraph, Section, Table
@@ -24,19 +22,14 @@ from nrs_design.reporting.style import (
     INK,
     MUTED,
     VERMILLION,
-    color,
-    curve,
     legend,
     new_axes,
-    settle,
     styled,
 )
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-    from matplotlib.text import Text
-    from matplotlib.transforms import BboxBase
 
     from nrs_design.design.analysis import ImpedanceAnalysis
     from nrs_design.pipeline.design import Designed
@@ -60,33 +53,16 @@ _BOX = (
     " The dashed box is where the spec allows the gains to be; an optimum on its edge was chosen "
     "by the bound, not by the cost."
 )
-_DELAY = (
-    "A curve ends at zero where the loop is unstable without any dead time. Below its curve, a "
-    "controller bears that dead time in contact of that stiffness, constant and by itself, at "
-    "every corner of the other ranges of its contact and of the motor; a sampled one bears it "
-    "beside the age of its force sample, in whole samples. Dotted: "
-    "the stiffest contact that it is designed for."
-)
 
 
 def landscape_section(designed: Designed, items: tuple[ImpedanceAnalysis, ...]) -> Section:
-    """Show cost, alternatives and delay of the impedance controllers."""
+    """Show cost and alternatives of the impedance controllers."""
     blocks: list[Block] = [Paragraph(_TEXT)]
     for item in items[:_DRAWN]:
         blocks.append(_map(item))
         # Where nothing may be chosen, nothing else is the best for anything.
         if len(_given(item)) < len(_GAINS):
             blocks.append(_table(designed.loaded, item))
-    sampling = designed.spec.sampling
-    sampled = None if sampling is None else float(sampling.oldest)
-    blocks.append(
-        Illustration(
-            "delay-borne",
-            "Dead time over stiffness",
-            _DELAY,
-            _draw_delay_borne(items[:_DRAWN], sampled),
-        )
-    )
     return Section("What the gains give up", tuple(blocks))
 
 
@@ -145,11 +121,7 @@ def _table(loaded: LoadedSpec, item: ImpedanceAnalysis) -> Table:
     return Table(f"What is given up: {item.name}", columns, rows)
 
 
-_LEVELS, _UP_TO, _POINTS = 8, 0.9, 160
-# Between labels, over their size.
-_ROOM = (1.2, 1.4)
-# Beyond so many times the dead time at the stiffest contact, a curve is not drawn.
-_TALLEST = 20.0
+_LEVELS, _UP_TO = 8, 0.9
 
 
 @styled
@@ -157,7 +129,7 @@ def draw_cost(item: ImpedanceAnalysis, found: CostMap) -> Figure:
     """Draw lines of equal cost, the border of stability, the bounds and the gains."""
     figure, axes = new_axes(4.2)
     axes.set(xscale="log", yscale="log")
-    labels = _draw_levels(axes, found)
+    _draw_levels(axes, found)
     _draw_border(axes, found)
     _draw_bounds(axes, item, found)
     points = [(item.Mt, item.Bt, "D", 4.5, INK, "as shipped")]
@@ -178,33 +150,20 @@ def draw_cost(item: ImpedanceAnalysis, found: CostMap) -> Figure:
         ylim=(found.Bt[0], found.Bt[-1]),
     )
     legend(figure, axes, 2)
-    settle(figure)
-    _keep_apart(labels)
     return figure
 
 
-def _draw_levels(axes: Axes, found: CostMap) -> list[Text]:
-    """Draw lines of equal cost; return the labels of some."""
+def _draw_levels(axes: Axes, found: CostMap) -> None:
+    """Draw lines of equal cost, with the values of some."""
     finite = found.cost[np.isfinite(found.cost)]
     if not len(finite) or np.quantile(finite, _UP_TO) <= finite.min():
-        return []
+        return
     # Denser near the minimum; levels end below the peaks at the stability border.
     span = float(np.quantile(finite, _UP_TO)) - finite.min()
     levels = finite.min() + span * np.linspace(0, 1, _LEVELS + 1)[1:] ** 2
     lines = axes.contour(found.Mt, found.Bt, found.cost, levels=levels, colors=BLUE, linewidths=0.9)
     axes.plot([], [], color=BLUE, linewidth=0.9, label="equal cost")
-    return list(axes.clabel(lines, levels[1::2].tolist(), fmt="%.3g", fontsize=9, colors=INK))
-
-
-def _keep_apart(labels: Iterable[Text]) -> None:
-    """Drop the labels that would lie on another one, where the layout has put them."""
-    kept: list[BboxBase] = []
-    for label in labels:
-        box = label.get_window_extent().expanded(*_ROOM)
-        if any(box.overlaps(other) for other in kept):
-            label.remove()
-        else:
-            kept.append(box)
+    axes.clabel(lines, levels[3::2].tolist(), fmt="%.3g", fontsize=9, colors=INK)
 
 
 def _draw_border(axes: Axes, found: CostMap) -> None:
@@ -225,31 +184,3 @@ def _draw_bounds(axes: Axes, item: ImpedanceAnalysis, found: CostMap) -> None:
     if left < right and low < high:
         x, y = [left, right, right, left, left], [low, low, high, high, low]
         axes.plot(x, y, color=MUTED, linestyle="--", linewidth=1.2, label="bounds of the spec")
-
-
-@styled
-def _draw_delay_borne(items: Sequence[ImpedanceAnalysis], sampled: float | None) -> Figure:
-    """Draw the delay margin over the stiffness of the contact."""
-    figure, axes = new_axes(3.6)
-    nominal = [item.problem.loop.contact.stiffness for item in items]
-    highest = max(item.highest_stiffness for item in items)
-    stiffness = np.geomspace(min(nominal) / 10, 10 * highest, _POINTS)
-    shown = []
-    for index, item in enumerate(items):
-        borne = 1e3 * delay_borne(item.requirement, item.Mt, item.Bt, stiffness)
-        borne = np.where(np.isfinite(borne), borne, np.nan)
-        shown.append(float(np.interp(item.highest_stiffness, stiffness, np.nan_to_num(borne))))
-        axes.plot(stiffness, borne, label=item.name, **curve(index, len(items), len(stiffness)))
-        axes.axvline(item.highest_stiffness, color=color(index), linewidth=0.9, linestyle=":")
-    if sampled:
-        label = "oldest force sample of the spec"
-        axes.axhline(1e3 * sampled, color=MUTED, linestyle="--", label=label)
-    axes.set(
-        xscale="log",
-        ylim=(0, _TALLEST / 4 * max(*shown, 1e-3) + 1e3 * (sampled or 0)),
-        xlim=(stiffness[0], stiffness[-1]),
-        xlabel=labelled("Stiffness of the contact [N·m/rad]"),
-        ylabel="Dead time that destabilizes [ms]",
-    )
-    legend(figure, axes)
-    return figure

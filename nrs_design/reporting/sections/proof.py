@@ -10,6 +10,7 @@ from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.reporting.document import Block, Bullets, Paragraph, Section
 from nrs_design.reporting.evidence import page_of
+from nrs_design.reporting.evidence.words import all_corners
 from nrs_design.reporting.sections.head import NO_CLAIM
 from nrs_design.reporting.sections.titles import MEANT
 from nrs_design.search.certification import Certification
@@ -60,9 +61,9 @@ def proof_section(result: Result) -> Section:
 def _proved(result: Result, evidence: AbstractEvidence) -> tuple[Block, ...]:
     system = result.certification.system
     page, design = page_of(system, evidence), isinstance(result.loaded.spec, InteractionDesignSpec)
-    proved = [evidence.claim(system), *page.meaning()]
+    proved = [evidence.claim(system), *page.meaning]
     if result.loaded.spec.has_ranges:
-        proved.append(page.between_corners())
+        proved.append(all_corners(system, evidence, page.changing))
     if design:
         proved.append(
             "The gains in the proof are the single-precision numbers listed below, not their "
@@ -73,7 +74,7 @@ def _proved(result: Result, evidence: AbstractEvidence) -> tuple[Block, ...]:
     common = _not_covered_by_design(result) if design else _not_covered(system, evidence)
     blocks: list[Block] = [
         Bullets("Proved", tuple(dict.fromkeys(proved))),
-        Bullets("Not proved", (*page.limits(), *common)),
+        Bullets("Not proved", (*page.limits, *common)),
     ]
     if result.certification.common_quadratic is CommonQuadraticStatus.IMPOSSIBLE:
         blocks.append(
@@ -100,7 +101,7 @@ def _beside(result: Result) -> list[str]:
         if item.shows is Shows.REGION:
             said.append(item.claim(system))
             if result.loaded.spec.has_ranges:
-                said.append(page_of(system, item).between_corners())
+                said.append(all_corners(system, item, page_of(system, item).changing))
     return said
 
 
@@ -143,11 +144,11 @@ def _not_covered(system: SwitchedSystem, evidence: AbstractEvidence) -> tuple[st
 def _refuted(certification: Certification, evidence: AbstractEvidence) -> tuple[Block, ...]:
     page = page_of(certification.system, evidence)
     return (
-        Bullets("Refuted", (evidence.claim(certification.system), *page.meaning())),
+        Bullets("Refuted", (evidence.claim(certification.system), *page.meaning)),
         Bullets(
             "Not said",
             (
-                *page.limits(),
+                *page.limits,
                 "The figures are floating-point illustrations and no part of the decision.",
             ),
         ),
@@ -166,7 +167,7 @@ def _inconclusive(certification: Certification) -> tuple[Block, ...]:
         statements = certification.statements
         pages = [page_of(certification.system, statement) for statement in statements]
         texts += [statement.claim(certification.system) for statement in statements]
-        texts += dict.fromkeys(text for page in pages for text in page.meaning())
+        texts += dict.fromkeys(text for page in pages for text in page.meaning)
     if certification.common_quadratic is CommonQuadraticStatus.IMPOSSIBLE:
         may = "The system may be stable with a function of another kind"
     else:

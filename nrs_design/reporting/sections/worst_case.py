@@ -8,8 +8,16 @@ from nrs_design.pipeline.design import Designed
 from nrs_design.pipeline.worst_case import run_worst_case
 from nrs_design.reporting.document import Illustration, Paragraph, Section, Table
 from nrs_design.reporting.sections.places import linked
-from nrs_design.reporting.worst_case import COLUMNS, LEFT_OUT, draw_worst, meaning, worst_rows
+from nrs_design.reporting.worst_case import (
+    COLUMNS,
+    LEFT_OUT,
+    UNDECLARED,
+    draw_worst,
+    meaning,
+    worst_rows,
+)
 
+_TITLE = "Worst case found"
 _CAPTION = (
     "The worst run that was found for the force. Contact, controller and command change between "
     "steps as the adversary likes, within the rules of the spec. No run crosses a dashed line. "
@@ -18,22 +26,24 @@ _CAPTION = (
 
 
 def worst_case_section(result: Result) -> Section | None:
-    """Show the worst runs found; None where the spec declares no disturbances."""
+    """Show the worst runs found in their units; None for given matrices, and where none is."""
     designed = result.designed
-    if designed is None or designed.spec.disturbances is None:
+    if designed is None:
         return None
     try:
         case = run_worst_case(designed, result.certificate)
-    except DesignError:
-        return None
+    except DesignError as error:
+        return Section(_TITLE, (Paragraph(f"There is {error.message}."),))
     spec = designed.spec
+    undeclared = "" if case.declared else f"{UNDECLARED} "
     rows = tuple(_row(designed, row) for row in worst_rows(case, spec))
     drawn = draw_worst(case, case.runs[0], spec)
     return Section(
-        "Worst case found",
+        _TITLE,
         (
             Paragraph(
-                f"{meaning(case)} Not in it: {LEFT_OUT}. Floating point, no part of the proof."
+                f"{meaning(case)} {undeclared}Not in it: {LEFT_OUT}. "
+                "Floating point, no part of the proof."
             ),
             Table("Worst found, limit and bound", COLUMNS, rows),
             Illustration("worst-case", "The worst run found", _CAPTION, drawn),

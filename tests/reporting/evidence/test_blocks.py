@@ -11,6 +11,7 @@ from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Switching
 from nrs_design.reporting.document import Table
 from nrs_design.reporting.evidence import page_of
+from nrs_design.reporting.evidence.words import all_corners
 from tests.proof.graphs import common_polynomial, common_quadratic
 from tests.simulation.systems import system
 
@@ -43,18 +44,11 @@ def test_blocks_that_are_not_needed_have_no_rate():
     }
 
 
-def test_the_structure_is_drawn_once():
-    page = page_of(CASCADE, BlockTriangular(BLOCKS, ((0, ONE), (1, ONE))))
-    (first,), (second,) = page.sections(), page.sections(first=False)
-    assert first.blocks[-1] == second.blocks[-1]
-    assert len(second.blocks) == 1
-
-
 def test_the_witness_of_a_block_runs_in_the_whole_family():
     unstable = staying("m0")
     page = page_of(GROWING, BlockTriangular(BLOCKS, ((1, unstable),)))
-    assert page.meaning()[1:] == page_of(GROWING, unstable).meaning()
-    assert page.limits() == page_of(GROWING, unstable).limits()
+    assert page.meaning[1:] == page_of(GROWING, unstable).meaning
+    assert page.limits == page_of(GROWING, unstable).limits
     # A phase plane needs both states, and the block has one of them.
     assert [block.name for block in page.run().blocks] == ["run", "phase-plane"]
 
@@ -62,8 +56,9 @@ def test_the_witness_of_a_block_runs_in_the_whole_family():
 @pytest.mark.parametrize(("part", "costs"), [(ONE, False), (FOURTH, True)])
 def test_corners_in_discrete_time_are_as_good_as_the_worst_part(part, costs):
     discrete = replace(CASCADE, time=Time.DISCRETE, switching=Switching())
-    page = page_of(discrete, BlockTriangular(BLOCKS, ((0, ONE), (1, part))))
-    text = page.between_corners()
+    evidence = BlockTriangular(BLOCKS, ((0, ONE), (1, part)))
+    page = page_of(discrete, evidence)
+    text = all_corners(discrete, evidence, page.changing)
     assert text.endswith("up to a constant factor.") is costs
-    continuous = page_of(CASCADE, page.evidence).between_corners()
+    continuous = all_corners(CASCADE, evidence, page.changing)
     assert "constant factor" not in continuous

@@ -22,11 +22,11 @@ def test_the_size_is_that_of_the_certificate():
 
 def test_it_rests_on_the_declared_rules():
     """And on the times of single modes, which are whole steps: there are no exponentials."""
-    assert "The list of allowed switches is part of the claim as well." in PAGE.meaning()
-    assert PAGE.limits()[-1] == "Switches that the spec does not list."
-    assert "Leaving a mode before its own dwell time is over." in PAGE.limits()
-    assert PAGE.meaning()[-1].endswith("; a second library agreed.")
-    assert not any("exponentials" in text for text in PAGE.meaning())
+    assert "The list of allowed switches is part of the claim as well." in PAGE.meaning
+    assert PAGE.limits[-1] == "Switches that the spec does not list."
+    assert "Leaving a mode before its own dwell time is over." in PAGE.limits
+    assert PAGE.meaning[-1].endswith("; a second library agreed.")
+    assert not any("exponentials" in text for text in PAGE.meaning)
 
 
 def test_modes_that_must_be_left_are_named_as_for_quadratic_functions():
@@ -35,9 +35,9 @@ def test_modes_that_must_be_left_are_named_as_for_quadratic_functions():
     system = replace(SYSTEM, switching=replace(SYSTEM.switching, stays=stays))
     own = replace(EVIDENCE, stays=Stays((left,)))
     page, quadratic = page_of(system, own), page_of(system, replace(own, degree=1))
-    assert f"Staying longer than declared in {left}." in page.limits()
-    assert page.limits() == quadratic.limits()
-    assert page.meaning()[:-1] == quadratic.meaning()[:-1]
+    assert f"Staying longer than declared in {left}." in page.limits
+    assert page.limits == quadratic.limits
+    assert page.meaning[:-1] == quadratic.meaning[:-1]
 
 
 def test_the_run_is_drawn_beside_the_slope_of_its_bound():

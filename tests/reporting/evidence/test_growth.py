@@ -10,9 +10,9 @@ SYSTEM, EVIDENCE = genuine("growing-sequence, value")
 def test_it_is_the_page_of_its_part_at_one_value():
     page = page_of(SYSTEM, EVIDENCE)
     part = page_of(*EVIDENCE.at_value(SYSTEM))
-    assert page.meaning()[1:] == part.meaning()
-    assert page.limits()[:-1] == part.limits()
-    assert "a narrower range may be stable" in page.limits()[-1]
+    assert page.meaning[1:] == part.meaning
+    assert page.limits[:-1] == part.limits
+    assert "a narrower range may be stable" in page.limits[-1]
     first, *rest = page.run().blocks
     assert isinstance(first, Paragraph)
     assert "simulated at the value of the parameter" in first.text

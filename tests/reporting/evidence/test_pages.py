@@ -9,6 +9,7 @@ import pytest
 from nrs_design.proof import evidence as proof
 from nrs_design.reporting.document import Illustration
 from nrs_design.reporting.evidence import offers, page_of
+from nrs_design.reporting.evidence.words import all_corners
 from tests.package import PACKAGE
 from tests.proof.systems import SYSTEMS, genuine
 
@@ -61,11 +62,12 @@ SHORT = sorted(TEXTS - LONG - {"growing-sequence", "graph"})
 )
 def test_every_page_speaks_in_sentences_and_draws_a_run(example):
     example = next(name for name in SYSTEMS if name == example or name.split(",")[0] == example)
-    page = page_of(*genuine(example))
+    system, evidence = genuine(example)
+    page = page_of(system, evidence)
     assert page.name
     assert not page.name.endswith(".")
-    sentences = (*page.meaning(), page.between_corners(), *page.limits())
-    assert page.meaning()
+    sentences = (*page.meaning, all_corners(system, evidence, page.changing), *page.limits)
+    assert page.meaning
     assert all(text.endswith(".") for text in sentences)
     assert all(section.blocks for section in page.sections())
     assert any(isinstance(block, Illustration) for block in page.run().blocks)
@@ -74,5 +76,5 @@ def test_every_page_speaks_in_sentences_and_draws_a_run(example):
 def test_the_modes_of_a_sampled_loop_are_not_said_to_be_the_corners_of_its_ranges():
     """Of the four corners of a motor's exponentials, one is left out, and one is another."""
     system, evidence = genuine("periodic-quadratic, rounding")
-    said = page_of(system, evidence).between_corners()
+    said = all_corners(system, evidence, page_of(system, evidence).changing)
     assert "corners of what encloses the declared parameter ranges" in said

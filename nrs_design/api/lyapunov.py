@@ -15,7 +15,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 from nrs_design.api.paper import latex_of
-from nrs_design.api.result import AbstractResult, Figures
+from nrs_design.api.result import AbstractResult
 from nrs_design.proof.exact import (
     MAX_WORK,
     IntegerMatrix,
@@ -31,7 +31,6 @@ from nrs_design.proof.mode import Mode, Time
 
 if TYPE_CHECKING:
     import numpy as np
-    from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
 # A rate is sharpened to one part in two to this power of the range that it may lie in.
@@ -101,21 +100,6 @@ class LyapunovCheck(AbstractResult):
                 "value": str(failing.value),
             },
         }
-
-    def _drawings(self) -> Figures:
-        return [("value", self._draw)]
-
-    def _draw(self) -> Figure:
-        from nrs_design.reporting.figures.value import draw_value
-
-        start = None if self.counterexample is None else self.counterexample.vector
-        matrices = {mode.name: mode.A for mode in self.modes}
-        line = None
-        if self.holds and self.rate is not None:
-            line = ("proved bound", self.rate)
-        elif self.asked is not None:
-            line = ("at the rate asked for", self.asked)
-        return draw_value(matrices, self.form, self.time, start, line)
 
     def _headline(self) -> str:
         asked = "" if self.asked is None else " at the rate asked for"

@@ -32,9 +32,9 @@ class AbstractResult(ABC):
     def _facts(self) -> dict[str, Any]:
         """Return what the command of this name prints by ``--json``, plain and in SI."""
 
-    @abstractmethod
     def _drawings(self) -> Figures:
-        """Yield the figures, that of most use first."""
+        """Yield the figures, that of most use first; by default none."""
+        return ()
 
     @abstractmethod
     def _headline(self) -> str:

@@ -116,7 +116,7 @@ def _summary(
 
 
 def _print(loaded: LoadedSpec, system: SwitchedSystem, runs: tuple[MethodRun, ...]) -> None:
-    from nrs_design.reporting.sections.methods import COLUMNS, cells_of
+    from nrs_design.reporting.figures.methods import COLUMNS, cells_of
 
     rows = [[*cells_of(run), f"{1e3 * run.seconds:.1f}"] for run in runs]
     modes = len(system.modes)
@@ -126,7 +126,7 @@ def _print(loaded: LoadedSpec, system: SwitchedSystem, runs: tuple[MethodRun, ..
 
 def _draw(runs: tuple[MethodRun, ...], path: Path) -> None:
     from nrs_design.output import PNG, write_output
+    from nrs_design.reporting.figures.methods import draw_histories
     from nrs_design.reporting.images import to_png
-    from nrs_design.reporting.sections.methods import draw_histories
 
     write_output(path, to_png(draw_histories(runs)), replaces=PNG)

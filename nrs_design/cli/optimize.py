@@ -113,10 +113,13 @@ def _print_bounds(bounds: dict[str, CostBound | str]) -> None:
 
 
 def _print(spec: InteractionDesignSpec, analysis: DesignAnalysis) -> None:
-    source = "by root locus" if analysis.motion_source == "designed" else "given in the spec"
-    G = analysis.motion
-    motion = f"({_polynomial(G.numerator)}) / ({_polynomial(G.denominator)})"
-    detail(f"{spec.name}: G(s) = {motion}, {source}")
+    if wants_details():
+        from nrs_design.reporting.formatting import polynomial_text
+
+        G = analysis.motion
+        source = "by root locus" if analysis.motion_source == "designed" else "given in the spec"
+        numerator, denominator = map(polynomial_text, (G.numerator, G.denominator))
+        say(f"{spec.name}: G(s) = ({numerator}) / ({denominator}), {source}")
     if not analysis.impedance:
         return
     from nrs_design.cli.marked import basis, cells, marks, worst_of
@@ -142,12 +145,3 @@ def _print(spec: InteractionDesignSpec, analysis: DesignAnalysis) -> None:
         detail(line)
     if not wants_details():
         say(basis(analysis.impedance))
-
-
-def _polynomial(coefficients: tuple[float, ...]) -> str:
-    degree = len(coefficients) - 1
-    powers = {0: "", 1: " s"}
-    terms = [
-        f"{c:.5g}{powers.get(degree - i, f' s^{degree - i}')}" for i, c in enumerate(coefficients)
-    ]
-    return " + ".join(terms)

@@ -53,10 +53,6 @@ def report(
         typer.Option("--times", help="Add the time of every rung; pages then differ each time."),
     ] = False,
     date: Date = None,
-    compare_methods: Annotated[
-        bool,
-        typer.Option("--compare-methods", help="Add the gradient iteration beside the LMI."),
-    ] = False,
     margin: Annotated[
         bool,
         typer.Option("--margin", help="Add how far ranges, delay and period reach; takes minutes."),
@@ -87,7 +83,7 @@ def report(
     from nrs_design.pipeline.blocked import find_blocked
     from nrs_design.pipeline.certification import Overrides, search_limits
     from nrs_design.pipeline.margins import run_proof_margins
-    from nrs_design.pipeline.runs import run_certification, run_comparison, run_recorded
+    from nrs_design.pipeline.runs import run_certification, run_recorded
     from nrs_design.reporting import build_report
     from nrs_design.reporting.next_steps import next_steps
 
@@ -108,11 +104,9 @@ def report(
         margins = run_proof_margins(result, limits, step, **asked)
         blocked = find_blocked(result, limits, step)
         step("figures")
-        runs = run_comparison(loaded, limits, step, result.designed)[1] if compare_methods else ()
         page = build_report(
             result,
             _analysis(result),
-            comparison=runs,
             margins=margins,
             blocked=blocked,
             times=times,

@@ -4,9 +4,14 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterable, Iterator, Sequence
+from typing import TYPE_CHECKING
 
 from nrs_design.cli.printing import columns as columns_of
+from nrs_design.cli.printing import say
 from nrs_design.printable import printable
+
+if TYPE_CHECKING:
+    from nrs_design.reporting.document import Block
 
 Cells = Sequence[str]
 
@@ -14,6 +19,17 @@ Cells = Sequence[str]
 SENTENCE = 40
 # Between two columns; at both edges together there is one less.
 _GAP = 3
+
+
+def print_blocks(name: str, blocks: Iterable[Block]) -> None:
+    """Print tables, with a name before their titles, and sentences."""
+    from nrs_design.reporting.document import Paragraph, Table
+
+    for block in blocks:
+        if isinstance(block, Table):
+            print_table(f"{name}: {block.title}", block.columns, block.rows)
+        elif isinstance(block, Paragraph):
+            say(block.text)
 
 
 def print_table(title: str, columns: Cells, given: Iterable[Cells]) -> None:

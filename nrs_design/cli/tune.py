@@ -2,37 +2,21 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING, Any
 
-from nrs_design.axis import current, unit
+from nrs_design.axis import unit
 from nrs_design.cli.command import Answer, command, take_spec
 from nrs_design.cli.goals import design_answer
 from nrs_design.cli.options import SpecFile
-from nrs_design.cli.printing import progress, say
-from nrs_design.cli.tables import print_table
+from nrs_design.cli.printing import progress
+from nrs_design.cli.tables import print_blocks
 from nrs_design.facts.design import goals_summary, motion_summary
 from nrs_design.proof.bounds import lower_float
 
 if TYPE_CHECKING:
     from nrs_design.controllers.controller_design import ControllerDesign
-    from nrs_design.design.analysis import DesignAnalysis, ForceAnalysis
-
-TORQUE_TEXT = (
-    "Passive whatever is touched: b > K T/2 + B with the least friction b of the spec, exact for "
-    "commands at once (Colgate and Schenkel 1997). The border in the air is that of the nominal "
-    "joint, in floating point. Neither is the proof."
-)
-_NOMINAL = (
-    "Poles, damping and steady error in this table are those of the loop at nominal values in "
-    "continuous time. Goals and warnings are about the loop that certify-switching is about, at "
-    "the worst corner of the ranges."
-)
-_NO_OFFSET = (
-    "{}: the steady-state error is that of a commanded position where contact begins. A simulated "
-    "run keeps the position that was commanded at the switch, and leaves another error."
-)
-OFFSETS = {"reference": "reference of the motion loop", "measured": "measured position"}
+    from nrs_design.design.analysis import DesignAnalysis
+    from nrs_design.pipeline.design import Designed
 
 
 @command("tune", each_axis=True)
@@ -63,7 +47,7 @@ def tune(spec: SpecFile) -> Answer:
         analysis,
         analysis.tuned,
         lambda: _summary(designed.design, analysis),
-        lambda: _print(loaded.spec.name, designed.design, analysis),
+        lambda: _print(designed, analysis),
     )
 
 
@@ -130,118 +114,18 @@ def _motion_summary(design: ControllerDesign, analysis: DesignAnalysis) -> dict[
     }
 
 
-def _print(name: str, design: ControllerDesign, analysis: DesignAnalysis) -> None:
+def _print(designed: Designed, analysis: DesignAnalysis) -> None:
+    """Print the tables and sentences of the report."""
+    from nrs_design.reporting.sections.design import force_blocks, motion_blocks
+    from nrs_design.reporting.sections.torque import torque_blocks
+
+    blocks = [*motion_blocks(designed, analysis)]
     if analysis.torque:
-        _print_torque(name, analysis)
-        return
-    _print_motion(name, design, analysis)
-    if analysis.motion_source == "given":
-        say("The spec states G itself: the poles are those of that G, not of the PD gains.")
-    if analysis.force:
-        _print_force(name, analysis)
-        say(_NOMINAL)
-        for item in analysis.force:
-            if item.peak is not None:
-                say(_offset_text(item))
-            elif item.approach.offset == "none":
-                say(_NO_OFFSET.format(item.name))
-
-
-def _print_motion(name: str, design: ControllerDesign, analysis: DesignAnalysis) -> None:
-    wanted, reached, per = analysis.wanted, analysis.reached, unit("rad")
-    assert wanted is not None, "there is a motion loop"
-    columns = (
-        "motion PD",
-        f"Kd\n{design.command} s/{per}",
-        "zero\n1/s",
-        f"Kp\n{design.command}/{per}",
-        "poles\n1/s",
-        "damping\nratio",
-        "overshoot",
-    )
-    rows = [
-        [
-            "root locus",
-            f"{wanted.derivative_gain:.6g}",
-            f"{wanted.zero:.6g}",
-            "",
-            _poles(wanted.wanted_poles),
-            "",
-            "",
-        ],
-        [
-            "shipped",
-            f"{float(design.motion.Kd):.8g}",
-            f"{float(design.motion.zero):.6g}",
-            f"{float(design.motion.Kp):.8g}",
-            _poles(reached.poles),
-            f"{reached.damping_ratio:.4f}",
-            f"{100 * reached.overshoot:.2f} %",
-        ],
-    ]
-    print_table(f"{name}: motion loop", columns, rows)
-
-
-def _offset_text(item: ForceAnalysis) -> str:
-    velocity, force = current().fine * item.approach.velocity, item.approach.force
-    gain = item.approach.integral
-    integral = f"Ki = {gain:.6g} {unit('rad/(N m s)')}, " if gain else ""
-    return (
-        f"{item.name}: {integral}X_i is the {OFFSETS[item.approach.offset]} at the switch. "
-        f"Arriving at {velocity:.4g} {unit('deg/s')}, the torque peaks at {item.peak:.3f} "
-        f"{unit('N m')} and settles {100 * item.steady_error:.2f} % off {force:.4g} "
-        f"{unit('N m')}, for a switch exactly there."
-    )
-
-
-def _print_force(name: str, analysis: DesignAnalysis) -> None:
-    columns = (
-        "controller",
-        f"k\n{unit('N m/rad')}",
-        f"Kp\n{unit('rad/(N m)')}",
-        "poles\n1/s",
-        "damping\nratio",
-        "natural\nfrequency",
-        "steady-state\nerror ratio",
-    )
-    rows = [
-        [
-            item.name,
-            f"{item.stiffness:.6g}",
-            f"{item.loop.gain:.6g}",
-            _poles(item.loop.poles),
-            f"{item.loop.damping_ratio:.4f}",
-            f"{item.loop.natural_frequency:.2f} rad/s",
-            f"{item.steady_error:.3f}",
-        ]
-        for item in analysis.force
-    ]
-    print_table(f"{name}: force loop, nominal", columns, rows)
-
-
-def _print_torque(name: str, analysis: DesignAnalysis) -> None:
-    columns = (
-        "controller",
-        f"K\n{unit('N m/rad')}",
-        f"B\n{unit('N m s/rad')}",
-        f"stable in the air\nbelow, {unit('N m/rad')}",
-        f"passive, margin\n{unit('N m s/rad')}",
-    )
-    rows = [
-        [item.name, f"{item.Kp:.6g}", f"{item.B:.6g}", f"{item.border:.6g}", item.passive_text]
-        for item in analysis.torque
-    ]
-    print_table(f"{name}: impedance by torques", columns, rows)
-    say(TORQUE_TEXT)
+        blocks = [*torque_blocks(designed.loaded, analysis)]
+    elif analysis.force:
+        blocks += force_blocks(designed, analysis)
+    print_blocks(designed.spec.name, blocks)
 
 
 def _pairs(poles: tuple[complex, ...]) -> list[list[float]]:
     return [[pole.real, pole.imag] for pole in poles]
-
-
-def _poles(poles: tuple[complex, ...]) -> str:
-    upper = [pole for pole in poles if pole.imag >= 0]
-    return ", ".join(
-        f"{pole.real:.4f}" if math.isclose(pole.imag, 0) else f"{pole.real:.4f} +- {pole.imag:.4f}j"
-        for pole in upper
-    )

@@ -160,13 +160,12 @@ def run_comparison(
     loaded: LoadedSpec,
     limits: Limits,
     progress: Progress = silent,
-    designed: Designed | None = None,
 ) -> tuple[SwitchedSystem, tuple[MethodRun, ...]]:
     """Compare the LMI, which comes first, with the gradient iteration on the exact modes."""
     from nrs_design.search.certify import certify
     from nrs_design.search.comparison import compare_methods
 
-    designed = designed or run_design(loaded, progress)
+    designed = run_design(loaded, progress)
     with placed(loaded):
         system = assemble_spec(loaded, designed)
         return system, compare_methods(partial(certify, system), limits, progress)

@@ -13,7 +13,6 @@ from nrs_design.reporting.sections.evidence import evidence_sections
 from nrs_design.reporting.sections.goals import goal_facts, goals_section
 from nrs_design.reporting.sections.head import claim_of, facts, proved_rate, remarks_of
 from nrs_design.reporting.sections.key import key_facts, tests_section
-from nrs_design.reporting.sections.methods import methods_section
 from nrs_design.reporting.sections.mode_logic import logic_section
 from nrs_design.reporting.sections.modes import modes_section
 from nrs_design.reporting.sections.proof import proof_section
@@ -29,13 +28,11 @@ from nrs_design.reporting.sections.worst_case import worst_case_section
 
 if TYPE_CHECKING:
     import datetime
-    from collections.abc import Sequence
 
     from nrs_design.design.analysis import DesignAnalysis
     from nrs_design.pipeline.blocked import Blocked
     from nrs_design.pipeline.certification import Result
     from nrs_design.pipeline.margins import ProofMargins
-    from nrs_design.search.method_run import MethodRun
 
 # The run under the worst signal that was found, beside its proved bound.
 LEAD = "run"
@@ -45,7 +42,6 @@ def build_report(
     result: Result,
     analysis: DesignAnalysis | None = None,
     *,
-    comparison: Sequence[MethodRun] = (),
     margins: ProofMargins | None = None,
     blocked: Blocked | None = None,
     times: bool = False,
@@ -70,7 +66,6 @@ def build_report(
             worst_case_section(result),
             assumptions_section(result),
             rungs_section(certification, times=times),
-            methods_section(comparison, times=times) if comparison else None,
             recheck_section(result),
             spec_section(result.loaded),
         )

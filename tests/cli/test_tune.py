@@ -12,7 +12,7 @@ GIVEN = """motion_loop:
 def test_given_motion_loop_is_said_to_be_given(tmp_path):
     text = SOFT_TISSUE.read_text().replace("motion_loop:\n", GIVEN)
     (tmp_path / "given.nrs.yaml").write_text(text)
-    assert "The spec states G itself" in run("tune", "given.nrs.yaml", cwd=tmp_path).stdout
+    assert "The spec states this G itself" in run("tune", "given.nrs.yaml", cwd=tmp_path).stdout
     document = document_of("tune", "given.nrs.yaml", cwd=tmp_path)
     assert document["motion"]["loop"]["source"] == "given"
 
@@ -41,7 +41,7 @@ def test_a_force_error_without_goal_is_warned_of(tmp_path):
     text = FORCE_LIMIT.read_text().replace("    goals: {max_force_error: 0.55}\n", "")
     (tmp_path / "free.nrs.yaml").write_text(text)
     result = run("tune", "free.nrs.yaml", cwd=tmp_path, code=0)
-    for words in ("force-limit: motion loop", "force-limit: force loop", "2060"):
+    for words in ("force-limit: Motion loop", "force-limit: Force controllers", "2060"):
         assert words in result.stdout
     assert "warning: force: steady force error over command 0.5465" in result.stderr
 

@@ -5,11 +5,10 @@ import pytest
 
 from nrs_design.errors import DesignError
 from nrs_design.pipeline.analysis import run_analysis
-from nrs_design.pipeline.runs import run_certification, run_comparison
+from nrs_design.pipeline.runs import run_certification
 from nrs_design.reporting import build_report
 from nrs_design.reporting.document import Bullets, Listing, Paragraph, Table
 from nrs_design.reporting.figures.run import draw_phase_plane, draw_run
-from nrs_design.search.certification import Limits
 from nrs_design.search.method import Method
 from nrs_design.simulation.switched import SwitchedRun
 from nrs_design.spec import read_spec
@@ -400,22 +399,3 @@ def test_phase_plane_says_what_its_axes_are(report, case):
     assert "no projection." in item.caption
     (axes,) = item.figure.axes
     assert axes.get_xlabel() == "State x1 [no unit given]"
-
-
-@pytest.mark.slow
-def test_the_gradient_iteration_stands_beside_the_lmi_where_asked_for():
-    loaded = read_spec(ROOT / "specs" / "examples" / "commuting.nrs.yaml")
-    result, limits = run_certification(loaded), Limits(optimize_rate=False)
-    _, runs = run_comparison(loaded, limits)
-    assert "methods" not in {item.name for item in build_report(result).illustrations}
-    page = build_report(result, comparison=runs)
-    title = "Gradient iteration beside LMI"
-    table = table_of(page, title)
-    assert [row[0] for row in table.rows] == [run.name for run in runs]
-    assert all(row[2].startswith("alpha") for row in table.rows)
-    drawn = figure(page, "methods").figure.axes
-    assert [axes.get_title() for axes in drawn] == ["Modes in turn", "Modes at random"]
-    # Three curves, each with a mark where it ended.
-    assert [len(axes.lines) for axes in drawn] == [6, 6]
-    timed = build_report(result, comparison=runs, times=True)
-    assert table_of(timed, title).columns[-1] == "Time [ms]"

@@ -1,5 +1,3 @@
-from fractions import Fraction
-
 import numpy as np
 import pytest
 from hypothesis import given
@@ -7,9 +5,8 @@ from hypothesis import strategies as st
 
 from nrs_design.proof.mode import Time
 from nrs_design.reporting.figures.complex_plane import draw_eigenvalues
-from nrs_design.reporting.figures.value import draw_value
-from nrs_design.reporting.figures.view import disk, half_plane
-from tests.support import matrix
+from nrs_design.reporting.figures.view import show_disk, show_half_plane
+from nrs_design.reporting.style import new_axes
 
 FAR = np.array([-1 + 3j, -1 - 3j, -20000, -2 + 3j, -2 - 3j, -4])
 parts = st.floats(-1e6, 1e6).filter(lambda x: x == 0 or abs(x) > 1e-6)
@@ -32,10 +29,10 @@ def test_a_far_pole_does_not_squeeze_the_rest():
 
 
 def test_poles_of_one_size_are_drawn_on_linear_axes():
-    view = half_plane(np.array([-1 + 3j, -1 - 3j, -9]))
-    assert view.real.bend is None
-    assert view.imaginary.bend is None
-    assert view.real.note == ""
+    _, axes = new_axes()
+    show_half_plane(axes, np.array([-1 + 3j, -1 - 3j, -9]), "1/s")
+    assert (axes.get_xscale(), axes.get_yscale()) == ("linear", "linear")
+    assert axes.get_xlabel() == "Real part [1/s]"
 
 
 @pytest.mark.parametrize("largest", [0.9, 300.0])
@@ -51,30 +48,9 @@ def test_the_unit_circle_is_round(caplog, largest):
 @given(points)
 def test_nothing_is_hidden(values):
     z = np.array(values)
-    for view in (half_plane(z), disk(z)):
-        assert view.real.low < z.real.min()
-        assert z.real.max() < view.real.high
-        assert view.imaginary.low < z.imag.min()
-        assert z.imag.max() < view.imaginary.high
-
-
-def lines(modes, time, line=None, start=None):
-    named = {f"m{k}": matrix(A) for k, A in enumerate(modes, 1)}
-    (axes,) = draw_value(named, matrix([[1]]), time, start, line).axes
-    return {drawn.get_label(): drawn.get_xydata().T for drawn in axes.get_lines()}
-
-
-def test_it_falls_as_the_mode_does():
-    """Of x' = -x and V = x^2, V(t) = exp(-2 t) V(0)."""
-    found = lines([[["-1"]]], Time.CONTINUOUS, ("proved bound", Fraction(1)))
-    t, V = found["m1"]
-    assert pytest.approx(np.exp(-2 * t), rel=1e-9) == V
-    assert found["proved bound"][1] == pytest.approx(V, rel=1e-9)
-
-
-def test_steps_are_counted():
-    found = lines([[["1/2"]], [["-1/3"]]], Time.DISCRETE, start=(Fraction(3),))
-    k, V = found["m1"]
-    assert k[:3].tolist() == [0, 1, 2]
-    assert V[:3].tolist() == [1, 0.25, 0.0625]
-    assert found["m2"][1][1] == pytest.approx(1 / 9)
+    for show in (show_half_plane, show_disk):
+        _, axes = new_axes()
+        show(axes, z, "1")
+        (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
+        assert left < z.real.min() <= z.real.max() < right
+        assert low < z.imag.min() <= z.imag.max() < high

@@ -13,7 +13,7 @@ from nrs_design.design.root_locus import locus_gains, root_locus
 from nrs_design.design.transfer import TransferFunction, poles
 from nrs_design.proof.evidence.fields import rate_words
 from nrs_design.proof.mode import Time
-from nrs_design.reporting.figures.view import View, disk, half_plane
+from nrs_design.reporting.figures.view import show_disk, show_half_plane
 from nrs_design.reporting.style import (
     ALARM,
     BLUE,
@@ -45,7 +45,6 @@ def draw_root_locus(
     start = poles(open_loop)
     zeros = np.roots(open_loop.numerator)
     points = np.concatenate([start, zeros, np.asarray(wanted), np.asarray(reached)])
-    view = half_plane(points, room=0.35)
     for branch in root_locus(open_loop, locus_gains(open_loop, gain)).T:
         axes.plot(branch.real, branch.imag, color=BLUE, zorder=2)
     axes.plot(start.real, start.imag, "x", color=INK, markersize=8, label="open-loop poles")
@@ -54,7 +53,7 @@ def draw_root_locus(
     if wanted:
         _mark(axes, wanted, "s", VERMILLION, "wanted poles", size=11, filled=False)
     _mark(axes, reached, "D", VERMILLION, "poles reached", size=5.5, filled=True)
-    view.set(axes, "rad/s")
+    show_half_plane(axes, points, "rad/s", room=0.35)
     legend(figure, axes, 2)
     return figure
 
@@ -73,14 +72,19 @@ def draw_eigenvalues(
     """
     figure, axes = new_axes(4.2)
     together = np.concatenate(list(values))
-    view = _border(axes, together, time, rate)
+    _border(axes, time, rate)
     for index, (name, row) in enumerate(zip(names, values, strict=True)):
         label, look = _look(index, name, len(names))
         axes.plot(row.real, row.imag, mfc="none", label=label, linestyle="none", **look)
     unstable = together[_outside(together, time)]
     if len(unstable):
         _mark(axes, unstable.tolist(), "o", ALARM, "not in the stable region", 17, filled=False)
-    view.set(axes, "1/s" if time is Time.CONTINUOUS else "1")
+    if time is Time.CONTINUOUS:
+        show_half_plane(axes, together, "1/s")
+        right = axes.get_xlim()[1]
+        axes.axvspan(0.0, right, color=VERMILLION, alpha=0.17, zorder=0, linewidth=0)
+    else:
+        show_disk(axes, together, "1")
     legend(figure, axes, 2)
     return figure
 
@@ -100,20 +104,19 @@ def _outside(values: NDArray[np.complex128], time: Time) -> NDArray[np.bool_]:
     return np.asarray(np.abs(values) >= 1 - 1e-9)
 
 
-def _border(axes: Axes, values: NDArray[np.complex128], time: Time, rate: Fraction | None) -> View:
+def _border(axes: Axes, time: Time, rate: Fraction | None) -> None:
     if time is Time.CONTINUOUS:
         axes.axvline(0.0, color=INK, linewidth=1.0)
         if rate is not None:
             label = f"-alpha, {rate_words(rate, time)}"
             axes.axvline(-float(rate), color=MUTED, linewidth=1.2, linestyle="--", label=label)
-        return half_plane(values, shade=True)
+        return
     angle = np.linspace(0, 2 * math.pi, 361)
     axes.plot(np.cos(angle), np.sin(angle), color=INK, linewidth=1.0, label="unit circle")
     if rate is not None:
         x, y = float(rate) * np.cos(angle), float(rate) * np.sin(angle)
         label = rate_words(rate, time)
         axes.plot(x, y, color=MUTED, linewidth=1.2, linestyle="--", label=label)
-    return disk(values)
 
 
 def _mark(

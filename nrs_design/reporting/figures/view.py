@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from nrs_design.reporting.style import GRID, MUTED, VERMILLION
+from nrs_design.reporting.style import MUTED
 from nrs_design.reporting.ticks import in_full
 
 if TYPE_CHECKING:
@@ -23,122 +22,74 @@ _LINEAR_SHARE = 1.5
 _DECADES = 3
 
 
-@dataclass(frozen=True)
-class Span:
-    """One axis: its limits, and the value beyond which it is logarithmic (None for nowhere)."""
-
-    low: float
-    high: float
-    bend: float | None
-
-    @property
-    def note(self) -> str:
-        """What the label of the axis must add."""
-        if self.bend is None:
-            return ""
-        return f", logarithmic beyond ±{in_full(self.bend, self.bend)}"
-
-    def ticks(self) -> list[float]:
-        """Return ticks of both parts, where the axis has two."""
-        from nrs_design.plotting import MaxNLocator
-
-        assert self.bend is not None
-        inner = MaxNLocator(6).tick_values(-self.bend, self.bend)
-        first = math.ceil(math.log10(2 * self.bend))
-        last = math.floor(math.log10(max(-self.low, self.high)))
-        powers = range(first, last + 1, 1 + (last - first) // _DECADES)
-        outer = [sign * 10.0**power for sign in (-1, 1) for power in powers]
-        linear = [float(x) for x in inner if abs(x) <= self.bend]
-        return [x for x in sorted([*outer, *linear]) if self.low <= x <= self.high]
-
-
-@dataclass(frozen=True)
-class View:
-    """Both axes; a square one keeps a circle round."""
-
-    real: Span
-    imaginary: Span
-    shade: bool
-    square: bool
-
-    def set(self, axes: Axes, unit: str) -> None:
-        """Give the axes their limits, scales, labels, and the real axis."""
-        spans = (("x", self.real, "Real part"), ("y", self.imaginary, "Imaginary part"))
-        for name, span, label in spans:
-            _scale(axes, name, span)
-            getattr(axes, f"set_{name}lim")(span.low, span.high)
-            getattr(axes, f"set_{name}label")(f"{label}{span.note} [{unit}]")
-        axes.axhline(0.0, color=MUTED, linewidth=0.8, zorder=1)
-        if self.shade:
-            axes.axvspan(0.0, self.real.high, color=VERMILLION, alpha=0.17, zorder=0, linewidth=0)
-        if self.square:
-            axes.set_box_aspect(1)
-
-
-def half_plane(points: NDArray[np.complex128], room: float = 0.12, *, shade: bool = False) -> View:
+def show_half_plane(
+    axes: Axes, points: NDArray[np.complex128], unit: str, room: float = 0.12
+) -> None:
     """Show points with some room around them, as a fraction of their extent, and the origin."""
     x, y = np.append(points.real, 0.0), points.imag
     tiny = 1e-9 * float(np.abs(points).max())
-    bend_x, bend_y = _bend(x, tiny), _bend(y, tiny)
-    size = max(_linear(x, bend_x), _linear(y, bend_y)) or 1.0
-    height = max(_linear(y, bend_y), 0.15 * size)
-    left, right = (_clip(float(end), bend_x) for end in (x.min(), x.max()))
+    ends = _near_end(x, tiny), _near_end(y, tiny)
+    near_x, near_y = (np.clip(v, -end, end) for v, end in zip((x, y), ends, strict=True))
+    size = float(max(np.abs(near_x).max(), np.abs(near_y).max())) or 1.0
+    left, right = float(near_x.min()), float(near_x.max())
     side = max(right - left, 0.3 * size)
-    real = Span(*_outer(x, left - room * side, right + 0.12 * side, bend_x), bend_x)
-    top = (1.2 + room) * height
-    return View(real, Span(*_outer(y, -top, top, bend_y), bend_y), shade=shade, square=False)
+    top = (1.2 + room) * max(float(np.abs(near_y).max()), 0.15 * size)
+    _set_axis(axes, "x", unit, x, (left - room * side, right + 0.12 * side), ends[0])
+    _set_axis(axes, "y", unit, y, (-top, top), ends[1])
 
 
-def disk(points: NDArray[np.complex128]) -> View:
-    """Show points and the unit circle."""
-    parts = np.concatenate([points.real, points.imag, np.ones(len(points) * 2 + 1)])
-    bend = _bend(parts, 0.0)
-    far = float(np.abs(parts).max())
-    end = 1.12 * far if bend is None else 2 * far
-    span = Span(-end, end, None if bend is None else max(bend, 1.2))
-    return View(span, span, shade=False, square=True)
+def show_disk(axes: Axes, points: NDArray[np.complex128], unit: str) -> None:
+    """Show points and the unit circle, which is kept round."""
+    far = max(1.0, float(np.abs(points.real).max()), float(np.abs(points.imag).max()))
+    end = _near_end(np.concatenate([points.real, points.imag, np.ones(2 * len(points) + 1)]), 0.0)
+    for name in "xy":
+        limits = (-1.12 * far, 1.12 * far)
+        _set_axis(axes, name, unit, np.array([-far, far]), limits, max(end, 1.2))
+    axes.set_box_aspect(1)
 
 
-def _bend(values: NDArray[np.float64], tiny: float) -> float | None:
-    """Return up to where the axis is linear: None where no value lies far beyond the others."""
+def _near_end(values: NDArray[np.float64], tiny: float) -> float:
+    """Return up to where an axis is linear: without end where no value lies far beyond others."""
     sizes = np.sort(np.abs(values)[np.abs(values) > tiny])
     for here, beyond in pairwise(sizes.tolist()):
         if here >= np.median(sizes) and beyond > _FAR * here:
             return float(f"{1.05 * here:.1e}")
-    return None
+    return math.inf
 
 
-def _linear(values: NDArray[np.float64], bend: float | None) -> float:
-    return float(np.abs(values).max()) if bend is None else bend
+def _set_axis(
+    axes: Axes,
+    name: str,
+    unit: str,
+    values: NDArray[np.float64],
+    limits: tuple[float, float],
+    end: float,
+) -> None:
+    """Give an axis its limits and label; beyond the end of its linear part it is logarithmic."""
+    low, high = limits
+    label = {"x": "Real part", "y": "Imaginary part"}[name]
+    if math.isfinite(end):
+        low = 2 * float(values.min()) if values.min() < -end else low
+        high = 2 * float(values.max()) if values.max() > end else high
+        far = max(-low, high)
+        share = _LINEAR_SHARE * math.log10(far / end)
+        getattr(axes, f"set_{name}scale")("symlog", linthresh=end, linscale=share)
+        ticks = [x for x in _ticks(end, far) if low <= x <= high]
+        texts = [in_full(tick, abs(tick) or 1.0) for tick in ticks]
+        getattr(axes, f"set_{name}ticks")(ticks, texts)
+        getattr(axes, f"set_{name}ticks")([], minor=True)
+        label += f", logarithmic beyond ±{in_full(end, end)}"
+    getattr(axes, f"set_{name}lim")(low, high)
+    getattr(axes, f"set_{name}label")(f"{label} [{unit}]")
+    if name == "y":
+        axes.axhline(0.0, color=MUTED, linewidth=0.8, zorder=1)
 
 
-def _clip(value: float, bend: float | None) -> float:
-    return value if bend is None else min(max(value, -bend), bend)
+def _ticks(end: float, far: float) -> list[float]:
+    """Return ticks of the linear and of the logarithmic part."""
+    from nrs_design.plotting import MaxNLocator
 
-
-def _outer(
-    values: NDArray[np.float64], low: float, high: float, bend: float | None
-) -> tuple[float, float]:
-    """Widen limits of the linear part to the values beyond it."""
-    if bend is None:
-        return low, high
-    if values.min() < -bend:
-        low = 2 * float(values.min())
-    if values.max() > bend:
-        high = 2 * float(values.max())
-    return low, high
-
-
-def _scale(axes: Axes, name: str, span: Span) -> None:
-    if span.bend is None:
-        return
-    decades = math.log10(max(-span.low, span.high) / span.bend)
-    set_scale, set_ticks = (getattr(axes, f"set_{name}{what}") for what in ("scale", "ticks"))
-    set_scale("symlog", linthresh=span.bend, linscale=_LINEAR_SHARE * decades)
-    ticks = span.ticks()
-    set_ticks(ticks, [in_full(tick, abs(tick) or 1.0) for tick in ticks])
-    set_ticks([], minor=True)
-    line = axes.axvline if name == "x" else axes.axhline
-    for end in (-span.bend, span.bend):
-        if span.low < end < span.high:
-            line(end, color=GRID, linewidth=1.6, linestyle=":", zorder=0.5)
+    linear = [float(x) for x in MaxNLocator(6).tick_values(-end, end) if abs(x) <= end]
+    first, last = math.ceil(math.log10(2 * end)), math.floor(math.log10(far))
+    powers = range(first, last + 1, 1 + (last - first) // _DECADES)
+    return sorted([*linear, *(sign * 10.0**power for sign in (-1, 1) for power in powers)])

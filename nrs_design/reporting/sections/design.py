@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from nrs_design.axis import labelled, unit
 from nrs_design.controllers.float32 import exact_decimal
 from nrs_design.design.transfer import TransferFunction, poles
-from nrs_design.reporting.document import Illustration, Linked, Paragraph, Section, Table
+from nrs_design.reporting.document import Block, Illustration, Linked, Paragraph, Section, Table
 from nrs_design.reporting.figures.complex_plane import draw_root_locus
 from nrs_design.reporting.formatting import number, polynomial_text, root, roots
 from nrs_design.reporting.sections.impedance import (
@@ -75,7 +75,8 @@ def design_sections(designed: Designed, analysis: DesignAnalysis | None) -> tupl
         if all(item.requirement.axis is not None for item in analysis.impedance):
             parts.append(landscape_section(designed, analysis.impedance))
     if analysis.force:
-        parts.append(_force_section(designed, analysis))
+        loci = (_force_locus(item) for item in analysis.force[:CURVES])
+        parts.append(Section("Force control", (*force_blocks(designed, analysis), *loci)))
     if analysis.torque:
         parts.append(torque_section(designed.loaded, analysis))
     return tuple(parts)
@@ -110,6 +111,14 @@ def _said(designed: Designed, controller: str, gain: str) -> Callable[[str], str
 
 
 def _motion_section(designed: Designed, analysis: DesignAnalysis) -> Section:
+    blocks = motion_blocks(designed, analysis)
+    if (wanted := analysis.wanted) is None:
+        return Section(MOTION, blocks)
+    return Section(MOTION, (*blocks, _motion_locus(designed, analysis, wanted)))
+
+
+def motion_blocks(designed: Designed, analysis: DesignAnalysis) -> tuple[Block, ...]:
+    """Say which motion loop is in use, and what was wanted of it and is reached."""
     spec = designed.spec
     G = analysis.motion
     text = (
@@ -118,15 +127,8 @@ def _motion_section(designed: Designed, analysis: DesignAnalysis) -> Section:
         f"{_source(spec, analysis)}"
     )
     if (wanted := analysis.wanted) is None:
-        return Section(MOTION, (Paragraph(text),))
-    return Section(
-        MOTION,
-        (
-            Paragraph(text),
-            _motion_table(designed, analysis, wanted),
-            _motion_locus(designed, analysis, wanted),
-        ),
-    )
+        return (Paragraph(text),)
+    return Paragraph(text), _motion_table(designed, analysis, wanted)
 
 
 def _sides(spec: InteractionDesignSpec) -> str:
@@ -209,7 +211,8 @@ def _motion_locus(designed: Designed, analysis: DesignAnalysis, wanted: PdDesign
     return Illustration("root-locus", "Root locus of the PD design", caption, figure)
 
 
-def _force_section(designed: Designed, analysis: DesignAnalysis) -> Section:
+def force_blocks(designed: Designed, analysis: DesignAnalysis) -> tuple[Block, ...]:
+    """Say what the force controllers achieve at nominal values."""
     tables = by_controller(
         "Force controllers, at nominal values",
         [label if label in _FREQUENCIES else labelled(label) for label, _ in _FORCE_ROWS],
@@ -222,13 +225,12 @@ def _force_section(designed: Designed, analysis: DesignAnalysis) -> Section:
             for item in analysis.force
         ],
     )
-    loci = (_force_locus(item) for item in analysis.force[:CURVES])
     texts = [Paragraph(_NOMINAL)]
     if any(item.peak is not None for item in analysis.force):
         texts.append(Paragraph(_OFFSET))
     if any(item.approach.offset == "none" for item in analysis.force):
         texts.append(Paragraph(_NO_OFFSET))
-    return Section("Force control", (*texts, *tables, *loci))
+    return (*texts, *tables)
 
 
 def _force_at(designed: Designed, label: str, item: ForceAnalysis) -> At:

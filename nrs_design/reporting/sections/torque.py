@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from nrs_design.axis import labelled
-from nrs_design.reporting.document import Illustration, Paragraph, Section, Table
+from nrs_design.reporting.document import Block, Illustration, Paragraph, Section, Table
 from nrs_design.reporting.formatting import number
 from nrs_design.reporting.sections.places import linked
 from nrs_design.reporting.style import (
@@ -43,7 +43,14 @@ POINTS = 80
 
 
 def torque_section(loaded: LoadedSpec, analysis: DesignAnalysis) -> Section:
-    """Describe the controllers that make torques."""
+    """Describe the controllers that make torques, with the borders of stiffness."""
+    figure = draw_borders(analysis.torque)
+    drawn = Illustration("torque-borders", "Borders of stiffness", _CAPTION, figure)
+    return Section("Impedance by torques", (*torque_blocks(loaded, analysis), drawn))
+
+
+def torque_blocks(loaded: LoadedSpec, analysis: DesignAnalysis) -> tuple[Block, ...]:
+    """Say how stiff and damped the controllers that make torques are, and may be."""
     rows = tuple(
         (
             item.name,
@@ -61,16 +68,7 @@ def torque_section(loaded: LoadedSpec, analysis: DesignAnalysis) -> Section:
         labelled("Stable in the air below [N·m/rad]"),
         labelled("Passive, margin [N·m·s/rad]"),
     )
-    return Section(
-        "Impedance by torques",
-        (
-            Paragraph(_TEXT),
-            Table("Controllers that make torques", columns, rows),
-            Illustration(
-                "torque-borders", "Borders of stiffness", _CAPTION, draw_borders(analysis.torque)
-            ),
-        ),
-    )
+    return Paragraph(_TEXT), Table("Controllers that make torques", columns, rows)
 
 
 @styled

@@ -197,10 +197,9 @@ def _print(result: Result) -> None:
     from nrs_design.certificates.goals import certified_goals
 
     certification = result.certification
-    system, statements = certification.system, certification.statements
-    verdict, shown = str(certification.verdict), _briefs(result)
+    system, verdict = certification.system, str(certification.verdict)
     say(f"{result.loaded.spec.name}: {verdict.upper()}{_after(certification)}", verdict=verdict)
-    for statement, short in zip(statements, shown, strict=True):
+    for statement, short in result.briefs:
         say(f"  {statement.claim(system) if wants_details() else short}")
     for attempt in certification.attempts:
         # A bound that was wanted and not found must be visible.
@@ -214,17 +213,6 @@ def _print(result: Result) -> None:
         ends = "met" if goal.met else "NOT PROVED"
         say(f"  goal {goal.key}, {goal.wanted}: {ends}: {goal.said}")
     print_granted(result)
-
-
-def _briefs(result: Result) -> list[str]:
-    from nrs_design.certificates.brief import brief
-
-    certification, designed = result.certification, result.designed
-    touched = () if designed is None else designed.spec.environments.values()
-    given = (environment.lever_arm for environment in touched)
-    # Where a force is largest: at the shortest arm.
-    arm = min((length.exact for length in given if length is not None), default=None)
-    return [brief(item, certification.system, arm) for item in certification.statements]
 
 
 def _after(certification: Certification) -> str:

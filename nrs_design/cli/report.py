@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -12,7 +11,7 @@ from nrs_design.cli import exit_codes
 from nrs_design.cli.command import Answer, command, take_spec
 from nrs_design.cli.options import Budget, Date, MaxDegree, Memory, SpecFile
 from nrs_design.cli.printing import note, progress, say
-from nrs_design.errors import DesignError, OutputError
+from nrs_design.errors import DesignError
 from nrs_design.facts.spec import spec_facts
 
 if TYPE_CHECKING:
@@ -27,31 +26,10 @@ if TYPE_CHECKING:
 REPORTS = Path("reports")
 
 
-class ReportFormat(StrEnum):
-    """File formats of a report."""
-
-    HTML = "html"
-    PNG = "png"
-
-
 @command("report", each_axis=True)
 def report(
     spec: SpecFile,
-    file_format: Annotated[
-        ReportFormat | None,
-        typer.Option(
-            "--format",
-            help="A page, or one image per figure; default: a page.",
-        ),
-    ] = None,
-    out: Annotated[
-        Path | None,
-        typer.Option(help="File (a folder for png); default reports/NAME.html or reports/NAME."),
-    ] = None,
-    times: Annotated[
-        bool,
-        typer.Option("--times", help="Add the time of every rung; pages then differ each time."),
-    ] = False,
+    out: Annotated[Path | None, typer.Option(help="File; default reports/NAME.html.")] = None,
     date: Date = None,
     margin: Annotated[
         bool,
@@ -88,12 +66,11 @@ def report(
     from nrs_design.reporting.next_steps import next_steps
 
     loaded, day = take_spec(spec), date.date() if date else None
-    file_format = _format_of(file_format, out)
+    place = _place(loaded, out)
     if loaded.spec.kind == "robot":
         if certificate is not None:
             raise DesignError("a robot has no certificate", remedy="leave --certificate out")
-        return _report_robot(loaded, file_format, out, day)
-    _check_out(loaded, file_format, out)
+        return _report_robot(loaded, place, day)
     limits = search_limits(loaded.spec, Overrides(max_degree, budget, memory))
     asked = {"margin": margin, "shortest_dwell": shortest_dwell}
     with progress(f"reporting {loaded.spec.name}") as step:
@@ -104,26 +81,20 @@ def report(
         margins = run_proof_margins(result, limits, step, **asked)
         blocked = find_blocked(result, limits, step)
         step("figures")
-        page = build_report(
-            result,
-            _analysis(result),
-            margins=margins,
-            blocked=blocked,
-            times=times,
-            date=day,
-        )
-        files = _write(page, file_format, out, spec)
+        analysis = _analysis(result)
+        page = build_report(result, analysis, margins=margins, blocked=blocked, date=day)
+        _write(page, place, spec)
     verdict = str(result.certification.verdict)
     steps = next_steps(result, **asked, spec=loaded.path)
     code = exit_codes.OF_VERDICT[verdict]
-    return _answer(loaded, verdict, code, files, result.certificate, steps)
+    return _answer(loaded, verdict, code, place, result.certificate, steps)
 
 
 def _answer(
     loaded: LoadedSpec,
     verdict: str,
     code: int,
-    files: list[Path],
+    place: Path,
     certificate: Certificate | None = None,
     steps: tuple[str, ...] = (),
 ) -> Answer:
@@ -132,7 +103,7 @@ def _answer(
             **spec_facts(loaded),
             "verdict": verdict,
             "certificate_id": certificate.id if certificate else None,
-            "files": [str(path) for path in files],
+            "files": [str(place)],
         }
 
     def show() -> None:
@@ -142,63 +113,38 @@ def _answer(
             say(f"{loaded.spec.name}: {verdict}")
         for line in steps:
             say(f"next: {line}")
-        for path in files:
-            note(f"written to {path}")
+        note(f"written to {place}")
 
     return Answer(facts, show, code)
 
 
-def _format_of(file_format: ReportFormat | None, out: Path | None) -> ReportFormat:
-    """Return the format that was asked for, or a page; the ending of the file must agree."""
-    from nrs_design.output import PAGES, check_html
-
-    ending = "" if out is None else out.suffix.lower()
-    if ending == ".png" and file_format in (None, ReportFormat.PNG):
-        raise OutputError("is no folder", path=out, remedy="--format png takes a folder")
-    if ending in PAGES and file_format is ReportFormat.PNG:
-        raise OutputError(
-            f"ends in {ending}, and --format png takes a folder",
-            path=out,
-            remedy="leave --format out, or name another place",
-        )
-    if file_format is None and out is not None:
-        check_html(out)
-    return file_format or ReportFormat.HTML
-
-
-def _check_out(loaded: LoadedSpec, file_format: ReportFormat, out: Path | None) -> None:
-    """Refuse, before minutes of work, a place in which something else stands."""
-    from nrs_design.output import PAGE, check_place
+def _place(loaded: LoadedSpec, out: Path | None) -> Path:
+    """Return where the page goes; refuse, before minutes of work, where something else stands."""
+    from nrs_design.output import PAGE, check_html, check_place
     from nrs_design.ownership import check_owner, check_page
 
-    if out is None:
+    place = out or REPORTS / f"{loaded.spec.name}.html"
+    check_html(place)
+    if out is None and loaded.spec.kind != "robot":
         check_owner(loaded.path, loaded.spec.name, REPORTS)
     else:
-        check_page(loaded.path, out)
-    if file_format is not ReportFormat.PNG:
-        check_place(out or REPORTS / f"{loaded.spec.name}.html", PAGE)
+        check_page(loaded.path, place)
+    check_place(place, PAGE)
+    return place
 
 
-def _report_robot(
-    loaded: LoadedSpec,
-    file_format: ReportFormat,
-    out: Path | None,
-    date: Day | None,
-) -> Answer:
+def _report_robot(loaded: LoadedSpec, place: Path, date: Day | None) -> Answer:
     """Report a robot, with the exit code of `robot check`."""
-    from nrs_design.ownership import check_page
     from nrs_design.pipeline.design import placed
     from nrs_design.wings import load_wing
 
-    spec = loaded.path
-    check_page(spec, out or REPORTS / f"{loaded.spec.name}.html")
     with progress(f"reporting {loaded.spec.name}"):
-        _, robot_spec, robot = load_wing("robot", "pipeline").run_robot(spec)
+        _, robot_spec, robot = load_wing("robot", "pipeline").run_robot(loaded.path)
         pages = load_wing("robot", "reporting.robot")
         with placed(loaded):
             page: Report = pages.robot_report(loaded, robot_spec, robot, date)
-        files = _write(page, file_format, out, spec)
-    return _answer(loaded, page.verdict, exit_codes.unless(page.verdict != "reachable"), files)
+        _write(page, place, loaded.path)
+    return _answer(loaded, page.verdict, exit_codes.unless(page.verdict != "reachable"), place)
 
 
 def _analysis(result: Result) -> DesignAnalysis | None:
@@ -214,16 +160,9 @@ def _analysis(result: Result) -> DesignAnalysis | None:
         return None
 
 
-def _write(report: Report, file_format: ReportFormat, out: Path | None, spec: Path) -> list[Path]:
-    from nrs_design.output import PAGE, PNG, write_output, write_outputs
+def _write(report: Report, place: Path, spec: Path) -> None:
+    from nrs_design.output import PAGE, write_output
     from nrs_design.ownership import origin_of
-    from nrs_design.reporting import render_html, render_png
+    from nrs_design.reporting import render_html
 
-    if file_format is ReportFormat.PNG:
-        folder = out or REPORTS / report.name
-        images = {folder / f"{name}.png": data for name, data in render_png(report).items()}
-        write_outputs([(path, data, PNG) for path, data in images.items()])
-        return list(images)
-    path = out or REPORTS / f"{report.name}.html"
-    write_output(path, render_html(report, origin_of(spec, path)), replaces=PAGE)
-    return [path]
+    write_output(place, render_html(report, origin_of(spec, place)), replaces=PAGE)

@@ -25,6 +25,7 @@ from nrs_design.work import GIGABYTE
 if TYPE_CHECKING:
     from nrs_design.certificates.verify import Verification
     from nrs_design.controllers.controller_design import ControllerDesign
+    from nrs_design.proof.evidence import AbstractEvidence
     from nrs_design.spec import Spec
 
 
@@ -41,6 +42,18 @@ class Result:
     def design(self) -> ControllerDesign | None:
         """The gains that ship; None for given matrices."""
         return None if self.designed is None else self.designed.design
+
+    @property
+    def briefs(self) -> tuple[tuple[AbstractEvidence, str], ...]:
+        """Every statement with what it shows, in a few words."""
+        from nrs_design.certificates.brief import brief
+
+        touched = () if self.designed is None else self.designed.spec.environments.values()
+        given = (environment.lever_arm for environment in touched)
+        # Where a force is largest: at the shortest arm.
+        arm = min((length.exact for length in given if length is not None), default=None)
+        system, statements = self.certification.system, self.certification.statements
+        return tuple((statement, brief(statement, system, arm)) for statement in statements)
 
     @property
     def omits(self) -> tuple[str, ...]:

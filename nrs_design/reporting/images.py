@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 from nrs_design.output import MAKER, SVG_MARK
-from nrs_design.reporting.document import Illustration, Report
+from nrs_design.reporting.document import Illustration
 from nrs_design.reporting.style import THEMED, figure_style
 from nrs_design.reporting.text import drawable
 
@@ -120,11 +120,6 @@ def to_png(figure: Figure, dpi: int = 200) -> bytes:
     with figure_style():
         figure.savefig(buffer, format="png", dpi=dpi, metadata={"Software": MAKER})
     return buffer.getvalue()
-
-
-def render_png(report: Report) -> dict[str, bytes]:
-    """Return every figure as a PNG image at 200 dots per inch, by its name."""
-    return {item.name: to_png(item.figure) for item in report.illustrations}
 
 
 def _savefig(figure: Figure) -> str:

@@ -10,7 +10,7 @@ from nrs_design.certificates.certificate import canonical, to_document
 from nrs_design.reporting.document import Report
 from nrs_design.reporting.sections.design import design_sections
 from nrs_design.reporting.sections.evidence import evidence_sections
-from nrs_design.reporting.sections.goals import goal_facts, goals_section
+from nrs_design.reporting.sections.goals import goals_section
 from nrs_design.reporting.sections.head import claim_of, facts, proved_rate, remarks_of
 from nrs_design.reporting.sections.key import key_facts, tests_section
 from nrs_design.reporting.sections.mode_logic import logic_section
@@ -44,13 +44,11 @@ def build_report(
     *,
     margins: ProofMargins | None = None,
     blocked: Blocked | None = None,
-    times: bool = False,
     date: datetime.date | None = None,
 ) -> Report:
     """Build the report about one spec, with its figures drawn.
 
-    Without an analysis it has no margins and no design figures. `times` adds how long every rung of
-    the search took: the same spec then gives another page each time.
+    Without an analysis it has no margins and no design figures.
     """
     with about(getattr(result.loaded.spec, "axis", None)):
         spec, certification, designed = result.loaded.spec, result.certification, result.designed
@@ -65,7 +63,7 @@ def build_report(
             *evidence_sections(certification),
             worst_case_section(result),
             assumptions_section(result),
-            rungs_section(certification, times=times),
+            rungs_section(certification),
             recheck_section(result),
             spec_section(result.loaded),
         )
@@ -76,7 +74,7 @@ def build_report(
             verdict=str(certification.verdict),
             claim=claim_of(certification),
             remarks=remarks_of(certification),
-            facts=(*facts(result), *goal_facts(result, analysis)),
+            facts=facts(result),
             sections=tuple(section for section in sections if section is not None),
             summary=summary_of(result),
             lights=lights_of(result, analysis),

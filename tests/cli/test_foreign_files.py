@@ -20,7 +20,6 @@ COMMANDS = {
     "gate-junit": ("gate", "small.nrs.yaml", "--format", "junit", "--out", "x"),
     "report-html": ("report", COMMUTING, "--out", "x.html"),
     "gate-sarif": ("gate", "small.nrs.yaml", "--format", "sarif", "--out", "x"),
-    "report-png": ("report", COMMUTING, "--out", ".", "--format", "png"),
     "identify": ("identify", "actuator", *ACTUATOR, "--report", "x.html"),
 }
 QUICK = ("certify-switching", "schema")

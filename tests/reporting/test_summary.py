@@ -11,7 +11,7 @@ from nrs_design.pipeline.analysis import run_analysis
 from nrs_design.pipeline.runs import run_certification
 from nrs_design.proof.evidence import Shows
 from nrs_design.proof.mode import Time
-from nrs_design.reporting.sections.goals import goal_facts, goals_section, judged_goals
+from nrs_design.reporting.sections.goals import goals_section, judged_goals
 from nrs_design.reporting.sections.summary import lights_of, summary_of
 from nrs_design.spec import read_spec
 from tests.proof.graphs import common_quadratic
@@ -23,13 +23,13 @@ from tests.support import FORCE_LIMIT, ROOT, SOFT_TISSUE
 @pytest.mark.parametrize(
     ("case", "said"),
     [
-        ("proved", "with contact lost and made again at any time (where free motion ends is not"),
+        ("proved", "under any switching among 4 modes, contact may be lost"),
         ("proved", "for all values in the declared ranges"),
-        ("dwell", "every switching that the spec declares, and no other"),
+        ("dwell", "under the declared rules of switching"),
         ("dwell", "up to one constant factor"),
-        ("parameter", "with k in its range constant"),
+        ("parameter", "at constant parameters"),
         ("discrete", "per step"),
-        ("refuted", "Refuted: no guarantee of stability is possible under arbitrary switching"),
+        ("refuted", ": no guarantee of stability is possible."),
         ("inconclusive", "this report makes no statement about stability"),
     ],
 )
@@ -41,7 +41,7 @@ def test_a_step_is_said_in_seconds_where_it_has_some(soft_tissue):
     certification = soft_tissue.certification
     system = replace(certification.system, time=Time.DISCRETE, sample_time=Fraction(1, 500))
     stepping = replace(soft_tissue, certification=replace(certification, system=system))
-    assert "per step of 0.002 s" in summary_of(stepping)[0]
+    assert re.search(r"time constant at most [0-9.]+ s, rho <= ", summary_of(stepping)[0])
 
 
 def test_free_motion_is_named_only_where_its_loss_is_covered():
@@ -50,8 +50,7 @@ def test_free_motion_is_named_only_where_its_loss_is_covered():
     conewise = result.certification.evidence
     kept = common_quadratic(conewise.nodes[0].form, conewise.denominator_log2, conewise.rate)
     without = replace(result, certification=replace(result.certification, statements=(kept,)))
-    said = "among 4 modes in contact and 2 of free motion, with contact lost"
-    assert said in summary_of(result)[0]
+    assert "among 4 modes, contact may be lost" in summary_of(result)[0]
     assert "among 4 modes, as long as contact is kept" in summary_of(without)[0]
     # Where it is no mode at all, too.
     assert "as long as contact is kept" in summary_of(run_certification(read_spec(FORCE_LIMIT)))[0]
@@ -84,12 +83,12 @@ def test_a_refuted_sampled_loop_is_one_of_exact_arithmetic():
     "case", cases(("dwell", "inconclusive", "resets", "parameter", "dwell-refuted"))
 )
 def test_arbitrary_switching_is_claimed_only_where_it_is_declared(report, case):
-    assert "arbitrary switching" not in report(case).summary[0]
+    assert "any switching among" not in report(case).summary[0]
 
 
 def test_the_rate_is_not_above_that_of_the_claim(report):
     for case in ("proved", "dwell", "polynomial"):
-        (said,) = re.findall(r"at least ([0-9.]+) 1/s", report(case).summary[0])
+        (said,) = re.findall(r"alpha >= ([0-9.]+) 1/s", report(case).summary[0])
         assert said in report(case).claim
 
 
@@ -142,8 +141,6 @@ def test_the_light_of_goals_follows_from_all_of_them(soft_tissue, tmp_path, goal
     analysis = run_analysis(result.designed)
     (light,) = (x for x in lights_of(result, analysis) if x.name == "Goals")
     assert (str(light.state), light.text) == (state, said)
-    ((_, fact),) = goal_facts(result, analysis)
-    assert fact == said
     tables = {b.title: b for b in goals_section(result, analysis).blocks if hasattr(b, "rows")}
     (row,) = tables["Goals that the certificate must show"].rows
     gated = next(Examiner.of(result.loaded).certified_goals(result.certificate))

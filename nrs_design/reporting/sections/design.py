@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import TYPE_CHECKING
 
-from nrs_design.axis import labelled, unit
+from nrs_design.axis import unit
 from nrs_design.controllers.float32 import exact_decimal
 from nrs_design.design.transfer import TransferFunction, poles
 from nrs_design.reporting.document import Block, Illustration, Linked, Paragraph, Section, Table
@@ -42,8 +43,6 @@ _NO_OFFSET = (
 )
 
 
-# Of every axis the same.
-_FREQUENCIES = ("Closed-loop poles [rad/s]", "Natural frequency [rad/s]")
 _FORCE_ROWS: tuple[tuple[str, Callable[[ForceAnalysis], str]], ...] = (
     ("Kp [rad/(N·m)]", lambda item: number(item.loop.gain, 6)),
     (
@@ -213,18 +212,9 @@ def _motion_locus(designed: Designed, analysis: DesignAnalysis, wanted: PdDesign
 
 def force_blocks(designed: Designed, analysis: DesignAnalysis) -> tuple[Block, ...]:
     """Say what the force controllers achieve at nominal values."""
-    tables = by_controller(
-        "Force controllers, at nominal values",
-        [label if label in _FREQUENCIES else labelled(label) for label, _ in _FORCE_ROWS],
-        [item.name for item in analysis.force],
-        [
-            [
-                linked(designed.loaded, value(item), *_force_at(designed, label, item))
-                for label, value in _FORCE_ROWS
-            ]
-            for item in analysis.force
-        ],
-    )
+    title = "Force controllers, at nominal values"
+    place = partial(_force_at, designed)
+    tables = by_controller(designed.loaded, title, _FORCE_ROWS, analysis.force, place)
     texts = [Paragraph(_NOMINAL)]
     if any(item.peak is not None for item in analysis.force):
         texts.append(Paragraph(_OFFSET))

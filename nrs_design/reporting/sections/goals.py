@@ -11,7 +11,6 @@ from nrs_design.design.measures import MEANING, RESPONSE_MEANING, GoalStanding
 from nrs_design.reporting.document import (
     Block,
     Bullets,
-    Derived,
     Linked,
     Paragraph,
     Section,
@@ -82,14 +81,6 @@ def judged_goals(result: Result, analysis: DesignAnalysis | None) -> tuple[State
         return State.UNKNOWN, "no goals set"
     state = State.DOUBTFUL if open_ or uncomputed or unjudged else State.GOOD
     return State.BAD if missed or refuted else state, "; ".join(filter(None, said))
-
-
-def goal_facts(result: Result, analysis: DesignAnalysis | None) -> tuple[tuple[str, str], ...]:
-    """Return for the head of the report how the goals stand."""
-    state, said = judged_goals(result, analysis)
-    if analysis is None and state is State.UNKNOWN:
-        return ()
-    return ((GOALS, said if state is State.UNKNOWN else Derived(said, GOALS)),)
 
 
 def _are_measured(spec: Spec) -> bool:

@@ -7,7 +7,7 @@ from fractions import Fraction
 
 from nrs_design import __version__
 from nrs_design.pipeline.certification import Result
-from nrs_design.proof.bounds import at_least, at_most, lower, rounded_down, upper
+from nrs_design.proof.bounds import at_least, at_most, lower, upper
 from nrs_design.proof.evidence import AbstractEvidence, Shows
 from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import constants_words
@@ -22,7 +22,6 @@ from nrs_design.reporting.sections.titles import (
     MODES,
     RECHECK,
     RUNGS,
-    SATURATION,
     SPEC,
 )
 from nrs_design.search.certification import Certification
@@ -79,7 +78,6 @@ def facts(result: Result) -> tuple[tuple[str, str], ...]:
             Derived(certification.method if certification.evidence else "nothing", RUNGS),
         ),
         *_rate(system, certification.evidence),
-        *_saturated(certification),
         *_limit(certification),
         *_provenance(result),
         ("Package", f"nrs-design {__version__}"),
@@ -110,26 +108,6 @@ def proved_rate(system: SwitchedSystem, evidence: AbstractEvidence | None) -> Fr
     if evidence is None or evidence.shows is not Shows.STABILITY:
         return None
     return evidence.proved_rate(system)
-
-
-def saturated(certification: Certification) -> tuple[Fraction, str] | None:
-    """Return the proved rate where signals saturate, and from where; None where none is shown."""
-    system = certification.system
-    for item in certification.statements:
-        rate, size = item.start_rate(system), item.start_size
-        if rate is not None and size is not None and system.saturation is not None:
-            start = system.saturation.start
-            return rate, f"at rest with a {start.name} up to {rounded_down(size, start.unit)}"
-    return None
-
-
-def _saturated(certification: Certification) -> _Facts:
-    found = saturated(certification)
-    if found is None:
-        return []
-    rate, start = found
-    text = f"{lower(rate)} 1/s, for motions that begin {start}"
-    return [("Proved where signals saturate", Derived(text, SATURATION))]
 
 
 def _rate(system: SwitchedSystem, evidence: AbstractEvidence | None) -> _Facts:

@@ -5,26 +5,24 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from fractions import Fraction
-from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
 from nrs_design.axis import labelled
+from nrs_design.design.laws.law import AbstractControllerAnalysis
 from nrs_design.design.measures import (
     COST_MEANING,
     IMPEDANCE_ERROR,
     LIMIT_MEANING,
-    MARGINS,
     MEANING,
     PASSIVITY_NOT_COMPUTED,
     SENSITIVITY_PEAK,
-    Measure,
 )
 from nrs_design.proof.bounds import lower, upper
-from nrs_design.reporting.document import Block, Illustration, Paragraph, Section, Table
+from nrs_design.reporting.document import Illustration, Paragraph, Section, Table
 from nrs_design.reporting.formatting import number
-from nrs_design.reporting.sections.places import linked
+from nrs_design.reporting.sections.places import At, linked
 from nrs_design.reporting.style import (
     INK,
     MUTED,
@@ -46,7 +44,11 @@ if TYPE_CHECKING:
     from nrs_design.design.sampled_passivity import SampledBand
     from nrs_design.design.transfer import FloatArray
     from nrs_design.pipeline.design import Designed
+    from nrs_design.spec import LoadedSpec
 
+T = TypeVar("T", bound=AbstractControllerAnalysis)
+# Of every axis the same.
+_FREQUENCIES = ("Closed-loop poles [rad/s]", "Natural frequency [rad/s]")
 # More controllers than these make a table too wide for a page, or a figure too full.
 _COLUMNS = 4
 CURVES = 6
@@ -68,10 +70,6 @@ _PASSIVE_SAMPLED = (
     "worst of the ages of the force sample, each of them kept. No law that "
     "samples a force is passive for every force: between two samples it acts unseen."
 )
-
-
-def _worst(measure: Measure, item: ImpedanceAnalysis) -> str:
-    return measure.text(item.worst(measure).value)
 
 
 def _limit(value: float) -> str:
@@ -106,7 +104,6 @@ _IMPEDANCE_ROWS: tuple[tuple[str, Callable[[ImpedanceAnalysis], str]], ...] = (
     ("Bt as shipped [N·m·s/rad]", lambda item: number(item.Bt, 6)),
     ("Kt as given [N·m/rad]", _spring),
     ("Cost as shipped [1]", lambda item: number(item.cost, 5)),
-    *((f"{measure.title}, worst", partial(_worst, measure)) for measure in MARGINS),
     ("k limit [N·m/rad], worst", lambda item: _limit(item.lowest_limit)),
     ("k limit at the lever arm [N/m], worst", _at_arm),
     ("Displayed admittance passive up to [Hz], exact", lambda item: _passive(item.band)),
@@ -138,17 +135,8 @@ def impedance_section(designed: Designed, items: tuple[ImpedanceAnalysis, ...]) 
     """Show cost, margins and curves of the impedance controllers."""
     drawn = tuple(item for item in items if item.requirement.axis is not None)[:CURVES]
     rest = "" if len(drawn) == len(items) else f" The first {CURVES} controllers are drawn."
-    rows = [
-        (label, [linked(designed.loaded, value(item), *_place(label, item)) for item in items])
-        for label, value in _IMPEDANCE_ROWS
-    ]
-    rows = [(label, values) for label, values in rows if any(values)]
-    tables = by_controller(
-        "Impedance controllers: gains, and the worst over the ranges",
-        [labelled(label) for label, _ in rows],
-        [item.name for item in items],
-        [list(column) for column in zip(*(values for _, values in rows), strict=True)],
-    )
+    title = "Impedance controllers: gains, and the worst over the ranges"
+    tables = by_controller(designed.loaded, title, _IMPEDANCE_ROWS, items, _place)
     spec = designed.spec
     said = (MEANING[0], LIMIT_MEANING, MEANING[-1], COST_MEANING)
     paragraphs = [Paragraph(" ".join(said))]
@@ -221,14 +209,28 @@ def _given(item: ImpedanceAnalysis, key: str, default: str = "") -> str:
 
 
 def by_controller(
-    title: str, labels: Sequence[str], names: Sequence[str], columns: Sequence[Sequence[str]]
-) -> list[Block]:
-    """Make tables with a row for each quantity and a column for each controller."""
-    tables: list[Block] = []
-    for start in range(0, len(names), _COLUMNS):
-        part = slice(start, start + _COLUMNS)
-        rows = tuple(zip(labels, *columns[part], strict=True))
-        tables.append(Table(title, ("", *names[part]), rows))
+    loaded: LoadedSpec,
+    title: str,
+    rows: Sequence[tuple[str, Callable[[T], str]]],
+    items: Sequence[T],
+    place: Callable[[str, T], At],
+) -> list[Table]:
+    """Make tables with a row for each quantity that some controller has, and a column for each.
+
+    A place says where a spec says what a row shows of a controller.
+    """
+    tables = []
+    for start in range(0, len(items), _COLUMNS):
+        some = items[start : start + _COLUMNS]
+        cells = [
+            (
+                label if label in _FREQUENCIES else labelled(label),
+                *(linked(loaded, value(item), *place(label, item)) for item in some),
+            )
+            for label, value in rows
+            if any(map(value, items))
+        ]
+        tables.append(Table(title, ("", *(item.name for item in some)), tuple(cells)))
     return tables
 
 
@@ -246,27 +248,20 @@ def _draw_displayed_impedance(items: Sequence[ImpedanceAnalysis]) -> Figure:
         if shown is not None:
             look = curve(index, len(items), len(omega))
             axes.loglog(omega, np.abs(shown), label=f"{item.name}, displayed", **look)
-    for desired, names in _asked_for(items).items():
-        index = next(i for i, item in enumerate(items) if item.name == names[0])
-        axes.axhline(
-            desired,
-            color=color(index) if len(names) == 1 else INK,
-            linestyle=(0, (5, 3)),
-            linewidth=1.3,
-            label=f"{' and '.join(names)}, desired" if len(names) < len(items) else "desired",
-        )
-    low = min(axes.get_ylim()[0], *(float(item.problem.desired) for item in items))
-    for index, item in enumerate(items):
-        factor, desired = band_factor(item), float(item.problem.desired)
+        desired, factor = float(item.problem.desired), band_factor(item)
+        tint, dashes = color(index), (0, (5, 3))
+        label = f"{item.name}, desired"
+        axes.axhline(desired, color=tint, linestyle=dashes, linewidth=1.3, label=label)
         axes.fill_between(
             [omega[0], item.problem.bandwidth],
             desired / factor,
             desired * factor,
-            color=color(index),
+            color=tint,
             alpha=0.2,
             linewidth=0,
             label=f"{item.name}, within a factor of {factor:.3g}",
         )
+    low = min(axes.get_ylim()[0], *(float(item.problem.desired) for item in items))
     axes.set_ylim(low, None)
     _finish(axes, items, labelled("Impedance magnitude [N·m·s/rad]"))
     legend(figure, axes)
@@ -304,14 +299,6 @@ def band_factor(item: ImpedanceAnalysis) -> float:
     """Return the factor within which the displayed impedance must be: the goal, or the usual."""
     goals = (f.goal for f in item.achieved if f.measure is IMPEDANCE_ERROR and f.goal)
     return next(goals, IMPEDANCE_ERROR.doubtful or 2.0)
-
-
-def _asked_for(items: Sequence[ImpedanceAnalysis]) -> dict[float, list[str]]:
-    """Return the controllers that ask for each impedance: lines that coincide are one line."""
-    found: dict[float, list[str]] = {}
-    for item in items:
-        found.setdefault(float(item.problem.desired), []).append(item.name)
-    return found
 
 
 def _frequencies(items: Sequence[ImpedanceAnalysis]) -> FloatArray:

@@ -1,7 +1,4 @@
-"""The top of the report: two plain sentences, and lights for what a reader looks for first.
-
-The sentences say less than the claim where that is needed to be plain, and never more.
-"""
+"""The top of the report: what the terminal says, and lights for what a reader looks for first."""
 
 from __future__ import annotations
 
@@ -9,24 +6,15 @@ from typing import TYPE_CHECKING
 
 from nrs_design.certificates.catalogue import KEPT, catalogue_kind
 from nrs_design.certificates.certificate import Verdict
-from nrs_design.proof.bounds import lower, upper
-from nrs_design.proof.evidence import AbstractEvidence, Shows
-from nrs_design.proof.mode import Time
-from nrs_design.proof.switching import constants_words
-from nrs_design.proof.system import SwitchedSystem
-from nrs_design.proof.text import counted, exact_text
-from nrs_design.reporting.document import Derived, Light, Sentence, State
-from nrs_design.reporting.evidence import page_of
+from nrs_design.proof.evidence import Shows
+from nrs_design.proof.text import counted
+from nrs_design.reporting.document import Light, State
 from nrs_design.reporting.register import register_of
 from nrs_design.reporting.sections.goals import judged_goals
-from nrs_design.reporting.sections.head import proved_rate, saturated
 from nrs_design.reporting.sections.titles import (
     ASSUMPTIONS,
-    EVIDENCE,
     GOALS,
     MEANT,
-    MODES,
-    SATURATION,
 )
 from nrs_design.spec import InteractionDesignSpec
 
@@ -56,102 +44,35 @@ def summary_of(result: Result) -> tuple[str, str]:
             )
         return said, f"What was searched for would have taken for granted: {names}."
     if evidence.shows is Shows.STABILITY:
-        return _proved(result, evidence), granted
-    kept = _grown(system, evidence)
-    if system.roundings:
-        kept += ", for exact arithmetic"
-    name = page_of(system, evidence).name
-    return (
-        f"Refuted: no guarantee of stability is possible under {_signals(system)}{kept}; the "
-        f"witness: {name}.",
-        granted,
-    )
+        return _proved(result), granted
+    (witness,) = (b for s, b in result.briefs if s is evidence)
+    exact = ", for exact arithmetic" if system.roundings else ""
+    return f"Refuted: {witness}{exact}: no guarantee of stability is possible.", granted
 
 
-def _grown(system: SwitchedSystem, evidence: AbstractEvidence) -> str:
-    """State whether the growth needs kept contact."""
-    if system.contact is None and system.flights is None:
-        return ""
-    if evidence.covers_loss(system):
-        return ", with contact that is lost and made as a motion itself says"
-    return ", in kept contact"
-
-
-def _proved(result: Result, evidence: AbstractEvidence) -> str:
-    system = result.certification.system
-    ranged = result.loaded.spec.has_ranges
-    among = counted(len(system.modes), "mode")
-    if system.contact is not None and evidence.covers_lost_contact:
-        among += f" in contact and {len(system.contact.free)} of free motion"
-    unsaturated = "while no signal saturates, " if system.saturation is not None else ""
-    parts = [
-        Sentence(f"Proved: {unsaturated}under {_signals(system)}, among ", Derived(among, MODES)),
-        *_contact(system, evidence),
-        "every motion dies out" + (", for all values in the declared ranges" if ranged else ""),
-        _rate(system, evidence),
-    ]
-    if system.roundings:
-        parts.append(
-            "with what the processor rounds"
-            if evidence.covers_rounding
-            else "for a law computed without rounding"
-        )
-    bounds = (item.bound(system) for item in result.certification.statements)
-    unbounded = system.channels and not any(bound is not None for bound in bounds)
-    more = ("; no bound under the disturbances of the spec is proved",) if unbounded else ()
-    joined = (piece for part in parts[1:] for piece in (", ", part))
-    return Sentence(parts[0], *joined, *_saturated(result), *more, ".")
-
-
-def _saturated(result: Result) -> tuple[str, ...]:
-    """State the proved decay under saturation; the rate above excludes saturation."""
-    saturation = result.certification.system.saturation
-    if saturation is None:
-        return ()
-    found = saturated(result.certification)
-    if found is None:
-        return ("; where signals saturate, nothing is proved",)
-    rate, start = found
-    names = " and ".join(s.name for s in saturation.signals)
-    return (
-        f"; where {names} saturate, motions that begin {start} die out at a rate of at least ",
-        Derived(f"{lower(rate)} 1/s", SATURATION),
-        ", and of others nothing is said",
-    )
-
-
-def _signals(system: SwitchedSystem) -> str:
-    if system.has_constants:
-        return f"the declared switching, with {constants_words(system.switching)} constant"
-    if system.switching.is_arbitrary and not system.switching.resets:
-        return "arbitrary switching"
-    return "every switching that the spec declares, and no other"
-
-
-def _contact(system: SwitchedSystem, evidence: AbstractEvidence) -> tuple[str, ...]:
+def _proved(result: Result) -> str:
+    """Say what the terminal says of what is proved, and beside it what is not."""
+    certification, ranged = result.certification, result.loaded.spec.has_ranges
+    system, evidence = certification.system, certification.evidence
+    said = {s.shows: brief for s, brief in reversed(result.briefs)}
     kept = any(catalogue_kind(item).id == KEPT for item in system.assumptions)
-    if system.contact is None and system.flights is None and not kept:
-        return ()
-    if not kept and (evidence.covers_lost_contact or system.flights is not None):
-        return (
-            "with contact lost and made again at any time (where free motion ends is not claimed)",
-        )
-    return ("as long as contact is kept",)
-
-
-def _rate(system: SwitchedSystem, evidence: AbstractEvidence) -> str:
-    rate = proved_rate(system, evidence)
-    if rate is None:
-        return "at some rate"
-    if system.time is Time.CONTINUOUS:
-        begin, text = "at a rate of at least ", f"{lower(rate)} 1/s"
-    else:
-        begin, text = "by a factor of at most ", f"{upper(rate)} per step"
-        if system.sample_time is not None:
-            text += f" of {exact_text(system.sample_time)} s"
-    attained = "" if evidence.attains_rate else " (not attained)"
-    once = "" if evidence.bounds_at_once else ", up to one constant factor"
-    return Sentence(begin, Derived(text, EVIDENCE), attained, once)
+    once = evidence is None or evidence.bounds_at_once
+    exact = evidence is None or not evidence.covers_rounding
+    notes = (
+        (", as long as contact is kept", kept and system.contact is None),
+        (", up to one constant factor", not once),
+        (", for a law computed without rounding", bool(system.roundings) and exact),
+        (", for all values in the declared ranges", ranged),
+    )
+    saturated, bounded = system.saturation is not None, Shows.BOUND in said
+    begin = "while no signal saturates, " if saturated else ""
+    first = said[Shows.STABILITY] + "".join(text for text, applies in notes if applies)
+    others = [brief for s, brief in result.briefs if s.shows in (Shows.BOUND, Shows.REGION)]
+    if saturated and Shows.REGION not in said:
+        others.append("where signals saturate, nothing is proved")
+    if system.channels and not bounded:
+        others.append("no bound under the disturbances of the spec is proved")
+    return f"Proved: {begin}{'; '.join((first, *others))}."
 
 
 def lights_of(result: Result, analysis: DesignAnalysis | None) -> tuple[Light, ...]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from nrs_design.pipeline.certification import Result
 from nrs_design.reporting.document import Bullets, Listing, Paragraph, Section, Table
-from nrs_design.reporting.formatting import number
 from nrs_design.reporting.register import register_of
 from nrs_design.reporting.sections.places import assumed_at, linked
 from nrs_design.reporting.sections.titles import ASSUMPTIONS, RECHECK, RUNGS, SPEC
@@ -47,14 +46,10 @@ def spec_section(loaded: LoadedSpec) -> Section:
     return Section(SPEC, (Paragraph(text), Listing("Text of the spec", lines[:_LINES])))
 
 
-def rungs_section(certification: Certification, *, times: bool) -> Section:
+def rungs_section(certification: Certification) -> Section:
     """List every rung of the search with its outcome."""
-    columns = ("Rung", "Outcome", "Time [ms]") if times else ("Rung", "Outcome")
-    rows = tuple(
-        (attempt.step, attempt.outcome, number(1e3 * attempt.seconds, 3))[: len(columns)]
-        for attempt in certification.attempts
-    )
-    return Section(RUNGS, (Table("In the order tried", columns, rows),))
+    rows = tuple((attempt.step, attempt.outcome) for attempt in certification.attempts)
+    return Section(RUNGS, (Table("In the order tried", ("Rung", "Outcome"), rows),))
 
 
 def recheck_section(result: Result) -> Section:

@@ -78,10 +78,8 @@ def _is_themed(figure: Figure) -> bool:
     """Tell whether the page's colours suit a figure; those of a heat map have a meaning."""
     from nrs_design.plotting import QuadMesh
 
-    meshes = (item for axes in figure.axes for item in axes.collections)
-    return not any(axes.images for axes in figure.axes) and not any(
-        isinstance(item, QuadMesh) for item in meshes
-    )
+    items = (item for axes in figure.axes for item in axes.collections)
+    return not any(isinstance(item, QuadMesh) for item in items)
 
 
 def _axes(figure: Figure) -> list[list[float | bool]]:

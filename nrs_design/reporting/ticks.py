@@ -7,13 +7,10 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from matplotlib.axis import Axis
     from matplotlib.figure import Figure
     from matplotlib.ticker import Formatter
 
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-# Labels of a logarithmic axis by how many times its low end the high end is.
-_DIGITS = ((30.0, (1, 2, 3, 4, 6)), (200.0, (1, 3)))
 
 
 def write_ticks_in_full(figure: Figure) -> None:
@@ -21,9 +18,10 @@ def write_ticks_in_full(figure: Figure) -> None:
     from nrs_design.plotting import LogFormatter, ScalarFormatter
 
     for axes in figure.axes:
-        for axis, limits in ((axes.xaxis, axes.get_xlim()), (axes.yaxis, axes.get_ylim())):
+        for axis in (axes.xaxis, axes.yaxis):
             if isinstance(axis.get_major_formatter(), LogFormatter):
-                _write_logarithmic(axis, *sorted(limits))
+                axis.set_major_formatter(_logarithmic(base_only=True))
+                axis.set_minor_formatter(_logarithmic(base_only=False))
             elif isinstance(axis.get_major_formatter(), ScalarFormatter):
                 axis.set_major_formatter(_plain())
 
@@ -41,12 +39,6 @@ def in_full(value: float, step: float) -> str:
     if mantissa in ("1", "−1"):
         return mantissa.replace("1", power)
     return f"{mantissa}·{power}"
-
-
-def power_of_ten(value: float) -> str:
-    """Write a power of ten, from a thousandth to a thousand as a plain number."""
-    exponent = round(math.log10(value))
-    return f"{value:.15g}" if abs(exponent) <= 3 else f"10{str(exponent).translate(_SUPERSCRIPT)}"
 
 
 def _trimmed(digits: str) -> str:
@@ -68,21 +60,12 @@ def _plain() -> Formatter:
     return InFull()
 
 
-def _write_logarithmic(axis: Axis, low: float, high: float) -> None:
-    """Write 0.6 rather than 6 times a power of ten where the axis spans few decades."""
-    from nrs_design.plotting import FuncFormatter, NullFormatter
+def _logarithmic(*, base_only: bool) -> Formatter:
+    """Return what writes 0.6, not 6e-1; where the axis spans few decades, between powers, too."""
+    from nrs_design.plotting import LogFormatter
 
-    digits = next((digits for span, digits in _DIGITS if high <= span * low), None)
-    if digits is None:
-        axis.set_major_formatter(FuncFormatter(lambda value, _: power_of_ten(value)))
-        axis.set_minor_formatter(NullFormatter())
-        return
+    class InPowers(LogFormatter):
+        def _num_to_string(self, value: float, low: float, high: float) -> str:
+            return in_full(value, value)
 
-    def text(value: float, position: int | None) -> str:
-        digit = value / 10.0 ** math.floor(math.log10(value) + 1e-9)
-        # On a short axis, the ticks are chosen as on a linear one, and all are written.
-        wanted = high < 3 * low or min(abs(digit - d) for d in digits) < 0.01
-        return in_full(value, high - low) if wanted else ""
-
-    axis.set_major_formatter(FuncFormatter(text))
-    axis.set_minor_formatter(FuncFormatter(text))
+    return InPowers(labelOnlyBase=base_only)

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from nrs_design.reporting.style import new_axes, styled
-from nrs_design.reporting.ticks import in_full, power_of_ten
+from nrs_design.reporting.ticks import in_full
 
 
 @pytest.mark.parametrize(
@@ -21,16 +21,6 @@ from nrs_design.reporting.ticks import in_full, power_of_ten
 )
 def test_ticks_are_written_in_full(value, step, text):
     assert in_full(value, step) == text
-
-
-def test_powers_of_ten():
-    assert [power_of_ten(10.0**k) for k in (-5, -2, 0, 3, 4)] == [
-        "10⁻⁵",
-        "0.01",
-        "1",
-        "1000",
-        "10⁴",
-    ]
 
 
 @styled

@@ -8,14 +8,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from nrs_design.proof.bounds import lower, nearly
+from nrs_design.proof.bounds import lower
 from nrs_design.proof.constant import system_at
 from nrs_design.proof.evidence import AbstractEvidence
 from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import ARBITRARY
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.proof.text import counted
-from nrs_design.reporting.document import Block, Illustration, Paragraph, Section, Table
+from nrs_design.reporting.document import Block, Illustration, Paragraph, Section
 from nrs_design.reporting.evidence import words
 from nrs_design.reporting.evidence.offers import Offer, offer_of
 from nrs_design.reporting.evidence.page import Page
@@ -30,7 +30,6 @@ from nrs_design.simulation.periodic import (
 )
 from nrs_design.simulation.switched import SwitchedRun, alone, mode_eigenvalues, unstable_run
 
-_LISTED = 24
 _TITLE = "Simulated witness"
 _MODE = "a mode that is not stable"
 _AVERAGE = "an average that is not stable"
@@ -157,9 +156,7 @@ class _Witness:
         run = periodic_run(system, steps_of_mixture(system, weights))
         rate = float(average.real.max())
         line = (f"the average alone, exp({rate:.4g} t)", np.exp(rate * run.response.time))
-        shares = tuple((name, str(w), number(float(w), 4)) for name, w in weights)
         yield Paragraph(f"Eigenvalues of the average: {roots(average.tolist(), 6)} 1/s.")
-        yield Table("The average", ("Mode", "Share (exact)", "Share [1]"), shares)
         grown = (
             f"At this period the state grows by the factor {number(run.radius, 5)} each time."
             if run.radius > 1 and rate > 0
@@ -192,8 +189,6 @@ class _Witness:
             run = periodic_run(system, _indexed(system, steps), eigenvalue=low)
             unit = "each time" if self.is_discrete else "1/s"
             caption = f"{_BY_SIGNS} It grows by {lower(factor)} {unit} at least. {_CARRIED_ON}"
-        if self.is_discrete or factor is None:
-            yield self._steps()
         response = run.response
         periods = counted(round(response.time[-1] / run.period), "period")
         growth = np.exp(math.log(run.radius) * response.time / run.period)
@@ -209,43 +204,15 @@ class _Witness:
 
     def _factor(self, run: PeriodicRun) -> Paragraph:
         """Say how long a period is, and by which factor a state grows in it."""
+        unit = "steps" if self.is_discrete else "s"
         rate = number(math.log(run.radius) / run.period, 4)
         mean = "" if self.is_discrete else f", a mean growth rate of {rate} 1/s"
         return Paragraph(
-            f"One period lasts {run.period:.6g} {self._unit} and has "
+            f"One period lasts {run.period:.6g} {unit} and has "
             f"{counted(len(self.offer.steps), 'step')}. Over one period some state grows by the "
             f"factor {number(run.radius, 6)}{mean}. The certificate shows with rigorous enclosures "
             "that the factor is above one; these digits are floating point."
         )
-
-    @property
-    def _unit(self) -> str:
-        return "steps" if self.is_discrete else "s"
-
-    def _steps(self) -> Table:
-        """List the modes of one period, their times, and the resets between them."""
-        steps = self.offer.steps
-        names = [name for name, _ in steps]
-        resets = self._resets(list(zip(names, (*names[1:], *names[:1]), strict=True)))
-        columns = ("Step", "Mode", f"Time in it [{self._unit}]")
-        rows: list[tuple[str, ...]] = [
-            (str(k), name, nearly(time)) for k, (name, time) in enumerate(steps[:_LISTED], 1)
-        ]
-        title = "One period" + (f", its first {_LISTED} steps" if len(steps) > len(rows) else "")
-        if not any(resets):
-            return Table(title, columns, tuple(rows))
-        then = tuple((*row, reset) for row, reset in zip(rows, resets, strict=False))
-        return Table(title, (*columns, "Then"), then)
-
-    def _resets(self, switches: Sequence[tuple[str, str]]) -> list[str]:
-        """Say what each switch does to the state; nothing where it leaves it as it is."""
-        maps, edges = self.system.switching.maps(), self.offer.edges or (0,) * len(switches)
-        texts = []
-        for switch, edge in zip(switches, edges, strict=True):
-            count = len(maps.get(switch, ()))
-            which = f"reset {edge + 1} of {count}" if count > 1 else "reset"
-            texts.append(f"{which} to {switch[1]}" if count else "")
-        return texts
 
 
 def _indexed(system: SwitchedSystem, steps: Sequence[tuple[str, float]]) -> list[tuple[int, float]]:

@@ -7,7 +7,6 @@ import pytest
 
 from nrs_design.facts.certification import loop_facts
 from nrs_design.pipeline.margins import ProofMargins
-from nrs_design.reporting.document import Linked, parts_of
 from nrs_design.reporting.margins import margin_lines
 from nrs_design.search.loop_margin import Bracket, CommandMargin, MarginBrackets
 from nrs_design.spec import read_spec
@@ -40,21 +39,13 @@ def test_doubles_stay_on_the_side_that_is_true():
 
 
 def test_what_is_not_found_is_said():
-    loaded = read_spec(SOFT_TISSUE)
-    assert list(margin_lines(ProofMargins(), loaded)) == []
-    delay, period, command = margin_lines(ProofMargins(FOUND), loaded)
+    spec = read_spec(SOFT_TISSUE).spec
+    assert list(margin_lines(ProofMargins(), spec)) == []
+    delay, period, command = margin_lines(ProofMargins(FOUND), spec)
     assert "proved up to 2 samples, none is refuted: the search ends" in delay
     assert delay.endswith("without disturbances, no bound was looked at")
     assert "none is proved, about 0.333" in period
     assert "rounded down" in command
-
-
-def test_numbers_of_margins_lead_to_their_lines():
-    """What no line declares, as disturbances here, leads nowhere."""
-    loaded = read_spec(SOFT_TISSUE)
-    *_, command = margin_lines(ProofMargins(FOUND), loaded)
-    lines = [part.line for part in parts_of(command) if isinstance(part, Linked)]
-    assert [loaded.text.splitlines()[n - 1].split(":")[0].strip() for n in lines] == ["torque"]
 
 
 @pytest.mark.nightly

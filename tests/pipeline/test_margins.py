@@ -134,6 +134,6 @@ def test_how_many_deadlines_may_be_missed(tmp_path, rule, proved, refuted, said)
     result = run_certification(read_spec(path))
     found = run_proof_margins(result, Limits(), margin=True, shortest_dwell=False)
     assert (found.misses.proved, found.misses.refuted) == (proved, refuted)
-    (line,) = margin_lines(found, result.loaded)
-    assert str(line) == f"most missed deadlines: {said}"
+    (line,) = margin_lines(found, result.loaded.spec)
+    assert line == f"most missed deadlines: {said}"
     assert margins_facts(found)["most_misses"]["refuted"] == refuted

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from nrs_design.pipeline.blocked import blocked_lines
 from nrs_design.pipeline.certification import find_relief
-from nrs_design.reporting.document import Block, Bullets, Section, Sentence
+from nrs_design.reporting.document import Block, Bullets, Section
 from nrs_design.reporting.margins import margin_lines
 from nrs_design.reporting.next_steps import next_steps
 
@@ -37,8 +37,9 @@ def remedies_section(
     if blocked is not None:
         why = blocked_lines(blocked, Path(result.loaded.path.name))
         blocks.append(Bullets("Why it is not proved", why))
-    if margins is not None and (lines := tuple(margin_lines(margins, result.loaded))):
-        said = tuple(map(_begun, lines))
+    lines = () if margins is None else tuple(margin_lines(margins, result.loaded.spec))
+    if lines:
+        said = tuple(f"{line[0].upper()}{line[1:]}." for line in lines)
         blocks.append(Bullets("How far a proof reaches", said))
     box = margins is not None and margins.box is not None
     dwell = margins is not None and margins.dwell is not None
@@ -46,9 +47,3 @@ def remedies_section(
     if steps:
         blocks.append(Bullets("Next steps", (*steps[:-1], _DESIGN, steps[-1])))
     return Section(REMEDIES if steps else MARGINS, tuple(blocks)) if blocks else None
-
-
-def _begun(line: Sentence) -> Sentence:
-    """Capitalize a line and add its full stop."""
-    first, *rest = line.parts
-    return Sentence(f"{first[0].upper()}{first[1:]}", *rest, ".")

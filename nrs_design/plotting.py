@@ -28,10 +28,8 @@ with contextlib.chdir(Path(_found.origin).with_name("mpl-data")):
     from matplotlib.ticker import (
         FixedFormatter,
         Formatter,
-        FuncFormatter,
         LogFormatter,
         MaxNLocator,
-        NullFormatter,
         ScalarFormatter,
     )
 
@@ -40,11 +38,9 @@ __all__ = [
     "Figure",
     "FixedFormatter",
     "Formatter",
-    "FuncFormatter",
     "Line2D",
     "LogFormatter",
     "MaxNLocator",
-    "NullFormatter",
     "Patch",
     "QuadMesh",
     "Rectangle",

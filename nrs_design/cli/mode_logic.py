@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from nrs_design.cli.command import Answer, command, take_spec
 from nrs_design.cli.options import SpecFile
 from nrs_design.cli.printing import say
-from nrs_design.cli.tables import print_table
+from nrs_design.cli.tables import print_blocks
 from nrs_design.facts.spec import spec_facts
 
 if TYPE_CHECKING:
@@ -33,8 +33,7 @@ def mode_logic(spec: SpecFile) -> Answer:
 def _show(declared: InteractionDesignSpec) -> None:
     from nrs_design.reporting.sections.mode_logic import logic_meaning, logic_tables
 
-    for table in logic_tables(declared):
-        print_table(f"{declared.name}: {table.title}", table.columns, table.rows)
+    print_blocks(declared.name, logic_tables(declared))
     for line in logic_meaning(declared):
         say(line)
 

@@ -19,7 +19,7 @@ from nrs_design.reporting.document import Block, Illustration, Paragraph, Sectio
 from nrs_design.reporting.evidence import words
 from nrs_design.reporting.evidence.offers import Offer, offer_of
 from nrs_design.reporting.evidence.page import Page
-from nrs_design.reporting.evidence.runs import Bound, drawn
+from nrs_design.reporting.evidence.runs import Bound, run_figures
 from nrs_design.reporting.formatting import number, roots
 from nrs_design.simulation.greedy import all_modes
 from nrs_design.simulation.periodic import (
@@ -200,7 +200,7 @@ class _Witness:
         title: str, caption: str, response: SwitchedRun, system: SwitchedSystem, line: Bound
     ) -> tuple[Illustration, ...]:
         norms = np.linalg.norm(response.state, axis=1)
-        return drawn(title, caption, response, norms / norms[0], system, bound=line)
+        return run_figures(title, caption, response, norms / norms[0], system, bound=line)
 
     def _factor(self, run: PeriodicRun) -> Paragraph:
         """Say how long a period is, and by which factor a state grows in it."""

@@ -95,7 +95,7 @@ def simulated(*blocks: Illustration) -> Section:
     return Section("Simulated switching", blocks)
 
 
-def drawn(
+def run_figures(
     title: str,
     caption: str,
     response: SwitchedRun,
@@ -150,7 +150,7 @@ class Greedy:
         deflection = "" if self.played.contact is None else system.states[-1]
         inside = {"": norms} if callable(norms) and line == _BOUND else {}
         shown = (response, values, system, label, bound)
-        return simulated(*drawn(title, caption, *shown, norms=inside, deflection=deflection))
+        return simulated(*run_figures(title, caption, *shown, norms=inside, deflection=deflection))
 
 
 def bounded_run(greedy: Greedy, norm: str, note: str = "") -> Section:
@@ -204,8 +204,9 @@ def ruled_run(
     response = until_small(response, active_norms(hardest, response, functions))
     values = active_norms(hardest, response, functions)
     bound = bound_line(response, rate, system.time, line)
+    shown = (response, values, hardest, label, bound)
     caption = f"{RULED} {said}{some_modes(system, hardest)}"
-    return simulated(*drawn(title, caption, response, values, hardest, label, bound, norms=norms))
+    return simulated(*run_figures(title, caption, *shown, norms=norms))
 
 
 def unbounded_run(system: SwitchedSystem) -> Section:
@@ -223,7 +224,7 @@ def unbounded_run(system: SwitchedSystem) -> Section:
     response = admissible_run(hardest, functions, fine_step(hardest), _UNKNOWN_STEPS)
     values = active_norms(hardest, response, functions)
     said = f"{RULED} {_UNPROVED}{some_modes(system, hardest)}"
-    return simulated(*drawn(_BAD, said, response, values, hardest))
+    return simulated(*run_figures(_BAD, said, response, values, hardest))
 
 
 def euclidean(system: SwitchedSystem) -> dict[str, Array]:

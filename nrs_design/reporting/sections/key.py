@@ -1,4 +1,4 @@
-"""What a reader wants to know first: how fast, with which gains, up to where, with what force."""
+"""What a reader wants to know first: with which gains, up to where, with what force."""
 
 from __future__ import annotations
 
@@ -11,12 +11,10 @@ from nrs_design.axis import unit
 from nrs_design.certificates.bounds import bound_on
 from nrs_design.design.measures import SENSITIVITY_PEAK
 from nrs_design.proof.bounds import lower, upper
-from nrs_design.proof.mode import Time
 from nrs_design.proof.text import counted
 from nrs_design.reporting.document import Bullets, Derived, Paragraph, Section
 from nrs_design.reporting.formatting import shortened
 from nrs_design.reporting.register import register_of
-from nrs_design.reporting.sections.head import proved_rate
 from nrs_design.reporting.sections.titles import EVIDENCE, GOALS, MODES
 from nrs_design.spec import InteractionDesignSpec
 
@@ -34,7 +32,6 @@ def key_facts(result: Result, analysis: DesignAnalysis | None) -> tuple[tuple[st
     return (
         *_worst(analysis),
         *_modes(result),
-        *_decay(result),
         *_force(result),
         *_gains(result),
         *_achieved(analysis),
@@ -66,22 +63,6 @@ def _modes(result: Result) -> Iterator[tuple[str, str]]:
     system = result.certification.system
     names = shortened([mode.name for mode in system.modes], 4)
     yield "Modes", Derived(f"{names}; {system.time} time", MODES)
-
-
-def _decay(result: Result) -> Iterator[tuple[str, str]]:
-    system = result.certification.system
-    rate = proved_rate(system, result.certification.evidence)
-    if rate is None:
-        return
-    if system.time is Time.DISCRETE:
-        if system.sample_time is None:
-            yield "Decay per step", Derived(f"by a factor of at most {upper(rate)}", EVIDENCE)
-            return
-        # -log(rho) >= 1 - rho
-        rate = (1 - rate) / system.sample_time
-    slowest = 1 / rate
-    time = f"{upper(1000 * slowest, 3)} ms" if slowest < 1 else f"{upper(slowest, 3)} s"
-    yield "Dies out", Derived(f"with a time constant of at most {time}", EVIDENCE)
 
 
 def _force(result: Result) -> Iterator[tuple[str, str]]:

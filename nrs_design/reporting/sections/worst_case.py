@@ -26,14 +26,15 @@ _CAPTION = (
 
 
 def worst_case_section(result: Result) -> Section | None:
-    """Show the worst runs found in their units; None for given matrices, and where none is."""
+    """Show the worst runs found in their units, or say why none is; None for given matrices."""
     designed = result.designed
     if designed is None:
         return None
     try:
         case = run_worst_case(designed, result.certificate)
     except DesignError as error:
-        return Section(_TITLE, (Paragraph(f"There is {error.message}."),))
+        said = f"{error.message[0].upper()}{error.message[1:]}."
+        return Section(_TITLE, (Paragraph(said),))
     spec = designed.spec
     undeclared = "" if case.declared else f"{UNDECLARED} "
     rows = tuple(_row(designed, row) for row in worst_rows(case, spec))

@@ -13,11 +13,11 @@ from nrs_design.api.paper import form_of, latex_of, latex_of_gains
 from nrs_design.api.result import AbstractResult, Figures, drawn, evidence_drawings
 from nrs_design.certificates.catalogue import sentences
 from nrs_design.certificates.certificate import dump
-from nrs_design.errors import DesignError, OutputError, SpecError
+from nrs_design.errors import OutputError, SpecError
 from nrs_design.facts.certification import certification_facts
 from nrs_design.output import CERTIFICATE, PAGE, check_html, write_output
 from nrs_design.ownership import check_certificate, origin_of
-from nrs_design.pipeline.analysis import run_judgement
+from nrs_design.pipeline.analysis import judged_if_stable
 from nrs_design.pipeline.certification import Result
 from nrs_design.proof.text import counted
 from nrs_design.search.certification import Attempt
@@ -216,14 +216,7 @@ class Decision(AbstractResult):
     def _page(self) -> Report:
         from nrs_design.reporting import build_report
 
-        analysis = None
-        if self.result.designed is not None:
-            try:
-                analysis = run_judgement(self.result.designed)
-            except DesignError:
-                # Where a nominal loop has no margins, the page has none.
-                analysis = None
-        return build_report(self.result, analysis)
+        return build_report(self.result, judged_if_stable(self.result.designed))
 
     def __bool__(self) -> bool:
         """Whether it is proved; neither a refutation nor an open question counts."""

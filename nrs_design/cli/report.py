@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from datetime import date as Day
 
     from nrs_design.certificates.certificate import Certificate
-    from nrs_design.design.analysis import DesignAnalysis
-    from nrs_design.pipeline.certification import Result
     from nrs_design.reporting import Report
     from nrs_design.spec import LoadedSpec
 
@@ -58,6 +56,7 @@ def report(
 
     Example: nrs-design report specs/neuroboscope/soft-tissue.nrs.yaml
     """
+    from nrs_design.pipeline.analysis import judged_if_stable
     from nrs_design.pipeline.blocked import find_blocked
     from nrs_design.pipeline.certification import Overrides, search_limits
     from nrs_design.pipeline.margins import run_proof_margins
@@ -81,7 +80,9 @@ def report(
         margins = run_proof_margins(result, limits, step, **asked)
         blocked = find_blocked(result, limits, step)
         step("figures")
-        analysis = _analysis(result)
+        analysis = judged_if_stable(
+            result.designed, lambda said: note(f"no margins in this report: {said}")
+        )
         page = build_report(result, analysis, margins=margins, blocked=blocked, date=day)
         _write(page, place, spec)
     verdict = str(result.certification.verdict)
@@ -145,19 +146,6 @@ def _report_robot(loaded: LoadedSpec, place: Path, date: Day | None) -> Answer:
             page: Report = pages.robot_report(loaded, robot_spec, robot, date)
         _write(page, place, loaded.path)
     return _answer(loaded, page.verdict, exit_codes.unless(page.verdict != "reachable"), place)
-
-
-def _analysis(result: Result) -> DesignAnalysis | None:
-    """Return what the design achieves, or nothing where a nominal loop has no margins."""
-    from nrs_design.pipeline.analysis import run_judgement
-
-    if result.designed is None:
-        return None
-    try:
-        return run_judgement(result.designed)
-    except DesignError as error:
-        note(f"no margins in this report: {error.message}")
-        return None
 
 
 def _write(report: Report, place: Path, spec: Path) -> None:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from nrs_design.errors import NrsDesignError
+from nrs_design.errors import DesignError, NrsDesignError
 from nrs_design.pipeline.design import Designed, placed
 from nrs_design.proof.bounds import upper
 from nrs_design.spec import Doubt
@@ -28,6 +28,17 @@ def run_judgement(designed: Designed) -> DesignAnalysis:
     """Compute what a design achieves, with what its runs break of the limit of the torque."""
     found = run_analysis(designed)
     return replace(found, doubts=(*found.doubts, *_doubt_runs(designed)))
+
+
+def judged_if_stable(
+    designed: Designed | None, tell: Callable[[str], object] = lambda _: None
+) -> DesignAnalysis | None:
+    """Compute the same; None of no design, and where a nominal loop has no margins, as is told."""
+    try:
+        return None if designed is None else run_judgement(designed)
+    except DesignError as error:
+        tell(error.message)
+        return None
 
 
 def _doubt_runs(designed: Designed) -> Iterator[Doubt]:

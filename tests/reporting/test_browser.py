@@ -262,7 +262,6 @@ TAMPERED = {
     "rate": (in_numbers(RATE, '"rate":"5"'), "the numbers are not those"),
     "rate and id": (lambda t: renamed(in_numbers(RATE, '"rate":"5"')(t)), "graph (it rises in"),
     "form and id": (lambda t: renamed(in_numbers(FORM, r'"form":[[-\1')(t)), "graph (a form at"),
-    "claim": (lambda t: re.sub(r'(class="claim">.*?)3\.9\d*', r"\g<1>9.9", t), "a sentence of"),
     "badge": (lambda t: t.replace('badge">proved', 'badge">refuted'), "the verdict of the page"),
     "float": (
         lambda t: renamed(in_numbers(r'"denominator_log2":(\d+)', r'"denominator_log2":\1.5')(t)),

@@ -88,3 +88,10 @@ def rounding_scatter(
         sums = np.concatenate([sums[~rests], together])
     scatter: Array = (sums.T @ sums) * (slope * resolution(readings)) ** 2 / 12
     return scatter
+
+
+def noise_variance(x: Array) -> float:
+    """Return the variance of white noise on a smooth signal, and of its rounding."""
+    rough = np.diff(x, 3)
+    # The binomial coefficients 1, 3, 3, 1 have squares that add up to 20.
+    return float(rough @ rough) / len(rough) / 20 + resolution(x) ** 2 / 12

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from decimal import ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_EVEN, Decimal
 from math import isfinite
 from pathlib import Path
@@ -60,9 +61,9 @@ def merge_tissue(
     Its range is written, which covers the pooled interval and that of every record. Linear records
     need a lever arm such as ``0.24 m``, by default the one of the spec.
     """
-    model, about = found.chosen, found.tangent
+    model, about, rotational = found.chosen, found.tangent, found.rotational
     law, ranges = (model.law, model.ranges) if about is None else (about.law, about.ranges)
-    name = _place(loaded, environment, arm, rotational=found.rotational)
+    name = _place(loaded, environment, arm, rotational=rotational)
     if not isinstance(law, AbstractLinearLaw):
         raise _no_place(law.name)
     if model.doubts and not all(map(_is_limited, ranges)):
@@ -70,32 +71,224 @@ def merge_tissue(
             f"a range is unlimited, the records do not determine it: {model.doubts[0]}",
             remedy="choose a simpler law with --model, or record again as the message says",
         )
-    declared = check_interaction(loaded).environments[name].ranges
-    by_key = dict(zip(law.keys, ranges, strict=True))
-    narrow = _narrowed(declared, by_key, found.sources, replace=replace)
     document = SpecDocument(loaded)
-    node = document.root["environments"][name]
+    writer = _Writer(document, document.root["environments"][name], found.sources)
+    declared = check_interaction(loaded).environments[name].ranges
+    narrow = writer.narrowed(declared, dict(zip(law.keys, ranges, strict=True)), replace=replace)
     power = about is not None and has_place(about)
     if about is not None and power:
-        kept = _put_power_law(document, node, about, law, rotational=found.rotational)
-    else:
-        kept = _put_law(document, node, law.name, law, ranges, rotational=found.rotational)
-    known = {key for other in LINEAR_LAWS.values() for key in other.keys}
-    for key in known.union(_POWER_KEYS).difference(kept):
-        document.drop(node, key)
-    if found.rotational:
-        document.drop(node, "lever_arm")
-    elif arm is not None:
-        document.put(node, "lever_arm", arm)
-    document.put(node, "range_covers", model.coverage)
-    if about is None or power:
-        document.drop(node, "linearized_about")
-    else:
-        ends = span(about.low, about.high, "rad" if found.rotational else "m", 6)
-        document.put(node, "linearized_about", f"deflections of {ends}")
-    _put_origin(document, node, found.sources, (*found.caveats, *narrow))
-    document.put(node, "range_id", _rewritten(document, node).environments[name].values_id())
+        ranges = about.power[:2]
+    units = law.units(rotational=rotational)
+    rows = zip(law.keys, ranges, units, strict=True)
+    values: dict[str, object] = {key: _ranged(e, unit, key) for key, e, unit in rows}
+    if about is not None:
+        length = "rad" if rotational else "m"
+        ends = f"deflections of {span(about.low, about.high, length, 6)}"
+        values |= _power_values(about, length) if power else {"linearized_about": ends}
+    if rotational or arm is not None:
+        values["lever_arm"] = arm
+    values["range_covers"] = model.coverage
+    writer.put("model", HuntCrossley.name if power else law.name)
+    for key, value in values.items():
+        writer.put(key, value)
+    known = (key for other in LINEAR_LAWS.values() for key in other.keys)
+    for key in {*known, *_POWER_KEYS, "linearized_about"} - values.keys():
+        writer.put(key, None)
+    writer.put_origin((*found.caveats, *narrow))
+    writer.put("range_id", writer.identified().environments[name].values_id())
     return document.text()
+
+
+def _power_values(about: Tangent, length: str) -> dict[str, object]:
+    """Return what a Hunt-Crossley law has beside its tangent."""
+    low, high = _exponent_range(about.power[2])
+    nominal = min(max(round(Decimal(about.power[2].value), 3), low), high)
+    return {
+        "exponent": {"nominal": str(nominal), "range": [str(low), str(high)]},
+        "about": f"{about.about!r} {length}",
+        "preload": [f"{end!r} {length}" for end in (about.low, about.high)],
+    }
+
+
+def merge_actuator(
+    loaded: LoadedSpec, found: ActuatorIdentification, *, replace: bool = False
+) -> str:
+    """Return the text of a spec with the identified actuator and its intervals.
+
+    A much narrower range than the declared one takes its place only with `replace`.
+    Where the proof can cover ranges of the actuator, these are written; else the intervals stand
+    beside the nominal values, for the record.
+    """
+    spec = check_actuator(loaded, found.unit)
+    assert spec.actuator is not None, "as has been checked"
+    document = SpecDocument(loaded)
+    writer = _Writer(document, document.root["actuator"], found.sources)
+    if found.unit != spec.actuator.command:
+        writer.put("command", found.unit)
+    covered = spec.combines(MOTOR_RANGE)
+    ranges = found.ranges if covered else (found.fit.gain, found.fit.time_constant)
+    by_name = dict(zip(("gain", "time_constant"), ranges, strict=True))
+    units = f"rad/s/{found.unit}", "s"
+    narrow: Sequence[str] = ()
+    if covered:
+        declared = {name: getattr(spec.actuator, name) for name in by_name}
+        narrow = writer.narrowed(declared, by_name, replace=replace)
+    written = {
+        name: _ranged(e, unit, name) for (name, e), unit in zip(by_name.items(), units, strict=True)
+    }
+    for name, value in written.items():
+        writer.put(name, value if covered else value["nominal"])
+    intervals = {name: value["range"] for name, value in written.items()}
+    writer.put("intervals", None if covered else intervals)
+    writer.put("range_covers", found.coverage if covered else None)
+    late = found.late if spec.takes_dead_time else None
+    writer.put("dead_time", late and _outwards(late, "s")["range"])
+    writer.put_origin((*(found.doubts if late else found.caveats), *narrow))
+    rewritten = writer.identified().actuator
+    assert rewritten is not None
+    writer.put("range_id", rewritten.values_id() if covered else None)
+    return document.text()
+
+
+def merge_delay(loaded: LoadedSpec, found: DelayIdentification) -> str:
+    """Return the text of a spec of a sampled loop with the age of its force sample.
+
+    A record that shows dynamics and no mere delay is a `DataError`.
+    """
+    sampling = check_delay_place(loaded)
+    _check_copy(
+        found,
+        "the age of a sample",
+        "name the force as measured by --command and the force that the law used by --measured; "
+        "dynamics between them belong into the model",
+    )
+    low, high = found.in_periods(sampling.outer)
+    if high > LONGEST_DELAY:
+        raise DataError(
+            f"the force is up to {high} periods old, a spec takes {LONGEST_DELAY} at most",
+            remedy="record longer or livelier forces, or sample with a longer period",
+        )
+    return _with_sampling(loaded, found, "delay", low if low == high else [low, high])
+
+
+def merge_latency(loaded: LoadedSpec, found: DelayIdentification) -> str:
+    """Return the text of a spec with the time from a sample to its command.
+
+    A record that shows dynamics and no mere delay is a `DataError`.
+    """
+    sampling = check_latency_place(loaded)
+    _check_copy(
+        found,
+        "a latency",
+        "name the command as the law computed it by --command, and as the drive took it by "
+        "--measured; what the drive does with it belongs into its model",
+    )
+    (sent, seen), (low, high) = found.record.names, found.held_s
+    if high <= 0 or high > LONGEST_DELAY * sampling.period.exact:
+        raise DataError(
+            f"{seen} comes up to {float(high):.4g} s after {sent}; a spec takes up to "
+            f"{LONGEST_DELAY} periods, and none before",
+            remedy="see that the columns are not swapped, and record more rows in a period",
+        )
+    least = max(float(low), 0.0)
+    latency = _outwards(Estimate(least, least, float(high)), "s")["range"]
+    return _with_sampling(loaded, found, "latency", latency)
+
+
+def _check_copy(found: DelayIdentification, what: str, remedy: str) -> None:
+    if found.is_lag:
+        sent, seen = found.record.names
+        name = found.chosen.follower.name
+        raise DataError(f"{seen} follows {sent} by {name}: that is more than {what}", remedy=remedy)
+
+
+def _with_sampling(loaded: LoadedSpec, found: DelayIdentification, key: str, value: Any) -> str:
+    document = SpecDocument(loaded)
+    writer = _Writer(document, document.root["sampling"], found.sources)
+    writer.put(key, value)
+    writer.put_origin(found.caveats)
+    return document.text()
+
+
+@dataclass(frozen=True, slots=True)
+class _Writer:
+    """Puts what was found into a part of a spec."""
+
+    document: SpecDocument  # The spec
+    node: Any  # The part
+    sources: Sequence[Source]  # The records
+
+    def put(self, key: str, value: object) -> None:
+        """Set a key, or remove it for None; comments within a range stay."""
+        old = self.node.get(key)
+        if value is None:
+            self.document.drop(self.node, key)
+        elif isinstance(old, dict) and isinstance(value, dict):
+            if isinstance(old.get("range"), list):
+                old["range"][:] = value["range"]
+            else:
+                self.document.put(old, "range", value["range"])
+            old["nominal"] = value["nominal"]
+        else:
+            self.document.put(self.node, key, value)
+
+    def put_origin(self, caveats: Sequence[str]) -> None:
+        """Note files and doubts; a reason for other doubts does not hold for them."""
+        provenance = [
+            {
+                "file": source.path.name,
+                "sha256": source.sha256,
+                "data": "synthetic" if source.synthetic else "measured",
+            }
+            for source in self.sources
+        ]
+        before = list(self.node.get("doubts", ()))
+        texts = [_one_line(caveat) for caveat in caveats]
+        if [dict(item) for item in self.node.get("provenance", ())] == provenance:
+            # The range that was declared before the same records is not there any more.
+            texts += [old for old in before if old.endswith(NARROWER)]
+        if len(texts) > MAX_DOUBTS:
+            more = len(texts) - MAX_DOUBTS + 1
+            texts = [*texts[: MAX_DOUBTS - 1], f"and {more} more"]
+        self.put("provenance", provenance)
+        if texts != before:
+            self.put("accept_doubt", None)
+        self.put("doubts", texts or None)
+
+    def narrowed(
+        self,
+        declared: Mapping[str, RangedQuantity],
+        found: Mapping[str, Estimate],
+        *,
+        replace: bool,
+    ) -> list[str]:
+        """Say which ranges, relative to the nominal value, get narrower by few records or by much.
+
+        Unless these may replace the declared ones, that is a `DataError`.
+        """
+        records = len({source.sha256 for source in self.sources})
+        texts = []
+        for key in sorted(found.keys() & declared.keys()):
+            low, high = (end.si for end in declared[key].range)
+            before = (high - low) / declared[key].nominal.si
+            after = (found[key].high - found[key].low) / found[key].value
+            if ROUNDED * after < before and (records < FEW or MUCH * after <= before):
+                times = f"{before / after:.3g} times {NARROWER}"
+                texts.append(f"{key}: the range from {counted(records, 'record')} is {times}")
+        if texts and not replace:
+            raise DataError(
+                "; ".join(texts),
+                remedy=f"give {FEW} records or more that show how much it varies, or take it all "
+                "the same with --replace, which keeps the doubt in the spec",
+            )
+        return texts
+
+    def identified(self) -> InteractionDesignSpec:
+        """Return the new spec, in which the part has no identity of its range yet."""
+        self.put("range_id", None)
+        written = parse_spec(self.document.text())
+        assert isinstance(written, InteractionDesignSpec)
+        return written
 
 
 def law_to_write(
@@ -125,207 +318,6 @@ def law_to_write(
     return law
 
 
-def _no_place(law: str, preload: tuple[Quantity, Quantity] | None = None) -> DataError:
-    said = "" if preload is None else f" (the spec has '{preload[0].text}..{preload[1].text}')"
-    return DataError(
-        f"the law {law} has no place in a spec without a preload",
-        remedy=f"say by --preload at which deflections{said}, or choose one that has a place: "
-        f"{_WITH_A_PLACE}",
-    )
-
-
-def _place(
-    loaded: LoadedSpec, environment: str | None, arm: str | None, *, rotational: bool
-) -> str:
-    """Return the name of the environment, which a lever arm leads to."""
-    spec = check_interaction(loaded)
-    name = _environment(spec, environment, loaded.path)
-    if not rotational and arm is None and spec.environments[name].lever_arm is None:
-        raise SpecError(
-            f"the environment {name} has no lever_arm, and the records are linear",
-            path=loaded.path,
-            remedy="give --lever-arm '0.24 m'",
-        )
-    return name
-
-
-def has_place(about: Tangent) -> bool:
-    """Tell whether a power law has a place in a spec as it is: its exponent is at least 1."""
-    low, high = _exponent_range(about.power[2])
-    return low >= LEAST and high <= LARGEST
-
-
-def _exponent_range(estimate: Estimate) -> tuple[Decimal, Decimal]:
-    """Round the ends of the interval of an exponent outwards, as finely as a spec holds them."""
-    step = Decimal(1) / FINEST
-    if not _is_limited(estimate):
-        return Decimal(0), Decimal("Infinity")
-    return (
-        Decimal(estimate.low).quantize(step, ROUND_FLOOR),
-        Decimal(estimate.high).quantize(step, ROUND_CEILING),
-    )
-
-
-def _put_law(
-    document: SpecDocument,
-    node: Any,
-    name: str,
-    law: AbstractLinearLaw,
-    ranges: Sequence[Estimate],
-    *,
-    rotational: bool,
-) -> tuple[str, ...]:
-    """Write the ranges of the parameters of a law under its name; return their keys."""
-    document.put(node, "model", name)
-    units = law.units(rotational=rotational)
-    for key, unit, estimate in zip(law.keys, units, ranges, strict=True):
-        _put_range(document, node, key, _ranged(estimate, unit, key))
-    return law.keys
-
-
-def _put_power_law(
-    document: SpecDocument, node: Any, about: Tangent, law: AbstractLinearLaw, *, rotational: bool
-) -> tuple[str, ...]:
-    """Write a Hunt-Crossley law by its tangent; return the keys that it has."""
-    *tangent, exponent = about.power
-    keys = _put_law(document, node, HuntCrossley.name, law, tangent, rotational=rotational)
-    low, high = _exponent_range(exponent)
-    nominal = min(max(round(Decimal(exponent.value), 3), low), high)
-    written = {"nominal": str(nominal), "range": [str(low), str(high)]}
-    _put_range(document, node, "exponent", written)
-    length = "rad" if rotational else "m"
-    document.put(node, "about", f"{about.about!r} {length}")
-    document.put(node, "preload", [f"{end!r} {length}" for end in (about.low, about.high)])
-    return (*keys, *_POWER_KEYS)
-
-
-def _narrowed(
-    declared: Mapping[str, RangedQuantity],
-    found: Mapping[str, Estimate],
-    sources: Sequence[Source],
-    *,
-    replace: bool,
-) -> list[str]:
-    """Say which ranges, relative to the nominal value, get narrower by few records or by much.
-
-    Unless these may replace the declared ones, that is a `DataError`.
-    """
-    records = len({source.sha256 for source in sources})
-    few = records < FEW
-    texts = []
-    for key in sorted(found.keys() & declared.keys()):
-        low, high = (end.si for end in declared[key].range)
-        before = (high - low) / declared[key].nominal.si
-        after = (found[key].high - found[key].low) / found[key].value
-        if ROUNDED * after < before and (few or MUCH * after <= before):
-            times = f"{before / after:.3g} times {NARROWER}"
-            texts.append(f"{key}: the range from {counted(records, 'record')} is {times}")
-    if texts and not replace:
-        raise DataError(
-            "; ".join(texts),
-            remedy=f"give {FEW} records or more that show how much it varies, or take it all the "
-            "same with --replace, which keeps the doubt in the spec",
-        )
-    return texts
-
-
-def _put_origin(
-    document: SpecDocument, node: Any, sources: Sequence[Source], caveats: Sequence[str]
-) -> None:
-    """Note files and doubts; a reason that was given for other doubts does not hold for them."""
-    provenance = [
-        {
-            "file": source.path.name,
-            "sha256": source.sha256,
-            "data": "synthetic" if source.synthetic else "measured",
-        }
-        for source in sources
-    ]
-    texts = [_one_line(caveat) for caveat in caveats]
-    if [dict(item) for item in node.get("provenance", ())] == provenance:
-        # The range that was declared before the same records is not there any more.
-        texts += [old for old in node.get("doubts", ()) if old.endswith(NARROWER)]
-    document.put(node, "provenance", provenance)
-    if len(texts) > MAX_DOUBTS:
-        more = len(texts) - MAX_DOUBTS + 1
-        texts = [*texts[: MAX_DOUBTS - 1], f"and {more} more"]
-    if texts != list(node.get("doubts", ())):
-        document.drop(node, "accept_doubt")
-    if texts:
-        document.put(node, "doubts", texts)
-    else:
-        document.drop(node, "doubts")
-
-
-def _one_line(text: str) -> str:
-    plain = "".join(letter if letter.isprintable() else " " for letter in text)
-    return plain if len(plain) <= MAX_TITLE else f"{plain[: MAX_TITLE - 4]} ..."
-
-
-def merge_actuator(
-    loaded: LoadedSpec, found: ActuatorIdentification, *, replace: bool = False
-) -> str:
-    """Return the text of a spec with the identified actuator and its intervals.
-
-    A much narrower range than the declared one takes its place only with `replace`.
-    Where the proof can cover ranges of the actuator, these are written; else the intervals stand
-    beside the nominal values, for the record.
-    """
-    spec = check_actuator(loaded, found.unit)
-    if found.chosen.order != 1:
-        raise DataError(
-            "a spec has no place for a motor of second order",
-            remedy="leave --write out, or record commands that a first order describes",
-        )
-    assert spec.actuator is not None, "as has been checked"
-    document = SpecDocument(loaded)
-    node = document.root["actuator"]
-    if found.unit != spec.actuator.command:
-        document.put(node, "command", found.unit)
-    covered = spec.combines(MOTOR_RANGE)
-    intervals = {}
-    units = f"rad/s/{found.unit}", "s"
-    ranges = found.ranges if covered else found.chosen.ranges
-    names = ("gain", "time_constant")
-    narrow: Sequence[str] = ()
-    if covered:
-        declared = {name: getattr(spec.actuator, name) for name in names}
-        by_name = dict(zip(names, ranges, strict=True))
-        narrow = _narrowed(declared, by_name, found.sources, replace=replace)
-    for name, estimate, unit in zip(names, ranges, units, strict=True):
-        written = _ranged(estimate, unit, name)
-        if covered:
-            _put_range(document, node, name, written)
-        else:
-            document.put(node, name, written["nominal"])
-            intervals[name] = written["range"]
-    if covered:
-        document.drop(node, "intervals")
-        document.put(node, "range_covers", found.coverage)
-    else:
-        document.drop(node, "range_covers")
-        document.put(node, "intervals", intervals)
-    document.drop(node, "dead_time")
-    caveats = found.caveats
-    if found.late is not None and spec.takes_dead_time:
-        document.put(node, "dead_time", _outwards(found.late, "s")["range"])
-        caveats = found.doubts
-    _put_origin(document, node, found.sources, (*caveats, *narrow))
-    rewritten = _rewritten(document, node)
-    if covered:
-        assert rewritten.actuator is not None
-        document.put(node, "range_id", rewritten.actuator.values_id())
-    return document.text()
-
-
-def _rewritten(document: SpecDocument, node: Any) -> InteractionDesignSpec:
-    """Return the new spec, in which a node has no identity of its range yet."""
-    document.drop(node, "range_id")
-    written = parse_spec(document.text())
-    assert isinstance(written, InteractionDesignSpec)
-    return written
-
-
 def check_actuator(loaded: LoadedSpec, unit: str) -> InteractionDesignSpec:
     """Refuse, before a fit, a spec that a motor with commands in this unit cannot go into."""
     spec = check_interaction(loaded)
@@ -349,62 +341,6 @@ def check_actuator(loaded: LoadedSpec, unit: str) -> InteractionDesignSpec:
                 "derivative_gain the root locus chooses it",
             )
     return spec
-
-
-def merge_delay(loaded: LoadedSpec, found: DelayIdentification) -> str:
-    """Return the text of a spec of a sampled loop with the age of its force sample.
-
-    A record that shows dynamics and no mere delay is a `DataError`.
-    """
-    sampling = check_delay_place(loaded)
-    if found.is_lag:
-        sent, seen = found.record.names
-        raise DataError(
-            f"{seen} follows {sent} by {found.chosen.follower.name}: that is more than the age of "
-            "a sample",
-            remedy="name the force as measured by --command and the force that the law used by "
-            "--measured; dynamics between them belong into the model",
-        )
-    low, high = found.in_periods(sampling.outer)
-    if high > LONGEST_DELAY:
-        raise DataError(
-            f"the force is up to {high} periods old, a spec takes {LONGEST_DELAY} at most",
-            remedy="record longer or livelier forces, or sample with a longer period",
-        )
-    return _with_sampling(loaded, found, "delay", low if low == high else [low, high])
-
-
-def merge_latency(loaded: LoadedSpec, found: DelayIdentification) -> str:
-    """Return the text of a spec with the time from a sample to its command.
-
-    A record that shows dynamics and no mere delay is a `DataError`.
-    """
-    sampling = check_latency_place(loaded)
-    sent, seen = found.record.names
-    if found.is_lag:
-        raise DataError(
-            f"{seen} follows {sent} by {found.chosen.follower.name}: that is more than a latency",
-            remedy="name the command as the law computed it by --command, and as the drive took it "
-            "by --measured; what the drive does with it belongs into its model",
-        )
-    low, high = found.held_s
-    if high <= 0 or high > LONGEST_DELAY * sampling.period.exact:
-        raise DataError(
-            f"{seen} comes up to {float(high):.4g} s after {sent}; a spec takes up to "
-            f"{LONGEST_DELAY} periods, and none before",
-            remedy="see that the columns are not swapped, and record more rows in a period",
-        )
-    least = max(float(low), 0.0)
-    latency = _outwards(Estimate(least, least, float(high)), "s")["range"]
-    return _with_sampling(loaded, found, "latency", latency)
-
-
-def _with_sampling(loaded: LoadedSpec, found: DelayIdentification, key: str, value: Any) -> str:
-    document = SpecDocument(loaded)
-    node = document.root["sampling"]
-    document.put(node, key, value)
-    _put_origin(document, node, found.sources, found.caveats)
-    return document.text()
 
 
 def check_latency_place(loaded: LoadedSpec) -> SamplingSpec:
@@ -431,15 +367,6 @@ def check_delay_place(loaded: LoadedSpec) -> SamplingSpec:
     return sampling
 
 
-def _outwards(estimate: Estimate, unit: str) -> dict[str, Any]:
-    """Write an estimate of either sign with ends rounded outwards, so that nothing is lost."""
-    low = few_digits(estimate.low, _DIGITS, ROUND_FLOOR)
-    high = few_digits(estimate.high, _DIGITS, ROUND_CEILING)
-    nominal = min(max(few_digits(estimate.value, _DIGITS, ROUND_HALF_EVEN), low), high)
-    texts = [f"{_plain(number)} {unit}" for number in (nominal, low, high)]
-    return {"nominal": texts[0], "range": texts[1:]}
-
-
 def check_interaction(loaded: LoadedSpec) -> InteractionDesignSpec:
     """Refuse, before a fit, a spec that is no interaction design."""
     if not isinstance(loaded.spec, InteractionDesignSpec):
@@ -462,6 +389,30 @@ def check_turning(spec: object, path: Path) -> None:
         )
 
 
+def _no_place(law: str, preload: tuple[Quantity, Quantity] | None = None) -> DataError:
+    said = "" if preload is None else f" (the spec has '{preload[0].text}..{preload[1].text}')"
+    return DataError(
+        f"the law {law} has no place in a spec without a preload",
+        remedy=f"say by --preload at which deflections{said}, or choose one that has a place: "
+        f"{_WITH_A_PLACE}",
+    )
+
+
+def _place(
+    loaded: LoadedSpec, environment: str | None, arm: str | None, *, rotational: bool
+) -> str:
+    """Return the name of the environment, which a lever arm leads to."""
+    spec = check_interaction(loaded)
+    name = _environment(spec, environment, loaded.path)
+    if not rotational and arm is None and spec.environments[name].lever_arm is None:
+        raise SpecError(
+            f"the environment {name} has no lever_arm, and the records are linear",
+            path=loaded.path,
+            remedy="give --lever-arm '0.24 m'",
+        )
+    return name
+
+
 def _environment(spec: InteractionDesignSpec, name: str | None, path: Path) -> str:
     names = list(spec.environments)
     if name in names:
@@ -476,17 +427,35 @@ def _environment(spec: InteractionDesignSpec, name: str | None, path: Path) -> s
     )
 
 
-def _put_range(document: SpecDocument, node: Any, key: str, value: dict[str, Any]) -> None:
-    """Replace a quantity with range in place, so that comments within it stay."""
-    old = node.get(key)
-    if not isinstance(old, dict):
-        document.put(node, key, value)
-        return
-    if isinstance(old.get("range"), list):
-        old["range"][:] = value["range"]
-    else:
-        document.put(old, "range", value["range"])
-    old["nominal"] = value["nominal"]
+def has_place(about: Tangent) -> bool:
+    """Tell whether a power law has a place in a spec as it is: its exponent is at least 1."""
+    low, high = _exponent_range(about.power[2])
+    return low >= LEAST and high <= LARGEST
+
+
+def _exponent_range(estimate: Estimate) -> tuple[Decimal, Decimal]:
+    """Round the ends of the interval of an exponent outwards, as finely as a spec holds them."""
+    step = Decimal(1) / FINEST
+    if not _is_limited(estimate):
+        return Decimal(0), Decimal("Infinity")
+    return (
+        Decimal(estimate.low).quantize(step, ROUND_FLOOR),
+        Decimal(estimate.high).quantize(step, ROUND_CEILING),
+    )
+
+
+def _one_line(text: str) -> str:
+    plain = "".join(letter if letter.isprintable() else " " for letter in text)
+    return plain if len(plain) <= MAX_TITLE else f"{plain[: MAX_TITLE - 4]} ..."
+
+
+def _outwards(estimate: Estimate, unit: str) -> dict[str, Any]:
+    """Write an estimate of either sign with ends rounded outwards, so that nothing is lost."""
+    low = few_digits(estimate.low, _DIGITS, ROUND_FLOOR)
+    high = few_digits(estimate.high, _DIGITS, ROUND_CEILING)
+    nominal = min(max(few_digits(estimate.value, _DIGITS, ROUND_HALF_EVEN), low), high)
+    texts = [f"{_plain(number)} {unit}" for number in (nominal, low, high)]
+    return {"nominal": texts[0], "range": texts[1:]}
 
 
 def _ranged(estimate: Estimate, unit: str, name: str) -> dict[str, Any]:

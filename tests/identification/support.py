@@ -8,14 +8,8 @@ import numpy as np
 
 from nrs_design.identification.datasets.records import ActuatorRecord, TissueRecord
 from nrs_design.identification.tables.table import Source
-from nrs_design.models.actuator import MotorConstants
 from nrs_design.models.contact import AbstractContactLaw, Motion
 from tests.identification import synthetic
-
-# Thesis table 4.1.
-MOTOR = MotorConstants(
-    torque_constant=0.0115, back_emf_constant=0.0115, inertia=14.81e-7, reduction=181
-)
 
 
 def source(name: str) -> Source:

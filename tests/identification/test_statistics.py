@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from nrs_design.identification.facts.finding import estimate_numbers
+from nrs_design.identification.reporting.view import estimate_numbers
 from nrs_design.identification.statistics import (
     Estimate,
     independent,

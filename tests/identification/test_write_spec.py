@@ -22,7 +22,7 @@ from nrs_design.spec import parse_spec, read_spec
 from nrs_design.spec.describe import spec_changes
 from nrs_design.spec.environment import KelvinBoltzmannSpec
 from tests.identification import motors, signals, synthetic
-from tests.identification.support import MOTOR, quick, record, sinusoids, slow
+from tests.identification.support import quick, record, sinusoids, slow
 from tests.support import COMMUTING, ROBOT, SOFT_TISSUE, replaced
 
 SAMPLED = ROBOT / "soft-tissue-sampled.nrs.yaml"
@@ -45,7 +45,7 @@ def voigt():
 
 @pytest.fixture(scope="module")
 def motor():
-    return identify_actuator(sinusoids(2, (1.2, 2.0, 4.0, 8.0, 14.0)), MOTOR)
+    return identify_actuator(sinusoids(2, (1.2, 2.0, 4.0, 8.0, 14.0)))
 
 
 @pytest.fixture(scope="module")
@@ -58,7 +58,7 @@ def nose():
 @pytest.fixture(scope="module")
 def late():
     """A motor with a dead time, behind a command that tells it."""
-    return identify_actuator([motors.record("PRBS", 1)], MOTOR)
+    return identify_actuator([motors.record("PRBS", 1)])
 
 
 @cache
@@ -153,8 +153,8 @@ def test_ranges_of_the_actuator_where_the_proof_covers_them(tmp_path, motor, fil
     assert (spec.actuator.intervals, spec.actuator.range_covers) == (None, "confidence")
     assert spec.actuator.range_id == spec.actuator.values_id()
     for written, own in (
-        (spec.actuator.gain, motor.chosen.gain),
-        (spec.actuator.time_constant, motor.chosen.time_constant),
+        (spec.actuator.gain, motor.fit.gain),
+        (spec.actuator.time_constant, motor.fit.time_constant),
     ):
         low, high = (end.exact for end in written.range)
         assert low < Fraction(own.low) < Fraction(own.high) < high
@@ -313,16 +313,9 @@ def test_doubts_are_noted_and_a_reason_holds_for_them_only(tmp_path, silicone):
     assert (soft.doubts, soft.accept_doubt) == ((), None)
 
 
-@pytest.mark.slow
-def test_a_motor_of_second_order_has_no_place():
-    found = identify_actuator([motors.record("PRBS", 1, second=0.02)], MOTOR)
-    with pytest.raises(DataError, match="has no place for a motor of second order"):
-        merge_actuator(read_spec(SOFT_TISSUE), found)
-
-
 @pytest.fixture(scope="module")
 def volts():
-    return identify_actuator([replace(motors.record("PRBS", 1), unit="V")], MOTOR)
+    return identify_actuator([replace(motors.record("PRBS", 1), unit="V")])
 
 
 def test_a_gain_per_volt_is_never_written_beside_one_in_rpm(volts):
@@ -337,7 +330,7 @@ def test_a_motor_that_takes_volts(tmp_path, volts, motor):
     spec = parse_spec(text)
     assert spec.actuator.command == "V"
     assert all(end.unit == "rad/s/V" for end in spec.actuator.gain.range)
-    assert spec.actuator.gain.nominal.si == pytest.approx(volts.chosen.gain.value, rel=1e-5)
+    assert spec.actuator.gain.nominal.si == pytest.approx(volts.fit.gain.value, rel=1e-5)
     # And back to rpm.
     back = parse_spec(merge_actuator(merged(tmp_path, text), motor))
     assert (back.actuator.command, back.actuator.gain.nominal.unit) == ("rpm", "rad/s/rpm")

@@ -1,5 +1,1 @@
-"""The velocity-controlled motor from sinusoid records or a frequency response."""
-
-from nrs_design.models.actuator import THESIS_MOTOR
-
-__all__ = ["THESIS_MOTOR"]
+"""The velocity-controlled motor from records of commands or a frequency response."""

@@ -19,37 +19,34 @@ _DELAY_DIFFERENCE = 100.0
 
 @dataclass(frozen=True, slots=True)
 class MotorModel:
-    """``velocity = lags (gain (command(t - delay) - friction sign(velocity)))``."""
+    """``tau v' + v = gain (command(t - delay) - friction sign(v))``."""
 
     gain: float  # In rad/s for each unit of the command
-    time_constant: float  # In s; of a motor of second order the sum of both
+    time_constant: float  # In s
     friction: float | None  # In units of the command; None leaves it out
     delay: float  # Dead time in s
-    damping: float | None = None  # Damping ratio of a motor of second order
 
     @property
     def lags(self) -> Lags:
         """Its linear part of unit gain."""
-        if self.damping is None:
-            return Lags.first_order(self.time_constant)
-        return Lags.second_order(2 * self.damping / self.time_constant, self.damping)
+        return Lags.first_order(self.time_constant)
 
     @property
     def parameters(self) -> Array:
         """Logarithms of all but the dead time, and the dead time in s."""
-        positive = (self.gain, self.time_constant, self.friction, self.damping)
+        positive = (self.gain, self.time_constant, self.friction)
         return np.array([*(np.log(p) for p in positive if p is not None), self.delay])
 
     def with_parameters(self, x: Array) -> Self:
         """Return the same kind of motor with other parameters."""
-        values = iter(np.exp(x[:-1]).tolist())
-        gain, tau = next(values), next(values)
-        friction = None if self.friction is None else next(values)
-        damping = None if self.damping is None else next(values)
+        gain, tau, *friction = np.exp(x[:-1]).tolist()
         return replace(
-            self, gain=gain, time_constant=tau, friction=friction, damping=damping,
+            self,
+            gain=gain,
+            time_constant=tau,
+            friction=friction[0] if friction else None,
             delay=float(x[-1]),
-        )  # fmt: skip
+        )
 
     def hold(self, record: ActuatorRecord) -> tuple[Held, Array | None]:
         """Return the command of a record as it acts, and the shape of the friction."""
@@ -71,10 +68,7 @@ class MotorModel:
 
     def simulate(self, record: ActuatorRecord) -> Array:
         """Return the output in rad or rad/s, its initial state fitted to a record, shape (n,)."""
-        forced = self.forced(record, *self.hold(record))
-        free = self.free(record)
-        start = np.linalg.lstsq(free, record.output - forced, rcond=None)[0]
-        return np.asarray(forced + free @ start, float)
+        return record.output - self.errors(record)
 
     def errors(self, record: ActuatorRecord) -> Array:
         """Return measured less fitted output, shape (n,)."""

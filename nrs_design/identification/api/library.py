@@ -17,17 +17,12 @@ from nrs_design.identification.datasets.records import (
     read_tissue,
 )
 from nrs_design.identification.delay.identify import identify_delay
-from nrs_design.identification.facts.actuator import actuator_facts
-from nrs_design.identification.facts.delay import delay_facts
-from nrs_design.identification.facts.finding import Facts, finding_facts
-from nrs_design.identification.facts.running import run_judgement_facts
-from nrs_design.identification.facts.tissue import tissue_facts
-from nrs_design.identification.finding import Finding, is_synthetic
-from nrs_design.identification.lever import named
-from nrs_design.identification.reporting.actuator import actuator_report
-from nrs_design.identification.reporting.delay import delay_report
-from nrs_design.identification.reporting.running import run_report
-from nrs_design.identification.reporting.tissue import tissue_report
+from nrs_design.identification.finding import is_synthetic
+from nrs_design.identification.reporting.actuator import view_actuator
+from nrs_design.identification.reporting.delay import view_delay
+from nrs_design.identification.reporting.running import run_facts, run_report
+from nrs_design.identification.reporting.tissue import view_tissue
+from nrs_design.identification.reporting.view import View
 from nrs_design.identification.running.bounds import proof_of, read_run_bounds
 from nrs_design.identification.running.check import Check
 from nrs_design.identification.running.judge import judge_run
@@ -35,12 +30,9 @@ from nrs_design.identification.running.log import read_run
 from nrs_design.identification.tables.columns import parse_mapping
 from nrs_design.identification.tissue.identify import identify_tissue
 from nrs_design.identification.write_spec import check_turning
-from nrs_design.models.actuator import THESIS_MOTOR
 from nrs_design.models.contact import LAWS
 
 if TYPE_CHECKING:
-    from nrs_design.identification.statistics import Estimate
-    from nrs_design.reporting import Report
     from nrs_design.spec import LoadedSpec
 
 Columns = Mapping[str, str]  # From a name in the file to ours
@@ -73,30 +65,23 @@ def identify_records(
     _check(files, kind, law)
     named_ours = {_OF_DELAY.get(k, k) if kind == "delay" else k: v for k, v in columns.items()}
     mapping = parse_mapping([f"{ours}={theirs}" for ours, theirs in named_ours.items()])
-    return _KINDS[kind]([Path(file) for file in files], mapping, law)
-
-
-def _identification(
-    found: Finding,
-    kind: str,
-    chosen: str,
-    reason: str,
-    ranges: Mapping[str, FittedRange],
-    facts: Facts,
-    page: Callable[[], Report],
-) -> Identification:
+    view = _KINDS[kind]([Path(file) for file in files], mapping, law)
+    found = view.found
     return Identification(
         kind=kind,
-        chosen=chosen,
-        reason=reason,
-        ranges=ranges,
+        chosen=view.chosen,
+        reason=view.reason,
+        ranges={
+            name: FittedRange(estimate.value, estimate.low, estimate.high, unit)
+            for name, (estimate, unit) in view.ranges.items()
+        },
         files=tuple(source.path for source in found.sources),
         synthetic=is_synthetic(found.sources),
         remarks=tuple(found.remarks),
         doubts=tuple(found.doubts),
         caveats=tuple(found.caveats),
-        facts=finding_facts(found, facts),
-        page=page,
+        facts=view.document,
+        page=view.page,
     )
 
 
@@ -117,43 +102,21 @@ def _check(files: Sequence[str | Path], kind: object, law: str | None) -> None:
         raise DataError("a delay is that of one record", remedy="name one file")
 
 
-def _tissue(files: Sequence[Path], mapping: Columns, law: str | None) -> Identification:
-    found = identify_tissue([read_tissue(file, mapping) for file in files], law)
-    parameters = named(found.chosen.law, found.chosen.ranges, found.rotational)
-    ranges = {name: _range(estimate, unit) for name, estimate, unit in parameters}
-    chosen, page = found.chosen.law.name, partial(tissue_report, found)
-    return _identification(found, "tissue", chosen, found.reason, ranges, tissue_facts(found), page)
+def _tissue(files: Sequence[Path], mapping: Columns, law: str | None) -> View:
+    return view_tissue(identify_tissue([read_tissue(file, mapping) for file in files], law))
 
 
-def _actuator(files: Sequence[Path], mapping: Columns, law: str | None) -> Identification:
+def _actuator(files: Sequence[Path], mapping: Columns, law: str | None) -> View:
     records = [record for file in files for record in read_actuator(file, mapping)]
-    found = identify_actuator(records, THESIS_MOTOR)
-    gain, time_constant = found.ranges
-    ranges = {
-        "gain": _range(gain, f"(rad/s)/{found.unit}"),
-        "time_constant": _range(time_constant, "s"),
-    }
-    chosen, page = found.chosen.method, partial(actuator_report, found)
-    return _identification(
-        found, "actuator", chosen, found.reason, ranges, actuator_facts(found), page
-    )
+    return view_actuator(identify_actuator(records))
 
 
-def _delay(files: Sequence[Path], mapping: Columns, law: str | None) -> Identification:
+def _delay(files: Sequence[Path], mapping: Columns, law: str | None) -> View:
     (file,) = files
-    found = identify_delay(read_signals(file, mapping))
-    sent, seen = found.record.names
-    ranges = {"delay": _range(found.delay, "s"), "samples": _range(found.samples, "samples")}
-    chosen, about = found.chosen.follower.name, f"from {sent} to {seen}"
-    page = partial(delay_report, found)
-    return _identification(found, "delay", chosen, about, ranges, delay_facts(found), page)
+    return view_delay(identify_delay(read_signals(file, mapping)))
 
 
-def _range(estimate: Estimate, unit: str) -> FittedRange:
-    return FittedRange(estimate.value, estimate.low, estimate.high, unit)
-
-
-_KINDS: Mapping[str, Callable[[Sequence[Path], Columns, str | None], Identification]] = {
+_KINDS: Mapping[str, Callable[[Sequence[Path], Columns, str | None], View]] = {
     "tissue": _tissue,
     "actuator": _actuator,
     "delay": _delay,
@@ -188,7 +151,7 @@ def judge_log(log: Path, loaded: LoadedSpec, certificate: Path | None) -> Audit:
         checks=tuple(checks.values()),
         first=None if found.first is None else checks[id(found.first)],
         synthetic=found.log.source.synthetic,
-        facts=run_judgement_facts(found, loaded, certificate, reason),
+        facts=run_facts(found, loaded, certificate, reason),
         page=partial(run_report, found, loaded.spec.name, reason),
     )
 

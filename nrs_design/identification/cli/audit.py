@@ -13,22 +13,15 @@ from nrs_design.cli.destinations import Destinations
 from nrs_design.cli.options import Date, ReportTo
 from nrs_design.cli.printing import detail, progress, say, wants_details
 from nrs_design.cli.tables import print_table
-from nrs_design.identification.cli.identify.common import SYNTHETIC, ColumnMap, read_all
-from nrs_design.identification.facts.running import run_judgement_facts
+from nrs_design.identification.cli.identify import ColumnMap, read_all
 
 if TYPE_CHECKING:
-    from nrs_design.identification.running.check import Check
     from nrs_design.identification.running.judge import RunJudgement
 
 _EXIT = {
     "inside": exit_codes.PROVED,
     "outside": exit_codes.REFUTED,
     "inconclusive": exit_codes.INCONCLUSIVE,
-}
-_CLAIM = {
-    "inside": "the run stayed inside what was proved",
-    "outside": "the run left its bounds",
-    "inconclusive": "no bound was left as far as could be judged",
 }
 # Letters of what a cell says, in a pipe, too.
 _WIDEST = 60
@@ -42,9 +35,6 @@ def audit(
         Path | None,
         typer.Option(metavar="CERT", help="Certificate of that spec; without it, none is proved."),
     ] = None,
-    window: Annotated[
-        float, typer.Option(metavar="SECONDS", min=1e-3, help="Window of the stiffness.")
-    ] = 0.5,
     command_limit: Annotated[
         str | None,
         typer.Option(
@@ -57,19 +47,18 @@ def audit(
     report: ReportTo = None,
     date: Date = None,
 ) -> Answer:
-    """Tell whether a run stayed inside what was proved: times, delay, command, force.
+    """Tell whether a run stayed inside what was proved: times, stiffness, delay, command, force.
 
     Columns, as far as they are there: time_s; angle_rad and torque_Nm (or deflection_m and
     force_N); velocity_rad_s; the command in the unit of the motor of the spec (command_rpm, _V, _A,
     _counts); mode, the name of the controller in force. The stiffness is tested where the spec says
-    by `monitoring` how far readings are off, and estimated otherwise, as contact is: no run is
-    called inside where they matter. What cannot be judged is said.
+    by `monitoring` how far readings are off. What cannot be judged is said.
 
     Exit code 0: inside. 1: left. 3: not everything could be judged, or the spec is not proved.
 
     Example: nrs-design audit run.csv soft-tissue.nrs.yaml --certificate soft-tissue.cert.json
     """
-    from nrs_design.identification.reporting.running import run_report
+    from nrs_design.identification.reporting.running import run_facts, run_report
     from nrs_design.identification.running.bounds import (
         parse_command_limit,
         proof_of,
@@ -88,17 +77,10 @@ def audit(
     reason, losable = proof_of(certificate, loaded)
     (run,) = read_all([log], read_run, columns or [])
     with progress("judging"):
-        found = judge_run(
-            run,
-            bounds,
-            proved=not reason,
-            losable=losable,
-            window=window,
-            command_limit=limit,
-        )
+        found = judge_run(run, bounds, proved=not reason, losable=losable, command_limit=limit)
     return outputs.deliver(
         Answer(
-            lambda: run_judgement_facts(found, loaded, certificate, reason),
+            lambda: run_facts(found, loaded, certificate, reason),
             lambda: _print(found, loaded.spec.name, reason),
             _EXIT[found.verdict],
         ),
@@ -114,44 +96,42 @@ _GRANTED = {
 
 
 def _print(found: RunJudgement, name: str, reason: str) -> None:
+    from nrs_design.identification.reporting.running import CLAIMS, first_violation, unproved_text
+    from nrs_design.identification.reporting.view import SYNTHETIC
+
     if found.log.source.synthetic:
         say(SYNTHETIC)
     if reason:
-        say(f"UNPROVED SPEC: {reason}; its ranges are only declared.")
-    say(f"{name}: {found.verdict.upper()}: {_CLAIM[found.verdict]}")
-    first = found.first
-    if first is not None and first.first is not None:
-        say(f"first at t = {first.first.time:.6g} s: {first.name}: {first.first.words}")
+        say(unproved_text(reason))
+    say(f"{name}: {found.verdict.upper()}: {CLAIMS[found.verdict]}")
+    if first := first_violation(found):
+        say(first)
     rows = []
     for c in found.checks:
         when = f"{c.first.time:.6g}" if c.first else ""
-        rows.append([c.name, c.status, _measured(c), _cell(c.allowed), when])
+        measured = _below() if c.status == "not judged" else _cell(c.measured)
+        rows.append([c.name, c.status, measured, _cell(c.allowed), when])
     print_table("", ["check", "outcome", "measured", "allowed", "first at s"], rows)
     for basis in dict.fromkeys(c.basis for c in found.checks if c.basis):
         of = ", ".join(c.name for c in found.checks if c.basis == basis)
         detail(f"bound of {of}: {basis}")
-    for check in found.checks:
-        if check.status != "not judged" and _measured(check) != check.measured:
-            detail(f"{check.name}: {check.measured}")
-        if _cell(check.allowed) != check.allowed:
-            detail(f"{check.name}, allowed: {check.allowed}")
-        if check.status == "not modelled":
+    for c in found.checks:
+        if c.status == "not judged":
+            detail(f"not judged: {c.name}: {c.measured}")
+        elif _cell(c.measured) != c.measured:
+            detail(f"{c.name}: {c.measured}")
+        if _cell(c.allowed) != c.allowed:
+            detail(f"{c.name}, allowed: {c.allowed}")
+        if c.status == "not modelled":
             who = found.bounds.source
             comma = "," if "," in who else ""
-            detail(f"not covered: {who}{comma} takes for granted that {_GRANTED[check.name]}")
-        if check.status == "not judged":
-            detail(f"not judged: {check.name}: {check.measured}")
-    say(found.estimates)
+            detail(f"not covered: {who}{comma} takes for granted that {_GRANTED[c.name]}")
     if found.hint:
         say(found.hint)
 
 
 def _below() -> str:
     return "see below" if wants_details() else "see -v"
-
-
-def _measured(check: Check) -> str:
-    return _below() if check.status == "not judged" else _cell(check.measured)
 
 
 def _cell(text: str) -> str:

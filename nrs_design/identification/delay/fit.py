@@ -8,21 +8,12 @@ import numpy as np
 
 from nrs_design.identification.datasets.records import SignalRecord
 from nrs_design.identification.delay.models import AbstractFollower, HeldCopy
-from nrs_design.identification.numeric import (
-    Array,
-    Rows,
-    beyond,
-    bic,
-    column_sizes,
-    limited_step,
-)
+from nrs_design.identification.numeric import Array, Rows, beyond, bic, column_sizes
+from nrs_design.identification.search import search
 from nrs_design.identification.statistics import Uncertainty, uncertainty
 
 # So far from where columns are most alike, in samples, a whole number of them is sought.
 _AROUND = 8
-_STEPS = 40
-_HALVINGS = 10
-_CONVERGED = 1e-7
 _DIFFERENCE = 1e-4
 
 
@@ -62,9 +53,9 @@ class DelayFit:
 def fit_delay(
     record: SignalRecord, follower: AbstractFollower, delay: float, rows: Rows
 ) -> DelayFit:
-    """Refine delay in s and shape of a model by Gauss-Newton steps over the rows that count.
+    """Refine delay in s and shape of a model by least squares over the rows that count.
 
-    Gain, offset and initial state are eliminated in every step.
+    Gain, offset and initial state are eliminated everywhere.
     """
 
     def shaped(x: Array) -> tuple[AbstractFollower, float]:
@@ -78,22 +69,10 @@ def fit_delay(
         changes = [(errors(x - h) - errors(x + h)) / (2 * _DIFFERENCE) for h in steps]
         return np.column_stack(changes)
 
-    x = np.array([delay / record.step, *follower.shape])
-    limit = np.array([2.0, *[0.5] * len(follower.shape)])
+    scale = np.array([1.0, *[0.5] * len(follower.shape)])
+    start = np.array([delay / record.step, *follower.shape])
+    x, _ = search(errors, sensitivities, start, scale)
     error = errors(x)
-    for _ in range(_STEPS):
-        newton = np.asarray(np.linalg.lstsq(sensitivities(x), error, rcond=None)[0], float)
-        step = limited_step(newton, limit)
-        for halving in range(_HALVINGS):
-            tried = x + step / 2**halving
-            found = errors(tried)
-            if found @ found < error @ error:
-                x, error = tried, found
-                break
-        else:
-            break
-        if np.abs(step).max() < _CONVERGED:
-            break
     J, (model, late) = sensitivities(x), shaped(x)
     columns = model.columns(record, late)
     solution = solve(columns[rows], record.seen[rows])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import pairwise
 
@@ -179,7 +179,8 @@ def identify_delay(record: SignalRecord) -> DelayIdentification:
         else fit_held(record, peak[0], rows)
     )
     others = (fit_delay(record, *start, rows) for start in _starts(record, peak[0], rows))
-    fits = (copy, *others)
+    # A search may leave the delays that are looked for.
+    fits = (copy, *(fit for fit in others if abs(fit.delay) <= _longest(record)))
     chosen = _simplest(fits)
     _check_explained(record, chosen)
     value, told = chosen.delay / record.step, _interval(record, chosen)
@@ -217,14 +218,19 @@ def _check_explained(record: SignalRecord, fit: DelayFit) -> None:
         allowed = max(allowed, float(change))
     if missed <= allowed or fit.uncertainty.whiteness >= WHITE:
         return
-    longest = _LONGEST * float(np.ptp(record.time[record.longest]))
     raise DataError(
         f"no delay, with or without a lag, explains {record.names[1]} by {record.names[0]}: the "
         f"best misses {100 * missed:.2g} % of the motion, in errors that are not noise",
         path=record.source.path,
-        remedy=f"delays up to {longest:.3g} s are looked for, a tenth of the record: make it ten "
-        "times as long as the delay may be; or a stretch of it in which the delay does not vary",
+        remedy=f"delays up to {_longest(record):.3g} s are looked for, a tenth of the record: make "
+        "it ten times as long as the delay may be; or a stretch of it in which the delay does not "
+        "vary",
     )
+
+
+def _longest(record: SignalRecord) -> float:
+    """Return the longest delay that is looked for, in s."""
+    return _LONGEST * float(np.ptp(record.time[record.longest]))
 
 
 def _missed_part(record: SignalRecord, fit: DelayFit) -> float:
@@ -380,18 +386,13 @@ def _starts(
     ]
     longest = _LONGEST * record.time[-1]
     delays = sorted({min(d * step, longest) for d in _SHIFTS} | {max(lag, 0.0)})
-    part = _beginning(record)
+    part = replace(
+        record, **{name: getattr(record, name)[:_SCANNED] for name in ("time", "sent", "seen")}
+    )
     inside = rows[rows < len(part.time)]
     for family in families:
         pairs = [(follower, delay) for follower in family for delay in delays]
         yield min(pairs, key=lambda pair: _missed(part, pair[0], pair[1], inside))
-
-
-def _beginning(record: SignalRecord) -> SignalRecord:
-    """Return so much of a record as a scan needs."""
-    cut = slice(0, _SCANNED)
-    time, sent, seen = record.time[cut], record.sent[cut], record.seen[cut]
-    return SignalRecord(record.source, time, sent, seen, record.names)
 
 
 def _missed(record: SignalRecord, follower: AbstractFollower, delay: float, rows: Rows) -> float:

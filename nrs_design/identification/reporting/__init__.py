@@ -1,1 +1,1 @@
-"""What is said and drawn of identifications."""
+"""What is said of identifications and audits: for JSON, terminals and pages, one file each."""

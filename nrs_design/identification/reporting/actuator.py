@@ -1,145 +1,124 @@
-"""The page of the identification of an actuator."""
+"""What is said of the identification of an actuator."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from nrs_design.identification.reporting.figures.identification import draw_bode, draw_fit
-from nrs_design.identification.reporting.identification import (
+from nrs_design.identification.actuator.fit import FROM_THE_ROW
+from nrs_design.identification.actuator.identify import ActuatorIdentification
+from nrs_design.identification.datasets.records import FrequencyResponse
+from nrs_design.identification.reporting.figures import draw_fit, draw_response
+from nrs_design.identification.reporting.view import (
     DRAWN,
+    Facts,
+    View,
+    estimate_numbers,
     figure_names,
-    identification_page,
     in_interval,
     label_of,
-    marked,
 )
-from nrs_design.reporting.document import Block, Bullets, Illustration, Report, Section, Table
-from nrs_design.reporting.formatting import number
-
-if TYPE_CHECKING:
-    from nrs_design.identification.actuator.identify import ActuatorIdentification
-    from nrs_design.identification.actuator.model import ActuatorFit
+from nrs_design.identification.statistics import Estimate
+from nrs_design.reporting.document import Bullets, Illustration, Section, Table
 
 
-def actuator_report(found: ActuatorIdentification) -> Report:
-    """Say and draw everything about the identification of an actuator."""
-    fit = found.chosen
-    unit = found.unit
-    values = [
-        f"Gain {in_interval(fit.gain)} (rad/s)/{unit}",
-        f"τ {in_interval(fit.time_constant)} s",
-    ]
-    if fit.friction:
-        values.append(f"friction {in_interval(fit.friction)} {unit}")
-    if fit.dead_time:
-        values.append(f"dead time {in_interval(fit.dead_time)} s")
-    return identification_page(
+def view_actuator(found: ActuatorIdentification) -> View:
+    """Say everything about the identification of an actuator."""
+    fit, rows = found.fit, _rows(found)
+    lines = [f"{name} = {_told(value, str)} {unit}" for name, value, unit, _ in rows]
+    if fit.dead_time and found.step:
+        samples = fit.dead_time.scaled(1 / found.step)
+        lines.append(f"dead time = {samples} samples of {found.step:.4g} s, {FROM_THE_ROW}")
+    lines += [f"range: {name} {wide} {unit}" for name, _, unit, wide in rows if wide]
+    lines.append(f"the range holds {found.covers}")
+    said = (f"{name} {_told(value, in_interval)} {unit}" for name, value, unit, _ in rows)
+    return View(
         found,
-        name="actuator",
-        title=f"Velocity model of order {fit.order} with Coulomb friction and dead time",
-        claim=f"{', '.join(values)}. {found.reason}",
-        sections=(
-            Section("Fits", (fits(found), *_ranges(found), *_derived(found))),
-            *_bode(found),
-            *_actuator_records(found),
-        ),
+        kind="actuator",
+        chosen=fit.method,
+        reason="",
+        ranges={name.replace(" ", "_"): (wide, unit) for name, _, unit, wide in rows if wide},
+        facts=_facts(found),
+        lines=lines,
+        details=(f"fit to the {fit.method}",),
+        fits=_table(found),
+        title="Velocity model with Coulomb friction and dead time",
+        claim=f"Fit to the {fit.method}: {', '.join(said)}.",
+        sections=lambda: _sections(found),
     )
 
 
-def _dead_time(fit: ActuatorFit) -> str:
-    """Return the dead time of a fit in s; only a fit in time has one."""
-    if fit.dead_time is None:
-        return "taken for zero" if fit.motor is None else "not determined"
-    return in_interval(fit.dead_time)
+def _rows(
+    found: ActuatorIdentification,
+) -> list[tuple[str, Estimate | str, str, Estimate | None]]:
+    """Return name, estimate or why there is none, unit, and range for a spec."""
+    fit, (gain, time_constant) = found.fit, found.ranges
+    late = "taken for zero" if fit.motor is None else "not determined"
+    return [
+        ("gain", fit.gain, f"(rad/s)/{found.unit}", gain),
+        ("time constant", fit.time_constant, "s", time_constant),
+        ("friction", fit.friction or "not determined", found.unit, None),
+        ("dead time", fit.dead_time or late, "s", None),
+    ]
 
 
-def fits(found: ActuatorIdentification) -> Table:
-    """Return the estimates of every method."""
+def _told(value: Estimate | str, write: Callable[[Estimate], str]) -> str:
+    return value if isinstance(value, str) else write(value)
+
+
+def _table(found: ActuatorIdentification) -> Table:
     rows = tuple(
-        (
-            marked(fit.method, chosen=fit is found.chosen),
-            in_interval(fit.gain),
-            in_interval(fit.time_constant),
-            in_interval(fit.friction) if fit.friction else "not determined",
-            _dead_time(fit),
-        )
-        for fit in found.fits
+        (name, _told(value, in_interval), in_interval(wide) if wide else "", unit)
+        for name, value, unit, wide in _rows(found)
     )
-    columns = (
-        "Fit",
-        f"Gain [(rad/s)/{found.unit}]",
-        "Time constant [s]",
-        f"Friction [{found.unit}]",
-        "Dead time [s]",
-    )
-    return Table("Estimates [95 % interval]", columns, rows)
+    columns = ("Parameter", "Value [95 % interval]", "Range for a spec", "Unit")
+    return Table("Estimates", columns, rows)
 
 
-def _ranges(found: ActuatorIdentification) -> tuple[Block, ...]:
-    """Say what a proof covers that takes the range from here."""
-    if found.chosen.order != 1:
-        return ()
-    names = (f"Gain [(rad/s)/{found.unit}]", "Time constant [s]")
-    row = (found.coverage, *map(in_interval, found.ranges))
+def _facts(found: ActuatorIdentification) -> Facts:
+    fit, late = found.fit, found.fit.dead_time
+    gain = f"gain_rad_s_{found.unit}"
+    return {
+        "command_unit": found.unit,
+        "sampling_step_s": found.step,
+        "method": fit.method,
+        gain: estimate_numbers(fit.gain),
+        "time_constant_s": estimate_numbers(fit.time_constant),
+        f"friction_{found.unit}": estimate_numbers(fit.friction) if fit.friction else None,
+        "dead_time_s": estimate_numbers(late) if late else None,
+        "whiteness_p": fit.uncertainty.whiteness,
+        "range": {
+            gain: estimate_numbers(found.ranges[0]),
+            "time_constant_s": estimate_numbers(found.ranges[1]),
+        },
+        "range_covers": found.coverage,
+        "range_covers_words": found.covers,
+    }
+
+
+def _sections(found: ActuatorIdentification) -> Iterator[Section]:
     text = f"The range holds {found.covers}. A proof over that range is about these motors."
-    return Table("Range for a spec", ("It holds", *names), (row,)), Bullets("", (text,))
+    yield Section("Parameters", (_table(found), Bullets("", (text,))))
+    yield Section("Measured against fitted", tuple(_figures(found)))
 
 
-def _derived(found: ActuatorIdentification) -> Iterator[Table]:
-    if found.figures is None:
-        return
-    yield Table(
-        f"Derived with the data sheet: {found.figures.sheet}",
-        ("Quantity", "Value [95 % interval]", "Unit"),
-        (
-            ("Armature resistance R", in_interval(found.figures.resistance), "ohm"),
-            ("Speed over torque", in_interval(found.figures.gradient), "rpm/(N m)"),
-        ),
-    )
-
-
-def _bode(found: ActuatorIdentification) -> Iterator[Section]:
-    if not len(found.frequency):
-        return
-    figure = Illustration(
-        "bode",
-        "Velocity over command",
-        f"{label_of(found.sources)}Magnitude relative to 1 (rad/s)/{found.unit}. The first "
-        "harmonic of the friction is taken off the command.",
-        draw_bode(found),
-    )
-    yield Section("Frequency response", (figure,))
-
-
-def _actuator_records(found: ActuatorIdentification) -> tuple[Section, ...]:
-    if not found.records or found.chosen.motor is None:
-        return ()
-    title = "Records"
-    picks = list(range(len(found.records)))[:DRAWN]
-    if len(found.frequency):
-        title = "Slowest and fastest record"
-        order = np.argsort(found.frequency)
-        picks = list(dict.fromkeys([int(order[0]), int(order[-1])]))
-    names = figure_names([found.records[i].name for i in picks])
-    blocks = tuple(_output_figure(found, i, name) for i, name in zip(picks, names, strict=True))
-    return (Section(title, blocks),)
-
-
-def _output_figure(found: ActuatorIdentification, index: int, name: str) -> Illustration:
-    record, motor = found.records[index], found.chosen.motor
-    fitted = record.output if motor is None else motor.simulate(record)
-    hertz = (
-        f": {number(found.frequency[index] / (2 * math.pi), 3)} Hz" if len(found.frequency) else ""
-    )
-    label = "Angle [rad]" if record.is_angle else "Velocity [rad/s]"
-    return Illustration(
-        f"{'angle' if record.is_angle else 'velocity'}-{name}",
-        f"{record.name}{hertz}",
-        f"{label_of(found.sources)}The chosen fit; only the initial state is adapted to this "
-        "record.",
-        draw_fit(record.time, record.output, fitted, label),
-    )
+def _figures(found: ActuatorIdentification) -> Iterator[Illustration]:
+    note, motor = label_of(found.sources), found.fit.motor
+    for item in found.data:
+        if isinstance(item, FrequencyResponse):
+            w = item.frequency
+            fine = np.geomspace(w.min() / 1.5, w.max() * 1.5, 200)
+            figure = draw_response(w, item.response, (fine, found.fit.response(fine)))
+            about = f"{note}Magnitude relative to 1 (rad/s)/{found.unit}."
+            yield Illustration("response", "Velocity over command", about, figure)
+    records = found.records[:DRAWN]
+    for record, name in zip(records, figure_names([r.name for r in records]), strict=True):
+        assert motor is not None
+        label = "Angle [rad]" if record.is_angle else "Velocity [rad/s]"
+        yield Illustration(
+            f"output-{name}",
+            record.name,
+            f"{note}Only the initial state is adapted to this record.",
+            draw_fit(record.time, record.output, motor.simulate(record), label),
+        )

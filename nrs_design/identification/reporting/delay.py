@@ -1,22 +1,22 @@
-"""The page of an identified delay."""
+"""What is said of an identified delay."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterator
 
-from nrs_design.identification.reporting.figures.delay import draw_delay, draw_following
-from nrs_design.identification.reporting.identification import (
-    identification_page,
+from nrs_design.identification.delay.identify import DelayIdentification
+from nrs_design.identification.reporting.figures import draw_fit
+from nrs_design.identification.reporting.view import (
+    Facts,
+    View,
+    estimate_numbers,
     in_interval,
     label_of,
     marked,
 )
 from nrs_design.identification.statistics import span
-from nrs_design.reporting.document import Illustration, Report, Section, Table
+from nrs_design.reporting.document import Illustration, Section, Table
 from nrs_design.reporting.formatting import number
-
-if TYPE_CHECKING:
-    from nrs_design.identification.delay.identify import DelayIdentification
 
 _MEANING = (
     "The delay is dead time beyond the dynamics of the model beside it; a loop of another model "
@@ -26,43 +26,35 @@ _MEANING = (
 )
 
 
-def delay_report(found: DelayIdentification) -> Report:
-    """Say and draw everything about the delay of a record."""
-    record, samples = found.record, found.samples
-    sent, seen = record.names
-    return identification_page(
+def view_delay(found: DelayIdentification) -> View:
+    """Say everything about the delay of a record."""
+    (sent, seen), (lag, correlation) = found.record.names, found.peak
+    model, step, whole = found.chosen.follower.name, found.record.step, span(*found.whole_samples)
+    when = f"{abs(lag):.4g} s {'later' if lag >= 0 else 'earlier'}"
+    return View(
         found,
-        name="delay",
-        title=f"Delay from {sent} to {seen}",
-        claim=f"{in_interval(samples)} samples of {number(record.step, 4)} s, beside "
-        f"{found.chosen.follower.name}. Whole samples that hold it and every part of the record: "
-        f"{span(*found.whole_samples)}.",
-        sections=(
-            Section("Models", (delays(found),)),
-            Section(
-                "Figures",
-                (
-                    Illustration(
-                        "following",
-                        "Measured against fitted",
-                        f"{label_of(found.sources)}Where the command changes most.",
-                        draw_following(found),
-                    ),
-                    Illustration(
-                        "parts",
-                        "Delay in parts of the record",
-                        "Bars: intervals at 95 % for all parts together. Shaded: for the record.",
-                        draw_delay(found),
-                    ),
-                ),
-            ),
+        kind="delay",
+        chosen=model,
+        reason=f"from {sent} to {seen}",
+        ranges={"delay": (found.delay, "s"), "samples": (found.samples, "samples")},
+        facts=_facts(found),
+        lines=(
+            f"{seen} is most like {sent} {when} (correlation {correlation:.3f})",
+            f"delay = {found.samples} samples of {step:.4g} s [95 %]",
+            f"delay = {found.delay} s, beside {model}",
+            f"whole samples that hold it, and every part of the record: {whole}",
         ),
+        details=(),
+        fits=_table(found),
+        title=f"Delay from {sent} to {seen}",
+        claim=f"{in_interval(found.samples)} samples of {number(step, 4)} s, beside {model}. Whole "
+        f"samples that hold it and every part of the record: {whole}.",
+        sections=lambda: _sections(found),
         meaning=_MEANING,
     )
 
 
-def delays(found: DelayIdentification) -> Table:
-    """Return the delay beside each model."""
+def _table(found: DelayIdentification) -> Table:
     least = min(fit.bic for fit in found.fits)
     rows = tuple(
         (
@@ -73,3 +65,40 @@ def delays(found: DelayIdentification) -> Table:
         for fit in found.fits
     )
     return Table("Delay beside each model", ("Beside", "Samples", "BIC - least"), rows)
+
+
+def _facts(found: DelayIdentification) -> Facts:
+    record = found.record
+    return {
+        "columns": {"command": record.names[0], "measured": record.names[1]},
+        "sampling_step_s": record.step,
+        "correlation_peak": {"lag_s": found.peak[0], "correlation": found.peak[1]},
+        "chosen": found.chosen.follower.name,
+        "delay_s": estimate_numbers(found.delay),
+        "delay_samples": estimate_numbers(found.samples),
+        "parts": [
+            {"time_s": time, "samples": estimate_numbers(part)} for time, part in found.parts
+        ],
+        "whole_samples": list(found.whole_samples),
+        "fits": [
+            {
+                "beside": fit.follower.name,
+                "delay_s": fit.delay,
+                "bic": fit.bic,
+                "whiteness_p": fit.uncertainty.whiteness,
+            }
+            for fit in found.fits
+        ],
+        "smooth_between_samples": found.smooth,
+    }
+
+
+def _sections(found: DelayIdentification) -> Iterator[Section]:
+    rows = tuple((number(time), in_interval(part)) for time, part in found.parts)
+    parts = Table("Delay in parts of the record", ("Middle [s]", "Samples"), rows)
+    yield Section("Models", (_table(found), parts))
+    record = found.record
+    figure = draw_fit(record.time, record.seen, found.chosen.fitted, record.names[1])
+    note = label_of(found.sources)
+    drawn = Illustration("following", "Measured against fitted", note, figure)
+    yield Section("Figures", (drawn,))

@@ -1,17 +1,28 @@
-"""The page of a run and its bounds."""
+"""What is said of a run and its bounds."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from pathlib import Path
 
-from nrs_design.identification.reporting.figures.running import draw_judgement, draw_stiffness
-from nrs_design.identification.reporting.identification import facts_of, label_of, source_section
+from nrs_design.identification.reporting.figures import draw_run
+from nrs_design.identification.reporting.view import (
+    Facts,
+    facts_of,
+    label_of,
+    source_facts,
+    source_section,
+)
+from nrs_design.identification.running.check import Check
+from nrs_design.identification.running.judge import RunJudgement
 from nrs_design.reporting.document import Block, Bullets, Illustration, Report, Section, Table
+from nrs_design.spec import LoadedSpec
 
-if TYPE_CHECKING:
-    from nrs_design.identification.running.judge import RunJudgement
-
+CLAIMS = {
+    "inside": "the run stayed inside what was proved",
+    "outside": "the run left its bounds",
+    "inconclusive": "no bound was left as far as could be judged",
+}
 _FOOTER = "Page of nrs-design. A run is one run, not a proof."
 _PROVED = "A run inside its bounds is one run; the proof is about all of them."
 _DECLARED = (
@@ -19,31 +30,80 @@ _DECLARED = (
     "--certificate."
 )
 _MEANING = (
-    "Estimated: a window shows how much the torque changes with the angle, and the range bounds "
-    "their ratio. Where the stiffness changes inside its range, the two differ, so no window is "
-    "called inside or outside.",
     "Undecided: more than one reading of the log is possible.",
     "Not judged: the log lacks a column, or a bound is not known. Not modelled: the model takes "
     "for granted that there is none of it.",
 )
 
 
+def first_violation(found: RunJudgement) -> str:
+    """Say what was left first, and when; empty for nothing."""
+    first = found.first
+    if first is None or first.first is None:
+        return ""
+    return f"first at t = {first.first.time:.6g} s: {first.name}: {first.first.words}"
+
+
+def unproved_text(reason: str) -> str:
+    """Say that a spec is not proved."""
+    return f"UNPROVED SPEC: {reason}; its ranges are only declared."
+
+
+def run_facts(
+    found: RunJudgement, loaded: LoadedSpec, certificate: Path | None, reason: str
+) -> Facts:
+    """Return the verdict and every check; the reason says why it is not proved, empty if it is."""
+    first = found.first
+    return {
+        "verdict": found.verdict,
+        "proved": found.bounds.proved,
+        "unproved_because": reason or None,
+        "synthetic": found.log.source.synthetic,
+        "log": source_facts([found.log.source]),
+        "spec": {"name": loaded.spec.name, "sha256": loaded.sha256},
+        "certificate": None if certificate is None else str(certificate),
+        "first_violation": _violation(first) if first is not None else None,
+        "checks": [
+            {
+                "name": c.name,
+                "status": str(c.status),
+                "measured": c.measured,
+                "allowed": c.allowed or None,
+                "basis": c.basis or None,
+                "first_violation": _violation(c),
+            }
+            for c in found.checks
+        ],
+        "judged_share_of_rows": found.judged,
+        "stiffness_not_tested_because": found.hint or None,
+    }
+
+
+def _violation(check: Check) -> Facts | None:
+    if check.first is None:
+        return None
+    return {"check": check.name, "time_s": check.first.time, "what": check.first.words}
+
+
 def run_report(found: RunJudgement, name: str, reason: str) -> Report:
-    """Say and draw everything about a run."""
-    log, limit = found.log, _PROVED if found.bounds.proved else _DECLARED
-    loud = (f"UNPROVED SPEC: {reason}; its ranges are only declared.",) if reason else ()
+    """Return the page of a run."""
+    sources = [found.log.source]
+    claim = first_violation(found) or CLAIMS[found.verdict]
+    limit = _PROVED if found.bounds.proved else _DECLARED
+    about = "Dashed: the first violation, if there is one."
+    figure = Illustration("run", "The log", about, draw_run(found))
     return Report(
         name=f"run-{name}",
         title=f"A run of {name}",
         verdict=found.verdict,
-        claim=f"{label_of([log.source])}{_claim(found)}",
-        remarks=loud,
-        facts=facts_of([log.source]),
+        claim=f"{label_of(sources)}{claim[0].upper()}{claim[1:]}.",
+        remarks=(unproved_text(reason),) if reason else (),
+        facts=facts_of(sources),
         sections=(
             Section("Checks", tuple(_tables(found))),
-            Section("Figures", tuple(_figures(found))),
+            Section("Figures", (figure,)),
             Section("How to read this", (Bullets("", (*_MEANING, limit)),), boxed=True),
-            source_section([log.source]),
+            source_section(sources),
         ),
         footer=_FOOTER,
     )
@@ -59,27 +119,3 @@ def _tables(found: RunJudgement) -> Iterator[Block]:
     )
     if left:
         yield Bullets("First violations", left)
-    yield Bullets("", (f"{found.estimates[0].upper()}{found.estimates[1:]}.",))
-
-
-def _claim(found: RunJudgement) -> str:
-    first = found.first
-    if first is not None and first.first is not None:
-        return f"First left at t = {first.first.time:.6g} s: {first.name}: {first.first.words}."
-    if found.verdict == "inside":
-        return "The run stayed inside what was proved."
-    return "No bound was left as far as could be judged."
-
-
-def _figures(found: RunJudgement) -> Iterator[Illustration]:
-    if found.windows:
-        yield Illustration(
-            "stiffness",
-            "Slope in windows",
-            "Slope of torque over angle. Bars: how far noise may have moved it. Shaded: the range "
-            "of their ratio.",
-            draw_stiffness(found),
-        )
-    yield Illustration(
-        "run", "The log", "Dashed: the first violation, if there is one.", draw_judgement(found)
-    )

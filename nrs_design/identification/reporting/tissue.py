@@ -1,35 +1,32 @@
-"""The page of the identification of a tissue."""
+"""What is said of the identification of a tissue."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Iterator
 
 from nrs_design.identification.lever import in_words, named, parameter_units
-from nrs_design.identification.reporting.figures.identification import (
-    draw_fit,
-    draw_intervals,
-    draw_loop,
-)
-from nrs_design.identification.reporting.identification import (
+from nrs_design.identification.reporting.figures import draw_fit
+from nrs_design.identification.reporting.view import (
     DRAWN,
+    Facts,
+    View,
+    estimate_numbers,
     figure_names,
-    identification_page,
     in_interval,
     label_of,
     marked,
 )
-from nrs_design.identification.statistics import span
-from nrs_design.identification.tissue.offsets import OFFSET_UNITS, OFFSET_WORDS
+from nrs_design.identification.statistics import Estimate, span
+from nrs_design.identification.tissue.identify import TissueIdentification
+from nrs_design.identification.tissue.offsets import OFFSET_WORDS
+from nrs_design.identification.tissue.output_error import RecordFit
+from nrs_design.identification.tissue.pool import ModelFit
+from nrs_design.identification.tissue.tangent import Tangent
+from nrs_design.models.contact import AbstractContactLaw
 from nrs_design.proof.text import counted
-from nrs_design.reporting.document import Block, Bullets, Illustration, Report, Section, Table
+from nrs_design.reporting.document import Block, Bullets, Illustration, Section, Table
 from nrs_design.reporting.formatting import number, shortened
 
-if TYPE_CHECKING:
-    from nrs_design.identification.tissue.identify import TissueIdentification
-    from nrs_design.identification.tissue.output_error import RecordFit
-    from nrs_design.identification.tissue.pool import ModelFit
 _MEANING = (
     "Intervals are 95 % confidence intervals of the pooled parameters; with several records they "
     "hold the spread between records.",
@@ -37,84 +34,169 @@ _MEANING = (
     "what else it holds.",
     "Position of contact and force in air are fitted with the law, if they are not given. Samples "
     "that are not used are drawn pale.",
-    "RMSE is that of the pooled parameters in each record. AIC and BIC are sums over the records, "
-    "each with parameters of its own.",
+    "RMSE is that of the pooled parameters in each record. BIC is a sum over the records, each "
+    "with parameters of its own.",
     "The p-value of the whiteness test is small where residuals are not white noise: the law then "
     "misses something, and its intervals come from the scatter between parts of the record.",
 )
 
 
-def tissue_report(
-    found: TissueIdentification, arm: float | None = None, series: Sequence[str] = ()
-) -> Report:
-    """Say and draw everything about a tissue; with a lever arm in m, the law at the pivot, too."""
-    chosen = found.chosen
-    several = (Section("Several relaxations", (Bullets("", tuple(series)),)),) if series else ()
-    values = in_words(named(chosen.law, map(in_interval, chosen.ranges), found.rotational))
-    return identification_page(
+def view_tissue(found: TissueIdentification, arm: float | None = None) -> View:
+    """Say everything about a tissue; with a lever arm in m, the law at the pivot, too."""
+    model, law = found.chosen, found.chosen.law
+    ranges = named(law, model.ranges, found.rotational)
+    values = in_words(named(law, map(in_interval, model.ranges), found.rotational))
+    return View(
         found,
-        name=f"tissue-{chosen.law.name}",
-        title=f"Tissue law from {counted(len(found.records), 'record')}",
-        claim=f"{chosen.law.formula} with {values}. {found.reason}",
-        sections=(
-            Section("What of the records is used", tuple(_used(found))),
-            Section("Comparison of laws", (comparison(found), *_doubts(found))),
-            Section("Parameters of the chosen law", tuple(_parameters(found, arm))),
-            *several,
-            Section("Measured against fitted", tuple(_tissue_figures(found))),
+        kind="tissue",
+        chosen=law.name,
+        reason=found.reason,
+        ranges={name: (estimate, unit) for name, estimate, unit in ranges},
+        facts=_facts(found, arm),
+        lines=(
+            found.reason,
+            *(f"{in_words([row])} holds {found.covers}" for row in ranges),
+            *_notes(found, arm),
         ),
+        details=[
+            f"{fit.record.name}: {'; '.join((*_offsets(fit, found).values(), *fit.trial.remarks))}"
+            for fit in model.fits
+        ],
+        fits=_table(found),
+        title=f"Tissue law from {counted(len(found.records), 'record')}",
+        claim=f"{law.formula} with {values}. {found.reason}",
+        sections=lambda: _sections(found, arm),
         meaning=_MEANING,
     )
 
 
-def _used(found: TissueIdentification) -> Iterator[Block]:
-    """Say what was cut and why, and which offsets were found."""
-    rows = tuple(
-        (
-            fit.record.name,
-            f"{int(fit.trial.used.sum())} of {len(fit.record.force)}",
-            *(_offset(fit, name, found.rotational) for name in OFFSET_WORDS),
-        )
-        for fit in found.chosen.fits
-    )
-    columns = ("Record", "Samples used", *(words.capitalize() for words in OFFSET_WORDS.values()))
-    yield Table("Samples and offsets [95 % interval]", columns, rows)
-    remarks = tuple(
-        f"{fit.record.name}: {text}." for fit in found.chosen.fits for text in fit.trial.remarks
-    )
-    yield Bullets("What was found and cut", remarks)
+def _notes(found: TissueIdentification, arm: float | None) -> Iterator[str]:
+    """Say what the parameters are besides: a tangent, a box, a law at the pivot."""
+    law, about = found.chosen.law, found.tangent
+    if about is not None:
+        length = "rad" if found.rotational else "m"
+        values = in_words(named(about.law, about.ranges, found.rotational))
+        yield f"small motions about {span(about.low, about.high, length, 5)}: {values}"
+        *power, exponent = about.power
+        values = in_words([*named(about.law, power, found.rotational), ("phi", exponent, "")])
+        yield f"the law itself, by its tangent at {about.about:.5g} {length}: {values}"
+    if found.chosen.box:
+        yield found.chosen.box
+    if arm is not None:
+        turned = [f"{value:.6g}" for value in law.at_pivot(arm).values]
+        yield f"at the pivot: {in_words(named(law, turned, True))}"
 
 
-def _offset(fit: RecordFit, name: str, rotational: bool) -> str:
-    offset = next((item for item in fit.offsets if item.name == name), None)
-    if offset is None:
-        return "none"
-    unit, estimate = OFFSET_UNITS[name][rotational], offset.estimate
-    if not offset.fitted:
-        return f"{number(estimate.value)} {unit}, {offset.provided or 'given'}"
-    value = f"{estimate} {unit}"
-    return f"{value}, {offset.provided}" if offset.provided else value
+def _offsets(fit: RecordFit, found: TissueIdentification) -> dict[str, str]:
+    """Return the offsets of a record in words, by their names."""
+    return {offset.name: offset.text(rotational=found.rotational) for offset in fit.offsets}
 
 
-def comparison(found: TissueIdentification) -> Table:
+def _table(found: TissueIdentification) -> Table:
     """Return how well each law describes the records."""
-    unit = "N m" if found.rotational else "N"
     records = [record.name for record in found.records]
-    least_aic = min(model.aic for model in found.models)
-    least_bic = min(model.bic for model in found.models)
+    least = min(model.bic for model in found.models)
     rows = tuple(
         (
             marked(model.law.name, chosen=model is found.chosen),
             *(number(value, 3) for value in model.rmse),
-            number(model.aic - least_aic),
-            number(model.bic - least_bic),
+            number(model.bic - least),
             f"{min(fit.uncertainty.whiteness for fit in model.fits):.2g}",
             str(len(model.doubts)),
         )
         for model in found.models
     )
-    columns = ("Law", *records, "AIC - least", "BIC - least", "White p", "Doubts")
+    unit = "N m" if found.rotational else "N"
+    columns = ("Law", *records, "BIC - least", "White p", "Doubts")
     return Table(f"RMSE [{unit}] in each record, and criteria", columns, rows)
+
+
+def _facts(found: TissueIdentification, arm: float | None) -> Facts:
+    law, about = found.chosen.law, found.tangent
+    turned = None if arm is None else law.at_pivot(arm).values
+    return {
+        "chosen": law.name,
+        "reason": found.reason,
+        "ranges": _numbers(law, found.chosen.ranges, found.rotational),
+        "tangent": None if about is None else _tangent(about, found.rotational),
+        "range_covers": found.chosen.coverage,
+        "range_covers_words": found.covers,
+        "box": found.chosen.box or None,
+        "at_pivot": turned and dict(zip(law.parameters(), turned, strict=True)),
+        "models": [_model(model, found.rotational) for model in found.models],
+    }
+
+
+def _numbers(law: AbstractContactLaw, estimates: Iterable[Estimate], rotational: bool) -> Facts:
+    return {
+        name: estimate_numbers(estimate) | {"unit": unit}
+        for name, estimate, unit in named(law, estimates, rotational)
+    }
+
+
+def _tangent(about: Tangent, rotational: bool) -> Facts:
+    *power, exponent = about.power
+    law = _numbers(about.law, power, rotational) | {"phi": estimate_numbers(exponent)}
+    return {
+        "preload": [about.low, about.high],
+        "ranges": _numbers(about.law, about.ranges, rotational),
+        "about": about.about,
+        "law": law,
+    }
+
+
+def _model(model: ModelFit, rotational: bool) -> Facts:
+    return {
+        "law": model.law.name,
+        "parameters": _numbers(model.law, model.estimates, rotational),
+        "relaxation_time_s": model.law.relaxation_time,
+        "bic": model.bic,
+        "doubts": list(model.doubts),
+        "records": [
+            _record(fit, rotational) | {"rmse_pooled": pooled}
+            for fit, pooled in zip(model.fits, model.rmse, strict=True)
+        ],
+    }
+
+
+def _record(fit: RecordFit, rotational: bool) -> Facts:
+    return {
+        "parameters": _numbers(fit.law, fit.estimates, rotational),
+        "rmse": fit.rmse,
+        "bic": fit.bic,
+        "offsets": {
+            offset.name: estimate_numbers(offset.estimate)
+            | {"fitted": offset.fitted, "provided": offset.provided or None}
+            for offset in fit.offsets
+        },
+        "used": int(fit.trial.used.sum()),
+        "samples": len(fit.record.force),
+        "cuts": list(fit.trial.cuts),
+        "remarks": list(fit.trial.remarks),
+        "r2": fit.r2,
+        "residual_over_range": fit.rmse / fit.trial.span,
+        "whiteness_p": fit.uncertainty.whiteness,
+    }
+
+
+def _sections(found: TissueIdentification, arm: float | None) -> Iterator[Section]:
+    fits = found.chosen.fits
+    rows = tuple(
+        (
+            fit.record.name,
+            f"{int(fit.trial.used.sum())} of {len(fit.record.force)}",
+            *(_offsets(fit, found).get(name, "none") for name in OFFSET_WORDS),
+        )
+        for fit in fits
+    )
+    columns = ("Record", "Samples used", *(words.capitalize() for words in OFFSET_WORDS.values()))
+    remarks = tuple(f"{fit.record.name}: {text}." for fit in fits for text in fit.trial.remarks)
+    used = Table("Samples and offsets [95 % interval]", columns, rows)
+    said = Bullets("What was found and cut", remarks)
+    yield Section("What of the records is used", (used, said))
+    yield Section("Comparison of laws", (_table(found), *_doubts(found)))
+    yield Section("Parameters of the chosen law", tuple(_parameters(found, arm)))
+    yield Section("Measured against fitted", tuple(_figures(found)))
 
 
 def _doubts(found: TissueIdentification) -> Iterator[Block]:
@@ -126,76 +208,31 @@ def _doubts(found: TissueIdentification) -> Iterator[Block]:
 
 
 def _parameters(found: TissueIdentification, arm: float | None) -> Iterator[Block]:
-    model = found.chosen
-    law = model.law
+    model, law = found.chosen, found.chosen.law
     units = parameter_units(law, found.rotational)
-    columns = (
-        "Record",
-        *(f"{n} [{u or '1'}]" for n, u in zip(law.parameters(), units, strict=True)),
+    names = (f"{n} [{u or '1'}]" for n, u in zip(law.parameters(), units, strict=True))
+    rows = (
+        *((fit.record.name, *map(in_interval, fit.estimates)) for fit in model.fits),
+        ("pooled", *map(in_interval, model.estimates)),
+        (f"range: {found.covers}", *map(in_interval, model.ranges)),
     )
-    rows = [
-        (fit.record.name, *(in_interval(estimate) for estimate in fit.estimates))
-        for fit in model.fits
-    ]
-    rows.append(("pooled", *map(in_interval, model.estimates)))
-    rows.append((f"range: {found.covers}", *map(in_interval, model.ranges)))
-    if arm is not None:
-        values = named(law, law.at_pivot(arm).values, True)
-        turned = [f"{number(value, 6)} {unit}" for _, value, unit in values]
-        rows.append((f"pooled, at the pivot ({number(arm)} m)", *turned))
-    yield Table("Estimates [95 % interval]", columns, tuple(rows))
-    notes = [model.box] if model.box else []
-    if found.tangent is not None:
-        about = found.tangent
-        shown = ", ".join(map(in_interval, about.ranges))
-        notes.append(
-            f"Small motions about deflections of {span(about.low, about.high, digits=5)}: "
-            f"stiffness and damping {shown}."
-        )
+    yield Table("Estimates [95 % interval]", ("Record", *names), rows)
+    notes = [f"{note[0].upper()}{note[1:].rstrip('.')}." for note in _notes(found, arm)]
+    if law.relaxation_time is not None:
+        notes.append(f"The force relaxes in {number(law.relaxation_time)} s at rest.")
     if notes:
         yield Bullets("", tuple(notes))
-    if law.relaxation_time is not None:
-        tau = (f"The force relaxes in {number(law.relaxation_time)} s at rest.",)
-        yield Bullets("", tau)
-    if len(model.fits) > 1:
-        yield from _interval_figures(model, units)
 
 
-def _interval_figures(model: ModelFit, units: tuple[str, ...]) -> Iterator[Illustration]:
-    names = [fit.record.name for fit in model.fits]
-    for i, (name, unit) in enumerate(zip(model.law.parameters(), units, strict=True)):
-        single = [fit.estimates[i] for fit in model.fits]
-        if all(math.isfinite(estimate.high) for estimate in (*single, model.ranges[i])):
-            yield Illustration(
-                f"interval-{name}",
-                f"{name} in each record",
-                "Bars are 95 % intervals; where records differ by more than their bars, the "
-                "tissue itself differs between records.",
-                draw_intervals(
-                    names, single, model.estimates[i], model.ranges[i], f"{name} [{unit or '1'}]"
-                ),
-            )
-
-
-def _tissue_figures(found: TissueIdentification) -> Iterator[Illustration]:
-    force, deflection = (
-        ("Torque [N m]", "Angle [rad]") if found.rotational else ("Force [N]", "Deflection [m]")
-    )
-    note = label_of(found.sources)
-    drawn = found.chosen.fits[:DRAWN]
-    for fit, name in zip(drawn, figure_names([fit.record.name for fit in drawn]), strict=True):
-        trial, used = fit.trial, fit.trial.used
+def _figures(found: TissueIdentification) -> Iterator[Illustration]:
+    fits = found.chosen.fits[:DRAWN]
+    for fit, name in zip(fits, figure_names([fit.record.name for fit in fits]), strict=True):
+        trial = fit.trial
+        label = "Torque [N m]" if found.rotational else "Force [N]"
         yield Illustration(
             f"fit-{name}",
             fit.record.name,
-            f"{note}Fit to this record alone: RMSE {number(fit.rmse)}, whiteness p = "
-            f"{fit.uncertainty.whiteness:.2g}; {fit.agreeing} of {counted(fit.starts, 'start')} "
-            "ended at this optimum.",
-            draw_fit(trial.motion.time, trial.force, fit.fitted, force, used),
-        )
-        yield Illustration(
-            f"loop-{name}",
-            f"{fit.record.name}: hysteresis",
-            f"{note}The area of the loop is the energy that the tissue takes up.",
-            draw_loop(trial.deflection, trial.measured, fit.fitted[used], (deflection, force)),
+            f"{label_of(found.sources)}Fit to this record alone: RMSE {number(fit.rmse)}, "
+            f"whiteness p = {fit.uncertainty.whiteness:.2g}.",
+            draw_fit(trial.motion.time, trial.force, fit.fitted, label, trial.used),
         )

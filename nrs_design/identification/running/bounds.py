@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -11,25 +11,14 @@ from nrs_design.controllers.sector import Sector, sector_of
 from nrs_design.errors import CertificateError, DesignError
 from nrs_design.proof.evidence import Shows
 from nrs_design.spec import InteractionDesignSpec, LoadedSpec, SwitchingSpec, kinds
-from nrs_design.spec.build_plant import build_environments
-from nrs_design.spec.controllers import contact_names, touched_in
 from nrs_design.spec.exact import parse_exact
 from nrs_design.spec.quantity import parse_quantity
-
-
-@dataclass(frozen=True, slots=True)
-class Stiffness:
-    """Stiffness that a controller may meet, in N m/rad."""
-
-    ranges: tuple[tuple[float, float], ...]  # Of the environments that it touches
-    foreign: tuple[str, ...]  # Environments among them that no window can tell
 
 
 @dataclass(frozen=True, slots=True)
 class RunBounds:
     """What a run may do."""
 
-    stiffness: Mapping[str, Stiffness | None]  # By controller; None for one without contact
     stays: Mapping[str, tuple[float, float]]  # Shortest and longest time in each controller, in s
     transitions: frozenset[tuple[str, str]] | None  # Allowed switches; None allows all
     names_contacts: bool  # Whether there are other rules, about what is touched, which no log says
@@ -64,11 +53,6 @@ class RunBounds:
     def granted(self) -> str:
         """The basis of what no check shows."""
         return f"taken for granted by {self.source}"
-
-    def ranges_of(self, controllers: Iterable[str]) -> tuple[tuple[float, float], ...]:
-        """Return the ranges of stiffness that some controllers may meet, each once."""
-        met = [stiffness for name in controllers if (stiffness := self.stiffness[name])]
-        return tuple(dict.fromkeys(pair for item in met for pair in item.ranges))
 
 
 def read_run_bounds(loaded: LoadedSpec) -> RunBounds:
@@ -132,7 +116,6 @@ def bounds_of_spec(spec: InteractionDesignSpec) -> RunBounds:
     transitions = rules.transitions
     margin = spec.goals.min_delay_margin if spec.goals else None
     return RunBounds(
-        stiffness={name: _stiffness(spec, name) for name in spec.controllers},
         stays={name: _stay(rules, name) for name in spec.controllers},
         transitions=None if transitions is None else frozenset(transitions),
         names_contacts=spec.switching.names_contacts,
@@ -165,17 +148,6 @@ def _period(spec: InteractionDesignSpec) -> float | None:
     """Return when the law runs; of two periods, a log does not say which it has."""
     sampling = spec.sampling
     return None if sampling is None or sampling.round > 1 else sampling.period.si
-
-
-def _stiffness(spec: InteractionDesignSpec, name: str) -> Stiffness | None:
-    controller = spec.controllers[name]
-    if not controller.contacts:
-        return None
-    touched = {name: spec.environments[name] for name in touched_in(controller.contacts)}
-    foreign = tuple(contact for contact, e in touched.items() if e.remembers)
-    felt = set(contact_names(controller.contacts)).difference(foreign)
-    ranges = (e.stiffness for e in build_environments(spec) if e.name in felt)
-    return Stiffness(tuple((float(k.low), float(k.high)) for k in ranges), foreign)
 
 
 def _stay(rules: SwitchingSpec, name: str) -> tuple[float, float]:

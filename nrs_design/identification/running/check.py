@@ -14,8 +14,6 @@ class BoundStatus(StrEnum):
     OUTSIDE = "outside"
     # It may be either: intervals lie across the bound.
     UNDECIDED = "undecided"
-    # What a log shows of it is another quantity than the bound is about.
-    ESTIMATED = "estimated"
     NOT_JUDGED = "not judged"
     # The proof assumes that there is none of it, and has no bound.
     NOT_MODELLED = "not modelled"

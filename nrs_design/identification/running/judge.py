@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from math import floor
 
 from nrs_design.errors import DataError
 from nrs_design.identification.running.bounds import RunBounds
 from nrs_design.identification.running.check import BoundStatus, Check
-from nrs_design.identification.running.contact import ESTIMATE, estimate_contact
 from nrs_design.identification.running.log import RunLog
 from nrs_design.identification.running.sector import hint, judge_sector
 from nrs_design.identification.running.signals import (
@@ -18,11 +16,9 @@ from nrs_design.identification.running.signals import (
     judge_saturation,
 )
 from nrs_design.identification.running.stays import judge_stays
-from nrs_design.identification.running.stiffness import Window
 
-# In s; long enough for some rows of any loop, short beside the motion of a hand.
-WINDOW = 0.5
 _NO_SURFACE = "a log does not say where its surface is"
+_NO_LOSS = "a log does not say whether contact was lost"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -32,8 +28,6 @@ class RunJudgement:
     log: RunLog  # The data
     bounds: RunBounds  # What the spec promises
     checks: tuple[Check, ...]  # One for each bound
-    windows: tuple[Window, ...]  # Stiffness at the pivot in N m/rad, estimated
-    share: float  # Of the time of the log, in which stiffness or free motion could be estimated
     # Of the rows, in which a stiffness far off would have been told; None if nothing tells.
     judged: float | None = None
 
@@ -42,14 +36,6 @@ class RunJudgement:
         """The check that was violated first, or None."""
         left = [check for check in self.checks if check.first is not None]
         return min(left, key=lambda c: c.first.time if c.first else 0.0, default=None)
-
-    @property
-    def estimates(self) -> str:
-        """What was estimated, for how much of the time (rounded down), and what that is not."""
-        share = floor(1000 * self.share) / 10
-        names = ", ".join(c.name for c in self.checks if c.status is BoundStatus.ESTIMATED)
-        told = f"stiffness or free motion shows in {share:g} % of the time"
-        return f"estimated, not judged: {names}: {ESTIMATE}; {told}" if names else told
 
     @property
     def hint(self) -> str:
@@ -62,25 +48,8 @@ class RunJudgement:
         statuses = {check.status for check in self.checks}
         if BoundStatus.OUTSIDE in statuses:
             return "outside"
-        open_ends = statuses & {
-            BoundStatus.UNDECIDED,
-            BoundStatus.ESTIMATED,
-            BoundStatus.NOT_JUDGED,
-        }
+        open_ends = statuses & {BoundStatus.UNDECIDED, BoundStatus.NOT_JUDGED}
         return "inside" if self.bounds.proved and not open_ends else "inconclusive"
-
-
-def _check_unit(log: RunLog, bounds: RunBounds) -> None:
-    """Refuse a command that the motor of the spec does not take."""
-    if log.command_unit in ("", bounds.command):
-        return
-    raise DataError(
-        f"its command is read in {log.command_unit}, and the motor of the spec takes "
-        f"{bounds.command}",
-        path=log.source.path,
-        remedy=f"name the column that the motor is sent command_{bounds.command} in its header, "
-        "or leave the other out",
-    )
 
 
 def judge_run(
@@ -89,22 +58,26 @@ def judge_run(
     *,
     proved: bool,
     losable: bool = False,
-    window: float = WINDOW,
     command_limit: float | None = None,
 ) -> RunJudgement:
     """Compare a log with the bounds of a spec, which a valid certificate proves or not.
 
-    Windows of stiffness are in s. A command limit is in units of the command; by default that of
-    the spec. A log whose command is of another kind than the spec's is a `DataError`.
+    A command limit is in units of the command; by default that of the spec. A log whose command is
+    of another kind than the spec's is a `DataError`.
     """
-    _check_unit(log, bounds)
+    if log.command_unit not in ("", bounds.command):
+        raise DataError(
+            f"its command is read in {log.command_unit}, and the motor of the spec takes "
+            f"{bounds.command}",
+            path=log.source.path,
+            remedy=f"name the column that the motor is sent command_{bounds.command} in its "
+            "header, or leave the other out",
+        )
     bounds = replace(bounds, proved=proved)
-    touch = estimate_contact(log, bounds, window, losable=losable if proved else bounds.losable)
-    estimated, contact = touch.checks
-    tested, judged = judge_sector(log, bounds) or ((estimated,), None)
+    tested, judged = judge_sector(log, bounds)
     checks = (
         *tested,
-        contact,
+        _judge_contact(bounds, losable=losable if proved else bounds.losable),
         judge_stays(log, bounds),
         judge_delay(log, bounds),
         judge_jitter(log, bounds),
@@ -115,4 +88,16 @@ def judge_run(
             for name, allowed in bounds.preloads.items()
         ),
     )
-    return RunJudgement(log, bounds, checks, touch.windows, touch.share, judged)
+    return RunJudgement(log, bounds, checks, judged)
+
+
+def _judge_contact(bounds: RunBounds, *, losable: bool | None) -> Check:
+    """Say whether contact may be lost, which is None if nothing says it."""
+    if losable:
+        basis = "covered by the proof" if bounds.proved else "asked for by the spec, not proved"
+        allowed = "lost and made again at any time"
+        return Check("contact", BoundStatus.INSIDE, "may be lost", allowed, basis)
+    if losable is None:
+        basis = "`contact` of the spec, or a certificate, says whether it may be lost"
+        return Check.open("contact", _NO_LOSS, "not said", basis)
+    return Check.open("contact", _NO_LOSS, "kept all the time", f"assumption of {bounds.source}")

@@ -42,15 +42,18 @@ class _Rows:
     last: Array
 
 
-def judge_sector(log: RunLog, bounds: RunBounds) -> tuple[tuple[Check, ...], float] | None:
-    """Hold a log against the range of stiffness; None if the spec, or the log, does not tell.
+def judge_sector(log: RunLog, bounds: RunBounds) -> tuple[tuple[Check, ...], float | None]:
+    """Hold a log against the range of stiffness.
 
     The checks are of the stiffness, and of the speed where the spec bounds it; the share is of the
-    rows in which `JUDGED` times the range would have been told.
+    rows in which `JUDGED` times the range would have been told, None where nothing tells.
     """
     sector, columns = bounds.sector, _columns(log, bounds)
-    if isinstance(sector, str) or columns is None:
-        return None
+    if columns is None:
+        words = "no columns for angle and torque, nor for deflection and force with a lever arm"
+        return (Check.open("stiffness", words),), None
+    if isinstance(sector, str):
+        return (Check.open("stiffness", sector),), None
     basis = "proved range" if bounds.proved else "range of the spec, not proved"
     allowed = span(float(sector.low), float(sector.high), "N m/rad", 5)
     every = bounds.period or bounds.oldest or inf

@@ -9,10 +9,10 @@ import numpy as np
 from nrs_design.errors import DataError
 from nrs_design.identification.datasets.records import SignalRecord
 from nrs_design.identification.delay.identify import identify_delay
+from nrs_design.identification.rounding import noise_variance
 from nrs_design.identification.running.bounds import RunBounds
 from nrs_design.identification.running.check import BoundStatus, Check, Violation
 from nrs_design.identification.running.log import RunLog
-from nrs_design.identification.running.stiffness import noise_variance
 from nrs_design.identification.statistics import joint_level, span, student_quantile
 from nrs_design.proof.bounds import lower, upper
 

@@ -38,6 +38,12 @@ class Offset:
     fitted: bool  # Whether it was fitted; else it is as given
     provided: str = ""  # What it rests on, empty for the record alone
 
+    def text(self, *, rotational: bool) -> str:
+        """Return it in words."""
+        value = str(self.estimate) if self.fitted else f"{self.estimate.value:.5g}"
+        rest = f" ({self.provided})" if self.provided else "" if self.fitted else " (given)"
+        return f"{OFFSET_WORDS[self.name]} {value} {OFFSET_UNITS[self.name][rotational]}{rest}"
+
 
 def offset_names(kind: type[AbstractContactLaw], trial: Trial) -> tuple[str, ...]:
     """Return the offsets that add to the force in proportion."""

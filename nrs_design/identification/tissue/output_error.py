@@ -29,8 +29,6 @@ from nrs_design.models.contact import AbstractContactLaw
 STARTS = 3
 # Samples that suffice to find the right valley.
 COARSE = 2_000
-# Starts whose costs end within this factor of the best one have found the same valley.
-_SAME = 1e-6
 # What the cost may still change by, as a part of it, where a search ends.
 _ROUGHLY, _EXACTLY = 1e-9, 1e-12
 # How far the position of contact is sought from where it was found, in travels of the record.
@@ -48,9 +46,6 @@ class RecordFit:
     uncertainty: Uncertainty  # Of the logarithms of the parameters
     rmse: float  # Root of the mean squared force error, in N (N m)
     free: int  # Parameters and offsets that were fitted
-    # agreeing, starts: how many searches there were, and how many of them ended here.
-    agreeing: int
-    starts: int
     doubts: tuple[str, ...]  # Why the record may not determine the parameters
 
     @property
@@ -85,19 +80,11 @@ class RecordFit:
         return 1 - self.rmse**2 / float(np.var(self.trial.measured))
 
     @property
-    def aic(self) -> float:
-        """Akaike's criterion ``n log(SSE/n) + 2 (p + 1)``."""
-        return self._criterion(2.0)
-
-    @property
     def bic(self) -> float:
-        """Schwarz's criterion ``n log(SSE/n) + (p + 1) log n``."""
-        return self._criterion(float(np.log(self.trial.used.sum())))
-
-    def _criterion(self, price: float) -> float:
-        """Return the misfit, with a price for parameters, offsets and the variance of the noise."""
-        fidelity = 2 * int(self.trial.used.sum()) * float(np.log(max(self.rmse, TINY)))
-        return fidelity + (self.free + 1) * price
+        """Schwarz's criterion, with the variance of the noise among the parameters."""
+        count = int(self.trial.used.sum())
+        fidelity = 2 * count * float(np.log(max(self.rmse, TINY)))
+        return fidelity + (self.free + 1) * float(np.log(count))
 
 
 def fit_record(kind: type[AbstractContactLaw], record: TissueRecord | Trial) -> RecordFit:
@@ -114,9 +101,8 @@ def fit_record(kind: type[AbstractContactLaw], record: TissueRecord | Trial) -> 
     candidates = sorted(coarse.starts(), key=lambda start: start.cost)
     ends = [_search(start, bounds, _ROUGHLY) for start in candidates[:STARTS]]
     best = min(ends, key=lambda end: end.cost)
-    agreeing = sum(end.cost <= best.cost * (1 + _SAME) for end in ends)
     point = _search(Point(problem, best.values), bounds, _EXACTLY)
-    return _judge(point, bounds, agreeing, len(ends))
+    return _judge(point, bounds)
 
 
 def rmse(law: AbstractContactLaw, trial: Trial) -> float:
@@ -128,7 +114,7 @@ def rmse(law: AbstractContactLaw, trial: Trial) -> float:
     return float(np.sqrt(point.cost))
 
 
-def _judge(point: Point, bounds: tuple[Array, Array], agreeing: int, starts: int) -> RecordFit:
+def _judge(point: Point, bounds: tuple[Array, Array]) -> RecordFit:
     names, trial, law = point.problem.names, point.problem.trial, point.law
     residuals = point.residuals
     J = np.column_stack([point.sensitivities, point.constants])
@@ -149,8 +135,6 @@ def _judge(point: Point, bounds: tuple[Array, Array], agreeing: int, starts: int
         uncertainty=own,
         rmse=float(np.sqrt(np.mean(residuals**2))),
         free=J.shape[1],
-        agreeing=agreeing,
-        starts=starts,
         doubts=tuple(said),
     )
 

@@ -54,11 +54,6 @@ class ModelFit:
         return box_remark(self.law.parameters(), covariances)
 
     @property
-    def aic(self) -> float:
-        """Sum over the records, each with parameters of its own."""
-        return sum(fit.aic for fit in self.fits)
-
-    @property
     def bic(self) -> float:
         """Sum over the records, each with parameters of its own."""
         return sum(fit.bic for fit in self.fits)

@@ -7,17 +7,16 @@ import pytest
 
 from nrs_design.errors import DataError
 from nrs_design.identification.actuator.identify import identify_actuator
-from nrs_design.identification.actuator.phasors import phasors_of
 from nrs_design.identification.datasets.records import FrequencyResponse, read_actuator
 from tests.identification import motors
-from tests.identification.support import MOTOR, sinusoids, source
+from tests.identification.support import sinusoids, source
 
 FEW = (1.2, 2.0, 3.0, 5.0, 8.0, 14.0)
 
 
 @pytest.fixture(scope="module")
 def found():
-    return identify_actuator(sinusoids(3, FEW), MOTOR)
+    return identify_actuator(sinusoids(3, FEW))
 
 
 def response(scatter=0.0, seed=0):
@@ -28,58 +27,29 @@ def response(scatter=0.0, seed=0):
 
 
 def test_parameters_of_the_thesis(found):
-    for fit in found.fits:
-        assert fit.dead_time is None or fit.dead_time.low == 0.0
-        for estimate, value, rel in (
-            (fit.gain, 4.8417e-4, 5e-3),
-            (fit.time_constant, 0.0351, 5e-3),
-            (fit.friction, 276.575, 0.03),
-        ):
-            assert estimate.covers(value)
-            assert estimate.value == pytest.approx(value, rel=rel)
-
-
-def test_derived_with_the_corrected_formulas(found):
-    """R 3.7454 ohm and 2.7044e5 rpm/(N m), where the thesis prints 3.7754 and 2.7261e5."""
-    assert found.figures.resistance.value == pytest.approx(3.7454, rel=2e-3)
-    assert found.figures.gradient.value == pytest.approx(2.7044e5, rel=2e-3)
-    assert not found.figures.resistance.covers(3.7754)
-
-
-def test_friction_is_off_the_response(found):
-    model = found.chosen.response(found.frequency)
-    assert found.response == pytest.approx(model, rel=0.02)
+    fit = found.fit
+    assert fit.dead_time.low == 0.0
+    for estimate, value, rel in (
+        (fit.gain, 4.8417e-4, 5e-3),
+        (fit.time_constant, 0.0351, 5e-3),
+        (fit.friction, 276.575, 0.03),
+    ):
+        assert estimate.covers(value)
+        assert estimate.value == pytest.approx(value, rel=rel)
 
 
 def test_ready_response():
-    fit = identify_actuator([response(0.01, 5)], MOTOR).chosen
+    fit = identify_actuator([response(0.01, 5)]).fit
     assert fit.gain.covers(4.8417e-4)
     assert fit.time_constant.covers(0.0351)
     assert fit.friction is None
-    exact = identify_actuator([response()], MOTOR).chosen
+    exact = identify_actuator([response()]).fit
     assert exact.gain.value == pytest.approx(4.8417e-4, rel=1e-9)
     assert exact.time_constant.value == pytest.approx(0.0351, rel=1e-9)
 
 
-def test_phasor_of_a_pure_sinusoid():
-    (record,) = sinusoids(0, (3.0,))
-    w = 2 * np.pi * 3
-    pure = replace(
-        record,
-        command=np.cos(w * record.time),
-        output=1 + 0.1 * record.time + np.sin(w * record.time),
-    )
-    phasors = phasors_of(pure)
-    assert phasors.frequency == pytest.approx(w, rel=1e-6)
-    assert phasors.velocity == pytest.approx(w, rel=1e-4)
-    # Held for 2 ms, the command acts 1 ms later.
-    assert np.angle(phasors.command) == pytest.approx(-w * 1e-3, rel=1e-4)
-
-
 def test_a_failed_start_is_no_end():
-    """Two frequencies are too few for the complex response, and enough in time."""
-    found = identify_actuator(sinusoids(1, (2.0, 9.0)), MOTOR)
-    (fit,) = found.fits
+    fit = identify_actuator(sinusoids(1, (2.0, 9.0))).fit
     assert fit.time_constant.covers(0.0351)
     assert fit.friction.covers(276.575)
 
@@ -101,7 +71,7 @@ NOISE = np.random.default_rng(1).normal(size=len(RECORDS[0].time))
 )
 def test_bad_input(data, message):
     with pytest.raises(DataError, match=message):
-        identify_actuator(data, MOTOR)
+        identify_actuator(data)
 
 
 @pytest.fixture(scope="module")
@@ -120,12 +90,12 @@ def runs():
 )
 def test_a_range_for_other_records_is_wider_than_their_spread(runs, coverage):
     """With two degrees of freedom, Student's t at 97.5 % on both sides is 6.205."""
-    found = identify_actuator(runs, MOTOR, coverage)
+    found = identify_actuator(runs, coverage)
     gain = found.ranges[0]
     half = {"prediction": 6.205 * np.sqrt(4 / 3), "tolerance": 20.0}[coverage]
     spread = np.std(np.log([0.95, 1.0, 1.05]), ddof=1)
     assert np.log(gain.high / gain.value) > 0.9 * half * spread
-    assert (found.coverage, found.chosen.gain.high < gain.high) == (coverage, True)
+    assert (found.coverage, found.fit.gain.high < gain.high) == (coverage, True)
 
 
 @pytest.mark.parametrize(
@@ -140,7 +110,7 @@ def test_no_range_for_other_records(runs, data, said):
     still = replace(motors.record("PRBS", 4), output=np.zeros(2000))
     given = {"one": runs[:1], "response": [response()], "at rest": [runs[0], still]}[data]
     with pytest.raises(DataError, match=said):
-        identify_actuator(given, MOTOR, "prediction")
+        identify_actuator(given, "prediction")
 
 
 def test_pauses_part_a_record_whose_stretches_are_fitted_together(tmp_path):
@@ -153,10 +123,10 @@ def test_pauses_part_a_record_whose_stretches_are_fitted_together(tmp_path):
     assert [(r.name, len(r.time)) for r in records] == [
         ("paused", 800), ("paused, part 2", 100), ("paused, part 3", len(whole.time) - 1100),
     ]  # fmt: skip
-    found = identify_actuator(records, MOTOR)
+    found = identify_actuator(records)
     assert found.ranges[0].covers(motors.GAIN)
     assert found.ranges[1].covers(motors.TIME_CONSTANT)
     assert found.remarks[0].startswith("paused: 3 pauses part the record: its stretches are fitted")
     assert found.doubts == ()
     with pytest.raises(DataError, match="needs several records"):
-        identify_actuator(records, MOTOR, "prediction")
+        identify_actuator(records, "prediction")

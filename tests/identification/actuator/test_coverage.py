@@ -9,7 +9,7 @@ import pytest
 
 from nrs_design.identification.actuator.identify import identify_actuator
 from tests.identification import motors
-from tests.identification.support import MOTOR, holds
+from tests.identification.support import holds
 
 SEEDS = 200
 LEAST = {("closed loop", False): 0.91}
@@ -22,7 +22,7 @@ TRUTH = (motors.GAIN, motors.TIME_CONSTANT, motors.FRICTION, motors.DELAY)
 def test_any_command(kind, is_angle):
     hits = []
     for seed in range(SEEDS):
-        fit = identify_actuator([motors.record(kind, seed, is_angle=is_angle)], MOTOR).chosen
+        fit = identify_actuator([motors.record(kind, seed, is_angle=is_angle)]).fit
         estimates = (fit.gain, fit.time_constant, fit.friction, fit.dead_time)
         hits.append(holds(estimates, TRUTH))
     rates = np.mean(hits, axis=0)

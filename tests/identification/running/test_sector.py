@@ -136,15 +136,16 @@ def test_a_linear_log_is_turned(tmp_path):
     assert judge_sector(record, bounds())[0][0].first is not None
 
 
-def test_without_bounds_or_columns_the_stiffness_is_estimated(tmp_path):
+def test_without_bounds_or_columns_the_stiffness_is_not_judged(tmp_path):
     unknown = bounds_of_spec(parse_spec(TEXT))
     assert "no `monitoring`" in unknown.sector
     found = judged(tmp_path, runs.run(), unknown)
-    assert str(check(found, "stiffness").status) == "estimated"
+    assert str(check(found, "stiffness").status) == "not judged"
     assert found.judged is None
     # Six standard deviations of 0.5 mN m, and what it is written with: 1e-7 rad.
     assert "`torque_noise: 0.003 N*m, angle_noise: 2e-07 rad`" in found.hint
     assert judged(tmp_path, pressed(), bounds()).hint == ""
     record = log(tmp_path, runs.run())
     columns = {key: values for key, values in record.columns.items() if key != "torque"}
-    assert judge_sector(replace(record, columns=columns), bounds()) is None
+    (unseen,), share = judge_sector(replace(record, columns=columns), bounds())
+    assert (str(unseen.status), share) == ("not judged", None)

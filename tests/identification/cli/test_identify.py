@@ -2,7 +2,7 @@
 
 import pytest
 
-from tests.identification.cli.identify.records import NOSE, SINUSOIDS, SOFT
+from tests.identification.cli.records import NOSE, SINUSOIDS, SOFT
 from tests.support import run
 
 

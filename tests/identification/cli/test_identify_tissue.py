@@ -9,7 +9,7 @@ import pytest
 
 from nrs_design.models.contact import Elastic, KelvinVoigt
 from nrs_design.spec import read_spec
-from tests.identification.cli.identify.records import NOSE, SOFT
+from tests.identification.cli.records import NOSE, SOFT
 from tests.identification.support import quick, record
 from tests.identification.unilateral import robot_record
 from tests.support import ROOT, SOFT_TISSUE, document_of, run
@@ -67,11 +67,9 @@ def test_offsets_and_cuts_are_said(tmp_path):
     """A robot at 400 N/m behind 0.1 m, with a tare of -1.3 N and air before the contact."""
     data = robot_record(KelvinVoigt(400.0, 3.0), quick(2), 0.05, 2, zero=0.1, tare=-1.3)
     path = press_csv(tmp_path, data)
-    command = ("identify", "tissue", path, "--prony", "--report", "page.html")
-    text = run(*command, "-v", cwd=tmp_path).stdout
-    assert "3 touches" in text
-    assert "Prony series of" in text
-    assert "Prony series of" in (tmp_path / "page.html").read_text()
+    command = ("identify", "tissue", path, "--report", "page.html")
+    for text in (run(*command, "-v", cwd=tmp_path).stdout, (tmp_path / "page.html").read_text()):
+        assert "3 touches" in text
 
 
 VOIGT = ("    model: elastic\n", "    model: kelvin-voigt\n    damping: 30 N*s/m\n")
@@ -129,7 +127,7 @@ def test_what_cannot_be_written_is_refused_before_the_fit(tmp_path):
     other = ROOT / "specs/examples/commuting.nrs.yaml"
     rpm = SOFT_TISSUE
     delay = ("delay", volts, "--command", "command_V", "--measured", "velocity_rad_s")
-    fits = ("tissue.identify_tissue", "actuator.identify_actuator", "delay.identify_delay")
+    fits = (f"{kind}.identify.identify_{kind}" for kind in ("tissue", "actuator", "delay"))
     with contextlib.ExitStack() as stack:
         for name in fits:
             fit = f"nrs_design.identification.{name}"

@@ -1,0 +1,335 @@
+"""``nrs-design identify``: measured data in, models with intervals out."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from enum import StrEnum
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, TypeVar
+
+import typer
+
+from nrs_design.cli import exit_codes
+from nrs_design.cli.command import Answer, command
+from nrs_design.cli.destinations import Destinations
+from nrs_design.cli.groups import CommandGroup
+from nrs_design.cli.options import Date, ReportTo
+from nrs_design.cli.printing import detail, is_quiet, progress, say, wants_details
+from nrs_design.cli.tables import print_table
+from nrs_design.models.contact import LAWS
+from nrs_design.printable import printable
+
+if TYPE_CHECKING:
+    from nrs_design.identification.reporting.view import View
+    from nrs_design.spec import LoadedSpec
+
+DataFiles = Annotated[list[Path], typer.Argument(metavar="DATA...", help="Files of data.")]
+ColumnMap = Annotated[
+    list[str] | None,
+    typer.Option("--map", metavar="OURS=THEIRS", help="Foreign column name, as in force_N=Fz."),
+]
+WriteTo = Annotated[
+    Path | None,
+    typer.Option("--write", metavar="SPEC", help="Merge the result into this spec file."),
+]
+Replace = Annotated[
+    bool,
+    typer.Option(
+        "--replace",
+        help="Let --write narrow a declared range by few records, or by much; a doubt remains.",
+    ),
+]
+
+
+class CoversOption(StrEnum):
+    """What the range in a spec holds."""
+
+    CONFIDENCE = "confidence"
+    TOLERANCE = "tolerance"
+    PREDICTION = "prediction"
+
+
+class ModelOption(StrEnum):
+    """Laws by name, from their table."""
+
+    _ignore_ = "law"
+    AUTO = "auto"
+    for law in LAWS:
+        vars()[law.replace("-", "_").upper()] = law
+
+
+class Into(StrEnum):
+    """Where a delay is written to."""
+
+    DELAY = "delay"
+    LATENCY = "latency"
+
+
+T = TypeVar("T")
+
+identify = typer.Typer(
+    cls=CommandGroup,
+    no_args_is_help=True,
+    help="Identify actuator, tissue or delay from measured records, with 95 % intervals.",
+    epilog="Data are text (CSV and the like), with columns named by quantity and unit, "
+    "such as time_s, deflection_m, 'Force [N]'; --map names others.",
+)
+
+
+def read_all(
+    paths: Sequence[Path],
+    read: Callable[[Path, dict[str, str], Callable[[float], None]], T],
+    entries: Sequence[str],
+) -> list[T]:
+    """Read every file, with columns named as the user said; large ones show how far they are."""
+    from nrs_design.identification.tables.columns import parse_mapping
+
+    mapping = parse_mapping(entries)
+    with _bar() as begin:
+        return [read(path, mapping, begin(path.name)) for path in paths]
+
+
+@contextmanager
+def _bar() -> Iterator[Callable[[str], Callable[[float], None]]]:
+    if is_quiet() or not sys.stderr.isatty():
+        yield lambda name: lambda fraction: None
+        return
+    from rich.console import Console
+    from rich.markup import escape
+    from rich.progress import Progress
+
+    with Progress(console=Console(stderr=True), transient=True) as bars:
+
+        def begin(name: str) -> Callable[[float], None]:
+            task = bars.add_task(f"reading {escape(printable(name))}", total=1.0)
+            return lambda fraction: bars.update(task, completed=fraction)
+
+        yield begin
+
+
+def _deliver(outputs: Destinations, view: View, merge: Callable[[LoadedSpec], str]) -> Answer:
+    """Print and write what was found; where it is in doubt, the answer is inconclusive."""
+    found = view.found
+    code = exit_codes.INCONCLUSIVE if found.doubts else exit_codes.PROVED
+    answer = Answer(lambda: view.document, partial(_show, view), code)
+    return outputs.deliver(answer, view.page, merge, found.doubts, found.caveats)
+
+
+def _show(view: View) -> None:
+    from nrs_design.identification.finding import is_synthetic
+    from nrs_design.identification.reporting.view import SYNTHETIC
+
+    if is_synthetic(view.found.sources):
+        say(SYNTHETIC)
+    if wants_details():
+        # Of the page, which its headings explain.
+        print_table("", view.fits.columns, view.fits.rows)
+    for line in view.lines:
+        say(line)
+    for line in view.details:
+        detail(line)
+    for remark in view.found.remarks:
+        say(remark)
+    for doubt in view.found.doubts:
+        say(f"doubt: {doubt}")
+
+
+@identify.command("tissue")
+@command("identify-tissue")
+def tissue(
+    data: DataFiles,
+    model: Annotated[
+        ModelOption, typer.Option(help="Law to choose; auto compares them all.")
+    ] = ModelOption.AUTO,
+    columns: ColumnMap = None,
+    settings: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--set",
+            metavar="NAME=VALUE",
+            help="What is used of a record: start, end (s), contact (auto, given), zero, tare "
+            "(fit, or such as '0.1 m', '-1.3 N'), drift (auto, fit, none), skip_cycles, negate "
+            "(true).",
+        ),
+    ] = None,
+    covers: Annotated[
+        CoversOption,
+        typer.Option(help="What the range holds: the mean, 95 % of specimens, or the next one."),
+    ] = CoversOption.CONFIDENCE,
+    preload: Annotated[
+        str | None,
+        typer.Option(metavar="LOW..HIGH", help="Deflections of a power law, as in '1 mm..3 mm'."),
+    ] = None,
+    lever_arm: Annotated[
+        str | None,
+        typer.Option(metavar="LENGTH", help="Distance from pivot to contact, as in '0.24 m'."),
+    ] = None,
+    write: WriteTo = None,
+    replace: Replace = False,
+    environment: Annotated[
+        str | None, typer.Option(metavar="NAME", help="Environment of the spec to write to.")
+    ] = None,
+    report: ReportTo = None,
+    date: Date = None,
+) -> Answer:
+    """Fit five tissue laws to one or several records, compare them and choose one.
+
+    Columns: time_s, deflection_m, force_N, or time_s, angle_rad, torque_Nm (mm, mN, deg, ms and
+    the like are converted). One file is one record; the spread between records goes into the
+    intervals. Air before, between and after touches is found, and so are a rupture and what follows
+    it. The position of contact and the force in air are fitted with the law, unless --set gives
+    them.
+    --write keeps the law of the environment, unless --model names another.
+    What the fit leaves in doubt is written into the spec, and the gate fails on it until
+    accept_doubt says why the range is used.
+
+    Example: nrs-design identify tissue specs/data/silicone-soft-*.csv --lever-arm '0.24 m'
+    """
+    from nrs_design.identification.datasets.records import read_tissue
+    from nrs_design.identification.lever import parse_arm, parse_preload
+    from nrs_design.identification.reporting.tissue import view_tissue
+    from nrs_design.identification.tissue.identify import identify_tissue
+    from nrs_design.identification.tissue.preparation_settings import read_preparation
+    from nrs_design.identification.write_spec import law_to_write, merge_tissue
+
+    outputs = Destinations.checked(write, report, date)
+    records = read_all(data, read_tissue, columns or [])
+    rotational = any(record.rotational for record in records)
+    arm = parse_arm(lever_arm, rotational=rotational)
+    preparation = read_preparation(settings or (), rotational=rotational)
+    deflections = parse_preload(preload, rotational=rotational)
+    law = asked = None if model is ModelOption.AUTO else str(model)
+    if outputs.spec is not None:
+        law = law_to_write(
+            outputs.spec,
+            environment,
+            lever_arm,
+            asked,
+            preloaded=deflections is not None,
+            rotational=rotational,
+        )
+    elif environment is not None:
+        raise typer.BadParameter("name a spec by --write, too", param_hint="--environment")
+    with progress("fitting") as step:
+        found = identify_tissue(
+            records,
+            law,
+            preparation,
+            covers.value,
+            deflections,
+            progress=step,
+            declared=asked is None,
+        )
+    return _deliver(
+        outputs,
+        view_tissue(found, arm),
+        lambda spec: merge_tissue(spec, found, environment, lever_arm, replace=replace),
+    )
+
+
+@identify.command("actuator")
+@command("identify-actuator")
+def actuator(
+    data: DataFiles,
+    columns: ColumnMap = None,
+    covers: Annotated[
+        CoversOption,
+        typer.Option(help="What the range holds: this motor, 95 % of records, or the next one."),
+    ] = CoversOption.CONFIDENCE,
+    write: WriteTo = None,
+    narrower: Replace = False,
+    report: ReportTo = None,
+    date: Date = None,
+) -> Answer:
+    """Fit gain, time constant, Coulomb friction and dead time of a motor that follows a velocity.
+
+    Columns: time_s, command_rpm (or _V, _A, _counts), and angle_rad or velocity_rad_s; any command
+    that moves the motor: sinusoids, steps, stairs, chirps, random ones, in open or closed loop.
+    One file is one record; groups of columns have suffixes _1, _2, ... Or a frequency response:
+    frequency_hz, magnitude_db, phase_deg.
+
+    Example: nrs-design identify actuator specs/data/actuator-*hz.csv --report reports/actuator.html
+    """
+    from nrs_design.identification.actuator.identify import identify_actuator
+    from nrs_design.identification.datasets.records import read_actuator
+    from nrs_design.identification.reporting.actuator import view_actuator
+    from nrs_design.identification.write_spec import check_actuator, merge_actuator
+
+    outputs = Destinations.checked(write, report, date)
+    files = read_all(data, read_actuator, columns or [])
+    records = [record for file in files for record in file]
+    if outputs.spec is not None:
+        for record in records:
+            check_actuator(outputs.spec, record.unit)
+    with progress("fitting") as step:
+        found = identify_actuator(records, covers.value, step)
+    view = view_actuator(found)
+    return _deliver(outputs, view, lambda spec: merge_actuator(spec, found, replace=narrower))
+
+
+@identify.command("delay")
+@command("identify-delay")
+def delay(
+    log: Annotated[Path, typer.Argument(metavar="LOG", help="Record of a running loop.")],
+    command: Annotated[
+        str | None, typer.Option(metavar="COLUMN", help="What was sent; default: command_UNIT.")
+    ] = None,
+    measured: Annotated[
+        str | None,
+        typer.Option(metavar="COLUMN", help="What follows; default: angle, velocity or force."),
+    ] = None,
+    columns: ColumnMap = None,
+    into: Annotated[
+        Into, typer.Option(help="What --write puts down: delay of the force, or latency.")
+    ] = Into.DELAY,
+    write: WriteTo = None,
+    report: ReportTo = None,
+    date: Date = None,
+) -> Answer:
+    """Find how late a measured signal follows a command, in seconds and in samples.
+
+    Cross-correlation first, then a fit of the delay beside what it must not be mistaken for: a
+    copy, a lag of first or second order, a lag with an integrator; the simplest decides that no
+    other beats by 10 in BIC. The interval is at 95 %; parts of the record show whether the delay
+    varies. --write is for two forces, the one that the sensor measured and the one that the law
+    used: its age is the delay of sampling. With --into latency it is for two commands, as the law
+    computed it and as the drive took it: the time between is the latency of sampling.
+
+    Example: nrs-design identify delay run.csv --command force_raw --measured force_used
+    """
+    from nrs_design.identification.datasets.records import read_signals
+    from nrs_design.identification.delay.identify import identify_delay
+    from nrs_design.identification.reporting.delay import view_delay
+    from nrs_design.identification.write_spec import (
+        check_delay_place,
+        check_latency_place,
+        merge_delay,
+        merge_latency,
+    )
+
+    late = into is Into.LATENCY
+    if (command is None) != (measured is None):
+        raise typer.BadParameter("name both columns or none", param_hint="--command, --measured")
+    if command is not None and command == measured:
+        raise typer.BadParameter("name two columns", param_hint="--command, --measured")
+    if write is not None and command is None:
+        raise typer.BadParameter(
+            "name the command as computed by --command, and as the drive took it by --measured"
+            if late
+            else "name the force as measured by --command, and as the law used it by --measured",
+            param_hint="--write",
+        )
+    outputs = Destinations.checked(write, report, date)
+    if outputs.spec is not None:
+        (check_latency_place if late else check_delay_place)(outputs.spec)
+    entries = list(columns or [])
+    if command is not None:
+        entries += [f"input_any={command}", f"output_any={measured}"]
+    (record,) = read_all([log], read_signals, entries)
+    with progress("fitting"):
+        found = identify_delay(record)
+    merge = merge_latency if late else merge_delay
+    return _deliver(outputs, view_delay(found), lambda spec: merge(spec, found))

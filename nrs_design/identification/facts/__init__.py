@@ -1,1 +1,0 @@
-"""What JSON documents say of identifications and audits: one file each."""

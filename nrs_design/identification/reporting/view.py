@@ -1,0 +1,153 @@
+"""What is said of any finding: facts for JSON, lines for a terminal, sections of a page."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from nrs_design import __version__
+from nrs_design.identification.finding import Finding, is_synthetic
+from nrs_design.proof.text import counted
+from nrs_design.reporting.document import Bullets, Light, Report, Section, State, Table
+from nrs_design.reporting.formatting import number
+
+if TYPE_CHECKING:
+    from nrs_design.identification.statistics import Estimate
+    from nrs_design.identification.tables.table import Source
+
+# Of JSON.
+Facts = dict[str, Any]
+
+SYNTHETIC = "SYNTHETIC data: made by a simulation, not measured."
+# Records of which figures are drawn.
+DRAWN = 6
+_FOOTER = "Page of nrs-design. An identification is an estimate, not a proof."
+_FILES = "Data files"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class View:
+    """A finding in words and numbers."""
+
+    found: Finding
+    kind: str  # ``tissue``, ``actuator`` or ``delay``
+    chosen: str  # Law, method or model
+    reason: str  # Why that one, or what it is about
+    ranges: Mapping[str, tuple[Estimate, str]]  # The numbers and their units, by name
+    facts: Facts  # What it has beside what all findings have
+    lines: Sequence[str]  # For a terminal
+    details: Sequence[str]  # Where more is wanted
+    fits: Table  # All fits
+    title: str  # Of the page
+    claim: str  # Its first sentences
+    sections: Callable[[], Iterable[Section]]  # Draws the rest of it
+    meaning: tuple[str, ...] = ()  # How to read it
+
+    @property
+    def document(self) -> Facts:
+        """The facts for JSON."""
+        found = self.found
+        return {
+            "synthetic": is_synthetic(found.sources),
+            "records": source_facts(found.sources),
+            **self.facts,
+            "remarks": list(found.remarks),
+            "doubts": list(found.doubts),
+            "caveats": list(found.caveats),
+        }
+
+    def page(self) -> Report:
+        """Return the page; the claim begins with what the data are."""
+        found = self.found
+        read = Section("How to read this", (Bullets("", self.meaning),), boxed=True)
+        return Report(
+            name=f"{self.kind}-{self.chosen}" if self.kind == "tissue" else self.kind,
+            title=self.title,
+            verdict="identified",
+            claim=f"{label_of(found.sources)}{self.claim}",
+            remarks=(
+                *(f"Remark: {remark}." for remark in found.remarks),
+                *(f"Doubt: {caveat}." for caveat in found.caveats),
+            ),
+            lights=_lights(found),
+            facts=facts_of(found.sources),
+            sections=(
+                *self.sections(),
+                *([read] if self.meaning else ()),
+                source_section(found.sources),
+            ),
+            footer=_FOOTER,
+        )
+
+
+def _lights(found: Finding) -> tuple[Light, Light]:
+    data = Light("Data", State.GOOD, "measured", _FILES)
+    if is_synthetic(found.sources):
+        data = Light("Data", State.DOUBTFUL, "SYNTHETIC, made by a simulation", _FILES)
+    if found.caveats:
+        return data, Light("Doubts", State.DOUBTFUL, counted(len(found.caveats), "doubt"))
+    return data, Light("Doubts", State.GOOD, "none")
+
+
+def facts_of(sources: Sequence[Source]) -> tuple[tuple[str, str], ...]:
+    """Return what stands at the head of a page about data."""
+    synthetic = sum(source.synthetic for source in sources)
+    kind = "SYNTHETIC" if synthetic == len(sources) else "mixed" if synthetic else "measured"
+    return (
+        ("Data", f"{kind}, {counted(len(sources), 'file')}"),
+        ("Package", f"nrs-design {__version__}"),
+    )
+
+
+def source_section(sources: Iterable[Source]) -> Section:
+    """Return the section that names the files."""
+    rows = tuple(
+        (source.path.name, "SYNTHETIC" if source.synthetic else "measured", source.sha256)
+        for source in sources
+    )
+    return Section(_FILES, (Table("Files", ("File", "Data", "SHA-256"), rows),))
+
+
+def source_facts(files: Iterable[Source]) -> list[Facts]:
+    """Return what identifies the data files, for JSON."""
+    return [
+        {"file": str(file.path), "sha256": file.sha256, "synthetic": file.synthetic}
+        for file in files
+    ]
+
+
+def label_of(sources: Sequence[Source]) -> str:
+    """Return what must stand before anything that comes of synthetic data."""
+    return "SYNTHETIC DATA, made by a simulation and not measured. " * is_synthetic(sources)
+
+
+def estimate_numbers(estimate: Estimate) -> dict[str, float | None]:
+    """Return an estimate for JSON, which has no infinity; None says unlimited."""
+    low, high = (end if math.isfinite(end) else None for end in (estimate.low, estimate.high))
+    return {"value": estimate.value, "low": low, "high": high}
+
+
+def marked(name: str, *, chosen: bool) -> str:
+    """Return the name of a fit in a table of several."""
+    return f"{name} (chosen)" if chosen else name
+
+
+def in_interval(estimate: Estimate) -> str:
+    """Return an estimate with its interval, as wide as it is claimed."""
+    wide = estimate.outward()
+    return f"{_short(estimate.value)} [{_short(wide.low)}, {_short(wide.high)}]"
+
+
+def _short(value: float) -> str:
+    return number(value, 5) if abs(value) >= 1e-3 or value == 0 else f"{value:.4e}"
+
+
+def figure_names(names: Sequence[str]) -> list[str]:
+    """Return names of figures for names of records, no two alike."""
+    plain = [re.sub(r"[^A-Za-z0-9-]+", "-", name) for name in names]
+    if len(set(plain)) == len(plain):
+        return plain
+    return [f"{index}-{name}" for index, name in enumerate(plain, 1)]

@@ -1,0 +1,42 @@
+"""The search for the parameters that leave the least squared errors."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from nrs_design.identification.numeric import Array
+
+Errors = Callable[[Array], Array]  # Of parameters, shape (p,): measured less fitted, shape (n,)
+
+_STEPS = 60
+# Of the squared errors, and of the parameters in units of their scale.
+_CONVERGED, _SETTLED = 1e-12, 1e-9
+
+
+def search(errors: Errors, sensitivities: Errors, start: Array, scale: Array) -> tuple[Array, bool]:
+    """Return the parameters, and whether the search has settled.
+
+    Sensitivities are of the fitted output, shape (n, p). A first step is of the size of the scale.
+    """
+    from scipy.optimize import least_squares
+
+    size = float(np.linalg.norm(errors(start))) or 1.0
+
+    def missed(z: Array) -> Array:
+        return errors(start + scale * z) / size
+
+    def slopes(z: Array) -> Array:
+        return -sensitivities(start + scale * z) * scale / size
+
+    found = least_squares(
+        missed,
+        np.zeros(len(start)),
+        jac=slopes,
+        ftol=_CONVERGED,
+        xtol=_SETTLED,
+        gtol=None,
+        max_nfev=_STEPS,
+    )
+    return start + scale * np.asarray(found.x, float), bool(found.success)

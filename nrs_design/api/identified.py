@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 from nrs_design.api.paper import latex_of_ranges
 from nrs_design.api.result import AbstractResult, Figures, drawn
@@ -15,6 +15,10 @@ from nrs_design.wings import load_wing
 
 if TYPE_CHECKING:
     from nrs_design.reporting import Report
+
+
+# A CSV file, or columns by name.
+Records = str | Path | Mapping[str, Any]
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,7 +102,7 @@ class Identification(AbstractResult):
 
 
 def identify(
-    records: str | Path | Iterable[str | Path],
+    records: Records | Iterable[Records],
     kind: str = "tissue",
     *,
     law: str | None = None,
@@ -108,8 +112,8 @@ def identify(
 
     Parameters
     ----------
-    records : path-like or iterable of path-like
-        CSV files; see `nrs-design identify` for their columns. Of a delay, one.
+    records : path-like, mapping of str to array, DataFrame, or iterable of these
+        CSV files, or columns by name; see `nrs-design identify` for the names. Of a delay, one.
     kind : {"tissue", "actuator", "delay"}
         What they are records of. Resistance and torque of an actuator are said for the motor of
         thesis table 4.1; gain, time constant, friction and dead time depend on no data sheet.
@@ -131,7 +135,9 @@ def identify(
     >>> found.chosen, list(found.ranges), found.ranges["k"].unit, found.doubts
     ('elastic', ['k'], 'N/m', ())
     """
-    files = [records] if isinstance(records, str | Path) else [*records]
+    # A DataFrame has columns by name, as a mapping does.
+    one = isinstance(records, str | Path) or hasattr(records, "keys")
+    files = [records] if one else [*cast("Iterable[Records]", records)]
     library = load_wing("identification", "api.library")
     found: Identification = library.identify_records(files, kind, law, columns or {})
     return found

@@ -3,6 +3,7 @@
 import json
 import random
 
+import numpy as np
 import pytest
 
 import nrs_design as nrs
@@ -24,6 +25,13 @@ def test_a_tissue():
     assert "SYNTHETIC" in repr(tissue)
     assert "SYNTHETIC" in tissue._repr_html_()
     assert tissue.latex() == r"$k \in [685.8,\, 809.1]\,\mathrm{N/m}$"
+
+
+def test_arrays_are_read_as_a_file_is():
+    rows = np.loadtxt(TISSUE[0], delimiter=",", skiprows=2)
+    frame = dict(zip(("time_s", "deflection_m", "force_N"), rows.T, strict=True))
+    found, read = nrs.identify(frame), nrs.identify(TISSUE[0])
+    assert (found.ranges, found.synthetic) == (read.ranges, False)
 
 
 def test_facts_are_those_of_the_command():

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from nrs_design.api.audit import Audit, AuditCheck
 from nrs_design.api.identified import FittedRange, Identification
@@ -28,6 +28,7 @@ from nrs_design.identification.running.check import Check
 from nrs_design.identification.running.judge import judge_run
 from nrs_design.identification.running.log import read_run
 from nrs_design.identification.tables.columns import parse_mapping
+from nrs_design.identification.tables.table import Data
 from nrs_design.identification.tissue.identify import identify_tissue
 from nrs_design.identification.write_spec import check_turning
 from nrs_design.models.contact import LAWS
@@ -42,14 +43,17 @@ _OF_DELAY = {"command": "input_any", "measured": "output_any"}
 
 
 def identify_records(
-    files: Sequence[str | Path], kind: str, law: str | None, columns: Mapping[str, str]
+    files: Sequence[str | Path | Mapping[str, Any]],
+    kind: str,
+    law: str | None,
+    columns: Mapping[str, str],
 ) -> Identification:
     """Identify what records are of; see `nrs_design.api.identify`.
 
     Parameters
     ----------
-    files : sequence of path-like
-        CSV files.
+    files : sequence of path-like or mapping
+        CSV files, or arrays by the names of their columns.
     kind : {"tissue", "actuator", "delay"}
         What they are records of.
     law : str or None
@@ -65,7 +69,8 @@ def identify_records(
     _check(files, kind, law)
     named_ours = {_OF_DELAY.get(k, k) if kind == "delay" else k: v for k, v in columns.items()}
     mapping = parse_mapping([f"{ours}={theirs}" for ours, theirs in named_ours.items()])
-    view = _KINDS[kind]([Path(file) for file in files], mapping, law)
+    data = [Path(file) if isinstance(file, str | Path) else file for file in files]
+    view = _KINDS[kind](data, mapping, law)
     found = view.found
     return Identification(
         kind=kind,
@@ -85,11 +90,11 @@ def identify_records(
     )
 
 
-def _check(files: Sequence[str | Path], kind: object, law: str | None) -> None:
+def _check(files: Sequence[object], kind: object, law: str | None) -> None:
     """Refuse words that are none, and arguments in each other's place."""
     kinds = tuple(_KINDS)
     if kind not in kinds:
-        if any(file in kinds for file in files):
+        if any(isinstance(file, str) and file in kinds for file in files):
             raise DataError(
                 "the arguments are swapped", remedy="the records come first: identify(files, kind)"
             )
@@ -102,21 +107,21 @@ def _check(files: Sequence[str | Path], kind: object, law: str | None) -> None:
         raise DataError("a delay is that of one record", remedy="name one file")
 
 
-def _tissue(files: Sequence[Path], mapping: Columns, law: str | None) -> View:
+def _tissue(files: Sequence[Data], mapping: Columns, law: str | None) -> View:
     return view_tissue(identify_tissue([read_tissue(file, mapping) for file in files], law))
 
 
-def _actuator(files: Sequence[Path], mapping: Columns, law: str | None) -> View:
+def _actuator(files: Sequence[Data], mapping: Columns, law: str | None) -> View:
     records = [record for file in files for record in read_actuator(file, mapping)]
     return view_actuator(identify_actuator(records))
 
 
-def _delay(files: Sequence[Path], mapping: Columns, law: str | None) -> View:
+def _delay(files: Sequence[Data], mapping: Columns, law: str | None) -> View:
     (file,) = files
     return view_delay(identify_delay(read_signals(file, mapping)))
 
 
-_KINDS: Mapping[str, Callable[[Sequence[Path], Columns, str | None], View]] = {
+_KINDS: Mapping[str, Callable[[Sequence[Data], Columns, str | None], View]] = {
     "tissue": _tissue,
     "actuator": _actuator,
     "delay": _delay,

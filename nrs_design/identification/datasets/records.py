@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
 
 import numpy as np
 
@@ -21,6 +20,7 @@ from nrs_design.identification.datasets.checks import (
 )
 from nrs_design.identification.numeric import Array, Complex, usual_step
 from nrs_design.identification.tables.table import (
+    Data,
     MeasurementTable,
     Progress,
     Source,
@@ -95,14 +95,14 @@ class FrequencyResponse:
 
 
 def read_tissue(
-    path: Path, mapping: Mapping[str, str] | None = None, progress: Progress = lambda done: None
+    data: Data, mapping: Mapping[str, str] | None = None, progress: Progress = lambda done: None
 ) -> TissueRecord:
     """Read a record of ``time_s, deflection_m, force_N`` or ``time_s, angle_rad, torque_Nm``.
 
     A mapping leads from a name in the file to ours. A column that is missing, a gap or step back
     of time, a value that is not finite and a saturated sensor are a `DataError` with the row.
     """
-    table = read_table(path, (LINEAR, ROTATIONAL), mapping or {}, progress)
+    table = read_table(data, (LINEAR, ROTATIONAL), mapping or {}, progress)
     time, deflection, force = _one_group(table)
     check_time(table, time)
     check_varies(table, table.layout[1], deflection)
@@ -114,14 +114,14 @@ def read_tissue(
 
 
 def read_actuator(
-    path: Path, mapping: Mapping[str, str] | None = None, progress: Progress = lambda done: None
+    data: Data, mapping: Mapping[str, str] | None = None, progress: Progress = lambda done: None
 ) -> tuple[ActuatorRecord | FrequencyResponse, ...]:
     """Read records of the actuator, one or several groups of columns, or a frequency response.
 
     Columns are ``time_s, command_rpm`` and ``angle_rad`` or ``velocity_rad_s`` (with suffixes
     ``_1``, ``_2`` for groups), or ``frequency_hz, magnitude_db, phase_deg``.
     """
-    table = read_table(path, (ANGLE, VELOCITY, RESPONSE), mapping or {}, progress)
+    table = read_table(data, (ANGLE, VELOCITY, RESPONSE), mapping or {}, progress)
     if table.layout == RESPONSE:
         return (_response(table),)
     return tuple(record for group in table.groups for record in _actuator(table, group))
@@ -155,7 +155,7 @@ class SignalRecord:
 
 
 def read_signals(
-    path: Path,
+    data: Data,
     mapping: Mapping[str, str] | None = None,
     progress: Progress = lambda done: None,
 ) -> SignalRecord:
@@ -167,7 +167,7 @@ def read_signals(
     mapping = mapping or {}
     chosen = {"input_any", "output_any"} & set(mapping.values())
     layouts = [("time", *pair) for pair in (FREE if chosen else FOLLOWED)]
-    table = read_table(path, layouts, mapping, progress)
+    table = read_table(data, layouts, mapping, progress)
     time, sent, seen = _one_group(table)
     (found,) = table.columns.values()
     check_time(table, time)

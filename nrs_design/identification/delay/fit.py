@@ -15,6 +15,8 @@ from nrs_design.identification.statistics import Uncertainty, uncertainty
 # So far from where columns are most alike, in samples, a whole number of them is sought.
 _AROUND = 8
 _DIFFERENCE = 1e-4
+# Errors of this part of the power are rounding.
+EXACT = 1e-24
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -31,6 +33,7 @@ class DelayFit:
     errors: Array
     # Shape (m,). Samples that were fitted: those that the command before the record cannot reach.
     rows: Rows
+    seen: Array  # Shape (m,). What was measured.
     fitted: Array  # Shape (n,). Output of the model.
     # Shape (p,). Gain, offset and initial state: factors of the columns of the model.
     solution: Array
@@ -47,7 +50,8 @@ class DelayFit:
     @property
     def bic(self) -> float:
         """Bayesian information criterion, up to a constant of the record."""
-        return bic(self.errors, 1 + len(self.follower.shape))
+        least = EXACT * float(self.seen @ self.seen)
+        return bic(self.errors, 1 + len(self.follower.shape), least)
 
 
 def fit_delay(
@@ -77,7 +81,7 @@ def fit_delay(
     columns = model.columns(record, late)
     solution = solve(columns[rows], record.seen[rows])
     fitted, known = columns @ solution, uncertainty(J, error)
-    return DelayFit(model, late, known, J[:, 0], error, rows, fitted, solution)
+    return DelayFit(model, late, known, J[:, 0], error, rows, record.seen[rows], fitted, solution)
 
 
 def fit_held(record: SignalRecord, delay: float, rows: Rows) -> DelayFit:
@@ -95,7 +99,9 @@ def fit_held(record: SignalRecord, delay: float, rows: Rows) -> DelayFit:
     slope = (after - before)[rows] @ solution / 2
     error = record.seen[rows] - fitted[rows]
     known = uncertainty(slope[:, None], error)
-    return DelayFit(follower, best * record.step, known, slope, error, rows, fitted, solution)
+    return DelayFit(
+        follower, best * record.step, known, slope, error, rows, record.seen[rows], fitted, solution
+    )
 
 
 def solve(columns: Array, seen: Array) -> Array:

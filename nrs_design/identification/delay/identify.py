@@ -18,7 +18,7 @@ from nrs_design.identification.datasets.checks import (
     pauses_text,
 )
 from nrs_design.identification.datasets.records import SignalRecord
-from nrs_design.identification.delay.fit import DelayFit, errors_at, fit_delay, fit_held
+from nrs_design.identification.delay.fit import EXACT, DelayFit, errors_at, fit_delay, fit_held
 from nrs_design.identification.delay.models import (
     AbstractFollower,
     FirstOrder,
@@ -42,8 +42,6 @@ from nrs_design.spec.plausible import doubt_size
 _LONGEST = 0.1
 # A delay beside a lag is found to so many samples.
 _OFF = 2e-3
-# Errors of this part of the power are rounding.
-_EXACT = 1e-24
 # So near to a whole number, only the arithmetic of a fit without noise keeps a delay from it.
 _SAME = Fraction(1, 10**6)
 _PARTS = 10
@@ -313,7 +311,7 @@ def _held_interval(record: SignalRecord, fit: DelayFit, rows: Rows, confidence: 
     best = int(np.argmin(powers))
     # Neighbours that are alike count less; and without noise, rounding decides nothing.
     count = max(independent(errors[best]), 1.0)
-    least = max(float(powers[best]), _EXACT * float(np.sum(record.seen[rows] ** 2)))
+    least = max(float(powers[best]), EXACT * float(np.sum(record.seen[rows] ** 2)))
     kept = late[powers <= least * np.exp(float(chdtri(1, 1 - confidence)) / count)]
     low, high = float(min(kept, default=late[best])), float(max(kept, default=late[best]))
     return Estimate(float(late[best]), low - 1.0, high + 1.0)

@@ -12,28 +12,6 @@ from types import MappingProxyType
 KGF = 9.80665
 _TURN = 2 * pi / 60
 
-_FORCES = {
-    "N": 1.0,
-    "mN": 1e-3,
-    "uN": 1e-6,
-    "kN": 1e3,
-    "kgf": KGF,
-    "gf": KGF / 1000,
-    "lbf": 0.45359237 * KGF,
-}
-_TORQUES = {"Nm": 1.0, "mNm": 1e-3, "Nmm": 1e-3}
-_COMMANDS = {
-    "rpm": 1.0,
-    "rad_s": 1 / _TURN,
-    "deg_s": 1 / 6,
-    "V": 1.0,
-    "mV": 1e-3,
-    "A": 1.0,
-    "mA": 1e-3,
-    "counts": 1.0,
-}
-_ANGLES = {"rad": 1.0, "mrad": 1e-3, "deg": pi / 180}
-
 # Factor to SI for every unit that a quantity may be written in; the first is the SI unit. A command
 # stays in the unit of its driver: rpm of a command are a number, not a velocity. One that is a
 # velocity is read in rpm.
@@ -41,11 +19,17 @@ UNITS: Mapping[str, Mapping[str, float]] = MappingProxyType(
     {
         "time": {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0},
         "deflection": {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "um": 1e-6, "in": 0.0254},
-        "force": _FORCES,
-        "angle": _ANGLES,
-        "torque": _TORQUES,
+        "force": {
+            **{"N": 1.0, "mN": 1e-3, "uN": 1e-6, "kN": 1e3},
+            **{"kgf": KGF, "gf": KGF / 1000, "lbf": 0.45359237 * KGF},
+        },
+        "angle": {"rad": 1.0, "mrad": 1e-3, "deg": pi / 180},
+        "torque": {"Nm": 1.0, "mNm": 1e-3, "Nmm": 1e-3},
         "velocity": {"rad_s": 1.0, "deg_s": pi / 180, "rpm": _TURN},
-        "command": _COMMANDS,
+        "command": {
+            **{"rpm": 1.0, "rad_s": 1 / _TURN, "deg_s": 1 / 6},
+            **{"V": 1.0, "mV": 1e-3, "A": 1.0, "mA": 1e-3, "counts": 1.0},
+        },
         "mode": {"": 1.0},
         "input": {"any": 1.0},
         "output": {"any": 1.0},
@@ -56,59 +40,32 @@ UNITS: Mapping[str, Mapping[str, float]] = MappingProxyType(
 )
 # The unit that values of a command have once they are read.
 _READ_AS = {"rad_s": "rpm", "deg_s": "rpm", "mV": "V", "mA": "A"}
-_SYNONYMS = {
-    "load": "force",
-    "displacement": "deflection",
-    "extension": "deflection",
-    "indentation": "deflection",
-    "moment": "torque",
-    "speed": "velocity",
-}
-# What a letter or a loose word stands for, if its unit fits: a position in deg is an angle. A full
-# word beside it goes first, and of two of these the user chooses.
-_SYMBOLS: Mapping[str, tuple[str, ...]] = {
+# What other words and letters stand for, if their unit fits: a position in deg is an angle.
+_WORDS: Mapping[str, tuple[str, ...]] = {
     "t": ("time", "torque"),
-    "f": ("force",),
-    "m": ("torque",),
-    "position": ("deflection", "angle"),
-    "pos": ("deflection", "angle"),
-    "disp": ("deflection",),
+    **dict.fromkeys(("load", "f"), ("force",)),
+    **dict.fromkeys(("moment", "m"), ("torque",)),
+    **dict.fromkeys(("speed", "w", "omega"), ("velocity",)),
+    **dict.fromkeys(("position", "pos"), ("deflection", "angle")),
+    **dict.fromkeys(("displacement", "extension", "indentation", "disp"), ("deflection",)),
     **dict.fromkeys(("x", "y", "z", "d", "s", "delta"), ("deflection",)),
     **dict.fromkeys(("phi", "theta", "alpha"), ("angle",)),
-    **dict.fromkeys(("w", "omega"), ("velocity",)),
 }
+# Those that count before an underscore, too: a single letter there may be anything.
+_BEFORE_UNDERSCORES = frozenset(
+    {"t", "load", "moment", "speed", "displacement", "extension", "indentation"}
+)
 # How other programs spell a unit, in small letters without blanks.
 _SPELLINGS = {
-    "sec": "s",
-    "second": "s",
-    "seconds": "s",
-    "msec": "ms",
-    "usec": "us",
-    "µs": "us",
-    "nsec": "ns",
-    "µm": "um",
-    "inch": "in",
-    "µn": "uN",
-    "n": "N",
-    "newton": "N",
-    "newtons": "N",
-    "n*m": "Nm",
-    "n-m": "Nm",
-    "n.m": "Nm",
-    "°": "deg",
-    "degree": "deg",
-    "degrees": "deg",
-    "radians": "rad",
-    "rad/s": "rad_s",
-    "deg/s": "deg_s",
-    "°/s": "deg_s",
-    "rev/min": "rpm",
-    "1/min": "rpm",
-    "volt": "V",
-    "volts": "V",
-    "pwm": "counts",
-    "kilonewton": "kN",
-    "kp": "kgf",
+    **dict.fromkeys(("sec", "second", "seconds"), "s"),
+    **{"msec": "ms", "usec": "us", "µs": "us", "nsec": "ns"},
+    **{"µm": "um", "inch": "in", "µn": "uN", "kilonewton": "kN", "kp": "kgf"},
+    **dict.fromkeys(("n", "newton", "newtons"), "N"),
+    **dict.fromkeys(("n*m", "n-m", "n.m"), "Nm"),
+    **dict.fromkeys(("°", "degree", "degrees"), "deg"),
+    **{"radians": "rad", "rad/s": "rad_s", "deg/s": "deg_s", "°/s": "deg_s"},
+    **{"rev/min": "rpm", "1/min": "rpm", "volt": "V", "volts": "V", "pwm": "counts"},
+    **{"hz": "hz", "khz": "khz", "db": "db"},
 }
 _BRACKETED = re.compile(r"^(?P<what>[^\[\](){}]+?)\s*[\[({](?P<unit>[^\[\](){}]*)[\])}]$")
 _SLASHED = re.compile(r"^(?P<what>[A-Za-z ]+?)\s*[/,]\s*(?P<unit>\S+)$")
@@ -116,9 +73,6 @@ _SLASHED = re.compile(r"^(?P<what>[A-Za-z ]+?)\s*[/,]\s*(?P<unit>\S+)$")
 _NO_ENDINGS = frozenset({"", "any", "s", "m", "min", "in", "A"})
 # Units in brackets that none of our quantities has: what says one is not to be taken for ours.
 _FOREIGN = frozenset({"g", "kg", "lb", "oz", "nN", "nm", "ft", "Pa", "kPa", "MPa", "%", "h"})
-# Of messages in bags that were turned into text; nanoseconds since 1970.
-_STAMP = re.compile(r"(^%time|(^|[./_])stamp)$")
-_PLOTTED_TIME = "__time"
 
 
 @dataclass(frozen=True, slots=True)
@@ -128,7 +82,6 @@ class Name:
     quantity: str  # Of `UNITS`
     unit: str  # As written, or as we write it where that is known
     group: str = ""  # Suffix, empty for none
-    loose: bool = False  # Whether it is a letter or a word that may mean something else, too
 
     @property
     def known(self) -> bool:
@@ -157,39 +110,26 @@ def standard_name(quantity: str) -> str:
 def read_name(text: str) -> Name | None:
     """Take a name apart: ``angle_rad_2``, ``Force [N]``, ``Load (kN)``, ``Time/s``, ``t, s``.
 
-    None if it names no quantity of ours; its unit may be unknown or empty.
+    None if it names no quantity of ours; the unit of one in its full name may be unknown or empty.
     """
     text = text.strip()
     bracketed = _BRACKETED.match(text) or _SLASHED.match(text)
+    what, _, rest = text.partition("_")
     if bracketed:
-        what, unit = bracketed["what"].strip().lower(), bracketed["unit"]
-        quantity = what if what in UNITS else _SYNONYMS.get(what)
-        return Name(quantity, read_unit(unit, quantity)) if quantity else _symbol(what, unit)
-    word, underscore, rest = text.partition("_")
-    if word.lower() in UNITS:
-        return Name(word.lower(), *(_unit_and_group(rest, word.lower()) if underscore else ("",)))
-    quantity = _SYNONYMS.get(word.lower())
-    # A synonym counts only with its unit.
-    if not rest:
+        what, rest = bracketed["what"].strip(), bracketed["unit"]
+    word = what.lower()
+    # The time of any clock is a time.
+    quantities = ("time",) if word.endswith(" time") else _WORDS.get(word, ())
+    if word in UNITS:
+        quantities = (word,)
+    elif not bracketed and word not in _BEFORE_UNDERSCORES:
         return None
-    if quantity is None:
-        return _symbol(word.lower(), rest) if word.lower() == "t" else None
-    name = Name(quantity, *_unit_and_group(rest, quantity))
-    return name if name.known else None
-
-
-def _symbol(word: str, unit: str) -> Name | None:
-    """Return what a letter stands for by its unit; the time of any clock is a time."""
-    quantities = ("time",) if word.endswith(" time") else _SYMBOLS.get(word, ())
-    names = (Name(q, read_unit(unit, q), loose=True) for q in quantities)
-    return next((name for name in names if name.known), None)
-
-
-def read_stamp(text: str) -> Name | None:
-    """Take a time stamp of a bag for a time, such as ``%time`` or ``/force.header.stamp``."""
-    if text == _PLOTTED_TIME:
-        return Name("time", "s")
-    return Name("time", "ns") if _STAMP.search(text) else None
+    names = [
+        Name(q, read_unit(rest, q)) if bracketed else Name(q, *_unit_and_group(rest, q))
+        for q in quantities
+    ]
+    # Another word counts only with its unit.
+    return next((name for name in names if name.known or word in UNITS), None)
 
 
 def read_unit(text: str, quantity: str) -> str:
@@ -197,8 +137,7 @@ def read_unit(text: str, quantity: str) -> str:
     plain = text.strip().replace("μ", "µ").replace("·", "*").replace("⋅", "*")
     if plain in UNITS[quantity]:
         return plain
-    found = _SPELLINGS.get(plain.lower().replace(" ", ""), plain)
-    return {"Hz": "hz", "kHz": "khz", "dB": "db"}.get(found, found)
+    return _SPELLINGS.get(plain.lower().replace(" ", ""), plain)
 
 
 def stated_unit(text: str, quantity: str) -> str | None:

@@ -1,42 +1,37 @@
-"""Reading the columns of a text file."""
+"""Reading the columns of a text file, or of arrays."""
 
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+import warnings
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import chain
 from pathlib import Path
-from typing import BinaryIO, NoReturn
+from typing import Any, BinaryIO, NoReturn
 
 import numpy as np
 
 from nrs_design.errors import DataError
 from nrs_design.files import open_regular
 from nrs_design.identification.numeric import Array
-from nrs_design.identification.tables.columns import Column, find_columns
-from nrs_design.identification.tables.header import read_header
+from nrs_design.identification.tables.columns import Column, Groups, find_columns
+from nrs_design.identification.tables.header import UNDECIDED, Header, is_decimal, read_header
 from nrs_design.identification.tables.names import UNITS, standard_name
-from nrs_design.identification.tables.text import MAX_ROWS, Parser, read_blocks
+from nrs_design.proof.text import quoted
 from nrs_design.spec.quantity import LARGEST
 
 Progress = Callable[[float], None]
+# A file, or arrays by the names of their columns, such as a DataFrame.
+Data = Path | Mapping[str, Any]
 
-_AS_CSV = "save its columns as CSV"
-# How files begin that are no text, and what to do with them.
-_BEGINNINGS = (
-    (b"MATLAB 5.0", "is a file of MATLAB", _AS_CSV),
-    (b"MATLAB 7.3", "is a file of MATLAB (HDF5)", _AS_CSV),
-    (b"\x89HDF", "is an HDF5 file", _AS_CSV),
-    (b"PAR1", "is a Parquet file", _AS_CSV),
-    (b"PK\x03\x04", "is a zip archive", f"unpack it; of Excel or NumPy, {_AS_CSV}"),
-    (b"\xd0\xcf\x11\xe0", "is an old Excel file", _AS_CSV),
-    (b"\x1f\x8b", "is compressed", "unpack it first"),
-    (b"#ROSBAG", "is a bag of ROS messages", "turn its topics into CSV first"),
-    (b"SQLite format 3", "is a database, or a bag of ROS messages", "turn it into CSV first"),
-    (b"\x89MCAP0", "is a bag of ROS messages", "turn its topics into CSV first"),
-    (b"TDSm", "is a TDMS file of LabVIEW", "export it as text"),
-    (b"%PDF", "is a PDF", "name the file of data"),
-)
+MAX_ROWS = 10_000_000
+MAX_LABELS = 1000
+_LONGEST_LINE = 1 << 20
+_PREAMBLE = 100
+# So many lines between two words about the progress.
+_OFTEN = 20_000
+_IN_MEMORY = Path("arrays")
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +51,7 @@ class MeasurementTable:
     source: Source  # The file
     layout: tuple[str, ...]  # Quantities that were found
     groups: dict[str, dict[str, Array]]  # Values by group and quantity, shape (n,) each
-    columns: dict[str, dict[str, Column]]  # Where they come from, and their units
+    columns: Groups  # Where they come from, and their units
     labels: tuple[str, ...]  # Words of the column of modes; its values are their indices
     first_line: int  # Line of the first row, for messages
 
@@ -67,55 +62,89 @@ class MeasurementTable:
 
 
 def read_table(
-    path: Path,
+    data: Data,
     layouts: Sequence[tuple[str, ...]],
     mapping: Mapping[str, str],
     progress: Progress = lambda fraction: None,
     optional: tuple[str, ...] = (),
 ) -> MeasurementTable:
-    """Read the columns of one of several layouts from a text with a line of names.
+    """Read the columns of one of several layouts from a text with a line of names, or from arrays.
 
     A layout is of quantities that belong together, see `names.UNITS`; a mapping leads from a name
     in the file to ours; optional quantities are taken where they are there.
     """
-    try:
-        size = max(path.stat().st_size, 1)
-        if path.is_dir():
-            raise DataError("is a folder", path=path, remedy="name files of data")
-        with open_regular(path) as file:
-            _check_kind(file, path)
-
-            def part(done: float) -> None:
-                progress(min(done / size, 1.0))
-
-            table = _read(file, path, layouts, mapping, part, optional)
-    except OSError as error:
-        raise DataError(
-            f"cannot be read ({error.strerror})", path=path, remedy="check the name"
-        ) from error
+    if not isinstance(data, Path):
+        table = _read_arrays(data, layouts, mapping, optional)
+    else:
+        try:
+            if data.is_dir():
+                raise DataError("is a folder", path=data, remedy="name files of data")
+            with open_regular(data) as file:
+                table = _read(file, data, layouts, mapping, progress, optional)
+        except OSError as error:
+            raise DataError(
+                f"cannot be read ({error.strerror})", path=data, remedy="check the name"
+            ) from error
     _check_sizes(table)
     return table
 
 
-def _check_kind(file: BinaryIO, path: Path) -> None:
-    """Refuse a file that is no text, whatever its name says; stay at its beginning."""
-    start = file.read(32)
-    file.seek(0)
-    for begins, what, remedy in _BEGINNINGS:
-        if start.startswith(begins):
-            raise DataError(what, path=path, remedy=remedy)
-
-
 def _check_sizes(table: MeasurementTable) -> None:
-    """Refuse values whose squares, or the squares of those, leave the floats."""
+    """Refuse values that are not finite, or whose squares, or their squares, leave the floats."""
     for group, columns in table.groups.items():
         for quantity, values in columns.items():
             column = table.columns[group][quantity]
-            bad = np.flatnonzero(np.abs(values) > LARGEST)
+            bad = np.flatnonzero(~(np.abs(values) <= LARGEST))
             if len(bad):
-                size = f"{values[bad[0]] / column.factor:.4g}"
-                message = f"{column.name} is {size}: no sensor has such a value"
+                size = f"{column.name} is {values[bad[0]] / column.factor:.4g}"
+                message = f"{size}: no sensor has such a value"
                 table.fail(message, int(bad[0]), "cut the record before it, or correct the value")
+
+
+def _read_arrays(
+    data: Mapping[str, Any],
+    layouts: Sequence[tuple[str, ...]],
+    mapping: Mapping[str, str],
+    optional: tuple[str, ...],
+) -> MeasurementTable:
+    columns = {str(name): np.asarray(data[name]) for name in data.keys()}  # noqa: SIM118
+    layout, groups = find_columns([*columns], layouts, mapping, _IN_MEMORY, None, optional)
+    hashed, labels = hashlib.sha256(), _Labels()
+    arrays: dict[str, Array] = {}
+    for name in sorted({column.name for group in groups.values() for column in group.values()}):
+        values = columns[name]
+        if values.ndim != 1 or len(values) != len(next(iter(columns.values()))):
+            raise DataError(
+                f"{name} is no column of one length", remedy="give arrays of shape (n,)"
+            )
+        try:
+            numbers = values.astype(float)
+        except ValueError:
+            numbers = np.array([labels.number(str(word)) for word in values.tolist()])
+        arrays[name] = numbers
+        hashed.update(name.encode() + numbers.tobytes())
+    values_of = {
+        group: {key: arrays[column.name] * column.factor for key, column in found.items()}
+        for group, found in groups.items()
+    }
+    source = Source(_IN_MEMORY, hashed.hexdigest(), synthetic=False)
+    return MeasurementTable(source, layout, values_of, groups, tuple(labels.words), 0)
+
+
+@dataclass(slots=True)
+class _Labels:
+    """Words of a column of modes, in the order in which they come; a number stands for each."""
+
+    words: list[str] = field(default_factory=list)
+
+    def number(self, word: str) -> float:
+        """Return the number of a word."""
+        word = word.strip().strip('"')
+        if word not in self.words:
+            if not word or len(self.words) >= MAX_LABELS:
+                raise ValueError
+            self.words.append(word)
+        return float(self.words.index(word))
 
 
 def _read(
@@ -127,23 +156,23 @@ def _read(
     optional: tuple[str, ...],
 ) -> MeasurementTable:
     hashed = hashlib.sha256()
+    while block := file.read(_LONGEST_LINE):
+        hashed.update(block)
+    file.seek(0)
+    size = max(path.stat().st_size, 1)
+
+    def told(done: int) -> None:
+        progress(min(done / size, 1.0))
+
+    lines = _lines(file, path, told)
+    head = [line for _, line in zip(range(_PREAMBLE + 1), lines, strict=False)]
     example = ",".join(key if "any" in UNITS[key] else standard_name(key) for key in layouts[0])
-    header = read_header(file, path, mapping, hashed.update, example)
+    header = read_header(head, path, mapping, example)
     layout, groups = find_columns(header.names, layouts, mapping, path, header.line, optional)
-    columns = sorted({column for group in groups.values() for column in group.values()},
+    columns = sorted({c for group in groups.values() for c in group.values()},
                      key=lambda column: column.index)  # fmt: skip
-    parser = Parser(path, header, columns)
-    parts: list[Array] = []
-    rows = 0
-    for block in read_blocks(file, path, header.rest, hashed.update):
-        parts.append(parser.parse(block, header.line + 1 + rows))
-        rows += len(parts[-1])
-        progress(float(file.tell()))
-        if rows > MAX_ROWS:
-            raise DataError(
-                f"has more than {MAX_ROWS} rows", path=path, remedy="record at a lower rate"
-            )
-    values = np.concatenate(parts) if parts else np.empty((0, len(columns)))
+    rows = _Rows(path, header, columns)
+    values = rows.load(chain(head[header.line :], lines))
     at = {column: i for i, column in enumerate(columns)}
     # What leaves the floats is refused with the other sizes.
     with np.errstate(over="ignore"):
@@ -151,6 +180,116 @@ def _read(
             name: {key: values[:, at[column]] * column.factor for key, column in group.items()}
             for name, group in groups.items()
         }
-    progress(float(path.stat().st_size))
+    told(size)
     source = Source(path, hashed.hexdigest(), header.synthetic)
-    return MeasurementTable(source, layout, data, groups, tuple(parser.labels), header.line + 1)
+    labels = tuple(rows.labels.words)
+    return MeasurementTable(source, layout, data, groups, labels, header.line + 1)
+
+
+def _lines(file: BinaryIO, path: Path, told: Callable[[int], None]) -> Iterator[str]:
+    """Yield the lines of a text, so that it is never in memory at once."""
+    number = 0
+    while raw := file.readline(_LONGEST_LINE):
+        number += 1
+        if b"\0" in raw or (number == 1 and raw.startswith((b"%PDF", b"PK\3\4", b"\x1f\x8b"))):
+            raise DataError(
+                "is no text in UTF-8", path=path, line=number, remedy="save its columns as CSV"
+            )
+        if len(raw) == _LONGEST_LINE:
+            raise DataError("has a line of over 1 MiB", path=path, remedy="save it as CSV")
+        if number % _OFTEN == 0:
+            told(file.tell())
+        try:
+            yield raw.decode("utf-8-sig" if number == 1 else "utf-8").strip("\r\n ")
+        except UnicodeDecodeError:
+            # Measuring software on Windows writes µ and ° in this way.
+            yield raw.decode("cp1252", "replace").strip("\r\n ")
+
+
+@dataclass(slots=True)
+class _Rows:
+    """Turns lines into numbers."""
+
+    path: Path  # For errors
+    header: Header  # How the file is written
+    columns: list[Column]  # Those that are needed, in the order of the file
+    labels: _Labels = field(default_factory=_Labels)
+    line: int = 0  # Which line was read last
+    text: str = ""  # That line
+
+    def load(self, lines: Iterator[str]) -> Array:
+        """Return the numbers, shape (n, columns)."""
+        words: Any = {c.index: self.labels.number for c in self.columns if c.unit == ""}
+        with warnings.catch_warnings():
+            # Callers that need rows report that there are none.
+            warnings.simplefilter("ignore")
+            try:
+                values = np.loadtxt(
+                    self._regular(lines),
+                    delimiter="\t",
+                    usecols=[column.index for column in self.columns],
+                    ndmin=2,
+                    comments=None,
+                    converters=words or None,
+                )
+            except ValueError:
+                self._explain()
+        return np.asarray(values, float).reshape(-1, len(self.columns))
+
+    def _regular(self, lines: Iterator[str]) -> Iterator[str]:
+        """Yield lines with tabs between their cells; refuse one that is not as long as others."""
+        width, separator = len(self.header.names), self.header.separator
+        empty, self.line = 0, self.header.line
+        for text in lines:
+            self.line += 1
+            if not text:
+                empty = empty or self.line
+                continue
+            if empty:
+                self._fail("the row is empty", empty, "remove it")
+            if self.line - self.header.line > MAX_ROWS:
+                raise DataError(
+                    f"has more than {MAX_ROWS} rows", path=self.path, remedy="record more slowly"
+                )
+            cells = self.header.cells(text) if '"' in text else text.split(separator)
+            if len(cells) != width:
+                doubled = separator == "," and len(cells) > width
+                self._fail(
+                    f"the row has {len(cells)} values, the header {width}",
+                    self.line,
+                    "write numbers with a decimal point, or separate them by semicolons"
+                    if doubled
+                    else "complete the row, or end the record before it",
+                )
+            if self.header.decimal_comma:
+                self._refuse_points(cells)
+                cells = [cell.replace(",", ".") for cell in cells]
+            self.text = "\t".join(cells)
+            yield self.text
+
+    def _refuse_points(self, cells: Sequence[str]) -> None:
+        """Refuse a point beside decimal commas: it may stand between thousands."""
+        for column in self.columns:
+            cell = cells[column.index].strip()
+            if "." in cell and is_decimal(cell):
+                fault = f"{column.name} is {cell} where others have a decimal comma"
+                self._fail(fault, self.line, UNDECIDED)
+
+    def _explain(self) -> NoReturn:
+        """Say what is wrong with the line that was read last."""
+        cells = self.text.split("\t")
+        for column in self.columns:
+            name, cell = column.name, cells[column.index].strip()
+            if not cell:
+                remedy = "end the record before it, or fill the gap"
+                self._fail(f"{name} is missing", self.line, remedy)
+            if column.unit and not is_decimal(cell):
+                thousands = "," in cell and is_decimal(cell.replace(",", ""))
+                remedy = UNDECIDED if thousands else "write decimal numbers"
+                self._fail(f"{name} is {quoted(cell)}, not a number", self.line, remedy)
+        raise DataError(
+            "cannot be read", path=self.path, line=self.line, remedy="save it as plain CSV"
+        )
+
+    def _fail(self, message: str, line: int, remedy: str) -> NoReturn:
+        raise DataError(message, path=self.path, line=line, remedy=remedy)

@@ -117,7 +117,7 @@ SCRIPT = """
 import resource, sys
 from pathlib import Path
 import numpy
-from nrs_design.identification.datasets import read_tissue
+from nrs_design.identification.datasets.records import read_tissue
 peak = lambda: resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
 before = peak()
 seen = []

@@ -7,7 +7,6 @@ import pytest
 
 from nrs_design.errors import DataError
 from nrs_design.identification.tables import table as tables
-from nrs_design.identification.tables import text as module
 from nrs_design.identification.tables.columns import parse_mapping
 from nrs_design.identification.tables.table import read_table
 
@@ -33,23 +32,18 @@ def test_values_units_and_hash(tmp_path):
     assert found.source.sha256 == hashlib.sha256(text.encode()).hexdigest()
 
 
-def test_blocks_do_not_show(tmp_path, monkeypatch):
-    rng = np.random.default_rng(0)
-    values = rng.normal(size=(200, 3))
-    text = HEADER + "".join(",".join(map(repr, row)) + "\n" for row in values.tolist())
-    whole = read(tmp_path, text).groups[""]
-    monkeypatch.setattr(module, "BLOCK", 97)
-    parts = read(tmp_path, text).groups[""]
-    assert all((whole[key] == parts[key]).all() for key in whole)
-    assert np.column_stack(list(whole.values())).tolist() == values.tolist()
-
-
-def test_the_row_is_right_in_later_blocks(tmp_path, monkeypatch):
-    monkeypatch.setattr(module, "BLOCK", 64)
-    rows = "".join(f"{i},{i},{i}\n" for i in range(300))
-    with pytest.raises(DataError, match="time_s is 'x'") as caught:
-        read(tmp_path, HEADER + rows + "x,1,1\n")
-    assert caught.value.line == 302
+def test_arrays_are_read_as_a_file_is():
+    time = np.arange(3.0)
+    frame = {"time_ms": time, "Force [kN]": time, "x_raw": 2 * time, "mode": ["a", "b", "a"]}
+    mapping = parse_mapping(["deflection_mm=x_raw"])
+    found = read_table(frame, LAYOUTS, mapping, optional=("mode",))
+    assert found.groups[""]["deflection"] == pytest.approx(2e-3 * time)
+    assert found.groups[""]["force"] == pytest.approx(1e3 * time)
+    assert [found.labels[int(i)] for i in found.groups[""]["mode"]] == ["a", "b", "a"]
+    with pytest.raises(DataError, match="no column of one length"):
+        read_table(frame | {"x_raw": time[1:]}, LAYOUTS, mapping)
+    with pytest.raises(DataError, match="is nan"):
+        read_table(frame | {"x_raw": np.nan * time}, LAYOUTS, mapping)
 
 
 def test_files_that_cannot_be_read(tmp_path):

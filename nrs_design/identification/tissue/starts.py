@@ -6,26 +6,16 @@ a scan over that one number, with a linear fit at each, finds all valleys of the
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator
 
 import numpy as np
 
 from nrs_design.identification.numeric import Array, beyond, column_sizes
 from nrs_design.identification.tissue.trial import Trial
-from nrs_design.models.contact import (
-    AbstractContactLaw,
-    Elastic,
-    HuntCrossley,
-    KelvinBoltzmann,
-    KelvinVoigt,
-    Maxwell,
-)
+from nrs_design.models.contact import AbstractContactLaw
 from nrs_design.models.contact.hunt_crossley import LARGEST_EXPONENT, LEAST_EXPONENT
 from nrs_design.models.contact.law import DAMPING, STIFFNESS
-from nrs_design.models.contact.relaxation import Relaxation
 
-_SCAN = 9
-_EXPONENTS = 3
 # A coefficient that the linear fit would make zero or negative starts at this part of its scale.
 _FLOOR = 1e-3
 # Box around the scale of a stiffness; a damping may also act over one step or the whole record.
@@ -37,54 +27,22 @@ def scan(
     kind: type[AbstractContactLaw], trial: Trial, offsets: Array
 ) -> Iterator[AbstractContactLaw]:
     """Yield candidates for the start of a search."""
-    basis, used = np.linalg.qr(offsets)[0], trial.used
+    basis = np.linalg.qr(offsets)[0]
+    force = beyond(basis, trial.measured)
+    floor = _FLOOR * float(np.linalg.norm(force))
 
-    def linear(*regressors: Array) -> tuple[float, ...]:
-        X = np.column_stack([regressor[used] for regressor in regressors])
-        return _linear(trial.measured, X, basis)
+    def solve(*regressors: Array) -> tuple[float, ...]:
+        """Fit positive coefficients: least squares, what comes out too small is lifted."""
+        X = beyond(basis, np.column_stack([regressor[trial.used] for regressor in regressors]))
+        size = column_sizes(X)
+        scaled = np.linalg.lstsq(X / size, force, rcond=None)[0]
+        if (scaled < floor).any() and len(size) > 1:
+            # Without the offending terms, as a nonnegative fit would have it.
+            alone = (X / size).T @ force
+            scaled = np.where(scaled < floor, 0.0, np.maximum(alone, floor))
+        return tuple((np.maximum(scaled, floor) / size).tolist())
 
-    return _SCANS[kind](trial, linear)
-
-
-# Fits positive factors of regressors over all samples to the force.
-Linear = Callable[..., tuple[float, ...]]
-
-
-def _elastic(trial: Trial, linear: Linear) -> Iterator[Elastic]:
-    yield Elastic(*linear(trial.motion.deflection))
-
-
-def _kelvin_voigt(trial: Trial, linear: Linear) -> Iterator[KelvinVoigt]:
-    yield KelvinVoigt(*linear(trial.motion.deflection, trial.motion.velocity))
-
-
-def _maxwell(trial: Trial, linear: Linear) -> Iterator[Maxwell]:
-    for tau in _time_constants(trial):
-        (k,) = linear(Relaxation(trial.motion, tau).y)
-        yield Maxwell(k, k * tau)
-
-
-def _kelvin_boltzmann(trial: Trial, linear: Linear) -> Iterator[KelvinBoltzmann]:
-    for tau in _time_constants(trial):
-        eta1, arm = linear(trial.motion.deflection, Relaxation(trial.motion, tau).y)
-        yield KelvinBoltzmann.from_eta(eta1, (eta1 + arm) * tau, tau)
-
-
-def _hunt_crossley(trial: Trial, linear: Linear) -> Iterator[HuntCrossley]:
-    for phi in np.linspace(LEAST_EXPONENT, LARGEST_EXPONENT, _EXPONENTS).tolist():
-        power = np.maximum(trial.motion.deflection, 0.0) ** phi
-        rho, lam = linear(power, power * trial.motion.velocity)
-        yield HuntCrossley(rho, lam, phi)
-
-
-Scan = Callable[[Trial, Linear], Iterator[AbstractContactLaw]]
-_SCANS: Mapping[type[AbstractContactLaw], Scan] = {
-    Elastic: _elastic,
-    KelvinVoigt: _kelvin_voigt,
-    Maxwell: _maxwell,
-    KelvinBoltzmann: _kelvin_boltzmann,
-    HuntCrossley: _hunt_crossley,
-}
+    return kind.guesses(trial.motion, solve)
 
 
 def box(kind: type[AbstractContactLaw], trial: Trial) -> tuple[Array, Array]:
@@ -107,20 +65,3 @@ def box(kind: type[AbstractContactLaw], trial: Trial) -> tuple[Array, Array]:
     }
     low, high = np.log([bounds[kind] for kind in kind.kinds]).T
     return low, high
-
-
-def _time_constants(trial: Trial) -> list[float]:
-    return list(map(float, np.geomspace(2 * trial.step, 5 * trial.duration, _SCAN)))
-
-
-def _linear(force: Array, X: Array, basis: Array) -> tuple[float, ...]:
-    """Fit positive coefficients: least squares, what comes out too small is lifted."""
-    force, X = beyond(basis, force), beyond(basis, X)
-    size = column_sizes(X)
-    scaled = np.linalg.lstsq(X / size, force, rcond=None)[0]
-    floor = _FLOOR * float(np.linalg.norm(force))
-    if (scaled < floor).any() and len(size) > 1:
-        # Without the offending terms, as a nonnegative fit would have it.
-        alone = (X / size).T @ force
-        scaled = np.where(scaled < floor, 0.0, np.maximum(alone, floor))
-    return tuple((np.maximum(scaled, floor) / size).tolist())

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import TYPE_CHECKING, ClassVar
 
-from nrs_design.models.contact.law import AbstractNonlinearLaw
+from nrs_design.models.contact.law import AbstractNonlinearLaw, Solve
 
 if TYPE_CHECKING:
     from nrs_design.models.contact.motion import Array, Motion
@@ -64,6 +64,15 @@ class HuntCrossley(AbstractNonlinearLaw):
         logarithm = np.log(contact, out=np.zeros_like(contact), where=contact > 0)
         spring, damper = self.rho * power, self.lam * power * motion.velocity
         return np.column_stack([spring, damper, self.phi * logarithm * (spring + damper)])
+
+    @classmethod
+    def guesses(cls, motion: Motion, solve: Solve) -> Iterator[HuntCrossley]:
+        """Yield the best law for each of some exponents."""
+        import numpy as np
+
+        for phi in np.linspace(LEAST_EXPONENT, LARGEST_EXPONENT, 3).tolist():
+            power = np.maximum(motion.deflection, 0.0) ** phi
+            yield cls(*solve(power, power * motion.velocity), phi)
 
     def slope(self, motion: Motion) -> Array:
         """Return the derivative of `simulate` by the deflection, shape (n,), in N/m (N m/rad)."""

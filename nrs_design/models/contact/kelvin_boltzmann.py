@@ -20,6 +20,7 @@ from nrs_design.models.contact.law import (
     Element,
     Number,
     Reaction,
+    Solve,
 )
 from nrs_design.models.linear_form import LinearForm, combine
 from nrs_design.proof.assumption import Assumption
@@ -109,6 +110,15 @@ class KelvinBoltzmann(AbstractLinearLaw):
         q = float(self.k2 / (self.k1 + self.k2))
         chain = np.array([[q, 1 - q, 0.0], [q - 1, 2 - q, 0.0], [q - 1, -q, 1.0]])
         return np.asarray(inner @ chain)
+
+    @classmethod
+    def guesses(cls, motion: Motion, solve: Solve) -> Iterator[KelvinBoltzmann]:
+        """Yield the best law for each of some time constants."""
+        from nrs_design.models.contact.relaxation import Relaxation
+
+        for tau in motion.time_constants.tolist():
+            eta1, arm = solve(motion.deflection, Relaxation(motion, tau).y)
+            yield cls.from_eta(eta1, (eta1 + arm) * tau, tau)
 
     @classmethod
     def assumptions(cls, environment: str, *, alone: bool) -> Iterator[Assumption]:

@@ -30,6 +30,8 @@ _UNITS = {
 
 # A measured or designed value, or an exact one.
 Number = float | Fraction
+# Fits positive factors of columns, each of shape (n,), to a measured force.
+Solve = Callable[..., tuple[float, ...]]
 # Force, and the rates of the states.
 Reaction = tuple[LinearForm, list[LinearForm]]
 
@@ -73,6 +75,12 @@ class AbstractContactLaw(ABC):
     @abstractmethod
     def sensitivities(self, motion: Motion) -> Array:
         """Return the derivatives of `simulate` by the logarithms of the parameters, (n, p)."""
+
+    @classmethod
+    def guesses(cls, motion: Motion, solve: Solve) -> Iterator[Self]:
+        """Yield laws to begin a search from; by default of a law linear in its parameters."""
+        unit = cls(*(1.0 for _ in cls.kinds))
+        yield cls(*solve(*unit.sensitivities(motion).T))
 
     @abstractmethod
     def at_pivot(self, radius: float) -> Self:

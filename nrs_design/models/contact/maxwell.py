@@ -20,6 +20,7 @@ from nrs_design.models.contact.law import (
     Element,
     Number,
     Reaction,
+    Solve,
 )
 from nrs_design.models.linear_form import LinearForm, combine
 from nrs_design.proof.assumption import Assumption
@@ -76,6 +77,15 @@ class Maxwell(AbstractLinearLaw):
         relaxed = Relaxation(motion, self.relaxation_time)
         y, slope = relaxed.y, relaxed.slope
         return np.column_stack([float(self.k) * (y - slope), float(self.k) * slope])
+
+    @classmethod
+    def guesses(cls, motion: Motion, solve: Solve) -> Iterator[Maxwell]:
+        """Yield the best law for each of some time constants."""
+        from nrs_design.models.contact.relaxation import Relaxation
+
+        for tau in motion.time_constants.tolist():
+            (k,) = solve(Relaxation(motion, tau).y)
+            yield cls(k, k * tau)
 
     @classmethod
     def assumptions(cls, environment: str, *, alone: bool) -> Iterator[Assumption]:

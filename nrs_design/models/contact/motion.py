@@ -50,6 +50,14 @@ class Motion:
         order: Literal[1, 2] = 2 if len(self) > 2 else 1
         return np.asarray(np.gradient(self.deflection, self.time, edge_order=order), float)
 
+    @property
+    def time_constants(self) -> Array:
+        """Time constants in s that a record may tell, from short to long."""
+        import numpy as np
+
+        duration = float(self.time[-1] - self.time[0])
+        return np.geomspace(2 * float(np.median(self.steps)), 5 * duration, 9)
+
     def moved(self, shift: float) -> Motion:
         """Return the motion with its deflection counted from so much further; velocities stay."""
         moved = Motion(self.time, self.deflection - shift)

@@ -151,8 +151,7 @@ def tissue(
             "--set",
             metavar="NAME=VALUE",
             help="What is used of a record: start, end (s), contact (auto, given), zero, tare "
-            "(fit, or such as '0.1 m', '-1.3 N'), drift (auto, fit, none), skip_cycles, negate "
-            "(true).",
+            "(fit, or such as '0.1 m', '-1.3 N'), drift (auto, fit, none), negate (true).",
         ),
     ] = None,
     covers: Annotated[
@@ -179,9 +178,8 @@ def tissue(
 
     Columns: time_s, deflection_m, force_N, or time_s, angle_rad, torque_Nm (mm, mN, deg, ms and
     the like are converted). One file is one record; the spread between records goes into the
-    intervals. Air before, between and after touches is found, and so are a rupture and what follows
-    it. The position of contact and the force in air are fitted with the law, unless --set gives
-    them.
+    intervals. Air before, between and after touches is found. The position of contact and the
+    force in air are fitted with the law, unless --set gives them.
     --write keeps the law of the environment, unless --model names another.
     What the fit leaves in doubt is written into the spec, and the gate fails on it until
     accept_doubt says why the range is used.

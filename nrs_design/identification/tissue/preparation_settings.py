@@ -14,7 +14,7 @@ def read_preparation(entries: Iterable[str], *, rotational: bool) -> Preparation
     """Read how records are prepared; the settings are the fields of `Preparation`.
 
     ``start=S``, ``end=S``, ``contact=auto|given``, ``zero=POSITION``, ``tare=FORCE``,
-    ``drift=auto|fit|none``, ``skip_cycles=N``, ``negate=true``.
+    ``drift=auto|fit|none``, ``negate=true``.
     """
     readers: dict[str, Callable[[str], object]] = {
         "start": _seconds,
@@ -23,7 +23,6 @@ def read_preparation(entries: Iterable[str], *, rotational: bool) -> Preparation
         "zero": lambda text: parse_offset("zero", text, rotational=rotational),
         "tare": lambda text: parse_offset("tare", text, rotational=rotational),
         "drift": _out_of("auto", "fit", "none"),
-        "skip_cycles": _count,
         "negate": lambda text: _out_of("true", "false")(text) == "true",
     }
     return Preparation(**read_named_values(entries, readers, "a record"))
@@ -37,12 +36,6 @@ def _seconds(text: str) -> float:
     if not isfinite(value):
         raise ValueError("write seconds from the beginning of the record, such as 2.5")
     return value
-
-
-def _count(text: str) -> int:
-    if not text.isdecimal():
-        raise ValueError("write how many, such as 1")
-    return int(text)
 
 
 def _out_of(*choices: str) -> Callable[[str], str]:

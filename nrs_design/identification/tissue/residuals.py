@@ -192,5 +192,5 @@ def _conditioning(trial: Trial, residuals: Array) -> Iterator[str]:
         word = "stiffer" if more > 0 else "softer"
         yield (
             f"the first loading cycle is {100 * abs(more):.2g} % {word} than the later ones "
-            "(conditioning): --set skip_cycles=1 sets it apart"
+            f"(conditioning): --set start={trial.motion.time[trial.cycles[1].start]:.4g} sets it apart"
         )

@@ -14,7 +14,6 @@ from nrs_design.identification.numeric import Array, Flags, Rows, parted
 from nrs_design.identification.statistics import span
 from nrs_design.identification.tissue.contact import DetectedContact, find_contact, inner
 from nrs_design.identification.tissue.cycles import find_cycles
-from nrs_design.identification.tissue.rupture import find_rupture
 from nrs_design.identification.tissue.surface import surface
 from nrs_design.models.contact import Motion
 from nrs_design.proof.text import counted
@@ -45,7 +44,6 @@ class Preparation:
     tare: float | None = None  # Force in air in N (N m); None fits it
     # Whether the tare moves in proportion to time; ``auto`` where the air tells.
     drift: Literal["auto", "fit", "none"] = "auto"
-    skip_cycles: int = 0  # First loading cycles that are set apart
     negate: bool = False  # Change the sign of the force
 
 
@@ -143,15 +141,10 @@ class Trial:
 def prepare(record: TissueRecord, preparation: Preparation | None = None) -> Trial:
     """Cut a record to what can be fitted; too little left is a `DataError`.
 
-    By default, air, rupture and drift are looked for, and both zeros are fitted.
+    By default, air and drift are looked for, and both zeros are fitted.
     """
     wanted = preparation or Preparation()
     kept, cuts = _window(record, wanted)
-    rupture = find_rupture(kept.motion, kept.force)
-    if rupture is not None:
-        peak, words = rupture
-        cuts += _cut(kept.motion.time, np.arange(len(kept.force)) >= peak, words)
-        kept = _rows(kept, slice(0, peak))
     found = find_contact(kept) if wanted.contact == "auto" else None
     return _assemble(record, kept, wanted, found, cuts)
 
@@ -179,10 +172,9 @@ def _assemble(
         cuts += _cut(time, edge, "at the edge of contact")
         cuts += _cut(time, free, "no contact yet: the tissue has not come back from a touch")
         used = ~edge & ~free
-    cycles = find_cycles(deflection)
     stretch, beside = _pauses(time)
     cuts += _cut(time, beside, "beside a pause of the record, or between two of them")
-    used = used & ~beside & ~_skipped(time, cycles, wanted, cuts)
+    used = used & ~beside
     if used.sum() < FEWEST or np.ptp(x[used]) == 0:
         raise DataError(
             f"{used.sum()} samples in {len(x)} are left to fit, at least {FEWEST} are needed",
@@ -195,7 +187,7 @@ def _assemble(
     motion = Motion(time, deflection)
     return Trial(
         record, wanted, motion, position, force, used, touching, reference, side, found, moving,
-        tuple(cuts), cycles, stretch,
+        tuple(cuts), find_cycles(deflection), stretch,
     )  # fmt: skip
 
 
@@ -267,18 +259,6 @@ def _rows(record: TissueRecord, rows: slice | Flags) -> TissueRecord:
 def _side(x: Array) -> int:
     """Take the tissue where positions are larger, unless all of them are negative."""
     return -1 if x.max() < 0.05 * np.ptp(x) and x.min() < -0.5 * np.ptp(x) else 1
-
-
-def _skipped(time: Array, cycles: tuple[slice, ...], wanted: Preparation, cuts: list[str]) -> Flags:
-    skipped = np.zeros(len(time), bool)
-    if wanted.skip_cycles >= len(cycles):
-        raise DataError(
-            f"{wanted.skip_cycles} cycles are to be set apart, and there are {len(cycles)}",
-            remedy="leave at least one: set a smaller skip_cycles",
-        )
-    skipped[: cycles[wanted.skip_cycles].start] = True
-    cuts += _cut(time, skipped, "first loading cycles, set apart")
-    return skipped
 
 
 def _cut(time: Array, flags: Flags, reason: str) -> list[str]:

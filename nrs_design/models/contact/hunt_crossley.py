@@ -72,7 +72,8 @@ class HuntCrossley(AbstractNonlinearLaw):
 
         for phi in np.linspace(LEAST_EXPONENT, LARGEST_EXPONENT, 3).tolist():
             power = np.maximum(motion.deflection, 0.0) ** phi
-            yield cls(*solve(power, power * motion.velocity), phi)
+            rho, lam = solve(power, power * motion.velocity)
+            yield cls(rho, lam, phi)
 
     def slope(self, motion: Motion) -> Array:
         """Return the derivative of `simulate` by the deflection, shape (n,), in N/m (N m/rad)."""

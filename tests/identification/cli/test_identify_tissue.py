@@ -178,7 +178,6 @@ def test_another_unit_or_sign_is_no_success(tmp_path, scales, said):
     ("option", "message"),
     [
         (("--set", "start=99"), "lie between start and end"),
-        (("--set", "skip_cycles=9"), "9 cycles are to be set apart"),
         (("--covers", "tolerance"), "needs several records"),
         (("--environment", "soft"), "name a spec by --write, too"),
         (("--preload", "1 N"), "--preload: "),

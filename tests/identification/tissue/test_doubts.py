@@ -3,8 +3,10 @@
 import numpy as np
 import pytest
 
+from nrs_design.identification.datasets.records import TissueRecord
 from nrs_design.identification.tissue.output_error import fit_record
 from nrs_design.models.contact import (
+    LAWS,
     Elastic,
     HuntCrossley,
     KelvinBoltzmann,
@@ -13,7 +15,7 @@ from nrs_design.models.contact import (
     Motion,
 )
 from tests.identification import synthetic
-from tests.identification.support import quick, record, slow
+from tests.identification.support import quick, record, slow, source
 
 
 def doubts(kind, law, motion, noise=0.01, resolution=0.0):
@@ -71,3 +73,13 @@ def test_loaded_start():
 def test_a_sound_fit_has_none():
     assert doubts(KelvinBoltzmann, synthetic.CONCHA, slow()) == ""
     assert np.isclose(slow().deflection[0], 0.0)
+
+
+def test_a_tissue_that_is_torn():
+    """The force falls by a half while the probe goes on."""
+    time = np.arange(3000) / 100
+    force = 0.2 * time * np.where(time < 15, 1.0, 0.5)
+    force += 0.02 * np.random.default_rng(0).standard_normal(3000)
+    torn = TissueRecord(source("torn"), Motion(time, 0.0005 * time), force, False)
+    for kind in LAWS.values():
+        assert any("the residual is" in doubt for doubt in fit_record(kind, torn).doubts)

@@ -12,9 +12,9 @@ from nrs_design.identification.tissue.trial import Preparation
 def test_every_field_can_be_set():
     entries = (
         "start=0.5", "end=2", "contact=given", "zero=10 mm", "tare=-1.3 N", "drift=none",
-        "skip_cycles=2", "negate=true",
+        "negate=true",
     )  # fmt: skip
-    wanted = Preparation(0.5, 2.0, "given", 0.01, -1.3, "none", 2, True)
+    wanted = Preparation(0.5, 2.0, "given", 0.01, -1.3, "none", True)
     assert read_preparation(entries, rotational=False) == wanted
     assert read_preparation((), rotational=False) == Preparation()
     turned = read_preparation(("zero=180 deg", "tare=fit"), rotational=True)
@@ -28,7 +28,6 @@ def test_every_field_can_be_set():
         ("start=nan", DesignError, "'nan' is no value of start"),
         ("end=soon", DesignError, "'soon' is no value of end"),
         ("contact=maybe", DesignError, "'maybe' is no value of contact"),
-        ("skip_cycles=-1", DesignError, "'-1' is no value of skip_cycles"),
         ("negate=yes", DesignError, "'yes' is no value of negate"),
         ("zero=3 N", DataError, "zero: "),
         ("tare=1 N*m", DataError, "tare: "),

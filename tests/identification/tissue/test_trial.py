@@ -55,13 +55,14 @@ def conditioned():
 
 def test_the_first_cycle_is_doubted_and_set_apart():
     found = identify_tissue([conditioned()], "kelvin-voigt")
-    assert any("first loading cycle is" in doubt for doubt in found.caveats)
-    preparation = Preparation(skip_cycles=1)
+    (said,) = (doubt for doubt in found.caveats if "first loading cycle is" in doubt)
+    assert "--set start=5.39 sets it apart" in said
+    preparation = Preparation(start=5.0)
     found = identify_tissue([conditioned()], "kelvin-voigt", preparation)
     (fit,) = found.chosen.fits
     assert fit.estimates[0].covers(750.0)
     assert found.caveats == ()
-    assert "set apart" in "; ".join(fit.trial.remarks)
+    assert "outside start and end" in "; ".join(fit.trial.remarks)
 
 
 @pytest.mark.parametrize(

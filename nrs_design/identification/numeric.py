@@ -57,12 +57,3 @@ def runs(flags: Flags) -> list[tuple[int, int]]:
     """Return first row and end of every stretch of true flags."""
     edges = np.flatnonzero(np.diff(flags, prepend=False, append=False)).tolist()
     return list(zip(edges[::2], edges[1::2], strict=True))
-
-
-def limited_step(step: Array, limit: Array) -> Array:
-    """Shorten a step of a search as a whole until no part of it is beyond its limit.
-
-    It keeps its direction, along which errors fall: parts that are cut one by one would leave a
-    narrow valley.
-    """
-    return step / max(1.0, float(np.max(np.abs(step) / limit)))

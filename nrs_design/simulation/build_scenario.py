@@ -114,8 +114,8 @@ def _check_inside(path: Path, folder: Path) -> None:
 def _recorded(path: Path, largest: float) -> tuple[Profile, float]:
     # Whoever measures a hand names and scales columns as records of measurements do.
     read_table = load_wing("identification", "tables.table").read_table
-    table = read_table(path, (("time", "velocity"),), {}, lambda done: None, ())
-    columns = table.groups[""]
+    table = read_table(path, (("time", "velocity"),), {})
+    columns = table.values
     times = columns["time"] - columns["time"][:1]
     if len(times) < 2 or not (np.diff(times) >= 0).all() or not 0 < times[-1] <= LONGEST:
         raise DataError(

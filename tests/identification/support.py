@@ -43,7 +43,7 @@ def sinusoids(
     seed: int, frequencies: Sequence[float] = synthetic.FREQUENCIES
 ) -> list[ActuatorRecord]:
     return [
-        ActuatorRecord(source(f"{hertz:g}"), "", *synthetic.actuator_record(hertz, 100 * seed + i))
+        ActuatorRecord(source(f"{hertz:g}"), *synthetic.actuator_record(hertz, 100 * seed + i))
         for i, hertz in enumerate(frequencies)
     ]
 

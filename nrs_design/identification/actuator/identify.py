@@ -124,13 +124,13 @@ def _check(
     records: Sequence[ActuatorRecord], responses: Sequence[FrequencyResponse], coverage: Coverage
 ) -> None:
     if coverage != "confidence":
-        check_spread(coverage, len({_origin(record) for record in records}) + len(responses))
+        check_spread(coverage, len({r.source.sha256 for r in records}) + len(responses))
     if bool(records) == bool(responses) or len(responses) > 1:
         raise DataError(
             f"{len(records)} records and {len(responses)} frequency responses",
             remedy="give records of the motor, or one frequency response",
         )
-    if len({(*_origin(r), r.part) for r in records}) < len(records):
+    if len({(r.source.sha256, r.part) for r in records}) < len(records):
         raise DataError(
             "a record is there twice, which would narrow the intervals", remedy="name it once"
         )
@@ -144,18 +144,13 @@ def _check(
 
 def _spread(records: Sequence[ActuatorRecord], coverage: Coverage) -> tuple[Estimate, ...]:
     """Return ranges that hold other records, from a fit to each of these by itself."""
-    wholes: dict[tuple[str, str], list[ActuatorRecord]] = {}
+    wholes: dict[str, list[ActuatorRecord]] = {}
     for record in records:
-        wholes.setdefault(_origin(record), []).append(record)
+        wholes.setdefault(record.source.sha256, []).append(record)
     fits = [_alone(parts) for parts in wholes.values()]
     single = [(fit.gain, fit.time_constant) for fit in fits]
     logarithms = np.log([[estimate.value for estimate in row] for row in single])
     return spread_ranges(coverage, logarithms, single)
-
-
-def _origin(record: ActuatorRecord) -> tuple[str, str]:
-    """Return what stretches between pauses of one record have in common."""
-    return record.source.sha256, record.group
 
 
 def _alone(parts: Sequence[ActuatorRecord]) -> ActuatorFit:

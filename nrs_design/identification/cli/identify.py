@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 from enum import StrEnum
 from functools import partial
 from pathlib import Path
@@ -17,10 +15,9 @@ from nrs_design.cli.command import Answer, command
 from nrs_design.cli.destinations import Destinations
 from nrs_design.cli.groups import CommandGroup
 from nrs_design.cli.options import Date, ReportTo
-from nrs_design.cli.printing import detail, is_quiet, progress, say, wants_details
+from nrs_design.cli.printing import detail, progress, say, wants_details
 from nrs_design.cli.tables import print_table
 from nrs_design.models.contact import LAWS
-from nrs_design.printable import printable
 
 if TYPE_CHECKING:
     from nrs_design.identification.reporting.view import View
@@ -80,34 +77,14 @@ identify = typer.Typer(
 
 
 def read_all(
-    paths: Sequence[Path],
-    read: Callable[[Path, dict[str, str], Callable[[float], None]], T],
-    entries: Sequence[str],
+    paths: Sequence[Path], read: Callable[[Path, dict[str, str]], T], entries: Sequence[str]
 ) -> list[T]:
-    """Read every file, with columns named as the user said; large ones show how far they are."""
+    """Read every file, with columns named as the user said."""
     from nrs_design.identification.tables.columns import parse_mapping
 
     mapping = parse_mapping(entries)
-    with _bar() as begin:
-        return [read(path, mapping, begin(path.name)) for path in paths]
-
-
-@contextmanager
-def _bar() -> Iterator[Callable[[str], Callable[[float], None]]]:
-    if is_quiet() or not sys.stderr.isatty():
-        yield lambda name: lambda fraction: None
-        return
-    from rich.console import Console
-    from rich.markup import escape
-    from rich.progress import Progress
-
-    with Progress(console=Console(stderr=True), transient=True) as bars:
-
-        def begin(name: str) -> Callable[[float], None]:
-            task = bars.add_task(f"reading {escape(printable(name))}", total=1.0)
-            return lambda fraction: bars.update(task, completed=fraction)
-
-        yield begin
+    with progress("reading"):
+        return [read(path, mapping) for path in paths]
 
 
 def _deliver(outputs: Destinations, view: View, merge: Callable[[LoadedSpec], str]) -> Answer:
@@ -246,8 +223,7 @@ def actuator(
 
     Columns: time_s, command_rpm (or _V, _A, _counts), and angle_rad or velocity_rad_s; any command
     that moves the motor: sinusoids, steps, stairs, chirps, random ones, in open or closed loop.
-    One file is one record; groups of columns have suffixes _1, _2, ... Or a frequency response:
-    frequency_hz, magnitude_db, phase_deg.
+    One file is one record. Or a frequency response: frequency_hz, magnitude_db, phase_deg.
 
     Example: nrs-design identify actuator specs/data/actuator-*hz.csv --report reports/actuator.html
     """

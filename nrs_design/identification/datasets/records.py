@@ -8,7 +8,6 @@ from functools import cached_property
 
 import numpy as np
 
-from nrs_design.errors import DataError
 from nrs_design.identification.datasets.checks import (
     check_saturation,
     check_time,
@@ -22,7 +21,6 @@ from nrs_design.identification.numeric import Array, Complex, usual_step
 from nrs_design.identification.tables.table import (
     Data,
     MeasurementTable,
-    Progress,
     Source,
     read_table,
 )
@@ -61,7 +59,6 @@ class ActuatorRecord:
     """Response of the actuator to a command."""
 
     source: Source  # The file
-    group: str  # Suffix of its columns, empty for none
     # time, command, output: shape (n,). In s, in the unit of the command, and in rad or rad/s.
     time: Array
     command: Array
@@ -73,9 +70,9 @@ class ActuatorRecord:
 
     @property
     def name(self) -> str:
-        """File name without its ending, the group, and the part beyond the first."""
+        """File name without its ending, and the part beyond the first."""
         part = f", part {self.part + 1}" if self.part else ""
-        return self.source.path.stem + (f"/{self.group}" if self.group else "") + part
+        return self.source.path.stem + part
 
     @cached_property
     def step(self) -> float:
@@ -94,16 +91,14 @@ class FrequencyResponse:
     unit: str = "rpm"  # Of the command, which no column says: that of the motor of the thesis
 
 
-def read_tissue(
-    data: Data, mapping: Mapping[str, str] | None = None, progress: Progress = lambda done: None
-) -> TissueRecord:
+def read_tissue(data: Data, mapping: Mapping[str, str] | None = None) -> TissueRecord:
     """Read a record of ``time_s, deflection_m, force_N`` or ``time_s, angle_rad, torque_Nm``.
 
     A mapping leads from a name in the file to ours. A column that is missing, a gap or step back
     of time, a value that is not finite and a saturated sensor are a `DataError` with the row.
     """
-    table = read_table(data, (LINEAR, ROTATIONAL), mapping or {}, progress)
-    time, deflection, force = _one_group(table)
+    table = read_table(data, (LINEAR, ROTATIONAL), mapping or {})
+    time, deflection, force = table.values.values()
     check_time(table, time)
     check_varies(table, table.layout[1], deflection)
     check_varies(table, table.layout[2], force)
@@ -114,17 +109,17 @@ def read_tissue(
 
 
 def read_actuator(
-    data: Data, mapping: Mapping[str, str] | None = None, progress: Progress = lambda done: None
+    data: Data, mapping: Mapping[str, str] | None = None
 ) -> tuple[ActuatorRecord | FrequencyResponse, ...]:
-    """Read records of the actuator, one or several groups of columns, or a frequency response.
+    """Read a record of the actuator, in parts between its pauses, or a frequency response.
 
-    Columns are ``time_s, command_rpm`` and ``angle_rad`` or ``velocity_rad_s`` (with suffixes
-    ``_1``, ``_2`` for groups), or ``frequency_hz, magnitude_db, phase_deg``.
+    Columns are ``time_s, command_rpm`` and ``angle_rad`` or ``velocity_rad_s``, or
+    ``frequency_hz, magnitude_db, phase_deg``.
     """
-    table = read_table(data, (ANGLE, VELOCITY, RESPONSE), mapping or {}, progress)
+    table = read_table(data, (ANGLE, VELOCITY, RESPONSE), mapping or {})
     if table.layout == RESPONSE:
         return (_response(table),)
-    return tuple(record for group in table.groups for record in _actuator(table, group))
+    return tuple(_actuator(table))
 
 
 @dataclass(frozen=True, eq=False)
@@ -157,7 +152,6 @@ class SignalRecord:
 def read_signals(
     data: Data,
     mapping: Mapping[str, str] | None = None,
-    progress: Progress = lambda done: None,
 ) -> SignalRecord:
     """Read two columns: a command, and what follows it.
 
@@ -167,9 +161,9 @@ def read_signals(
     mapping = mapping or {}
     chosen = {"input_any", "output_any"} & set(mapping.values())
     layouts = [("time", *pair) for pair in (FREE if chosen else FOLLOWED)]
-    table = read_table(data, layouts, mapping, progress)
-    time, sent, seen = _one_group(table)
-    (found,) = table.columns.values()
+    table = read_table(data, layouts, mapping)
+    time, sent, seen = table.values.values()
+    found = table.columns
     check_time(table, time)
     names = found[table.layout[1]].name, found[table.layout[2]].name
     if table.layout[2] == "angle":
@@ -179,25 +173,13 @@ def read_signals(
     return SignalRecord(table.source, time - time[0], sent, seen, names)
 
 
-def _one_group(table: MeasurementTable) -> list[Array]:
-    """Return the columns of a file that holds one record, in the order of the layout."""
-    if len(table.groups) > 1:
-        raise DataError(
-            f"holds {len(table.groups)} groups of columns",
-            path=table.source.path,
-            remedy="write one record per file",
-        )
-    (columns,) = table.groups.values()
-    return [columns[quantity] for quantity in table.layout]
-
-
-def _actuator(table: MeasurementTable, group: str) -> list[ActuatorRecord]:
+def _actuator(table: MeasurementTable) -> list[ActuatorRecord]:
     """Return a record for every stretch between pauses in which the motor moves."""
-    time, command, output = (table.groups[group][quantity] for quantity in table.layout)
+    time, command, output = table.values.values()
     check_time(table, time)
     check_varies(table, "command", command)
     check_varies(table, table.layout[2], output)
-    unit = table.columns[group]["command"].unit
+    unit = table.columns["command"].unit
     is_angle = table.layout == ANGLE
     if is_angle:
         check_turns(table, output)
@@ -206,14 +188,14 @@ def _actuator(table: MeasurementTable, group: str) -> list[ActuatorRecord]:
         t, u, y = time[rows], command[rows], output[rows]
         if np.ptp(u) > 0 and np.ptp(y) > 0:
             part = len(parts), None if parts else pauses_text(time - time[0])
-            parts.append(ActuatorRecord(table.source, group, t - t[0], u, y, is_angle, unit, *part))
+            parts.append(ActuatorRecord(table.source, t - t[0], u, y, is_angle, unit, *part))
     if not parts:
         table.fail("the motor moves in no stretch between its pauses", 0, "record a motion")
     return parts
 
 
 def _response(table: MeasurementTable) -> FrequencyResponse:
-    frequency, magnitude, phase = _one_group(table)
+    frequency, magnitude, phase = table.values.values()
     if len(frequency) < 3:
         table.fail(
             f"{len(frequency)} frequencies are too few",

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
 from nrs_design.errors import DataError
 from nrs_design.identification.datasets.checks import FEWEST_ROWS, check_advance, gaps_in
 from nrs_design.identification.numeric import Array, Flags, Rows, usual_step
-from nrs_design.identification.tables.table import Progress, Source, read_table
+from nrs_design.identification.tables.table import Data, Source, read_table
 
 _OPTIONAL = ("angle", "torque", "deflection", "force", "velocity", "command", "mode")
 
@@ -44,26 +43,24 @@ class RunLog:
         return self.columns["mode"].astype(np.int64) if "mode" in self.columns else None
 
 
-def read_run(
-    path: Path, mapping: Mapping[str, str] | None = None, progress: Progress = lambda done: None
-) -> RunLog:
+def read_run(data: Data, mapping: Mapping[str, str] | None = None) -> RunLog:
     """Read ``time_s`` and those of the other columns that are there.
 
     They are ``angle_rad, torque_Nm`` or ``deflection_m, force_N``, ``velocity_rad_s``,
     ``command_UNIT`` and ``mode``, the name of the controller in force.
     """
-    table = read_table(path, (("time",),), mapping or {}, progress, _OPTIONAL)
-    columns = dict(table.groups.get("", {}))
-    time = columns.pop("time", np.empty(0))
+    table = read_table(data, (("time",),), mapping or {}, _OPTIONAL)
+    columns = dict(table.values)
+    time = columns.pop("time")
     if not columns:
         raise DataError(
             "has no column beside the time that could be judged",
-            path=path,
+            path=table.source.path,
             remedy="name columns such as angle_rad, torque_Nm, command_rpm, mode; see --map",
         )
     if len(time) < FEWEST_ROWS:
         table.fail(f"the log has {len(time)} rows, at least {FEWEST_ROWS} are needed",
                    max(len(time) - 1, 0), "log longer")  # fmt: skip
     check_advance(table, time)
-    unit = table.columns[""]["command"].unit if "command" in columns else ""
+    unit = table.columns["command"].unit if "command" in columns else ""
     return RunLog(table.source, time - time[0], columns, table.labels, float(time[0]), unit)

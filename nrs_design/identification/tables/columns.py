@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -19,8 +19,6 @@ from nrs_design.identification.tables.names import (
 
 # Returns an error about a file.
 Fail = Callable[..., DataError]
-# By group, which is called "" without a suffix, and quantity.
-Groups = dict[str, dict[str, "Column"]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,17 +52,16 @@ def find_columns(
     path: Path,
     line: int | None,
     optional: tuple[str, ...] = (),
-) -> tuple[tuple[str, ...], Groups]:
-    """Return the first layout that a header has in full, and its columns by group and quantity.
+) -> tuple[tuple[str, ...], dict[str, Column]]:
+    """Return the first layout that a header has in full, and its columns by quantity.
 
-    What the user has mapped decides between layouts, then their order. The first quantity of a
-    layout may be shared by all groups.
+    What the user has mapped decides between layouts, then their order.
     """
     fail = partial(DataError, path=path, line=line)
     _check_mapped(mapping, header, fail)
     wanted = {quantity for layout in layouts for quantity in layout} | set(optional)
     named = {_split(ours, fail).quantity for ours in mapping.values()}
-    found: Groups = {}
+    found: dict[str, Column] = {}
     faults: list[DataError] = []
     for index, text in enumerate(header):
         name = read_name(mapping.get(text, text))
@@ -79,31 +76,19 @@ def find_columns(
             if name.quantity in optional:
                 raise faults[-1]
             continue
-        group = found.setdefault(name.group, {})
-        if name.quantity in group:
-            first = group[name.quantity].name
+        if name.quantity in found:
+            first = found[name.quantity].name
             raise fail(
                 f"the {name.quantity} is there twice ({first!r} and {text!r})",
-                remedy="rename one of them, tell groups apart by a suffix such as _1, or choose "
-                f"with --map {standard_name(name.quantity)}=NAME",
+                remedy="rename one of them, or choose with --map "
+                f"{standard_name(name.quantity)}=NAME",
             )
-        group[name.quantity] = Column(index, text, name.factor, name.read_as)
+        found[name.quantity] = Column(index, text, name.factor, name.read_as)
     for layout in sorted(layouts, key=lambda quantities: len(named - set(quantities))):
-        groups = _complete(found, layout, optional)
-        if groups:
-            return layout, groups
+        if set(layout) <= found.keys():
+            taken = (*layout, *(key for key in optional if key in found))
+            return layout, {quantity: found[quantity] for quantity in taken}
     raise faults[0] if faults else _missing(found, header, layouts, fail)
-
-
-def _complete(found: Groups, layout: tuple[str, ...], optional: tuple[str, ...]) -> Groups:
-    shared = {key: column for key, column in found.get("", {}).items() if key == layout[0]}
-    groups: Groups = {}
-    for group, columns in found.items():
-        available = shared | columns
-        if set(layout) <= set(available):
-            taken = (*layout, *(key for key in optional if key in available))
-            groups[group] = {quantity: available[quantity] for quantity in taken}
-    return groups
 
 
 def _check_mapped(mapping: Mapping[str, str], header: Sequence[str], fail: Fail) -> None:
@@ -121,7 +106,7 @@ def check_stated(theirs: str, unit: str | None, ours: str, fail: Fail) -> None:
     if unit in (None, name.unit) or name.unit in ("", "any"):
         return
     if unit in UNITS[name.quantity]:
-        right = "_".join(filter(None, (name.quantity, unit, name.group)))
+        right = f"{name.quantity}_{unit}"
         remedy = f"write --map '{right}={theirs}', or rename the column if its unit is wrong"
     else:
         remedy = f"map another column; if this is one in {name.unit}, correct its name"
@@ -154,17 +139,15 @@ def _unknown_unit(name: Name, text: str, prefix: str, fail: Fail) -> DataError:
 
 
 def _missing(
-    found: Groups, header: Sequence[str], layouts: Sequence[tuple[str, ...]], fail: Fail
+    present: Collection[str], header: Sequence[str], layouts: Sequence[tuple[str, ...]], fail: Fail
 ) -> DataError:
-    present = {quantity for columns in found.values() for quantity in columns}
-    nearest = min(layouts, key=lambda layout: len(set(layout) - present))
+    nearest = min(layouts, key=lambda layout: len(set(layout).difference(present)))
     missing = [_called(quantity) for quantity in nearest if quantity not in present]
     expected = " or ".join(", ".join(map(_called, layout)) for layout in layouts)
-    example = missing[0] if missing else "force_N"
     return fail(
-        f"the columns {', '.join(missing) or 'of one group'} are missing: it has {_listed(header)}",
+        f"the columns {', '.join(missing)} are missing: it has {_listed(header)}",
         remedy=f"expected {expected}, in these units or others; name foreign columns with --map "
-        f"{example}=NAME",
+        f"{missing[0]}=NAME",
     )
 
 

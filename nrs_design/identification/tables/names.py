@@ -1,4 +1,4 @@
-"""What a column is called: a quantity, its unit, and an optional group."""
+"""What a column is called: a quantity and its unit."""
 
 from __future__ import annotations
 
@@ -81,7 +81,6 @@ class Name:
 
     quantity: str  # Of `UNITS`
     unit: str  # As written, or as we write it where that is known
-    group: str = ""  # Suffix, empty for none
 
     @property
     def known(self) -> bool:
@@ -108,7 +107,7 @@ def standard_name(quantity: str) -> str:
 
 
 def read_name(text: str) -> Name | None:
-    """Take a name apart: ``angle_rad_2``, ``Force [N]``, ``Load (kN)``, ``Time/s``, ``t, s``.
+    """Take a name apart: ``angle_rad``, ``Force [N]``, ``Load (kN)``, ``Time/s``, ``t, s``.
 
     None if it names no quantity of ours; the unit of one in its full name may be unknown or empty.
     """
@@ -124,10 +123,7 @@ def read_name(text: str) -> Name | None:
         quantities = (word,)
     elif not bracketed and word not in _BEFORE_UNDERSCORES:
         return None
-    names = [
-        Name(q, read_unit(rest, q)) if bracketed else Name(q, *_unit_and_group(rest, q))
-        for q in quantities
-    ]
+    names = [Name(q, read_unit(rest, q)) for q in quantities]
     # Another word counts only with its unit.
     return next((name for name in names if name.known or word in UNITS), None)
 
@@ -150,12 +146,3 @@ def stated_unit(text: str, quantity: str) -> str | None:
     words = text.strip().split("_")
     endings = (read_unit("_".join(words[-n:]), quantity) for n in (2, 1) if len(words) > n)
     return next((unit for unit in endings if unit in known - _NO_ENDINGS), None)
-
-
-def _unit_and_group(rest: str, quantity: str) -> tuple[str, str]:
-    """Split at the longest unit that fits: ``rad_s_2`` is rad/s of group 2."""
-    for unit in sorted(filter(None, UNITS[quantity]), key=len, reverse=True):
-        if rest == unit or rest.startswith(f"{unit}_"):
-            return unit, rest[len(unit) + 1 :]
-    unit, _, group = rest.partition("_")
-    return read_unit(unit, quantity), group

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import warnings
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import chain
 from pathlib import Path
@@ -15,13 +15,12 @@ import numpy as np
 from nrs_design.errors import DataError
 from nrs_design.files import open_regular
 from nrs_design.identification.numeric import Array
-from nrs_design.identification.tables.columns import Column, Groups, find_columns
+from nrs_design.identification.tables.columns import Column, find_columns
 from nrs_design.identification.tables.header import UNDECIDED, Header, is_decimal, read_header
 from nrs_design.identification.tables.names import UNITS, standard_name
 from nrs_design.proof.text import quoted
 from nrs_design.spec.quantity import LARGEST
 
-Progress = Callable[[float], None]
 # A file, or arrays by the names of their columns, such as a DataFrame.
 Data = Path | Mapping[str, Any]
 
@@ -29,8 +28,6 @@ MAX_ROWS = 10_000_000
 MAX_LABELS = 1000
 _LONGEST_LINE = 1 << 20
 _PREAMBLE = 100
-# So many lines between two words about the progress.
-_OFTEN = 20_000
 _IN_MEMORY = Path("arrays")
 
 
@@ -50,8 +47,8 @@ class MeasurementTable:
 
     source: Source  # The file
     layout: tuple[str, ...]  # Quantities that were found
-    groups: dict[str, dict[str, Array]]  # Values by group and quantity, shape (n,) each
-    columns: Groups  # Where they come from, and their units
+    values: dict[str, Array]  # By quantity, shape (n,) each
+    columns: dict[str, Column]  # Where they come from, and their units
     labels: tuple[str, ...]  # Words of the column of modes; its values are their indices
     first_line: int  # Line of the first row, for messages
 
@@ -65,7 +62,6 @@ def read_table(
     data: Data,
     layouts: Sequence[tuple[str, ...]],
     mapping: Mapping[str, str],
-    progress: Progress = lambda fraction: None,
     optional: tuple[str, ...] = (),
 ) -> MeasurementTable:
     """Read the columns of one of several layouts from a text with a line of names, or from arrays.
@@ -80,7 +76,7 @@ def read_table(
             if data.is_dir():
                 raise DataError("is a folder", path=data, remedy="name files of data")
             with open_regular(data) as file:
-                table = _read(file, data, layouts, mapping, progress, optional)
+                table = _read(file, data, layouts, mapping, optional)
         except OSError as error:
             raise DataError(
                 f"cannot be read ({error.strerror})", path=data, remedy="check the name"
@@ -91,14 +87,13 @@ def read_table(
 
 def _check_sizes(table: MeasurementTable) -> None:
     """Refuse values that are not finite, or whose squares, or their squares, leave the floats."""
-    for group, columns in table.groups.items():
-        for quantity, values in columns.items():
-            column = table.columns[group][quantity]
-            bad = np.flatnonzero(~(np.abs(values) <= LARGEST))
-            if len(bad):
-                size = f"{column.name} is {values[bad[0]] / column.factor:.4g}"
-                message = f"{size}: no sensor has such a value"
-                table.fail(message, int(bad[0]), "cut the record before it, or correct the value")
+    for quantity, values in table.values.items():
+        column = table.columns[quantity]
+        bad = np.flatnonzero(~(np.abs(values) <= LARGEST))
+        if len(bad):
+            size = f"{column.name} is {values[bad[0]] / column.factor:.4g}"
+            message = f"{size}: no sensor has such a value"
+            table.fail(message, int(bad[0]), "cut the record before it, or correct the value")
 
 
 def _read_arrays(
@@ -107,28 +102,24 @@ def _read_arrays(
     mapping: Mapping[str, str],
     optional: tuple[str, ...],
 ) -> MeasurementTable:
-    columns = {str(name): np.asarray(data[name]) for name in data.keys()}  # noqa: SIM118
-    layout, groups = find_columns([*columns], layouts, mapping, _IN_MEMORY, None, optional)
+    given = {str(name): np.asarray(data[name]) for name in data.keys()}  # noqa: SIM118
+    layout, columns = find_columns([*given], layouts, mapping, _IN_MEMORY, None, optional)
     hashed, labels = hashlib.sha256(), _Labels()
-    arrays: dict[str, Array] = {}
-    for name in sorted({column.name for group in groups.values() for column in group.values()}):
-        values = columns[name]
-        if values.ndim != 1 or len(values) != len(next(iter(columns.values()))):
+    found: dict[str, Array] = {}
+    for quantity, column in columns.items():
+        values = given[column.name]
+        if values.ndim != 1 or len(values) != len(next(iter(given.values()))):
             raise DataError(
-                f"{name} is no column of one length", remedy="give arrays of shape (n,)"
+                f"{column.name} is no column of one length", remedy="give arrays of shape (n,)"
             )
         try:
             numbers = values.astype(float)
         except ValueError:
             numbers = np.array([labels.number(str(word)) for word in values.tolist()])
-        arrays[name] = numbers
-        hashed.update(name.encode() + numbers.tobytes())
-    values_of = {
-        group: {key: arrays[column.name] * column.factor for key, column in found.items()}
-        for group, found in groups.items()
-    }
+        found[quantity] = numbers * column.factor
+        hashed.update(column.name.encode() + numbers.tobytes())
     source = Source(_IN_MEMORY, hashed.hexdigest(), synthetic=False)
-    return MeasurementTable(source, layout, values_of, groups, tuple(labels.words), 0)
+    return MeasurementTable(source, layout, found, columns, tuple(labels.words), 0)
 
 
 @dataclass(slots=True)
@@ -152,41 +143,29 @@ def _read(
     path: Path,
     layouts: Sequence[tuple[str, ...]],
     mapping: Mapping[str, str],
-    progress: Progress,
     optional: tuple[str, ...],
 ) -> MeasurementTable:
     hashed = hashlib.sha256()
     while block := file.read(_LONGEST_LINE):
         hashed.update(block)
     file.seek(0)
-    size = max(path.stat().st_size, 1)
-
-    def told(done: int) -> None:
-        progress(min(done / size, 1.0))
-
-    lines = _lines(file, path, told)
+    lines = _lines(file, path)
     head = [line for _, line in zip(range(_PREAMBLE + 1), lines, strict=False)]
     example = ",".join(key if "any" in UNITS[key] else standard_name(key) for key in layouts[0])
     header = read_header(head, path, mapping, example)
-    layout, groups = find_columns(header.names, layouts, mapping, path, header.line, optional)
-    columns = sorted({c for group in groups.values() for c in group.values()},
-                     key=lambda column: column.index)  # fmt: skip
-    rows = _Rows(path, header, columns)
-    values = rows.load(chain(head[header.line :], lines))
-    at = {column: i for i, column in enumerate(columns)}
+    layout, columns = find_columns(header.names, layouts, mapping, path, header.line, optional)
+    rows = _Rows(path, header, [*columns.values()])
+    numbers = rows.load(chain(head[header.line :], lines))
     # What leaves the floats is refused with the other sizes.
     with np.errstate(over="ignore"):
-        data = {
-            name: {key: values[:, at[column]] * column.factor for key, column in group.items()}
-            for name, group in groups.items()
-        }
-    told(size)
+        scaled = numbers.T * np.array([[column.factor] for column in columns.values()])
+    values = dict(zip(columns, scaled, strict=True))
     source = Source(path, hashed.hexdigest(), header.synthetic)
     labels = tuple(rows.labels.words)
-    return MeasurementTable(source, layout, data, groups, labels, header.line + 1)
+    return MeasurementTable(source, layout, values, columns, labels, header.line + 1)
 
 
-def _lines(file: BinaryIO, path: Path, told: Callable[[int], None]) -> Iterator[str]:
+def _lines(file: BinaryIO, path: Path) -> Iterator[str]:
     """Yield the lines of a text, so that it is never in memory at once."""
     number = 0
     while raw := file.readline(_LONGEST_LINE):
@@ -197,8 +176,6 @@ def _lines(file: BinaryIO, path: Path, told: Callable[[int], None]) -> Iterator[
             )
         if len(raw) == _LONGEST_LINE:
             raise DataError("has a line of over 1 MiB", path=path, remedy="save it as CSV")
-        if number % _OFTEN == 0:
-            told(file.tell())
         try:
             yield raw.decode("utf-8-sig" if number == 1 else "utf-8").strip("\r\n ")
         except UnicodeDecodeError:
@@ -212,7 +189,7 @@ class _Rows:
 
     path: Path  # For errors
     header: Header  # How the file is written
-    columns: list[Column]  # Those that are needed, in the order of the file
+    columns: list[Column]  # Those that are needed
     labels: _Labels = field(default_factory=_Labels)
     line: int = 0  # Which line was read last
     text: str = ""  # That line

@@ -190,7 +190,8 @@ def _conditioning(trial: Trial, residuals: Array) -> Iterator[str]:
     more = first - float(later.mean())
     if abs(more) > max(_CONDITIONING, _SPREADS * float(np.ptp(later))):
         word = "stiffer" if more > 0 else "softer"
+        start = trial.motion.time[trial.cycles[1].start]
         yield (
             f"the first loading cycle is {100 * abs(more):.2g} % {word} than the later ones "
-            f"(conditioning): --set start={trial.motion.time[trial.cycles[1].start]:.4g} sets it apart"
+            f"(conditioning): --set start={start:.4g} sets it apart"
         )

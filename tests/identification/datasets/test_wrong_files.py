@@ -120,9 +120,6 @@ OTHERS = {
     "nothing measured": (read_signals, rows("time_s,command_V", clock, swing), "missing", 1),
     "a signal that never changes": (read_signals, rows("time_s,command_V,angle_rad", clock, swing,
         1), "never changes", 2),
-    "two records": (read_signals,
-        rows("time_s_1,command_V_1,angle_rad_1,time_s_2,command_V_2,angle_rad_2", *[clock, swing,
-        swing] * 2), "2 groups", None),
 }  # fmt: skip
 
 

@@ -24,7 +24,7 @@ def read(tmp_path, text, entries=()):
 def test_values_units_and_hash(tmp_path):
     text = "# synthetic\ntime_ms,force_mN,note,deflection_mm\n10,1500,7,2\n20,1e3,7,3\r\n30,0,7,-4"
     found = read(tmp_path, text)
-    group = found.groups[""]
+    group = found.values
     assert group["time"] == pytest.approx([0.01, 0.02, 0.03])
     assert group["force"] == pytest.approx([1.5, 1.0, 0.0])
     assert group["deflection"] == pytest.approx([2e-3, 3e-3, -4e-3])
@@ -37,9 +37,9 @@ def test_arrays_are_read_as_a_file_is():
     frame = {"time_ms": time, "Force [kN]": time, "x_raw": 2 * time, "mode": ["a", "b", "a"]}
     mapping = parse_mapping(["deflection_mm=x_raw"])
     found = read_table(frame, LAYOUTS, mapping, optional=("mode",))
-    assert found.groups[""]["deflection"] == pytest.approx(2e-3 * time)
-    assert found.groups[""]["force"] == pytest.approx(1e3 * time)
-    assert [found.labels[int(i)] for i in found.groups[""]["mode"]] == ["a", "b", "a"]
+    assert found.values["deflection"] == pytest.approx(2e-3 * time)
+    assert found.values["force"] == pytest.approx(1e3 * time)
+    assert [found.labels[int(i)] for i in found.values["mode"]] == ["a", "b", "a"]
     with pytest.raises(DataError, match="no column of one length"):
         read_table(frame | {"x_raw": time[1:]}, LAYOUTS, mapping)
     with pytest.raises(DataError, match="is nan"):
@@ -78,11 +78,3 @@ def test_too_many_rows(tmp_path, monkeypatch):
     monkeypatch.setattr(tables, "MAX_ROWS", 3)
     with pytest.raises(DataError, match="more than 3 rows"):
         read(tmp_path, GOOD)
-
-
-def test_progress_ends_at_one(tmp_path):
-    path = tmp_path / "data.csv"
-    path.write_text(GOOD)
-    seen = []
-    read_table(path, LAYOUTS, {}, seen.append)
-    assert seen[-1] == 1.0

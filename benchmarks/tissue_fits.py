@@ -15,9 +15,9 @@ from scipy.optimize import least_squares
 from benchmarks.measure import Comparison, Size
 from nrs_design.identification.datasets.records import TissueRecord
 from nrs_design.identification.tables.table import Source
-from nrs_design.identification.tissue.offsets import offset_columns, offset_names
-from nrs_design.identification.tissue.output_error import RecordFit, fit_record, rmse
-from nrs_design.identification.tissue.starts import box, scan
+from nrs_design.identification.tissue.output_error import RecordFit, fit_record
+from nrs_design.identification.tissue.problem import LeastSquaresProblem
+from nrs_design.identification.tissue.starts import box
 from nrs_design.identification.tissue.trial import prepare
 from nrs_design.models.contact import (
     LAWS,
@@ -121,8 +121,8 @@ def _peer(kind: type[AbstractContactLaw], record: TissueRecord) -> float:
     surface has no deflection, and no force is negative. Returns the root of the mean square error.
     """
     trial = prepare(record)
-    offsets = offset_columns(offset_names(kind, trial), trial)[trial.used]
-    start = min(scan(kind, trial, offsets), key=lambda law: rmse(law, trial))
+    starts = LeastSquaresProblem(kind, trial).starts()
+    start = min(starts, key=lambda point: point.cost).law
     low, high = box(kind, trial)
     parameters = np.clip(np.log(start.values), low + 1e-6, high - 1e-6)
     in_air = record.motion.deflection[0] > 0

@@ -10,12 +10,19 @@ from nrs_design.identification.numeric import Array
 
 Errors = Callable[[Array], Array]  # Of parameters, shape (p,): measured less fitted, shape (n,)
 
-_STEPS = 60
-# Of the squared errors, and of the parameters in units of their scale.
+_STEPS = 100
+# Of the squared errors; and of the parameters, in units of their scale.
 _CONVERGED, _SETTLED = 1e-12, 1e-9
 
 
-def search(errors: Errors, sensitivities: Errors, start: Array, scale: Array) -> tuple[Array, bool]:
+def search(
+    errors: Errors,
+    sensitivities: Errors,
+    start: Array,
+    scale: Array | float = 1.0,
+    bounds: tuple[Array | float, Array | float] = (-np.inf, np.inf),
+    converged: float = _CONVERGED,
+) -> tuple[Array, bool]:
     """Return the parameters, and whether the search has settled.
 
     Sensitivities are of the fitted output, shape (n, p). A first step is of the size of the scale.
@@ -23,6 +30,7 @@ def search(errors: Errors, sensitivities: Errors, start: Array, scale: Array) ->
     from scipy.optimize import least_squares
 
     size = float(np.linalg.norm(errors(start))) or 1.0
+    low, high = ((np.asarray(end) - start) / scale for end in bounds)
 
     def missed(z: Array) -> Array:
         return errors(start + scale * z) / size
@@ -34,7 +42,8 @@ def search(errors: Errors, sensitivities: Errors, start: Array, scale: Array) ->
         missed,
         np.zeros(len(start)),
         jac=slopes,
-        ftol=_CONVERGED,
+        bounds=(low, high),
+        ftol=converged,
         xtol=_SETTLED,
         gtol=None,
         max_nfev=_STEPS,

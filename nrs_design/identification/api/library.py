@@ -48,24 +48,7 @@ def identify_records(
     law: str | None,
     columns: Mapping[str, str],
 ) -> Identification:
-    """Identify what records are of; see `nrs_design.api.identify`.
-
-    Parameters
-    ----------
-    files : sequence of path-like or mapping
-        CSV files, or arrays by the names of their columns.
-    kind : {"tissue", "actuator", "delay"}
-        What they are records of.
-    law : str or None
-        Of the tissue.
-    columns : mapping of str to str
-        From our names of columns to those in the files.
-
-    Raises
-    ------
-    DataError
-        If a file is no such record, or there is no such kind, law or column.
-    """
+    """Identify what records are of; see `nrs_design.api.identify`."""
     _check(files, kind, law)
     named_ours = {_OF_DELAY.get(k, k) if kind == "delay" else k: v for k, v in columns.items()}
     mapping = parse_mapping([f"{ours}={theirs}" for ours, theirs in named_ours.items()])
@@ -129,22 +112,7 @@ _KINDS: Mapping[str, Callable[[Sequence[Data], Columns, str | None], View]] = {
 
 
 def judge_log(log: Path, loaded: LoadedSpec, certificate: Path | None) -> Audit:
-    """Judge whether a run stayed inside what was proved; see `nrs_design.api.Study.audit`.
-
-    Parameters
-    ----------
-    log : Path
-        CSV file of the run.
-    loaded : LoadedSpec
-        The spec.
-    certificate : Path or None
-        Checked against the spec.
-
-    Raises
-    ------
-    DataError, CertificateError
-        If a file cannot be used.
-    """
+    """Judge whether a run stayed inside what was proved; see `nrs_design.api.Study.audit`."""
     check_turning(loaded.spec, loaded.path)
     reason, losable = proof_of(certificate, loaded)
     found = judge_run(read_run(log), read_run_bounds(loaded), proved=not reason, losable=losable)

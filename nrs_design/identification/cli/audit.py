@@ -11,8 +11,7 @@ from nrs_design.cli import exit_codes
 from nrs_design.cli.command import Answer, command
 from nrs_design.cli.destinations import Destinations
 from nrs_design.cli.options import Date, ReportTo
-from nrs_design.cli.printing import detail, progress, say, wants_details
-from nrs_design.cli.tables import print_table
+from nrs_design.cli.printing import detail, progress, say
 from nrs_design.identification.cli.identify import ColumnMap, read_all
 
 if TYPE_CHECKING:
@@ -23,8 +22,6 @@ _EXIT = {
     "outside": exit_codes.REFUTED,
     "inconclusive": exit_codes.INCONCLUSIVE,
 }
-# Letters of what a cell says, in a pipe, too.
-_WIDEST = 60
 
 
 @command("audit")
@@ -106,34 +103,15 @@ def _print(found: RunJudgement, name: str, reason: str) -> None:
     say(f"{name}: {found.verdict.upper()}: {CLAIMS[found.verdict]}")
     if first := first_violation(found):
         say(first)
-    rows = []
     for c in found.checks:
-        when = f"{c.first.time:.6g}" if c.first else ""
-        measured = _below() if c.status == "not judged" else _cell(c.measured)
-        rows.append([c.name, c.status, measured, _cell(c.allowed), when])
-    print_table("", ["check", "outcome", "measured", "allowed", "first at s"], rows)
-    for basis in dict.fromkeys(c.basis for c in found.checks if c.basis):
-        of = ", ".join(c.name for c in found.checks if c.basis == basis)
-        detail(f"bound of {of}: {basis}")
-    for c in found.checks:
-        if c.status == "not judged":
-            detail(f"not judged: {c.name}: {c.measured}")
-        elif _cell(c.measured) != c.measured:
-            detail(f"{c.name}: {c.measured}")
-        if _cell(c.allowed) != c.allowed:
-            detail(f"{c.name}, allowed: {c.allowed}")
+        allowed = f" (allowed: {c.allowed})" if c.allowed else ""
+        say(f"{c.name}: {c.status}: {c.measured}{allowed}")
         if c.status == "not modelled":
             who = found.bounds.source
             comma = "," if "," in who else ""
             detail(f"not covered: {who}{comma} takes for granted that {_GRANTED[c.name]}")
+    for basis in dict.fromkeys(c.basis for c in found.checks if c.basis):
+        of = ", ".join(c.name for c in found.checks if c.basis == basis)
+        detail(f"bound of {of}: {basis}")
     if found.hint:
         say(found.hint)
-
-
-def _below() -> str:
-    return "see below" if wants_details() else "see -v"
-
-
-def _cell(text: str) -> str:
-    """Return what fits into a cell; what is longer stands below the table."""
-    return text if len(text) <= _WIDEST else _below()

@@ -18,7 +18,6 @@ from nrs_design.identification.reporting.view import (
 )
 from nrs_design.identification.statistics import Estimate, span
 from nrs_design.identification.tissue.identify import TissueIdentification
-from nrs_design.identification.tissue.offsets import OFFSET_WORDS
 from nrs_design.identification.tissue.output_error import RecordFit
 from nrs_design.identification.tissue.pool import ModelFit
 from nrs_design.identification.tissue.tangent import Tangent
@@ -34,8 +33,8 @@ _MEANING = (
     "what else it holds.",
     "Position of contact and force in air are fitted with the law, if they are not given. Samples "
     "that are not used are drawn pale.",
-    "RMSE is that of the pooled parameters in each record. BIC is a sum over the records, each "
-    "with parameters of its own.",
+    "RMSE and BIC, which is a sum over the records, are those of parameters of its own in each "
+    "record.",
     "The p-value of the whiteness test is small where residuals are not white noise: the law then "
     "misses something, and its intervals come from the scatter between parts of the record.",
 )
@@ -58,10 +57,7 @@ def view_tissue(found: TissueIdentification, arm: float | None = None) -> View:
             *(f"{in_words([row])} holds {found.covers}" for row in ranges),
             *_notes(found, arm),
         ),
-        details=[
-            f"{fit.record.name}: {'; '.join((*_offsets(fit, found).values(), *fit.trial.remarks))}"
-            for fit in model.fits
-        ],
+        details=_used(found),
         fits=_table(found),
         title=f"Tissue law from {counted(len(found.records), 'record')}",
         claim=f"{law.formula} with {values}. {found.reason}",
@@ -71,7 +67,7 @@ def view_tissue(found: TissueIdentification, arm: float | None = None) -> View:
 
 
 def _notes(found: TissueIdentification, arm: float | None) -> Iterator[str]:
-    """Say what the parameters are besides: a tangent, a box, a law at the pivot."""
+    """Say what the parameters are besides: a tangent, a law at the pivot."""
     law, about = found.chosen.law, found.tangent
     if about is not None:
         length = "rad" if found.rotational else "m"
@@ -80,16 +76,24 @@ def _notes(found: TissueIdentification, arm: float | None) -> Iterator[str]:
         *power, exponent = about.power
         values = in_words([*named(about.law, power, found.rotational), ("phi", exponent, "")])
         yield f"the law itself, by its tangent at {about.about:.5g} {length}: {values}"
-    if found.chosen.box:
-        yield found.chosen.box
     if arm is not None:
         turned = [f"{value:.6g}" for value in law.at_pivot(arm).values]
         yield f"at the pivot: {in_words(named(law, turned, True))}"
 
 
-def _offsets(fit: RecordFit, found: TissueIdentification) -> dict[str, str]:
-    """Return the offsets of a record in words, by their names."""
-    return {offset.name: offset.text(rotational=found.rotational) for offset in fit.offsets}
+def _used(found: TissueIdentification) -> tuple[str, ...]:
+    """Say of each record what is used of it, and which offsets it has."""
+    return tuple(
+        "; ".join(
+            (
+                f"{fit.record.name}: {int(fit.trial.used.sum())} of "
+                f"{counted(len(fit.record.force), 'sample')} used",
+                *(offset.text(rotational=found.rotational) for offset in fit.offsets),
+                *fit.trial.remarks,
+            )
+        )
+        for fit in found.chosen.fits
+    )
 
 
 def _table(found: TissueIdentification) -> Table:
@@ -99,7 +103,7 @@ def _table(found: TissueIdentification) -> Table:
     rows = tuple(
         (
             marked(model.law.name, chosen=model is found.chosen),
-            *(number(value, 3) for value in model.rmse),
+            *(number(fit.rmse, 3) for fit in model.fits),
             number(model.bic - least),
             f"{min(fit.uncertainty.whiteness for fit in model.fits):.2g}",
             str(len(model.doubts)),
@@ -121,7 +125,6 @@ def _facts(found: TissueIdentification, arm: float | None) -> Facts:
         "tangent": None if about is None else _tangent(about, found.rotational),
         "range_covers": found.chosen.coverage,
         "range_covers_words": found.covers,
-        "box": found.chosen.box or None,
         "at_pivot": turned and dict(zip(law.parameters(), turned, strict=True)),
         "models": [_model(model, found.rotational) for model in found.models],
     }
@@ -152,10 +155,7 @@ def _model(model: ModelFit, rotational: bool) -> Facts:
         "relaxation_time_s": model.law.relaxation_time,
         "bic": model.bic,
         "doubts": list(model.doubts),
-        "records": [
-            _record(fit, rotational) | {"rmse_pooled": pooled}
-            for fit, pooled in zip(model.fits, model.rmse, strict=True)
-        ],
+        "records": [_record(fit, rotational) for fit in model.fits],
     }
 
 
@@ -180,20 +180,8 @@ def _record(fit: RecordFit, rotational: bool) -> Facts:
 
 
 def _sections(found: TissueIdentification, arm: float | None) -> Iterator[Section]:
-    fits = found.chosen.fits
-    rows = tuple(
-        (
-            fit.record.name,
-            f"{int(fit.trial.used.sum())} of {len(fit.record.force)}",
-            *(_offsets(fit, found).get(name, "none") for name in OFFSET_WORDS),
-        )
-        for fit in fits
-    )
-    columns = ("Record", "Samples used", *(words.capitalize() for words in OFFSET_WORDS.values()))
-    remarks = tuple(f"{fit.record.name}: {text}." for fit in fits for text in fit.trial.remarks)
-    used = Table("Samples and offsets [95 % interval]", columns, rows)
-    said = Bullets("What was found and cut", remarks)
-    yield Section("What of the records is used", (used, said))
+    used = Bullets("Offsets are with 95 % intervals", _used(found))
+    yield Section("What of the records is used", (used,))
     yield Section("Comparison of laws", (_table(found), *_doubts(found)))
     yield Section("Parameters of the chosen law", tuple(_parameters(found, arm)))
     yield Section("Measured against fitted", tuple(_figures(found)))

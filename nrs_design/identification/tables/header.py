@@ -11,7 +11,13 @@ from pathlib import Path
 
 from nrs_design.errors import DataError
 from nrs_design.identification.tables.columns import check_stated
-from nrs_design.identification.tables.names import UNITS, read_name, read_unit, stated_unit
+from nrs_design.identification.tables.names import (
+    FULL_WORDS,
+    UNITS,
+    read_name,
+    read_unit,
+    stated_unit,
+)
 
 MAX_COLUMNS = 1000
 MAX_NAME = 100
@@ -115,12 +121,7 @@ def _find(
     if not numeric:
         first = lines[above[0]]
         return above[0], max(SEPARATORS[:3], key=lambda s: first.count(s or ","))
-    separator = separators[0]
-    # The last line may hold the units of the names above.
-    *_, last = above
-    units = cells_of(lines[last], separator)
-    is_below = last > 0 and _are_units(units, len(cells_of(lines[last - 1], separator)))
-    return last - is_below, separator
+    return above[-1], separators[0]
 
 
 def _nameless(path: Path, line: int, example: str) -> DataError:
@@ -150,7 +151,9 @@ def _separator_of(text: str) -> str | None:
 
 def _is_known(name: str, mapped: Collection[str]) -> bool:
     found = read_name(name)
-    return name in mapped or (found is not None and (found.known or not found.unit))
+    if name in mapped or name.lower() in FULL_WORDS:
+        return True
+    return found is not None and (found.known or not found.unit)
 
 
 def _names(text: str, separator: str | None, path: Path, line: int) -> list[str]:

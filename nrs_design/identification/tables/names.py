@@ -51,10 +51,8 @@ _WORDS: Mapping[str, tuple[str, ...]] = {
     **dict.fromkeys(("x", "y", "z", "d", "s", "delta"), ("deflection",)),
     **dict.fromkeys(("phi", "theta", "alpha"), ("angle",)),
 }
-# Those that count before an underscore, too: a single letter there may be anything.
-_BEFORE_UNDERSCORES = frozenset(
-    {"t", "load", "moment", "speed", "displacement", "extension", "indentation"}
-)
+# Those that count before an underscore, too, or above a unit: a letter there may be anything.
+FULL_WORDS = frozenset({"t", "load", "moment", "speed", "displacement", "extension", "indentation"})
 # How other programs spell a unit, in small letters without blanks.
 _SPELLINGS = {
     **dict.fromkeys(("sec", "second", "seconds"), "s"),
@@ -121,7 +119,7 @@ def read_name(text: str) -> Name | None:
     quantities = ("time",) if word.endswith(" time") else _WORDS.get(word, ())
     if word in UNITS:
         quantities = (word,)
-    elif not bracketed and word not in _BEFORE_UNDERSCORES:
+    elif not bracketed and word not in FULL_WORDS:
         return None
     names = [Name(q, read_unit(rest, q)) for q in quantities]
     # Another word counts only with its unit.

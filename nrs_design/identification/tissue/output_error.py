@@ -12,6 +12,7 @@ import numpy as np
 from nrs_design.identification.datasets.records import TissueRecord
 from nrs_design.identification.numeric import TINY, Array
 from nrs_design.identification.rounding import rounding_scatter
+from nrs_design.identification.search import search
 from nrs_design.identification.statistics import (
     CONFIDENCE,
     Estimate,
@@ -105,15 +106,6 @@ def fit_record(kind: type[AbstractContactLaw], record: TissueRecord | Trial) -> 
     return _judge(point, bounds)
 
 
-def rmse(law: AbstractContactLaw, trial: Trial) -> float:
-    """Return the root of the mean squared force error, with the best offsets for this law."""
-    problem = LeastSquaresProblem(type(law), trial)
-    point = Point(problem, np.append(np.log(law.values), problem.no_shift))
-    if len(problem.no_shift):
-        point = _place(point)
-    return float(np.sqrt(point.cost))
-
-
 def _judge(point: Point, bounds: tuple[Array, Array]) -> RecordFit:
     names, trial, law = point.problem.names, point.problem.trial, point.law
     residuals = point.residuals
@@ -147,30 +139,9 @@ def _uncertainty(trial: Trial, J: Array, residuals: Array, *, returns: bool = Fa
     return uncertainty(J, residuals, scatter=scatter)
 
 
-def _place(point: Point) -> Point:
-    """Return the point with the best position of contact for its law."""
-    from scipy.optimize import minimize_scalar
-
-    def at(shift: float) -> Point:
-        return Point(point.problem, np.append(point.values[:-1], shift))
-
-    grid = np.linspace(-_REACH, _REACH, 41)
-    near = float(grid[int(np.argmin([at(shift).cost for shift in grid]))])
-    step = float(grid[1] - grid[0])
-    found = minimize_scalar(
-        lambda shift: at(float(shift)).cost,
-        bounds=(max(near - step, -_REACH), min(near + step, _REACH)),
-        method="bounded",
-    )
-    return at(float(found.x))
-
-
 def _search(start: Point, bounds: tuple[Array, Array], accuracy: float) -> Point:
-    from scipy.optimize import least_squares
-
     problem = start.problem
     p = len(problem.kind.kinds)
-    scale = float(np.std(problem.force)) or 1.0
     reach = np.full(len(start.values) - p, _REACH)
     low, high = np.append(bounds[0], -reach), np.append(bounds[1], reach)
     # The search needs room around its start.
@@ -183,21 +154,11 @@ def _search(start: Point, bounds: tuple[Array, Array], accuracy: float) -> Point
             last[0] = Point(problem, x.copy())
         return last[0]
 
-    def error(x: Array) -> Array:
-        return -at(x).left / scale
-
-    def slope(x: Array) -> Array:
+    def slopes(x: Array) -> Array:
         J = at(x).slopes
         J[:, p:] *= problem.travel
-        return J / scale
+        return J
 
-    found = least_squares(
-        error,
-        np.clip(start.values, low + room, high - room),
-        jac=slope,
-        bounds=(low, high),
-        xtol=100 * accuracy,
-        ftol=accuracy,
-        gtol=accuracy,
-    )
-    return at(np.asarray(found.x))
+    first = np.clip(start.values, low + room, high - room)
+    found, _ = search(lambda x: at(x).left, slopes, first, bounds=(low, high), converged=accuracy)
+    return at(found)

@@ -15,8 +15,8 @@ from nrs_design.identification.statistics import (
     joint_level,
     student_quantile,
 )
-from nrs_design.identification.tissue.output_error import RecordFit, fit_record, rmse
-from nrs_design.identification.tissue.ranges import box_remark, hulls, spread_ranges
+from nrs_design.identification.tissue.output_error import RecordFit, fit_record
+from nrs_design.identification.tissue.ranges import hulls, spread_ranges
 from nrs_design.identification.tissue.trial import Trial
 from nrs_design.models.contact import AbstractContactLaw
 from nrs_design.spec.provenance import Coverage
@@ -34,7 +34,6 @@ class ModelFit:
     law: AbstractContactLaw  # With the pooled parameters
     # Pooled parameters with 95 % intervals that contain the spread between records.
     estimates: tuple[Estimate, ...]
-    rmse: tuple[float, ...]  # Of the pooled law in each record, as in thesis tables 2.4 and 2.5
     coverage: Coverage  # What the ranges hold
 
     @property
@@ -46,12 +45,6 @@ class ModelFit:
             logs = np.log([fit.law.values for fit in self.fits])
             return spread_ranges(self.coverage, logs, single)
         return hulls(pool(self.fits, level), single)
-
-    @property
-    def box(self) -> str:
-        """What the ranges hold together, in words; empty for one parameter."""
-        covariances = [fit.uncertainty.covariance for fit in self.fits]
-        return box_remark(self.law.parameters(), covariances)
 
     @property
     def bic(self) -> float:
@@ -73,7 +66,7 @@ def fit_model(
     fits = tuple(fit_record(kind, trial) for trial in trials)
     pooled = pool(fits)
     law = kind(*(estimate.value for estimate in pooled))
-    return ModelFit(fits, law, pooled, tuple(rmse(law, trial) for trial in trials), coverage)
+    return ModelFit(fits, law, pooled, coverage)
 
 
 def pool(fits: Sequence[RecordFit], confidence: float = CONFIDENCE) -> tuple[Estimate, ...]:

@@ -13,8 +13,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-import numpy as np
-
 from nrs_design.errors import DataError
 from nrs_design.identification.numeric import Array
 from nrs_design.identification.statistics import (
@@ -26,8 +24,6 @@ from nrs_design.identification.statistics import (
 from nrs_design.spec.provenance import Coverage
 
 _FEWEST = 2
-# Weaker correlations leave an ellipse that all but fills its box.
-_CORRELATED = 0.3
 
 
 def spread_ranges(
@@ -66,27 +62,3 @@ def hulls(pooled: Sequence[Estimate], single: Sequence[Sequence[Estimate]]) -> t
         Estimate(own.value, min(e.low for e in (own, *row)), max(e.high for e in (own, *row)))
         for own, *row in zip(pooled, *single, strict=True)
     )
-
-
-def box_remark(names: Sequence[str], covariances: Sequence[Array]) -> str:
-    """Say what a box of ranges holds where parameters are correlated; empty for one parameter."""
-    if len(names) < 2:
-        return ""
-    together = (
-        f"The ranges are a box: each side holds with {100 * joint_level(len(names)):.4g} %, so "
-        "that the box holds with 95 %."
-    )
-    mean = np.mean([_correlation(covariance) for covariance in covariances], axis=0)
-    size = np.abs(np.triu(mean, 1))
-    if size.max() < _CORRELATED:
-        return together
-    i, j = divmod(int(np.argmax(size)), len(names))
-    return (
-        f"{together} {names[i]} and {names[j]} correlate by {mean[i, j]:.2f}: what is plausible is "
-        "an ellipse inside, and the proof covers the whole box around it."
-    )
-
-
-def _correlation(covariance: Array) -> Array:
-    size = np.sqrt(np.maximum(np.diag(covariance), np.finfo(float).tiny))
-    return np.asarray(covariance / np.outer(size, size))

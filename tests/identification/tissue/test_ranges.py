@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from nrs_design.identification.statistics import Estimate, joint_level, tolerance_factor
-from nrs_design.identification.tissue.ranges import box_remark, spread_ranges
+from nrs_design.identification.tissue.ranges import spread_ranges
 
 POINT = Estimate(1.0, 1.0, 1.0)
 
@@ -49,12 +49,3 @@ def test_a_tolerance_range_holds_its_share(count):
         (found,) = spread_ranges("tolerance", samples(seed, count), [[POINT]] * count)
         held.append(ndtr(np.log(found.high)) - ndtr(np.log(found.low)) >= 0.95)
     assert np.mean(held) >= 0.95
-
-
-def test_a_box_is_called_a_box():
-    assert box_remark(["k"], [np.eye(1)]) == ""
-    assert joint_level(2) == pytest.approx(0.975)
-    said = box_remark(["k1", "b"], [np.array([[1.0, 0.9], [0.9, 1.0]])])
-    assert "k1 and b correlate by 0.90" in said
-    assert "the proof covers the whole box" in said
-    assert "correlate" not in box_remark(["k", "b"], [np.eye(2)])

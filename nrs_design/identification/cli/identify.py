@@ -164,10 +164,9 @@ def tissue(
     Example: nrs-design identify tissue specs/data/silicone-soft-*.csv --lever-arm '0.24 m'
     """
     from nrs_design.identification.datasets.records import read_tissue
-    from nrs_design.identification.lever import parse_arm, parse_preload
     from nrs_design.identification.reporting.tissue import view_tissue
     from nrs_design.identification.tissue.identify import identify_tissue
-    from nrs_design.identification.tissue.preparation_settings import read_preparation
+    from nrs_design.identification.tissue.settings import parse_arm, parse_preload, read_preparation
     from nrs_design.identification.write_spec import law_to_write, merge_tissue
 
     outputs = Destinations.checked(write, report, date)

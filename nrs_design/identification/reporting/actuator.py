@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -16,7 +16,6 @@ from nrs_design.identification.reporting.view import (
     View,
     estimate_numbers,
     figure_names,
-    in_interval,
     label_of,
 )
 from nrs_design.identification.statistics import Estimate
@@ -26,13 +25,13 @@ from nrs_design.reporting.document import Bullets, Illustration, Section, Table
 def view_actuator(found: ActuatorIdentification) -> View:
     """Say everything about the identification of an actuator."""
     fit, rows = found.fit, _rows(found)
-    lines = [f"{name} = {_told(value, str)} {unit}" for name, value, unit, _ in rows]
+    lines = [f"{name} = {value} {unit}" for name, value, unit, _ in rows]
     if fit.dead_time and found.step:
         samples = fit.dead_time.scaled(1 / found.step)
         lines.append(f"dead time = {samples} samples of {found.step:.4g} s, {FROM_THE_ROW}")
     lines += [f"range: {name} {wide} {unit}" for name, _, unit, wide in rows if wide]
     lines.append(f"the range holds {found.covers}")
-    said = (f"{name} {_told(value, in_interval)} {unit}" for name, value, unit, _ in rows)
+    said = (f"{name} {value} {unit}" for name, value, unit, _ in rows)
     return View(
         found,
         kind="actuator",
@@ -63,14 +62,9 @@ def _rows(
     ]
 
 
-def _told(value: Estimate | str, write: Callable[[Estimate], str]) -> str:
-    return value if isinstance(value, str) else write(value)
-
-
 def _table(found: ActuatorIdentification) -> Table:
     rows = tuple(
-        (name, _told(value, in_interval), in_interval(wide) if wide else "", unit)
-        for name, value, unit, wide in _rows(found)
+        (name, str(value), str(wide or ""), unit) for name, value, unit, wide in _rows(found)
     )
     columns = ("Parameter", "Value [95 % interval]", "Range for a spec", "Unit")
     return Table("Estimates", columns, rows)

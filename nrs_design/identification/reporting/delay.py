@@ -10,7 +10,6 @@ from nrs_design.identification.reporting.view import (
     Facts,
     View,
     estimate_numbers,
-    in_interval,
     label_of,
     marked,
 )
@@ -47,7 +46,7 @@ def view_delay(found: DelayIdentification) -> View:
         details=(),
         fits=_table(found),
         title=f"Delay from {sent} to {seen}",
-        claim=f"{in_interval(found.samples)} samples of {number(step, 4)} s, beside {model}. Whole "
+        claim=f"{found.samples} samples of {number(step, 4)} s, beside {model}. Whole "
         f"samples that hold it and every part of the record: {whole}.",
         sections=lambda: _sections(found),
         meaning=_MEANING,
@@ -94,7 +93,7 @@ def _facts(found: DelayIdentification) -> Facts:
 
 
 def _sections(found: DelayIdentification) -> Iterator[Section]:
-    rows = tuple((number(time), in_interval(part)) for time, part in found.parts)
+    rows = tuple((number(time), str(part)) for time, part in found.parts)
     parts = Table("Delay in parts of the record", ("Middle [s]", "Samples"), rows)
     yield Section("Models", (_table(found), parts))
     record = found.record

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from typing import TypeVar
 
-from nrs_design.identification.lever import in_words, named, parameter_units
 from nrs_design.identification.reporting.figures import draw_fit
 from nrs_design.identification.reporting.view import (
     DRAWN,
@@ -12,7 +12,6 @@ from nrs_design.identification.reporting.view import (
     View,
     estimate_numbers,
     figure_names,
-    in_interval,
     label_of,
     marked,
 )
@@ -25,6 +24,8 @@ from nrs_design.models.contact import AbstractContactLaw
 from nrs_design.proof.text import counted
 from nrs_design.reporting.document import Block, Bullets, Illustration, Section, Table
 from nrs_design.reporting.formatting import number, shortened
+
+T = TypeVar("T")
 
 _MEANING = (
     "Intervals are 95 % confidence intervals of the pooled parameters; with several records they "
@@ -43,8 +44,8 @@ _MEANING = (
 def view_tissue(found: TissueIdentification, arm: float | None = None) -> View:
     """Say everything about a tissue; with a lever arm in m, the law at the pivot, too."""
     model, law = found.chosen, found.chosen.law
-    ranges = named(law, model.ranges, found.rotational)
-    values = in_words(named(law, map(in_interval, model.ranges), found.rotational))
+    ranges = _named(law, model.ranges, found.rotational)
+    values = _in_words(_named(law, map(str, model.ranges), found.rotational))
     return View(
         found,
         kind="tissue",
@@ -54,7 +55,7 @@ def view_tissue(found: TissueIdentification, arm: float | None = None) -> View:
         facts=_facts(found, arm),
         lines=(
             found.reason,
-            *(f"{in_words([row])} holds {found.covers}" for row in ranges),
+            *(f"{_in_words([row])} holds {found.covers}" for row in ranges),
             *_notes(found, arm),
         ),
         details=_used(found),
@@ -66,19 +67,37 @@ def view_tissue(found: TissueIdentification, arm: float | None = None) -> View:
     )
 
 
+def _named(
+    law: AbstractContactLaw, values: Iterable[T], rotational: bool
+) -> list[tuple[str, T, str]]:
+    """Return name, value and unit of each parameter of a law."""
+    units = _units(law, rotational)
+    return list(zip(law.parameters(), values, units, strict=True))
+
+
+def _in_words(parameters: Iterable[tuple[str, object, str]]) -> str:
+    """Write parameters with their values and units."""
+    return ", ".join(f"{name} = {value} {unit}".rstrip() for name, value, unit in parameters)
+
+
+def _units(law: AbstractContactLaw, rotational: bool) -> tuple[str, ...]:
+    """Return the units of the parameters of a law, as people read them."""
+    return tuple(unit.replace("*", " ") for unit in law.units(rotational=rotational))
+
+
 def _notes(found: TissueIdentification, arm: float | None) -> Iterator[str]:
     """Say what the parameters are besides: a tangent, a law at the pivot."""
     law, about = found.chosen.law, found.tangent
     if about is not None:
         length = "rad" if found.rotational else "m"
-        values = in_words(named(about.law, about.ranges, found.rotational))
+        values = _in_words(_named(about.law, about.ranges, found.rotational))
         yield f"small motions about {span(about.low, about.high, length, 5)}: {values}"
         *power, exponent = about.power
-        values = in_words([*named(about.law, power, found.rotational), ("phi", exponent, "")])
+        values = _in_words([*_named(about.law, power, found.rotational), ("phi", exponent, "")])
         yield f"the law itself, by its tangent at {about.about:.5g} {length}: {values}"
     if arm is not None:
         turned = [f"{value:.6g}" for value in law.at_pivot(arm).values]
-        yield f"at the pivot: {in_words(named(law, turned, True))}"
+        yield f"at the pivot: {_in_words(_named(law, turned, True))}"
 
 
 def _used(found: TissueIdentification) -> tuple[str, ...]:
@@ -133,7 +152,7 @@ def _facts(found: TissueIdentification, arm: float | None) -> Facts:
 def _numbers(law: AbstractContactLaw, estimates: Iterable[Estimate], rotational: bool) -> Facts:
     return {
         name: estimate_numbers(estimate) | {"unit": unit}
-        for name, estimate, unit in named(law, estimates, rotational)
+        for name, estimate, unit in _named(law, estimates, rotational)
     }
 
 
@@ -197,12 +216,12 @@ def _doubts(found: TissueIdentification) -> Iterator[Block]:
 
 def _parameters(found: TissueIdentification, arm: float | None) -> Iterator[Block]:
     model, law = found.chosen, found.chosen.law
-    units = parameter_units(law, found.rotational)
+    units = _units(law, found.rotational)
     names = (f"{n} [{u or '1'}]" for n, u in zip(law.parameters(), units, strict=True))
     rows = (
-        *((fit.record.name, *map(in_interval, fit.estimates)) for fit in model.fits),
-        ("pooled", *map(in_interval, model.estimates)),
-        (f"range: {found.covers}", *map(in_interval, model.ranges)),
+        *((fit.record.name, *map(str, fit.estimates)) for fit in model.fits),
+        ("pooled", *map(str, model.estimates)),
+        (f"range: {found.covers}", *map(str, model.ranges)),
     )
     yield Table("Estimates [95 % interval]", ("Record", *names), rows)
     notes = [f"{note[0].upper()}{note[1:].rstrip('.')}." for note in _notes(found, arm)]

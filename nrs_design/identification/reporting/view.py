@@ -12,7 +12,6 @@ from nrs_design import __version__
 from nrs_design.identification.finding import Finding, is_synthetic
 from nrs_design.proof.text import counted
 from nrs_design.reporting.document import Bullets, Light, Report, Section, State, Table
-from nrs_design.reporting.formatting import number
 
 if TYPE_CHECKING:
     from nrs_design.identification.statistics import Estimate
@@ -133,16 +132,6 @@ def estimate_numbers(estimate: Estimate) -> dict[str, float | None]:
 def marked(name: str, *, chosen: bool) -> str:
     """Return the name of a fit in a table of several."""
     return f"{name} (chosen)" if chosen else name
-
-
-def in_interval(estimate: Estimate) -> str:
-    """Return an estimate with its interval, as wide as it is claimed."""
-    wide = estimate.outward()
-    return f"{_short(estimate.value)} [{_short(wide.low)}, {_short(wide.high)}]"
-
-
-def _short(value: float) -> str:
-    return number(value, 5) if abs(value) >= 1e-3 or value == 0 else f"{value:.4e}"
 
 
 def figure_names(names: Sequence[str]) -> list[str]:

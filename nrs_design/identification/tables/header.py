@@ -96,57 +96,32 @@ def cells_of(text: str, separator: str | None) -> list[str]:
 def _find(
     lines: Sequence[str], mapped: Collection[str], path: Path, example: str
 ) -> tuple[int, str | None]:
-    """Return the line with the most names that are known, or the one above the first numbers."""
-    # Rows of numbers say what separates the cells; a name may hold blanks.
-    numeric = [(at, s) for at, text in enumerate(lines) if (s := _separator_of(text)) != ""]
-    separators = [separator for _, separator in numeric[:1]] or SEPARATORS
+    """Return the line with the most names that are known, else the first one, to complain of."""
     scores = [
         (sum(_is_known(name, mapped) for name in cells_of(text, separator)), -at, -rank)
         for at, text in enumerate(lines)
-        for rank, separator in enumerate(separators)
+        for rank, separator in enumerate(SEPARATORS)
     ]
     best, at, rank = max(scores, default=(0, 0, 0))
     if best >= 2:
-        return -at, separators[-rank]
-    end = numeric[0][0] if numeric else len(lines)
-    above = [at for at in range(end) if lines[at] and not lines[at].startswith("#")]
-    if above and is_decimal(lines[above[0]]):
-        end, above = above[0], []
-    if not above:
-        raise (
-            _nameless(path, end + 1, example)
-            if end < len(lines)
-            else DataError("has no header line", path=path, remedy="name the columns in a line")
+        return -at, SEPARATORS[-rank]
+    first = next((at for at, text in enumerate(lines) if text and text[0] != "#"), None)
+    if first is None:
+        raise DataError("has no header line", path=path, remedy="name the columns in a line")
+    separator = max(SEPARATORS[:3], key=lambda s: lines[first].count(s or ","))
+    if any(map(is_decimal, cells_of(lines[first], separator))):
+        raise DataError(
+            "begins with numbers, not with the names of its columns",
+            path=path,
+            line=first + 1,
+            remedy=f"add a header such as {example}",
         )
-    if not numeric:
-        first = lines[above[0]]
-        return above[0], max(SEPARATORS[:3], key=lambda s: first.count(s or ","))
-    return above[-1], separators[0]
-
-
-def _nameless(path: Path, line: int, example: str) -> DataError:
-    return DataError(
-        "begins with numbers, not with the names of its columns",
-        path=path,
-        line=line,
-        remedy=f"add a header such as {example}",
-    )
+    return first, separator
 
 
 def _below_blanks(lines: Sequence[str], at: int) -> int:
     """Return the first line that is not empty, if there is one: rows need not follow at once."""
     return next((i for i in range(at, len(lines)) if lines[i]), at)
-
-
-def _separator_of(text: str) -> str | None:
-    """Return what separates numbers in a line; empty if they are none."""
-    for separator in (";", "\t", ",", None):
-        cells = cells_of(text, separator)
-        comma = separator != "," or '"' in text
-        numbers = (is_decimal(c) or (comma and _DECIMAL_COMMA.match(c)) for c in cells if c)
-        if len(cells) > 1 and any(cells) and all(numbers):
-            return separator
-    return ""
 
 
 def _is_known(name: str, mapped: Collection[str]) -> bool:

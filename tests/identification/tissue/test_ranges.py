@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from nrs_design.identification.statistics import Estimate, joint_level, tolerance_factor
+from nrs_design.identification.statistics import Estimate, tolerance_factor
 from nrs_design.identification.tissue.ranges import spread_ranges
 
 POINT = Estimate(1.0, 1.0, 1.0)

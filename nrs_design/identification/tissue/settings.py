@@ -1,16 +1,15 @@
-"""Quantities that options give, and the way from a linear motion to a rotation."""
+"""What options say of records of tissue, read with units."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from typing import TypeVar
+from collections.abc import Callable, Iterable
+from math import isfinite
 
 from nrs_design.errors import DataError, SpecError
-from nrs_design.models.contact import AbstractContactLaw
+from nrs_design.identification.tissue.trial import Preparation
+from nrs_design.named_values import read_named_values
 from nrs_design.spec.kinds import ANGLE, FORCE, LENGTH, LEVER_ARM, TORQUE
 from nrs_design.spec.quantity import QuantityKind, parse_quantity
-
-T = TypeVar("T")
 
 # In m: what is longer was meant in mm.
 _LONGEST_ARM = 10.0
@@ -60,19 +59,38 @@ def _parse(option: str, text: str, kind: QuantityKind) -> float:
         raise DataError(f"{option}: {error.message}", remedy=error.remedy) from None
 
 
-def named(
-    law: AbstractContactLaw, values: Iterable[T], rotational: bool
-) -> list[tuple[str, T, str]]:
-    """Return name, value and unit of each parameter of a law."""
-    units = parameter_units(law, rotational)
-    return list(zip(law.parameters(), values, units, strict=True))
+def read_preparation(entries: Iterable[str], *, rotational: bool) -> Preparation:
+    """Read how records are prepared; the settings are the fields of `Preparation`.
+
+    ``start=S``, ``end=S``, ``contact=auto|given``, ``zero=POSITION``, ``tare=FORCE``,
+    ``drift=auto|fit|none``, ``negate=true``.
+    """
+    readers: dict[str, Callable[[str], object]] = {
+        "start": _seconds,
+        "end": _seconds,
+        "contact": _out_of("auto", "given"),
+        "zero": lambda text: parse_offset("zero", text, rotational=rotational),
+        "tare": lambda text: parse_offset("tare", text, rotational=rotational),
+        "drift": _out_of("auto", "fit", "none"),
+        "negate": lambda text: _out_of("true", "false")(text) == "true",
+    }
+    return Preparation(**read_named_values(entries, readers, "a record"))
 
 
-def in_words(parameters: Iterable[tuple[str, object, str]]) -> str:
-    """Write parameters with their values and units."""
-    return ", ".join(f"{name} = {value} {unit}".rstrip() for name, value, unit in parameters)
+def _seconds(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = float("nan")
+    if not isfinite(value):
+        raise ValueError("write seconds from the beginning of the record, such as 2.5")
+    return value
 
 
-def parameter_units(law: AbstractContactLaw, rotational: bool) -> tuple[str, ...]:
-    """Return the units of the parameters of a law, as people read them."""
-    return tuple(unit.replace("*", " ") for unit in law.units(rotational=rotational))
+def _out_of(*choices: str) -> Callable[[str], str]:
+    def chosen(text: str) -> str:
+        if text not in choices:
+            raise ValueError(f"write one of {', '.join(choices)}")
+        return text
+
+    return chosen

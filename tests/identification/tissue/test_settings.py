@@ -5,8 +5,9 @@ from math import pi
 import pytest
 
 from nrs_design.errors import DataError, DesignError
-from nrs_design.identification.tissue.preparation_settings import read_preparation
+from nrs_design.identification.tissue.settings import parse_arm, read_preparation
 from nrs_design.identification.tissue.trial import Preparation
+from nrs_design.models.contact import Elastic
 
 
 def test_every_field_can_be_set():
@@ -39,3 +40,25 @@ def test_what_is_none_is_refused_with_what_to_write(entry, error, message):
         read_preparation((entry,), rotational=False)
     assert caught.value.message.startswith(message)
     assert caught.value.remedy
+
+
+def test_thesis_arm():
+    # Thesis 6.3.1.1: 747.1461 N/m at 0.24 m are 43.0356 N m/rad.
+    arm = parse_arm("240 mm", rotational=False)
+    assert Elastic(747.1461).at_pivot(arm).k == pytest.approx(43.0356, abs=5e-5)
+
+
+@pytest.mark.parametrize(
+    ("text", "rotational", "reason"),
+    [
+        ("0.24 m", True, "are rotational"),
+        ("0 m", False, "not positive"),
+        ("-0.24 m", False, "not positive"),
+        ("0.24", False, "unit"),
+        ("0.24 N", False, "not a length"),
+        ("240 m", False, "longer than any arm"),
+    ],
+)
+def test_bad_arm(text, rotational, reason):
+    with pytest.raises(DataError, match=reason):
+        parse_arm(text, rotational=rotational)

@@ -11,9 +11,9 @@ from nrs_design.errors import DataError
 from nrs_design.identification.actuator.motor import MotorModel
 from nrs_design.identification.actuator.scan import longest_delay
 from nrs_design.identification.datasets.records import ActuatorRecord, FrequencyResponse
+from nrs_design.identification.least_squares import search
 from nrs_design.identification.numeric import Array, Complex, bic
 from nrs_design.identification.rounding import rounding_scatter
-from nrs_design.identification.search import search
 from nrs_design.identification.statistics import (
     Estimate,
     Uncertainty,

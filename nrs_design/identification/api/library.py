@@ -22,7 +22,7 @@ from nrs_design.identification.reporting.actuator import view_actuator
 from nrs_design.identification.reporting.delay import view_delay
 from nrs_design.identification.reporting.running import run_facts, run_report
 from nrs_design.identification.reporting.tissue import view_tissue
-from nrs_design.identification.reporting.view import View
+from nrs_design.identification.reporting.view import FindingView
 from nrs_design.identification.running.bounds import proof_of, read_run_bounds
 from nrs_design.identification.running.check import Check
 from nrs_design.identification.running.judge import judge_run
@@ -90,21 +90,21 @@ def _check(files: Sequence[object], kind: object, law: str | None) -> None:
         raise DataError("a delay is that of one record", remedy="name one file")
 
 
-def _tissue(files: Sequence[Data], mapping: Columns, law: str | None) -> View:
+def _tissue(files: Sequence[Data], mapping: Columns, law: str | None) -> FindingView:
     return view_tissue(identify_tissue([read_tissue(file, mapping) for file in files], law))
 
 
-def _actuator(files: Sequence[Data], mapping: Columns, law: str | None) -> View:
+def _actuator(files: Sequence[Data], mapping: Columns, law: str | None) -> FindingView:
     records = [record for file in files for record in read_actuator(file, mapping)]
     return view_actuator(identify_actuator(records))
 
 
-def _delay(files: Sequence[Data], mapping: Columns, law: str | None) -> View:
+def _delay(files: Sequence[Data], mapping: Columns, law: str | None) -> FindingView:
     (file,) = files
     return view_delay(identify_delay(read_signals(file, mapping)))
 
 
-_KINDS: Mapping[str, Callable[[Sequence[Data], Columns, str | None], View]] = {
+_KINDS: Mapping[str, Callable[[Sequence[Data], Columns, str | None], FindingView]] = {
     "tissue": _tissue,
     "actuator": _actuator,
     "delay": _delay,

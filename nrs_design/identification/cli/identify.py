@@ -20,7 +20,7 @@ from nrs_design.cli.tables import print_table
 from nrs_design.models.contact import LAWS
 
 if TYPE_CHECKING:
-    from nrs_design.identification.reporting.view import View
+    from nrs_design.identification.reporting.view import FindingView
     from nrs_design.spec import LoadedSpec
 
 DataFiles = Annotated[list[Path], typer.Argument(metavar="DATA...", help="Files of data.")]
@@ -87,7 +87,9 @@ def read_all(
         return [read(path, mapping) for path in paths]
 
 
-def _deliver(outputs: Destinations, view: View, merge: Callable[[LoadedSpec], str]) -> Answer:
+def _deliver(
+    outputs: Destinations, view: FindingView, merge: Callable[[LoadedSpec], str]
+) -> Answer:
     """Print and write what was found; where it is in doubt, the answer is inconclusive."""
     found = view.found
     code = exit_codes.INCONCLUSIVE if found.doubts else exit_codes.PROVED
@@ -95,7 +97,7 @@ def _deliver(outputs: Destinations, view: View, merge: Callable[[LoadedSpec], st
     return outputs.deliver(answer, view.page, merge, found.doubts, found.caveats)
 
 
-def _show(view: View) -> None:
+def _show(view: FindingView) -> None:
     from nrs_design.identification.finding import is_synthetic
     from nrs_design.identification.reporting.view import SYNTHETIC
 

@@ -8,8 +8,8 @@ import numpy as np
 
 from nrs_design.identification.datasets.records import SignalRecord
 from nrs_design.identification.delay.models import AbstractFollower, HeldCopy
+from nrs_design.identification.least_squares import search
 from nrs_design.identification.numeric import Array, Rows, beyond, bic, column_sizes
-from nrs_design.identification.search import search
 from nrs_design.identification.statistics import Uncertainty, uncertainty
 
 # So far from where columns are most alike, in samples, a whole number of them is sought.

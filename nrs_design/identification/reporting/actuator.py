@@ -13,7 +13,7 @@ from nrs_design.identification.reporting.figures import draw_fit, draw_response
 from nrs_design.identification.reporting.view import (
     DRAWN,
     Facts,
-    View,
+    FindingView,
     estimate_numbers,
     figure_names,
     label_of,
@@ -22,7 +22,7 @@ from nrs_design.identification.statistics import Estimate
 from nrs_design.reporting.document import Bullets, Illustration, Section, Table
 
 
-def view_actuator(found: ActuatorIdentification) -> View:
+def view_actuator(found: ActuatorIdentification) -> FindingView:
     """Say everything about the identification of an actuator."""
     fit, rows = found.fit, _rows(found)
     lines = [f"{name} = {value} {unit}" for name, value, unit, _ in rows]
@@ -32,7 +32,7 @@ def view_actuator(found: ActuatorIdentification) -> View:
     lines += [f"range: {name} {wide} {unit}" for name, _, unit, wide in rows if wide]
     lines.append(f"the range holds {found.covers}")
     said = (f"{name} {value} {unit}" for name, value, unit, _ in rows)
-    return View(
+    return FindingView(
         found,
         kind="actuator",
         chosen=fit.method,

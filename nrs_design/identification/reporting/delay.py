@@ -8,7 +8,7 @@ from nrs_design.identification.delay.identify import DelayIdentification
 from nrs_design.identification.reporting.figures import draw_fit
 from nrs_design.identification.reporting.view import (
     Facts,
-    View,
+    FindingView,
     estimate_numbers,
     label_of,
     marked,
@@ -25,12 +25,12 @@ _MEANING = (
 )
 
 
-def view_delay(found: DelayIdentification) -> View:
+def view_delay(found: DelayIdentification) -> FindingView:
     """Say everything about the delay of a record."""
     (sent, seen), (lag, correlation) = found.record.names, found.peak
     model, step, whole = found.chosen.follower.name, found.record.step, span(*found.whole_samples)
     when = f"{abs(lag):.4g} s {'later' if lag >= 0 else 'earlier'}"
-    return View(
+    return FindingView(
         found,
         kind="delay",
         chosen=model,

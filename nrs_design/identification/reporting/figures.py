@@ -86,7 +86,7 @@ def draw_response(frequency: Array, measured: Complex, model: tuple[Array, Compl
 
 
 @styled
-def draw_run(found: RunJudgement) -> Figure:
+def draw_log(found: RunJudgement) -> Figure:
     """Draw every column of a log over time."""
     log, first = found.log, found.first
     names = [name for name in _LABELS if name in log.columns]

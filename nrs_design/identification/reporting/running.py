@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
-from nrs_design.identification.reporting.figures import draw_run
+from nrs_design.identification.reporting.figures import draw_log
 from nrs_design.identification.reporting.view import (
     Facts,
     facts_of,
@@ -91,7 +91,7 @@ def run_report(found: RunJudgement, name: str, reason: str) -> Report:
     claim = first_violation(found) or CLAIMS[found.verdict]
     limit = _PROVED if found.bounds.proved else _DECLARED
     about = "Dashed: the first violation, if there is one."
-    figure = Illustration("run", "The log", about, draw_run(found))
+    figure = Illustration("run", "The log", about, draw_log(found))
     return Report(
         name=f"run-{name}",
         title=f"A run of {name}",

@@ -9,7 +9,7 @@ from nrs_design.identification.reporting.figures import draw_fit
 from nrs_design.identification.reporting.view import (
     DRAWN,
     Facts,
-    View,
+    FindingView,
     estimate_numbers,
     figure_names,
     label_of,
@@ -41,12 +41,12 @@ _MEANING = (
 )
 
 
-def view_tissue(found: TissueIdentification, arm: float | None = None) -> View:
+def view_tissue(found: TissueIdentification, arm: float | None = None) -> FindingView:
     """Say everything about a tissue; with a lever arm in m, the law at the pivot, too."""
     model, law = found.chosen, found.chosen.law
     ranges = _named(law, model.ranges, found.rotational)
     values = _in_words(_named(law, map(str, model.ranges), found.rotational))
-    return View(
+    return FindingView(
         found,
         kind="tissue",
         chosen=law.name,

@@ -28,7 +28,7 @@ _FILES = "Data files"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class View:
+class FindingView:
     """A finding in words and numbers."""
 
     found: Finding

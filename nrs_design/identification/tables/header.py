@@ -44,7 +44,7 @@ class Header:
 
     def cells(self, text: str) -> list[str]:
         """Split a row."""
-        return cells_of(text, self.separator)
+        return split_cells(text, self.separator)
 
 
 def read_header(
@@ -54,13 +54,13 @@ def read_header(
     at, separator = _find(lines, mapped, path, example)
     names = _names(lines[at], separator, path, at + 1)
     below = _below_blanks(lines, at + 1)
-    units = cells_of(lines[below], separator) if below < len(lines) else []
+    units = split_cells(lines[below], separator) if below < len(lines) else []
     if _are_units(units, len(names)):
         bare = [match[1] if (match := _BRACKETS.match(unit)) else unit for unit in units]
         _check_mapped_units(names, bare, mapped, path)
         names = [_with_unit(*pair, mapped) for pair in zip(names, bare, strict=True)]
         below = _below_blanks(lines, below + 1)
-    cells = [cell for text in lines[below:] for cell in cells_of(text, separator) if "," in cell]
+    cells = [cell for text in lines[below:] for cell in split_cells(text, separator) if "," in cell]
     if cells and all(_THOUSANDS.match(cell) for cell in cells):
         raise DataError(
             f"{cells[0]!r} may be {cells[0].replace(',', '.')} or {cells[0].replace(',', '')}",
@@ -82,7 +82,7 @@ def is_decimal(text: str) -> bool:
     return "_" not in text and text.isascii()
 
 
-def cells_of(text: str, separator: str | None) -> list[str]:
+def split_cells(text: str, separator: str | None) -> list[str]:
     """Split a line; one that hides its names behind a comment sign is a header all the same."""
     text = text.strip(" ").removeprefix("#").removeprefix("%").lstrip(" ")
     if '"' in text and separator is not None:
@@ -98,7 +98,7 @@ def _find(
 ) -> tuple[int, str | None]:
     """Return the line with the most names that are known, else the first one, to complain of."""
     scores = [
-        (sum(_is_known(name, mapped) for name in cells_of(text, separator)), -at, -rank)
+        (sum(_is_known(name, mapped) for name in split_cells(text, separator)), -at, -rank)
         for at, text in enumerate(lines)
         for rank, separator in enumerate(SEPARATORS)
     ]
@@ -109,7 +109,7 @@ def _find(
     if first is None:
         raise DataError("has no header line", path=path, remedy="name the columns in a line")
     separator = max(SEPARATORS[:3], key=lambda s: lines[first].count(s or ","))
-    if any(map(is_decimal, cells_of(lines[first], separator))):
+    if any(map(is_decimal, split_cells(lines[first], separator))):
         raise DataError(
             "begins with numbers, not with the names of its columns",
             path=path,
@@ -132,7 +132,7 @@ def _is_known(name: str, mapped: Collection[str]) -> bool:
 
 
 def _names(text: str, separator: str | None, path: Path, line: int) -> list[str]:
-    names = cells_of(text, separator)
+    names = split_cells(text, separator)
     fault, remedy = "", "save the columns that are needed, under short names"
     if "\r" in text:
         fault = "has a header line that is no CSV: a line end stands within it"

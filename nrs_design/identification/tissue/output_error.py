@@ -10,9 +10,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from nrs_design.identification.datasets.records import TissueRecord
+from nrs_design.identification.least_squares import search
 from nrs_design.identification.numeric import TINY, Array
 from nrs_design.identification.rounding import rounding_scatter
-from nrs_design.identification.search import search
 from nrs_design.identification.statistics import (
     CONFIDENCE,
     Estimate,

@@ -86,7 +86,7 @@ def fit_delay(
 
 def fit_held(record: SignalRecord, delay: float, rows: Rows) -> DelayFit:
     """Find the whole number of samples by which a copy is late, near a delay in s."""
-    follower, near = HeldCopy(()), round(delay / record.step)
+    follower, near = HeldCopy(), round(delay / record.step)
 
     def missed(late: int) -> float:
         error = errors_at(record, follower, late * record.step, rows)

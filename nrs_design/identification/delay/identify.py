@@ -21,11 +21,11 @@ from nrs_design.identification.datasets.records import SignalRecord
 from nrs_design.identification.delay.fit import EXACT, DelayFit, errors_at, fit_delay, fit_held
 from nrs_design.identification.delay.models import (
     AbstractFollower,
-    FirstOrder,
     HeldCopy,
-    Integrator,
-    SecondOrder,
     SmoothCopy,
+    first_order,
+    integrator,
+    second_order,
 )
 from nrs_design.identification.numeric import Array, Rows
 from nrs_design.identification.statistics import (
@@ -172,7 +172,7 @@ def identify_delay(record: SignalRecord) -> DelayIdentification:
     rows = _reached(record, peak[0])
     smooth = is_smooth(record)
     copy = (
-        fit_delay(record, SmoothCopy(()), peak[0], rows)
+        fit_delay(record, SmoothCopy(), peak[0], rows)
         if smooth
         else fit_held(record, peak[0], rows)
     )
@@ -378,9 +378,9 @@ def _starts(
     step = record.step
     times = [t * step for t in _TIMES]
     families: list[list[AbstractFollower]] = [
-        [FirstOrder((math.log(t),)) for t in times],
-        [SecondOrder((math.log(t), math.log(z))) for t in times for z in (0.5, 1.2)],
-        [Integrator((math.log(t),)) for t in times],
+        [first_order(math.log(t)) for t in times],
+        [second_order(math.log(t), math.log(z)) for t in times for z in (0.5, 1.2)],
+        [integrator(math.log(t)) for t in times],
     ]
     longest = _LONGEST * record.time[-1]
     delays = sorted({min(d * step, longest) for d in _SHIFTS} | {max(lag, 0.0)})

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import ClassVar
+from math import exp
 
 import numpy as np
 
@@ -14,13 +15,12 @@ from nrs_design.identification.held import Held, Lags
 from nrs_design.identification.numeric import Array
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class AbstractFollower(ABC):
     """A model of what follows a command; gain, offset and initial state are linear."""
 
-    shape: tuple[float, ...]  # Logarithms of its other parameters
-
-    name: ClassVar[str]
+    shape: tuple[float, ...] = ()  # Logarithms of its other parameters
+    name: str = "a copy"
 
     @abstractmethod
     def columns(self, record: SignalRecord, delay: float) -> Array:
@@ -29,8 +29,6 @@ class AbstractFollower(ABC):
 
 class SmoothCopy(AbstractFollower):
     """The command itself, later; between samples it is smooth."""
-
-    name: ClassVar[str] = "a copy"
 
     def columns(self, record: SignalRecord, delay: float) -> Array:
         """Return the command and a constant."""
@@ -43,8 +41,6 @@ class SmoothCopy(AbstractFollower):
 class HeldCopy(AbstractFollower):
     """The command itself, whole samples later; between samples nothing is known of it."""
 
-    name: ClassVar[str] = "a copy"
-
     def columns(self, record: SignalRecord, delay: float) -> Array:
         """Return the command and a constant."""
         rows = np.arange(len(record.time)) - round(delay / record.step)
@@ -52,50 +48,44 @@ class HeldCopy(AbstractFollower):
         return np.column_stack([record.sent[at], np.ones(len(at))])
 
 
-class FirstOrder(AbstractFollower):
-    """A first-order lag of the command that is held between samples."""
+@dataclass(frozen=True)
+class Lagged(AbstractFollower):
+    """Lags of the command that is held between samples, or their integral."""
 
-    name: ClassVar[str] = "a first-order lag"
-
-    def columns(self, record: SignalRecord, delay: float) -> Array:
-        """Return output, constant and the initial state."""
-        return _following(record, Lags.first_order(float(np.exp(self.shape[0]))), delay)
-
-
-class SecondOrder(AbstractFollower):
-    """A second-order lag, as of a position loop."""
-
-    name: ClassVar[str] = "a second-order lag"
+    lags: Callable[..., Lags] = Lags.first_order  # By the parameters
+    angle: bool = False  # Whether it is the integral, as of a motor that is commanded a velocity
 
     def columns(self, record: SignalRecord, delay: float) -> Array:
-        """Return output, constant and the initial state."""
-        tau, damping = np.exp(self.shape).tolist()
-        return _following(record, Lags.second_order(1 / tau, damping), delay)
+        """Return output, constant and initial state; of an integral a drift of the command, too."""
+        lags, held = self.lags(*map(exp, self.shape)), _held(record, delay)
+        output = (lags.angle if self.angle else lags.velocity)(held, held.command)[held.samples]
+        constant = record.time if self.angle else np.ones_like(output)
+        return np.column_stack([output, constant, _free(record, lags, angle=self.angle)])
 
 
-class Integrator(AbstractFollower):
-    """The integral of a first-order lag, as of a motor that is commanded a velocity."""
+def first_order(*shape: float) -> Lagged:
+    """Return a first-order lag; its shape is the logarithm of the time constant in s."""
+    return Lagged(shape, "a first-order lag")
 
-    name: ClassVar[str] = "a lag and an integrator"
 
-    def columns(self, record: SignalRecord, delay: float) -> Array:
-        """Return output, constant and the initial state; a drift of the command, too."""
-        lags = Lags.first_order(float(np.exp(self.shape[0])))
-        held = _held(record, delay)
-        angle = lags.angle(held, held.command)[held.samples]
-        return np.column_stack([angle, _free(record, lags, angle=True), record.time])
+def second_order(*shape: float) -> Lagged:
+    """Return a second-order lag, as of a position loop, with logarithms of 1/omega and zeta."""
+    return Lagged(shape, "a second-order lag", _second_order)
+
+
+def _second_order(tau: float, damping: float) -> Lags:
+    return Lags.second_order(1 / tau, damping)
+
+
+def integrator(*shape: float) -> Lagged:
+    """Return the integral of a first-order lag."""
+    return Lagged(shape, "a lag and an integrator", angle=True)
 
 
 @lru_cache(maxsize=32)
 def _held(record: SignalRecord, delay: float) -> Held:
     """Return what acts so late; several shapes are tried at each delay."""
     return Held.of(record.time, record.sent, delay)
-
-
-def _following(record: SignalRecord, lags: Lags, delay: float) -> Array:
-    held = _held(record, delay)
-    output = lags.velocity(held, held.command)[held.samples]
-    return np.column_stack([output, np.ones_like(output), _free(record, lags, angle=False)])
 
 
 def _free(record: SignalRecord, lags: Lags, *, angle: bool) -> Array:

@@ -37,7 +37,7 @@ def judge_delay(log: RunLog, bounds: RunBounds) -> Check:
     outwards = f"[{lower(Fraction(low), 3)}, {upper(Fraction(high), 3)}]"
     words = f"{found.delay.value:.3g} {outwards} s"
     if found.doubts:
-        return Check.open("delay", f"{words}, in doubt: {found.doubts[0]}")
+        return Check.open("delay", f"not told by this record: {found.doubts[0]}")
     if bounds.delay is None:
         return Check("delay", BoundStatus.NOT_MODELLED, words, _time_of(bounds), bounds.granted)
     status = BoundStatus.UNDECIDED if high >= bounds.delay else BoundStatus.INSIDE

@@ -12,6 +12,7 @@ from bisect import bisect_left
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from math import gcd
 from typing import TYPE_CHECKING, Any
 
 from nrs_design.api.paper import latex_of
@@ -20,12 +21,15 @@ from nrs_design.proof.exact import (
     MAX_WORK,
     IntegerMatrix,
     TooLargeError,
+    add,
     bit_length,
+    congruence,
     is_positive_definite,
     is_positive_semidefinite,
-    lyapunov_decrease,
-    stein_decrease,
+    scaled,
+    transpose,
 )
+from nrs_design.proof.exact import multiply as product
 from nrs_design.proof.matrix import RationalMatrix, multiply
 from nrs_design.proof.mode import Mode, Time
 
@@ -191,9 +195,40 @@ def _forms(
 ) -> Iterator[tuple[Mode | None, IntegerMatrix]]:
     """Yield P, and the decrease in every mode: what must be positive definite."""
     yield None, P.numerators
-    form = lyapunov_decrease if time is Time.CONTINUOUS else stein_decrease
+    form = _lyapunov_decrease if time is Time.CONTINUOUS else _stein_decrease
     for mode in modes:
         yield mode, form(mode.A.numerators, mode.A.denominator, P.numerators, rate)
+
+
+def _lyapunov_decrease(
+    N: IntegerMatrix,
+    denominator: int,
+    Q: IntegerMatrix,
+    rate: Fraction,
+) -> list[list[int]]:
+    """Form ``-(A'Q + QA + 2 rate Q)`` for ``A = N / denominator``, times a positive integer.
+
+    Q is symmetric, the denominator positive, the rate in 1/s.
+    """
+    QN = product(Q, N)
+    p, q = 2 * rate.numerator * denominator, rate.denominator
+    common = gcd(p, q)
+    p, q = p // common, q // common
+    return [
+        [-q * (a + b) - p * entry for a, b, entry in zip(*rows, strict=True)]
+        for rows in zip(QN, transpose(QN), Q, strict=True)
+    ]
+
+
+def _stein_decrease(
+    N: IntegerMatrix, denominator: int, Q: IntegerMatrix, factor: Fraction
+) -> list[list[int]]:
+    """Form ``factor^2 Q - A'QA`` for ``A = N / denominator``, times a positive integer.
+
+    Q is symmetric, the denominator positive, the factor the contraction rho per step.
+    """
+    p, q = (factor.numerator * denominator) ** 2, factor.denominator**2
+    return add(scaled(Q, p), congruence(N, Q), -q)
 
 
 def _is_proved(modes: Sequence[Mode], P: RationalMatrix, time: Time, rate: Fraction) -> bool:

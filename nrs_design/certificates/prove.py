@@ -20,13 +20,13 @@ from nrs_design.certificates.certificate import (
     content_id,
     to_document,
 )
+from nrs_design.certificates.second_opinion import agrees
 from nrs_design.errors import DISAGREE, CertificateError, InternalError, NrsDesignError
 from nrs_design.files import is_page, open_regular, read_json_text, unique_keys
 from nrs_design.models.cut import RangeCut
 from nrs_design.proof.evidence import AbstractEvidence, Shows, read_evidence
 from nrs_design.proof.evidence.fields import read_list, read_object, read_system, read_text
 from nrs_design.proof.exact import IntegerMatrix
-from nrs_design.proof.second_opinion import agrees
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.proof.text import quoted
 

@@ -11,8 +11,8 @@ from nrs_design.controllers.controller_design import Controller, ControllerDesig
 from nrs_design.controllers.float32 import exact_decimal, is_float32, to_float32
 from nrs_design.controllers.laws import LAWS, NO_MOTION, ProportionalDerivative
 from nrs_design.controllers.sensor import build_sensor
+from nrs_design.controllers.taylor import exponential_between
 from nrs_design.errors import CertificateError
-from nrs_design.proof.taylor import exponential_between
 from nrs_design.spec import (
     ControllerSpec,
     GainSpec,

@@ -16,11 +16,11 @@ from math import comb, isqrt
 
 from nrs_design.axis import AxisType
 from nrs_design.controllers.float32 import exact_decimal, to_float32
+from nrs_design.controllers.taylor import exponential_between
 from nrs_design.errors import DesignError
 from nrs_design.models.linear_form import LinearForm, combine
 from nrs_design.proof.assumption import Assumption
 from nrs_design.proof.bounds import rounded_up
-from nrs_design.proof.taylor import exponential_between
 from nrs_design.spec.quantity_fields import RangedQuantity
 from nrs_design.spec.sensor import SensorSpec, ToolSpec
 

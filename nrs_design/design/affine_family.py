@@ -1,7 +1,7 @@
 """Polynomials that are affine in each of several unknown but constant parameters.
 
 Squares of their magnitudes on the imaginary axis have Bernstein forms over a box of parameters and
-a range of ``omega^2``, which `nrs_design.proof.largest_ratio` bounds.
+a range of ``omega^2``, which `nrs_design.design.largest_ratio` bounds.
 """
 
 from __future__ import annotations
@@ -12,9 +12,9 @@ from itertools import product
 from math import prod
 from typing import Any, NamedTuple
 
+from nrs_design.design.largest_ratio import MOST, bernstein, largest_ratio
 from nrs_design.errors import InternalError
 from nrs_design.models.interval import Interval
-from nrs_design.proof.largest_ratio import MOST, bernstein, largest_ratio
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Time
 from nrs_design.proof.spectrum import is_stable

@@ -2,7 +2,7 @@
 
 The cost is the finite sum that is minimized, `nrs_design.design.impedance_optimum.NODES`
 frequencies, and not the integral that it stands for. Its numbers in double precision are taken as
-they are; from there on all is exact, or in balls: `nrs_design.proof.least_cost`.
+they are; from there on all is exact, or in balls: `nrs_design.design.least_cost`.
 """
 
 from __future__ import annotations
@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from nrs_design.design.impedance_optimum import NODES, ImpedanceProblem, optimize_impedance
+from nrs_design.design.least_cost import Frequency, cost_at_most, least_cost
 from nrs_design.proof.bounds import upper
-from nrs_design.proof.least_cost import Frequency, cost_at_most, least_cost
 
 # How near the bound shall come to the cost that a search has found, and how many boxes it may take.
 NEARLY, MOST = Fraction(1, 10**6), 1500

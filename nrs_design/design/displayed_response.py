@@ -9,7 +9,7 @@ polynomial of the mode in contact else.
 
 Times Mt (or Bt without inertia) and the time constant, all of these are affine in each of Km, tau,
 Mt, Bt, Kt, and k and b of the contact; so the squares of the magnitudes are polynomials in omega^2
-and of second degree in each parameter, and `nrs_design.proof.largest_ratio` bounds their quotient.
+and of second degree in each parameter, and `nrs_design.design.largest_ratio` bounds their quotient.
 Each parameter is unknown but constant: that is what a frequency response is about.
 """
 
@@ -34,11 +34,11 @@ from nrs_design.design.affine_family import (
     squared_over,
     zeros_at_rest,
 )
+from nrs_design.design.largest_ratio import largest_ratio
 from nrs_design.errors import InternalError
 from nrs_design.loop.cut_loop import ContinuousAxis, Place, multiply
 from nrs_design.models.contact import KelvinVoigt
 from nrs_design.models.interval import Interval
-from nrs_design.proof.largest_ratio import largest_ratio
 
 # Digits of a root.
 _DIGITS = 20

@@ -14,7 +14,7 @@ imaginary axis:
   t is between 0 and ``-omega tan(w T/2)/w``; beyond the last gain crossover, nothing is zero.
 
 All of it is affine in each parameter, so squares of magnitudes have Bernstein forms, which
-`nrs_design.proof.largest_ratio` takes.
+`nrs_design.design.largest_ratio` takes.
 """
 
 from __future__ import annotations
@@ -46,6 +46,7 @@ from nrs_design.design.affine_family import (
 )
 from nrs_design.design.displayed_response import over_admittance, parameters_at
 from nrs_design.design.goals import Achieved
+from nrs_design.design.largest_ratio import largest_ratio
 from nrs_design.design.measures import (
     AT_HOME,
     DELAY_MARGIN,
@@ -65,7 +66,6 @@ from nrs_design.models.contact import Elastic, KelvinVoigt
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.interval import Interval
 from nrs_design.proof.enclosure import ball_around, fraction_of, precision
-from nrs_design.proof.largest_ratio import largest_ratio
 
 # Bernstein coefficients that are looked at for one question, and ranges at once.
 _MOST, _RANGES = 40_000, 4

@@ -33,6 +33,7 @@ from fractions import Fraction
 from math import floor
 
 from nrs_design.controllers.laws import ProportionalDerivative
+from nrs_design.controllers.taylor import exponential_between
 from nrs_design.design.displayed_response import root_below
 from nrs_design.design.enclosed_polynomial import (
     Enclosed,
@@ -49,7 +50,6 @@ from nrs_design.design.enclosed_polynomial import (
 )
 from nrs_design.design.passivity import evaluate, first_root, without_zeros
 from nrs_design.models.actuator import Actuator
-from nrs_design.proof.taylor import exponential_between
 
 # Convergents of the continued fraction of the arctangent: the last one, and the one before.
 DEPTH = 6

@@ -26,6 +26,7 @@ from typing import Any
 
 from nrs_design.controllers.laws import Admittance, ProportionalDerivative
 from nrs_design.controllers.sensor import LowPass
+from nrs_design.controllers.taylor import exponential_between
 from nrs_design.design.affine_family import Quotient, is_stable_over
 from nrs_design.design.displayed_response import (
     Band,
@@ -37,7 +38,6 @@ from nrs_design.loop.cut_loop import multiply, on_the_axis
 from nrs_design.models.actuator import ActuatorRanges
 from nrs_design.models.interval import Interval
 from nrs_design.proof.enclosure import ball_around, fraction_of, precision
-from nrs_design.proof.taylor import exponential_between
 
 ZERO, ONE = Fraction(0), Fraction(1)
 # By what share c may fall along a piece of the band, and how many pieces there are at most.

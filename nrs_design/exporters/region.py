@@ -19,11 +19,11 @@ import numpy as np
 
 from nrs_design.controllers.float32 import float32_not_above, float32_not_below, to_float32
 from nrs_design.controllers.operations import StepLaw
+from nrs_design.controllers.taylor import exponential_between
 from nrs_design.exporters.export import Export
 from nrs_design.proof.evidence import Shows
 from nrs_design.proof.exact import IntegerMatrix, is_positive_definite
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.taylor import exponential_between
 from nrs_design.spec.build_plant import build_environments
 from nrs_design.spec.controllers import contact_names
 

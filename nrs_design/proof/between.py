@@ -1,4 +1,4 @@
-"""TRUSTED: the modes between which a sampled loop is although signals of it saturate."""
+"""TRUSTED: the modes between which a loop is although signals of it saturate."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ def between(
 ) -> SwitchedSystem:
     """Return a system of which the saturating one is a mixture while every ``|h x|`` is in limits.
 
-    Each mode becomes one for every choice of arguments and rows h, as `Saturation.between` makes
+    Each mode becomes one for every choice of arguments and rows h, as `Saturation.changes` makes
     them. What the arithmetic adds to an argument is replaced with it: an error r that has a share
-    of the argument has the same share of the mixture. All of the state after a step is affine in
-    each share. `held` are the h of every signal, in every mode and after them in the free modes;
-    roundings are kept on demand.
+    of the argument has the same share of the mixture. All of the state after a step, or of its
+    derivative, is affine in each share. `held` are the h of every signal, in every mode and after
+    them in the free modes; roundings are kept on demand.
     """
     saturation = system.saturation
     assert saturation is not None  # who asks has looked

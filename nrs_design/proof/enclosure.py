@@ -1,6 +1,6 @@
 """TRUSTED: what flint encloses in balls, and how a ball becomes integers that are surely below.
 
-The one file of the proof where a library has the first word. A matrix of balls contains the true
+The one file of the proof that asks a library. A matrix of balls contains the true
 one: what is shown for every matrix in it is shown for that.
 """
 
@@ -222,13 +222,6 @@ def ball_around(number: Fraction) -> Any:
 def between_zero_and(number: Fraction) -> Any:
     """Return a ball that contains all numbers from zero to one, at the current precision."""
     return ball_around(Fraction(0)).union(ball_around(number))
-
-
-def as_balls(values: Iterable[Any]) -> list[Any]:
-    """Return balls around rational numbers, of Python or of flint, at the current precision."""
-    from flint import arb
-
-    return [ball_around(v) if isinstance(v, Fraction) else arb(v) for v in values]
 
 
 def _fmpq_matrix(A: RationalMatrix) -> Any:

@@ -12,7 +12,6 @@ neither definiteness nor the Hurwitz property, so all tests run on integers.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from fractions import Fraction
 from itertools import combinations_with_replacement
 from math import gcd, lcm
 from operator import mul
@@ -145,39 +144,6 @@ def transpose(M: IntegerMatrix) -> list[tuple[int, ...]]:
 def congruence(L: IntegerMatrix, Q: IntegerMatrix, multiply: Product = multiply) -> list[list[int]]:
     """Return ``L' Q L``."""
     return multiply(transpose(L), multiply(Q, L))
-
-
-def lyapunov_decrease(
-    N: IntegerMatrix,
-    denominator: int,
-    Q: IntegerMatrix,
-    rate: Fraction,
-    multiply: Product = multiply,
-) -> list[list[int]]:
-    """Form ``-(A'Q + QA + 2 rate Q)`` for ``A = N / denominator``, times `lyapunov_factor`.
-
-    Q is symmetric, the denominator positive, the rate in 1/s. Only a search has reason to ask for
-    another way to multiply.
-    """
-    QN = multiply(Q, N)
-    p, q = 2 * rate.numerator * denominator, rate.denominator
-    common = gcd(p, q)
-    p, q = p // common, q // common
-    return [
-        [-q * (a + b) - p * entry for a, b, entry in zip(*rows, strict=True)]
-        for rows in zip(QN, transpose(QN), Q, strict=True)
-    ]
-
-
-def stein_decrease(
-    N: IntegerMatrix, denominator: int, Q: IntegerMatrix, factor: Fraction
-) -> list[list[int]]:
-    """Form ``factor^2 Q - A'QA`` for ``A = N / denominator``, times a positive integer.
-
-    Q is symmetric, the denominator positive, the factor the contraction rho per step.
-    """
-    p, q = (factor.numerator * denominator) ** 2, factor.denominator**2
-    return add(scaled(Q, p), congruence(N, Q), -q)
 
 
 def characteristic_polynomial(N: IntegerMatrix) -> list[int]:

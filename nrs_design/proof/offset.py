@@ -3,8 +3,9 @@
 The number one is a state in front of the others, that never changes. So a function ``[1; w]' W
 [1; w]`` is a form of the states, and what is known of the signs of linear forms multiplies:
 
-- where contact is, the deflection is positive; in discrete time, of the row that gives the next one
-  the sign is known where contact is kept, lost or made;
+- in contact that may be lost, the deflection is positive; in discrete time, of the row that gives
+  the next one the sign is known where such contact stays, is lost or is made. Where the axis cannot
+  leave what it touches, nothing is known of either (`nrs_design.proof.steps.KEPT`);
 - ``1 + d >= 0`` and ``1 - d >= 0`` for every disturbance d, in units of its bound.
 
 *Averages of modes.* A product of a row of the mode has one multiplier for all modes of a place: it
@@ -37,7 +38,7 @@ def offset_steps(
 ) -> Iterator[Step]:
     """Yield every step that takes time, for the state behind a one, with its products.
 
-    Of one axis that may lose contact, under disturbances at once; `grain` as of `steps_of`.
+    Of one axis, under disturbances at once; `grain` as of `steps_of`.
     """
     acting = Acting(
         tuple(map(system.channels.index, channels)), (Fraction(0),) * len(channels), rounding
@@ -78,7 +79,6 @@ def _row(step: Step, entries: dict[int, int]) -> Row:
 def _with_one(system: SwitchedSystem) -> SwitchedSystem:
     """Return the system with a state in front that is one, and disturbances up to one."""
     contact, stays = system.contact, int(system.time is Time.DISCRETE)
-    assert contact is not None
 
     def moved(modes: Sequence[Mode]) -> tuple[Mode, ...]:
         return tuple(replace(mode, A=_bordered(mode.A, stays)) for mode in modes)
@@ -94,12 +94,14 @@ def _with_one(system: SwitchedSystem) -> SwitchedSystem:
         scaled = (x * size for x, size in zip(row.fractions()[0], sizes, strict=True))
         return RationalMatrix.from_rows([(Fraction(0), *scaled)])
 
-    pulls = (RationalMatrix(((0, *q.numerators[0]),), q.denominator) for q in contact.pulls)
+    if contact is not None:
+        pulls = (RationalMatrix(((0, *q.numerators[0]),), q.denominator) for q in contact.pulls)
+        contact = replace(contact, free=moved(contact.free), pulls=tuple(pulls))
     return replace(
         system,
         states=("one", *system.states),
         modes=moved(system.modes),
-        contact=replace(contact, free=moved(contact.free), pulls=tuple(pulls)),
+        contact=contact,
         channels=tuple(replace(c, columns=below(c.columns, c.bound)) for c in system.channels),
         roundings=tuple(
             Rounding(r.name, below(r.columns), tuple(map(behind, r.rows))) for r in system.roundings

@@ -69,29 +69,16 @@ class Saturation:
     signals: tuple[CutOff, ...]  # Each may depend on those before it
     start: Start  # How motions begin
 
-    def between(
-        self, A: RationalMatrix, k: int, held: Sequence[Sequence[Fraction]]
-    ) -> Iterator[RationalMatrix]:
-        """Yield the matrices between which the loop is while every ``|h x|`` is within its limit.
-
-        The signal is then a mixture of its argument and of ``h x``, since it is the argument cut
-        off at a limit that ``h x`` keeps. A is the k-th mode, of those in contact and after them
-        those that are free; `held` are the h of every signal.
-        """
-        for changes in self.changes(k, held, 0):
-            moved = [list(row) for row in A.fractions()]
-            for signal, change in zip(self.signals, changes, strict=True):
-                for row, (c,) in zip(moved, signal.columns[k].fractions(), strict=True):
-                    row[:] = [own + c * more for own, more in zip(row, change, strict=True)]
-            yield RationalMatrix.from_rows(moved)
-
     def changes(
         self, k: int, held: Sequence[Sequence[Fraction]], errors: int
     ) -> Iterator[list[list[Fraction]]]:
         """Yield by how much the signals differ from what they are while nothing is cut off.
 
-        Between these the loop is, as `between` says; each is a row for every signal, with so many
-        errors behind the state.
+        While every ``|h x|`` is within its limit, the loop is between these: a signal is then a
+        mixture of its argument and of ``h x``, since it is the argument cut off at a limit that
+        ``h x`` keeps. It is about the k-th mode, of those in contact and after them those that are
+        free; `held` are the h of every signal. Each is a row for every signal, with so many errors
+        behind the state.
         """
         wide = [[*h, *(ZERO,) * errors] for h in held]
         linear = self._signals(k, wide, errors, (False,) * len(self.signals))

@@ -26,19 +26,20 @@ integers several times as long.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import gcd, isqrt, lcm
 
 from nrs_design.proof.exact import IntegerMatrix, Product, add, congruence, multiply, transpose
-from nrs_design.proof.matrix import RationalMatrix, identity, with_crossing
+from nrs_design.proof.matrix import RationalMatrix, identity, leading, with_crossing
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.system import SwitchedSystem
 
-# Where a step begins and ends. Where the modes of the system are in force: in contact, if it can be
-# lost. And where free motion is.
-CONTACT, FREE = "modes", "free"
+# Where a step begins and ends. Where contact is kept, or there is none, nothing is known of the
+# sign of the last state. Where contact may be lost, the last state is the deflection: in contact it
+# is positive, and in free motion it is not.
+KEPT, CONTACT, FREE = "kept", "contact", "free"
 
 # What facts are called; numbers count from one, in the order of the system.
 ROUNDING, LOST, PULL = "rounding", "lost", "pull"
@@ -198,10 +199,10 @@ def steps_of(system: SwitchedSystem, acting: Acting, grain: int, *, lost: bool) 
     unless it is `lost` and made, as the system says how.
     """
     contact = system.contact if lost else None
-    free = () if contact is None else contact.free
+    place, free = (KEPT, ()) if contact is None else (CONTACT, contact.free)
     flows, n = system.time is Time.CONTINUOUS, system.order
     for k, mode in enumerate(system.modes):
-        step = _step(system, k, mode, acting, grain)
+        step = _step(system, k, mode, acting, grain, place)
         yield step
         if contact is not None and not flows:
             yield replace(
@@ -212,7 +213,7 @@ def steps_of(system: SwitchedSystem, acting: Acting, grain: int, *, lost: bool) 
                 crossings=((LOST, step.rows[-1], 1),),
             )
     for k, mode in enumerate(free, len(system.modes)):
-        step = _step(system, k, mode, acting, grain)
+        step = _step(system, k, mode, acting, grain, place)
         flight = _undeflected(step, n - 1)
         inner = replace(
             flight, where=f"in free motion, mode {mode.name}", rows=flight.rows[:-1], target=FREE
@@ -256,8 +257,10 @@ def _lagging(system: SwitchedSystem, step: Step, *, flows: bool) -> Iterator[Ste
         )
 
 
-def _step(system: SwitchedSystem, k: int, mode: Mode, acting: Acting, grain: int) -> Step:
-    """Return what the k-th mode does in contact; free modes come after those in contact."""
+def _step(
+    system: SwitchedSystem, k: int, mode: Mode, acting: Acting, grain: int, place: str
+) -> Step:
+    """Return what the k-th mode does at a place; free modes come after those in contact."""
     n, flows = system.order, system.time is Time.CONTINUOUS
     items = system.roundings if acting.rounding else ()
     parts = [mode.A, *(system.channels[i].columns[k] for i in acting.channels)]
@@ -292,8 +295,8 @@ def _step(system: SwitchedSystem, k: int, mode: Mode, acting: Acting, grain: int
     return Step(
         f"in mode {mode.name}",
         mode.name,
-        CONTACT,
-        CONTACT,
+        place,
+        place,
         n,
         units,
         transpose(rows),
@@ -319,6 +322,49 @@ def _undeflected(step: Step, k: int) -> Step:
 
 def _without(row: Row, k: int) -> list[int]:
     return [*row[:k], *row[k + 1 :]]
+
+
+def forms_of_one(
+    steps: Iterable[Step],
+    Q: Sequence[Sequence[int]],
+    keeps: Fraction,
+    multiplier: Callable[[str], int],
+    log2: int,
+) -> Iterator[tuple[str, IntegerMatrix]]:
+    """TRUSTED: yield what every step that takes time asks of one form, with where it is.
+
+    In free motion it is the form without the deflection. Where free motion ends at the surface both
+    are one, and no more is asked than where it goes on.
+    """
+    inner = leading(Q)
+    for step in steps:
+        before = inner if step.source == FREE else Q
+        after = Q if len(step.rows) == len(Q) else inner
+        ends = step.source == FREE and step.target == CONTACT and after is inner
+        if step.time and not ends:
+            yield step.where, step.form(before, after, keeps, multiplier, log2)
+
+
+def by_fact(
+    names: Iterable[str], multipliers: Iterable[int], roundings: Iterable[int]
+) -> Callable[[str], int]:
+    """TRUSTED: return the multiplier of each fact: of those named, and of every rounding."""
+    known = dict(zip(names, multipliers, strict=True))
+    known |= {f"{ROUNDING} {k}": m for k, m in enumerate(roundings, 1)}
+    return known.__getitem__
+
+
+def find_odd_multiplier(*given: tuple[Sequence[int], int, str]) -> str | None:
+    """TRUSTED: say that a multiplier is negative, or that they are not as many as they should be.
+
+    They are given with that number, and with what each of them belongs to, in words.
+    """
+    for multipliers, count, each in given:
+        if len(multipliers) != count:
+            return f"there is not one multiplier for each {each}"
+        if min(multipliers, default=0) < 0:
+            return "a multiplier is negative"
+    return None
 
 
 def multiplier_names(system: SwitchedSystem) -> tuple[str, ...]:

@@ -15,6 +15,7 @@ from fractions import Fraction
 from functools import partial
 from math import isqrt
 
+from nrs_design.controllers.taylor import exponential_between
 from nrs_design.loop.parameter_box import Box
 from nrs_design.models.interval import Interval
 from nrs_design.models.linear_form import LinearForm, combine, coordinates, zero
@@ -22,7 +23,6 @@ from nrs_design.proof.contact import Contact
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.proof.taylor import exponential_between
 from nrs_design.ros2.law import AdmittanceLaw, Axis
 from nrs_design.ros2.quantities import Range
 

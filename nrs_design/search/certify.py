@@ -18,6 +18,7 @@ from nrs_design.certificates.certificate import (
     verdict_of,
 )
 from nrs_design.certificates.goals import rate_per_second
+from nrs_design.certificates.second_opinion import agrees
 from nrs_design.errors import DISAGREE, DesignError, InternalError
 from nrs_design.late import late_function
 from nrs_design.progress import Progress, silent
@@ -25,7 +26,6 @@ from nrs_design.proof.channels import Channel, Output
 from nrs_design.proof.evidence import AbstractEvidence, FormsOnGraph, Shows
 from nrs_design.proof.exact import TooLargeError
 from nrs_design.proof.mode import Time
-from nrs_design.proof.second_opinion import agrees
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.candidates import Candidates, E
 from nrs_design.search.certification import Attempt, Certification, Limits
@@ -81,7 +81,7 @@ def certify(
     Equal modes are merged, and a family that is block triangular in a common order of the states is
     decided block by block. Then the rungs are climbed, cheapest first, until one decides. Every
     statement has passed the exact check, and flint's second opinion as far as that goes
-    (`nrs_design.proof.second_opinion`).
+    (`nrs_design.certificates.second_opinion`).
 
     A `DesignError` if the method or settings of the gradient iteration do not apply; a `ClockError`
     if the clock stopped the search: what it would have found is not known; an `InternalError` if

@@ -12,9 +12,8 @@ from numpy.typing import NDArray
 
 from nrs_design.proof.evidence import FormsOnGraph
 from nrs_design.proof.evidence.fields import Matrix
-from nrs_design.proof.evidence.graph import Node
+from nrs_design.proof.evidence.graph import MODES, Node
 from nrs_design.proof.mode import Time
-from nrs_design.proof.steps import CONTACT
 from nrs_design.search.balance import mean_norm
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
 from nrs_design.search.decay import fastest_first, rate_of
@@ -32,7 +31,7 @@ Array = NDArray[np.float64]
 
 def one_form(Q: Matrix, log2: int, rate: Fraction) -> FormsOnGraph:
     """Return one form over ``2^log2`` for all modes."""
-    return FormsOnGraph((Node(CONTACT, Q),), log2, rate)
+    return FormsOnGraph((Node(MODES, Q),), log2, rate)
 
 
 def search_by_lmi(family: Family) -> Candidates[FormsOnGraph]:

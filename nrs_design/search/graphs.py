@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 
 from nrs_design.proof.clock import on_turn
 from nrs_design.proof.evidence import FormsOnGraph
-from nrs_design.proof.evidence.graph import Arc, Multiplier, Node
+from nrs_design.proof.evidence.graph import MODES, Arc, Multiplier, Node
 from nrs_design.proof.lift import monomials
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.spectrum import is_stable
-from nrs_design.proof.steps import CONTACT, FREE, ROUNDING, Stays
+from nrs_design.proof.steps import FREE, ROUNDING, Stays
 from nrs_design.proof.switching import Clock, Stay
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.balance import balance, own_norm, round_coordinates, scale_states, separating
@@ -207,7 +207,7 @@ def draw_conewise_modes(family: Family) -> Drawing:
     return Drawing(
         system,
         FormsOnGraph(
-            tuple(Node(CONTACT if k < len(system.modes) else FREE, ()) for k in range(len(names))),
+            tuple(Node(MODES if k < len(system.modes) else FREE, ()) for k in range(len(names))),
             0,
             ANY_RATE,
             # The form of a state is that of the mode that takes the next step.
@@ -252,7 +252,7 @@ def draw_turns(family: Family, clock: Clock) -> Iterator[Drawing]:
     States of a large rule first have a form for all that are alike.
     """
     system, lost = family.system, family.system.contact is not None
-    places = [CONTACT, FREE] if lost else [CONTACT]
+    places = [MODES, FREE] if lost else [MODES]
     every = [f"{place} {k}" for k in range(clock.length) for place in places]
     graph = _graph_of(every, len(system.roundings))
     own = [FormCoordinates(family.exponents, T) for T in _coordinates(family, clock)]
@@ -478,7 +478,7 @@ def draw_together(family: Family, degree: int, *, lost: bool = False) -> Drawing
     `lost`: contact is lost and made.
     """
     system = family.system
-    places = [CONTACT, FREE] if lost else [CONTACT]
+    places = [MODES, FREE] if lost else [MODES]
     # A form of monomials has no multipliers.
     graph = _graph_of(places, len(system.roundings) if degree == 1 else 0, degree)
     own = lifted_coordinates(family.exponents, degree)

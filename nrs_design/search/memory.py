@@ -14,8 +14,8 @@ from itertools import islice
 import numpy as np
 
 from nrs_design.proof.evidence import FormsOnGraph
-from nrs_design.proof.evidence.graph import MAX_MONOMIALS, MAX_SETS, Arc, Node
-from nrs_design.proof.steps import CONTACT, Stays
+from nrs_design.proof.evidence.graph import MAX_MONOMIALS, MAX_SETS, MODES, Arc, Node
+from nrs_design.proof.steps import Stays
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.balance import balance
 from nrs_design.search.candidates import OUT_OF_RANGE, Candidates
@@ -89,7 +89,7 @@ def draw_memory(system: SwitchedSystem, length: int, degree: int = 1) -> Drawing
         if (*word[1:], name) in number
     )
     graph = FormsOnGraph(
-        tuple(Node(CONTACT if free else word[-1], ()) for word in found),
+        tuple(Node(MODES if free else word[-1], ()) for word in found),
         0,
         ANY_RATE,
         degree,

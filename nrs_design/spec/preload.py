@@ -18,10 +18,10 @@ from fractions import Fraction
 from typing import Annotated
 
 from nrs_design.models.interval import Interval
-from nrs_design.proof.power import power_between
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import NUMBER_SCHEMA, read_exact
 from nrs_design.spec.model import ReadBefore, ReadBy, SpecModel, keys_schema, pair_schema, required
+from nrs_design.spec.power import power_between
 from nrs_design.spec.range_checks import RANGE_CHECKS, range_around
 
 # Powers are enclosed in integers with as many digits as the denominator is large.

@@ -10,8 +10,7 @@ from fractions import Fraction
 import numpy as np
 from scipy.linalg import solve_discrete_lyapunov
 
-from nrs_design.proof.evidence.graph import Arc, FormsOnGraph, Node
-from nrs_design.proof.steps import CONTACT
+from nrs_design.proof.evidence.graph import MODES, Arc, FormsOnGraph, Node
 from nrs_design.search.candidates import Candidate, Candidates
 from nrs_design.search.family import Family
 from nrs_design.search.rounding import unscale
@@ -25,7 +24,7 @@ def search_last_mode(family: Family) -> Candidates[FormsOnGraph]:
     own = [solve_discrete_lyapunov(A.T, np.eye(n)) for A in family.matrices]
     form, log2 = unscale(np.sum(own, axis=0), family.exponents, BITS)
     modes = [mode.name for mode in family.system.modes]
-    nodes = tuple(Node(CONTACT, form) for _ in modes)
+    nodes = tuple(Node(MODES, form) for _ in modes)
     edges = tuple(Arc(None, mode, k) for k, mode in enumerate(modes))
     yield Candidate(FormsOnGraph(nodes, log2, Fraction(99, 100), edges=edges), "drawn")
     return None

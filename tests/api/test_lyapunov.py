@@ -6,10 +6,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nrs_design.api.lyapunov import check_quadratic, indefinite_vector
+from nrs_design.api.lyapunov import (
+    _lyapunov_decrease,
+    _stein_decrease,
+    check_quadratic,
+    indefinite_vector,
+)
 from nrs_design.proof.exact import TooLargeError
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
+from tests.proof.truth import decrease, is_positive_multiple
 from tests.support import is_definite_by_ldl, matrix
 
 F = Fraction
@@ -245,3 +251,13 @@ def test_the_largest_numbers_for_which_a_rate_is_looked_for():
     assert (found.holds, found.rate) == (True, None)
     found = check_quadratic([diagonal(10, 4_995)], unit(10), Time.CONTINUOUS, F(2))
     assert (found.holds, found.weak, found.rate) == (False, True, None)
+
+
+@pytest.mark.parametrize("rate", ["0", "1/7", "2", "1/4", "1/24"])
+@pytest.mark.parametrize(
+    ("form", "time"), [(_lyapunov_decrease, Time.CONTINUOUS), (_stein_decrease, Time.DISCRETE)]
+)
+def test_what_must_be_definite_is_a_positive_multiple_of_the_decrease(form, time, rate):
+    A, Q = matrix([["-1/2", "1/3"], ["0.25", -2]]), ((3, 1), (1, 2))
+    found = form(A.numerators, A.denominator, Q, F(rate))
+    assert is_positive_multiple(found, decrease(A.fractions(), Q, F(rate), time))

@@ -113,7 +113,7 @@ def test_not_a_certificate(tmp_path, content):
 def test_disagreement_is_an_internal_error(certified):
     """Flint says no where the integer check says yes: exit code 4 and no verdict."""
     program = (
-        "import sys; from nrs_design.proof import second_opinion as s; "
+        "import sys; from nrs_design.certificates import second_opinion as s; "
         "s.has_positive_spectrum = lambda M: False; "
         "sys.argv = ['nrs-design', *sys.argv[1:]]; from nrs_design.cli import main; main()"
     )

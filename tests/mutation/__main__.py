@@ -42,12 +42,17 @@ BESIDE = {
     "switching": (TESTS / "test_clock.py", KINDS / "test_growing_sequence.py"),
     "system": (TESTS / "test_clock.py", TESTS / "test_contact.py"),
 }
-# Modes that enclose too little prove too much.
-LOOP = {
-    PACKAGE / "loop" / f"{name}.py": [str(ROOT / "tests" / test) for test in tests]
+# What decides beside the proof: modes that enclose too little prove too much, and what has a veto.
+ELSEWHERE = {
+    PACKAGE / f"{name}.py": [str(ROOT / "tests" / test) for test in tests]
     for name, tests in {
-        "entries": ("loop/test_entries.py", "loop/test_flow.py"),
-        "hull": ("loop/test_simplex.py", "loop/test_flow.py"),
+        "loop/entries": ("loop/test_entries.py", "loop/test_flow.py"),
+        "loop/hull": ("loop/test_simplex.py", "loop/test_flow.py"),
+        "certificates/second_opinion": ("certificates/test_second_opinion.py",),
+        "controllers/taylor": ("controllers/test_taylor.py",),
+        "design/largest_ratio": ("design/test_largest_ratio.py",),
+        "design/least_cost": ("design/test_least_cost.py",),
+        "spec/power": ("spec/test_power.py",),
     }.items()
 }
 # A mutant may loop for ever, or count to the end of memory. A test gets so many times what it
@@ -156,7 +161,7 @@ def main(names: list[str]) -> int:
 def chosen(names: list[str]) -> Iterator[Path]:
     """Yield the modules that are asked for; without names, all that hold a function."""
     if not names:
-        every = (*sorted(PROOF.rglob("*.py")), *LOOP)
+        every = (*sorted(PROOF.rglob("*.py")), *ELSEWHERE)
         yield from (path for path in every if mutants(path.read_text()))
     for name in names:
         yield PACKAGE / f"{name}.py"
@@ -172,7 +177,7 @@ def examine(path: Path, reasons: dict[str, dict[str, str]]) -> Counter[str]:
     module = path.relative_to(PACKAGE).with_suffix("").as_posix()
     known = reasons.get(module.removeprefix("proof/"), {})
     every = mutants(path.read_text(encoding="utf-8"))
-    if path in LOOP:
+    if path.parent.name == "loop":
         # Its constants say how near what encloses is: whatever they are, it does.
         every = [mutant for mutant in every if not mutant.name.startswith("module: ")]
     candidates = [mutant for mutant in every if mutant.name not in known]
@@ -199,8 +204,8 @@ def in_words(count: Counter[str]) -> str:
 
 def own_tests(path: Path) -> list[str]:
     """Return what mirrors a module, and for a kind of evidence the tests of all kinds, too."""
-    if path in LOOP:
-        return LOOP[path]
+    if path in ELSEWHERE:
+        return ELSEWHERE[path]
     path = path.with_stem(DECIDES_FOR.get(path.stem, path.stem))
     mirror = TESTS / path.relative_to(PROOF).with_name(f"test_{path.name}")
     if path.parent == PROOF or path.stem in SHARED:

@@ -5,15 +5,16 @@ from fractions import Fraction
 
 from nrs_design.proof.evidence import AbstractEvidence, FormsOnGraph
 from nrs_design.proof.evidence.fields import Matrix
-from nrs_design.proof.evidence.graph import Arc, Multiplier, Node
+from nrs_design.proof.evidence.graph import MODES, Arc, Multiplier, Node
 from nrs_design.proof.lift import monomials
 from nrs_design.proof.steps import (
-    CONTACT,
     FREE,
     LOST,
     ROUNDING,
     Acting,
     Stays,
+    by_fact,
+    forms_of_one,
     grain_of,
     multiplier_names,
     steps_of,
@@ -56,7 +57,7 @@ def one_form(
     Form and multipliers, in the order of the system, are over ``2^log2``; the rate is alpha in 1/s,
     or rho per step. There is one vanishing matrix for each mode, in contact and free.
     """
-    nodes = [Node(CONTACT, Q)]
+    nodes = [Node(MODES, Q)]
     if lost:
         nodes.append(Node(FREE, undeflected(Q, system.order, degree)))
     multipliers = _multipliers(system, crossings, roundings)
@@ -78,13 +79,13 @@ def common_quadratic(
     Q: Matrix, log2: int, rate: Fraction, roundings: Sequence[int] = ()
 ) -> FormsOnGraph:
     found = (Multiplier(f"{ROUNDING} {k}", m) for k, m in enumerate(roundings, 1))
-    return FormsOnGraph((Node(CONTACT, Q),), log2, rate, multipliers=tuple(found))
+    return FormsOnGraph((Node(MODES, Q),), log2, rate, multipliers=tuple(found))
 
 
 def common_polynomial(
     degree: int, Q: Matrix, log2: int, vanishing: tuple[Matrix, ...], rate: Fraction
 ) -> FormsOnGraph:
-    return FormsOnGraph((Node(CONTACT, Q),), log2, rate, degree, vanishing=vanishing)
+    return FormsOnGraph((Node(MODES, Q),), log2, rate, degree, vanishing=vanishing)
 
 
 def in_turns(
@@ -98,7 +99,7 @@ def in_turns(
     lost, count = system.contact is not None, len(forms)
     nodes, multipliers = [], []
     for k, Q in enumerate(forms):
-        nodes.append(Node(f"{CONTACT} {k}", Q))
+        nodes.append(Node(f"{MODES} {k}", Q))
         if lost:
             nodes.append(Node(f"{FREE} {k}", undeflected(Q, system.order)))
     width = len(nodes) // count
@@ -137,7 +138,7 @@ def conewise_modes(
     multipliers: Sequence[int],
 ) -> FormsOnGraph:
     """The function of a state is that of the mode that takes the next step."""
-    nodes = [Node(CONTACT, Q) for _, Q in touching] + [Node(FREE, R) for _, R in flying]
+    nodes = [Node(MODES, Q) for _, Q in touching] + [Node(FREE, R) for _, R in flying]
     edges = (Arc(k, name, None) for k, (name, _) in enumerate((*touching, *flying)))
     lost = (Multiplier(LOST, m, k) for k, m in enumerate(multipliers, len(touching)))
     return FormsOnGraph(tuple(nodes), log2, rate, multipliers=tuple(lost), edges=tuple(edges))
@@ -166,14 +167,8 @@ def forms_of_steps(
     crossings: Sequence[int] = (),
     roundings: Sequence[int] = (),
 ):
-    """Yield what one function must fulfil in steps, with where it is; a landing at its depth."""
+    """Return what one function must fulfil in steps, with where it is."""
     Q, log2 = function
-    known = dict(zip(multiplier_names(system), crossings, strict=True))
-    known |= {f"{ROUNDING} {k}": m for k, m in enumerate(roundings, 1)}
-    for step in steps_of(system, acting, grain_of(keeps), lost=True):
-        before, after = (
-            Q[:n] if n == len(Q) else tuple(row[:n] for row in Q[:n])
-            for n in (step.states, len(step.rows))
-        )
-        if (step.source, step.target, len(after)) != (FREE, CONTACT, len(Q) - 1):
-            yield step.where, step.form(before, after, keeps, known.__getitem__, log2)
+    names = multiplier_names(system) if crossings else ()
+    steps = steps_of(system, acting, grain_of(keeps), lost=True)
+    return forms_of_one(steps, Q, keeps, by_fact(names, crossings, roundings), log2)

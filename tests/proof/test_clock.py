@@ -10,10 +10,9 @@ from hypothesis import strategies as st
 from nrs_design.proof.clock import keeps_turns, on_turn
 from nrs_design.proof.contradiction import find_contradiction
 from nrs_design.proof.evidence import FormsOnGraph, GrowingSequence
-from nrs_design.proof.evidence.graph import Node
+from nrs_design.proof.evidence.graph import MODES, Node
 from nrs_design.proof.evidence.growing_sequence import staying
 from nrs_design.proof.mode import Time
-from nrs_design.proof.steps import CONTACT
 from nrs_design.proof.switching import Clock
 from nrs_design.proof.system import SwitchedSystem
 from tests.proof.systems import bouncing_in_turns, doubled_in_turns, family, matrix, pushed
@@ -151,7 +150,7 @@ def missing(hit: str, miss: str) -> SwitchedSystem:
 
 
 def forms_of(values: tuple[int, int, int], rate: str) -> FormsOnGraph:
-    nodes = (Node(f"{CONTACT} {k}", ((value,),)) for k, value in enumerate(values))
+    nodes = (Node(f"{MODES} {k}", ((value,),)) for k, value in enumerate(values))
     return FormsOnGraph(tuple(nodes), 0, Fraction(rate))
 
 

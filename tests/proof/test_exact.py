@@ -22,13 +22,11 @@ from nrs_design.proof.exact import (
     is_schur,
     is_symmetric,
     is_too_large,
-    lyapunov_decrease,
     multiply,
     scaled,
     spectrum_work,
-    stein_decrease,
 )
-from tests.support import exact, is_definite_by_ldl, is_stable_by_lyapunov, matrix
+from tests.support import is_definite_by_ldl, is_stable_by_lyapunov, matrix
 
 SMALL = st.integers(-4, 4)
 WIDE = st.integers(-(10**30), 10**30)
@@ -265,64 +263,6 @@ class TestProducts:
     def test_factors_that_do_not_fit(self, left, right):
         with pytest.raises(ValueError, match=r"needs as many|argument 2 is"):
             multiply(left, right)
-
-
-def lyapunov_factor(denominator, rate):
-    return denominator * (2 * rate * denominator).denominator
-
-
-def stein_factor(denominator, factor):
-    return (denominator * factor.denominator) ** 2
-
-
-class TestForms:
-    A = (("-1/2", "1/3"), ("0.25", -2))
-    Q = ((3, 1), (1, 2))
-
-    @pytest.mark.parametrize("rate", ["0", "1/7", "2", "1/4", "1/24"])
-    def test_lyapunov_is_a_positive_multiple(self, rate):
-        self.same_ray(lyapunov_decrease, rate, self.lyapunov, lyapunov_factor)
-
-    @pytest.mark.parametrize("rate", ["0", "1/7", "2", "1/4", "1/24"])
-    def test_stein_is_a_positive_multiple(self, rate):
-        self.same_ray(stein_decrease, rate, self.stein, stein_factor)
-
-    def same_ray(self, form, rate, formula, multiple):
-        A, factor = matrix(self.A), Fraction(rate)
-        found = form(A.numerators, A.denominator, self.Q, factor)
-        wanted = formula(exact(self.A), factor)
-        ratios = {
-            Fraction(f) / w
-            for fs, ws in zip(found, wanted, strict=False)
-            for f, w in zip(fs, ws, strict=True)
-        }
-        assert ratios == {multiple(A.denominator, factor)}
-        assert ratios.pop() > 0
-
-    def lyapunov(self, A, rate):
-        QA = times(self.Q, A)
-        return [
-            [-(QA[i][j] + QA[j][i]) - 2 * rate * self.Q[i][j] for j in range(2)] for i in range(2)
-        ]
-
-    def stein(self, A, rate):
-        AQA = times(transposed(A), times(self.Q, A))
-        return [[rate**2 * self.Q[i][j] - AQA[i][j] for j in range(2)] for i in range(2)]
-
-    @given(squares(SMALL, st.just(3)), squares(SMALL, st.just(3)), st.integers(1, 9))
-    def test_always_symmetric(self, N, M, denominator):
-        Q = symmetric(M)
-        assert is_symmetric(lyapunov_decrease(N, denominator, Q, Fraction(1, 3)))
-        assert is_symmetric(stein_decrease(N, denominator, Q, Fraction(1, 3)))
-
-    def test_scalar_rate_is_tight(self):
-        # x' = -x decays at rates below 1 and not at 1.
-        tiny = Fraction(1, 10**30)
-        assert is_positive_definite(lyapunov_decrease([[-1]], 1, [[1]], 1 - tiny))
-        assert not is_positive_definite(lyapunov_decrease([[-1]], 1, [[1]], Fraction(1)))
-        # x+ = -x/2 contracts by factors above 1/2.
-        assert is_positive_definite(stein_decrease([[-1]], 2, [[1]], Fraction(1, 2) + tiny))
-        assert not is_positive_definite(stein_decrease([[-1]], 2, [[1]], Fraction(1, 2)))
 
 
 class TestCharacteristicPolynomial:

@@ -100,7 +100,7 @@ def test_products_are_not_negative_along_motions(turned):
         where, _ = moved(system, rng, x, d)
         step = steps[where]
         seen.add(where)
-        z = [Fraction(1), *(x if step.source == "modes" else x[:-1]), d / bound]
+        z = [Fraction(1), *(x if step.source == "contact" else x[:-1]), d / bound]
         if turned is not None:
             products = [
                 (name, [-entry for entry in row] if f"{turned}:" in name else row, other)

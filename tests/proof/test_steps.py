@@ -7,12 +7,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from nrs_design.certificates.second_opinion import agrees
 from nrs_design.proof.channels import Channel, Output, Rounding
 from nrs_design.proof.contradiction import find_contradiction
 from nrs_design.proof.evidence import InvariantEllipsoid
 from nrs_design.proof.evidence.abstract import NOT_ROUNDED, ROUNDED
 from nrs_design.proof.mode import Time
-from nrs_design.proof.second_opinion import agrees
 from nrs_design.proof.steps import Acting, flow_step, map_step, multiplier_names
 from nrs_design.proof.system import SwitchedSystem
 from tests.proof.graphs import common_quadratic, forms_of_steps, one_form

@@ -12,8 +12,8 @@ from nrs_design.controllers.float32 import to_float32
 from nrs_design.controllers.laws.law import AbstractCompliantLaw, DiscreteLaw, Response
 from nrs_design.controllers.operations import Operation, Value
 from nrs_design.controllers.parts import BEYOND, FORCE, HAND, StepGain, StepPart
+from nrs_design.controllers.taylor import exponential_between
 from nrs_design.models.linear_form import LinearForm, combine
-from nrs_design.proof.taylor import exponential_between
 from nrs_design.spec.controllers import Command, ImpedanceControllerSpec
 
 ONE = Fraction(1)

@@ -80,6 +80,7 @@ from nrs_design.proof.mode import Time
 from nrs_design.proof.steps import (
     CONTACT,
     FREE,
+    KEPT,
     ROUNDING,
     Acting,
     Stays,
@@ -99,6 +100,9 @@ MAX_SETS = 1024
 MAX_STEPS = 2**21
 # What an edge takes at least, beside products of matrices, in the units of `MAX_WORK`.
 LEAST_WORK = 64
+
+# The place of a node where the modes are in force, in contact if that may be lost.
+MODES = "modes"
 
 Forms = Iterator[tuple[str, IntegerMatrix]]
 AnyStep: TypeAlias = "Step | EnclosedStep"
@@ -199,7 +203,7 @@ class FormsOnGraph(AbstractFunction):
     def is_common_quadratic(self) -> bool:
         """Whether in contact it is one for all modes."""
         places = [node.place for node in self.nodes]
-        return self.degree == 1 and self.stays is None and places in ([CONTACT], [CONTACT, FREE])
+        return self.degree == 1 and self.stays is None and places in ([MODES], [MODES, FREE])
 
     def fits(self, switching: Switching) -> bool:
         """Tell whether the steps of these signals are those of its places.
@@ -242,7 +246,7 @@ class FormsOnGraph(AbstractFunction):
         """Return every place with the number of its states."""
         if self.stays is not None:
             return {mode.name: mode.A.shape[0] for mode in system.modes}
-        sizes = {CONTACT: system.order}
+        sizes = {MODES: system.order}
         if self.covers_lost_contact:
             sizes[FREE] = system.order - 1
         length = 0 if system.clock is None else system.clock.length
@@ -505,7 +509,7 @@ class FormsOnGraph(AbstractFunction):
         """Tell whether every quadratic form in free motion is that in contact, undeflected."""
         forms = dict(self.nodes)
         return all(
-            list(form) == leading(forms.get(place.replace(FREE, CONTACT, 1), ()))
+            list(form) == leading(forms.get(place.replace(FREE, MODES, 1), ()))
             for place, form in self.nodes
             if place.startswith(FREE)
         )
@@ -562,15 +566,18 @@ def steps_together(
             for step in steps_together(system.only(frozenset(names)), acting, rate, lost)
         )
     grain = grain_of(rate**2)
+
+    def placed(part: SwitchedSystem) -> tuple[Step, ...]:
+        at = {KEPT: MODES, CONTACT: MODES, FREE: FREE}
+        steps = steps_of(part, acting, grain, lost=lost)
+        return tuple(replace(s, source=at[s.source], target=at[s.target]) for s in steps)
+
     if system.clock is None:
-        return tuple(steps_of(system, acting, grain, lost=lost))
+        return placed(system)
     from nrs_design.proof.clock import on_turn
 
     clock = system.clock
-    parts = {
-        kind: tuple(steps_of(on_turn(system, clock, first=kind), acting, grain, lost=lost))
-        for kind in (True, False)
-    }
+    parts = {kind: placed(on_turn(system, clock, first=kind)) for kind in (True, False)}
     at = "step" if clock.is_round else "state"
     return tuple(
         replace(

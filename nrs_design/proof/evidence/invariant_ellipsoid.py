@@ -12,13 +12,13 @@ from nrs_design.proof.channels import Channel, Output
 from nrs_design.proof.evidence.abstract import AbstractEvidence, Bound, Shows, find_odd_form
 from nrs_design.proof.evidence.fields import Matrix
 from nrs_design.proof.exact import IntegerMatrix
-from nrs_design.proof.matrix import RationalMatrix, bordered, leading
+from nrs_design.proof.matrix import RationalMatrix, bordered
 from nrs_design.proof.mode import Time
 from nrs_design.proof.steps import (
-    CONTACT,
-    FREE,
-    ROUNDING,
     Acting,
+    by_fact,
+    find_odd_multiplier,
+    forms_of_one,
     grain_of,
     multiplier_names,
     steps_of,
@@ -97,16 +97,10 @@ class InvariantEllipsoid(AbstractEvidence):
     def _find_odd_multiplier(self, system: SwitchedSystem) -> str | None:
         # Without multipliers for them, it is about exact arithmetic.
         rounded = len(system.roundings) if self.roundings else 0
-        crossings = len(multiplier_names(system))
-        for numbers, count, each, one in (
-            (self.multipliers, crossings, "condition that needs it", "a multiplier"),
-            (self.roundings, rounded, "rounding", "the multiplier of a rounding"),
-        ):
-            if len(numbers) != count:
-                return f"there is not one multiplier for each {each}"
-            if any(number < 0 for number in numbers):
-                return f"{one} is negative"
-        return None
+        return find_odd_multiplier(
+            (self.multipliers, len(multiplier_names(system)), "condition that needs it"),
+            (self.roundings, rounded, "rounding"),
+        )
 
     def find_unsayable(self, system: SwitchedSystem) -> str | None:
         """Say which of its names the system does not have, or None."""
@@ -130,23 +124,15 @@ class InvariantEllipsoid(AbstractEvidence):
             yield failure, bordered(Q, q.fractions()[0], self.level**2).numerators
 
     def _motions(self, system: SwitchedSystem) -> Forms:
-        """Yield the condition of every step, with where it is."""
+        """Return the condition of every step, with where it is."""
         bound = self.bound(system)
         weights = tuple(a / c.bound**2 for a, c in zip(self.shares, bound.channels, strict=True))
         channels = tuple(system.channels.index(channel) for channel in bound.channels)
         acting = Acting(channels, weights, bool(self.roundings))
         keeps = bound.share if system.time is Time.CONTINUOUS else 1 - bound.share
-        known = dict(zip(multiplier_names(system), self.multipliers, strict=True))
-        known |= {f"{ROUNDING} {k}": m for k, m in enumerate(self.roundings, 1)}
-        inner = leading(self.Q)
-        for step in steps_of(system, acting, grain_of(keeps), lost=True):
-            before = self.Q if step.source == CONTACT else inner
-            after = self.Q if len(step.rows) == len(self.Q) else inner
-            # At the surface both functions are one: free motion ends there as it goes on.
-            ends = step.source == FREE and step.target == CONTACT and after is inner
-            if step.time and not ends:
-                m = known.__getitem__
-                yield step.where, step.form(before, after, keeps, m, self.denominator_log2)
+        steps = steps_of(system, acting, grain_of(keeps), lost=True)
+        known = by_fact(multiplier_names(system), self.multipliers, self.roundings)
+        return forms_of_one(steps, self.Q, keeps, known, self.denominator_log2)
 
     def bound(self, system: SwitchedSystem) -> Bound:
         """Return the level with what it holds for."""

@@ -10,10 +10,10 @@ from typing import ClassVar
 from nrs_design.proof.evidence.abstract import find_odd_form
 from nrs_design.proof.evidence.invariant_ellipsoid import Forms, InvariantEllipsoid
 from nrs_design.proof.exact import is_symmetric, scaled
-from nrs_design.proof.matrix import RationalMatrix, leading, with_crossing
+from nrs_design.proof.matrix import RationalMatrix, with_crossing
 from nrs_design.proof.mode import Time
 from nrs_design.proof.offset import offset_steps
-from nrs_design.proof.steps import CONTACT, ROUNDING, Step, grain_of
+from nrs_design.proof.steps import Step, by_fact, find_odd_multiplier, forms_of_one, grain_of
 from nrs_design.proof.system import SwitchedSystem
 
 
@@ -52,13 +52,16 @@ class OffsetEllipsoid(InvariantEllipsoid):
             return "there is not one share"
         if self.shares[0] <= 0 or (system.time is Time.DISCRETE and self.shares[0] >= 1):
             return "the share is not that of a set that is not left"
-        if len(self.roundings) not in {0, len(system.roundings)}:
-            return "there is not one multiplier for each rounding"
-        if len(self.multipliers) != len(self.facts(system)):
-            return "there is not one multiplier for each product"
-        if min((*self.multipliers, *self.roundings), default=0) < 0:
-            return "a multiplier is negative"
+        if (odd := self._find_odd_multiplier(system)) is not None:
+            return odd
         return None if self.level > 0 else "the level is not positive"
+
+    def _find_odd_multiplier(self, system: SwitchedSystem) -> str | None:
+        rounded = len(system.roundings) if self.roundings else 0
+        return find_odd_multiplier(
+            (self.roundings, rounded, "rounding"),
+            (self.multipliers, len(self.facts(system)), "product"),
+        )
 
     def steps(self, system: SwitchedSystem) -> Iterator[Step]:
         """Yield the steps of its system, with the products that are known in each."""
@@ -73,17 +76,11 @@ class OffsetEllipsoid(InvariantEllipsoid):
     def forms(self, system: SwitchedSystem) -> Forms:
         """Yield Q, the block of w, the condition of every step, and those of the output."""
         yield "the block of w in Q is not positive definite", [row[1:] for row in self.Q[1:]]
-        known = dict(zip(self.facts(system), self.multipliers, strict=True))
-        known |= {f"{ROUNDING} {k}": m for k, m in enumerate(self.roundings, 1)}
-        inner, keeps = leading(self.Q), self._keeps(system)
-        for step in self.steps(system):
-            before = self.Q if step.source == CONTACT else inner
-            after = self.Q if len(step.rows) == len(self.Q) else inner
-            failure = f"the ellipsoid can be left {step.where}"
-            yield (
-                failure,
-                step.form(before, after, keeps, known.__getitem__, self.denominator_log2),
-            )
+        known = by_fact(self.facts(system), self.multipliers, self.roundings)
+        motions = forms_of_one(
+            self.steps(system), self.Q, self._keeps(system), known, self.denominator_log2
+        )
+        yield from ((f"the ellipsoid can be left {where}", form) for where, form in motions)
         # Twice the condition, times the denominators.
         for name, row, sign in self.ends(system):
             below = row.denominator * self.level.denominator
@@ -91,7 +88,7 @@ class OffsetEllipsoid(InvariantEllipsoid):
             form[0][0] += int(2 * below * self.level) << self.denominator_log2
             scale = -sign * self.level.denominator << self.denominator_log2
             q = [0, *(scale * entry for entry in row.numerators[0])]
-            q[-1] -= below * known[name]
+            q[-1] -= below * known(name)
             yield f"{self.output} can be beyond the level", with_crossing(form, 0, q)
 
     def ends(self, system: SwitchedSystem) -> Iterator[tuple[str, RationalMatrix, int]]:

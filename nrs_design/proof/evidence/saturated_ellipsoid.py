@@ -11,15 +11,14 @@ from nrs_design.proof.between import between
 from nrs_design.proof.bounds import rounded_down, rounded_up
 from nrs_design.proof.evidence.abstract import AbstractEvidence, Shows, find_odd_form, in_seconds
 from nrs_design.proof.evidence.fields import MAX_INTEGER_BITS, Matrix, rate_words
-from nrs_design.proof.exact import IntegerMatrix, lyapunov_decrease
-from nrs_design.proof.matrix import RationalMatrix, bordered, leading, multiply
+from nrs_design.proof.exact import IntegerMatrix
+from nrs_design.proof.matrix import RationalMatrix, bordered, multiply
 from nrs_design.proof.mode import Time
-from nrs_design.proof.saturation import Saturation
 from nrs_design.proof.steps import (
-    CONTACT,
-    FREE,
-    ROUNDING,
     Acting,
+    by_fact,
+    find_odd_multiplier,
+    forms_of_one,
     grain_of,
     multiplier_names,
     steps_of,
@@ -37,19 +36,15 @@ class SaturatedEllipsoid(AbstractEvidence):
     Every signal ``s = sat(a)`` has a row h with ``|h w| <= limit`` in the ellipsoid (Hu and Lin),
     or in discrete time one in every mode.
     There s is a mixture of its argument a and of ``h w``, so the loop moves as a mixture of the
-    matrices that have, for each signal, one or the other in its place: `Saturation.between`. With
+    matrices that have, for each signal, one or the other in its place: `Saturation.changes`. With
     w the state, or ``w = (y, max(delta, 0))`` where the system says how contact is lost, V
     decreases
 
-    - in contact: ``-(B'Q + QB + 2 alpha Q) > 0`` for each of these matrices of every mode;
-    - free, where the system says how contact is lost: the same for the blocks of y of these
-      matrices of every free mode, and of Q;
-
-    and the set ``V <= 1`` lies where the rows keep their limits: ``[[Q, h'], [h, limit^2]] > 0``.
-    In discrete time the matrices are the modes of `nrs_design.proof.between`, and V is left with a
-    share rho^2 in every step of them, as `nrs_design.proof.steps` says, with one multiplier for
-    each fact: where contact is lost, and for roundings.
-    All are linear in the matrices: convex combinations of modes are covered.
+    at the rate 2 alpha (in discrete time it keeps the share rho^2) in every step of the modes of
+    `nrs_design.proof.between`, as `nrs_design.proof.steps` says, with one multiplier for each fact:
+    where contact is lost, and for roundings. And the set ``V <= 1`` lies where the rows keep their
+    limits: ``[[Q, h'], [h, limit^2]] > 0``. All are linear in the matrices: convex combinations of
+    modes are covered.
     """
 
     kind: ClassVar[str] = "saturated-ellipsoid"
@@ -114,36 +109,22 @@ class SaturatedEllipsoid(AbstractEvidence):
             return f"H has not {rows} rows of {system.order} entries"
         if self.rate <= 0 or self.level <= 0:
             return "the rate or the level is not positive"
-        return self._find_odd_step(system)
-
-    def _find_odd_step(self, system: SwitchedSystem) -> str | None:
-        """Check what is there in discrete time only: the rate, and the multipliers."""
-        assert system.saturation is not None
-        if system.time is Time.CONTINUOUS:
-            if self.multipliers or self.roundings:
-                return "in continuous time it has no multipliers"
-            return None
-        if self.rate >= 1:
+        if system.time is Time.DISCRETE and self.rate >= 1:
             return "the rate is not one of exponential decay"
         rounded = len(system.roundings) if self.roundings else 0
-        for numbers, count, each in (
-            (self.multipliers, len(multiplier_names(system)), "condition that needs it"),
-            (self.roundings, rounded, "rounding"),
-        ):
-            if len(numbers) != count:
-                return f"there is not one multiplier for each {each}"
-            if any(number < 0 for number in numbers):
-                return f"the multiplier of a {each} is negative"
         for signal in system.saturation.signals:
             if rounded and not signal.errors:
                 return f"{signal.name} does not say what the arithmetic rounds"
-        return None
+        return find_odd_multiplier(
+            (self.multipliers, len(multiplier_names(system)), "condition that needs it"),
+            (self.roundings, rounded, "rounding"),
+        )
 
     def forms(self, system: SwitchedSystem) -> Forms:
         """Yield Q, the decreases in contact and free, and what the ellipsoid must and may hold."""
         assert system.saturation is not None  # find_misfit
         yield "Q is not symmetric and positive definite", self.Q
-        yield from self._decreases(system, system.saturation)
+        yield from self._decreases(system)
         Q = RationalMatrix(self.Q, 2**self.denominator_log2).fractions()
         signals = system.saturation.signals
         # Modes may share their rows: each is looked at once.
@@ -158,35 +139,14 @@ class SaturatedEllipsoid(AbstractEvidence):
             left = RationalMatrix.from_rows([[1 - self.level**2 * value]])
             yield f"the ellipsoid does not hold the stated {start.name}", left.numerators
 
-    def _decreases(self, system: SwitchedSystem, saturation: Saturation) -> Forms:
-        if system.time is Time.DISCRETE:
-            yield from self._steps(system)
-            return
-        (held, *_) = self._held(system)
-        for k, mode in enumerate(system.every_mode):
-            where, Q = f"in mode {mode.name}", self.Q
-            is_free = k >= len(system.modes)
-            if is_free:
-                where, Q = f"in free motion, mode {mode.name}", tuple(leading(Q))
-            for B in saturation.between(mode.A, k, held):
-                N = leading(B.numerators) if is_free else B.numerators
-                form = lyapunov_decrease(N, B.denominator, Q, self.rate)
-                yield f"V does not decrease at the claimed rate {where}", form
-
-    def _steps(self, system: SwitchedSystem) -> Forms:
+    def _decreases(self, system: SwitchedSystem) -> Forms:
         acting = Acting(rounding=bool(self.roundings))
         whole = between(system, self._held(system), rounding=acting.rounding)
-        known = dict(zip(multiplier_names(system), self.multipliers, strict=True))
-        known |= {f"{ROUNDING} {k}": m for k, m in enumerate(self.roundings, 1)}
-        inner, keeps = leading(self.Q), self.rate**2
-        for step in steps_of(whole, acting, grain_of(keeps), lost=True):
-            before = self.Q if step.source == CONTACT else inner
-            after = self.Q if len(step.rows) == len(self.Q) else inner
-            # At the surface both functions are one: free motion ends there as it goes on.
-            if step.source == FREE and step.target == CONTACT and after is inner:
-                continue
-            form = step.form(before, after, keeps, known.__getitem__, self.denominator_log2)
-            yield f"V does not decrease at the claimed rate {step.where}", form
+        keeps = 2 * self.rate if system.time is Time.CONTINUOUS else self.rate**2
+        steps = steps_of(whole, acting, grain_of(keeps), lost=True)
+        known = by_fact(multiplier_names(system), self.multipliers, self.roundings)
+        for where, form in forms_of_one(steps, self.Q, keeps, known, self.denominator_log2):
+            yield f"V does not decrease at the claimed rate {where}", form
 
     def _held(self, system: SwitchedSystem) -> list[list[list[Fraction]]]:
         """Return the rows of every mode and free mode."""

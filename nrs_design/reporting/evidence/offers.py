@@ -12,7 +12,8 @@ from typing import Any
 
 from nrs_design.proof.evidence import AbstractEvidence
 from nrs_design.proof.evidence.fields import Matrix
-from nrs_design.proof.steps import CONTACT, FREE
+from nrs_design.proof.evidence.graph import MODES
+from nrs_design.proof.steps import FREE
 
 
 @dataclass(frozen=True)
@@ -62,7 +63,7 @@ def _graph(e: Any) -> Offer:
     names = {edge.source: edge.mode or "" for edge in e.edges if edge.target is None}
     touching, flying = list[Form](), list[Form]()
     for k, (place, Q) in enumerate(e.nodes):
-        turn = place.removeprefix(f"{CONTACT} ")
+        turn = place.removeprefix(f"{MODES} ")
         name = names.get(k) or (f"step {int(turn) + 1}" if turn.isdecimal() else "")
         free = place.startswith(FREE)
         (flying if free else touching).append(Form(Q, name, e.degree, free))

@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from nrs_design.certificates.second_opinion import agrees
 from nrs_design.proof.channels import Rounding
 from nrs_design.proof.contact import Contact
 from nrs_design.proof.evidence import Shows, read_evidence
@@ -20,7 +21,6 @@ from nrs_design.proof.evidence.graph import ALL, Arc, FormsOnGraph, Multiplier, 
 from nrs_design.proof.lift import monomials
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
-from nrs_design.proof.second_opinion import agrees
 from nrs_design.proof.steps import Stays
 from nrs_design.proof.switching import Clock, Reset, Stay, Switching
 from nrs_design.proof.system import SwitchedSystem

@@ -7,12 +7,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from nrs_design.certificates.second_opinion import agrees
 from nrs_design.proof.channels import Channel, Output, Rounding
 from nrs_design.proof.contact import Contact
 from nrs_design.proof.contradiction import find_contradiction
 from nrs_design.proof.evidence import InvariantEllipsoid, Shows
 from nrs_design.proof.mode import Mode, Time
-from nrs_design.proof.second_opinion import agrees
 from nrs_design.proof.steps import Acting
 from nrs_design.proof.system import SwitchedSystem
 from tests.proof.graphs import common_quadratic, forms_of_steps
@@ -414,8 +414,8 @@ def test_shares_of_two_disturbances(shares, time, fits):
         (ROUNDED, STEPS, {"roundings": ()}, None),
         (ROUNDED, STEPS, {"roundings": (1,)}, "there is not one multiplier for each rounding"),
         (ROUNDED, STEPS, {"roundings": (1, 2, 3)}, "there is not one multiplier for each rounding"),
-        (ROUNDED, STEPS, {"roundings": (-1, 2)}, "the multiplier of a rounding is negative"),
-        (ROUNDED, STEPS, {"roundings": (2, -1)}, "the multiplier of a rounding is negative"),
+        (ROUNDED, STEPS, {"roundings": (-1, 2)}, "a multiplier is negative"),
+        (ROUNDED, STEPS, {"roundings": (2, -1)}, "a multiplier is negative"),
     ],
 )
 def test_one_multiplier_for_each(system, evidence, changes, fault):

@@ -1,15 +1,17 @@
 """Ellipsoids off the origin: what is refused, and why each number must be as it is."""
 
-from dataclasses import replace
+from dataclasses import fields, replace
 from fractions import Fraction
 
 import pytest
 
+from nrs_design.certificates.second_opinion import agrees
+from nrs_design.proof.channels import Channel, Output
 from nrs_design.proof.evidence import OffsetEllipsoid
 from nrs_design.proof.exact import is_positive_definite
 from nrs_design.proof.mode import Mode, Time
-from nrs_design.proof.second_opinion import agrees
-from tests.proof.systems import bouncing_in_steps, crowded, genuine, matrix, pushed
+from nrs_design.proof.steps import CONTACT
+from tests.proof.systems import bouncing_in_steps, crowded, family, genuine, matrix, pushed
 from tests.proof.truth import holds, is_in_other_units, offset_forms
 
 EXAMPLES = (
@@ -186,3 +188,28 @@ def test_it_says_what_it_bounds():
     assert "at any time (the surface stays in its place, or follows the axis): from rest" in claim
     assert "|force| at a step never exceeds" in claim
     assert item.bound(system).share == item.shares[0]
+
+
+class Unguarded(OffsetEllipsoid):
+    def find_misfit(self, system):
+        return None
+
+
+def test_in_kept_contact_nothing_is_known_of_the_deflection(monkeypatch):
+    """``x+ = -2 x + d`` grows; did x have the sign of a contact that may be lost, it would not."""
+    system = family([[-2]], time=Time.DISCRETE)
+    push = Channel("d", "N", Fraction(1), (matrix([[1]]),))
+    output = Output("x", "m", (matrix([[1]]),))
+    system = replace(system, channels=(push,), outputs=(output,))
+    forged = Unguarded(("d",), "x", ((-64, 0), (0, 1)), 0, (Fraction(1, 2),), Fraction(65))
+    assert forged.facts(system) == ("in mode m0: 0", "x 1: 1", "x 1: -1")
+    kept = replace(forged, multipliers=(15, 0, 0))
+    assert kept.find_fault(system) == "the ellipsoid can be left in mode m0"
+    guarded = OffsetEllipsoid(**{f.name: getattr(kept, f.name) for f in fields(kept)})
+    assert guarded.find_fault(system) == "it is about an axis that may lose contact"
+    # Were the place one where contact may be lost, a product of x before and after a step would be
+    # known not to be negative.
+    monkeypatch.setattr("nrs_design.proof.steps.KEPT", CONTACT)
+    values = {"in mode m0: 0": 15, "in mode after: 0": 2}
+    lost = tuple(values.get(fact, 0) for fact in forged.facts(system))
+    assert replace(forged, multipliers=lost).find_fault(system) is None

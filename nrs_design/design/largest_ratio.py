@@ -1,4 +1,4 @@
-"""TRUSTED: what the quotient of two polynomials over a box surely does not exceed.
+"""The largest quotient of two polynomials over a box, proved between two bounds.
 
 In Bernstein form, the value of a polynomial anywhere in a box is a mean of its coefficients, all
 weights being positive. So where every coefficient of the denominator is positive, the quotient is
@@ -19,7 +19,7 @@ from itertools import count, pairwise, product
 from math import comb, prod
 from typing import Any
 
-from nrs_design.proof.enclosure import as_balls, fraction_of, precision
+from nrs_design.proof.enclosure import ball_around, fraction_of, precision
 
 # Between the two bounds, as a share of the lower one.
 NEARLY = Fraction(1, 400)
@@ -57,7 +57,7 @@ def largest_ratio(
     """
     with precision():
         return _search(
-            as_balls(numerator), as_balls(denominator), tuple(shape), limit, nearly, most
+            _as_balls(numerator), _as_balls(denominator), tuple(shape), limit, nearly, most
         )
 
 
@@ -184,6 +184,13 @@ def _starts(shape: tuple[int, ...], axis: int) -> Iterator[int]:
     n, step = shape[axis], prod(shape[axis + 1 :])
     for before in range(prod(shape[:axis])):
         yield from range(before * n * step, before * n * step + step)
+
+
+def _as_balls(values: Tensor) -> list[Any]:
+    """Return balls around rational numbers, of Python or of flint, at the current precision."""
+    from flint import arb
+
+    return [ball_around(v) if isinstance(v, Fraction) else arb(v) for v in values]
 
 
 def _lower(ball: Any) -> Fraction:

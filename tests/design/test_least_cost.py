@@ -8,7 +8,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from nrs_design.proof.least_cost import Frequency, cost_at_most, least_cost
+from nrs_design.design.least_cost import Frequency, cost_at_most, least_cost
 
 ONE, HALF = Fraction(1), Fraction(1, 2)
 

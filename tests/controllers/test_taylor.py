@@ -8,9 +8,9 @@ from flint import arb, fmpq
 from hypothesis import given
 from hypothesis import strategies as st
 
+from nrs_design.controllers.taylor import UNIT, exponential_between, exponential_nearly
 from nrs_design.proof.enclosure import exponential, overlap, precision
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.taylor import UNIT, exponential_between, exponential_nearly
 
 DIGITS = Fraction(1, 10**60)
 

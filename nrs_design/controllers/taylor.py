@@ -1,4 +1,4 @@
-"""TRUSTED: exponentials in Python integers: a Taylor series, its remainder bounded, and squaring.
+"""Exponentials in Python integers: a Taylor series, its remainder bounded, and squaring.
 
 Of matrices it has no first word: where flint encloses an exponential, this must meet the enclosure.
 The exponential of a number, as a sampled motor has it, is enclosed here.

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from nrs_design.proof.largest_ratio import NEARLY, bernstein, largest_ratio
+from nrs_design.design.largest_ratio import NEARLY, bernstein, largest_ratio
 
 ONE = Fraction(1)
 

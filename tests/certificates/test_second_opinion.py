@@ -8,15 +8,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from nrs_design.certificates.second_opinion import agrees, finds_positive, has_positive_spectrum
+from nrs_design.controllers.taylor import exponential_nearly
 from nrs_design.errors import InternalError
 from nrs_design.proof.channels import Rounding
 from nrs_design.proof.evidence import BlockTriangular
 from nrs_design.proof.evidence.growing_sequence import GrowingSequence, staying
 from nrs_design.proof.exact import is_positive_definite
 from nrs_design.proof.mode import Time
-from nrs_design.proof.second_opinion import agrees, finds_positive, has_positive_spectrum
 from nrs_design.proof.switching import Stay, Switching
-from nrs_design.proof.taylor import exponential_nearly
 from nrs_design.search.certify import certify
 from tests.proof.graphs import common_quadratic, mode_quadratic
 from tests.proof.systems import PAIR, SYSTEMS, family, genuine, matrix
@@ -244,7 +244,7 @@ def recorded(monkeypatch, system, evidence):
         asked.append((A.fractions()[0][0], time))
         return exponential_nearly(A, time)
 
-    monkeypatch.setattr("nrs_design.proof.taylor.exponential_nearly", record)
+    monkeypatch.setattr("nrs_design.controllers.taylor.exponential_nearly", record)
     assert agrees(system, evidence)
     return sorted(asked)
 

@@ -1,4 +1,4 @@
-"""TRUSTED: powers with rational exponents, between two decimals, in Python integers alone."""
+"""Powers with rational exponents, between two decimals, in Python integers alone."""
 
 from __future__ import annotations
 

@@ -104,8 +104,8 @@ _ENCLOSED: Mapping[str, Callable[[SwitchedSystem, Any], Iterator[Exponent]]] = {
 
 def _is_met(A: RationalMatrix, time: Fraction) -> bool:
     """Tell whether flint's enclosure of ``exp(A t)`` and that of a Taylor series overlap."""
+    from nrs_design.controllers.taylor import exponential_nearly
     from nrs_design.proof.enclosure import exponential, overlap, precision
-    from nrs_design.proof.taylor import exponential_nearly
 
     M, error = exponential_nearly(A, time)
     with precision():

@@ -1,4 +1,4 @@
-"""TRUSTED: what a cost of two gains surely does not fall below, by branch and bound with balls.
+"""A lower bound on a cost of two gains, proved by branch and bound with balls.
 
 At a frequency omega an admittance is ``y = Bt + j (Mt omega - Kt/omega)``, and with the open loop
 F in the place of y = 1 the sensitivity there is ``L = |y/(y + F)|``. The cost is the mean over

@@ -32,6 +32,8 @@ EQUIVALENT = Path(__file__).with_name("equivalent.toml")
 SHARED = {"abstract", "fields", "__init__"}
 # What decides for a kind in a file of its own, and the kind that tests it.
 DECIDES_FOR = {"growth": "growing_sequence"}
+# A kind of which the examples that are tampered with are named by their shapes.
+EXAMPLES_OF = {"graph": "quadratic or polynomial"}
 # What decides for several kinds is held by their tests, too.
 BESIDE = {
     "steps": (KINDS / "test_graph.py", TESTS / "test_offset.py", TESTS / "test_stays.py"),
@@ -212,7 +214,7 @@ def own_tests(path: Path) -> list[str]:
         own = mirror if mirror.exists() else KINDS / "test_tampering.py"
         return [str(own), *map(str, BESIDE.get(path.stem, ()))]
     facts = f"{KINDS}/test_abstract.py::test_facts_of_the_kinds"
-    kind = path.stem.replace("_", "-")
+    kind = EXAMPLES_OF.get(path.stem, path.stem.replace("_", "-"))
     return [str(mirror), facts, f"{KINDS}/test_tampering.py", "-k", f"not tampering or {kind}"]
 
 

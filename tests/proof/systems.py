@@ -555,3 +555,10 @@ def genuine(example: str) -> tuple[SwitchedSystem, AbstractEvidence]:
         return system, evidence
     found = certify(system, METHODS.get(example, Method.AUTO), Limits(optimize_rate=False))
     return system, next(item for item in found.statements if shape_of(item) == kind)
+
+
+def expect(system: SwitchedSystem, evidence: AbstractEvidence, fault: str | None) -> None:
+    """Check that evidence holds (None), or that its fault has these words."""
+    found = evidence.find_fault(system)
+    assert (found is None) is (fault is None), found
+    assert fault is None or found is None or fault in found, found

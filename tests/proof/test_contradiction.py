@@ -335,11 +335,6 @@ def test_turns_need_steps_of_one_size_and_free_modes_of_their_own():
         assert a != b
 
 
-def test_signals_that_saturate_make_sense_with_contact_lost_and_kept():
-    assert find_contradiction(saturating()) is None
-    assert find_contradiction(kept(saturating())) is None
-
-
 def test_signals_that_saturate_fit_every_mode_of_one_size():
     system = saturating()
     one_less = replace(system, modes=system.modes[:1])

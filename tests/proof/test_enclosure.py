@@ -1,6 +1,7 @@
 """Balls contain what they stand for, and the integers made from them are below it."""
 
 from fractions import Fraction
+from itertools import product
 
 import numpy as np
 import pytest
@@ -28,45 +29,25 @@ def lower(rows):
 
 
 @given(
-    st.lists(st.floats(-1, 1), min_size=3, max_size=3), st.floats(0, 1e-3), st.integers(-200, 200)
+    st.lists(st.floats(-1, 1), min_size=3, max_size=3),
+    st.floats(0, 1e-3),
+    st.integers(-200, 200),
+    st.integers(-60, 60),
 )
-def test_rounded_balls_stay_below_every_matrix_in_them(entries, radius, exponent):
-    """If the rounded matrix is definite, so are all corners of the ball matrix."""
+def test_rounded_balls_stay_below_every_matrix_in_them(entries, radius, exponent, log2):
+    """If the rounded matrix is definite, so are all corners of the ball matrix, in any units.
+
+    What is below a form is below it in other units, and is found there as well.
+    """
     a, b, c = entries
     mids = np.array([[1 + abs(a), b], [b, 1 + abs(c)]])
-    scale = arb(2) ** exponent
-    enclosed = arb_mat([[arb(float(m), radius) * scale for m in row] for row in mids])
-    corners = [
-        mids + radius * np.array([[s, t], [t, u]])
-        for s in (-1, 1)
-        for t in (-1, 1)
-        for u in (-1, 1)
-    ]
-    smallest = min(np.linalg.eigvalsh(corner).min() for corner in corners)
-    if is_positive_definite(lower_integers(enclosed)):
-        assert smallest > -1e-12
-    else:
-        assert smallest < 4 * radius + 1e-12
-
-
-@given(st.lists(st.floats(-1, 1), min_size=3, max_size=3), st.floats(0, 1e-3), st.integers(-60, 60))
-def test_states_in_other_units_cost_nothing(entries, radius, log2):
-    """What is below a form is below it in other units, and is found there as well."""
-    a, b, c = entries
-    mids = [[1 + abs(a), b], [b, 1 + abs(c)]]
-    unit = [arb(1), arb(2) ** log2]
-    corners = [
-        [
-            [mids[0][0] - radius, mids[0][1] + s * radius],
-            [mids[1][0] + s * radius, mids[1][1] - radius],
-        ]
-        for s in (-1, 1)
-    ]
-    smallest = min(np.linalg.eigvalsh(np.array(corner)).min() for corner in corners)
+    units = arb(2) ** exponent, arb(2) ** (exponent + log2)
     enclosed = [
-        [arb(m, radius) * u * v for m, v in zip(row, unit, strict=True)]
-        for row, u in zip(mids, unit, strict=True)
+        [arb(float(m), radius) * u * v for m, v in zip(row, units, strict=True)]
+        for row, u in zip(mids, units, strict=True)
     ]
+    corners = [mids + radius * np.array([[s, t], [t, u]]) for s, t, u in product((-1, 1), repeat=3)]
+    smallest = min(np.linalg.eigvalsh(corner).min() for corner in corners)
     if is_positive_definite(lower(enclosed)):
         assert smallest > -1e-12
     else:

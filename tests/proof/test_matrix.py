@@ -20,20 +20,6 @@ ROWS = st.integers(1, 4).flatmap(
 )
 
 
-def test_least_common_denominator():
-    A = RationalMatrix.from_rows([[Fraction(1, 6), Fraction("-0.25")], [2, 0]])
-    assert RationalMatrix(((2, -3), (24, 0)), 12) == A
-    assert A.shape == (2, 2)
-
-
-@pytest.mark.parametrize("shape", [(1, 1), (1, 3), (3, 1), (2, 3)])
-def test_rows_and_columns(shape):
-    rows, columns = shape
-    A = RationalMatrix(((1,) * columns,) * rows)
-    assert A.shape == shape
-    assert A.is_well_formed
-
-
 @pytest.mark.parametrize(
     ("numerators", "denominator"),
     [
@@ -88,11 +74,6 @@ def test_entries_are_finite_numbers(entry):
         RationalMatrix.from_rows([[entry]])
 
 
-def test_known_product():
-    half = Fraction(1, 2)
-    assert multiply([[1, half]], [[2, 0], [0, 4]]) == [[2, 2]]
-
-
 def test_all_but_the_last():
     assert leading([[1, 2, 3], [4, 5, 6], [7, 8, 9]]) == [(1, 2), (4, 5)]
 
@@ -116,12 +97,6 @@ def test_entries_beyond_floating_point():
     assert A.floats() == [[inf, -inf], [1.0, 1e300]]
     tiny = RationalMatrix(((1, 10**200),), 10**400)
     assert tiny.floats() == [[0.0, 1e-200]]
-
-
-def test_the_shape_of_rows_of_different_lengths_is_that_of_the_first():
-    ragged = RationalMatrix(((1, 2), (3,)))
-    assert ragged.shape == (2, 2)
-    assert not ragged.is_well_formed
 
 
 def test_the_identity():

@@ -8,17 +8,12 @@ import pytest
 from nrs_design.proof.between import between
 from nrs_design.proof.contact import Contact
 from nrs_design.proof.contradiction import find_contradiction
-from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode
 from nrs_design.proof.saturation import CutOff, Saturation
 from tests.proof.systems import (
     family,
-    genuine,
-    kept,
     matrix,
     pushed_away,
-    saturating,
-    saturating_in_steps,
 )
 
 WHAT = pushed_away().saturation
@@ -44,40 +39,6 @@ def test_up_to_four_signals_of_different_names_make_sense():
     assert oddity_of(system, replace(WHAT, signals=named)) == "s is said twice"
 
 
-# Two states, two modes in contact and a free one; a column that has a length but is none.
-LOST = saturating().saturation
-RAGGED = RationalMatrix(((1,), (1, 1)))
-
-
-def test_what_acts_on_a_signal_has_its_size():
-    system = saturating_in_steps()
-    (signal,) = system.saturation.signals
-    row = matrix([[1]])
-    for rows, said in (
-        ((row,) * 2, "one row of what acts on it for every mode"),
-        ((row,) * 4, "one row of what acts on it for every mode"),
-        ((row, row, matrix([[1, 1]])), "does not know what the arithmetic rounds"),
-        ((row, row, RAGGED), "does not know what the arithmetic rounds"),
-        ((), None),
-    ):
-        odd = replace(system.saturation, signals=(replace(signal, errors=rows),))
-        found = oddity_of(system, odd)
-        assert found == said if said is None else said in found
-
-
-def test_a_motion_may_begin_anywhere_where_contact_is_kept():
-    """And where it may be lost, in contact with nothing deflected."""
-    behind, touching, pressed = matrix([[1], [-1]]), matrix([[1], [0]]), matrix([[0], [1]])
-
-    def oddity(system, *states):
-        what = system.saturation
-        return oddity_of(system, replace(what, start=replace(what.start, states=states)))
-
-    assert oddity(kept(saturating()), behind) is None
-    assert oddity(saturating(), touching) is None
-    assert oddity(saturating(), pressed, behind) == "force stands for a state without contact"
-
-
 def test_the_last_state_is_the_deflection():
     column, row = matrix([[1], [0], [0]]), matrix([[-1, 0, 0]])
     signal = replace(SIGNAL, columns=(column,) * 2, rows=(row,) * 2)
@@ -90,20 +51,6 @@ def test_the_last_state_is_the_deflection():
         still = [[0] * 3] * 3
         system = replace(family(still), contact=Contact((Mode("free", matrix(still)),)))
         assert oddity_of(system, what) == oddity
-
-
-def test_a_motion_that_begins_at_zero_says_nothing():
-    nowhere = replace(WHAT, start=replace(WHAT.start, states=(matrix([[1]]), matrix([[0]]))))
-    assert "stands for a state that is zero" in oddity_of(pushed_away(), nowhere)
-
-
-def test_a_motion_begins_in_contact_where_that_can_be_lost():
-    """With a negative deflection, x'Qx may be smaller than V, which is of (y, 0)."""
-    system, evidence = genuine("saturated-ellipsoid")
-    start = replace(system.saturation.start, states=(matrix([[1], [Fraction(-1, 8)]]),))
-    away = replace(system, saturation=replace(system.saturation, start=start))
-    assert "stands for a state without contact" in find_contradiction(away)
-    assert evidence.find_fault(system) is None
 
 
 def choices(what, A, held):

@@ -9,7 +9,6 @@ import pytest
 from scipy.linalg import expm
 
 from nrs_design.proof import stays as module
-from nrs_design.proof.evidence.graph import Node
 from nrs_design.proof.exact import is_positive_definite
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
@@ -249,10 +248,6 @@ def test_the_largest_powers(monkeypatch, system, limit, value):
     monkeypatch.setattr(module, f"MAX_{limit}", value)
     assert odd(system, leaving, bits=20) == LONG
     assert odd(replace(system, time=Time.CONTINUOUS), leaving, bits=20) is None
-
-
-def test_nodes_are_modes():
-    assert scalars(1, 2).nodes == (Node("m0", ((1,),)), Node("m1", ((2,),)))
 
 
 @pytest.mark.parametrize("seed", range(40))

@@ -1,4 +1,4 @@
-from dataclasses import FrozenInstanceError, replace
+from dataclasses import replace
 from fractions import Fraction
 
 import pytest
@@ -10,18 +10,6 @@ from nrs_design.proof.switching import Clock, Stay, Switching
 from tests.proof.systems import bouncing_in_steps, family, matrix, pushed, resets_between
 
 HALF = Fraction(1, 2)
-
-
-def test_order_is_the_number_of_states():
-    assert family([[1, 2, 3], [4, 5, 6], [7, 8, 9]]).order == 3
-
-
-def test_frozen():
-    system = family([[1]])
-    with pytest.raises(FrozenInstanceError):
-        system.modes = ()
-    with pytest.raises(FrozenInstanceError):
-        system.modes[0].A = None
 
 
 def test_stays_by_mode():

@@ -1,6 +1,6 @@
 """Oracles: what each kind of evidence says, recomputed from its definition.
 
-Fractions and NumPy only: no lift, no elimination and no enclosure of the package is used.
+Fractions, NumPy, SciPy and flint only: no lift, no elimination and no enclosure of the package.
 """
 
 from __future__ import annotations
@@ -13,6 +13,8 @@ from math import lcm, prod
 from random import Random
 
 import numpy as np
+from flint import Ordering, fmpq, fmpq_mat, fmpq_mpoly, fmpq_mpoly_ctx
+from scipy.linalg import expm
 
 from nrs_design.proof.channels import Channel
 from nrs_design.proof.evidence import (
@@ -31,7 +33,6 @@ from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.system import SwitchedSystem
 
 Rows = list[list[Fraction]]
-Polynomial = dict[tuple[int, ...], Fraction]
 
 
 def times(X: Rows, Y: Rows) -> Rows:
@@ -85,18 +86,15 @@ def is_definite(M: Rows, *, strictly: bool = True) -> bool:
 
 
 def determinant(M: Rows) -> Fraction:
-    rows, value = [[Fraction(entry) for entry in row] for row in M], Fraction(1)
-    for k in range(len(rows)):
-        pivot = next((i for i in range(k, len(rows)) if rows[i][k] != 0), None)
-        if pivot is None:
-            return Fraction(0)
-        if pivot != k:
-            rows[k], rows[pivot], value = rows[pivot], rows[k], -value
-        value *= rows[k][k]
-        for i in range(k + 1, len(rows)):
-            factor = rows[i][k] / rows[k][k]
-            rows[i] = [a - factor * b for a, b in zip(rows[i], rows[k], strict=True)]
-    return value
+    return _fraction(fmpq_mat(len(M), len(M), [_fmpq(entry) for row in M for entry in row]).det())
+
+
+def _fmpq(entry: Fraction | int) -> fmpq:
+    return fmpq(*entry.as_integer_ratio())
+
+
+def _fraction(number: fmpq) -> Fraction:
+    return Fraction(int(number.p), int(number.q))
 
 
 def decrease(A: Rows, Q: Rows, rate: Fraction, time: Time) -> Rows:
@@ -162,19 +160,23 @@ def holds(system: SwitchedSystem, evidence: AbstractEvidence) -> bool:
     return _ORACLES[type(evidence)](system, evidence)
 
 
-def _saturated_steps(system: SwitchedSystem, item: SaturatedEllipsoid) -> bool:
+def _saturated_ellipsoid(system: SwitchedSystem, item: SaturatedEllipsoid) -> bool:
     """Every choice of arguments and rows as a mode, from the loop without any signal."""
     what, contact, n = system.saturation, system.contact, system.order
-    if system.switching.resets or not 0 < item.rate < 1 or item.level <= 0:
+    if what is None or system.switching.resets or (contact is not None and contact.pulls):
         return False
-    rounded = len(system.roundings) if item.roundings else 0
+    if not is_rate(item.rate, system.time) or item.level <= 0:
+        return False
+    discrete, rounded = system.time is Time.DISCRETE, len(system.roundings) if item.roundings else 0
     numbers = [item.multipliers, item.roundings]
-    counts = [0 if contact is None else 1, rounded]
+    counts = [int(contact is not None and discrete), rounded]
     if [*map(len, numbers)] != counts or any(v < 0 for part in numbers for v in part):
         return False
     signals, every = what.signals, (*system.modes, *(contact.free if contact else ()))
     modes, columns, rows = [], [[] for _ in system.roundings], []
-    if len(item.H) not in (len(signals), len(signals) * len(every)):
+    if len(item.H) not in (len(signals), len(signals) * (len(every) if discrete else 1)):
+        return False
+    if len(item.Q) != n or any(len(h) != n for h in item.H):
         return False
     for k, mode in enumerate(every):
         held = item.H if len(item.H) == len(signals) else item.H[k * len(signals) :]
@@ -225,8 +227,9 @@ def _saturated_steps(system: SwitchedSystem, item: SaturatedEllipsoid) -> bool:
     Q = [[v * unit for v in row] for row in item.Q]
     known = {"lost": item.multipliers[0] * unit} if item.multipliers else {}
     known |= {f"rounding {i}": v * unit for i, v in enumerate(item.roundings, 1)}
-    steps = moves(loop, lost=contact is not None, rounding=bool(rounded))
-    forms = [inequality(m, Q, Q, item.rate**2, known.__getitem__) for m in steps]
+    steps = (m for m in moves(loop, lost=True, rounding=bool(rounded)) if m.strict)
+    keeps = item.rate**2 if discrete else 2 * item.rate
+    forms = [inequality(m, Q, Q, keeps, known.__getitem__) for m in steps]
     if not is_definite(Q) or not all(map(is_definite, forms)):
         return False
     for i, h in enumerate(item.H):
@@ -234,56 +237,6 @@ def _saturated_steps(system: SwitchedSystem, item: SaturatedEllipsoid) -> bool:
         bordered = [[*q, v] for q, v in zip(Q, row, strict=True)] + [[*row, Fraction(0)]]
         limit = signals[i % len(signals)].limit
         if not -determinant(bordered) / determinant(Q) < limit**2:
-            return False
-    starts = [x.fractions() for x in what.start.states]
-    return all(item.level**2 * times(transpose(x), times(Q, x))[0][0] < 1 for x in starts)
-
-
-def _saturated_ellipsoid(system: SwitchedSystem, item: SaturatedEllipsoid) -> bool:
-    """Every choice of arguments and rows, from the loop without any signal."""
-    what, contact = system.saturation, system.contact
-    if what is not None and system.time is Time.DISCRETE:
-        return _saturated_steps(system, item)
-    if what is None:
-        return False
-    if system.switching.resets or item.rate <= 0 or item.level <= 0:
-        return False
-    n, signals = system.order, what.signals
-    if contact is not None and contact.pulls:
-        return False
-    if len(item.Q) != n or len(item.H) != len(signals) or any(len(h) != n for h in item.H):
-        return False
-    Q = [[Fraction(v, 2**item.denominator_log2) for v in row] for row in item.Q]
-    H = [[Fraction(v, 2**item.H_denominator_log2) for v in row] for row in item.H]
-    forms = [Q]
-    free = () if contact is None else contact.free
-    for k, mode in enumerate((*system.modes, *free)):
-
-        def given(held, k=k):
-            found = []
-            for i, signal in enumerate(signals):
-                q = signal.rows[k].fractions()[0]
-                before = [[share * v for v in s] for share, s in zip(q[n:], found, strict=True)]
-                argument = [sum(column) for column in zip(q[:n], *before, strict=True)]
-                found.append(H[i] if i in held else argument)
-            acting = (signal.columns[k].fractions() for signal in signals)
-            return [times(c, [row]) for c, row in zip(acting, found, strict=True)]
-
-        alone = combine((1, mode.A.fractions()), *((-1, part) for part in given(())))
-        for mask in range(2 ** len(signals)):
-            held = [i for i in range(len(signals)) if mask >> i & 1]
-            B = combine((1, alone), *((1, part) for part in given(held)))
-            if k < len(system.modes):
-                forms.append(decrease(B, Q, item.rate, system.time))
-            else:
-                B, inner = ([row[:-1] for row in M[:-1]] for M in (B, Q))
-                forms.append(decrease(B, inner, item.rate, system.time))
-    if not all(map(is_definite, forms)):
-        return False
-    # h Q^-1 h' by Cramer's rule.
-    for h, signal in zip(H, signals, strict=True):
-        bordered = [[*row, v] for row, v in zip(Q, h, strict=True)] + [[*h, Fraction(0)]]
-        if not -determinant(bordered) / determinant(Q) < signal.limit**2:
             return False
     starts = [x.fractions() for x in what.start.states]
     return all(item.level**2 * times(transpose(x), times(Q, x))[0][0] < 1 for x in starts)
@@ -488,41 +441,55 @@ def _without(M: Rows, k: int) -> Rows:
 
 def _polynomials(system: SwitchedSystem, item: FormsOnGraph, *, lost: bool) -> bool:
     """In contact a polynomial, and in free motion its terms without the deflection."""
-    n, d = system.order, item.degree
-    forms = dict(item.nodes)
-    if len(forms) < len(item.nodes) or item.multipliers:
-        return False
-    parts = [("modes", n, system.modes)]
+    n, d, rate, flows = system.order, item.degree, item.rate, system.time is Time.CONTINUOUS
+    forms, vanishing = dict(item.nodes), list(item.vanishing)
+    parts = [("modes", n, [mode.A for mode in system.modes])]
     if lost:
-        if system.contact.pulls or system.time is Time.DISCRETE:
+        if system.contact.pulls or not flows:
             return False
-        free = (Mode(m.name, RationalMatrix.from_rows([r[:-1] for r in m.A.fractions()[:-1]]))
-                for m in system.contact.free)  # fmt: skip
-        parts.append(("free", n - 1, tuple(free)))
-    vanishing = list(item.vanishing)
-    if len(vanishing) != sum(len(modes) for *_, modes in parts):
+        inner = ([row[:-1] for row in m.A.fractions()[:-1]] for m in system.contact.free)
+        parts.append(("free", n - 1, list(map(RationalMatrix.from_rows, inner))))
+    count = sum(len(matrices) for *_, matrices in parts)
+    if len(forms) < len(item.nodes) or item.multipliers or len(vanishing) != count:
         return False
-    for place, size, modes in parts:
-        basis = _basis(size, d)
-        Q = forms[place]
-        if len(Q) != len(basis) or not is_definite(Q):
+    x = fmpq_mpoly_ctx.get([f"x{i}" for i in range(n)], Ordering.lex).gens()
+    for place, size, matrices in parts:
+        Q, z = forms[place], _monomials(x[:size], d)
+        if len(Q) != len(z) or not is_definite(Q):
             return False
-        V = expand(Q, basis)
+        V = _form(Q, z)
         if place == "free":
-            whole = sorted(
-                (a for a in product(range(d + 1), repeat=n) if sum(a) == d), reverse=True
-            )
-            above = {key[:-1]: value for key, value in expand(forms["modes"], whole).items()
-                     if not key[-1] and value}  # fmt: skip
-            if above != {key: value for key, value in V.items() if value}:
+            above = _form(forms["modes"], _monomials(x, d))
+            if above.compose(*x[:-1], 0 * x[-1]) != V:
                 return False
-        for mode in modes:
-            N = vanishing.pop(0)
-            if len(N) != len(basis) or any(expand(N, basis).values()):
+        for A, N in zip(matrices, vanishing, strict=False):
+            if len(N) != len(z) or _form(N, z) != 0:
                 return False
-            if not is_definite(_gram(mode.A, item, Q, N, basis, V, system.time)):
+            Ax = [sum(_fmpq(a) * v for a, v in zip(row, x, strict=False)) for row in A.fractions()]
+            if flows:
+                moved = [sum(p.derivative(i) * v for i, v in enumerate(Ax)) for p in (V, *z)]
+                kept, factor = d * rate, A.denominator * (2 * d * rate * A.denominator).denominator
+                wanted = -moved[0] - _fmpq(2 * d * rate) * V
+            else:
+                moved = [p.compose(*Ax, *x[size:]) for p in (V, *z)]
+                kept, factor = rate**d, A.denominator ** (2 * d) * (rate**d).denominator ** 2
+                wanted = _fmpq(rate ** (2 * d)) * V - moved[0]
+            keys = [next(iter(p.to_dict())) for p in z]
+            lifted = [[_fraction(p.to_dict().get(k, fmpq(0))) for k in keys] for p in moved[1:]]
+            form = decrease(lifted, Q, kept, system.time)
+            assert _form(form, z) == wanted
+            if not is_definite(combine((factor, form), (1, N))):
                 return False
+        del vanishing[: len(matrices)]
     return True
+
+
+def _monomials(x: Sequence[fmpq_mpoly], degree: int) -> list[fmpq_mpoly]:
+    return [prod(p) for p in combinations_with_replacement(x, degree)]
+
+
+def _form(M: Rows, z: Sequence[fmpq_mpoly]) -> fmpq_mpoly:
+    return sum(_fmpq(M[i][j]) * a * b for i, a in enumerate(z) for j, b in enumerate(z))
 
 
 def _invariant_ellipsoid(system: SwitchedSystem, item: InvariantEllipsoid) -> bool:
@@ -659,88 +626,6 @@ def offset_moves(
         yield wide, facts
 
 
-def _basis(n: int, d: int) -> list[tuple[int, ...]]:
-    return sorted((a for a in product(range(d + 1), repeat=n) if sum(a) == d), reverse=True)
-
-
-def _gram(mode, item, Q, N, basis, V, time) -> Rows:
-    """Return a Gram matrix of the decrease with N added, as the definition of the kind has it."""
-    A = mode.fractions()
-    lifted = [_row(derive(monomial, A) if time is Time.CONTINUOUS else compose(monomial, A), basis)
-              for monomial in basis]  # fmt: skip
-    d, rate = item.degree, item.rate
-    if time is Time.CONTINUOUS:
-        form = decrease(lifted, Q, d * rate, time)
-        factor = mode.denominator * (2 * d * rate * mode.denominator).denominator
-        expected = add(scale(_derivative(V, A), -1), scale(V, -2 * d * rate))
-    else:
-        form = decrease(lifted, Q, rate**d, time)
-        factor = mode.denominator ** (2 * d) * (rate**d).denominator ** 2
-        expected = add(scale(V, rate ** (2 * d)), scale(_substitute(V, A), -1))
-    assert add(expand(form, basis), scale(expected, -1)) == {}
-    return combine((factor, form), (1, [[Fraction(e) for e in row] for row in N]))
-
-
-def _row(polynomial: Polynomial, basis) -> list[Fraction]:
-    return [polynomial.get(monomial, Fraction(0)) for monomial in basis]
-
-
-def expand(M: Rows, basis) -> Polynomial:
-    total: Polynomial = {}
-    for (i, a), (j, b) in product(enumerate(basis), repeat=2):
-        key = tuple(p + q for p, q in zip(a, b, strict=True))
-        total = {**total, key: total.get(key, Fraction(0)) + M[i][j]}
-    return total
-
-
-def add(p: Polynomial, q: Polynomial) -> Polynomial:
-    total = {key: p.get(key, Fraction(0)) + q.get(key, Fraction(0)) for key in p.keys() | q.keys()}
-    return {key: value for key, value in total.items() if value}
-
-
-def scale(p: Polynomial, factor: Fraction | int) -> Polynomial:
-    return {key: factor * value for key, value in p.items()}
-
-
-def derive(monomial: tuple[int, ...], A: Rows) -> Polynomial:
-    """Derivative of a monomial along ``x' = A x``."""
-    return _derivative({monomial: Fraction(1)}, A)
-
-
-def _derivative(p: Polynomial, A: Rows) -> Polynomial:
-    total: Polynomial = {}
-    n = len(A)
-    for key, value in p.items():
-        for i, j in product(range(n), repeat=2):
-            if key[i]:
-                moved = list(key)
-                moved[i] -= 1
-                moved[j] += 1
-                total = add(total, {tuple(moved): value * key[i] * A[i][j]})
-    return total
-
-
-def compose(monomial: tuple[int, ...], A: Rows) -> Polynomial:
-    return _substitute({monomial: Fraction(1)}, A)
-
-
-def _substitute(p: Polynomial, A: Rows) -> Polynomial:
-    total: Polynomial = {}
-    n = len(A)
-    for key, value in p.items():
-        term: Polynomial = {(0,) * n: value}
-        for i, exponent in enumerate(key):
-            for _ in range(exponent):
-                shifted: Polynomial = {}
-                for k, v in term.items():
-                    for j in range(n):
-                        moved = (*k[:j], k[j] + 1, *k[j + 1 :])
-                        shifted = add(shifted, {moved: v * A[i][j]})
-                term = shifted
-        total = add(total, term)
-    return total
-
-
 def _no_common_quadratic(system: SwitchedSystem, item: NoCommonQuadratic) -> bool:
     modes = {mode.name: mode.A.fractions() for mode in system.modes}
     n = system.order
@@ -849,21 +734,9 @@ def _does_not_raise(A, G, before, after, rate, time, stay) -> bool:
     if stay == 0:
         image = times(transpose(G), times(after, G))
         return is_definite(combine((1, before), (-1, image)), strictly=False)
-    jump = _floats(G) @ exponential((_floats(A) + float(rate) * np.eye(len(A))) * float(stay))
+    jump = _floats(G) @ expm((_floats(A) + float(rate) * np.eye(len(A))) * float(stay))
     form = _floats(before) - jump.T @ _floats(after) @ jump
     return bool(np.linalg.eigvalsh(form).min() > -1e-9 * np.abs(_floats(before)).max())
-
-
-def exponential(M: np.ndarray) -> np.ndarray:
-    """Taylor series of a small multiple, squared again and again."""
-    squarings = max(0, int(np.ceil(np.log2(np.abs(M).sum() + 1))) + 4)
-    term = total = np.eye(len(M))
-    for k in range(1, 20):
-        term = term @ (M / 2.0**squarings) / k
-        total = total + term
-    for _ in range(squarings):
-        total = total @ total
-    return total
 
 
 def _floats(rows) -> np.ndarray:
@@ -965,7 +838,7 @@ def _grows_in_a_period(system: SwitchedSystem, item: GrowingSequence) -> bool:
         if following == name and longest is not None:
             return False
         if system.time is Time.CONTINUOUS:
-            product_ = exponential(modes[name] * float(dwell)) @ product_
+            product_ = expm(modes[name] * float(dwell)) @ product_
         else:
             product_ = np.linalg.matrix_power(modes[name], int(dwell)) @ product_
         if following != name:

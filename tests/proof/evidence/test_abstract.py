@@ -304,7 +304,14 @@ def test_resets_and_unequal_modes_must_be_asked_for():
 
 @pytest.mark.parametrize(
     "example",
-    ["common-quadratic", "common-polynomial", "mode-quadratic, discrete", "block-triangular"],
+    [
+        "common-quadratic",
+        "common-polynomial",
+        "conewise-mode-quadratic",
+        "conewise-polynomial",
+        "mode-quadratic, discrete",
+        "block-triangular",
+    ],
 )
 def test_what_is_spread_over_equal_modes_holds_for_all(example):
     system, evidence = genuine(example)

@@ -39,7 +39,6 @@ from tests.proof.systems import (
     genuine,
     juggling_among_modes,
     matrix,
-    saturating,
 )
 from tests.support import number_in
 
@@ -294,26 +293,6 @@ def test_that_loss_must_be_covered_is_true_or_false():
         changed = {**fields, "contact": {**fields["contact"], "required": wrong}}
         with pytest.raises(TypeError, match="expected true or false"):
             read_system("family", changed)
-
-
-def test_what_saturates_is_written_only_where_something_does():
-    system = saturating()
-    fields = system_fields(system)
-    assert "saturation" not in system_fields(bouncing())
-    assert read_system("family", fields) == system
-    start = replace(system.saturation.start, wanted=Fraction(1, 2))
-    wanted = replace(system, saturation=replace(system.saturation, start=start))
-    assert system_fields(wanted)["saturation"]["start"]["wanted"] == "1/2"
-    assert read_system("family", system_fields(wanted)) == wanted
-    for part in ("signals", "start"):
-        with pytest.raises(KeyError, match=part):
-            read_system(
-                "family",
-                {
-                    **fields,
-                    "saturation": {k: v for k, v in fields["saturation"].items() if k != part},
-                },
-            )
 
 
 def test_how_contact_is_lost_is_written_beside_the_assumptions():

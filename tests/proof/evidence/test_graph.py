@@ -9,11 +9,12 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.linalg import expm
 
 from nrs_design.certificates.second_opinion import agrees
 from nrs_design.proof.channels import Rounding
 from nrs_design.proof.contact import Contact
-from nrs_design.proof.evidence import Shows, read_evidence
+from nrs_design.proof.evidence import Shows
 from nrs_design.proof.evidence import graph as graph_module
 from nrs_design.proof.evidence.abstract import NOT_ROUNDED
 from nrs_design.proof.evidence.fields import MAX_INTEGER_BITS
@@ -24,7 +25,7 @@ from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.steps import Stays
 from nrs_design.proof.switching import Clock, Reset, Stay, Switching
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.search.certify import Limits, Verdict, certify
+from nrs_design.search.certify import Verdict, certify
 from nrs_design.search.graphs import search_polynomial
 from nrs_design.search.method import Method
 from tests.proof.graphs import (
@@ -50,7 +51,6 @@ from tests.proof.systems import (
     doubled_in_turns,
     family,
     genuine,
-    geromel_colaneri,
     losable,
     matrix,
     must_leave,
@@ -61,9 +61,8 @@ from tests.proof.systems import (
     resets_between,
     shears,
     slow_switching_in_steps,
-    two_ways,
 )
-from tests.proof.truth import edge_form, edges_at, exponential, holds, is_in_other_units, moves
+from tests.proof.truth import edge_form, edges_at, holds, is_in_other_units, moves
 from tests.search.support import found as accepted
 from tests.support import broken, ends_soon, is_definite_by_ldl
 
@@ -107,23 +106,6 @@ class TestCommon:
         near = "999999999999999999999/1000000000000000000000"
         assert self.fault(COMMUTING, I2, near) is None
         assert "mode m0" in self.fault(COMMUTING, I2, 1)
-
-    def test_known_function_of_dayawansa_martin(self):
-        # x1^2 + b x2^2 works for a = 5 iff 4.29 < b < 5.83; the identity does not.
-        assert self.fault(dayawansa_martin(5), ((1, 0), (0, 5)), "1/1000") is None
-        assert "mode m1" in self.fault(dayawansa_martin(5), I2, "1/1000")
-
-    @settings(deadline=None)
-    @given(st.integers(1, 60), st.integers(-60, 60), st.integers(1, 60), st.fractions(5.83, 50))
-    def test_no_quadratic_function_beyond_the_threshold(self, p, q, r, a):
-        """Dayawansa and Martin 1999: none exists for a >= 3 + 2 sqrt(2)."""
-        assert self.fault(dayawansa_martin(a), ((p, q), (q, r)), "1/1000000") is not None
-
-    def test_every_mode_counts(self):
-        for bad in range(3):
-            matrices = [[[-1, 0], [0, -1]]] * 3
-            matrices[bad] = [[1, 0], [0, -1]]
-            assert f"mode m{bad}" in self.fault(family(*matrices), I2, HALF)
 
     @pytest.mark.parametrize(
         "switching",
@@ -180,16 +162,6 @@ class TestPolynomials:
         fault = None if fits else f"degree {2 * degree} is not between 2 and 64"
         assert evidence.find_fault(family([[-1]])) == fault
 
-    def test_numbers_that_would_take_minutes_are_refused(self, monkeypatch):
-        size = comb(7, 4)
-        Q = tuple(tuple(2**2400 * (i == j) for j in range(size)) for i in range(size))
-        zero = tuple((0,) * size for _ in range(size))
-        system = family([[-int(i == j) for j in range(4)] for i in range(4)])
-        evidence = common_polynomial(4, Q, 0, (zero,), HALF)
-        assert evidence.find_fault(system) == "its numbers are too large to check"
-        small = tuple(tuple(int(i == j) for j in range(size)) for i in range(size))
-        assert common_polynomial(4, small, 0, (zero,), HALF).find_fault(system) is None
-
     @pytest.mark.parametrize(("time", "bits"), [(Time.CONTINUOUS, 2 + 4), (STEPS, 2 + 4 * 4)])
     def test_the_longest_numbers(self, monkeypatch, time, bits):
         """Of Q, two bits, and of the modes, four: in discrete time for each of four factors."""
@@ -232,17 +204,6 @@ class TestPolynomials:
             assert words in evidence.find_misfit(changed)
         weighted = replace(evidence, multipliers=(Multiplier("lost", 1),))
         assert "no multipliers" in weighted.find_misfit(system)
-
-    def test_resets_are_lifted_too_between_modes_of_different_sizes(self):
-        """Each mode contracts; the resets undo less than a step gains."""
-        resets = resets_between(("m0", "m1", [["3/2", "1/2"]]), ("m1", "m0", [["1"], ["1/3"]]))
-        modes = [["1/2", "1/4"], [0, "1/2"]], [["1/2"]]
-        system = family(*modes, time=STEPS, switching=Switching(resets=resets))
-        found = certify(system, Method.MODE_POLYNOMIAL, Limits(max_degree=4))
-        assert found.verdict is Verdict.PROVED
-        assert holds(system, found.evidence)
-        grown = resets_between(("m0", "m1", [["8", "1/2"]]), ("m1", "m0", [["1"], ["1/3"]]))
-        assert found.evidence.find_fault(replace(system, switching=Switching(resets=grown)))
 
     def test_the_lossy_network_is_proved_up_to_its_growth(self):
         """The growth along the published cycle is 0.97482."""
@@ -543,23 +504,6 @@ class TestTurns:
         assert claim.startswith("In rounds of 4 steps, every solution of x+ = A x, with any mode")
         assert "deflection" not in claim
 
-    def test_the_best_rate_of_one_state(self):
-        rate, values = Fraction("0.95845"), [10**9]
-        assert Fraction("0.9584") ** 4 < Fraction("0.84375") < rate**4
-        for kept in (Fraction(1, 4), Fraction(16, 9), Fraction(16, 9)):
-            values.append(int(values[-1] * kept * rate**2) - 1)
-        system, tight = four(*values, rate=rate)
-        assert tight.find_fault(system) is None
-        assert "does not decrease" in replace(tight, rate=Fraction("0.9584")).find_fault(system)
-
-    @pytest.mark.parametrize("step", range(4))
-    def test_every_step_has_a_condition(self, step):
-        system, evidence = four(64, 15, 25, 42)
-        small = with_form(evidence, step, ((evidence.nodes[step].form[0][0] // 2,),))
-        mode = "m0" if step == 0 else "m1"
-        fault = f"V does not decrease at the claimed rate in mode {mode}, at step {step}"
-        assert small.find_fault(system) == fault
-
     def test_a_round_that_grows_is_not_proved(self):
         """2 (3/4)^2 is above one: without the step from the last form to the first, all holds."""
         system, candidate = four(64, 15, 26, rate="0.99")
@@ -591,12 +535,6 @@ class TestStays:
     def by_modes(self, system):
         return certify(system, Method.MODE_QUADRATIC)
 
-    def test_evidence_for_one_dwell_time_is_none_for_a_shorter_one(self):
-        _, evidence = genuine("mode-quadratic, dwell")
-        assert evidence.find_fault(geromel_colaneri("2.76")) is None
-        for dwell in ("2.75", "2", "0"):
-            assert evidence.find_fault(geromel_colaneri(dwell)) is not None
-
     def test_one_way_needs_nothing_in_common_and_both_ways_everything(self):
         one_way, evidence = genuine("mode-quadratic, one way")
         assert evidence.find_fault(one_way) is None
@@ -619,20 +557,6 @@ class TestStays:
             system = family([[-1]], [[-1]], switching=Switching(Fraction(1), resets=resets))
             assert (scalars(1, 1, rate="1/10000").find_fault(system) is not None) is fault
 
-    def test_equality_is_allowed_at_a_switch_without_dwell_time_and_nothing_above(self):
-        for factor, fault in (("1", False), ("-1", False), ("1.0000001", True)):
-            resets = resets_between(("m0", "m1", [[factor, 0], [0, "1/2"]]))
-            switching = Switching(transitions=(("m0", "m1"),), resets=resets)
-            system = family([[-1, 0], [0, -1]], [[-1, 0], [0, -1]], switching=switching)
-            assert (by_mode(I2, I2).find_fault(system) is not None) is fault
-
-    @pytest.mark.parametrize(
-        "resets", [[("m0", "m1", [["1/2"]]), ("m0", "m1", [[99]])], [("m0", "m0", [[99]])]]
-    )
-    def test_ambiguous_resets_are_not_covered(self, resets):
-        system = family([[-1]], [[-1]], switching=Switching(resets=resets_between(*resets)))
-        assert scalars(1, 1).find_fault(system) is not None
-
     def test_modes_of_unequal_size(self):
         system, evidence = genuine("mode-quadratic, rectangular")
         assert [len(node.form) for node in evidence.nodes] == [2, 1]
@@ -641,16 +565,6 @@ class TestStays:
         for kept in ((), resets[:1], resets[::-1][:1]):
             without = replace(system, switching=Switching(resets=kept))
             assert "no fitting reset" in str(evidence.find_fault(without))
-
-    def test_steps_of_discrete_time_are_counted_as_stays(self):
-        # One step in turn has the monodromy [[1/2, 2], [0, 1/2]] [[1/2, 0], [2, 1/2]]: it grows.
-        system, evidence = genuine("mode-quadratic, steps")
-        assert evidence.find_fault(system) is None
-        for steps in (1, 2):
-            shorter = replace(system, switching=Switching(Fraction(steps)))
-            assert evidence.find_fault(shorter) is not None
-        fast = replace(slow_switching_in_steps(), switching=Switching())
-        assert certify(fast).verdict is Verdict.REFUTED
 
     @pytest.mark.parametrize("longest", [1, 2, 3, 4])
     def test_every_stay_in_a_mode_that_must_be_left(self, longest):
@@ -691,11 +605,6 @@ class TestStays:
         assert holds(system, large)
         # Pieces that are too coarse show nothing.
         assert "after some stay" in replace(large, stays=Stays(("m0",))).find_fault(system)
-
-    def test_the_weakest_of_several_resets_counts(self):
-        system, evidence = genuine("mode-quadratic, two ways")
-        assert holds(system, evidence)
-        assert "from m0 to m1" in evidence.find_fault(two_ways(5))
 
     @pytest.mark.parametrize("exponent", [3, 12, 300])
     def test_stiff_modes_neither_hang_nor_crash(self, exponent):
@@ -804,13 +713,6 @@ class TestGraph:
         assert stuck.find_fault(DRAWN) == "the graph has no edge in mode m1"
         assert not holds(DRAWN, stuck)
 
-    def test_too_many_sets_are_refused(self, monkeypatch):
-        monkeypatch.setattr(graph_module, "MAX_SETS", 1)
-        nodes = (Node("modes", ((1,),)), Node("modes", ((1,),)))
-        edges = (Arc(None, "m0", 0), Arc(None, "m1", 1))
-        graph = FormsOnGraph(nodes, 0, Fraction(9, 10), edges=edges)
-        assert graph.find_fault(DRAWN) == "the graph has too many sets of nodes"
-
     def test_too_many_edges_are_refused(self, monkeypatch):
         monkeypatch.setattr(graph_module, "MAX_WORK", 1)
         graph = common_quadratic(((1,),), 0, Fraction(9, 10))
@@ -892,28 +794,6 @@ class TestGraph:
         for nodes in (scalars(1, 1).nodes[:1], (*scalars(1, 1).nodes, Node("m2", ((1,),)))):
             assert "every place" in replace(scalars(1, 1), nodes=nodes).find_fault(DRAWN)
 
-    def test_a_shape_grants_what_is_proved_of_it_and_no_more(self):
-        granted = {
-            "bounds_at_once": (BOUNCE, EACH, IN_STEPS, four(1, 1)[1]),
-            "covers_mixtures": (BOUNCE, EACH, IN_STEPS, four(1, 1)[1]),
-            "covers_lost_contact": (BOUNCE, EACH, IN_STEPS),
-            "covers_clock": (BOUNCE, EACH, IN_STEPS, four(1, 1)[1]),
-            "is_common_quadratic": (BOUNCE, IN_STEPS),
-            "allows_unequal_modes": (scalars(1, 1),),
-        }
-        for name, shapes in granted.items():
-            for item in (BOUNCE, EACH, IN_STEPS, four(1, 1)[1], scalars(1, 1)):
-                assert getattr(item, name) is any(
-                    item is shape or item == shape for shape in shapes
-                )
-        polynomial = genuine("common-polynomial, discrete")[1]
-        assert not polynomial.keeps_bound_in_mixtures
-        assert polynomial.covers_mixtures
-        assert not polynomial.is_common_quadratic
-
-
-PLAIN = {"nodes": [{"place": "modes", "form": [[1]]}], "denominator_log2": 0, "rate": "1/2"}
-
 
 class TestFields:
     def test_only_what_is_not_usual_is_written(self):
@@ -923,44 +803,10 @@ class TestFields:
         assert fields == {"nodes": nodes, "denominator_log2": 0, "rate": "1/2"}
         assert FormsOnGraph.from_fields(fields, COMMUTING) == evidence
 
-    @pytest.mark.parametrize(
-        "fields",
-        [
-            {},
-            {"rate": "1/2"},
-            {**PLAIN, "nodes": []},
-            {**PLAIN, "nodes": [{"place": 1, "form": [[1]]}]},
-            {**PLAIN, "nodes": [{"place": "modes", "form": [[1.0]]}]},
-            {**PLAIN, "nodes": [{"place": "modes", "form": [[1]], "at": 1}]},
-            {**PLAIN, "nodes": [["modes", [[1]]]]},
-            {**PLAIN, "denominator_log2": "0"},
-            {**PLAIN, "edges": [{"target": None}]},
-            {**PLAIN, "multipliers": [{"fact": "lost"}]},
-            {**PLAIN, "stays": {"leaving": [], "pieces": 1.0}},
-        ],
-    )
-    def test_malformed_fields(self, fields):
-        with pytest.raises((KeyError, TypeError, ValueError)):
-            FormsOnGraph.from_fields(fields, COMMUTING)
-
     @pytest.mark.parametrize("log2", [-1, MAX_INTEGER_BITS + 1])
     def test_a_denominator_is_a_power_of_two(self, log2):
         fault = common_quadratic(I2, log2, HALF).find_misfit(COMMUTING)
         assert "the denominator of Q is not two to a power" in fault
-
-    @pytest.mark.parametrize(
-        "example", ["conewise-mode-quadratic", "conewise-polynomial", "mode-polynomial"]
-    )
-    def test_equal_modes_repeat_what_belongs_to_them(self, example):
-        system, evidence = genuine(example)
-        names = [mode.name for mode in system.modes]
-        if system.switching.is_arbitrary:
-            again = tuple(replace(mode, name=f"{mode.name} again") for mode in system.modes)
-            system = replace(system, modes=(*system.modes, *again))
-            spread = evidence.spread(replace(system, modes=system.modes[: len(names)]), system)
-            assert spread.find_fault(system) is None
-        else:
-            assert evidence.spread(system, system) == evidence
 
 
 # Each condition is needed: families that grow although all conditions but one hold.
@@ -1070,55 +916,8 @@ def test_forms_between_modes_of_one_state_by_hand(degree):
         assert Fraction(form) / true in (unit, Fraction(unit, 3**power), unit // 2**power)
 
 
-SHAPES = {
-    "one": (bouncing_in_steps(), IN_STEPS),
-    "flow": (bouncing(1), PULLED),
-    "each": (bouncing_in_steps(), EACH),
-    "turns": (bouncing_in_turns(), in_turns(bouncing_in_turns(), (Q2_STEPS,) * 2, 0, SLOW,
-                                            ((16,), (16,)))),
-    "stays": (family([["1/2", 0], [0, "1/2"]], [["1/4", 0], [0, "1/4"]], time=STEPS),
-              by_mode(I2, I2, rate="3/4")),
-}  # fmt: skip
-
-
 class TestRefused:
     """Numbers that do not fit, of every shape; and sizes that would take hours."""
-
-    @pytest.mark.parametrize("shape", SHAPES)
-    def test_numbers_that_do_not_fit(self, shape):
-        system, evidence = SHAPES[shape]
-        assert evidence.find_misfit(system) is None
-        for k, (place, form) in enumerate(evidence.nodes):
-            n = len(form)
-            wide = tuple((*row, 0) for row in form)
-            for other in ((), wide, form[:-1], ((1,) * (n + 1),) * (n + 1)):
-                fault = f"a form at {place}: Q is not a {n} x {n} matrix"
-                assert with_form(evidence, k, other).find_fault(system) == fault
-            skew = (*form[:-1], (form[-1][0] + 1, *form[-1][1:]))
-            negative = tuple(tuple(-e for e in row) for row in form)
-            # A form of one state is always symmetric.
-            for other in (negative, *[skew] * (n > 1)):
-                assert with_form(evidence, k, other).find_fault(system) is not None
-                assert not holds(system, with_form(evidence, k, other))
-        for rate in (Fraction(0), Fraction(-1, 2), *[Fraction(1)] * (system.time is STEPS)):
-            fault = replace(evidence, rate=rate).find_fault(system)
-            assert fault == "the claimed rate is not one of exponential decay"
-        names = {node.place for node in evidence.nodes}
-        for name in names:
-            nodes = tuple(node for node in evidence.nodes if node.place != name)
-            # Without forms in flight it would be one of kept contact, which nothing is lost in.
-            fault = replace(evidence, nodes=nodes).find_fault(system)
-            assert ("no fact" if name == "free" else "every place") in fault
-        for k, item in enumerate(evidence.multipliers):
-            changed = [*evidence.multipliers]
-            changed[k] = item._replace(value=-1)
-            fault = replace(evidence, multipliers=tuple(changed)).find_fault(system)
-            assert fault == "a multiplier is negative"
-        for fact in ("rounding 1", "coupling 1", "lost 1", "pull 3"):
-            odd = replace(evidence, multipliers=(*evidence.multipliers, Multiplier(fact, 1)))
-            assert "multiplier" in odd.find_fault(system)
-        idle = tuple(item._replace(value=0) for item in evidence.multipliers)
-        assert replace(evidence, multipliers=idle).find_misfit(system) is None
 
     def test_no_crossings_where_contact_is_kept(self):
         kept = replace(bouncing_in_turns(), contact=None, clock=Clock(2, ("push 1", "push 2")))
@@ -1131,12 +930,6 @@ class TestRefused:
         """Of states in contact that a free mode rules they have no edge."""
         fault = EACH.find_fault(bouncing_in_steps(1))
         assert fault == "the graph has no edge while the environment lags, mode free"
-
-    @pytest.mark.parametrize("factor", [1, 3, 10**200])
-    def test_the_scale_of_forms_does_not_matter(self, factor):
-        scaled = common_quadratic(((factor, 0), (0, factor)), 7, HALF)
-        assert scaled.find_fault(COMMUTING) is None
-        assert not broken(COMMUTING, scaled)
 
     @pytest.mark.parametrize(("n", "degree"), [(120, 1), (121, 1), (3, 14), (64, 2), (64, 32)])
     def test_the_most_monomials(self, n, degree):
@@ -1153,16 +946,6 @@ class TestRefused:
         fault = f"there are more than 120 monomials of degree {degree}" if refused else None
         with ends_soon():
             assert evidence.find_misfit(system) == fault
-
-    @pytest.mark.parametrize("degree", [-2, 66, 10**300])
-    @pytest.mark.parametrize("example", ["common-polynomial", "mode-polynomial"])
-    def test_hostile_degrees_and_integers(self, example, degree):
-        system, evidence = genuine(example)
-        fields = {"kind": evidence.kind, **evidence.to_fields(), "degree": degree}
-        giant = tuple(tuple(q * 10**4000 for q in row) for row in evidence.nodes[0].form)
-        with ends_soon():
-            assert "degree" in read_evidence(fields, system).find_fault(system)
-            with_form(evidence, 0, giant).find_fault(system)
 
     @pytest.mark.parametrize(
         ("modes", "resets", "bits"),
@@ -1210,8 +993,7 @@ class TestAttacks:
     def test_the_family_grows(self):
         system = self.growing()
         contact, free = (
-            exponential(0.02 * np.array(mode.A.floats()))
-            for mode in (*system.modes, *system.contact.free)
+            expm(0.02 * np.array(mode.A.floats())) for mode in (*system.modes, *system.contact.free)
         )
         x = np.array([1.0, -1.0, 1.0])
         for _ in range(3000):
@@ -1256,15 +1038,6 @@ class TestAttacks:
         honest = replace(forged, vanishing=(*evidence.vanishing[:1], ((0,),)))
         assert "in free motion, mode f" in honest.find_fault(sliding)
 
-    def test_the_forms_that_vanish_are_needed(self):
-        """Without them, the lifted modes would have quadratic functions."""
-        system, evidence = genuine("mode-polynomial")
-        zero = tuple(tuple((0,) * len(row) for row in N) for N in evidence.vanishing)
-        assert replace(evidence, vanishing=zero).find_fault(system) is not None
-        modes = list(system.modes)
-        modes[0], modes[2] = replace(modes[0], A=modes[2].A), replace(modes[2], A=modes[0].A)
-        assert evidence.find_fault(replace(system, modes=tuple(modes))) is not None
-
     def test_polynomials_keep_the_rules_of_stays(self):
         halves = family([["1/2"]], [["-1/2"]], time=STEPS)
         assert quartic(1, 1).find_fault(halves) is None
@@ -1306,16 +1079,6 @@ class TestRulesOfStays:
         longer = replace(slow_switching_in_steps(), switching=Switching(Fraction(7)))
         assert certify(longer, Method.MODE_QUADRATIC).verdict is Verdict.PROVED
 
-    def test_resets_of_another_shape_or_order(self):
-        _, evidence = genuine("mode-quadratic, rectangular")
-        turned = resets_between(("m0", "m1", [["1/2"], [0]]), ("m1", "m0", [["1/2", 0]]))
-        system = replace(rectangular(), switching=Switching(resets=turned))
-        assert "no fitting reset" in evidence.find_fault(system)
-        swapped = tuple(
-            Node(a.place, b.form) for a, b in zip(evidence.nodes, evidence.nodes[::-1], strict=True)
-        )
-        assert "matrix" in replace(evidence, nodes=swapped).find_fault(rectangular())
-
     @pytest.mark.parametrize("first", ["m0", "m1"])
     def test_a_switch_at_once_is_seen_after_one_that_comes_later(self, first):
         """From m1 to m0 the form doubles, whichever of the modes has a dwell time of its own."""
@@ -1343,25 +1106,3 @@ class TestRulesOfStays:
             assert by_mode(unit, unit, rate="999/1000").find_fault(large) is not None
             long_rate = Fraction(10**1999 - 1, 10**1999)
             assert scalars(1, 1, rate=long_rate).find_fault(small) is not None
-
-    def test_four_thousand_steps_of_a_small_system_are_checked(self):
-        system = replace(slow_switching_in_steps(), switching=Switching(Fraction(4096)))
-        item = by_mode(((1, 0), (0, 100)), ((100, 0), (0, 1)), rate="99/100")
-        with ends_soon():
-            assert item.find_fault(system) is None
-
-    @pytest.mark.parametrize("example", ["mode-quadratic, left", "mode-quadratic, left in time"])
-    def test_files_name_the_modes_that_must_be_left(self, example):
-        system, evidence = genuine(example)
-        fields = {"kind": evidence.kind, **evidence.to_fields()}
-        assert fields["stays"]["leaving"] == ["m0"]
-        assert read_evidence(fields, system) == evidence
-        for key in ("leaving", "pieces"):
-            stays = {k: v for k, v in fields["stays"].items() if k != key}
-            other = read_evidence({**fields, "stays": stays}, system)
-            # What is not said is what is usual: no mode must be left, and one piece.
-            assert other.stays == replace(evidence.stays, **{key: getattr(Stays(), key)})
-            usual = getattr(evidence.stays, key) == getattr(Stays(), key)
-            assert other.find_fault(system) is None or not usual
-        fields["stays"]["leaving"] = []
-        assert read_evidence(fields, system).find_fault(system) is not None

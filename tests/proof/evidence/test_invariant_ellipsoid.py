@@ -13,9 +13,8 @@ from nrs_design.proof.contact import Contact
 from nrs_design.proof.contradiction import find_contradiction
 from nrs_design.proof.evidence import InvariantEllipsoid, Shows
 from nrs_design.proof.mode import Mode, Time
-from nrs_design.proof.steps import Acting
 from nrs_design.proof.system import SwitchedSystem
-from tests.proof.graphs import common_quadratic, forms_of_steps
+from tests.proof.graphs import common_quadratic
 from tests.proof.systems import (
     LAGGING,
     Entry,
@@ -27,7 +26,14 @@ from tests.proof.systems import (
     matrix,
     pushed,
 )
-from tests.proof.truth import combine, holds, inequality, is_positive_multiple, moves
+from tests.proof.truth import (
+    combine,
+    holds,
+    inequality,
+    is_in_other_units,
+    is_positive_multiple,
+    moves,
+)
 from tests.support import is_definite_by_ldl
 
 
@@ -315,45 +321,46 @@ EVIDENCE3 = InvariantEllipsoid(("jerk", "push"), "force", Q3, 3, SHARES3, LEVEL,
 WEIGHTS3 = [SHARES3[0] / Fraction(5, 2) ** 2, SHARES3[1] * 9]
 
 
-@pytest.mark.parametrize("lost", [False, True])
-def test_every_form_by_hand(lost):
+FACTS3 = ("pull 1 f0", "pull 2 f0", "pull 1 f1", "pull 2 f1")
+
+
+@pytest.mark.parametrize(
+    ("time", "facts", "multipliers", "roundings"),
+    [
+        (Time.CONTINUOUS, (), (), ()),
+        (Time.CONTINUOUS, FACTS3, (3, 5, 7, 11), ()),
+        *(
+            (Time.DISCRETE, ("lost",) * len(multipliers), multipliers, roundings)
+            for multipliers in ((), (5,))
+            for roundings in ((), (4, 9))
+        ),
+    ],
+)
+def test_every_form_by_hand(time, facts, multipliers, roundings):
     """In kept contact, and while contact comes and goes and the environment lags."""
-    system = crowded(Time.CONTINUOUS, lost=lost)
-    weights = (3, 5, 7, 11) if lost else ()
-    evidence = replace(EVIDENCE3, multipliers=weights)
+    flows = time is Time.CONTINUOUS
+    system = crowded(time, lost=bool(multipliers), pulled=flows)
+    evidence = replace(EVIDENCE3, multipliers=multipliers, roundings=roundings)
+    assert find_contradiction(system) is None
     assert evidence.find_misfit(system) is None
     eighths = combine((Fraction(1, 8), Q3))
-    facts = ("pull 1 f0", "pull 2 f0", "pull 1 f1", "pull 2 f1")
-    known = {fact: Fraction(m, 8) for fact, m in zip(facts, weights, strict=False)}
+    known = {fact: Fraction(m, 8) for fact, m in zip(facts, multipliers, strict=True)}
+    known |= {f"rounding {k}": Fraction(m, 8) for k, m in enumerate(roundings, 1)}
+    keeps = sum(SHARES3) if flows else 1 - sum(SHARES3)
     wanted = [
-        inequality(move, eighths, eighths, sum(SHARES3), known.__getitem__, WEIGHTS3)
-        for move in moves(system, lost=True, channels=(2, 0))
-        if move.strict
+        (move.where, inequality(move, eighths, eighths, keeps, known.__getitem__, WEIGHTS3))
+        for move in moves(system, lost=True, channels=(2, 0), rounding=bool(roundings))
+        if move.strict and "surface" not in move.where
     ]
     for output in system.outputs[1].rows:
         (row,) = output.fractions()
         rows = [[*above, x] for above, x in zip(eighths, row, strict=True)]
-        wanted.append([*rows, [*row, LEVEL**2]])
-    first, *forms = (form for _, form in evidence.forms(system))
+        wanted.append(("", [*rows, [*row, LEVEL**2]]))
+    (_, first), *forms = evidence.forms(system)
     assert first == Q3
-    for form, true in zip(forms, wanted, strict=True):
-        assert is_positive_multiple(form, true)
-
-
-@pytest.mark.parametrize(
-    ("multipliers", "roundings"), [((), ()), ((), (4, 9)), ((5,), ()), ((5,), (4, 9))]
-)
-def test_forms_in_steps_are_those_of_its_numbers(multipliers, roundings):
-    system = crowded(Time.DISCRETE, lost=bool(multipliers), pulled=False)
-    evidence = replace(EVIDENCE3, multipliers=multipliers, roundings=roundings)
-    assert evidence.find_misfit(system) is None
-    assert find_contradiction(system) is None
-    acting = Acting((2, 0), tuple(WEIGHTS3), bool(roundings))
-    steps = forms_of_steps(system, acting, (Q3, 3), 1 - sum(SHARES3), multipliers, roundings)
-    wanted = [(f"the ellipsoid can be left {where}", form) for where, form in steps]
-    _, *forms = evidence.forms(system)
-    assert forms[: len(wanted)] == wanted
-    assert len(forms) == len(wanted) + len(system.outputs[1].rows)
+    for (words, form), (where, true) in zip(forms, wanted, strict=True):
+        assert words.endswith(where)
+        assert (is_positive_multiple if flows else is_in_other_units)(form, true)
 
 
 @pytest.mark.parametrize(

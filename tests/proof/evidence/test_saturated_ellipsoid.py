@@ -165,17 +165,6 @@ def changed(**parts):
     )
 
 
-def without_signals(*signals):
-    return replace(pushed_away(), saturation=Saturation(signals, pushed_away().saturation.start))
-
-
-SIGNAL = pushed_away().saturation.signals[0]
-UNEVEN = replace(
-    family([[-2]], [[-2, 0], [0, -2]], switching=Switching(resets=())),
-    saturation=pushed_away().saturation,
-)
-
-
 @pytest.mark.parametrize(
     ("system", "fault"),
     [
@@ -183,24 +172,6 @@ UNEVEN = replace(
         # In steps this loop doubles its state.
         (replace(pushed_away(), time=Time.DISCRETE), "does not decrease"),
         (changed(limit=Fraction(0)), "the limit of s is not positive"),
-        (changed(columns=()), "has not one column and row for every mode"),
-        (changed(rows=SIGNAL.rows * 2), "has not one column and row for every mode"),
-        (changed(columns=(matrix([[1], [1]]),)), "s does not have the size of the state"),
-        (changed(rows=(matrix([[1, 1]]),)), "s does not have the size of the state"),
-        (without_signals(), "no signal saturates"),
-        (without_signals(SIGNAL, SIGNAL), "s does not have the size of the state"),
-        (without_signals(*(replace(SIGNAL, name=f"s{i}") for i in range(5))), "more than 4 do"),
-        (
-            replace(
-                pushed_away(),
-                saturation=replace(
-                    pushed_away().saturation,
-                    start=replace(pushed_away().saturation.start, states=()),
-                ),
-            ),
-            "place does not have the size of the state",
-        ),
-        (UNEVEN, "not of one size"),
     ],
 )
 def test_another_system_is_refused(system, fault):

@@ -39,6 +39,7 @@ BESIDE = {
     "steps": (KINDS / "test_graph.py", TESTS / "test_offset.py", TESTS / "test_stays.py"),
     "stays": (KINDS / "test_graph.py",),
     "contradiction": (TESTS / "test_cases.py", TESTS / "test_saturation.py"),
+    "fields": (KINDS / "test_tampering.py",),
     "enclosure": (KINDS / "test_growing_sequence.py", TESTS / "test_stays.py"),
     "saturation": (KINDS / "test_saturated_ellipsoid.py",),
     "switching": (TESTS / "test_clock.py", KINDS / "test_growing_sequence.py"),

@@ -6,10 +6,9 @@ from random import Random
 
 import pytest
 
-from nrs_design.proof.channels import Channel, Rounding
 from nrs_design.proof.mode import Time
 from nrs_design.proof.offset import offset_steps
-from tests.proof.systems import bouncing, bouncing_in_steps, crowded, matrix, pushed
+from tests.proof.systems import bouncing, bouncing_in_steps, crowded, pushed
 from tests.proof.truth import offset_moves
 
 TRIALS = 300
@@ -128,31 +127,6 @@ def test_a_lagging_environment_does_not_pull(step_words):
                 found += 1
                 assert smallest(step, [Fraction(1), *x, drawn(rng, 1)]) >= 0
     assert found > TRIALS // 4
-
-
-def test_the_one_stays_and_the_rest_moves_as_before():
-    """A map of the system behind a one, with disturbances in units of their bounds."""
-    system = pushed(bouncing_in_steps(), "1/3")
-    column = matrix([["1/7"], ["2/3"]])
-    system = replace(
-        system,
-        channels=(*system.channels, Channel("gust", "N", Fraction(5, 2), (column,) * 3)),
-        roundings=(Rounding("v", (column,) * 3, (matrix([["1/9", 0, "1/5", 2]]),) * 3),),
-    )
-    step = steps_by_words(system)["in mode m1"]
-    z = [Fraction(1), *map(Fraction, ("2/5", "3", "-1", "1/2", "4"))]
-    inner = [entry / unit for entry, unit in zip(z, step.units, strict=True)]
-    moved_ = apply(system.modes[1].A.fractions(), z[1:3])
-    push = system.channels[0].columns[1].fractions()
-    for i, (b,) in enumerate(push):
-        moved_[i] += b * z[3] / 3
-    for i, (b,) in enumerate(column.fractions()):
-        moved_[i] += b * z[4] * Fraction(5, 2) + b * z[5]
-    assert apply(step.rows, inner) == [1, *moved_]
-    ((_, place, q, below),) = step.errors
-    assert place == 5
-    size = sum(a * b for a, b in zip(q, inner, strict=True)) / below
-    assert size == z[1] / 9 + z[3] / 3 / 5 + z[4] * Fraction(5, 2) * 2
 
 
 def test_products_of_a_row_of_the_mode_have_one_multiplier_for_all_modes():

@@ -175,6 +175,9 @@ WRITTEN = {
     "pulling in flight": lambda: PULLING,
     "the shortest round": lambda: doubled_in_turns(2),
     "the longest round": lambda: doubled_in_turns(100),
+    "the longest rule for misses": lambda: replace(
+        doubled_in_turns(2), clock=Clock(1000, ("m0",), ((0, 1),) * 1000)
+    ),
 }
 
 

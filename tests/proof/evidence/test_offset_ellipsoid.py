@@ -11,7 +11,7 @@ from nrs_design.proof.evidence import OffsetEllipsoid
 from nrs_design.proof.exact import is_positive_definite
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.steps import CONTACT
-from tests.proof.systems import bouncing_in_steps, crowded, family, genuine, matrix, pushed
+from tests.proof.systems import crowded, family, genuine, matrix
 from tests.proof.truth import holds, is_in_other_units, offset_forms
 
 EXAMPLES = (
@@ -130,20 +130,6 @@ def test_every_multiplier_counts(example):
         assert replace(item, multipliers=changed).find_fault(system) is not None
     none = replace(item, multipliers=(0,) * len(item.multipliers))
     assert "can be left" in none.find_fault(system)
-
-
-def test_it_is_about_contact_that_may_be_lost():
-    _, item = genuine("offset-ellipsoid, in steps")
-    kept = pushed(replace(bouncing_in_steps(), contact=None))
-    assert "may lose contact" in item.find_fault(kept)
-
-
-@pytest.mark.parametrize("push", ["1/3", "1", "100"])
-def test_a_larger_push_needs_another(push):
-    _, item = genuine("offset-ellipsoid, in steps")
-    system = pushed(bouncing_in_steps(), push)
-    assert "can be left" in item.find_fault(system)
-    assert not holds(system, item)
 
 
 def test_the_sign_after_a_step_is_that_of_its_place():

@@ -36,7 +36,12 @@ DECIDES_FOR = {"growth": "growing_sequence"}
 EXAMPLES_OF = {"graph": "quadratic or polynomial"}
 # What decides for several kinds is held by their tests, too.
 BESIDE = {
-    "steps": (KINDS / "test_graph.py", TESTS / "test_offset.py", TESTS / "test_stays.py"),
+    "steps": (
+        KINDS / "test_graph.py",
+        KINDS / "test_invariant_ellipsoid.py",
+        TESTS / "test_offset.py",
+        TESTS / "test_stays.py",
+    ),
     "stays": (KINDS / "test_graph.py",),
     "contradiction": (TESTS / "test_cases.py", TESTS / "test_saturation.py"),
     "fields": (KINDS / "test_tampering.py",),

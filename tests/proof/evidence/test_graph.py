@@ -803,6 +803,10 @@ class TestFields:
         assert fields == {"nodes": nodes, "denominator_log2": 0, "rate": "1/2"}
         assert FormsOnGraph.from_fields(fields, COMMUTING) == evidence
 
+    def test_nothing_follows_from_no_form(self):
+        with pytest.raises(ValueError, match="it has no form"):
+            FormsOnGraph.from_fields({"nodes": [], "denominator_log2": 0, "rate": "1/2"}, COMMUTING)
+
     @pytest.mark.parametrize("log2", [-1, MAX_INTEGER_BITS + 1])
     def test_a_denominator_is_a_power_of_two(self, log2):
         fault = common_quadratic(I2, log2, HALF).find_misfit(COMMUTING)
@@ -916,8 +920,55 @@ def test_forms_between_modes_of_one_state_by_hand(degree):
         assert Fraction(form) / true in (unit, Fraction(unit, 3**power), unit // 2**power)
 
 
+SHAPES = {
+    "one": (bouncing_in_steps(), IN_STEPS),
+    "flow": (bouncing(1), PULLED),
+    "each": (bouncing_in_steps(), EACH),
+    "turns": (bouncing_in_turns(), in_turns(bouncing_in_turns(), (Q2_STEPS,) * 2, 0, SLOW,
+                                            ((16,), (16,)))),
+    "stays": (family([["1/2", 0], [0, "1/2"]], [["1/4", 0], [0, "1/4"]], time=STEPS),
+              by_mode(I2, I2, rate="3/4")),
+}  # fmt: skip
+
+
 class TestRefused:
     """Numbers that do not fit, of every shape; and sizes that would take hours."""
+
+    @pytest.mark.parametrize("shape", SHAPES)
+    def test_numbers_that_do_not_fit(self, shape):
+        system, evidence = SHAPES[shape]
+        assert evidence.find_misfit(system) is None
+        for k, (place, form) in enumerate(evidence.nodes):
+            n = len(form)
+            wide = tuple((*row, 0) for row in form)
+            for other in ((), wide, form[:-1], ((1,) * (n + 1),) * (n + 1)):
+                fault = f"a form at {place}: Q is not a {n} x {n} matrix"
+                assert with_form(evidence, k, other).find_fault(system) == fault
+            skew = (*form[:-1], (form[-1][0] + 1, *form[-1][1:]))
+            negative = tuple(tuple(-e for e in row) for row in form)
+            # A form of one state is always symmetric.
+            for other in (negative, *[skew] * (n > 1)):
+                assert with_form(evidence, k, other).find_fault(system) is not None
+                assert not holds(system, with_form(evidence, k, other))
+        for rate in (Fraction(0), Fraction(-1, 2), *[Fraction(1)] * (system.time is STEPS)):
+            fault = replace(evidence, rate=rate).find_fault(system)
+            assert fault == "the claimed rate is not one of exponential decay"
+        names = {node.place for node in evidence.nodes}
+        for name in names:
+            nodes = tuple(node for node in evidence.nodes if node.place != name)
+            # Without forms in flight it would be one of kept contact, which nothing is lost in.
+            fault = replace(evidence, nodes=nodes).find_fault(system)
+            assert ("no fact" if name == "free" else "every place") in fault
+        for k, item in enumerate(evidence.multipliers):
+            changed = [*evidence.multipliers]
+            changed[k] = item._replace(value=-1)
+            fault = replace(evidence, multipliers=tuple(changed)).find_fault(system)
+            assert fault == "a multiplier is negative"
+        for fact in ("rounding 1", "coupling 1", "lost 1", "pull 3"):
+            odd = replace(evidence, multipliers=(*evidence.multipliers, Multiplier(fact, 1)))
+            assert "multiplier" in odd.find_fault(system)
+        idle = tuple(item._replace(value=0) for item in evidence.multipliers)
+        assert replace(evidence, multipliers=idle).find_misfit(system) is None
 
     def test_no_crossings_where_contact_is_kept(self):
         kept = replace(bouncing_in_turns(), contact=None, clock=Clock(2, ("push 1", "push 2")))

@@ -852,3 +852,17 @@ def test_at_a_value_of_a_constant_enclosures_are_between_its_corners(sets, share
     system = replace(system, switching=ends, enclosures=sets)
     evidence = replace(staying("m0 to m2"), shares=(share,))
     assert (evidence.find_fault(system) is None) is grows
+
+
+@pytest.mark.parametrize(
+    ("fields", "reason"),
+    [
+        ({"steps": []}, "there are no steps"),
+        ({"steps": [["m0", "1"]], "edges": [0, 0]}, "one edge for each"),
+        ({"steps": [["m0", "1"]], "shares": ["1/2"]}, "no parameter is constant"),
+        ({"steps": [["m0", "1"]], "shares": [f"1/{2**64 + 1}"]}, "a share has too many digits"),
+    ],
+)
+def test_what_cannot_be_put_into_words_is_not_read(fields, reason):
+    with pytest.raises(ValueError, match=reason):
+        GrowingSequence.from_fields(fields, UNSTABLE)

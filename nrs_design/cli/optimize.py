@@ -141,7 +141,7 @@ def _print(spec: InteractionDesignSpec, analysis: DesignAnalysis) -> None:
     )
     for line in marks(analysis.impedance):
         say(line)
-    for line in meanings(spec, analysis.impedance):
+    for line in meanings(analysis.impedance):
         detail(line)
     if not wants_details():
         say(basis(analysis.impedance))

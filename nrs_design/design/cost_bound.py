@@ -73,8 +73,6 @@ def why_no_bound(problem: ImpedanceProblem) -> str:
         problem.damping_bounds[0] == problem.damping_bounds[1]
     ):
         return "Mt and Bt are given"
-    if problem.responses:
-        return "the weights for transparency and accuracy are not covered"
     return ""
 
 

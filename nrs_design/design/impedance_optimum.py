@@ -18,7 +18,6 @@ from nrs_design.design.impedance import (
     stabilizes,
 )
 from nrs_design.design.nested_search import Objective, search_square
-from nrs_design.design.response_cost import ResponseCost
 from nrs_design.design.transfer import BoolArray, FloatArray, frequency_response
 from nrs_design.errors import DesignError
 
@@ -46,7 +45,6 @@ class ImpedanceProblem:
     # negative and not both zero.
     weight_displayed: float = 0.5
     weight_sensitivity: float = 0.5
-    responses: tuple[ResponseCost, ...] = ()  # What else is in the cost
     # Tells for which Mt and Bt nominal contact is stable, of the loop that is proved; by default
     # that of the `loop` is asked for.
     stable: Callable[[FloatArray, FloatArray], BoolArray] | None = None
@@ -58,8 +56,7 @@ class ImpedanceProblem:
                 raise DesignError(f"the {name} must be positive, not {value}")
         _check_bounds("Mt", self.mass_bounds, zero_allowed=True)
         _check_bounds("Bt", self.damping_bounds, zero_allowed=False)
-        beside = (part.weight for part in self.responses)
-        weights = (self.weight_displayed, self.weight_sensitivity, *beside)
+        weights = (self.weight_displayed, self.weight_sensitivity)
         if not all(math.isfinite(w) and w >= 0 for w in weights) or not any(weights):
             raise DesignError(f"weights must be at least 0 and not all 0: {weights}")
 
@@ -69,8 +66,8 @@ def impedance_cost(problem: ImpedanceProblem, Mt: ArrayLike, Bt: ArrayLike) -> F
 
     ``C = wD mean|log10 Zdes - log10|Zdisp|| + wR mean|L|`` over ``(0, bandwidth]``: the integral
     divided by the bandwidth, by the midpoint rule with `NODES` equidistant frequencies. The
-    thesis prints a sum, whose value would depend on the number of frequencies. Parts for
-    transparency and accuracy over a band are added. Mt and Bt broadcast; stability is not checked.
+    thesis prints a sum, whose value would depend on the number of frequencies. Mt and Bt broadcast;
+    stability is not checked.
     """
     Mt, Bt = np.broadcast_arrays(np.asarray(Mt, np.float64), np.asarray(Bt, np.float64))
     check_admittance(Mt, Bt)
@@ -113,7 +110,6 @@ class _Samples:
     target: FloatArray
     drawn: FloatArray
     weights: tuple[float, float]
-    responses: tuple[ResponseCost, ...]
 
     def cost(self, Mt: FloatArray, Bt: FloatArray) -> FloatArray:
         """Evaluate in blocks that stay in the processor's cache."""
@@ -127,10 +123,7 @@ class _Samples:
         squared = (reactance**2 + Bt**2) / below  # |L|^2, and |Zdisp| = |G Ze| |L|
         displayed = np.abs(self.target - 0.5 * np.log10(squared)).mean(axis=1)
         robust = np.sqrt(squared).mean(axis=1)
-        cost = np.asarray(self.weights[0] * displayed + self.weights[1] * robust)
-        for part in self.responses:
-            cost = cost + part.of(Mt, Bt)
-        return cost
+        return np.asarray(self.weights[0] * displayed + self.weights[1] * robust)
 
 
 def _sample(problem: ImpedanceProblem) -> _Samples:
@@ -146,7 +139,6 @@ def _sample(problem: ImpedanceProblem) -> _Samples:
         target=np.log10(problem.desired / np.abs(forward)),
         drawn=problem.loop.Kt / omega,
         weights=(problem.weight_displayed, problem.weight_sensitivity),
-        responses=problem.responses,
     )
 
 

@@ -35,10 +35,6 @@ COST_MEANING = (
     "Cost: that of the thesis, of its loop G Ze H Y at nominal values, in continuous time and "
     "without a load of the motor; gains are chosen by it."
 )
-WEIGHED_MEANING = (
-    "To it the weights for transparency and accuracy add the largest response in the band over the "
-    "limit of its goal, at nominal values too."
-)
 PASSIVITY_NOT_COMPUTED = (
     "Where a sampled law is passive is not computed with two periods, a spring Kt, late commands, "
     "a filter of the force, missed deadlines, ranges of the motor, or beside other "

@@ -67,13 +67,12 @@ def motion_summary(analysis: DesignAnalysis) -> dict[str, Any]:
     }
 
 
-def meanings(spec: InteractionDesignSpec, items: Sequence[ImpedanceAnalysis]) -> Iterator[str]:
+def meanings(items: Sequence[ImpedanceAnalysis]) -> Iterator[str]:
     """Yield what the values of the table are about."""
     from nrs_design.design.measures import (
         COST_MEANING,
         LIMIT_MEANING,
         MEANING,
-        WEIGHED_MEANING,
         computed,
     )
 
@@ -81,9 +80,6 @@ def meanings(spec: InteractionDesignSpec, items: Sequence[ImpedanceAnalysis]) ->
     yield LIMIT_MEANING
     yield from computed({item.name: item.proved_titles for item in items})
     yield COST_MEANING
-    weights = (getattr(controller, "weights", None) for controller in spec.controllers.values())
-    if any(given is not None and (given.transparency or given.accuracy) for given in weights):
-        yield WEIGHED_MEANING
 
 
 def _summary(spec: InteractionDesignSpec, item: ImpedanceAnalysis) -> dict[str, Any]:
@@ -112,7 +108,7 @@ def _summary(spec: InteractionDesignSpec, item: ImpedanceAnalysis) -> dict[str, 
         "disk_margin": worst(measures.DISK_MARGIN),
         "stiffness_limit": finite(item.lowest_limit),
         "stiffness_limit_at": item.limit_at,
-        "over": [*meanings(spec, [item])],
+        "over": [*meanings([item])],
         "lever_arm_m": item.lever_arm,
         "stiffness_limit_at_arm_N_m": item.limit_at_arm and finite(item.limit_at_arm),
         "passive_up_to_rad_s": passive and lower_float(passive),

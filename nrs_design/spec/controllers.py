@@ -82,25 +82,17 @@ _TOUCHED = (
 
 
 class CostWeights(SpecModel, stronger="neither"):
-    """Weights of the parts of the impedance cost: the two of thesis 6.7, and two for a band."""
+    """Weights of the two parts of the impedance cost (thesis 6.7)."""
 
     displayed: Weight = optional(
         "weight of the displayed-impedance error, >= 0, no unit", Fraction(1, 2)
     )
     sensitivity: Weight = optional("weight of the mean sensitivity, >= 0, no unit", Fraction(1, 2))
-    transparency: Weight | None = optional(
-        "weight of the largest displayed impedance over the limit of the goal transparency, in its "
-        "band, >= 0, no unit"
-    )
-    accuracy: Weight | None = optional(
-        "weight of the largest tracking error over the limit of the goal accuracy, in its band and "
-        "contact, >= 0, no unit"
-    )
 
     checks = (
         Row(
             "",
-            lambda s: not any((s.displayed, s.sensitivity, s.transparency, s.accuracy)),
+            lambda s: not any((s.displayed, s.sensitivity)),
             "all weights are zero",
             "give at least one a positive weight",
         ),

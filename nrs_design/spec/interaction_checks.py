@@ -182,19 +182,6 @@ def _accurate_in(spec: Spec) -> Iterator[tuple[Location, Reference]]:
             yield (*at, "environment"), named
 
 
-def _weighed(spec: Spec) -> Iterator[tuple[Location, tuple[str, ResponseGoal | None]]]:
-    """Yield the keys of goals in the cost of a controller, each with the goal if it is given."""
-    for name, c in spec.controllers.items():
-        weights = getattr(c, "weights", None)
-        for key in ("transparency", "accuracy"):
-            if weights is not None and getattr(weights, key):
-                given = (
-                    getattr(goals, key) for goals in (c.goals, spec.goals) if goals is not None
-                )
-                goal = next((goal for goal in given if goal is not None), None)
-                yield ("controllers", name, "weights", key), (key, goal)
-
-
 def _common_goals(spec: Spec) -> Iterator[tuple[Location, _Goals]]:
     laws = {c.type for c in spec.controllers.values() if "goals" in type(c).model_fields}
     if spec.goals is not None:
@@ -390,21 +377,6 @@ INTERACTION_CHECKS: tuple[Row[Spec], ...] = (
     # Goals.
     *each(_common_goals, *_GOALS),
     *each(_own_goals, *_GOALS),
-    *each(
-        _weighed,
-        Row[tuple[str, ResponseGoal | None]](
-            "",
-            lambda item: item[1] is None and item[0],
-            "{0} is in the cost, and no goal says in which band and below which limit",
-            "add the goal {0}, or remove the weight",
-        ),
-        Row[tuple[str, ResponseGoal | None]](
-            "",
-            lambda item: isinstance(item[1], AccuracySpec) and item[1].environment is None,
-            "accuracy is in the cost, but gains have no part in it where nothing is touched",
-            "add `environment` to the goal accuracy, or remove the weight",
-        ),
-    ),
     refuse(
         _high_bands,
         "the band reaches {0}, and half the sampling rate is {1} Hz",

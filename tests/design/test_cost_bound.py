@@ -1,6 +1,5 @@
 """How far gains are above the least cost: the thesis, by differential evolution, and bad ends."""
 
-from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
@@ -10,7 +9,6 @@ from scipy.optimize import differential_evolution
 from nrs_design.design.cost_bound import NEARLY, bound_cost, why_no_bound
 from nrs_design.design.impedance import ImpedanceLoop
 from nrs_design.design.impedance_optimum import ImpedanceProblem, impedance_cost, optimize_impedance
-from nrs_design.design.response_cost import response_cost
 from nrs_design.models.contact import Elastic
 from nrs_design.thesis import thesis
 
@@ -75,5 +73,3 @@ def test_beside_goals_it_is_another_optimum():
 def test_what_is_not_covered():
     assert why_no_bound(problem()) == ""
     assert why_no_bound(problem(mass=(0.1, 0.1), damping=(2.0, 2.0))) == "Mt and Bt are given"
-    part = response_cost(problem().loop, 1.0, 2.0, (0.0, 1.0), touches=False)
-    assert "transparency" in why_no_bound(replace(problem(), responses=(part,)))

@@ -36,7 +36,6 @@ from nrs_design.design.measures import (
 )
 from nrs_design.design.passivity import PassiveBand, passive_band
 from nrs_design.design.proved_margins import ranged_loops, with_proofs
-from nrs_design.design.response_cost import ResponseCost, response_cost
 from nrs_design.design.response_goals import JudgedResponse, judged_responses, response_goals
 from nrs_design.design.sampled_passivity import SampledBand, sampled_bands
 from nrs_design.errors import DesignError
@@ -255,14 +254,13 @@ def impedance_problem(
 ) -> ImpedanceProblem:
     """State the choice of one controller's virtual mass and damping as an optimization."""
     return ImpedanceProblem(
-        loop=_loop(task, given, given.environment),
+        loop=_loop(task, given),
         desired=desired_impedance(task.spec, given),
         bandwidth=task.spec.limits.bandwidth.si,
         mass_bounds=(given.Mt.min.si, given.Mt.max.si),
         damping_bounds=(given.Bt.min.si, given.Bt.max.si),
         weight_displayed=float(given.weights.displayed),
         weight_sensitivity=float(given.weights.sensitivity),
-        responses=tuple(_response_costs(task, given)),
         stable=None if requirement.axis is None else requirement.stable,
     )
 
@@ -274,16 +272,6 @@ def with_spring(given: ImpedanceControllerSpec, Kt: Fraction | None) -> Impedanc
     spring = Quantity(f"{exact_decimal(Kt)} {unit('N*m/rad')}", Kt, unit("N*m/rad"))
     own = given.Kt.model_copy(update={"min": spring, "max": spring})
     return given.model_copy(update={"Kt": own})
-
-
-def _response_costs(task: Task, given: ImpedanceControllerSpec) -> Iterator[ResponseCost]:
-    """Yield what goals for frequency responses add to the cost."""
-    for key, goal in response_goals(task.spec.goals, given.goals).items():
-        if weight := float(getattr(given.weights, key) or 0):
-            loop = _loop(task, given, goal.environment or given.environment)
-            band = goal.band[0].si, goal.band[1].si
-            touches = goal.environment is not None
-            yield response_cost(loop, weight, float(goal.limit), band, touches=touches)
 
 
 def desired_impedance(spec: InteractionDesignSpec, controller: ImpedanceControllerSpec) -> float:
@@ -319,11 +307,11 @@ def _measures(task: Task) -> tuple[Measure, ...]:
     return (*IMPEDANCE_MEASURES, *(CREEP_MEASURES if task.sensor.errors else ()))
 
 
-def _loop(task: Task, given: ImpedanceControllerSpec, environment: str) -> ImpedanceLoop:
+def _loop(task: Task, given: ImpedanceControllerSpec) -> ImpedanceLoop:
     """Return the loop of a controller in nominal contact."""
     low_pass = task.sensor.filter
     lags = (1.0,) if low_pass is None else low_pass.denominator
-    contact = task.plant.environment(environment).nominal
+    contact = task.plant.environment(given.environment).nominal
     return ImpedanceLoop(task.motion, contact, float(_spring(given)), lags)
 
 

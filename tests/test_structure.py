@@ -48,7 +48,6 @@ DOORS = {
 # What is found in a stage, and printed or written as it is: for annotations only.
 PRINTED = {
     "nrs_design.design.analysis",
-    "nrs_design.design.cost_bound",
     "nrs_design.design.goals",
     "nrs_design.design.linear_parts",
     "nrs_design.design.open_loops",

@@ -98,7 +98,7 @@ class Optimum(AbstractResult):
         analysis = self._analysis
         return {
             **spec_facts(self.designed.loaded),
-            **optimum_facts(self.designed, analysis, {}),
+            **optimum_facts(self.designed, analysis),
             "warnings": [str(doubt) for doubt in analysis.warnings],
             "gains": self.gains,
             "units": self.units,

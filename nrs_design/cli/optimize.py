@@ -20,7 +20,6 @@ from nrs_design.facts.design import meanings, optimum_facts
 
 if TYPE_CHECKING:
     from nrs_design.design.analysis import DesignAnalysis
-    from nrs_design.design.cost_bound import CostBound
     from nrs_design.spec import InteractionDesignSpec
 
 
@@ -35,14 +34,6 @@ def optimize(
             "certificate to reports/NAME.cert.json; for goals decay_rate, peak_torque and delay.",
         ),
     ] = None,
-    global_optimum: Annotated[
-        bool,
-        typer.Option(
-            "--global-optimum",
-            help="Prove how far the cost is above the least one within the bounds of Mt and Bt; "
-            "takes a second or two for a controller.",
-        ),
-    ] = False,
 ) -> Answer:
     """Optimize virtual mass Mt and damping Bt for displayed impedance and sensitivity.
 
@@ -64,20 +55,14 @@ def optimize(
         designed = design_at_least_cost(loaded)
         assert designed is not None, "an interaction design"
         step("margins")
-        chosen = analysis = run_analysis(designed)
+        analysis = run_analysis(designed)
     certified = CertifiedGains.of(designed, analysis, out)
     if certified is not None:
         designed, analysis = certified.designed, certified.analysis
 
-    bounds: dict[str, CostBound | str] = {}
-    if global_optimum:
-        from nrs_design.pipeline.cost_bounds import run_cost_bounds
-
-        bounds = run_cost_bounds(chosen, analysis)
-
     def facts() -> dict[str, Any]:
         return {
-            **optimum_facts(designed, analysis, bounds),
+            **optimum_facts(designed, analysis),
             "certified": None if certified is None else certified.facts(),
         }
 
@@ -85,7 +70,6 @@ def optimize(
         if not analysis.impedance:
             note("no impedance controllers in this spec; see nrs-design tune for the others")
         _print(designed.spec, analysis)
-        _print_bounds(bounds)
         print_responses(analysis)
         if certified is not None:
             certified.show()
@@ -101,15 +85,6 @@ def optimize(
         proved=proved,
         judged=certified is not None,
     )
-
-
-def _print_bounds(bounds: dict[str, CostBound | str]) -> None:
-    from nrs_design.design.measures import OPTIMUM_MEANING
-
-    for name, bound in bounds.items():
-        say(f"{name}: {f'no bound on the cost: {bound}' if isinstance(bound, str) else bound.text}")
-    if any(not isinstance(bound, str) for bound in bounds.values()):
-        say(OPTIMUM_MEANING)
 
 
 def _print(spec: InteractionDesignSpec, analysis: DesignAnalysis) -> None:

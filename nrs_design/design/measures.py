@@ -40,10 +40,6 @@ PASSIVITY_NOT_COMPUTED = (
     "a filter of the force, missed deadlines, ranges of the motor, or beside other "
     "axes; the frequency of another law is not shown in its place."
 )
-OPTIMUM_MEANING = (
-    "Global optimum: proved, in ball arithmetic, of the cost as it is minimized, a sum over 256 "
-    "frequencies; no Mt and Bt within their bounds, stable or not, cost less by more than the gap."
-)
 RESPONSE_MEANING = (
     "Transparency and accuracy: proved or refuted over the whole band and all values in the "
     "ranges, each of them constant, of the linear loop with the gains that ship: without friction, "

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 from nrs_design.axis import unit
@@ -15,7 +15,6 @@ if TYPE_CHECKING:
         DesignAnalysis,
         ImpedanceAnalysis,
     )
-    from nrs_design.design.cost_bound import CostBound
     from nrs_design.design.goals import Achieved
     from nrs_design.design.measures import Measure
     from nrs_design.design.sampled_passivity import SampledBand
@@ -23,38 +22,12 @@ if TYPE_CHECKING:
     from nrs_design.spec import InteractionDesignSpec
 
 
-def optimum_facts(
-    designed: Designed, analysis: DesignAnalysis, bounds: Mapping[str, CostBound | str]
-) -> dict[str, Any]:
-    """Return the motion loop, and every impedance controller with what it achieves, in SI.
-
-    By controller, a bound on the least cost, or why there is none; empty if not asked for.
-    """
+def optimum_facts(designed: Designed, analysis: DesignAnalysis) -> dict[str, Any]:
+    """Return the motion loop, and every impedance controller with what it achieves, in SI."""
     return {
         "motion_loop": motion_summary(analysis),
         "sensor": _sensor(designed),
-        "controllers": [
-            _summary(designed.spec, item) | _least_cost(bounds.get(item.name))
-            for item in analysis.impedance
-        ],
-    }
-
-
-def _least_cost(bound: CostBound | str | None) -> dict[str, Any]:
-    """Return the bounds on the least cost, rounded to their safe sides; nothing if not asked."""
-    if bound is None:
-        return {}
-    if isinstance(bound, str):
-        return {"global_optimum": None, "global_optimum_not_computed": bound}
-    return {
-        "global_optimum": {
-            "cost_at_most": upper_float(bound.above),
-            "least_cost_at_least": lower_float(bound.below),
-            "gap": upper_float(bound.gap),
-            "boxes": bound.boxes,
-            "reached": bound.reached,
-            "without_goals": bound.goals,
-        }
+        "controllers": [_summary(designed.spec, item) for item in analysis.impedance],
     }
 
 

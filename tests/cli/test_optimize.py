@@ -1,6 +1,5 @@
 """`nrs-design optimize`, as a user types it."""
 
-import re
 
 import pytest
 
@@ -226,21 +225,3 @@ def test_an_axis_of_several_is_written_as_a_spec_of_its_own(tmp_path):
 def test_quiet_of_several_axes_prints_no_table(tmp_path):
     done = run("optimize", ROOT / "docs" / "examples" / "six-axes.nrs.yaml", "-q", cwd=tmp_path)
     assert (done.stdout, done.stderr) == ("", "")
-
-
-def test_the_global_optimum_is_proved(tmp_path):
-    """One line for each controller; where the gains are given, none is to be proved."""
-    given = "environment: soft\n    Mt: 0.01 kg*m^2\n    Bt: 2.15 N*m*s/rad"
-    free = re.compile(r"environment: soft\n *Mt: .*\n *Bt: .*")
-    text, found = free.subn(given, SOFT_TISSUE.read_text(), count=1)
-    assert found
-    path = write(tmp_path, text)
-    shown = run("optimize", "--global-optimum", path, cwd=tmp_path).stdout
-    assert "insertion: no bound on the cost: Mt and Bt are given" in shown
-    assert re.search(r"withdrawal: global optimum within 0\.0000\d+, \d+ boxes\n", shown)
-    document = document_of("optimize", "--global-optimum", path, cwd=tmp_path)
-    given, bounded = document["controllers"]
-    assert given["global_optimum"] is None
-    found = bounded["global_optimum"]
-    assert found["reached"]
-    assert found["least_cost_at_least"] <= bounded["optimum"]["cost"] <= found["cost_at_most"]

@@ -1,7 +1,8 @@
 """Polynomials that are affine in each of several unknown but constant parameters.
 
 Squares of their magnitudes on the imaginary axis have Bernstein forms over a box of parameters and
-a range of ``omega^2``, which `nrs_design.design.largest_ratio` bounds.
+a range of ``omega^2``, which `nrs_design.design.largest_ratio` bounds. In a box they are given by
+those at its corners, the last parameter turning fastest.
 """
 
 from __future__ import annotations
@@ -10,9 +11,9 @@ from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from itertools import product
 from math import prod
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Self
 
-from nrs_design.design.largest_ratio import MOST, bernstein, largest_ratio
+from nrs_design.design.largest_ratio import MOST, LargestRatio, bernstein, largest_ratio
 from nrs_design.errors import InternalError
 from nrs_design.models.interval import Interval
 from nrs_design.proof.matrix import RationalMatrix
@@ -20,10 +21,23 @@ from nrs_design.proof.mode import Time
 from nrs_design.proof.spectrum import is_stable
 
 ZERO, ONE = Fraction(0), Fraction(1)
-# Between low and high frequencies, (rad/s)^2, where all of them are looked at.
-MIDDLE = Fraction(100)
 
 Polynomial = Sequence[Fraction]  # Highest power first
+# Of what is of second degree in polynomials, lowest power first: a polynomial again.
+Square = Callable[[Sequence[Any]], list[Any]]
+
+
+class Piece(NamedTuple):
+    """A piece of the frequencies, in (rad/s)^2."""
+
+    low: Fraction
+    high: Fraction
+    inverse: bool = False  # Whether it is of one over the frequencies
+
+
+def everywhere(middle: Fraction = Fraction(100)) -> tuple[Piece, Piece]:
+    """Return all frequencies: those up to one, and those from it on."""
+    return Piece(ZERO, middle), Piece(ZERO, 1 / middle, inverse=True)
 
 
 class Quotient(NamedTuple):
@@ -34,22 +48,10 @@ class Quotient(NamedTuple):
     poles: Polynomial  # Whose roots are the poles of what is closed
 
 
-def is_stable_over(
-    at: Callable[[Mapping[str, Fraction]], Quotient],
-    ranges: Mapping[str, Interval],
-    most: int = MOST,
-) -> bool:
-    """Tell whether the poles of a response are shown to be on the left in a whole box.
-
-    At most so many Bernstein coefficients are looked at.
-    """
-    poles = [lowest_first(corner.poles) for corner in corners_in(at, ranges)]
-    return _is_stable(poles, most)
+Response = Callable[[Mapping[str, Fraction]], Quotient]
 
 
-def corners_in(
-    at: Callable[[Mapping[str, Fraction]], Quotient], ranges: Mapping[str, Interval]
-) -> list[Quotient]:
+def corners_in(at: Response, ranges: Mapping[str, Interval]) -> list[Quotient]:
     """Return a response at the corners of a box, of which it is a mean at a point inside."""
     ends = [*product((0, 1), repeat=len(ranges))]
     corners = [
@@ -69,23 +71,14 @@ def corners_in(
     return corners
 
 
-def _is_stable(poles: Sequence[list[Fraction]], most: int) -> bool:
-    """Tell whether polynomials, and all means of them, are shown to have their roots on the left.
+def is_stable_over(at: Response, ranges: Mapping[str, Interval], most: int = MOST) -> bool:
+    """Tell whether the poles of a response are shown to be on the left in a whole box.
 
-    The polynomials are those at the corners of a box in which they are affine in each parameter.
-    Where none has a root on the imaginary axis, nor at infinity, all have as many on the left as
-    those at the corners.
+    At most so many Bernstein coefficients are looked at. Where none of the polynomials has a root
+    on the imaginary axis, nor at infinity, all have as many on the left as those at the corners.
     """
-    if not all(map(_is_hurwitz, poles)):
-        return False
-    square, parameters = squared_over(poles), len(poles).bit_length() - 1
-    for powers, end in ((square, MIDDLE), ([p[::-1] for p in square], 1 / MIDDLE)):
-        below = coefficients_between(powers, ZERO, end)
-        above = [ONE] * len(below)
-        shape = (3,) * parameters + (len(powers[0]),)
-        if largest_ratio(above, below, shape, nearly=None, most=most).above is None:
-            return False
-    return True
+    poles = [lowest_first(corner.poles) for corner in corners_in(at, ranges)]
+    return all(map(_is_hurwitz, poles)) and Squares(poles).vanish_nowhere(everywhere(), most)
 
 
 def _is_hurwitz(P: Sequence[Fraction]) -> bool:
@@ -99,9 +92,63 @@ def _is_hurwitz(P: Sequence[Fraction]) -> bool:
     return not rows or is_stable(RationalMatrix.from_rows(rows), Time.CONTINUOUS)
 
 
+class Squares:
+    """Squares of polynomials over a box, alone or as a quotient."""
+
+    def __init__(
+        self,
+        below: Sequence[Sequence[Fraction]],
+        above: Sequence[Sequence[Fraction]] | None = None,
+        square: Square | None = None,
+    ) -> None:
+        """Take polynomials at the corners, lowest power first; one is above if nothing is given."""
+        sides = [side for side in (below, above) if side is not None]
+        # In a quotient, powers of s that all of them have cancel.
+        rest = 0 if above is None else min(zeros_at_rest(p) for side in sides for p in side)
+        self._grids = [squared_over([p[rest:] for p in side], square) for side in sides]
+        self._size = max(len(p) for grid in self._grids for p in grid)
+        self._parameters = len(below).bit_length() - 1
+
+    @classmethod
+    def of(cls, at: Response, ranges: Mapping[str, Interval]) -> Self:
+        """Return the square of a response over a box."""
+        corners = corners_in(at, ranges)
+        above, below = ([lowest_first(corner[i]) for corner in corners] for i in (0, 1))
+        return cls(below, above)
+
+    def largest(self, piece: Piece, **search: Any) -> LargestRatio:
+        """Bound the largest quotient over the box and a piece of the frequencies."""
+        sides = [self._between(grid, piece) for grid in self._grids]
+        below, above = sides if len(sides) == 2 else (sides[0], [ONE] * len(sides[0]))
+        return largest_ratio(above, below, (3,) * self._parameters + (self._size,), **search)
+
+    def stay_below(self, limit: Fraction, pieces: Sequence[Piece], most: int) -> bool:
+        """Tell whether the quotient is shown to be nowhere above a limit."""
+        found = (self.largest(p, limit=limit, nearly=None, most=most).above for p in pieces)
+        return all(above is not None and above <= limit for above in found)
+
+    def vanish_nowhere(self, pieces: Sequence[Piece], most: int) -> bool:
+        """Tell whether the squares, which nothing is above, are shown to be nowhere zero."""
+        found = (self.largest(piece, nearly=None, most=most) for piece in pieces)
+        return all(one.above is not None for one in found)
+
+    def _between(self, grid: Sequence[Sequence[Any]], piece: Piece) -> list[Any]:
+        """Return Bernstein coefficients in omega^2 too."""
+        ends = _fmpq(piece.low), _fmpq(piece.high)
+        full = ([*p, *[0] * (self._size - len(p))] for p in grid)
+        return [c for p in full for c in bernstein(p[::-1] if piece.inverse else p, *ends)]
+
+
 def lowest_first(P: Polynomial) -> list[Fraction]:
     """Return a polynomial the other way round."""
     return list(reversed(P))
+
+
+def minus(P: Polynomial, Q: Polynomial) -> list[Fraction]:
+    """Return a difference of polynomials, highest power first."""
+    size = max(len(P), len(Q))
+    first, second = ([ZERO] * (size - len(p)) + [*p] for p in (P, Q))
+    return [a - b for a, b in zip(first, second, strict=True)]
 
 
 def zeros_at_rest(P: Sequence[Fraction]) -> int:
@@ -110,13 +157,12 @@ def zeros_at_rest(P: Sequence[Fraction]) -> int:
 
 
 def squared_over(
-    corners: Sequence[Sequence[Fraction]],
-    square: Callable[[Sequence[Any]], list[Any]] | None = None,
+    corners: Sequence[Sequence[Fraction]], square: Square | None = None
 ) -> list[list[Any]]:
     """Return ``|P(j omega)|^2`` in omega^2, in Bernstein form in every parameter, for Flint.
 
-    P is affine in each parameter; its corners come with the last parameter turning fastest, lowest
-    power first. `square` takes the place of ``|P(j omega)|^2`` as what is of second degree in P.
+    P is affine in each parameter, lowest power first at the corners. `square` takes the place of
+    ``|P(j omega)|^2`` as what is of second degree in P.
     """
     count = len(corners).bit_length() - 1
     exact = ([_fmpq(c) for c in p] for p in corners)
@@ -149,14 +195,6 @@ def real_product(P: Sequence[Any], Q: Sequence[Any]) -> list[Any]:
             if (i + k) % 2 == 0:
                 found[(i + k) // 2] += (-1) ** (abs(i - k) // 2) * a * b
     return found
-
-
-def coefficients_between(
-    powers: Sequence[Sequence[Any]], low: Fraction, high: Fraction
-) -> list[Any]:
-    """Return Bernstein coefficients in omega^2 too, between two values of it, in (rad/s)^2."""
-    ends = _fmpq(low), _fmpq(high)
-    return [c for p in powers for c in bernstein(p, *ends)]
 
 
 def _fmpq(number: Fraction) -> Any:

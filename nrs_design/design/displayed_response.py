@@ -15,7 +15,7 @@ Each parameter is unknown but constant: that is what a frequency response is abo
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import comb, isqrt
@@ -25,14 +25,13 @@ from nrs_design.controllers.sensor import LowPass
 from nrs_design.design.affine_family import (
     ONE,
     ZERO,
+    Piece,
     Polynomial,
     Quotient,
-    coefficients_between,
-    corners_in,
+    Response,
+    Squares,
     is_stable_over,
-    lowest_first,
-    squared_over,
-    zeros_at_rest,
+    minus,
 )
 from nrs_design.design.largest_ratio import largest_ratio
 from nrs_design.errors import InternalError
@@ -74,9 +73,7 @@ def largest_impedance(
     return largest_over(at, ranges, band, limit) if is_stable_over(at, ranges) else None
 
 
-def impedance_at(
-    axis: ContinuousAxis, law: CompliantLaw
-) -> Callable[[Mapping[str, Fraction]], Quotient]:
+def impedance_at(axis: ContinuousAxis, law: CompliantLaw) -> Response:
     """Return the displayed impedance as a function of the parameters."""
 
     def at(values: Mapping[str, Fraction]) -> Quotient:
@@ -120,7 +117,7 @@ def largest_tracking_error(
         # The spring of the law is one over s.
         below = multiply(closed, [ONE, ZERO]) if held.gains.get("Kt") else closed
         poles = closed if in_contact else _poles_in_the_air(held, closed)
-        return Quotient(_subtracted(below, driven), below, poles)
+        return Quotient(minus(below, driven), below, poles)
 
     return largest_over(at, ranges, band, limit) if is_stable_over(at, ranges) else None
 
@@ -160,36 +157,16 @@ def over_admittance(law: CompliantLaw, low_pass: LowPass | None) -> Polynomial:
     return multiply(rows, [lag**k * comb(n, k) for k in range(n, -1, -1)])
 
 
-def _subtracted(P: Polynomial, Q: Polynomial) -> list[Fraction]:
-    size = max(len(P), len(Q))
-    first, second = ([ZERO] * (size - len(p)) + [*p] for p in (P, Q))
-    return [a - b for a, b in zip(first, second, strict=True)]
-
-
 def largest_over(
-    at: Callable[[Mapping[str, Fraction]], Quotient],
+    at: Response,
     ranges: Mapping[str, Interval],
     band: Band,
     limit: Fraction | None,
 ) -> LargestResponse:
     """Bound a response over a band in rad/s and a box of parameters; it is affine in each."""
-    corners = corners_in(at, ranges)
-    above = [lowest_first(corner.above) for corner in corners]
-    below = [lowest_first(corner.below) for corner in corners]
-    shared = min(map(zeros_at_rest, (*above, *below)))
-    above, below = ([p[shared:] for p in each] for each in (above, below))
-    tensors = [squared_over(each) for each in (above, below)]
-    size = max(len(grid[0]) for grid in tensors)
     low, high = (omega**2 for omega in band)
-    numerator, denominator = (
-        coefficients_between([[*p, *[0] * (size - len(p))] for p in grid], low, high)
-        for grid in tensors
-    )
-    found = largest_ratio(
-        numerator,
-        denominator,
-        (3,) * len(ranges) + (size,),
-        limit=None if limit is None else limit**2,
+    found = Squares.of(at, ranges).largest(
+        Piece(low, high), limit=None if limit is None else limit**2
     )
     *places, x = found.at
     square = low + x * (high - low)

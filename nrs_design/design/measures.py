@@ -37,8 +37,8 @@ COST_MEANING = (
 )
 PASSIVITY_NOT_COMPUTED = (
     "Where a sampled law is passive is not computed with two periods, a spring Kt, late commands, "
-    "a filter of the force, missed deadlines, ranges of the motor, or beside other "
-    "axes; the frequency of another law is not shown in its place."
+    "a filter of the force, missed deadlines, ranges or a load of the motor, or where the robot "
+    "closes its own motion loop."
 )
 RESPONSE_MEANING = (
     "Transparency and accuracy: proved or refuted over the whole band and all values in the "

@@ -96,8 +96,12 @@ def real_parts(
         n = len(both) // 2
         return real_product(both[:n], both[n:])
 
-    tensor = squared_over(both, real)
-    return [[Fraction(int(c.p), int(c.q)) for c in reversed(P)] for P in tensor]
+    return [*map(highest_first, squared_over(both, real))]
+
+
+def highest_first(P: Sequence[Any]) -> Polynomial:
+    """Return a polynomial of Flint, lowest power first, the other way round."""
+    return [Fraction(int(c.p), int(c.q)) for c in reversed(P)]
 
 
 def without_zeros(P: Polynomial) -> Polynomial:

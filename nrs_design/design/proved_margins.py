@@ -32,17 +32,19 @@ import numpy as np
 
 from nrs_design.controllers.laws import CompliantLaw
 from nrs_design.design.affine_family import (
-    MIDDLE,
     ONE,
     ZERO,
+    Piece,
     Quotient,
-    coefficients_between,
+    Response,
+    Square,
+    Squares,
     corners_in,
+    everywhere,
     is_stable_over,
     lowest_first,
+    minus,
     squared_magnitude,
-    squared_over,
-    zeros_at_rest,
 )
 from nrs_design.design.displayed_response import over_admittance, parameters_at
 from nrs_design.design.goals import Achieved
@@ -143,7 +145,7 @@ class RangedLoop:
         return self._is_below(lambda d, c: (d, c), peak)
 
     def _has_disk(self, margin: Fraction) -> bool:
-        return self._is_below(lambda d, c: (_minus(_minus(d, c), [-x for x in d]), c), 2 / margin)
+        return self._is_below(lambda d, c: (minus(minus(d, c), [-x for x in d]), c), 2 / margin)
 
     def _has_impedance(self, error: Fraction) -> bool:
         """Tell whether ``N/(H Y C)`` is within a factor of the desired impedance in the band."""
@@ -153,7 +155,7 @@ class RangedLoop:
         below = over_admittance(self.law, self.axis.low_pass)
 
         def shown(d: Polynomial, c: Polynomial) -> tuple[Polynomial, Polynomial]:
-            return multiply(_minus(c, d), below), c
+            return multiply(minus(c, d), below), c
 
         return self._is_below(shown, error * self.desired, self.bandwidth) and self._is_below(
             lambda d, c: shown(d, c)[::-1], error / self.desired, self.bandwidth
@@ -164,7 +166,7 @@ class RangedLoop:
 
         def followed(values: Mapping[str, Fraction]) -> Quotient:
             opened, closed = self._cut(values, held=True)
-            return Quotient(closed, _minus(closed, opened), ())
+            return Quotient(closed, minus(closed, opened), ())
 
         return self._stays_below(followed, 1 / share, self.bandwidth)
 
@@ -189,38 +191,18 @@ class RangedLoop:
         band: Fraction | None = None,
     ) -> bool:
         """Tell whether a response is nowhere above a limit, up to a frequency if there is one."""
-        return self._stays_below(
-            lambda values: Quotient(*quotient(*self._cut(values)), ()), limit, band
-        )
 
-    def _stays_below(
-        self,
-        at: Callable[[Mapping[str, Fraction]], Quotient],
-        limit: Fraction,
-        band: Fraction | None,
-    ) -> bool:
-        made = corners_in(at, self.box)
-        sides = [[lowest_first(c[i]) for c in made] for i in (0, 1)]
-        rest = min(zeros_at_rest(p) for side in sides for p in side)
-        grids = [squared_over([p[rest:] for p in side]) for side in sides]
-        size = max(len(p) for grid in grids for p in grid)
-        grids = [[[*p, *[0] * (size - len(p))] for p in grid] for grid in grids]
-        for turned, low, high in _all(MIDDLE) if band is None else ((False, ZERO, band**2),):
-            above, below = (_between(grid, turned, low, high) for grid in grids)
-            shape = self._shape(size)
-            found = largest_ratio(
-                above, below, shape, limit=limit**2, nearly=None, most=_MOST
-            ).above
-            if found is None or found > limit**2:
-                return False
-        return True
+        def at(values: Mapping[str, Fraction]) -> Quotient:
+            return Quotient(*quotient(*self._cut(values)), ())
 
-    def _shape(self, size: int, more: int = 0) -> tuple[int, ...]:
-        return (3,) * (len(self.box) + more) + (size,)
+        return self._stays_below(at, limit, band)
+
+    def _stays_below(self, at: Response, limit: Fraction, band: Fraction | None) -> bool:
+        pieces = everywhere() if band is None else (Piece(ZERO, band**2),)
+        return Squares.of(at, self.box).stay_below(limit**2, pieces, _MOST)
 
     def _has_phase(self, margin: Fraction) -> bool:
-        t = _tangent(margin / 2)
-        pieces = _all(Fraction(10))
+        t, pieces = _tangent(margin / 2), everywhere(Fraction(10))
         return t is not None and self._nowhere_zero(Interval(ZERO, -t, t), _turned, pieces)
 
     def _has_delay(self, margin: Fraction) -> bool:
@@ -231,7 +213,7 @@ class RangedLoop:
             t = _tangent(high * margin / 2)
             if t is None:
                 return False
-            share, piece = Interval(ZERO, ZERO, t / high), (False, low**2, high**2)
+            share, piece = Interval(ZERO, ZERO, t / high), Piece(low**2, high**2)
             if not self._nowhere_zero(share, _delayed, (piece,)):
                 return False
         return True
@@ -239,8 +221,8 @@ class RangedLoop:
     def _nowhere_zero(
         self,
         share: Interval,
-        square: Callable[[Sequence[Any]], list[Any]],
-        pieces: Sequence[tuple[bool, Fraction, Fraction]],
+        square: Square,
+        pieces: Sequence[Piece],
     ) -> bool:
         """Tell whether C, and a share of ``N - D`` beside it, nowhere cancel on the axis."""
 
@@ -250,31 +232,22 @@ class RangedLoop:
             return Quotient([*lowest_first(closed), *lowest_first(beside)], (), ())
 
         made = corners_in(at, {**self.box, "share": share})
-        grid = squared_over([c.above for c in made], square)
-        shape = self._shape(len(grid[0]), more=1)
-        for turned, low, high in pieces:
-            below = _between(grid, turned, low, high)
-            found = largest_ratio([ONE] * len(below), below, shape, nearly=None, most=_MOST)
-            if found.above is None:
-                return False
-        return True
+        return Squares([c.above for c in made], square=square).vanish_nowhere(pieces, _MOST)
 
     def _beyond_crossovers(self) -> Fraction | None:
         """Return a frequency from which on ``|N| < |D|``; None if none is shown."""
 
         def at(values: Mapping[str, Fraction]) -> Quotient:
             opened, closed = self._cut(values)
-            return Quotient(_minus(closed, opened), opened, ())
+            return Quotient(minus(closed, opened), opened, ())
 
         made = corners_in(at, self.box)
         proposed = max(map(_last_crossover, made))
         if not proposed:
             return None
         last = Fraction(proposed) * _BEYOND
-        grids = [squared_over([lowest_first(c[i]) for c in made]) for i in (0, 1)]
-        above, below = (_between(grid, True, ZERO, 1 / last**2) for grid in grids)
-        shape = self._shape(len(grids[0][0]))
-        found = largest_ratio(above, below, shape, limit=ONE, nearly=None, most=_MOST).above
+        beyond = Piece(ZERO, 1 / last**2, inverse=True)
+        found = Squares.of(at, self.box).largest(beyond, limit=ONE, nearly=None, most=_MOST).above
         return last if found is not None and found < 1 else None
 
 
@@ -369,19 +342,6 @@ def _proposed(found: Achieved) -> Iterator[Fraction]:
             yield Fraction(wanted)
     if wanted is not None:
         yield Fraction(wanted)
-
-
-def _minus(P: Polynomial, Q: Polynomial) -> Polynomial:
-    return [a - b for a, b in zip(P, Q, strict=True)]
-
-
-def _all(middle: Fraction) -> tuple[tuple[bool, Fraction, Fraction], ...]:
-    """Return all frequencies: up to one, and from it on in powers of one over it."""
-    return (False, ZERO, middle), (True, ZERO, 1 / middle)
-
-
-def _between(grid: list[list[Any]], turned: bool, low: Fraction, high: Fraction) -> list[Any]:
-    return coefficients_between([p[::-1] for p in grid] if turned else grid, low, high)
 
 
 def _tangent(angle: Fraction) -> Fraction | None:

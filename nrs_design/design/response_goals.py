@@ -7,15 +7,14 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 
 from nrs_design.axis import unit
-from nrs_design.controllers.laws import Admittance, CompliantLaw
+from nrs_design.controllers.laws import CompliantLaw
 from nrs_design.design.displayed_response import (
     LargestResponse,
     largest_impedance,
     largest_tracking_error,
 )
-from nrs_design.design.sampled_response import SampledAdmittance, largest_sampled_impedance
+from nrs_design.design.sampled_response import largest_sampled_impedance, sampled_admittance
 from nrs_design.loop.cut_loop import AbstractAxis, ContinuousAxis, ProcessorAxis
-from nrs_design.models.actuator import ActuatorRanges
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.interval import Interval
 from nrs_design.models.plant import Plant
@@ -108,19 +107,15 @@ def judged_responses(
     for key, goal in goals.items():
         touched = None if goal.environment is None else plant.environment(goal.environment)
         where = f"in contact with {goal.environment}" if touched else "in free motion"
-        why_not, found = _why_not(spec, key, axis, law, touched), None
-        if not why_not:
-            found = _found(key, goal, axis, law, ranges, touched)
-            if found is None:
-                why_not = "the loop is not shown to be stable at every value of the ranges"
+        found = _found(spec, key, goal, axis, law, ranges, touched)
         yield JudgedResponse(
             key=key,
             title=f"{_TITLES[key]} {where}",
             limit=goal.limit,
             wanted=f"at most {goal.limit_text} from {goal.band[0].text} to {goal.band[1].text}",
             unit=unit("N*m*s/rad") if key == TRANSPARENCY else "",
-            found=found,
-            why_not=why_not,
+            found=None if isinstance(found, str) else found,
+            why_not=found if isinstance(found, str) else "",
             units={
                 **{"Km": f"{unit('rad/s')}/{spec.command}", "tau": "s", "Mt": unit("kg*m^2")},
                 **dict.fromkeys(("Bt", "b"), unit("N*m*s/rad")),
@@ -141,68 +136,36 @@ def response_goals(*given: GoalsSpec | None) -> dict[str, ResponseGoal]:
 
 
 def _found(
+    spec: InteractionDesignSpec,
     key: str,
     goal: ResponseGoal,
     axis: AbstractAxis | None,
     law: CompliantLaw,
     ranges: Mapping[str, Interval],
     touched: Environment | None,
-) -> LargestResponse | None:
+) -> LargestResponse | str:
+    """Bound a response, or say why that is not done."""
     band = goal.band[0].not_above, goal.band[1].not_below
-    if isinstance(axis, ProcessorAxis):
-        return largest_sampled_impedance(_sampled(axis, law, ranges), band, goal.limit)
-    assert isinstance(axis, ContinuousAxis), "others are not judged"
-    if key == TRANSPARENCY:
-        return largest_impedance(axis, law, ranges, band, goal.limit)
-    box = {**ranges, **(touched.parameters if touched else {})}
-    contact = touched is not None
-    return largest_tracking_error(axis, law, box, band, goal.limit, in_contact=contact)
-
-
-def _sampled(
-    axis: ProcessorAxis, law: CompliantLaw, ranges: Mapping[str, Interval]
-) -> SampledAdmittance:
-    """Return a law as a processor runs it, with the ranges of the motor."""
-    motor = axis.places[0].motor
-    known = {"Km": motor.gain, "tau": motor.time_constant}
-    box = {name: Interval.point(value) for name, value in known.items()} | dict(ranges)
-    return SampledAdmittance(
-        motion=axis.motion,
-        motor=ActuatorRanges(box["Km"], box["tau"], motor.command),
-        law=Admittance.of(law.gains),
-        method=axis.sampling.admittance,
-        period=axis.period,
-        low_pass=axis.low_pass,
-    )
-
-
-def _why_not(
-    spec: InteractionDesignSpec,
-    key: str,
-    axis: AbstractAxis | None,
-    law: CompliantLaw,
-    touched: Environment | None,
-) -> str:
-    """Say why a response is not computed; nothing where it is."""
-    if spec.late_at is not None:
-        return "commands are late"
     if spec.sampling is not None and key == ACCURACY:
         return "the law is sampled, and when a commanded velocity takes effect is not modelled"
     if isinstance(axis, ProcessorAxis):
-        loaded = spec.actuator is not None and spec.actuator.load_inertia is not None
-        cases = {
-            "the law is sampled, with two periods": spec.sampling and spec.sampling.round > 1,
-            "the law misses deadlines": spec.sampling and spec.sampling.misses,
-            "the law is sampled, with a spring Kt": "Kt" in law.gains,
-            "the law is sampled, with a load of the motor": loaded,
-            "the robot closes its own motion loop": axis.takes is not None or axis.drive,
-        }
-        return next((why for why, found in cases.items() if found), "")
-    if axis is None:
+        shown = sampled_admittance(spec, axis, law, ranges)
+        if isinstance(shown, str):
+            return shown
+        found = largest_sampled_impedance(shown, band, goal.limit)
+    elif not isinstance(axis, ContinuousAxis):
         return "the force is sampled more often than the motion loop"
-    # Hand, and memory.
-    if touched is not None and (
+    elif spec.late_at is not None:
+        return "commands are late"
+    elif key == TRANSPARENCY:
+        found = largest_impedance(axis, law, ranges, band, goal.limit)
+    elif touched is not None and (
+        # Hand, and memory.
         touched.law.has_mass or touched.law.remembers or touched.preloaded or touched.each_losable
     ):
         return f"{touched.name} is neither elastic nor Kelvin-Voigt for every deflection"
-    return ""
+    else:
+        box = {**ranges, **(touched.parameters if touched else {})}
+        contact = touched is not None
+        found = largest_tracking_error(axis, law, box, band, goal.limit, in_contact=contact)
+    return found or "the loop is not shown to be stable at every value of the ranges"

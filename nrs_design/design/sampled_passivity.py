@@ -20,42 +20,40 @@ With ``z = (1 + w)/(1 - w)`` and ``w = j t``, ``t = tan(omega T/2)``, the sign o
 
 which is a polynomial in ``x = t^2``, but for ``omega t = (2/T) x h`` with ``h = atan(t)/t``. It is
 affine in h, so its sign is shown for a number below h and one above: convergents of Gauss's
-continued fraction of atan. ``exp(-T/tau)`` is enclosed, too. So every coefficient lies between
-rational numbers, and since x is positive, the polynomial lies between two rational ones, whose
-roots are isolated rigorously.
+continued fraction of atan. N and D are those of `nrs_design.design.sampled_response`, affine in
+each of two enclosed numbers of the motor: so the polynomial is a mean of its Bernstein coefficients
+over their box, whose roots are isolated rigorously.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import partial
 from math import floor
+from typing import Any
 
-from nrs_design.controllers.laws import ProportionalDerivative
-from nrs_design.controllers.taylor import exponential_between
-from nrs_design.design.displayed_response import root_below
-from nrs_design.design.enclosed_polynomial import (
-    Enclosed,
-    Polynomial,
-    add,
-    exactly,
-    in_tangent,
-    multiply,
-    negative,
-    numbers,
-    plus,
-    rounded_outwards,
-    times,
+from nrs_design.design.affine_family import (
+    ONE,
+    ZERO,
+    Quotient,
+    corners_in,
+    is_stable_over,
+    lowest_first,
+    squared_over,
 )
-from nrs_design.design.passivity import evaluate, first_root, without_zeros
-from nrs_design.models.actuator import Actuator
+from nrs_design.design.displayed_response import root_below
+from nrs_design.design.passivity import evaluate, first_root, highest_first, without_zeros
+from nrs_design.design.sampled_response import SampledAdmittance
+from nrs_design.loop.cut_loop import multiply
 
 # Convergents of the continued fraction of the arctangent: the last one, and the one before.
 DEPTH = 6
 # How often the point beyond the first root is moved on, at first by this share.
 STEPS, SHARE = 30, Fraction(1, 10**5)
-ZERO, ONE = Fraction(0), Fraction(1)
+
+Enclosed = tuple[Fraction, Fraction]
 
 
 @dataclass(frozen=True)
@@ -70,72 +68,23 @@ class SampledBand:
     tangent: Fraction | None = None  # The ``tan(omega T/2)`` of that frequency omega, exactly
 
 
-def sampled_bands(
-    motor: Actuator,
-    motion: ProportionalDerivative,
-    law: Mapping[str, Fraction],
-    period: Fraction,
-    ages: Sequence[int],
-) -> tuple[SampledBand, ...]:
+def sampled_bands(shown: SampledAdmittance, ages: Iterable[int]) -> tuple[SampledBand, ...]:
     """Find where the displayed admittance is passive, for every age of the force in samples.
 
-    The law has no spring, else a `ValueError`; the period is in s. Empty where the law that nobody
-    holds is not shown to be stable: a displayed admittance then says nothing.
+    The motor has no ranges. Empty where the law that nobody holds is not shown to be stable: a
+    displayed admittance then says nothing.
     """
-    if "Kt" in law:
-        raise ValueError("a spring makes another admittance")
-    loop = _Loop.of(motor, motion, period)
-    if not (loop.is_stable and abs(law.get("a", ZERO)) < 1):
+    if not is_stable_over(shown.quotient, shown.box):
         return ()
-    return tuple(_band(loop, law, motor.time_constant, period, age) for age in ages)
+    return tuple(_band(shown, age) for age in ages)
 
 
-@dataclass(frozen=True)
-class _Loop:
-    """``U/xref = (z - 1) numerator / denominator`` of the motion loop, as polynomials in z."""
-
-    numerator: Polynomial
-    denominator: Polynomial
-
-    @classmethod
-    def of(cls, motor: Actuator, motion: ProportionalDerivative, period: Fraction) -> _Loop:
-        """Close the loop of PD and motor.
-
-        With ``u = C (xref - theta)``, ``C = ((Kp + D) z - D)/z`` and ``theta = Km N/((z - 1)
-        (z - E)) u``, ``N = s (1 - E) + (T - s) (z - E)``, ``s = tau (1 - E)``.
-        """
-        low, high = exponential_between(-period / motor.time_constant)
-        E, left = (low, high), (1 - high, 1 - low)
-        s = times(exactly(motor.time_constant), left)
-        rest = plus(exactly(period), negative(s))
-        N = [plus(times(s, left), negative(times(rest, E))), rest]
-        D = motion.over(period)
-        C = numbers(-D, motion.Kp + D)
-        lag = [negative(E), exactly(ONE)]
-        turned = multiply(numbers(0, -1, 1), lag)
-        driven = multiply(multiply(C, N), numbers(motor.gain))
-        return cls(multiply(C, lag), add(turned, driven))
-
-    @property
-    def is_stable(self) -> bool:
-        """Whether all poles are inside the circle, by Routh's criterion for degree 3."""
-        p0, p1, p2, p3 = in_tangent(self.denominator, 3)
-        if max(p0[1], p1[1], p2[1], p3[1]) < 0:
-            p0, p1, p2, p3 = map(negative, (p0, p1, p2, p3))
-        positive = min(p0[0], p1[0], p2[0], p3[0]) > 0
-        return positive and p2[0] * p1[0] > p3[1] * p0[1]
-
-
-def _band(
-    loop: _Loop, law: Mapping[str, Fraction], tau: Fraction, period: Fraction, age: int
-) -> SampledBand:
+def _band(shown: SampledAdmittance, age: int) -> SampledBand:
     """Bracket the first frequency at which the real part may be negative."""
-    signs = sign_polynomials(*_admittance(loop, law, age), 2 * tau / period)
-    lowest = [[low for low, _ in reversed(rounded_outwards(P))] for P in signs]
-    highest = [[high for _, high in reversed(rounded_outwards(P))] for P in signs]
-    if min(P[-1] for P in lowest) <= 0:
+    signs, period = [*_signs(shown, age)], shown.period
+    if min(P[-1] for P in signs) <= 0:
         return SampledBand(age, ZERO)
-    brackets = [bracket for P in lowest if (bracket := first_root(without_zeros(P))) is not None]
+    brackets = [bracket for P in signs if (bracket := first_root(without_zeros(P))) is not None]
     if not brackets:
         # Up to half the sampling rate; pi is more than 3.14159.
         return SampledBand(age, Fraction(314159, 100_000) / period)
@@ -144,62 +93,61 @@ def _band(
     step = SHARE * high
     for _ in range(STEPS):
         t = root_below(high + step, 12) + Fraction(1, 10**12)
-        if all(evaluate(P, t**2) < 0 for P in highest):
+        if all(evaluate(P, t**2) < 0 for P in signs):
             return SampledBand(age, passive, _frequency(t, period), t)
         step *= 2
     return SampledBand(age, passive)
 
 
-def _admittance(
-    loop: _Loop, law: Mapping[str, Fraction], age: int
-) -> tuple[Polynomial, Polynomial]:
-    """Return the U from force to command as two polynomials in w, but for a positive factor.
+def _signs(shown: SampledAdmittance, age: int) -> Iterable[list[Fraction]]:
+    """Yield polynomials in x, highest power first, of which what has the sign of Re V is a mean.
 
-    The reference moves by T v at a sample, and ``v+ = a v + b F``, or ``v = b F`` without inertia;
-    the ``z - 1`` of the reference is that of the loop.
+    Where all are positive, so is Re V; where all are negative, it is negative.
     """
-    lag = numbers(-law["a"], 1) if "a" in law else numbers(1)
-    denominator = multiply(lag, loop.denominator)
-    degree = len(denominator) - 1
-    late, early = numbers(1), numbers(1)
+    late, early = [ONE], [ONE]
     for _ in range(age):
-        late, early = multiply(late, numbers(1, -1)), multiply(early, numbers(1, 1))
-    return (
-        multiply(late, in_tangent(loop.numerator, degree)),
-        multiply(early, in_tangent(denominator, degree)),
+        late, early = multiply(late, [-ONE, ONE]), multiply(early, [ONE, ONE])
+
+    def older(values: Any) -> Quotient:
+        command, poles = shown.command(values)
+        return Quotient(multiply(late, command), multiply(early, poles), ())
+
+    corners = corners_in(older, shown.box)
+    both = [[*lowest_first(found.above), *lowest_first(found.below)] for found in corners]
+    lag = 2 * shown.motor.time_constant.nominal / shown.period
+    for depth in (DEPTH, DEPTH + 1):
+        yield from map(highest_first, squared_over(both, partial(_sign, lag=lag, depth=depth)))
+
+
+def _sign(both: Sequence[Any], lag: Fraction, depth: int) -> list[Any]:
+    """Return the sign polynomial of N and D, one after the other; the lag is ``2 tau/T``."""
+    from flint import fmpq, fmpq_poly
+
+    n = len(both) // 2
+    N, mirrored = fmpq_poly(both[:n]), fmpq_poly([c * (-1) ** k for k, c in enumerate(both[n:])])
+    W = (fmpq_poly([1, -1]) * N * mirrored).coeffs()
+    real, imaginary = (
+        fmpq_poly([c * (-1) ** k for k, c in enumerate(W[first::2])]) for first in (0, 1)
     )
+    p, q = _arctangent(depth)
+    late = fmpq_poly([0, fmpq(lag.numerator, lag.denominator)]) * imaginary
+    found: list[Any] = (q * real + p * late).coeffs()
+    # Of one length, whichever powers cancel.
+    return [*found, *[fmpq(0)] * (2 * n + depth - len(found))]
 
 
-def sign_polynomials(
-    numerator: Polynomial, denominator: Polynomial, lag: Fraction
-) -> tuple[Polynomial, Polynomial]:
-    """Return what has the sign of Re V, for a number below h and one above it, as polynomials in x.
-
-    Where both are positive, so is Re V; where both are negative, it is negative. Numerator and
-    denominator are the U in w, the constant first; the lag is ``2 tau/T`` of the motor.
-    """
-    mirrored = [negative(c) if k % 2 else c for k, c in enumerate(denominator)]
-    W = multiply(multiply(numbers(1, -1), numerator), mirrored)
-    real = [negative(c) if k % 2 else c for k, c in enumerate(W[::2])]
-    imaginary = [negative(c) if k % 2 else c for k, c in enumerate(W[1::2])]
-    late = multiply(numbers(0, lag), imaginary)
-    below, above = (
-        add(multiply(q, real), multiply(p, late))
-        for p, q in (_arctangent(DEPTH), _arctangent(DEPTH + 1))
-    )
-    return below, above
-
-
-def _arctangent(depth: int) -> tuple[Polynomial, Polynomial]:
-    """Return a convergent p/q of ``atan(t)/t`` in x, with q positive for positive x.
+def _arctangent(depth: int) -> tuple[Any, Any]:
+    """Return a convergent p/q of ``atan(t)/t`` as polynomials in x, q positive for positive x.
 
     ``atan(t)/t = 1/(1 + x/(3 + 4x/(5 + 9x/(7 + ...))))``. All terms are positive, so the
     convergents are in turn above and below.
     """
-    p, q = numbers(1), numbers(2 * depth + 1)
+    from flint import fmpq_poly
+
+    p, q = fmpq_poly([1]), fmpq_poly([2 * depth + 1])
     for k in range(depth, 0, -1):
         # 2k - 1 + k^2 x/(q/p)
-        p, q = q, add(multiply(numbers(2 * k - 1), q), multiply(numbers(0, k * k), p))
+        p, q = q, (2 * k - 1) * q + fmpq_poly([0, k * k]) * p
     return p, q
 
 
@@ -207,7 +155,7 @@ def _frequency(t: Fraction, period: Fraction) -> Enclosed:
     """Enclose ``2 atan(t)/T`` between decimals."""
     found = []
     for depth in (DEPTH, DEPTH + 1):
-        p, q = (evaluate([c for c, _ in reversed(P)], t**2) for P in _arctangent(depth))
+        p, q = (evaluate(highest_first(P.coeffs()), t**2) for P in _arctangent(depth))
         found.append(2 * t * p / q / period)
     unit = 10**9
     return Fraction(floor(min(found) * unit), unit), Fraction(-floor(-max(found) * unit), unit)

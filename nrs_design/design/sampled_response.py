@@ -24,20 +24,21 @@ from itertools import product
 from math import atan
 from typing import Any
 
-from nrs_design.controllers.laws import Admittance, ProportionalDerivative
+from nrs_design.controllers.laws import Admittance, CompliantLaw, ProportionalDerivative
 from nrs_design.controllers.sensor import LowPass
 from nrs_design.controllers.taylor import exponential_between
-from nrs_design.design.affine_family import Quotient, is_stable_over
+from nrs_design.design.affine_family import Polynomial, Quotient, is_stable_over
 from nrs_design.design.displayed_response import (
     Band,
     LargestResponse,
     largest_over,
     root_below,
 )
-from nrs_design.loop.cut_loop import multiply, on_the_axis
+from nrs_design.loop.cut_loop import ProcessorAxis, multiply, on_the_axis
 from nrs_design.models.actuator import ActuatorRanges
 from nrs_design.models.interval import Interval
 from nrs_design.proof.enclosure import ball_around, fraction_of, precision
+from nrs_design.spec import InteractionDesignSpec
 
 ZERO, ONE = Fraction(0), Fraction(1)
 # By what share c may fall along a piece of the band, and how many pieces there are at most.
@@ -68,29 +69,30 @@ class SampledAdmittance:
         moving = {} if Km.low == Km.high else {"Km": Km}
         return moving | {"E": Interval(E[0], *E), "s": Interval(min(s), min(s), max(s))}
 
-    def quotient(self, values: Mapping[str, Fraction], c: Fraction) -> Quotient:
-        """Return F/V as polynomials in w, at values of what is in the box; c is ``atan(t)/t``."""
+    def command(self, values: Mapping[str, Fraction]) -> tuple[Polynomial, Polynomial]:
+        """Return Km U/F as polynomials in w, at values of what is in the box, of one length."""
         T, numbers = self.period, self._numbers
-        Km = values.get("Km", self.motor.gain.nominal)
-        tau = self.motor.time_constant.high
-        E, s = values["E"], values["s"]
+        Km, E, s = values.get("Km", self.motor.gain.nominal), values["E"], values["s"]
         D = self.motion.over(T)
         C, lag = [self.motion.Kp + D, -D], [ONE, -E]
         turned = multiply([ONE, -ONE, ZERO], lag)
         driven = multiply(C, [Km * (T - s), Km * (s - T * E)])
         closed = [a + b for a, b in zip(turned, [ZERO, *driven], strict=True)]
         pole = [ONE, -numbers["a"]] if "a" in numbers else [ONE]
-        above, below = multiply(closed, pole), multiply(C, lag)
+        below, above = multiply(closed, pole), multiply(C, lag)
         scale = Km * numbers["T"] * numbers["b"]
         if self.low_pass is not None:
             held = self.low_pass.discretize(T)
             for _ in range(held.order):
-                above, scale = multiply(above, [ONE, -held.p]), scale * held.q
-        below = [scale * k for k in below]
-        poles = on_the_axis(above, Fraction(2))
-        late = multiply([2 * c * tau / T * c, c], [ONE, ONE])
-        below = [ZERO] * (len(above) - len(below)) + below
-        return Quotient(multiply(poles, late), on_the_axis(below, Fraction(2)), poles)
+                below, scale = multiply(below, [ONE, -held.p]), scale * held.q
+        above = [ZERO] * (len(below) - len(above)) + [scale * k for k in above]
+        return on_the_axis(above, Fraction(2)), on_the_axis(below, Fraction(2))
+
+    def quotient(self, values: Mapping[str, Fraction], c: Fraction = ONE) -> Quotient:
+        """Return F/V as polynomials in w, at values of what is in the box; c is ``atan(t)/t``."""
+        command, poles = self.command(values)
+        late = [2 * c * self.motor.time_constant.high / self.period * c, c]
+        return Quotient(multiply(poles, multiply(late, [ONE, ONE])), command, poles)
 
     @property
     def _numbers(self) -> Mapping[str, Fraction]:
@@ -140,6 +142,36 @@ class SampledAdmittance:
         return 1 / (V.real**2 + V.imag**2)
 
 
+def sampled_admittance(
+    spec: InteractionDesignSpec,
+    axis: ProcessorAxis,
+    law: CompliantLaw,
+    ranges: Mapping[str, Interval],
+) -> SampledAdmittance | str:
+    """Return a law as a processor runs it, with the ranges of the motor, or why there is none."""
+    cases = {
+        "commands are late": spec.late_at is not None,
+        "the law is sampled, with two periods": axis.sampling.round > 1,
+        "the law misses deadlines": axis.sampling.misses is not None,
+        "the law is sampled, with a spring Kt": bool(law.gains.get("Kt")),
+        "the law is sampled, with a load of the motor": axis.drive.loaded,
+        "the robot closes its own motion loop": axis.takes is not None,
+    }
+    if (why := next((why for why, found in cases.items() if found), None)) is not None:
+        return why
+    motor = axis.places[0].motor
+    known = {"Km": motor.gain, "tau": motor.time_constant}
+    box = {name: Interval.point(value) for name, value in known.items()} | dict(ranges)
+    return SampledAdmittance(
+        motion=axis.motion,
+        motor=ActuatorRanges(box["Km"], box["tau"], motor.command),
+        law=Admittance.of(law.gains),
+        method=axis.sampling.admittance,
+        period=axis.period,
+        low_pass=axis.low_pass,
+    )
+
+
 def largest_sampled_impedance(
     shown: SampledAdmittance, band: Band, limit: Fraction | None = None
 ) -> LargestResponse | None:
@@ -148,7 +180,7 @@ def largest_sampled_impedance(
     The band is in rad/s, below half the sampling rate. None where the robot that nobody holds is
     not shown to be stable.
     """
-    if not is_stable_over(lambda values: shown.quotient(values, ONE), shown.box):
+    if not is_stable_over(shown.quotient, shown.box):
         return None
     open_ = [_Piece(shown, band, limit) for band in _pieces(*_tangents(band, shown.period))]
     for _ in range(_MOST):

@@ -1,6 +1,5 @@
 """`nrs-design optimize`, as a user types it."""
 
-
 import pytest
 
 from tests.simulation.interactions import text_of

@@ -78,14 +78,17 @@ def test_of_a_sampled_law_accuracy_is_not_judged(tmp_path):
         (("    Mt: 0.01", "    Kt: 1 N*m/rad\n    Mt: 0.01"), "with a spring Kt"),
         (("period: 2 ms", "period: 2 ms, latency: 0.3 ms"), "commands are late"),
         (("period: 2 ms", "period: 2 ms, outer_period: 4 ms"), "with two periods"),
+        (("actuator:\n", "actuator:\n  load_inertia: 1.2 kg*m^2\n"), "with a load of the motor"),
     ],
 )
 def test_what_a_sampled_law_is_not_judged_with(tmp_path, change, why):
-    sampled = ("switching:", "sampling: {period: 2 ms, delay: 0}\nswitching:")
-    (item,) = document_of("optimize", written(tmp_path, sampled, change), cwd=tmp_path, code=1)[
-        "controllers"
-    ]
+    sampled = ("switching:", "sampling: {period: 2 ms, delay: 0}\ncontact: kept\nswitching:")
+    path = written(tmp_path, sampled, change)
+    (item,) = document_of("optimize", path, cwd=tmp_path, code=1)["controllers"]
     assert why in item["responses"][0]["shown"]
+    # Nor is it said where it is passive: that would be of another loop.
+    assert item["sampled_passivity"] == []
+    assert item["passivity_not_computed"]
 
 
 def test_the_report_has_them(tmp_path):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -11,7 +11,7 @@ import numpy as np
 from nrs_design.axis import unit
 from nrs_design.controllers.controller_design import Controller, ImpedanceOptimum
 from nrs_design.controllers.float32 import exact_decimal, neighbors, round_significant, to_float32
-from nrs_design.controllers.laws import Admittance
+from nrs_design.controllers.laws import Admittance, CompliantLaw
 from nrs_design.design.constrained import best_rounding, meets, optimize_with_goals
 from nrs_design.design.doubts import doubt_bounds, doubt_stiffness
 from nrs_design.design.goals import NOT_COMPUTED, Achieved, Requirement
@@ -38,8 +38,9 @@ from nrs_design.design.passivity import PassiveBand, passive_band
 from nrs_design.design.proved_margins import ranged_loops, with_proofs
 from nrs_design.design.response_goals import JudgedResponse, judged_responses, response_goals
 from nrs_design.design.sampled_passivity import SampledBand, sampled_bands
+from nrs_design.design.sampled_response import sampled_admittance
 from nrs_design.errors import DesignError
-from nrs_design.loop.cut_loop import ContinuousAxis
+from nrs_design.loop.cut_loop import ContinuousAxis, ProcessorAxis
 from nrs_design.models.interval import Interval
 from nrs_design.proof.bounds import lower, upper_float
 from nrs_design.spec import Doubt, GainSpec, ImpedanceControllerSpec, InteractionDesignSpec
@@ -159,7 +160,7 @@ def analyze(
         limit_at=limit_at,
         stiff=tuple(doubt_stiffness(controller.name, requirement, contacts, Mt, Bt)),
         band=None if axis is None else passive_band(axis, law, moving),
-        sampled=_sampled_bands(task, given, controller),
+        sampled=_sampled_bands(task, law, moving),
         lever_arm=_lever_arm(task, given),
         responses=tuple(
             judged_responses(task.spec, of_responses, task.axis, law, moving, task.plant)
@@ -217,24 +218,16 @@ def _moving(task: Task) -> dict[str, Interval]:
 
 
 def _sampled_bands(
-    task: Task, given: ImpedanceControllerSpec, controller: Controller
+    task: Task, law: CompliantLaw, ranges: Mapping[str, Interval]
 ) -> tuple[SampledBand, ...]:
     """Return where the sampled law is passive; empty where that is not computed."""
-    sampling = task.spec.sampling
-    if sampling is None or sampling.round > 1 or task.sensor.filter or _spring(given):
+    if not isinstance(task.axis, ProcessorAxis) or ranges or task.sensor.filter:
         return ()
-    fixed = task.plant.actuator_ranges.fixed and task.spec.late_at is None
-    if sampling.misses is not None or not fixed:
-        return ()
-    law = controller.law.discretize(sampling.period.exact, sampling.admittance)
-    oldest = sampling.delay[1] + 1
-    return sampled_bands(
-        task.plant.actuator,
-        task.pd,
-        law.numbers,
-        sampling.period.exact,
-        range(sampling.delay[0], oldest),
+    shown, (least, most) = (
+        sampled_admittance(task.spec, task.axis, law, {}),
+        task.axis.sampling.delay,
     )
+    return () if isinstance(shown, str) else sampled_bands(shown, range(least, most + 1))
 
 
 def too_stiff(

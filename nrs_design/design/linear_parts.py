@@ -1,7 +1,7 @@
-"""Plant, controllers, contacts and closed loops of one axis as A, B, C and D, with units.
+"""Plant, controllers and contacts of one axis as A, B, C and D, with units.
 
-All are in continuous time and at nominal values. A closed loop is the feedback of the parts beside
-it and of nothing else, so whoever has the parts can build it again.
+All are in continuous time and at nominal values. A closed loop is the feedback of these parts and
+of nothing else, but where what is touched acts on the motor (`load_inertia`).
 """
 
 from __future__ import annotations
@@ -52,28 +52,18 @@ class LinearParts:
     controllers: tuple[LinearPart, ...]
     force_filter: LinearPart | None  # Through which the laws get the force
     contacts: tuple[LinearPart, ...]  # What is touched, from motion to force
-    # Of each controller at each contact: a torque that acts on the sensor beside that of the
-    # contact makes a motion and a torque of the contact. States are those of the motion loop, the
-    # contact, the filter and the controller.
-    loops: tuple[LinearPart, ...]
-    left_out: tuple[str, ...]  # Which loops are not there, and why
 
 
 def linear_parts(plant: Plant, design: ControllerDesign) -> LinearParts:
-    """Return plant, controllers, contacts and closed loops at nominal values.
-
-    No loops where what is touched acts on the motor (`load_inertia`): they are not made of these.
-    """
+    """Return plant, controllers and contacts at nominal values."""
     actuator, motion = _plant_parts(plant, design)
-    low_pass, (loops, left_out) = design.sensor.filter, _loops(plant, design)
+    low_pass = design.sensor.filter
     return LinearParts(
         actuator,
         motion,
         tuple(_controller_part(item) for item in design.controllers),
         None if low_pass is None else _filter_part(low_pass),
         tuple(_contacts(plant, design)),
-        loops,
-        left_out,
     )
 
 
@@ -145,85 +135,12 @@ def _contact_part(name: str, contact: AbstractLinearLaw, motion: str) -> LinearP
     return _of_rows(name, [], force, ("position", "rad"), output)
 
 
-def _loops(
-    plant: Plant, design: ControllerDesign
-) -> tuple[tuple[LinearPart, ...], tuple[str, ...]]:
-    """Return the closed loop of each controller at each contact, and why some are not there.
-
-    The input is a torque that acts on the sensor beside that of the contact; outputs are the motion
-    and the torque of the contact. States are those of the motion loop, the contact, the filter of
-    the force and the controller. With `load_inertia` there are none.
-    """
-    if plant.load_inertia is not None:
-        why = "all: what is touched acts on the motor, which the motion loop here does not know"
-        return (), (why,)
-    loops, left_out = list[LinearPart](), list[str]()
-    motion, low_pass = _plant_parts(plant, design)[1], design.sensor.filter
-    for controller in design.controllers:
-        law = _controller_part(controller)
-        kind = law.outputs[0][0]
-        if low_pass is not None:
-            law = _in_series(_filter_part(low_pass), law)
-        for environment in plant.among(controller.contacts):
-            name = f"{controller.name}/{environment.name}"
-            contact = _contact_part(environment.name, environment.nominal, kind)
-            if contact is None:
-                left_out.append(f"{name}: its force takes more than the motion that is commanded")
-            else:
-                loops.append(_closed(name, motion, contact, law, kind))
-    return tuple(loops), tuple(left_out)
-
-
 def _contacts(plant: Plant, design: ControllerDesign) -> Iterator[LinearPart]:
     """Yield each environment that is touched, by what the controllers at it command."""
     for environment in plant.environments:
         kinds = {c.law.commands: None for c in design.controllers if environment.name in c.contacts}
         parts = (_contact_part(environment.name, environment.nominal, kind) for kind in kinds)
         yield from (part for part in parts if part is not None)
-
-
-def _closed(
-    name: str, motion: LinearPart, contact: LinearPart, law: LinearPart, kind: str
-) -> LinearPart:
-    """Return ``y = M u``, ``F = E y``, ``u = K (F + f)`` from f to (y, F); M is strictly proper."""
-    m, e, k = (len(part.A) for part in (motion, contact, law))
-    size = m + e + k
-    x = np.eye(size + 1)
-    xm, xe, xk, f = x[:m], x[m : m + e], x[m + e : size], x[size:]
-    y = motion.C @ xm
-    force = contact.C @ xe + contact.D @ y
-    felt = force + f
-    u = law.C @ xk + law.D @ felt
-    rates = np.vstack(
-        [
-            motion.A @ xm + motion.B @ u,
-            contact.A @ xe + contact.B @ y,
-            law.A @ xk + law.B @ felt,
-        ]
-    )
-    said = np.vstack([y, force])
-    return LinearPart(
-        name,
-        rates[:, :size],
-        rates[:, size:],
-        said[:, :size],
-        said[:, size:],
-        ("force", FORCE),
-        ((kind, UNITS[kind]), ("contact_force", FORCE)),
-    )
-
-
-def _in_series(first: LinearPart, second: LinearPart) -> LinearPart:
-    zeros = np.zeros((len(first.A), len(second.A)))
-    return LinearPart(
-        second.name,
-        np.block([[first.A, zeros], [second.B @ first.C, second.A]]),
-        np.vstack([first.B, second.B @ first.D]),
-        np.hstack([second.D @ first.C, second.C]),
-        second.D @ first.D,
-        first.input,
-        second.outputs,
-    )
 
 
 def _of_rows(

@@ -111,7 +111,7 @@ def design_at_least_cost(loaded: LoadedSpec) -> Designed | None:
 
 
 def run_linear_parts(designed: Designed) -> LinearParts:
-    """Return plant, controllers, contacts and closed loops of a design, at nominal values."""
+    """Return plant, controllers and contacts of a design, at nominal values."""
     from nrs_design.design.linear_parts import linear_parts
 
     return linear_parts(designed.plant, designed.design)

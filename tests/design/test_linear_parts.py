@@ -1,7 +1,8 @@
-"""Parts of an axis and their closed loops, beside the modes of the proof."""
+"""Parts of an axis, closed beside the modes of the proof."""
 
 from fractions import Fraction
 
+import control
 import numpy as np
 import pytest
 
@@ -21,22 +22,29 @@ def filtered(folder):
     return file
 
 
+def space(part):
+    return control.ss(part.A, part.B, part.C, part.D)
+
+
 @pytest.mark.parametrize("name", ["soft-tissue", "force-limit", "tissue-and-tool", "filtered"])
-def test_poles_are_those_of_the_modes_of_the_proof(name, tmp_path):
+def test_closed_by_python_control_they_are_the_modes_of_the_proof(name, tmp_path):
     """At nominal values; a mode has states of other laws and contacts beside those of its loop."""
     file = ROOT / f"specs/neuroboscope/{name}.nrs.yaml"
     designed = run_design(read_spec(filtered(tmp_path) if name == "filtered" else file))
-    spec = designed.spec
-    loops = linear_parts(designed.plant, designed.design).loops
-    assert loops
-    system = assemble(spec, designed.plant, designed.design, Fraction(0))
-    for loop in loops:
-        near = [mode for mode in system.modes if mode.name.startswith(loop.name)]
-        assert near, [mode.name for mode in system.modes]
-        rows = np.array([[float(entry) for entry in row] for row in near[0].A.fractions()])
-        of_mode = np.linalg.eigvals(rows)
-        for pole in np.linalg.eigvals(loop.A):
-            assert np.min(np.abs(of_mode - pole)) < 1e-5 * (1 + abs(pole))
+    system = assemble(designed.spec, designed.plant, designed.design, Fraction(0))
+    parts = linear_parts(designed.plant, designed.design)
+    before = 1 if parts.force_filter is None else space(parts.force_filter)
+    laws = {part.name: part for part in parts.controllers}
+    contacts = {part.name: part for part in parts.contacts}
+    for controller in designed.design.controllers:
+        for contact in controller.contacts:
+            (near, *_) = (
+                m for m in system.modes if m.name.startswith(f"{controller.name}/{contact}")
+            )
+            of_mode = np.linalg.eigvals(np.array(near.A.floats()))
+            forward = space(parts.motion_loop) * space(laws[controller.name]) * before
+            for pole in control.feedback(forward, space(contacts[contact]), sign=1).poles():
+                assert np.min(np.abs(of_mode - pole)) < 1e-5 * (1 + abs(pole))
 
 
 def test_units_of_the_parts():
@@ -45,6 +53,6 @@ def test_units_of_the_parts():
     actuator, motion = parts.actuator, parts.motion_loop
     assert (actuator.input, actuator.outputs) == (("command", "rpm"), (("position", "rad"),))
     assert motion.B.shape == (2, 1)
-    loop, *_ = parts.loops
-    assert loop.input == ("force", "N*m")
-    assert loop.outputs == (("velocity", "rad/s"), ("contact_force", "N*m"))
+    law, contact = parts.controllers[0], parts.contacts[0]
+    assert (law.input, law.outputs) == (("force", "N*m"), (("velocity", "rad/s"),))
+    assert (contact.input, contact.outputs) == (("velocity", "rad/s"), (("contact_force", "N*m"),))

@@ -11,36 +11,8 @@ import scipy.io
 import scipy.linalg
 
 from nrs_design.certificates.certificate import dump
-from nrs_design.design.linear_parts import linear_parts
-from nrs_design.exporters.export import export_design
 from nrs_design.exporters.formats.mat import render
-from nrs_design.spec import read_spec
-from tests.design.test_linear_parts import filtered
-from tests.exporters.conftest import CONTINUOUS
-from tests.support import ROOT, program_named, replaced, skip_for_want_of
-
-# u = M (K (E y + f)) by the parts alone, at some frequencies, beside the closed loop.
-FEEDBACK = """\
-d = load("soft-tissue.mat");
-at = @(p, s) p.C*((s*eye(rows(p.A)) - p.A)\\p.B) + p.D;
-M = d.plant(2);
-for i = 1:numel(d.loops)
-  L = d.loops(i);
-  parts = strsplit(L.name, "/");
-  K = d.controllers(strcmp({d.controllers.name}, parts{1}));
-  E = d.contacts(strcmp({d.contacts.name}, parts{2}));
-  worst = 0;
-  for s = j*logspace(-1, 3, 9)
-    k = at(K, s);
-    if numel(d.force_filter), k = k*at(d.force_filter(1), s); end
-    y = at(M, s)*k/(1 - at(M, s)*k*at(E, s));
-    wanted = [y; at(E, s)*y];
-    worst = max(worst, norm(at(L, s) - wanted)/norm(wanted));
-  end
-  printf("%s %s %s %d %d\\n", L.name, L.outputs{1}, L.output_units{2}, worst < 1e-9, ...
-         max(real(eig(L.A))) < 0)
-end
-"""
+from tests.support import ROOT, program_named, skip_for_want_of
 
 
 @pytest.fixture(params=["continuous_export", "sampled_export"])
@@ -122,35 +94,6 @@ def test_octave_sees_a_wrong_matrix(export, tmp_path):
     spoiled = octave_lines().replace("A = d.modes(i).A;", "A = 2*eye(rows(Q)) - d.modes(i).A;")
     modes = [f"{mode.name} 0" for mode in export.certificate.system.modes]
     assert run_octave(export, tmp_path, spoiled)[1:] == modes
-
-
-def test_a_motor_that_feels_what_is_touched_has_no_such_loops(tmp_path):
-    file, old = tmp_path / "loaded.nrs.yaml", "  time_constant: 0.0351 s\n"
-    loaded = (old, f"{old}  load_inertia: 1.213 kg*m^2\n")
-    file.write_text(replaced(CONTINUOUS.read_text(), loaded))
-    export = export_design(read_spec(file))
-    read = loaded_mat(render(export)[".mat"], tmp_path)
-    assert "acts on the motor" in str(read["info"]["loops_left_out"])
-    assert np.size(read["loops"]) == 0
-    assert len(read["plant"]) == 2
-
-
-@pytest.mark.parametrize("name", ["soft-tissue", "force-limit", "filtered"])
-def test_octave_closes_the_loops_from_the_parts(name, tmp_path):
-    file = ROOT / f"specs/neuroboscope/{name}.nrs.yaml"
-    export = export_design(read_spec(filtered(tmp_path) if name == "filtered" else file))
-    lines = run_octave(export, tmp_path, FEEDBACK)
-    plant = export.designed.plant
-    loops = [loop.name for loop in linear_parts(plant, export.design).loops]
-    assert [line.split()[0] for line in lines] == loops
-    motion = "position" if name == "force-limit" else "velocity"
-    assert all(line.endswith(f" {motion} N*m 1 1") for line in lines)
-
-
-def test_octave_sees_another_controller(continuous_export, tmp_path):
-    spoiled = FEEDBACK.replace("k = at(K, s);", "k = at(K, s)*1.001;")
-    lines = run_octave(continuous_export, tmp_path, spoiled)
-    assert all(line.endswith(" velocity N*m 0 1") for line in lines)
 
 
 def open_loops_in(export, folder):

@@ -53,12 +53,11 @@ def render(export: Export) -> dict[str, bytes]:
     assert export.designed is not None, "it was designed"
     parts = run_linear_parts(export.designed)
     variables = {
-        "info": _info(record, certificate) | {"loops_left_out": _cells(parts.left_out)},
+        "info": _info(record, certificate),
         "plant": _parts((parts.actuator, parts.motion_loop)),
         "controllers": _parts(parts.controllers),
         "force_filter": _parts(() if parts.force_filter is None else (parts.force_filter,)),
         "contacts": _parts(parts.contacts),
-        "loops": _parts(parts.loops),
         "open_loops": _structs([_open(loop) for loop in run_open_loops(export.designed)], _OPEN),
         "states": _cells(certificate.system.states),
         "modes": _modes(certificate.system.modes),

@@ -8,26 +8,17 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from nrs_design.design.largest_value import largest
 from nrs_design.design.polynomials import frequencies, squared
 from nrs_design.design.transfer import (
     ComplexArray,
-    FloatArray,
     TransferFunction,
     hurwitz,
     poles,
     static_gain,
-    to_control,
 )
 from nrs_design.errors import DesignError
-
-_LOCUS_MOTION = 0.02
-_LOCUS_LIMIT = 4000
-# A branch is drawn until it is this near to its zero, as a share of the extent.
-_LOCUS_END = 0.002
-_LOCUS_DECADES = 9
 
 
 @dataclass(frozen=True)
@@ -142,83 +133,6 @@ def _bandwidth(tf: TransferFunction) -> float:
     above, below = squared(rows)
     crossings = frequencies((above - 0.5 * static_gain(tf) ** 2 * below)[None])
     return float(np.fmin.reduce(crossings[0], initial=math.inf))
-
-
-def root_locus(open_loop: TransferFunction, gains: ArrayLike) -> ComplexArray:
-    """Return the closed-loop poles in rad/s over the gains, one continuous branch per column.
-
-    A gain that lowers the order of the loop (a pole passes through infinity) is a `DesignError`.
-    """
-    chosen = np.asarray(gains, dtype=np.float64)
-    for gain in chosen:
-        _closed_polynomial(open_loop, float(gain))
-    from nrs_design.control_library import control
-
-    system = to_control(open_loop)
-    return np.asarray(control.root_locus_map(system, gains=chosen).loci, dtype=np.complex128)
-
-
-def locus_gains(open_loop: TransferFunction, gain: float) -> FloatArray:
-    """Choose gains from 0 on at which a drawn locus looks smooth and its branches end.
-
-    By hand, because the gains that python-control chooses leave corners, steps of up to 9 % of the
-    extent. The grid holds 0, `gain` itself and every breakaway gain up to its end: at least 100
-    times `gain`, and as far as it takes for a pole to come near every zero. It is halved where a
-    pole near the poles and zeros moves by more than 2 % of their extent; 4000 gains at most.
-    """
-    _check_positive(gain=gain)
-    zeros = np.roots(open_loop.numerator).astype(np.complex128)
-    points = np.concatenate([zeros, *(_closed_poles(open_loop, k) for k in (0.0, gain))])
-    extent = 2 * float(np.abs(points).max())
-    last = _last_gain(open_loop, gain, zeros, extent)
-    count = 20 * round(math.log10(last / gain) + 1)
-    gains = np.unique(
-        [0.0, gain, *np.geomspace(gain / 1000, last, count), *_breakaway(open_loop, last)]
-    )
-    for _ in range(8):
-        branches = root_locus(open_loop, gains)
-        near = np.minimum(np.abs(branches[1:]), np.abs(branches[:-1])) <= extent
-        moved = np.where(near, np.abs(np.diff(branches, axis=0)), 0.0).max(axis=1)
-        coarse = np.flatnonzero(moved > _LOCUS_MOTION * extent)
-        if not len(coarse) or len(gains) + len(coarse) > _LOCUS_LIMIT:
-            break
-        middle = (gains[coarse] + gains[coarse + 1]) / 2
-        gains = np.unique(np.concatenate([gains, middle]))
-    return gains
-
-
-def _last_gain(
-    open_loop: TransferFunction, gain: float, zeros: ComplexArray, extent: float
-) -> float:
-    """Return the first of 100, 1000, … times `gain` at which every zero has a pole beside it."""
-    last = 100 * gain
-    for _ in range(_LOCUS_DECADES):
-        distance = np.abs(zeros[:, None] - _closed_poles(open_loop, last)[None, :])
-        if (distance.min(axis=1, initial=math.inf) <= _LOCUS_END * extent).all():
-            break
-        last *= 10
-    return last
-
-
-def _closed_polynomial(open_loop: TransferFunction, gain: float) -> tuple[float, ...]:
-    closed = np.polyadd(open_loop.denominator, gain * np.asarray(open_loop.numerator))
-    if closed[0] == 0:
-        raise DesignError(f"at the gain {gain:.6g} a closed-loop pole is at infinity")
-    return tuple(closed.tolist())
-
-
-def _closed_poles(open_loop: TransferFunction, gain: float) -> ComplexArray:
-    return poles(TransferFunction((1.0,), _closed_polynomial(open_loop, gain)))
-
-
-def _breakaway(open_loop: TransferFunction, last: float) -> FloatArray:
-    """Return the gains up to the last one where two real poles meet."""
-    num, den = np.poly1d(open_loop.numerator), np.poly1d(open_loop.denominator)
-    roots: ComplexArray = (den.deriv() * num - den * num.deriv()).roots.astype(np.complex128)
-    points = roots.real[np.abs(roots.imag) <= 1e-7 * np.abs(roots)]
-    below = np.polyval(num, points)
-    gains = -np.polyval(den, points[below != 0]) / below[below != 0]
-    return np.asarray(gains[(gains > 0) & (gains < last)])
 
 
 def _check_positive(**values: float) -> None:

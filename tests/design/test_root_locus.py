@@ -12,9 +12,7 @@ from hypothesis import strategies as st
 from nrs_design.design.root_locus import (
     design_pd,
     dominant_pair,
-    locus_gains,
     motion_loop_response,
-    root_locus,
     step_overshoot,
 )
 from nrs_design.design.transfer import TransferFunction, frequency_response, poles
@@ -117,58 +115,6 @@ def test_dominant_pair_is_the_rightmost_complex_one():
     assert (zeta, wn) == (pytest.approx(1.25), pytest.approx(4))
 
 
-OPEN_LOOP = TransferFunction((KM, KM * 56.9706), (TAU, 1.0, 0.0))  # thesis 4.29
-
-
-def test_locus_starts_at_the_open_loop_poles_and_passes_the_published_ones():
-    branches = root_locus(OPEN_LOOP, [0.0, 1000.0, 2060.0])
-    assert branches.shape == (3, 2)
-    assert np.sort(branches[0].real) == pytest.approx([-1 / TAU, 0], abs=1e-9)
-    assert np.sort_complex(branches[2])[1] == pytest.approx(-28.453 + 28.448j, rel=1e-4)
-
-
-def test_locus_points_are_closed_loop_poles():
-    gains = locus_gains(OPEN_LOOP, 2060.0)
-    branches = root_locus(OPEN_LOOP, gains)
-    residual = np.polyval(OPEN_LOOP.denominator, branches) + gains[:, None] * np.polyval(
-        OPEN_LOOP.numerator, branches
-    )
-    assert np.abs(residual).max() < 1e-9 * np.abs(branches).max() ** 2
-
-
-def test_locus_gains_hold_the_chosen_and_the_breakaway_gain():
-    gains = locus_gains(OPEN_LOOP, 2060.0)
-    assert gains[0] == 0.0
-    assert 2060.0 in gains
-    assert (np.diff(gains) > 0).all()
-    assert len(gains) < 1000
-    # The discriminant (1 + c)^2 - 4 tau z c, c = K Km, vanishes at both breakaways.
-    for c in np.roots([1.0, 2 - 4 * TAU * 56.9706, 1.0]).real:
-        assert np.abs(gains - c / KM).min() < 1e-6 * c / KM
-
-
-@pytest.mark.parametrize("gain", [2.060, 2060.0])
-def test_locus_branches_end_at_the_zeros(gain):
-    """Also from a gain so small that the poles meet only beyond 100 times it."""
-    gains = locus_gains(OPEN_LOOP, gain)
-    branches = root_locus(OPEN_LOOP, gains)
-    assert np.abs(branches[-1] + 56.9706).min() < 0.25
-    real = np.abs(branches.imag).max(axis=1) < 1e-9
-    beyond = branches[real].real[branches[real].real < -56]
-    assert np.diff(np.sort(beyond[beyond > -80])).max() < 2.5
-
-
-def test_locus_branches_are_continuous():
-    motion = TransferFunction((1.0,), (1.0, 7.0, 14.0, 8.0))  # poles -1, -2, -4
-    gains = locus_gains(motion, 20.0)
-    branches = root_locus(motion, gains)
-    near = gains[1:] <= 20
-    # Roots leave a breakaway like a square root; elsewhere steps stay small.
-    assert np.abs(np.diff(branches, axis=0))[near].max() < 0.4
-    flipped = np.abs(branches[1:] - branches[:-1, ::-1])[near].sum()
-    assert np.abs(np.diff(branches, axis=0))[near].sum() < flipped
-
-
 @pytest.mark.parametrize("settling", [8 * TAU, 1.0])
 def test_design_refuses_a_settling_time_that_no_positive_gain_reaches(settling):
     with pytest.raises(DesignError, match="no positive gain") as caught:
@@ -199,7 +145,3 @@ def test_other_bad_input():
         step_overshoot(TransferFunction((1.0, 0.0), (1.0, 1.0)))
     with pytest.raises(DesignError, match="without poles"):
         dominant_pair(np.array([], dtype=complex))
-    with pytest.raises(DesignError, match="infinity"):
-        root_locus(TransferFunction((-1.0, 1.0), (1.0, 1.0)), [0.0, 1.0])
-    with pytest.raises(DesignError, match="gain must be positive"):
-        locus_gains(OPEN_LOOP, 0.0)

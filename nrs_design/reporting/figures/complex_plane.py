@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from nrs_design.design.root_locus import locus_gains, root_locus
-from nrs_design.design.transfer import TransferFunction, poles
+from nrs_design.design.transfer import TransferFunction, poles, to_control
 from nrs_design.proof.evidence.fields import rate_words
 from nrs_design.proof.mode import Time
 from nrs_design.reporting.figures.view import show_disk, show_half_plane
@@ -37,15 +36,15 @@ Complexes = Sequence[complex]
 
 
 @styled
-def draw_root_locus(
-    open_loop: TransferFunction, gain: float, wanted: Complexes, reached: Complexes
-) -> Figure:
-    """Draw the closed-loop poles in rad/s over the gain, whose range the gain in use scales."""
+def draw_root_locus(open_loop: TransferFunction, wanted: Complexes, reached: Complexes) -> Figure:
+    """Draw the closed-loop poles in rad/s over the gain."""
+    from nrs_design.control_library import control
+
     figure, axes = new_axes(4.0)
     start = poles(open_loop)
     zeros = np.roots(open_loop.numerator)
     points = np.concatenate([start, zeros, np.asarray(wanted), np.asarray(reached)])
-    for branch in root_locus(open_loop, locus_gains(open_loop, gain)).T:
+    for branch in control.root_locus_map(to_control(open_loop)).loci.T:
         axes.plot(branch.real, branch.imag, color=BLUE, zorder=2)
     axes.plot(start.real, start.imag, "x", color=INK, markersize=8, label="open-loop poles")
     if len(zeros):

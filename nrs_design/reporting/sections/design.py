@@ -206,7 +206,7 @@ def _motion_locus(designed: Designed, analysis: DesignAnalysis, wanted: PdDesign
     )
     if analysis.motion_source == "given":
         caption += " The G that the spec states has its own poles, given in the table."
-    figure = draw_root_locus(open_loop, Kd, wanted.wanted_poles, poles(closed).tolist())
+    figure = draw_root_locus(open_loop, wanted.wanted_poles, poles(closed).tolist())
     return Illustration("root-locus", "Root locus of the PD design", caption, figure)
 
 
@@ -234,15 +234,13 @@ def _force_at(designed: Designed, label: str, item: ForceAnalysis) -> At:
 def _force_locus(item: ForceAnalysis) -> Illustration:
     scaled = tuple(item.stiffness * c for c in item.forward.numerator)
     open_loop = TransferFunction(scaled, item.forward.denominator)
-    # A gain of zero is allowed; the locus still needs a range of gains.
-    gain = item.loop.gain or 1 / item.stiffness
     kept = ", with Ki/Kp kept" if item.approach.integral else ""
     caption = (
         f"Poles of the force loop of {item.name} while Kp grows from 0{kept}, at nominal stiffness "
         f"{number(item.stiffness, 6)} {unit('N·m/rad')}. Diamonds: Kp = {number(item.loop.gain)} "
         f"{unit('rad/(N·m)')}."
     )
-    figure = draw_root_locus(open_loop, gain, (), item.loop.poles)
+    figure = draw_root_locus(open_loop, (), item.loop.poles)
     return Illustration(
         f"force-locus-{item.name}",
         f"Root locus of the force loop: {item.name}",

@@ -28,7 +28,7 @@ from nrs_design.controllers.laws import CompliantLaw
 from nrs_design.design.force_limit import Approach, steady_force_error
 from nrs_design.design.hands_on import hand_effort, transparency
 from nrs_design.design.loop_family import LoopFamily
-from nrs_design.design.loops import Loops, by_length, gain_extremes
+from nrs_design.design.loops import Loops, gain_extremes
 from nrs_design.design.measures import (
     AT_HOME,
     CREEP,
@@ -147,7 +147,7 @@ class AbstractRequirement(ABC):
             return np.full(count, np.nan), [NOT_COMPUTED] * count
         corners = [*self._measured_at(measure)]
         if measure in _MARGINS:
-            table = self._margins(measure, *gains)
+            table = np.array([_MARGINS[measure](loops) for loops in self._every(*gains)])
         else:
             table = np.array([self._at(corner, measure, *gains) for corner in corners])
         worst = table.argmax(axis=0) if measure.upper else table.argmin(axis=0)
@@ -178,24 +178,16 @@ class AbstractRequirement(ABC):
         beyond = replace(found, value=float(value), where=where)
         return beyond if beyond.standing is GoalStanding.MISSED else found
 
-    def _margins(self, measure: Measure, *gains: FloatArray) -> FloatArray:
-        """Return a margin at every corner, for every set of gains."""
-        table = np.empty((len(self.corners), len(gains[0]) if gains else 1))
-        for which, loops in self._every(*gains):
-            table[which] = _MARGINS[measure](loops).reshape(len(which), -1)
-        return table
-
-    def _every(self, *gains: FloatArray) -> list[tuple[list[int], Loops]]:
+    def _every(self, *gains: FloatArray) -> list[Loops]:
         """Return the open loops at all corners, made once for all measures of the same gains."""
         key = tuple(each.tobytes() for each in gains)
-        if key not in self._stacks:
-            self._stacks.clear()
-            loops = [self.loops(corner, *gains) for corner in self.corners]
-            self._stacks[key] = by_length(loops)
-        return self._stacks[key]
+        if key not in self._known:
+            self._known.clear()
+            self._known[key] = [self.loops(corner, *gains) for corner in self.corners]
+        return self._known[key]
 
     @cached_property
-    def _stacks(self) -> dict[tuple[bytes, ...], list[tuple[list[int], Loops]]]:
+    def _known(self) -> dict[tuple[bytes, ...], list[Loops]]:
         return {}
 
     def _measured_at(self, measure: Measure) -> Iterator[ContactCorner]:

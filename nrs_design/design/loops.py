@@ -7,7 +7,6 @@ python-control takes one loop after the other, on a grid; the tests hold it agai
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -124,24 +123,6 @@ class Loops:
 
     def _at(self, omega: FloatArray) -> ComplexArray:
         return ratio(self.numerator, self.denominator, omega)
-
-
-def by_length(loops: Sequence[Loops]) -> list[tuple[list[int], Loops]]:
-    """Return loops of one period as few, those of one length together, and which are in each."""
-    alike: dict[int, list[int]] = {}
-    for i, one in enumerate(loops):
-        alike.setdefault(one.numerator.shape[1], []).append(i)
-    return [
-        (
-            which,
-            Loops(
-                np.concatenate([loops[i].numerator for i in which]),
-                np.concatenate([loops[i].denominator for i in which]),
-                loops[which[0]].period,
-            ),
-        )
-        for which in alike.values()
-    ]
 
 
 def _at_infinity(numerator: FloatArray, denominator: FloatArray) -> FloatArray:

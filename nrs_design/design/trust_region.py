@@ -7,9 +7,8 @@ Nocedal and Wright 2006, chapter 18).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field
-from typing import Self
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,8 +24,6 @@ KEPT, GOOD = 0.1, 0.6
 # What is less is no improvement.
 CHEAPER = 2e-5
 MOST_EVALUATIONS = 24
-# Linear models beside that where the search stands, and by how much one may be below what is known.
-MOST_CUTS, CONTRADICTS = 6, 1e-3
 # Slopes that were wrong by more than this share are found again.
 WRONG = 0.012
 # How far a constraint is moved for its shadow price; one met by more than the slack has none.
@@ -73,119 +70,80 @@ class ConstrainedOptimum:
 def minimize_in_trust_region(problem: ConstrainedProblem, start: Evaluation) -> ConstrainedOptimum:
     """Minimize the cost from a start; constraints that cannot be met are missed by little.
 
-    A constraint that is a minimum of several has ridges, where its gradient says little. So it is
-    taken as the least of its linear models at the last evaluations (Kelley 1960), of those that do
-    not contradict what is known where the search stands.
+    Slopes are found again where they were wrong.
     """
-    here = _Cut.of(start)
-    cuts, count, region = [here], 1, REGION
+    here, slopes, count, region = start, start.jacobian(), 1, REGION
     while count < MOST_EVALUATIONS and region >= SMALLEST_REGION:
-        there = _cheapest(problem, here.x, cuts, region)
-        reached = _model(cuts, there)
+        there = _cheapest(problem, here, slopes, region)
+        reached = here.values + slopes @ (there - here.x)
         merit = _merit(problem, here.x, here.values)
         predicted = merit - _merit(problem, there, reached)
         if predicted < CHEAPER:
             break
         found, count = problem.evaluate(there, reached), count + 1
         gained = merit - _merit(problem, there, found.values)
-        cut = _updated(here, found) or _Cut.of(found)
-        if gained >= KEPT * predicted:
-            here = cut
-            region = 2 * region if gained >= GOOD * predicted else region
-        else:
+        if gained < KEPT * predicted:
             region = min(region, float(np.abs(there - here.x).max())) / 2
-        others = [one for one in (*cuts, cut) if one is not here and one.allows(here)]
-        cuts = [here, *others[-MOST_CUTS:]]
-    shadow_prices = np.array([*_shadow_prices(problem, here)])
-    last = Evaluation(here.x, here.values, lambda: here.jacobian)
-    return ConstrainedOptimum(last, here.jacobian, problem.cost(here.x), shadow_prices, count)
-
-
-@dataclass(frozen=True, eq=False)
-class _Cut:
-    """The linear model of all constraints at a point."""
-
-    x: Array
-    values: Array
-    jacobian: Array
-
-    @classmethod
-    def of(cls, found: Evaluation) -> Self:
-        return cls(found.x, found.values, found.jacobian())
-
-    def at(self, x: Array) -> Array:
-        return np.asarray(self.values + self.jacobian @ (x - self.x))
-
-    def allows(self, known: _Cut) -> bool:
-        """Tell whether it does not say less than what is known at another point."""
-        return bool((self.at(known.x) >= known.values - CONTRADICTS).all())
-
-
-def _model(cuts: Sequence[_Cut], x: Array) -> Array:
-    return np.asarray(np.min([cut.at(x) for cut in cuts], axis=0))
-
-
-def _updated(here: _Cut, found: Evaluation) -> _Cut | None:
-    """Return a model that tells the last step (Broyden 1965); None if the old one was too wrong."""
-    step = found.x - here.x
-    expected = here.jacobian @ step
-    wrong = found.values - here.values - expected
-    if (np.abs(wrong) > WRONG * np.abs(expected)).any():
-        return None
-    return _Cut(found.x, found.values, here.jacobian + np.outer(wrong, step) / (step @ step))
+            continue
+        if (np.abs(found.values - reached) > WRONG * np.abs(reached - here.values)).any():
+            slopes = found.jacobian()
+        here, region = found, 2 * region if gained >= GOOD * predicted else region
+    prices = np.array([*_shadow_prices(problem, here, slopes)])
+    return ConstrainedOptimum(here, slopes, problem.cost(here.x), prices, count)
 
 
 def _merit(problem: ConstrainedProblem, x: Array, values: Array) -> float:
     return problem.cost(x) + problem.penalty(values) + problem.penalty(problem.quick(x))
 
 
-def _cheapest(
-    problem: ConstrainedProblem, here: Array, cuts: Sequence[_Cut], region: float
+def _cheapest(problem: ConstrainedProblem, here: Evaluation, slopes: Array, region: float) -> Array:
+    """Minimize the cost where a linear model holds as well as it can, within the region."""
+    low = np.maximum(problem.low, here.x - region)
+    high = np.minimum(problem.high, here.x + region)
+
+    def met(x: Array) -> Array:
+        return np.concatenate([here.values + slopes @ (x - here.x), problem.quick(x)])
+
+    return cheapest(problem.cost, met, low, high, here.x)
+
+
+def cheapest(
+    cost: Callable[[Array], float],
+    met: Callable[[Array], Array],
+    low: Array,
+    high: Array,
+    start: Array,
 ) -> Array:
-    """Minimize the cost where linear models hold as well as they can, within the region."""
+    """Minimize a quick cost where quick constraints are met, or missed by little, from a start."""
     from scipy.optimize import NonlinearConstraint, minimize
 
-    n, k = len(here), len(cuts[0].values)
-    low = np.maximum(problem.low, here - region)
-    high = np.minimum(problem.high, here + region)
-
-    def met(z: Array) -> Array:
-        """Return what must not be negative."""
-        linear = [cut.at(z[:n]) + z[n : n + k] for cut in cuts]
-        return np.concatenate([*linear, problem.quick(z[:n]) + z[n + k]])
-
-    # Behind the point there is by how much each constraint may be missed.
-    quick = float(np.maximum(-problem.quick(here), 0.0).max(initial=0.0))
-    start = np.concatenate([here, np.maximum(-_model(cuts, here), 0.0), [quick]])
+    n, k = len(start), len(met(start))
 
     def merit(z: Array) -> float:
-        return problem.cost(np.clip(z[:n], low, high)) + PENALTY * float(z[n:].sum())
+        return cost(np.clip(z[:n], low, high)) + PENALTY * float(z[n:].sum())
 
+    # Behind the point there is by how much each constraint may be missed.
     found = minimize(
         merit,
-        start,
+        np.concatenate([start, np.maximum(-met(start), 0.0)]),
         method="SLSQP",
-        bounds=[*zip(low, high, strict=True), *[(0.0, None)] * (k + 1)],
-        constraints=NonlinearConstraint(met, 0.0, np.inf),
+        bounds=[*zip(low, high, strict=True), *[(0.0, None)] * k],
+        constraints=NonlinearConstraint(lambda z: met(z[:n]) + z[n:], 0.0, np.inf) if k else (),
         options={"ftol": 1e-9, "maxiter": 200},
     )
     return np.asarray(np.clip(found.x[:n], low, high), dtype=float)
 
 
-def _shadow_prices(problem: ConstrainedProblem, here: _Cut) -> Iterator[float]:
+def _shadow_prices(problem: ConstrainedProblem, here: Evaluation, slopes: Array) -> Iterator[float]:
     """Yield what each constraint costs near a point, in first order; nothing for one far from it.
 
     A search ends a little inside of what binds.
     """
 
-    def cost(values: Array) -> float:
-        cut = _Cut(here.x, values, here.jacobian)
-        return problem.cost(_cheapest(problem, here.x, [cut], REGION))
+    def cost(i: int, value: float) -> float:
+        values = here.values.copy()
+        values[i] = value
+        return problem.cost(_cheapest(problem, replace(here, values=values), slopes, REGION))
 
     for i, value in enumerate(here.values):
-        if value > SLACK:
-            yield 0.0
-            continue
-        met, harder = here.values.copy(), here.values.copy()
-        met[i], harder[i] = 0.0, -MOVED
-        yield max(cost(harder) - cost(met), 0.0) / MOVED
+        yield max(cost(i, -MOVED) - cost(i, 0.0), 0.0) / MOVED if value <= SLACK else 0.0

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import cached_property
+from functools import cached_property, lru_cache
 from itertools import product
 from typing import TYPE_CHECKING
 
@@ -103,8 +103,8 @@ class FreeGains:
         from nrs_design.design.constrained import optimize_with_goals
 
         best = {
-            item.name: optimize_with_goals(problem, item.requirement)
-            for item, problem in zip(self.analysis.impedance, self._as_given, strict=True)
+            item.name: optimize_with_goals(self._bounded(item.problem), item.requirement)
+            for item in self.analysis.impedance
         }
         found = np.log(
             [
@@ -258,11 +258,6 @@ class FreeGains:
             dtype=bool,
         )
 
-    @cached_property
-    def _as_given(self) -> tuple[ImpedanceProblem, ...]:
-        """What each impedance controller is optimized for while the other gains are as given."""
-        return tuple(self._bounded(item.problem) for item in self.analysis.impedance)
-
     def _bounded(self, problem: ImpedanceProblem) -> ImpedanceProblem:
         low, high = problem.mass_bounds
         least = low or float(LEAST_MASS) * high
@@ -270,29 +265,22 @@ class FreeGains:
 
     def _problems(self, x: Array) -> tuple[ImpedanceProblem, ...]:
         """Return what each impedance controller is optimized for at the other gains of a point."""
-        if not self._moves_cost.any():
-            return self._as_given
-        key = tuple(x[self._moves_cost])
-        if key not in self._known:
-            # A search asks for the same few over and over.
-            while len(self._known) >= MOST_KNOWN:
-                del self._known[next(iter(self._known))]
-            self._known[key] = tuple(self._problems_with(self._design(x, Fraction)))
-        return self._known[key]
-
-    def _problems_with(self, design: ControllerDesign) -> Iterator[ImpedanceProblem]:
-        from nrs_design.design.laws.impedance import impedance_problem
-
-        task = self._task(design)
-        for item in self.analysis.impedance:
-            problem = self._bounded(impedance_problem(task, item.given, item.requirement))
-            # The spring of the spec is a single-precision number, and has no slope.
-            Kt = float(design.laws[item.name].gains.get("Kt", 0))
-            yield replace(problem, loop=replace(problem.loop, Kt=Kt))
+        return self._problems_at(np.where(self._moves_cost, x, self.low).tobytes())
 
     @cached_property
-    def _known(self) -> dict[tuple[float, ...], tuple[ImpedanceProblem, ...]]:
-        return {}
+    def _problems_at(self) -> Callable[[bytes], tuple[ImpedanceProblem, ...]]:
+        """Gives the same for the bytes of a point: a search asks for the same few over and over."""
+        return lru_cache(MOST_KNOWN)(lambda x: tuple(self._problems_with(np.frombuffer(x))))
+
+    def _problems_with(self, x: Array) -> Iterator[ImpedanceProblem]:
+        from nrs_design.design.laws.impedance import impedance_problem
+
+        design = self._design(x, Fraction)
+        for item in self.analysis.impedance:
+            problem = impedance_problem(self._task(design), item.given, item.requirement)
+            # The spring of the spec is a single-precision number, and has no slope.
+            Kt = float(design.laws[item.name].gains.get("Kt", 0))
+            yield self._bounded(replace(problem, loop=replace(problem.loop, Kt=Kt)))
 
     def _requirement(self, item: ImpedanceAnalysis, x: Array) -> Requirement:
         """Return the goals of an impedance controller at the other gains of a point."""
@@ -311,18 +299,9 @@ class FreeGains:
 
     def _cheapest_near(self, start: Array) -> Array:
         """Descend from a start, where goals of controllers stay met."""
-        from scipy.optimize import NonlinearConstraint, minimize
+        from nrs_design.design.trust_region import cheapest
 
-        goals = NonlinearConstraint(self.spared, 0.0, np.inf) if len(self.spared(start)) else ()
-        found = minimize(
-            self.cost,
-            start,
-            method="SLSQP",
-            bounds=[*zip(self.low, self.high, strict=True)],
-            constraints=goals,
-            options={"ftol": 1e-9, "maxiter": 200},
-        )
-        there = np.asarray(np.clip(found.x, self.low, self.high), dtype=float)
+        there = cheapest(self.cost, self.spared, self.low, self.high, start)
         better = self.cost(there) < self.cost(start) and (self.spared(there) >= -MISSED).all()
         return there if better else start
 

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from nrs_design.design.impedance import ImpedanceLoop
-from nrs_design.design.loops import Loops, by_length, gain_extremes
+from nrs_design.design.loops import Loops, gain_extremes
 from nrs_design.design.polynomials import multiply
 from nrs_design.models.contact import Elastic, KelvinVoigt
 from tests.design.classical import displayed_impedance_at, loop_margins, open_loop
@@ -84,14 +84,3 @@ def test_extremes_of_the_displayed_impedance_are_those_of_a_grid(Mt):
     assert high[0] == pytest.approx(grid.max(), rel=1e-6)
     assert low[0] <= grid.min() * (1 + 1e-12)
     assert high[0] >= grid.max() * (1 - 1e-12)
-
-
-def test_loops_of_one_length_are_stacked_and_keep_their_places():
-    short, long = np.array([[0.0, 2.0]]), np.array([[0.0, 0.0, 5.0]])
-    lags = [np.array([[1.0, 1.0]]), np.array([[1.0, 3.0, 2.0]]), np.array([[2.0, 1.0]])]
-    loops = [Loops(n, d) for n, d in zip((short, long, short), lags, strict=True)]
-    together = by_length(loops)
-    assert [which for which, _ in together] == [[0, 2], [1]]
-    for which, several in together:
-        alone = [float(loops[i].phase_margin()[0]) for i in which]
-        assert several.phase_margin().tolist() == alone

@@ -23,8 +23,8 @@ from nrs_design.design.transfer import FloatArray
 from nrs_design.errors import DesignError
 
 _POINTS = 100
-# How far beyond the bounds the map looks, and by how much a bound that holds the optimum is moved.
-_BEYOND, _FURTHER = 4.0, 10.0
+# How far beyond the bounds the map looks, as a factor.
+_BEYOND = 4.0
 # Where a bound of Mt is zero, the map ends at this share of the other.
 _LEAST = 1e-3
 
@@ -82,17 +82,8 @@ def _ends(bounds: tuple[float, float], value: float) -> tuple[float, float]:
     return low / _BEYOND, high * _BEYOND
 
 
-def cheapest_damping(problem: ImpedanceProblem, Mt: float, Bt: float) -> float | None:
-    """Return the Bt of the least cost near a given one, N m s/rad; None where nothing is stable."""
-    near = replace(problem, mass_bounds=(Mt, Mt), damping_bounds=(Bt / _FURTHER, Bt * _FURTHER))
-    try:
-        return optimize_impedance(near).Bt
-    except DesignError:
-        return None
-
-
 def alternatives(problem: ImpedanceProblem, Mt: float, Bt: float) -> Iterator[Alternative]:
-    """Yield the shipped gains, those best for either part of the cost, and those beyond a bound.
+    """Yield the shipped gains, and those best for either part of the cost.
 
     Goals are not looked at: they may be why a cheaper admittance was not chosen.
     """
@@ -100,7 +91,6 @@ def alternatives(problem: ImpedanceProblem, Mt: float, Bt: float) -> Iterator[Al
     tries = (
         ("best for the displayed impedance alone", _weighted(problem, 1.0, 0.0)),
         ("best for the sensitivity alone", _weighted(problem, 0.0, 1.0)),
-        *_widened(problem, Mt, Bt),
     )
     for name, other in tries:
         try:
@@ -112,28 +102,6 @@ def alternatives(problem: ImpedanceProblem, Mt: float, Bt: float) -> Iterator[Al
 
 def _weighted(problem: ImpedanceProblem, displayed: float, robust: float) -> ImpedanceProblem:
     return replace(problem, weight_displayed=displayed, weight_sensitivity=robust)
-
-
-def _widened(
-    problem: ImpedanceProblem, Mt: float, Bt: float
-) -> Iterator[tuple[str, ImpedanceProblem]]:
-    """Yield the same problem without the bounds that the gains lie on, ten times further out."""
-    for end, bounds in _further(problem.mass_bounds, Mt):
-        yield f"with {end} bound of Mt", replace(problem, mass_bounds=bounds)
-    for end, bounds in _further(problem.damping_bounds, Bt):
-        yield f"with {end} bound of Bt", replace(problem, damping_bounds=bounds)
-
-
-def _further(
-    bounds: tuple[float, float], value: float
-) -> Iterator[tuple[str, tuple[float, float]]]:
-    low, high = bounds
-    if low == high:
-        return
-    if low > 0 and np.isclose(value, low, rtol=1e-6):
-        yield "a tenth of the lower", (low / _FURTHER, high)
-    elif np.isclose(value, high, rtol=1e-6):
-        yield "ten times the upper", (low, _FURTHER * high)
 
 
 def _priced(problem: ImpedanceProblem, name: str, Mt: float, Bt: float) -> Alternative:

@@ -47,18 +47,11 @@ def with_gains(
                 document.drop(document.root, "design")
         change(document)
 
-    return edited(designed.loaded, give)
-
-
-def edited(loaded: LoadedSpec, change: Callable[[SpecDocument], None]) -> LoadedSpec:
-    """Return a spec that was changed in few places, and its text.
-
-    A `SpecError` if that is no valid spec, or a comment would be lost.
-    """
-    document = SpecDocument(loaded)
-    change(document)
+    document = SpecDocument(designed.loaded)
+    give(document)
     text = document.text()
-    return replace(respecified(loaded, parse_document(text, loaded.path)), text=text)
+    loaded = respecified(designed.loaded, parse_document(text, designed.loaded.path))
+    return replace(loaded, text=text)
 
 
 def _put(document: SpecDocument, designed: Designed, name: str, gain: str, text: str) -> None:

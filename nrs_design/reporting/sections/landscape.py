@@ -10,7 +10,6 @@ from nrs_design.axis import labelled
 from nrs_design.design.landscape import (
     CostMap,
     alternatives,
-    cheapest_damping,
     map_cost,
 )
 from nrs_design.reporting.document import Block, Illustration, Paragraph, Section, Table
@@ -136,9 +135,6 @@ def draw_cost(item: ImpedanceAnalysis, found: CostMap) -> Figure:
     if not (item.given.Mt.fixed and item.given.Bt.fixed):
         best = "optimum within bounds and goals"
         points.insert(0, (item.optimum.Mt, item.optimum.Bt, "*", 15.0, GREEN, best))
-    elif (Bt := cheapest_damping(item.problem, item.Mt, item.Bt)) is not None:
-        # Gains that the spec gives are no optimum: they may have been chosen by their proof.
-        points.insert(0, (item.Mt, Bt, "*", 15.0, GREEN, "least cost with this Mt"))
     for Mt, Bt, shape, size, tint, label in points:
         # No mass at all is drawn at the left edge.
         place = max(Mt, float(found.Mt[0]))

@@ -27,7 +27,7 @@ Polynomial = Sequence[Fraction]  # Highest power first
 Square = Callable[[Sequence[Any]], list[Any]]
 
 
-class Piece(NamedTuple):
+class FrequencyPiece(NamedTuple):
     """A piece of the frequencies, in (rad/s)^2."""
 
     low: Fraction
@@ -35,9 +35,9 @@ class Piece(NamedTuple):
     inverse: bool = False  # Whether it is of one over the frequencies
 
 
-def everywhere(middle: Fraction = Fraction(100)) -> tuple[Piece, Piece]:
+def everywhere(middle: Fraction = Fraction(100)) -> tuple[FrequencyPiece, FrequencyPiece]:
     """Return all frequencies: those up to one, and those from it on."""
-    return Piece(ZERO, middle), Piece(ZERO, 1 / middle, inverse=True)
+    return FrequencyPiece(ZERO, middle), FrequencyPiece(ZERO, 1 / middle, inverse=True)
 
 
 class Quotient(NamedTuple):
@@ -116,23 +116,23 @@ class Squares:
         above, below = ([lowest_first(corner[i]) for corner in corners] for i in (0, 1))
         return cls(below, above)
 
-    def largest(self, piece: Piece, **search: Any) -> LargestRatio:
+    def largest(self, piece: FrequencyPiece, **search: Any) -> LargestRatio:
         """Bound the largest quotient over the box and a piece of the frequencies."""
         sides = [self._between(grid, piece) for grid in self._grids]
         below, above = sides if len(sides) == 2 else (sides[0], [ONE] * len(sides[0]))
         return largest_ratio(above, below, (3,) * self._parameters + (self._size,), **search)
 
-    def stay_below(self, limit: Fraction, pieces: Sequence[Piece], most: int) -> bool:
+    def stay_below(self, limit: Fraction, pieces: Sequence[FrequencyPiece], most: int) -> bool:
         """Tell whether the quotient is shown to be nowhere above a limit."""
         found = (self.largest(p, limit=limit, nearly=None, most=most).above for p in pieces)
         return all(above is not None and above <= limit for above in found)
 
-    def vanish_nowhere(self, pieces: Sequence[Piece], most: int) -> bool:
+    def vanish_nowhere(self, pieces: Sequence[FrequencyPiece], most: int) -> bool:
         """Tell whether the squares, which nothing is above, are shown to be nowhere zero."""
         found = (self.largest(piece, nearly=None, most=most) for piece in pieces)
         return all(one.above is not None for one in found)
 
-    def _between(self, grid: Sequence[Sequence[Any]], piece: Piece) -> list[Any]:
+    def _between(self, grid: Sequence[Sequence[Any]], piece: FrequencyPiece) -> list[Any]:
         """Return Bernstein coefficients in omega^2 too."""
         ends = _fmpq(piece.low), _fmpq(piece.high)
         full = ([*p, *[0] * (self._size - len(p))] for p in grid)

@@ -25,7 +25,7 @@ from nrs_design.controllers.sensor import LowPass
 from nrs_design.design.affine_family import (
     ONE,
     ZERO,
-    Piece,
+    FrequencyPiece,
     Polynomial,
     Quotient,
     Response,
@@ -166,7 +166,7 @@ def largest_over(
     """Bound a response over a band in rad/s and a box of parameters; it is affine in each."""
     low, high = (omega**2 for omega in band)
     found = Squares.of(at, ranges).largest(
-        Piece(low, high), limit=None if limit is None else limit**2
+        FrequencyPiece(low, high), limit=None if limit is None else limit**2
     )
     *places, x = found.at
     square = low + x * (high - low)

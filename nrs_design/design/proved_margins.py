@@ -34,7 +34,7 @@ from nrs_design.controllers.laws import CompliantLaw
 from nrs_design.design.affine_family import (
     ONE,
     ZERO,
-    Piece,
+    FrequencyPiece,
     Quotient,
     Response,
     Square,
@@ -198,7 +198,7 @@ class RangedLoop:
         return self._stays_below(at, limit, band)
 
     def _stays_below(self, at: Response, limit: Fraction, band: Fraction | None) -> bool:
-        pieces = everywhere() if band is None else (Piece(ZERO, band**2),)
+        pieces = everywhere() if band is None else (FrequencyPiece(ZERO, band**2),)
         return Squares.of(at, self.box).stay_below(limit**2, pieces, _MOST)
 
     def _has_phase(self, margin: Fraction) -> bool:
@@ -213,7 +213,7 @@ class RangedLoop:
             t = _tangent(high * margin / 2)
             if t is None:
                 return False
-            share, piece = Interval(ZERO, ZERO, t / high), Piece(low**2, high**2)
+            share, piece = Interval(ZERO, ZERO, t / high), FrequencyPiece(low**2, high**2)
             if not self._nowhere_zero(share, _delayed, (piece,)):
                 return False
         return True
@@ -222,7 +222,7 @@ class RangedLoop:
         self,
         share: Interval,
         square: Square,
-        pieces: Sequence[Piece],
+        pieces: Sequence[FrequencyPiece],
     ) -> bool:
         """Tell whether C, and a share of ``N - D`` beside it, nowhere cancel on the axis."""
 
@@ -246,7 +246,7 @@ class RangedLoop:
         if not proposed:
             return None
         last = Fraction(proposed) * _BEYOND
-        beyond = Piece(ZERO, 1 / last**2, inverse=True)
+        beyond = FrequencyPiece(ZERO, 1 / last**2, inverse=True)
         found = Squares.of(at, self.box).largest(beyond, limit=ONE, nearly=None, most=_MOST).above
         return last if found is not None and found < 1 else None
 

@@ -8,13 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from nrs_design.axis import unit
+from nrs_design.design.polynomials import frequencies
 from nrs_design.design.root_locus import dominant_pair
 from nrs_design.design.transfer import (
     FloatArray,
     TransferFunction,
     hurwitz,
     poles,
-    positive_roots,
     static_gain,
     trim,
 )
@@ -92,7 +92,8 @@ def _crossings(motion: TransferFunction, damping_ratio: float) -> list[float]:
     terms = np.outer(den, num) * np.sin(angle * powers)
     ascending = np.zeros(len(den) + len(num) - 1)
     np.add.at(ascending, np.add.outer(np.arange(len(den)), np.arange(len(num))), terms)
-    s = positive_roots(ascending[::-1]) * np.exp(1j * angle)
+    roots = frequencies(ascending[None, ::-1])[0] ** 2
+    s = roots[np.isfinite(roots)] * np.exp(1j * angle)
     gains = -(np.polyval(motion.denominator, s) / np.polyval(motion.numerator, s)).real
     return sorted(float(gain) for gain in gains if gain > 0)
 

@@ -10,16 +10,17 @@ from nrs_design.models.exponential import expm
 # Time constants that a motion is followed for, and samples of each, or of each radian.
 _LONG, _FINE = 12.0, 16
 _MOST = 20_000
-_HALVES = 30
 
 
 def largest(A: FloatArray, c: FloatArray, x: FloatArray, rates: ComplexArray) -> float:
     """Return the largest ``c exp(A t) x`` over ``t >= 0``.
 
-    By hand, because the grid of python-control misses peaks: of 97 % overshoot it finds 96 %. The
-    motion is exact, also with repeated poles: a grid resolved for every pole only tells which
-    extremum is the highest, and halving finds where its slope is zero.
+    Not by python-control, whose grid misses peaks: of 97 % overshoot it finds 96 %. The motion is
+    exact, also with repeated poles: a grid resolved for every pole only tells which extremum is the
+    highest, and the root of its slope is where that is.
     """
+    from scipy.optimize import brentq
+
     parts = []
     for p in rates[rates.imag >= 0]:
         count = int(min(_LONG * _FINE * (1 + abs(p.imag / p.real)), _MOST))
@@ -28,7 +29,6 @@ def largest(A: FloatArray, c: FloatArray, x: FloatArray, rates: ComplexArray) ->
     times, first = np.unique(np.concatenate([t for t, _ in parts]), return_index=True)
     values = np.concatenate([y for _, y in parts])[first]
     peak = int(values.argmax())
-    highest = float(values[peak])
 
     def slope(t: float) -> float:
         return float(c @ A @ expm(A * t) @ x)
@@ -37,11 +37,9 @@ def largest(A: FloatArray, c: FloatArray, x: FloatArray, rates: ComplexArray) ->
         left, right = times[peak - 1], times[peak + 1]
         if slope(left) > 0 > slope(right):
             # The value is flat there: half the digits of the time give all of its own.
-            for _ in range(_HALVES):
-                middle = (left + right) / 2
-                left, right = (middle, right) if slope(middle) > 0 else (left, middle)
-            highest = max(highest, float(c @ expm(A * left) @ x))
-    return highest
+            at = brentq(slope, left, right, rtol=1e-9)
+            return max(float(values[peak]), float(c @ expm(A * at) @ x))
+    return float(values[peak])
 
 
 def _march(power: FloatArray, x: FloatArray, count: int) -> FloatArray:

@@ -13,7 +13,8 @@ from nrs_design.design.transfer import ComplexArray, FloatArray
 
 # A leading coefficient this small beside the others counts as zero; its root is out of any band.
 _NEGLIGIBLE = 1e-60
-# How near to the axis a root counts as real, relative to its size; see `positive_roots`.
+# How near to the axis a root counts as real, relative to its size: a double root comes out of
+# floating point as a close complex pair.
 _REAL = 1e-7
 
 

@@ -127,14 +127,3 @@ def _routh(rows: FloatArray) -> BoolArray:
         pairs = zip_longest(above[1:], below[1:], fillvalue=0.0)
         above, below = below, [upper - ratio * lower for upper, lower in pairs]
     return stable
-
-
-def positive_roots(polynomial: ArrayLike) -> FloatArray:
-    """Return the real positive roots in ascending order.
-
-    A double root comes out of floating point as a close complex pair: pairs within 1e-7 of the
-    axis, relative to their size, count as real.
-    """
-    roots = np.roots(np.trim_zeros(np.asarray(polynomial, dtype=np.float64), "f"))
-    real = roots.real[(np.abs(roots.imag) <= 1e-7 * np.abs(roots)) & (roots.real > 0)]
-    return np.sort(np.asarray(real, dtype=np.float64))

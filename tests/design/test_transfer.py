@@ -7,12 +7,12 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from nrs_design.design.polynomials import frequencies
 from nrs_design.design.transfer import (
     TransferFunction,
     frequency_response,
     hurwitz,
     poles,
-    positive_roots,
     static_gain,
     trim,
 )
@@ -79,10 +79,14 @@ def test_hurwitz_agrees_with_computed_roots(rows, zeros):
     assert bool(hurwitz(polynomial)) == (rightmost < 0)
 
 
-def test_positive_roots_ignores_the_others_and_keeps_double_roots():
-    assert positive_roots(np.poly([-1, 3, 2, 1 + 1j, 1 - 1j, 0])) == pytest.approx([2, 3])
-    assert positive_roots(np.poly([2, 2])) == pytest.approx([2, 2], rel=1e-6)
-    assert positive_roots([0.0, 0.0, 1.0]).size == 0
+def test_frequencies_are_roots_of_positive_ones_also_of_double_ones():
+    for polynomial, roots in (
+        (np.poly([-1, 3, 2, 1 + 1j, 1 - 1j, 0]).real, [2, 3]),
+        (np.poly([2, 2]), [2, 2]),
+        (np.array([0.0, 0.0, 1.0]), []),
+    ):
+        found = frequencies(polynomial[None])[0] ** 2
+        assert sorted(found[~np.isnan(found)]) == pytest.approx(roots, rel=1e-6)
 
 
 @pytest.mark.parametrize(

@@ -385,17 +385,9 @@ class ForceRequirement(AbstractRequirement):
 
     def loops(self, corner: ContactCorner, *gains: FloatArray) -> Loops:
         """Return the open loop at a corner."""
-        return self._loops[corner.label]
-
-    @cached_property
-    def _loops(self) -> dict[str, Loops]:
         assert self.axis is not None, "without an axis there are no loops"
-        return {
-            corner.label: Loops.of_cut(
-                self.axis.cut(self.law, corner.contact, corner.place), self.axis.period
-            )
-            for corner in self.corners
-        }
+        cut = self.axis.cut(self.law, corner.contact, corner.place)
+        return Loops.of_cut(cut, self.axis.period)
 
 
 def corners_of(

@@ -133,9 +133,7 @@ def _run_box(result: Result, limits: Limits, progress: Progress) -> BoxMargin:
     from nrs_design.search.margin import find_margin
 
     assemble_at = partial(assemble_spec, result.loaded, result.designed)
-    return find_margin(
-        assemble_at, lambda system: certify(system, limits=limits), result.certification, progress
-    )
+    return find_margin(assemble_at, partial(certify, limits=limits), result.certification, progress)
 
 
 def _refuse_box(result: Result) -> None:
@@ -227,9 +225,7 @@ def _run_dwell(result: Result, limits: Limits, progress: Progress) -> DwellMargi
     from nrs_design.search.margin import find_shortest_dwell
 
     known = result.certification
-    return find_shortest_dwell(
-        known.system, lambda system: certify(system, limits=limits), known, progress
-    )
+    return find_shortest_dwell(known.system, partial(certify, limits=limits), known, progress)
 
 
 def _refuse_dwell(result: Result) -> None:

@@ -33,7 +33,6 @@ from nrs_design.design.affine_family import (
     is_stable_over,
     minus,
 )
-from nrs_design.design.largest_ratio import largest_ratio
 from nrs_design.errors import InternalError
 from nrs_design.loop.cut_loop import ContinuousAxis, Place, multiply
 from nrs_design.models.contact import KelvinVoigt

@@ -48,7 +48,6 @@ from nrs_design.design.affine_family import (
 )
 from nrs_design.design.displayed_response import over_admittance, parameters_at
 from nrs_design.design.goals import Achieved
-from nrs_design.design.largest_ratio import largest_ratio
 from nrs_design.design.measures import (
     AT_HOME,
     DELAY_MARGIN,

@@ -26,7 +26,7 @@ DESIGNS = (
     (43.0356, DESIRED / 2, 0.01),
     (61.6608, DESIRED, 0.01),
 )
-TARGET = 1.0
+TARGET = 20.0
 UNSTABLE = 1e3
 
 

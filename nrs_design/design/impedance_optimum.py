@@ -17,7 +17,7 @@ from nrs_design.design.impedance import (
     check_admittance,
     stabilizes,
 )
-from nrs_design.design.nested_search import Objective, search_square
+from nrs_design.design.pattern_search import Objective, Points, local_minima, refine, snap
 from nrs_design.design.transfer import BoolArray, FloatArray, frequency_response
 from nrs_design.errors import DesignError
 
@@ -25,9 +25,14 @@ from nrs_design.errors import DesignError
 # Gauss rule; with 256 midpoints the cost is within 1e-6 of its integral on the published designs
 # and the optimal Bt within 3e-4.
 NODES = 256
+_SCAN_NODES = 32
+_VALLEY_NODES = 64
 _BLOCK = 256
-# A mass this near to its lower bound, on the unit square, is the bound.
-_NEAR = 1e-5
+
+_SCAN = (25, 41)
+_STARTS = 4
+_VALLEY_TOLERANCE = 5e-3
+_STEP_TOLERANCE = 1e-5
 
 
 @dataclass(frozen=True)
@@ -71,33 +76,29 @@ def impedance_cost(problem: ImpedanceProblem, Mt: ArrayLike, Bt: ArrayLike) -> F
     """
     Mt, Bt = np.broadcast_arrays(np.asarray(Mt, np.float64), np.asarray(Bt, np.float64))
     check_admittance(Mt, Bt)
-    return _sample(problem).cost(Mt.ravel(), Bt.ravel()).reshape(Mt.shape)
+    return _sample(problem, NODES).cost(Mt.ravel(), Bt.ravel()).reshape(Mt.shape)
 
 
 def optimize_impedance(problem: ImpedanceProblem) -> ImpedanceOptimum:
     """Find the global minimum of the cost over the stable admittances within the bounds.
 
-    An optimum on a bound is returned exactly as the bound; stable is Hurwitz at the nominal
-    stiffness.
+    A scan over the whole box (with fewer frequencies, dense towards small Mt and in log Bt)
+    finds the best Bt of every Mt, and the best local minima along that valley; a pattern search
+    with the full cost refines each of them, and moves before it shrinks, so that a minimum
+    away from its start is still reached. The search is deterministic. An optimum on a bound is
+    returned exactly as the bound; stable is Hurwitz at the nominal stiffness.
     """
-    optimum = least_of(problem, objective_of(problem))
-    if optimum.cost < np.inf:
-        return optimum
-    raise DesignError(
-        f"no admittance with Mt in {list(problem.mass_bounds)} {unit('kg m^2')} and Bt in "
-        f"{list(problem.damping_bounds)} {unit('N m s/rad')} keeps the loop stable at "
-        f"{problem.loop.contact.stiffness:.6g} {unit('N m/rad')}",
-        remedy="raise the upper bound of Bt or lower the lower bound of Mt",
-        at=("Bt",),
+    objective = objective_of(problem, NODES)
+    found = refine(objective, _scan(problem), _STEP_TOLERANCE)
+    u, v, costs = snap(objective, found.u, found.v)
+    best = int(np.argmin(costs))
+    Mt, Bt = admittance_at(problem, u[best : best + 1], v[best : best + 1])
+    return ImpedanceOptimum(
+        Mt=float(Mt[0]),
+        Bt=float(Bt[0]),
+        cost=float(costs[best]),
+        evaluations=found.evaluations + 4 * len(u),
     )
-
-
-def least_of(problem: ImpedanceProblem, objective: Objective) -> ImpedanceOptimum:
-    """Return the admittance within the bounds at which an objective on the square is least."""
-    mass, damping = problem.mass_bounds, problem.damping_bounds
-    u, v, value = search_square(objective, (mass[0] != mass[1], damping[0] != damping[1]))
-    (Mt,), (Bt,) = admittance_at(problem, np.array([u]), np.array([v]))
-    return ImpedanceOptimum(float(Mt), float(Bt), value)
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,8 +127,8 @@ class _Samples:
         return np.asarray(self.weights[0] * displayed + self.weights[1] * robust)
 
 
-def _sample(problem: ImpedanceProblem) -> _Samples:
-    omega: FloatArray = (np.arange(NODES, dtype=np.float64) + 0.5) * (problem.bandwidth / NODES)
+def _sample(problem: ImpedanceProblem, nodes: int) -> _Samples:
+    omega: FloatArray = (np.arange(nodes, dtype=np.float64) + 0.5) * (problem.bandwidth / nodes)
     # That of a hand with a mass is improper, so it is no transfer function.
     above, below = (np.polyval(part, 1j * omega) for part in problem.loop.contact.impedance)
     forward = frequency_response(problem.loop.motion, omega) * above / below
@@ -147,18 +148,21 @@ def admittance_at(
 ) -> tuple[FloatArray, FloatArray]:
     """Map the unit square onto the bounds of Mt and Bt, corners exactly onto corners.
 
-    Steps are dense towards small Mt, and in the logarithm of Bt.
+    A u below the search's tolerance counts as the bound itself.
     """
     (low, high), (least, most) = problem.mass_bounds, problem.damping_bounds
-    u = np.where(u < _NEAR, 0.0, u)
+    u = np.where(u < _STEP_TOLERANCE, 0.0, u)
     Mt = np.where(u >= 1, high, low + (high - low) * u**3)
     Bt = np.where(v >= 1, most, least * (most / least) ** v)
     return Mt, Bt
 
 
-def objective_of(problem: ImpedanceProblem) -> Objective:
+def objective_of(problem: ImpedanceProblem, nodes: int) -> Objective:
     """Return the cost over the unit square; infinite where the nominal loop is not stable."""
-    samples, stabilizing = _sample(problem), problem.stable or partial(stabilizes, problem.loop)
+    samples, stabilizing = (
+        _sample(problem, nodes),
+        problem.stable or partial(stabilizes, problem.loop),
+    )
 
     def stable_cost(u: FloatArray, v: FloatArray) -> FloatArray:
         Mt, Bt = admittance_at(problem, u, v)
@@ -168,6 +172,56 @@ def objective_of(problem: ImpedanceProblem) -> Objective:
         return costs
 
     return stable_cost
+
+
+def _scan(problem: ImpedanceProblem) -> Points:
+    """Return the starts of the search: local minima of a scan, and those along its valley."""
+    bounds = problem.mass_bounds, problem.damping_bounds
+    shape = tuple(
+        1 if low == high else count for (low, high), count in zip(bounds, _SCAN, strict=True)
+    )
+    u, v = np.meshgrid(*(np.linspace(0, 1, count) for count in shape), indexing="ij")
+    costs = objective_of(problem, _SCAN_NODES)(u.ravel(), v.ravel()).reshape(shape)
+    rows = np.flatnonzero(np.isfinite(costs).any(axis=1))
+    if not len(rows):
+        raise DesignError(
+            f"no admittance with Mt in {list(problem.mass_bounds)} {unit('kg m^2')} and Bt in "
+            f"{list(problem.damping_bounds)} {unit('N m s/rad')} keeps the loop stable at "
+            f"{problem.loop.contact.stiffness:.6g} {unit('N m/rad')}",
+            remedy="raise the upper bound of Bt or lower the lower bound of Mt",
+            at=("Bt",),
+        )
+    spacing = [1 / (count - 1) if count > 1 else 0.0 for count in shape]
+    valley = _sharpen(problem, u[rows, 0], v[0, np.argmin(costs[rows], axis=1)], spacing[1])
+    cells = np.flatnonzero(local_minima(costs))
+    known = np.abs(u.ravel()[cells, None] - valley.u) + np.abs(v.ravel()[cells, None] - valley.v)
+    cells = cells[known.min(axis=1) > max(spacing)]
+    cells = cells[np.argsort(costs.ravel()[cells], kind="stable")][:_STARTS]
+    return Points(
+        u=np.r_[valley.u, u.ravel()[cells]],
+        v=np.r_[valley.v, v.ravel()[cells]],
+        step=np.array(spacing) / 4,
+        slope=np.r_[valley.slope, np.zeros(len(cells))],
+        evaluations=costs.size + valley.evaluations,
+    )
+
+
+def _sharpen(problem: ImpedanceProblem, u: FloatArray, v: FloatArray, spacing: float) -> Points:
+    """Refine the valley ``Bt(Mt)`` of the scan and pick its lowest local minima."""
+    objective = objective_of(problem, _VALLEY_NODES)
+    step = np.array([0.0, spacing])
+    valley = refine(objective, Points(u, v, step, np.zeros(len(u)), 0), _VALLEY_TOLERANCE)
+    costs = objective(valley.u, valley.v)
+    minima = np.flatnonzero(local_minima(costs[:, None]))
+    minima = minima[np.argsort(costs[minima], kind="stable")][:_STARTS]
+    slope = np.gradient(valley.v, valley.u) if len(u) > 1 else valley.slope
+    return Points(
+        u=valley.u[minima],
+        v=valley.v[minima],
+        step=step,
+        slope=slope[minima],
+        evaluations=valley.evaluations + len(costs),
+    )
 
 
 def _check_bounds(name: str, bounds: tuple[float, float], *, zero_allowed: bool) -> None:

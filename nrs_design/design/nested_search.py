@@ -1,27 +1,21 @@
-"""The one global search for gains: deterministic, on the unit square, walls allowed.
+"""A deterministic search on the unit square for objectives with a forbidden region.
 
 The best v of every u, then the best u: along one axis a region that is forbidden is only an end of
-an interval, and cannot hold up the search as its slanted edge would in the square, nor can a valley
-with kinked walls. By hand, as the optimizers of SciPy want constraints that are smooth, or ask for
-one point after the other; `differential_evolution` finds no less, by chance (`benchmarks/`).
+an interval, and cannot hold up the search as its slanted edge would in the square. By hand, as the
+optimizers of SciPy want constraints that are smooth, or ask for one point after the other.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 
+from nrs_design.design.pattern_search import Objective, local_minima
 from nrs_design.design.transfer import FloatArray
-
-Objective = Callable[[FloatArray, FloatArray], FloatArray]
 
 _COARSE = (33, 49)
 _FINE = 7
-_ROUNDS = 10
+_ROUNDS = 8
 _STARTS = 3
-# Where u is refined, v is looked for so many coarse steps about what was the best.
-_WINDOW = 6
 
 
 def search_square(objective: Objective, free: tuple[bool, bool]) -> tuple[float, float, float]:
@@ -31,42 +25,27 @@ def search_square(objective: Objective, free: tuple[bool, bool]) -> tuple[float,
     that is not free is 0.
     """
     u = np.linspace(0, 1, _COARSE[0]) if free[0] else np.zeros(1)
-    grid = np.linspace(0, 1, _COARSE[1]) if free[1] else np.zeros(1)
-    v, values = _best_across(objective, u, np.tile(grid, (len(u), 1)))
-    beside = np.pad(values, 1, constant_values=np.inf)
-    lowest = np.isfinite(values) & (values <= beside[:-2]) & (values <= beside[2:])
-    starts = np.flatnonzero(lowest)
+    v, values = _best_across(objective, u, moves=free[1])
+    starts = np.flatnonzero(local_minima(values[:, None]))
     starts = starts[np.argsort(values[starts], kind="stable")][:_STARTS]
-    found = [(float(values[i]), float(u[i]), float(v[i])) for i in starts]
+    found = [(values[i], u[i], v[i]) for i in starts]
     if free[0]:
-        found = [_refined_along(objective, *start, moves=free[1]) for start in found]
-    value, *point = min(found, default=(np.inf, 0.0, 0.0))
-    return point[0], point[1], value
-
-
-def _refined_along(
-    objective: Objective, value: float, u: float, v: float, *, moves: bool
-) -> tuple[float, float, float]:
-    """Return objective, u and v of the best point near a start, each u with its best v."""
-    best, spacing = (value, u, v), 1 / (_COARSE[0] - 1)
-    steps = np.arange(-_WINDOW, _WINDOW + 1) / (_COARSE[1] - 1) if moves else np.zeros(1)
-    for _ in range(_ROUNDS):
-        tried = _around(np.array([best[1]]), spacing)[0]
-        window = np.clip(best[2] + steps, 0.0, 1.0)
-        across, values = _best_across(objective, tried, np.tile(window, (len(tried), 1)))
-        i = int(values.argmin())
-        best = min(best, (float(values[i]), float(tried[i]), float(across[i])))
-        spacing *= 2 / (_FINE - 1)
-    return best
+        found += [_refine_along(objective, u[i], moves=free[1]) for i in starts]
+    best = min(found, default=(np.inf, 0.0, 0.0))
+    return float(best[1]), float(best[2]), float(best[0])
 
 
 def _best_across(
-    objective: Objective, u: FloatArray, grid: FloatArray
+    objective: Objective, u: FloatArray, *, moves: bool
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the best v of every u, beginning with a row of a grid, and the objective there."""
+    """Return the best v of every u, and the objective there."""
+    if not moves:
+        v = np.zeros(len(u))
+        return v, objective(u, v)
+    grid = np.broadcast_to(np.linspace(0, 1, _COARSE[1]), (len(u), _COARSE[1]))
     v, values = _best_of(objective, u, grid)
     spacing = 1 / (_COARSE[1] - 1)
-    for _ in range(_ROUNDS if grid.shape[1] > 1 else 0):
+    for _ in range(_ROUNDS):
         v, values = _best_of(objective, u, _around(v, spacing))
         spacing *= 2 / (_FINE - 1)
     return v, values
@@ -78,6 +57,19 @@ def _best_of(objective: Objective, u: FloatArray, v: FloatArray) -> tuple[FloatA
     best = values.argmin(axis=1)
     rows = np.arange(len(u))
     return v[rows, best], values[rows, best]
+
+
+def _refine_along(objective: Objective, start: float, *, moves: bool) -> tuple[float, float, float]:
+    """Return objective, u and v of the best point near a start, each u with its best v."""
+    u, spacing = start, 1 / (_COARSE[0] - 1)
+    best = (np.inf, u, 0.0)
+    for _ in range(_ROUNDS):
+        tried = _around(np.array([u]), spacing)[0]
+        v, values = _best_across(objective, tried, moves=moves)
+        index = int(values.argmin())
+        best = min(best, (float(values[index]), float(tried[index]), float(v[index])))
+        u, spacing = best[1], spacing * 2 / (_FINE - 1)
+    return best
 
 
 def _around(centers: FloatArray, spacing: float) -> FloatArray:

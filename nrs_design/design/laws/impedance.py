@@ -172,7 +172,7 @@ def analyze(
 
 def _given_optimum(problem: ImpedanceProblem, given: ImpedanceControllerSpec) -> ImpedanceOptimum:
     Mt, Bt = given.Mt.min.si, given.Bt.min.si
-    return ImpedanceOptimum(Mt, Bt, float(impedance_cost(problem, Mt, Bt)))
+    return ImpedanceOptimum(Mt, Bt, float(impedance_cost(problem, Mt, Bt)), 1)
 
 
 def _lever_arm(task: Task, given: ImpedanceControllerSpec) -> float | None:

@@ -44,7 +44,7 @@ def test_tune_prints_it(tmp_path):
     path = tmp_path / "mine.nrs.yaml"
     path.write_text(TEXT, encoding="utf-8")
     said = run("tune", path, cwd=tmp_path, code=0).stdout
-    assert "stable in the air" in said
+    assert "Stable in the air" in said
     assert "Colgate and Schenkel" in said
     soft, firm = document_of("tune", path, cwd=tmp_path)["torque"]
     # Gil and others: (b + B)/(T/2 + t), about.

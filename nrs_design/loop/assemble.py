@@ -1,4 +1,4 @@
-"""From a spec, its plant and the designed gains to the exact switched system they describe."""
+"""Assemble the exact switched system of a spec, its plant and the designed gains."""
 
 from __future__ import annotations
 
@@ -201,7 +201,7 @@ def _closed(
     constants: Sequence[ConstantParameter] = (),
     points: str = "",
 ) -> tuple[SwitchedSystem, tuple[Corner, ...]]:
-    """Return the closed loop as if no range were constant, and where its modes are in them."""
+    """Return the closed loop with all ranges varying, and the corner of each mode."""
     if conditions.sampling is None:
         state = state_of(conditions, plant, design)
         return _assemble_continuous(conditions, plant, state, constants)

@@ -1,4 +1,4 @@
-"""What statements about all loops take for granted: data, switching, contacts, ranges, sensor."""
+"""Assumptions common to all loops: data, switching, contacts, ranges, mode logic."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ assume = Assumption.create
 UNCOUPLED = assume("uncoupled.axes")
 GIVEN_MATRICES = (assume("matrices.given"), assume("at-a-switch.any-signal", states="one"))
 _COMMAND = "command-unit.unit"
-# Sentences about a time: of one mode or controller, and of all.
+# Sentence ids: for one mode or controller, and for every one.
 _STAYS = {
     "dwell_time": ("rules.stays", "rules.all-stay"),
     "longest_dwell_time": ("rules.left", "rules.all-left"),
@@ -36,7 +36,7 @@ _STAYS = {
 def assume_matrices(
     spec: SwitchedSystemSpec, parameters: Sequence[UncertainParameter], scale: Fraction
 ) -> tuple[Assumption, ...]:
-    """Return those of a `switched-system` spec whose parameters are scaled already."""
+    """Return the assumptions of a `switched-system` spec; the parameters are scaled already."""
     return (
         GIVEN_MATRICES[0],
         *map(_assume_parameter, parameters),
@@ -72,14 +72,14 @@ def _assume_switches(spec: SwitchedSystemSpec) -> tuple[Assumption, ...]:
 def _listing(
     id: str, counted: str, switches: Sequence[tuple[str, str]], **values: object
 ) -> Assumption:
-    """List switches; where they are many, count them."""
+    """Return an assumption that lists the switches, or counts more than `MAX_LISTED`."""
     if len(switches) > MAX_LISTED:
         return assume(counted, count=len(switches), **values)
     return assume(id, switches=tuple(name for pair in switches for name in pair), **values)
 
 
 def assume_rules(rules: SwitchingSpec, noun: str) -> tuple[Assumption, ...]:
-    """Return which switching signals are possible, between modes or controllers."""
+    """Return the assumptions about switching signals; the noun is mode or controller."""
     if rules.is_arbitrary:
         return (assume("any-signal.all"),)
     found = []
@@ -105,14 +105,14 @@ def _time_text(dwell: DwellTime) -> str:
 
 
 def assume_contacts(design: ControllerDesign) -> Iterator[Assumption]:
-    """Yield what is touched under which controller."""
+    """Yield the environments that each controller may contact."""
     for c in design.controllers:
         if c.contacts:
             yield assume("contacts.controller", controller=c.name, contacts=tuple(c.contacts))
 
 
 def assume_parts(environments: Iterable[Environment]) -> Iterator[Assumption]:
-    """Yield how several environments are touched at once."""
+    """Yield the assumptions about environments in simultaneous contact."""
     for e in environments:
         if e.parts:
             how = "contacts.one-side" if e.each_losable else "contacts.at-once"
@@ -122,7 +122,7 @@ def assume_parts(environments: Iterable[Environment]) -> Iterator[Assumption]:
 def assume_tissue(
     environments: Sequence[Environment], axis: AxisType, name: str = "tissue.linear"
 ) -> Iterator[Assumption]:
-    """Yield in which ranges the parameters of environments are."""
+    """Yield the parameter ranges of the environments."""
     yield assume(
         name,
         ranges=tuple(
@@ -136,13 +136,13 @@ def assume_tissue(
 
 
 def assume_memory(environments: Sequence[Environment]) -> Iterator[Assumption]:
-    """Yield what holds for environments that remember, or have a mass."""
+    """Yield the assumptions about environments with memory or mass."""
     for e in environments:
         yield from e.law.assumptions(e.name, alone=len(environments) == 1)
 
 
 def assume_kept_contact(design: ControllerDesign, *, alone: bool) -> Iterator[Assumption]:
-    """Yield what each law of a design takes for granted about contact.
+    """Yield the assumption of each control law about contact.
 
     `alone`: all controllers give the motion loop the same kind of command.
     """
@@ -154,14 +154,14 @@ def assume_kept_contact(design: ControllerDesign, *, alone: bool) -> Iterator[As
 
 
 def assume_scale(scale: Fraction) -> tuple[Assumption, ...]:
-    """Return by how much the ranges of the spec are stretched, unless they are as declared."""
+    """Return the scale of the ranges, if it is not 1."""
     return () if scale == 1 else (assume("range.scaled", scale=scale),)
 
 
 def assume_points(points: str, *, remembers: bool) -> tuple[Assumption, ...]:
-    """Return at which points of the ranges the modes are, unless they are about all of them.
+    """Return the points of the ranges at which the modes stand; nothing for all points.
 
-    What `remembers` is always looked at in one place.
+    Environments with memory always stand at their nominal values.
     """
     if not points:
         return ()
@@ -170,19 +170,19 @@ def assume_points(points: str, *, remembers: bool) -> tuple[Assumption, ...]:
 
 
 def assume_command_unit(command: str, axis: AxisType) -> Iterator[Assumption]:
-    """Yield the unit in which the motor is commanded, where it is not the rpm of the thesis."""
+    """Yield the unit of the motor command, if it is not rpm."""
     if command != THESIS_COMMAND:
         yield assume(_COMMAND, unit=command, per=axis.unit("rad"))
 
 
 def command_in(granted: Iterable[Assumption]) -> str:
-    """Return the unit of commands that `assume_command_unit` has put among the assumptions."""
+    """Return the unit of the motor command that the assumptions state; rpm by default."""
     found = (dict(item.fields)["unit"][0] for item in granted if item.id == _COMMAND)
     return next(found, THESIS_COMMAND)
 
 
 def assume_data(spec: InteractionDesignSpec) -> Iterator[Assumption]:
-    """Yield what identified ranges hold, and what is doubtful about identified values."""
+    """Yield the coverage of identified ranges, and the doubts about identified values."""
     from nrs_design.spec.interaction_parts import INTERFACES
     from nrs_design.spec.plausible import unusual
 
@@ -211,7 +211,7 @@ def _coverage(id: str, name: str, covered: str, item: IdentifiedRangesSpec) -> A
 
 
 def assume_preloads(preloads: Mapping[str, Preload], scale: Fraction) -> Iterator[Assumption]:
-    """Yield what linear ranges cover of laws that are known within a preload.
+    """Yield the scope of linear ranges for nonlinear laws within a preload.
 
     Ranges that are stretched by less than declared do not cover the law.
     """
@@ -223,14 +223,14 @@ def assume_preloads(preloads: Mapping[str, Preload], scale: Fraction) -> Iterato
 
 
 def assume_logic(spec: InteractionDesignSpec) -> Iterator[Assumption]:
-    """Yield what keeps the rules of switching, where they are those of a mode logic."""
+    """Yield the assumptions about a mode logic with dwell times."""
     if spec.mode_logic is not None and not spec.switching.is_arbitrary:
         yield assume("logic.timer")
         yield assume("logic.any-signal")
 
 
 def assume_constants(switching: Switching) -> Iterator[Assumption]:
-    """Yield which parameters of a design do not change."""
+    """Yield the unknown but constant parameters of a design."""
     for parameter in switching.fixed_parameters:
         ends = f"[{exact_text(parameter.low)}, {exact_text(parameter.high)}] {parameter.unit}"
         yield assume("constant.value", name=parameter.name, ends=ends.rstrip())

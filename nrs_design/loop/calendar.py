@@ -1,4 +1,4 @@
-"""What happens in a period of a processor: what it computes, and when its commands take effect."""
+"""Calendar of a sampling period: the computed tasks, and the times of commands."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ class Turn(StrEnum):
     BOTH = "both"
     MOTION = "motion"
     ADMITTANCE = "admittance"
-    # The deadline is missed: nothing is computed, and the drive is held, or told to stand still.
+    # A missed deadline: the processor computes nothing, and holds or zeroes the command.
     HELD = "miss, held"
     ZEROED = "miss, zeroed"
 
@@ -35,7 +35,7 @@ class Calendar:
     """The events of a period: samples, and commands that take effect."""
 
     timing: CommandTiming
-    ages: tuple[int, int] = (0, 0)  # Of force samples, the youngest and the oldest
+    ages: tuple[int, int] = (0, 0)  # Smallest and largest age of force samples
     turns: tuple[Turn, ...] = (Turn.BOTH,)  # Of a round
 
     @property
@@ -55,7 +55,7 @@ class Calendar:
 
 
 def turns_of(sampling: SamplingSpec) -> tuple[Turn, ...]:
-    """Return what is computed at a sample: in a round and in between, or in time and missed."""
+    """Return the tasks of the samples in a round, or of samples in time and missed."""
     if sampling.misses is not None:
         return Turn.BOTH, Turn.HELD if sampling.misses.command == "hold" else Turn.ZEROED
     if sampling.round == 1:

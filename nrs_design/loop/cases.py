@@ -1,4 +1,4 @@
-"""A system in cases: the constant parameters are in one part of their ranges for ever."""
+"""Systems in cases: each case is one part of the ranges of constant parameters."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from nrs_design.proof.system import SwitchedSystem
 
 
 def in_cases(whole: SwitchedSystem, parts: Sequence[SwitchedSystem]) -> SwitchedSystem:
-    """Return the system of which a part is there for ever, under arbitrary switching in it.
+    """Return the system with the parts as cases, under arbitrary switching in each.
 
     `whole` is that of all parts together. Signals that saturate are left out, and rules of
     switching, which allow less. An `AssemblyError` if a switch moves the state, or the parts differ
@@ -85,7 +85,7 @@ def _roundings(whole: SwitchedSystem, parts: Sequence[SwitchedSystem]) -> Iterat
 def _joined(
     parts: Sequence[SwitchedSystem], each: Sequence[tuple[RationalMatrix, ...]]
 ) -> tuple[RationalMatrix, ...]:
-    """Return what belongs to the modes in contact of every part, and then to the free ones."""
+    """Return the items of the contact modes of all parts, then those of the free modes."""
     pairs = [(items, len(part.modes)) for part, items in zip(parts, each, strict=True)]
     touching = (items[:count] for items, count in pairs)
     return tuple(chain.from_iterable((*touching, *(items[count:] for items, count in pairs))))

@@ -107,13 +107,13 @@ def _in_contact(
     """Yield the modes of a controller in all its contacts, or in none if it takes no force."""
     touched: list[Environment | None] = [*state.contacts(controller)]
     if not touched:
-        # What takes no force is the same everywhere, unless something else feels it.
+        # A law without force feedback has the same mode in every contact, unless the plant differs.
         touched = [None, *(state.environments if state.feels else ())]
     for e in touched:
         where = () if e is None else (e.name,)
         name = "/".join((controller.name, *where))
         box, known = state.contact_box(e).beside(state.motor_box), (None, *where)
-        # Where stiffness and damping depend on each other, not every corner is attained.
+        # Dependent stiffness and damping do not attain every corner.
         real = state.motor_box.ranges if e is not None and e.depends else box.ranges
         own = [constant for constant in constants if constant.contact in known]
         for labels, rows in box.corners(partial(state.rows, controller.law, e), name):

@@ -1,4 +1,4 @@
-"""When the commands of a processor take effect: within the period of their sample, or after it."""
+"""Delays of the commands of a processor, within the sampling period or beyond."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ ZERO = Fraction(0)
 
 @dataclass(frozen=True, slots=True)
 class CommandTiming:
-    """How late commands are; of several that are on their way, the newest that came is in force.
+    """Delays of commands; the newest command that has arrived is in force.
 
     The command of the sample at time t takes effect between ``t + earliest`` and ``t + latest``,
     each at a time of its own. Ages of commands count from the sample at which a period begins: that
@@ -26,7 +26,7 @@ class CommandTiming:
     # earliest, latest: from a sample to its command, in s.
     earliest: Fraction = ZERO
     latest: Fraction = ZERO
-    jitter: Fraction = ZERO  # By how much a period is longer or shorter at most, in s
+    jitter: Fraction = ZERO  # Largest deviation of a period from its nominal length, in s
     # The time from every sample to its command in s, of all that may be, and periods do not differ.
     at: Fraction | None = None
 
@@ -37,7 +37,7 @@ class CommandTiming:
 
     @property
     def steps(self) -> Interval:
-        """How long periods are, in s; where one time is attained at every sample, all alike."""
+        """Lengths of the periods in s; one length if the delay is the same at every sample."""
         return self.lengths if self.at is None else Interval.point(self.period)
 
     @property

@@ -1,4 +1,4 @@
-"""What a bounded velocity command does to the loop of an impedance design in continuous time."""
+"""Effect of a bounded velocity command on an impedance design in continuous time."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ def check_memory(environments: Sequence[Environment]) -> None:
 
 
 def _column(mode: Mode, motion: Realization | JointMotionLoop) -> RationalMatrix:
-    """Return what a commanded velocity does to a mode; the motor is the one of its corner."""
+    """Return the input matrix of the velocity command in a mode, with the motor of its corner."""
     n = len(mode.A.numerators)
     if isinstance(motion, JointMotionLoop):
         # The error drives the motor by Km Kp/tau, a command by Km Kd/tau.

@@ -1,4 +1,4 @@
-"""Parameters that are unknown but constant: which modes are one mode at their corners."""
+"""Unknown but constant parameters, and the modes at their corners."""
 
 from __future__ import annotations
 
@@ -27,13 +27,13 @@ class ConstantParameter:
     """One parameter that does not change while the robot runs."""
 
     said: FixedParameter  # Its name and range
-    # How the name of a mode says at which of its ends the mode is, low before high, as ``k-min``.
+    # Labels of the low and the high end in names of modes, such as ``k-min``.
     labels: tuple[str, str]
-    contact: str | None = None  # The one contact that it is of; None if it is in all modes
+    contact: str | None = None  # Contact with this parameter; None if it occurs in all modes
 
     @property
     def symbol(self) -> str:
-        """What labels call it."""
+        """Symbol of the parameter in labels."""
         return self.labels[0].rpartition("-")[0]
 
 
@@ -72,7 +72,7 @@ def constants_of(
     yield from map(_enclosed, tissue) if sampled and drive.loaded else tissue
 
 
-# Of a drive of its own: the symbols of its numbers, their keys in a spec, and their units.
+# Symbols of the parameters of a drive, with their keys in a spec and their units.
 _DRIVEN = {
     "J": ("inertia", "kg*m^2"),
     "B": ("friction", "N*m*s/rad"),
@@ -100,7 +100,7 @@ def _of_tissue(plant: Plant, touched: Collection[str]) -> Iterator[ConstantParam
 
 
 def within(plant: Plant, drive: str, part: Ends) -> Plant:
-    """Return a plant with constant parameters in a part of their ranges, named as they are here."""
+    """Return a plant with constant parameters in a part of their ranges, by name."""
     ranges = plant.actuator_ranges
     return replace(
         plant,
@@ -138,15 +138,16 @@ def _between_ends(
 
 
 class Corner(NamedTuple):
-    """At which ends of its ranges a mode is."""
+    """Ends of the ranges at which a mode stands."""
 
     mode: str
-    varying: tuple[str, ...]  # What its name says, but for the ends of constant parameters
-    ends: Mapping[str, int]  # Of each constant parameter: low before high, or which curve point
+    varying: tuple[str, ...]  # Parts of the name without the ends of constant parameters
+    # End of each constant parameter, low before high, or number of its curve point
+    ends: Mapping[str, int]
 
 
 def corner_counts(corners: Sequence[Corner], parameters: Iterable[ConstantParameter]) -> list[int]:
-    """Return how many corners each constant parameter has: two, or more around its curve."""
+    """Return the number of corners of each constant parameter: two, or more around a curve."""
     names = [parameter.said.name for parameter in parameters]
     return [1 + max(1, *(at.ends.get(name, 0) for at in corners)) for name in names]
 
@@ -154,14 +155,14 @@ def corner_counts(corners: Sequence[Corner], parameters: Iterable[ConstantParame
 def constant_sets(
     corners: Sequence[Corner], parameters: Sequence[ConstantParameter]
 ) -> Iterator[tuple[str, ...]]:
-    """Yield, for each mode, what it is at the corners of the constant parameters.
+    """Yield, for each mode, its copies at the corners of the constant parameters.
 
     A mode that a parameter is not in is the same at both of its ends. The last parameter turns
     fastest.
     """
     if not parameters:
         return
-    # By what is not constant, and the corner of what is.
+    # By the varying parts of the name, and the corner of the constants.
     known: dict[tuple[tuple[str, ...], tuple[int | None, ...]], str] = {}
     first: dict[tuple[tuple[str, ...], tuple[bool, ...]], None] = {}
     for at in corners:

@@ -1,4 +1,4 @@
-"""What a statement about an interaction design in continuous time takes for granted."""
+"""Assumptions about an interaction design in continuous time."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from nrs_design.spec.controllers import Command
 def assume_loop(
     loop: SharedState, rules: SwitchingSpec, *, losable: bool, free: bool, limited: bool
 ) -> Iterator[Assumption]:
-    """Yield what holds for an interaction design.
+    """Yield the assumptions about an interaction design.
 
     `losable`: the system says how contact is lost, and a statement whether it is kept; `free`: free
     motion is one of the modes; `limited`: some statement is about signals that saturate.
@@ -40,7 +40,7 @@ def assume_loop(
     yield from _assume_contact(loop)
     yield from assume_memory(loop.environments)
     yield from () if loop.idle is None else _assume_idle(loop, loop.idle)
-    # Where contact may be lost, a statement says that itself.
+    # If contact may be lost, each statement says whether it covers the loss.
     if free:
         yield assume("contact-lost.anywhere")
     elif not losable:
@@ -52,7 +52,7 @@ def assume_loop(
 
 
 def _assume_motion(loop: SharedState) -> Iterator[Assumption]:
-    """Yield what the motion loop is, and what loads it."""
+    """Yield the model of the motion loop and of its load."""
     joint, axis = loop.joint, loop.design.axis
     if joint is None:
         yield assume(f"nominal-motor.{'given' if loop.given else 'designed'}")
@@ -67,7 +67,7 @@ def _assume_motion(loop: SharedState) -> Iterator[Assumption]:
 
 
 def _assume_inputs(loop: SharedState, *, losable: bool) -> Iterator[Assumption]:
-    """Yield what acts from outside, and what then rests."""
+    """Yield the inputs, and the equilibria for zero inputs."""
     if loop.offset != "none":
         yield assume("rest-position.moving")
         yield assume("at-a-switch.offset", taken=loop.offset)
@@ -96,7 +96,7 @@ def _assume_contact(loop: SharedState) -> Iterator[Assumption]:
 
 
 def _assume_idle(loop: SharedState, idle: IdleStatesSpec) -> Iterator[Assumption]:
-    """Yield what becomes of the states of controllers that command a velocity."""
+    """Yield the evolution of idle states of impedance controllers."""
     driving, others = (_names(loop.design, command) for command in ("velocity", "position"))
     decay = idle_decay(idle)
     if driving:
@@ -115,7 +115,7 @@ def _assume_idle(loop: SharedState, idle: IdleStatesSpec) -> Iterator[Assumption
 
 
 def _assume_bleeding(design: ControllerDesign, decay: Fraction) -> Iterator[Assumption]:
-    """Yield what becomes of an integral while other controllers are active."""
+    """Yield the evolution of an idle integral."""
     law = next((c.law for c in design.controllers if c.law.bleeds), None)
     if law is not None:
         others = dict.fromkeys(c.law.name for c in design.controllers if not c.law.bleeds)
@@ -129,7 +129,7 @@ def _assume_bleeding(design: ControllerDesign, decay: Fraction) -> Iterator[Assu
 
 
 def _names(design: ControllerDesign, command: Command) -> tuple[str, ...]:
-    """Return the names of the laws that give the motion loop such a command, each once."""
+    """Return the distinct names of the laws with this type of command."""
     laws = (controller.law for controller in design.controllers)
     return tuple(dict.fromkeys(law.name for law in laws if law.commands == command))
 

@@ -53,7 +53,7 @@ if TYPE_CHECKING:
 Polynomial = tuple[Fraction, ...]
 ZERO, ONE = Fraction(0), Fraction(1)
 NOTHING: Contact = (ZERO, ZERO)
-# Rates at which a memory of what is touched decays and follows, and its state.
+# Decay and driving rate of the memory of a contact; None without memory.
 Memory: TypeAlias = tuple[Fraction, Fraction] | None
 REMEMBERED = "damper deflection [rad]"
 _KEPT = 512
@@ -63,20 +63,20 @@ _CLOSED, _OPENED, _FREE = ForceShare(), ForceShare(sensed=ZERO), ForceShare(ZERO
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """Where a loop is looked at, beside its contact and its gains."""
+    """Operating point of a loop, apart from contact and gains."""
 
-    motor: Actuator  # A corner of its ranges, or the nominal one
-    age: int = 0  # Of the force sample, always the same; zero in continuous time
+    motor: Actuator  # Motor at a corner of its ranges, or the nominal motor
+    age: int = 0  # Constant age of the force sample; zero in continuous time
     late: Fraction = ZERO  # From a sample to its command in s, always the same
-    texts: tuple[str, ...] = ()  # What is not nominal, and the age where there are several
+    texts: tuple[str, ...] = ()  # Deviations from nominal; the age if there are several
 
 
 @dataclass(frozen=True, slots=True)
 class CutLoop:
     """Characteristic polynomials of one mode, highest power first, of one length."""
 
-    opened: Polynomial  # Where the law takes no force; a motor with a load carries it all the same
-    closed: Polynomial  # Of the mode as it is proved
+    opened: Polynomial  # Without force feedback to the law; the load of a motor remains
+    closed: Polynomial  # Of the closed loop
     free: Polynomial  # Where the force does not act at all
 
 
@@ -248,7 +248,7 @@ class ProcessorAxis(AbstractAxis):
         carried: Contact,
         memory: Memory = None,
     ) -> Sequence[LinearForm]:
-        """Return what a period makes of the states.
+        """Return the map of a period.
 
         `sensed` is what the force sample shows, `carried` what slows a motor with a load, `memory`
         the rates of what is touched.
@@ -269,7 +269,7 @@ class ProcessorAxis(AbstractAxis):
 
 
 def _touches(contact: AbstractLinearLaw) -> tuple[tuple[Contact, Contact, Memory], ...]:
-    """Return what is sensed and carried of a contact, and its rates: opened, closed, not acting."""
+    """Return sensed and carried contact and its memory: opened, closed, without force."""
     memory = contact.memory_rates
     front = contact.exact[contact.parameters().index(contact.front)]
     # Of what remembers, the second number is behind the spring.
@@ -294,7 +294,7 @@ def _of_step(
 def _loop(
     axis: ProcessorAxis, law: DiscreteLaw, place: Place, carried: Contact, memory: Memory
 ) -> tuple[SampledLoop, Rows]:
-    """Return the loop of a law, and what flows in a period: a point of what encloses it."""
+    """Return the loop of a law, and the flow of a period at one point."""
     # Not loaded for a design in continuous time.
     from nrs_design.loop.calendar import Calendar
     from nrs_design.loop.command_timing import CommandTiming
@@ -344,7 +344,7 @@ def _places(
 ) -> Iterator[Place]:
     nominal = ranges.nominal
     motors: dict[Actuator, tuple[str, ...]] = {nominal: ()}
-    # What has no range is the same at every corner.
+    # Parameters without a range have one corner.
     numbers = (
         ("Km", f"{unit('rad/s')}/{ranges.command}", ranges.gain),
         ("tau", "s", ranges.time_constant),

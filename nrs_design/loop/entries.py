@@ -27,7 +27,7 @@ LONGEST = Fraction(2000)
 
 @dataclass(frozen=True, slots=True)
 class Entries:
-    """What a drive makes of its states and of a command of one; its gain is left out."""
+    """Transition matrix and unit response of a drive; the gain is factored out."""
 
     drive: Drive
 
@@ -40,7 +40,7 @@ class Entries:
         return self.jet(at, h, "", h, 0)[0]
 
     def acting(self, at: Mapping[str, Any]) -> list[list[bool]]:
-        """Return which entries are not zero at all numbers and times: rows, as those of `at`."""
+        """Return the entries that are not identically zero, row by row as `at`."""
         G = _sizes(self.rates(at))
         n, m = self.drive.order, self.drive.order + 1
         paths = step = G
@@ -86,7 +86,7 @@ class Entries:
         return [arb_mat(rows) for rows in found]
 
     def moved(self, at: Mapping[str, Any], h: arb, widths: Mapping[str, arb]) -> arb_mat:
-        """Return by how much entries are off at most where the load changes within the time.
+        """Return bounds on the change of the entries under a load that varies within the time.
 
         `widths` are those of the ranges of numbers of the load. Let A be the generator at the
         moment, with entries of at most M by size, and k a number of the load, which acts by N:
@@ -129,7 +129,7 @@ class Entries:
 
 
 def too_long() -> AssemblyError:
-    """Return what is said of a period that no enclosure is good for."""
+    """Return the error for a period that no enclosure fits."""
     return AssemblyError(
         "a period is too long for the drive and what it touches: it is too many of their time "
         "constants, or their ranges are too wide to enclose what they do in it",

@@ -1,4 +1,4 @@
-"""What a drive does in a period under commands that are held: few points that enclose it.
+"""Flow of a drive over a period under held commands: an enclosure by few points.
 
 All entries are enclosed together, as numbers have ranges (docs/certificates/drives.md):
 
@@ -94,7 +94,7 @@ class HeldDrive:
 
 @dataclass(frozen=True, slots=True)
 class _Number:
-    """A number that has a range: one of the drive, of what it touches, or a time."""
+    """A parameter with a range: of the drive, of the contact, or a time."""
 
     symbol: str  # Empty for a time
     name: str  # As labels say it

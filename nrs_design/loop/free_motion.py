@@ -1,4 +1,4 @@
-"""How contact is lost in continuous time, and the motion of an axis that touches nothing."""
+"""Contact loss in continuous time, and the modes of free motion."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ from nrs_design.proof.mode import Mode
 from nrs_design.spec import SwitchingSpec
 from nrs_design.spec.interaction_parts import FREE
 
-# What is touched where nothing is.
+# An environment without force.
 NOTHING = KelvinVoigt(Fraction(0), Fraction(0))
 
 
 def lost_contact(state: SharedState, contact: str | None) -> Contact | None:
-    """Return how contact is lost, or None where that is not modelled.
+    """Return the model of contact loss, or None without one.
 
     An `AssemblyError` if the spec asks for it then.
     """
@@ -109,7 +109,7 @@ def flights_of(
     environments: Iterable[Environment],
     pulls: tuple[RationalMatrix, ...],
 ) -> Flights:
-    """Return which modes are in contact, which are free motion, and what could pull."""
+    """Return the contact modes, the free modes and the tensile forces."""
     known = {environment.name for environment in environments}
     return Flights(
         tuple(item.name for item in items if item.touches in known),

@@ -1,4 +1,4 @@
-"""Modes that know what they are corners of: nobody reads that from their names."""
+"""Modes with the corner of the ranges at which they stand."""
 
 from __future__ import annotations
 
@@ -14,11 +14,12 @@ from nrs_design.proof.mode import Mode
 
 @dataclass(frozen=True, slots=True, eq=False)
 class AbstractLocatedMode(ABC):
-    """One mode, with what it is a corner of."""
+    """A mode and its corner of the ranges."""
 
     group: str  # The name that rules of switching know: a controller, or what is done instead
     spot: Spot
-    touches: str  # The environment that it is about; free motion; or nothing, where none matters
+    # Name of the environment, or of free motion; empty if the mode is the same in all contacts
+    touches: str
 
     @property
     @abstractmethod
@@ -37,12 +38,12 @@ class AbstractLocatedMode(ABC):
 
     @property
     def point(self) -> tuple[str, ...]:
-        """What it is a corner of, with others: of them all, one loop is attained."""
+        """Key of the set of corners that enclose a loop together."""
         return tuple(label.text for label in self.spot.labels if label.attained)
 
     @property
     def corner(self) -> Corner:
-        """At which ends of the constant numbers it is, and what else its name says."""
+        """Ends of the constant parameters, and the rest of the name."""
         varying = (label.text for label in self.spot.labels if not label.constant)
         return Corner(self.name, tuple(varying), dict(self.spot.corner))
 

@@ -1,4 +1,4 @@
-"""How a sampled loop loses contact: not at all, where the tissue ends, or at any deflection."""
+"""Contact loss of a sampled loop: none, at the surface, or at any deflection."""
 
 from __future__ import annotations
 
@@ -10,20 +10,20 @@ from nrs_design.models.contact.environment import Environment
 
 
 class Loss(Enum):
-    """Where contact is lost, by the id of the sentence that says so."""
+    """Place of contact loss, by the id of its assumption."""
 
     NEVER = "contact-kept.never"
     NOT_MODELLED = "contact-kept.not-modelled"
-    # What each law takes for granted.
+    # Each law states its own assumption.
     BY_LAWS = "contact-kept.law"
-    # Where the spring of the tissue ends; a statement that covers it says so.
+    # At the surface; each statement says whether it covers the loss.
     SURFACE = "contact-lost.surface"
     ANYWHERE = "contact-lost.anywhere"
     UNDER_FORCE_CONTROL = "contact-lost.force-control"
 
     @property
     def anywhere(self) -> bool:
-        """Whether it is lost at any deflection, and free motion is a mode among others."""
+        """Whether contact is lost at any deflection, so that free motion is one of the modes."""
         return self in (Loss.ANYWHERE, Loss.UNDER_FORCE_CONTROL)
 
     @classmethod
@@ -41,7 +41,7 @@ class Loss(Enum):
         it touches would lose it within a period, too, which has to be asked for.
         """
         if any(c.law.commands == "position" for c in design.controllers):
-            # Force control rests in the air where it does in contact: at what is commanded.
+            # Force control has the same equilibrium in free motion: the commanded position.
             return cls.UNDER_FORCE_CONTROL if contact == "losable" else cls.BY_LAWS
         sprung = {c.law.spring != 0 for c in design.controllers}
         if contact == "kept" or ((slowed or True in sprung) and contact is None):

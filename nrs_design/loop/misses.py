@@ -19,14 +19,14 @@ ONCE = Stay(Fraction(1), Fraction(1))
 def modes_with_misses(
     items: Sequence[MatrixMode], rule: MissesSpec
 ) -> tuple[tuple[MatrixMode, ...], Switching]:
-    """Return the modes by what they lead to, and the switches that a rule for misses allows.
+    """Return the modes by the automaton state after them, and the allowed switches.
 
     What may follow depends on the state of the automaton alone, so a mode is named by the state
     that it leads to, such as ``miss/s3``. Corners of one mode may take turns at every step. All
     groups but that of a miss are hits. An `AssemblyError` if there are too many switches.
     """
     automaton = automaton_of(*rule.window)
-    # By the state that they lead to, and whether they are a miss; each in the order of states.
+    # Modes by miss and by the state after them, in the order of states.
     reached: dict[tuple[bool, int], tuple[MatrixMode, ...]] = {}
     for missed, targets in ((False, automaton.hit), (True, automaton.miss)):
         corners = [item for item in items if (item.group == rule.mode) is missed]

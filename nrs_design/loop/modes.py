@@ -44,13 +44,13 @@ Rows = list[LinearForm]
 
 @dataclass(frozen=True, slots=True)
 class ForceShare:
-    """How much of the force of a contact acts, where the loop is cut to look at its parts."""
+    """Shares of the contact force that act on the law and on the motor of a cut loop."""
 
     sensed: Fraction = Fraction(1)  # Share that reaches the law
     carried: Fraction = Fraction(1)  # Share that slows a motor with a load
 
 
-# Nothing is cut: the loop of a proof.
+# The closed loop of a proof.
 WHOLE = ForceShare()
 
 
@@ -82,7 +82,7 @@ def velocity_mode(
     if low_pass is not None:
         felt, sensed = low_pass.respond(heard, state[own:touch])
     if law.spring:
-        # What the command adds up to moves the robot against the contact: no state of its own.
+        # The integral of the command follows from the deflection, so it needs no state.
         felt = combine((Fraction(1), felt), (law.spring, motion.integral(state[touch])))
     command, rates = law.respond(felt, state[motion.order : own])
     return [*motion.rates(command, combine((cut.carried, force))), *rates, *sensed, *reaction]
@@ -174,7 +174,7 @@ def position_mode(
     pulled = [(law.spring, w["r"])] if moves else []
     size, heard = len(w.nothing), lags[-1] if lags else "sensed"
     own = [w[name] for name in law.states]
-    # What takes no force does not depend on itself by it.
+    # A law without force feedback closes no algebraic loop.
     takes_force = law.respond(w.nothing, own) != law.respond(coordinates(size)[0], own)
     w.rule("command", lambda: w.sum((ONE, w["r"] if moves else respond()[0]), *left))
     w.rule("velocity", lambda: motion.velocity(w.nothing, lambda: w["command"]))

@@ -1,4 +1,4 @@
-"""How large the command of a sampled motion loop gets, so that a driver with a limit takes it.
+"""Bound on the command of a sampled motion loop, for a driver that saturates.
 
 While the command stays below the limit of the driver, the driver does nothing but what the model
 says. So a bound on the command from rest, below the limit, shows that the limit is not met from
@@ -27,14 +27,14 @@ from nrs_design.spec.motion import MOTOR_COMMAND
 class MotorCommand:
     """The command as an output, and what it leaves out."""
 
-    output: Output  # What the states make of the command, with all that is rounded in it
-    # By how much more the disturbances of a sample change the command of the same sample.
+    output: Output  # Command as a function of the states, roundings included
+    # Largest direct effect of the disturbances of a sample on its command.
     at_once: Fraction
-    limit: Fraction  # Of the driver, as a single-precision number
+    limit: Fraction  # Limit of the driver, a single-precision number
 
     @property
     def assumption(self) -> Assumption:
-        """What a bound on it says of saturation."""
+        """Assumption about saturation for statements that bound the command."""
         unit = self.output.unit
         return Assumption.create(
             "not-quantized.command",
@@ -82,6 +82,6 @@ def motor_command(
 
 
 def _largest(form: LinearForm, bounds: dict[str, Fraction]) -> Fraction:
-    """Return how large a form of the inputs gets; those that nothing is said of are zero."""
+    """Return the largest value of a form of the inputs; inputs without a bound are zero."""
     sizes = (abs(c) * bounds.get(name, Fraction(0)) for name, c in zip(INPUTS, form, strict=True))
     return sum(sizes, Fraction(0))

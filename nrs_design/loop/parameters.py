@@ -25,8 +25,8 @@ class UncertainParameter:
     """An uncertain number."""
 
     name: str  # As in the spec
-    interval: Interval  # Where it lies
-    varies: bool  # Whether it may change arbitrarily fast; otherwise it is unknown but constant
+    interval: Interval  # Range of its values
+    varies: bool  # True: varies arbitrarily fast; False: unknown but constant
 
 
 def read_parameters(spec: SwitchedSystemSpec, scale: Fraction) -> tuple[UncertainParameter, ...]:

@@ -1,4 +1,4 @@
-"""The program of a processor: what a sample makes of the state, and how far it is rounded."""
+"""Program of a processor: the update of the state at a sample, and its roundings."""
 
 from __future__ import annotations
 
@@ -53,8 +53,8 @@ class SampledProgram:
     """The list of operations that ships, for all controllers of an axis."""
 
     step: StepFrame  # Motion controller and filter of the force
-    laws: tuple[DiscreteLaw, ...]  # Of all controllers, with the numbers that ship
-    # What a period leaves of the states of laws that are not active; None where all laws are alike.
+    laws: tuple[DiscreteLaw, ...]  # Laws of all controllers, with the exported coefficients
+    # Factor of idle states per period; None if all laws are of one kind.
     idle: Fraction | None = None
 
     @cached_property
@@ -64,7 +64,7 @@ class SampledProgram:
 
     @cached_property
     def counts(self) -> dict[str, int]:
-        """How often each term is rounded, as a certificate lists them."""
+        """Number of roundings of each term, in the order of certificates."""
         counts = self.listed.all_counts
         first = (ERROR, KP, KD, KEPT)
         last = (STEP, IDLE_REFERENCE, IDLE_VELOCITY, *self._placing)
@@ -73,7 +73,7 @@ class SampledProgram:
 
     @cached_property
     def roundings(self) -> dict[str, Fraction]:
-        """How far each term is rounded at most, over its size."""
+        """Largest relative rounding error of each term."""
         shares = {name: short(rounding_share(count)) for name, count in self.counts.items()}
         return shares | {second(name): short(shares[KD] * shares[name]) for name in self._placing}
 
@@ -131,7 +131,7 @@ class SampledProgram:
             "velocity_command": w[HAND],
         }
         if law.law.commands == "position":
-            # It is rounded as it is read, the reference of an admittance as it moves.
+            # A position is rounded when read, the reference of an admittance when it moves.
             given["position"] = w[ROUNDED_REFERENCE]
         numbers: Mapping[str, Fraction] = self.step.numbers | numbers_in_force(
             law, step_parts(self.laws), self.idle

@@ -40,20 +40,20 @@ NOTHING: Contact = (ZERO, ZERO)
 
 @dataclass(frozen=True, slots=True)
 class Period:
-    """What one period does, as forms over states, inputs and roundings."""
+    """Map of one period: linear forms over states, inputs and roundings."""
 
     moves: tuple[LinearForm, ...]  # The states after it
-    sizes: tuple[LinearForm, ...]  # How large each rounding is at most
+    sizes: tuple[LinearForm, ...]  # Bound on each rounding
     command: LinearForm  # Before it is cut off
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Sample:
-    """What a sample makes of a state, before anything moves."""
+    """Result of a sample, before the flow of the period."""
 
     wires: Wires
     after: Mapping[str, LinearForm]  # States that are known then
-    # What is sent, the newest first; the last one is in force when the period begins.
+    # Issued commands, the newest first; the last is in force when the period begins.
     sent: Sequence[LinearForm]
     sizes: tuple[LinearForm, ...]
     command: LinearForm
@@ -68,12 +68,12 @@ class Sample:
 
 @dataclass(frozen=True, eq=False)
 class SampledLoop:
-    """Program, drive and calendar, wired; what is touched, and what flows, comes with a period."""
+    """Program, drive and calendar of a loop; contact and flow are arguments of its methods."""
 
     program: SampledProgram
-    takes: Takes | None  # What the drive takes; None for the commands of a motor
+    takes: Takes | None  # Input of the drive; None for the command of a motor
     moving: tuple[str, ...]  # States of the drive, the speed first and the deflection left out
-    memory: str | None  # The state among them by which less the spring that is touched is pressed
+    memory: str | None  # State that relieves the spring of the contact, such as a damper deflection
     calendar: Calendar
 
     @cached_property
@@ -97,7 +97,7 @@ class SampledLoop:
 
     @cached_property
     def takes_force(self) -> bool:
-        """Whether a law takes the force of a sample: no other needs a sample that is on its way."""
+        """Whether some law uses the force sample, so that delayed samples are states."""
         felt = ONE, ZERO
         return not all(
             self.sample(law, 0, felt).does(self.sample(law, 0, NOTHING))
@@ -117,7 +117,7 @@ class SampledLoop:
     def sample(
         self, law: DiscreteLaw, age: int, touched: Contact, turn: Turn = Turn.BOTH
     ) -> Sample:
-        """Return what a sample makes of the state while something is touched.
+        """Return the result of a sample in a contact.
 
         `age` is that of the force sample. What `turn` does not compute holds what it had.
         """
@@ -131,7 +131,7 @@ class SampledLoop:
         if turn is Turn.ZEROED:
             w.set({"command": w.nothing})
         elif not w.has("command"):
-            # Of commands that are on their way, the newest is sent again.
+            # The newest of the delayed commands is issued again.
             w.rule("command", lambda: w[HELD if calendar.holds else calendar.sent[0]])
         limited = ZERO if turn.is_miss or turn is Turn.ADMITTANCE else ONE
         sent = [
@@ -150,7 +150,7 @@ class SampledLoop:
         return Sample(w, after, sent, bounds, w["command"])
 
     def period(self, sample: Sample, rows: Rows) -> Period:
-        """Return a sample and what flows until the next one; `rows` are those of the drive."""
+        """Return the map of a sample and of the flow after it; `rows` describe the drive."""
         w, sent, within = sample.wires, sample.sent, self.calendar.timing.within
         columns = [
             *(w[name] for name in self.moving),

@@ -1,4 +1,4 @@
-"""What a statement about the sampled loop takes for granted."""
+"""Assumptions about a sampled loop."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def assume_sampled_loop(
     design: ControllerDesign,
     loss: Loss,
 ) -> Iterator[Assumption]:
-    """Yield what holds for the sampled loop of an interaction design."""
+    """Yield the assumptions about the sampled loop of an interaction design."""
     reset = conditions.idle is not None and conditions.idle.reset
     disturbed = conditions.disturbances is not None
     environments, program = plant.among(design.contacts), loop.program
@@ -59,7 +59,7 @@ def assume_sampled_loop(
         yield assume(f"deadlines.{misses.command}", at_most=most, of=of)
     yield from _assume_commands(timing, constant=conditions.constant_late is not None)
     if plant.drive is not None and plant.drive.speed is not None:
-        # What a sample shows of a velocity that jumps at that moment.
+        # The velocity jumps when a command takes effect.
         yield assume("command-age.before")
     yield _assume_samples(*sampling.delay)
     yield _assume_motor(plant, loop, axis, environments)
@@ -78,7 +78,7 @@ def assume_sampled_loop(
     yield from assume_contacts(design)
     yield from assume_tissue(environments, axis)
     yield from assume_memory(environments)
-    # Where contact is lost on the surface, a statement that covers it says so.
+    # For contact loss at the surface, each statement says whether it covers it.
     if loss is Loss.BY_LAWS:
         yield from assume_kept_contact(design, alone=program.idle is None)
     elif loss is not Loss.SURFACE:
@@ -96,7 +96,7 @@ def assume_sampled_loop(
 
 
 def _assume_period(sampling: SamplingSpec, design: ControllerDesign) -> Assumption:
-    """Return when what is computed."""
+    """Return the sampling periods."""
     values: dict[str, object] = {"period": exact_text(sampling.period.exact)}
     steady = sampling.jitter is None
     if not steady:
@@ -108,7 +108,7 @@ def _assume_period(sampling: SamplingSpec, design: ControllerDesign) -> Assumpti
 
 
 def _assume_commands(timing: CommandTiming, *, constant: bool) -> Iterator[Assumption]:
-    """Yield when commands take effect, unless they do so at once."""
+    """Yield the delay of commands, if there is one."""
     earliest, late = exact_text(timing.earliest), exact_text(timing.latest)
     if timing.latest and timing.earliest == timing.latest:
         yield assume("command-age.fixed", late=late)
@@ -118,7 +118,7 @@ def _assume_commands(timing: CommandTiming, *, constant: bool) -> Iterator[Assum
 
 
 def _assume_samples(least: int, most: int) -> Assumption:
-    """Return how old a force sample is."""
+    """Return the age of force samples."""
     oldest = f"{most} sample{'s' * (most != 1)}"
     if least < most:
         return assume("sample-age.range", least=least, most=oldest)
@@ -128,7 +128,7 @@ def _assume_samples(least: int, most: int) -> Assumption:
 def _assume_motor(
     plant: Plant, loop: SampledLoop, axis: AxisType, environments: Sequence[Environment]
 ) -> Assumption:
-    """Return how the motor, or the robot, moves."""
+    """Return the model of the motor, or of the robot."""
     ranges, timing = plant.actuator_ranges, loop.calendar.timing
     motor = ranges.assumed(axis)
     motor["moving"] = _at_samples(motor["moving"])
@@ -145,12 +145,12 @@ def _assume_motor(
 
 
 def _at_samples(moves: str) -> str:
-    """Say of numbers that may move that they do so at samples."""
+    """Return the key of parameters that change at samples only."""
     return moves and f"{moves}-sampled"
 
 
 def _assume_drive(drive: Drive, axis: AxisType, environments: Sequence[Environment]) -> Assumption:
-    """Return how a robot moves that has no motor of the user's."""
+    """Return the model of a robot with an interface in place of a motor."""
     moves = _at_samples(moving(drive.ranges.values()))
     if drive.takes is Takes.TORQUE:
         J = f"{drive.ranges['J'].text} {axis.unit('kg*m^2')}"
@@ -165,7 +165,7 @@ def _assume_drive(drive: Drive, axis: AxisType, environments: Sequence[Environme
 def _assume_load(
     plant: Plant, axis: AxisType, environments: Sequence[Environment]
 ) -> Iterator[Assumption]:
-    """Yield what loads the motor, unless that is what a drive says of itself."""
+    """Yield the load of the motor, unless the model of the drive has it."""
     if not plant.held.loaded:
         yield assume("unloaded.sampled")
     elif plant.drive is None and plant.load_inertia is not None:
@@ -181,7 +181,7 @@ def _constant(environments: Iterable[Environment]) -> str:
 def _assume_positions(
     program: SampledProgram, design: ControllerDesign, *, reset: bool
 ) -> Iterator[Assumption]:
-    """Yield what position and force controllers do, and what the others do meanwhile."""
+    """Yield the behaviour of position and force controllers, and of idle states."""
     laws = [c.law for c in design.controllers]
     moving = [law for law in laws if law.commands == "velocity"]
     if len(moving) == len(laws):
@@ -212,7 +212,7 @@ def _assume_arithmetic(
     laws: Mapping[str, DiscreteLaw],
     design: ControllerDesign,
 ) -> Iterator[Assumption]:
-    """Yield which numbers the program has, and how it rounds."""
+    """Yield the coefficients of the program, and its roundings."""
     program, axis = loop.program, conditions.axis
     yield assume("numbers.coefficients", coefficients=tuple(_coefficients(program, laws)))
     if not design.takes:

@@ -30,7 +30,7 @@ ANY = Fraction(1, 2)
 # Terms of the list.
 ERROR, KP, KD, KEPT, STEP = "e", "Kp e", "D (e - e before)", "a vm", "T (v - vm)"
 IDLE_REFERENCE, IDLE_VELOCITY = "d r", "d vm"
-# Those that take a rounded number; `RoundedStep` bounds what that adds to their own rounding.
+# Terms with a rounded operand; `RoundedStep` bounds their second-order errors.
 SECOND_ORDER = frozenset({KP, KD, STEP})
 
 
@@ -70,7 +70,7 @@ class ListedLaw:
 
     @property
     def all_counts(self) -> dict[str, int]:
-        """How often each term is rounded at most, in the order of the list."""
+        """Largest number of roundings of each term, in the order of the list."""
         most: dict[str, int] = {}
         for mode in self.counts.values():
             for name, count in ((n, c) for terms in mode.values() for n, c in terms.items()):
@@ -84,7 +84,7 @@ class ListedLaw:
         given: Mapping[str, LinearForm],
         rounded: Mapping[str, LinearForm],
     ) -> dict[str, tuple[Term, ...]]:
-        """Return what each result is a sum of.
+        """Return the terms of each result.
 
         Inputs and states that are missing are zero; `rounded` is by what terms are off, by name.
         """
@@ -122,7 +122,7 @@ def list_law(order: int, kinds: Kinds, takes: Takes | None = None) -> ListedLaw:
     low_pass = DiscreteLowPass(order, ANY, ANY) if order else None
     law = build_law(StepFrame(ANY, ANY, low_pass, takes=takes), laws, ANY)
     *unit, mark = coordinates(len(law.values) + 1)
-    # What is commanded is zero in the loop of a proof, and angles count from there.
+    # Commands are zero in the loop of a proof; angles count from the commanded angle.
     given: dict[str, LinearForm] = {
         value.name: form if value.stored or value.name in SENSED else zero(len(mark))
         for value, form in zip(law.values, unit, strict=True)
@@ -137,7 +137,7 @@ def list_law(order: int, kinds: Kinds, takes: Takes | None = None) -> ListedLaw:
         for result, terms in counted_terms(law, i, given).items():
             if result in left_out:
                 continue
-            # One name is one rounding: of two results, each has its own.
+            # Each result has its own roundings, so their names differ.
             names[result] = {t: f"{t} kept" if t in taken else t for t in terms}
             counted[result] = {names[result][term]: count for term, count in terms.items()}
             taken |= {*counted[result]}
@@ -176,10 +176,10 @@ class RoundedStep:
     listed: ListedLaw  # The list of operations
     law: DiscreteLaw  # In force
     numbers: Mapping[str, Fraction]  # Its coefficients by name
-    # By what each term is off, the last coordinates of all forms.
+    # Rounding error of each term: the last coordinates of all forms.
     rounded: Mapping[str, LinearForm]
-    shares: Mapping[str, Fraction]  # How far that is at most, over the size of the term
-    terms: Mapping[str, tuple[Term, ...]]  # What each result is a sum of
+    shares: Mapping[str, Fraction]  # Bounds on these errors, relative to the terms
+    terms: Mapping[str, tuple[Term, ...]]  # Terms of each result
 
     def result(self, name: str, nothing: LinearForm) -> LinearForm:
         """Return a result with what it is rounded by."""

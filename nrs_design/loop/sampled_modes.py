@@ -27,9 +27,9 @@ NOWHERE = Spot()
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SampledMode(AbstractLocatedMode):
-    """One mode; what it touches is what its force sample shows."""
+    """A mode of a sampled loop; its contact is that of the force sample."""
 
-    begins: bool  # Whether a round begins with it
+    begins: bool  # Whether a round begins with this mode
     period: Period
 
     @property
@@ -39,40 +39,40 @@ class SampledMode(AbstractLocatedMode):
         return RationalMatrix.from_rows([row[:n] for row in self.period.moves])
 
     def column(self, i: int) -> RationalMatrix:
-        """Return what the i-th of inputs and, after them, roundings does to the states."""
+        """Return the column of the i-th input, or rounding after the inputs."""
         moves = self.period.moves
         return RationalMatrix.from_rows([[row[len(moves) + i]] for row in moves])
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class TouchedDrive:
-    """What a force sample shows, and what flows, while something is touched."""
+    """Force samples and flows of a drive in a contact."""
 
-    spot: Spot  # Of a drive and a load that there are, where these are looked at
+    spot: Spot  # Corner of drive and load, if the modes stand at corners
     seen: Sequence[tuple[Spot, Contact]]
     flows: Sequence[tuple[Spot, Rows]]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Modes:
-    """What the modes of a loop have in common."""
+    """Common data of the modes of a loop."""
 
     loop: SampledLoop
     held: HeldDrive
     environments: tuple[Environment, ...]
     constants: tuple[ConstantParameter, ...]
     loses: bool  # Whether contact may come and go within a period
-    # Drives that there are, each with its labels, instead of what encloses them all.
+    # Drives at the corners of their ranges, with labels, in place of an enclosure.
     drives: tuple[tuple[tuple[str, ...], HeldDrive], ...]
     _known: dict[object, tuple[tuple[Spot, Rows], ...]] = field(default_factory=dict)
 
     @property
     def _loaded(self) -> bool:
-        """Whether what is touched acts on the motor."""
+        """Whether the contact force acts on the motor."""
         return self.held.drive.loaded
 
     def of_controller(self, c: Controller, law: DiscreteLaw) -> Iterator[SampledMode]:
-        """Yield the modes of a controller in all its contacts, or in the air if it has none.
+        """Yield the modes of a controller in all its contacts; in free motion if it has none.
 
         A controller that takes no force touches what others do, where the sample outlasts it.
         """
@@ -119,7 +119,7 @@ class Modes:
         """Yield the modes of a law while something is touched, or of turns that have none."""
         turns = turns or tuple(turn for turn in self.loop.calendar.turns if turn.has_law)
         head = Spot.named(*names)
-        # The force of a sample that no law takes matters where it is still on its way.
+        # A force sample matters to a law without force feedback only if it is delayed.
         sampled = turns[0].has_law or (turns[0].is_miss and self.loop.calendar.ages[1] > 0)
         for touched in self._touching(e, contacts, sampled=sampled):
             for turn, age, said in self._samples(law, turns, touched):
@@ -155,7 +155,7 @@ class Modes:
     def _touching(
         self, e: Environment | None, contacts: Sequence[Environment], *, sampled: bool
     ) -> Iterator[TouchedDrive]:
-        """Yield what flows with every drive, and what is sampled, while something is touched."""
+        """Yield samples and flows in a contact, for every drive."""
         for labels, held in self.drives or (((), self.held),):
             for load, own in self._loads(e, contacts):
                 texts = (*load, *labels)
@@ -203,13 +203,13 @@ class Modes:
         return TouchedDrive(spot, seen, self._known[key])
 
     def _constants(self, e: Environment | None) -> tuple[ConstantParameter, ...]:
-        """Return the constant numbers of the drive and of what is touched."""
+        """Return the constant parameters of the drive and of the contact."""
         known = (None, e and e.name)
         return tuple(c for c in self.constants if c.contact in known)
 
 
 def anything_of(environments: Iterable[Environment], *, lost: bool) -> dict[str, Interval]:
-    """Return where stiffness and damping are of any of some environments, or of nothing.
+    """Return ranges of stiffness and damping that hold all environments, or free motion.
 
     `lost`: nothing may be touched, too. What is constant stays so where nothing else is touched.
     """
@@ -226,6 +226,6 @@ def anything_of(environments: Iterable[Environment], *, lost: bool) -> dict[str,
 
 
 def damping_of(environment: Environment) -> Interval:
-    """Return the range of the damping beside the spring; zero where there is none."""
+    """Return the range of the damping parallel to the spring; zero without a damper."""
     beside = not environment.law.remembers
     return environment.parameters.get("b" if beside else "", Interval.point(ZERO))

@@ -1,4 +1,4 @@
-"""What of a loop saturates: the command of the motor, and in continuous time the velocity's, too.
+"""Saturating signals of a loop: the motor command, and in continuous time the velocity command.
 
 In continuous time the admittance commands the velocity v. The motion loop integrates ``e' = sat(v)
 - omega`` and commands the motor ``u = Kp e + Kd (sat(v) - omega)``, of which the driver takes
@@ -136,7 +136,7 @@ def _clamped(
     *,
     rounded: bool,
 ) -> Iterator[CutOff]:
-    """Yield the integral of the force error, which becomes what it sums up to, cut off."""
+    """Yield the saturated integral of the force error."""
     if conditions.largest_integral is None:
         return
     n, wide = len(loop.states), len(loop.states) + len(INPUTS)
@@ -147,7 +147,7 @@ def _clamped(
         unit=conditions.axis.unit("rad"),
         limit=float32_not_above(conditions.largest_integral),
         columns=(_column(coordinates(n)[k]),) * len(modes),
-        # The signal before it, the command, plays no part in it.
+        # The integral does not depend on the saturated command.
         rows=tuple(RationalMatrix.from_rows([[*row[:n], Fraction(0)]]) for row in rows),
         errors=tuple(RationalMatrix.from_rows([row[wide:]]) for row in rows) if rounded else (),
     )
@@ -188,7 +188,7 @@ def _start(
 def _physical(
     motion: Realization | JointMotionLoop, n: int
 ) -> tuple[LinearForm, LinearForm, tuple[LinearForm, LinearForm]]:
-    """Return e and omega as forms of the state, and what a change of each is in the state."""
+    """Return e and omega as forms of the state, and the state change of a change in each."""
     omega, unit = motion.output(n), coordinates(n)
     error = unit[_ERROR] if isinstance(motion, JointMotionLoop) else motion.integral(zero(n))
     (a, b), (c, d) = error[:2], omega[:2]

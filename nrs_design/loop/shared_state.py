@@ -102,7 +102,7 @@ class SharedState:
 
     @property
     def beside(self) -> tuple[str, ...]:
-        """In a mixture, the states beside those of the motion loop."""
+        """States of the laws in a mixture of controllers."""
         moving = (*self.law.states, REFERENCE) if self.law.commands == "velocity" else ()
         return (*moving, *self.bleeding)
 
@@ -192,7 +192,7 @@ def shared_state(
     idle: IdleStatesSpec | None = None,
     offset: Offset = "none",
 ) -> SharedState:
-    """Return what the modes of an interaction design share; an `AssemblyError` if nothing."""
+    """Return the shared state of the modes of a design; an `AssemblyError` if they share none."""
     laws = [controller.law for controller in design.controllers]
     leading = design.leading_laws(mixed=idle is not None)
     state = SharedState(
@@ -213,7 +213,7 @@ def shared_state(
 
 
 def _faults(state: SharedState) -> Iterator[AssemblyError]:
-    """Yield what is not modelled in one state."""
+    """Yield the reasons why the modes share no state."""
     mixed = state.idle is not None
     for environment in state.environments:
         law, at = environment.law, ("environments", environment.name)

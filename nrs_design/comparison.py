@@ -9,7 +9,7 @@ from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from nrs_design.certificates.catalogue import sentences
+from nrs_design.certificates.catalogue import sentence_with_bound
 from nrs_design.certificates.units import gain_units
 from nrs_design.errors import DesignError
 from nrs_design.pipeline.analysis import run_analysis
@@ -182,8 +182,8 @@ def _proof_parts(certificate: Certificate) -> dict[Part, Mapping[str, str]]:
         for name, values in certificate.gains.items()
         for gain, value in values.items()
     }
-    # Each assumption is its own name: it is there or it is not.
-    assumptions = {text: text for text in sentences(certificate.granted)}
+    # The data of an assumption is its name: both sides have it, or they differ.
+    assumptions = {str(item): sentence_with_bound(item) for item in certificate.granted}
     return {Part.GAINS: gains, Part.VERDICT: verdict, Part.ASSUMPTIONS: assumptions}
 
 

@@ -6,11 +6,13 @@ from pathlib import Path
 
 import pytest
 
+from nrs_design.certificates.certificate import content_id
 from nrs_design.comparison import Difference, Part, Side, compare, compare_sides
 from nrs_design.errors import CertificateError, SpecError
 from tests.support import COMMUTING, ROOT, SOFT_TISSUE
 
 CERTIFICATE = ROOT / "reports" / "commuting.cert.json"
+SOFT = ROOT / "reports" / "soft-tissue.cert.json"
 
 
 def test_a_spec_and_its_certificate_agree():
@@ -94,3 +96,24 @@ def test_gains_stand_with_their_units():
     gains = {d.what: d.before for d in found.differences if d.part is Part.GAINS}
     assert gains["motion.Kd"] == "2060 rpm*s/rad"
     assert gains["withdrawal.Bt"].endswith(" N*m*s/rad")
+
+
+def test_a_range_that_only_a_bound_shows_is_a_difference(tmp_path):
+    altered = json.loads(SOFT.read_text())
+    (tissue,) = (item for item in altered["assumptions"] if item["id"] == "tissue.linear")
+    tissue["fields"][0][1][0] += "0"
+    altered["id"] = content_id(altered)
+    (tmp_path / "copy.cert.json").write_text(json.dumps(altered))
+    found = compare(SOFT, tmp_path / "copy.cert.json")
+    assert Part.ASSUMPTIONS not in found.same
+    told = [d for d in found.differences if d.part is Part.ASSUMPTIONS]
+    assert [d.what.partition(" ")[0] for d in told] == ["tissue.linear"] * 2
+
+
+@pytest.mark.parametrize("fields", [[], [["unit", []]], [["unit", ["V", "b"]]]])
+def test_a_unit_that_is_none_breaks_nothing(tmp_path, fields):
+    altered = json.loads(SOFT.read_text())
+    altered["assumptions"].append({"id": "command-unit.unit", "fields": fields})
+    altered["id"] = content_id(altered)
+    (tmp_path / "copy.cert.json").write_text(json.dumps(altered))
+    assert Part.ASSUMPTIONS not in compare(SOFT, tmp_path / "copy.cert.json").same

@@ -95,15 +95,21 @@ def sentence(assumption: Assumption) -> str:
         template = catalogue_kind(assumption).sentences.get(_name(assumption))
         return _rendered(assumption, template or _law_sentences()[assumption.id])
     except (LookupError, ValueError):
-        fields = "; ".join(f"{name}: {', '.join(value)}" for name, value in assumption.fields)
-        return f"{assumption.id} ({fields}), which this version does not know"
+        return f"{assumption}, which this version does not know"
 
 
 def bound_of(assumption: Assumption) -> str:
-    """Return the bound of an assumption, as text; a KeyError if its kind is unknown."""
+    """Return the bound of an assumption, as text; a LookupError if a field is missing."""
     kind = catalogue_kind(assumption)
-    own = kind.bounds.get(_name(assumption))
-    return kind.within if own is None else _rendered(assumption, own)
+    return _rendered(assumption, kind.bounds.get(_name(assumption), kind.within))
+
+
+def sentence_with_bound(assumption: Assumption) -> str:
+    """Return the sentence of an assumption and its bound, if the catalogue has one."""
+    try:
+        return f"{sentence(assumption)} (within: {bound_of(assumption)})"
+    except LookupError:
+        return sentence(assumption)
 
 
 def sentences(assumptions: Iterable[Assumption]) -> tuple[str, ...]:

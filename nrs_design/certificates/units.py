@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from nrs_design.errors import CertificateError
+from nrs_design.proof.text import quoted
+
 if TYPE_CHECKING:
     from nrs_design.certificates.certificate import Certificate
 
@@ -13,9 +16,12 @@ def gain_units(certificate: Certificate) -> dict[str, dict[str, str]]:
     if not certificate.gains:
         return {}
     # Controllers are slow to load, and a certificate of given matrices has none.
-    from nrs_design.axis import axis_with
+    from nrs_design.axis import COMMAND_UNITS, axis_with
     from nrs_design.controllers.gains import units_of
     from nrs_design.loop.assumptions import command_in
 
     system = certificate.system
-    return units_of(certificate.gains, command_in(system.assumptions), axis_with(system.states))
+    command = command_in(system.assumptions)
+    if command not in COMMAND_UNITS:
+        raise CertificateError(f"it has commands in {quoted(command)}, which no motor takes")
+    return units_of(certificate.gains, command, axis_with(system.states))

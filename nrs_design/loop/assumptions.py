@@ -177,8 +177,8 @@ def assume_command_unit(command: str, axis: AxisType) -> Iterator[Assumption]:
 
 def command_in(granted: Iterable[Assumption]) -> str:
     """Return the unit of the motor command that the assumptions state; rpm by default."""
-    found = (dict(item.fields)["unit"][0] for item in granted if item.id == _COMMAND)
-    return next(found, THESIS_COMMAND)
+    units = (dict(item.fields).get("unit", ()) for item in granted if item.id == _COMMAND)
+    return next((unit for stated in units for unit in stated), THESIS_COMMAND)
 
 
 def assume_data(spec: InteractionDesignSpec) -> Iterator[Assumption]:
@@ -217,7 +217,7 @@ def assume_preloads(preloads: Mapping[str, Preload], scale: Fraction) -> Iterato
     """
     for name, (law, low, high) in preloads.items():
         if scale < 1:
-            yield assume("preload.scaled", environment=name, law=law.name)
+            yield assume("preload.scaled", environment=name, law=law.name, low=low, high=high)
         else:
             yield assume(f"preload.{law.name}", environment=name, low=low, high=high)
 

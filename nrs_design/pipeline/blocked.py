@@ -250,12 +250,12 @@ class _Search:
         assert decided is not None
         proof, evidence = decided.certification, decided.certification.evidence
         assert evidence is not None
-        known = set(self._result.certification.granted)
+        known = sentences(self._result.certification.granted)
         given = {line.at[1] for line, _, _ in lines if line.at[-1] in GIVEN_GAINS}
         return Proved(
             tuple(self._blocking(*item) for item in lines),
             evidence.claim(proof.system),
-            sentences(item for item in proof.granted if item not in known),
+            tuple(text for text in sentences(proof.granted) if text not in known),
             decided.loaded.sha256,
             any(
                 self._gains.get(name) != gains

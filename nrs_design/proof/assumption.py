@@ -14,6 +14,11 @@ class Assumption:
     # Values of the sentence by field: names, numbers with units, keys of words.
     fields: tuple[tuple[str, tuple[str, ...]], ...] = ()
 
+    def __str__(self) -> str:
+        """Return id and fields."""
+        fields = "; ".join(f"{name}: {', '.join(values)}" for name, values in self.fields)
+        return f"{self.id} ({fields})"
+
     @classmethod
     def create(cls, id: str, /, **values: object) -> Self:
         """Return an assumption; a tuple is a list of values, and empty values are left out."""

@@ -13,7 +13,10 @@ from nrs_design.certificates.catalogue import (
     omitted,
     sentence,
 )
+from nrs_design.controllers.laws import LAWS as CONTROL
 from nrs_design.loop.assemble import assemble, assemble_matrices
+from nrs_design.models.contact import LAWS as CONTACT
+from nrs_design.models.contact import LINEAR_LAWS
 from nrs_design.pipeline.runs import run_design
 from nrs_design.proof.assumption import Assumption
 from nrs_design.spec import read_spec
@@ -119,6 +122,14 @@ def test_what_the_catalogue_does_not_know_is_shown_as_it_is(unknown):
     assert sentence(unknown).startswith(f"{unknown.id} (")
     assert "legs: a, b" in sentence(unknown)
     assert "this version does not know" in sentence(unknown)
+
+
+def test_sentences_of_laws_are_about_one_law_each():
+    laws = {*CONTROL.values(), *CONTACT.values(), *LINEAR_LAWS.values()}
+    ids = [id for law in laws for id in law.sentences if id in vars(law)["sentences"]]
+    assert len({*ids}) == len(ids)
+    shared = {f"{kind.id}.{name}" for kind in kinds().values() for name in kind.sentences}
+    assert not shared & {*ids}
 
 
 def test_coverage_is_called_in_certificates_as_in_specs():

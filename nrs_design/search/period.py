@@ -23,8 +23,6 @@ from nrs_design.search.graph import Cycle, Graph
 from nrs_design.search.rounding import digits
 from nrs_design.search.stay_words import stay_words
 from nrs_design.search.step_graph import StepGraph
-from nrs_design.search.walk import growing_walks
-from nrs_design.search.words import growing_words
 from nrs_design.work import Allowance, Cost
 
 Array = NDArray[np.float64]
@@ -33,7 +31,6 @@ Signal = tuple[Cycle, Array]
 GREEDY_STEPS = 3000
 GREEDY_PERIODS = (2, 3, 4, 6, 8)
 FEWEST_BITS = 8
-WALKS = 4
 # Longer cycles are not tried with other times in a second round.
 MAX_DOUBLED = 8
 CHANGES = (1, 2, 4, 8, -1, -2, -4, -8)
@@ -52,10 +49,6 @@ NOTHING_GROWS = "no periodic signal tried makes solutions grow"
 def search_period(family: Family) -> Candidates[GrowingSequence]:
     """Search for a period with a spectral radius above one."""
     system, allowance = family.system, family.allowance
-    if system.time is Time.DISCRETE and system.switching.is_arbitrary:
-        for word, radius in growing_words(family.matrices, allowance):
-            steps = tuple((system.modes[i].name, Fraction(1)) for i in word)
-            yield from powers(system, steps, (), radius)
     matrices = family.matrices
     if system.switching.resets:
         # The scaled modes of a search do not fit resets.
@@ -88,10 +81,12 @@ def _words(
 
 def _signals(system: SwitchedSystem, graph: Graph, allowance: Allowance) -> Iterator[Signal]:
     """Yield signals that grow in floating point."""
-    longer = _longer_signals(system, graph, allowance)
+    greedy: Iterator[Signal] = iter(())
+    if system.time is Time.CONTINUOUS and system.switching.is_arbitrary:
+        greedy = _greedy_signals(graph, allowance)
     refine = _refined if system.time is Time.CONTINUOUS else _refined_steps
     words = stay_words(graph, allowance.part(WORDS))
-    for cycle, start in chain(words, _twice(growing_cycles(graph, allowance)), longer):
+    for cycle, start in chain(words, _twice(growing_cycles(graph, allowance)), greedy):
         times = graph.admissible(cycle, start)
         if graph.growth(cycle, times) > 0:
             yield cycle, times
@@ -102,18 +97,6 @@ def _signals(system: SwitchedSystem, graph: Graph, allowance: Allowance) -> Iter
             yield cycle, better
 
 
-def _longer_signals(system: SwitchedSystem, graph: Graph, allowance: Allowance) -> Iterator[Signal]:
-    """Yield signals that may come back to a mode; in continuous time few, for refining is slow."""
-    if system.time is Time.DISCRETE:
-        yield from growing_walks(graph, allowance)
-    elif system.switching.is_arbitrary:
-        allowance.charge(PER_GREEDY * GREEDY_STEPS * len(graph.flows.matrices))
-        yield from _greedy_signals(graph)
-    else:
-        walks = growing_walks(graph, allowance)
-        yield from sorted(walks, key=lambda walk: -float(graph.growth(*walk)))[:WALKS]
-
-
 def _twice(cycles: Iterator[Signal]) -> Iterator[Signal]:
     """Yield cycles, and short ones once more with two rounds of different times."""
     for cycle, times in cycles:
@@ -122,13 +105,14 @@ def _twice(cycles: Iterator[Signal]) -> Iterator[Signal]:
             yield cycle + cycle, np.concatenate([times * 1.2, times * 0.8])
 
 
-def _greedy_signals(graph: Graph) -> Iterator[Signal]:
+def _greedy_signals(graph: Graph, allowance: Allowance) -> Iterator[Signal]:
     """Yield signals with more steps: what an adversary settles into that always picks the worst.
 
     It maximizes the mean of the modes' own norms after each short step. Its last few dwell times
     are taken as a period.
     """
     matrices = graph.flows.matrices
+    allowance.charge(PER_GREEDY * GREEDY_STEPS * len(matrices))
     inverse = np.linalg.inv(mean_norm_coordinates(matrices, Time.CONTINUOUS))
     step = 0.05 / float(np.abs(np.linalg.eigvals(matrices)).max())
     transitions = [graph.flows.at(k, np.array(step)).real for k in range(len(matrices))]

@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from math import isfinite
 
-import numpy as np
+from numpy.linalg import LinAlgError
 
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
+from nrs_design.search.branches import best_words
 from nrs_design.search.decay import limit_rate
 from nrs_design.search.family import to_floats
-from nrs_design.search.words import products_of
+from nrs_design.search.step_graph import StepGraph
+from nrs_design.work import Allowance
 
-MAX_WORDS = 3000
-# Multiplications in the eigenvalues of all words of a length.
-MAX_WORK = 30_000_000
+# Work for the words that are looked at.
+WORK = 0.5
 
 
 def rate_limit(system: SwitchedSystem) -> float | None:
@@ -43,19 +45,8 @@ def rate_limit(system: SwitchedSystem) -> float | None:
     if system.time is Time.CONTINUOUS:
         return min(limits)
     if system.switching.is_arbitrary:
-        limits.append(_cycle_growth(families[0]))
+        graph = StepGraph.free([mode.name for mode in modes], families[0])
+        with suppress(LinAlgError):
+            limits += (growth for _, growth in best_words(graph, Allowance(WORK), max(limits)))
     limit = max(limits)
     return limit if isfinite(limit) else None
-
-
-def _cycle_growth(matrices: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> float:
-    m, length, best = len(matrices), 1, 0.0
-    words_at_most = min(MAX_WORDS, MAX_WORK // len(matrices[0]) ** 3)
-    while m > 1 and m ** (length + 1) <= words_at_most:
-        length += 1
-        _, found = products_of(matrices, length)
-        if not np.isfinite(found).all():
-            break
-        radius = np.abs(np.linalg.eigvals(found)).max()
-        best = max(best, float(radius) ** (1 / length))
-    return best

@@ -16,7 +16,6 @@ from nrs_design.search.candidates import Candidates
 from nrs_design.search.family import Family, distinct_modes
 from nrs_design.search.period import NOTHING_GROWS, WORDS, powers
 from nrs_design.search.step_graph import StepGraph
-from nrs_design.search.words import growing_words
 
 # So many rounds, those that grow the most alone, are put in a row.
 LETTERS = 8
@@ -43,11 +42,12 @@ def search_rounds(family: Family) -> Candidates[GrowingSequence]:
         for whole in [np.linalg.matrix_power(B, rest) @ A]
     ]
     rounds.sort(key=lambda item: -item[0])
-    for radius, names, _ in rounds[:1]:
-        yield from powers(system, _signal([names], rest), (), radius)
     matrices = np.array([whole for _, _, whole in rounds[:LETTERS]])
-    for word, radius in growing_words(matrices, family.allowance):
-        yield from powers(system, _signal([rounds[i][1] for i in word], rest), (), radius)
+    scaled = scale_states(matrices, family.exponents)
+    graph = StepGraph.free([names[0] for _, names, _ in rounds[:LETTERS]], scaled)
+    for word, growth in best_words(graph, family.allowance, 1.0):
+        signal = _signal([rounds[i][1] for i in word], rest)
+        yield from powers(system, signal, (), growth ** len(word))
     return NOTHING_GROWS
 
 

@@ -51,8 +51,7 @@ class StepGraph:
         if system.time is not Time.DISCRETE or system.clock is not None:
             return None
         if system.switching.is_arbitrary:
-            none, every = np.zeros(len(names), dtype=np.int64), np.arange(len(names))
-            return cls(names, none, none, every, none, matrices, 1, has_choice=False)
+            return cls.free(names, matrices)
         if system.switching.fixed_ends:
             return None
         graph = Graph.of(system, matrices)
@@ -86,6 +85,12 @@ class StepGraph:
         has_choice = any(jump.way for jump in graph.jumps)
         each = np.array(maps)[order]
         return cls(names, sources, targets, modes, ways, each, int(first[-1]), has_choice)
+
+    @classmethod
+    def free(cls, names: Sequence[str], matrices: Array) -> StepGraph:
+        """Return the graph of modes of which any may follow any."""
+        none, every = np.zeros(len(names), dtype=np.int64), np.arange(len(names))
+        return cls(tuple(names), none, none, every, none, matrices, 1, has_choice=False)
 
     @classmethod
     def of_clock(

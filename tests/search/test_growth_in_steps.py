@@ -3,17 +3,13 @@
 from dataclasses import replace
 from fractions import Fraction
 
-import numpy as np
 import pytest
 
 from nrs_design.proof.evidence import GrowingSequence
 from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Switching
 from nrs_design.search.certify import Limits, Verdict, certify
-from nrs_design.search.graph import Graph
 from nrs_design.search.period import search_period
-from nrs_design.search.walk import growing_walks
-from nrs_design.work import Allowance
 from tests.proof.systems import family, golden, resets_between
 from tests.proof.truth import holds
 from tests.search.support import found
@@ -130,18 +126,3 @@ def test_words_are_searched_where_any_mode_may_follow_any():
     evidence = search(golden("0.6181"))
     assert all(steps == 1 for _, steps in evidence.steps)
     assert search(golden("0.618")) is None
-
-
-def test_every_walk_is_closed_in_the_direction_of_its_jumps():
-    """Modes that follow each other one way round, and a way back between two of them."""
-    modes = [[["1/2", f"{k}/3"], [0, "1/4"]] for k in range(1, 4)]
-    ways = (("m0", "m1"), ("m1", "m2"), ("m2", "m0"), ("m1", "m0"))
-    switching = Switching(Fraction(1), transitions=ways)
-    system = family(*modes, time=Time.DISCRETE, switching=switching)
-    graph = Graph.of(system, np.array([mode.A.floats() for mode in system.modes]))
-    walks = list(growing_walks(graph, Allowance()))
-    assert {len(cycle) for cycle, _ in walks} >= {2, 3}
-    for cycle, times in walks:
-        assert len(cycle) == len(times)
-        for k, after in zip(cycle, (*cycle[1:], cycle[0]), strict=True):
-            assert graph.jumps[k].target == graph.jumps[after].source

@@ -66,51 +66,6 @@ def test_unicode_separators_are_not_lines() -> None:
     assert (error.line, error.column) == (2, 1)
 
 
-@pytest.mark.parametrize(
-    ("text", "place", "said"),
-    [
-        ("a: &x 1\nb: *x\n", (1, 4), "anchors"),
-        ("a: 1\nb: *x\n", (2, 4), "aliases"),
-        ("a: !!float 1\n", (1, 4), "tags"),
-        ("a: ! 1\n", (1, 4), "tags"),
-        ("a: !!python/object/apply:os.system [ls]\n", (1, 4), "tags"),
-        ("b: 1\n<<: {a: 1}\n", (2, 1), "merge keys"),
-        ("a: 1\nb: 2\na: 3\n", (3, 1), "'a' is there twice, first in line 1"),
-        ("x:\n  a: 1\n  'a': 2\n", (3, 3), "twice"),
-        ("a: 1\n---\nb: 2\n", (2, 1), "several documents"),
-        ("1: a\n", (1, 1), "'1' is not text"),
-        ("true: a\n", (1, 1), "'true' is not text"),
-        (".nan: a\n", (1, 1), "not text"),
-        ("1e3: a\n", (1, 1), "not text"),
-        ("null: a\n", (1, 1), "not text"),
-        ("? [a]\n: 1\n", (1, 3), "a key must be text"),
-        ("{a: 1}: 1\n", (1, 1), "a key must be text"),
-        ("a:\nb: 1\n", (1, 1), "'a' has no value"),
-        ("a: ~\n", (1, 1), "'a' has no value"),
-        ("a: [1, null]\n", (1, 8), "a value is missing"),
-        ("a:\n\t- 1\n", (2, 1), "a tab"),
-        ("a: b: c\n", (1, 5), "a second ': '"),
-        ('a: "x\n', (1, 4), "quoted text"),
-        ("a: [1, 2\nb: 3\n", (2, 2), "not closed"),
-        ("a: {b: 1\n", (2, 1), "not closed"),
-        ("a: 1\n  b: 2\n", (2, 3), "'b' is indented by 2 spaces"),
-        ("a:\n    b: 1\n  c: 2\n", (3, 3), "indented by 2 spaces, which fits nothing above"),
-        ("a: 1\nb\n", (2, 1), "no ':'"),
-        ("a: @b\n", (1, 4), "reserved character"),
-        ("a: x\x01y\n", (1, 5), "control character"),
-        ('a: "\\ud800"\n', (1, 4), "surrogate"),
-        ('a: "\\UFFFFFFFF"\n', (1, 1), "not valid YAML"),
-        ("%YAML 9.1\n---\na: 1\n", (1, 1), "another YAML version"),
-        ("%YAML " + "1" * 5000 + ".1\n---\na: 1\n", (1, 7), "5002 characters"),
-        ("# nothing\n", (1, 1), "no document"),
-    ],
-)
-def test_refuses_with_place_and_words(text: str, place: tuple[int, int], said: str) -> None:
-    error = refused(text)
-    assert said in error.message
-    assert (error.line, error.column) == place
-
-
 def nested(depth: int) -> str:
     return "[" * depth + "x" + "]" * depth
 

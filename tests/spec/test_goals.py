@@ -16,10 +16,6 @@ def with_goals(text, sample=IMPEDANCE):
     return spoiled(sample, "switching: arbitrary", f"{text}switching: arbitrary")
 
 
-def own(text):
-    return spoiled(IMPEDANCE, "    environment: soft\n", f"    environment: soft\n    {text}\n")
-
-
 def test_goals_are_read_with_their_units():
     goals = interaction(with_goals(ALL)).goals
     assert goals.max_sensitivity_peak == 2
@@ -28,42 +24,6 @@ def test_goals_are_read_with_their_units():
     assert float(goals.min_delay_margin.exact) == 0.005
     assert goals.max_force_error is None
     assert len(dict(goals.given())) == 6
-
-
-FELT = "transparency: {max_impedance: 3 N*m*s/rad, band: BAND}"
-
-
-@pytest.mark.parametrize(
-    ("goal", "message"),
-    [
-        ("max_sensitivity_peak: 1", "above 1"),
-        ("min_gain_margin: 0.5", "above 1"),
-        ("min_disk_margin: 2", "between 0 and 2"),
-        ("min_phase_margin: 30", "no unit"),
-        ("min_phase_margin: 180 deg", "out of reach"),
-        ("min_phase_margin: -5 deg", "positive"),
-        ("min_delay_margin: 5 deg", "duration"),
-        ("max_impedance_error: 0.1", "above 1"),
-        ("max_ms: 2", "unknown key"),
-        ("max_force_error: 0.1", "for force controllers"),
-        ("", "no goal"),
-        ("peak_torque: 0.3", "no unit"),
-        ("decay_rate: 0 1/s", "positive"),
-        ("transparency: {max_impedance: 3, band: [0 Hz, 1 Hz]}", "no unit"),
-        ("transparency: {max_impedance: -3 N*m*s/rad, band: [0 Hz, 1 Hz]}", "positive"),
-        (FELT.replace("BAND", "[1 Hz, 0.5 Hz]"), "not above its start"),
-        (FELT.replace("BAND", "[0 Hz, 1]"), "no unit"),
-        (FELT.replace("BAND", "1 Hz"), "two frequencies"),
-        ("accuracy: {max_error: 1, band: [0 Hz, 1 Hz]}", "between 0 and 1"),
-        ("accuracy: {max_error: 0.1, band: [0 Hz, 1 Hz], environment: hard}", "no environment"),
-    ],
-)
-def test_a_wrong_goal_is_refused_at_its_place(goal, message):
-    text = f"goals: {{{goal}}}"
-    for spoiled_text in (with_goals(f"{text}\n"), own(text)):
-        error = refusal(spoiled_text)
-        assert message in error.message
-        assert error.line == place_of(spoiled_text, text)[0]
 
 
 def test_a_goal_of_the_impedance_is_refused_for_force_control():
@@ -79,13 +39,6 @@ def test_goals_without_a_controller_in_contact_are_refused():
     text += "controllers: {position: {type: position}}\ngoals: {min_gain_margin: 2}\n"
     error = refusal(text + "switching: arbitrary\n")
     assert "no controller that a goal applies to" in error.message
-
-
-@pytest.mark.parametrize("goal", ["peak_torque: 0.3 N*m", "decay_rate: 1 1/s", "delay: 4 ms"])
-def test_a_goal_for_all_controllers_together_is_none_of_one(goal):
-    error = refusal(own(f"goals: {{{goal}}}"))
-    assert "for all controllers together" in error.message
-    assert "goals of the spec" in error.remedy
 
 
 def test_a_torque_is_wanted_only_where_something_causes_one():

@@ -17,7 +17,7 @@ from nrs_design.spec.document import Node, hash_meaning, parse_document, to_data
 from nrs_design.spec.load import SPEC_KINDS, model_of
 from tests.support import COMMUTING
 
-from .samples import FORCE, IMPEDANCE, SWITCHED, assert_inside, assert_refused, refusal
+from .samples import FORCE, IMPEDANCE, SWITCHED, assert_inside, refusal
 
 
 def test_read_spec_keeps_text_and_hash(tmp_path: Path) -> None:
@@ -92,21 +92,6 @@ def test_error_names_the_file(tmp_path: Path) -> None:
         load_spec(path)
     assert caught.value.path == path
     assert str(caught.value).startswith(f"{path}:2:7: ")
-
-
-@pytest.mark.parametrize(
-    ("text", "said"),
-    [
-        ("name: a\n", "`kind` is missing"),
-        ("kind: switched-sytem\n", "did you mean switched-system?"),
-        ("kind: tissue\n", "interaction-design, switched-system, robot"),
-        ("kind: [a]\n", "single text"),
-        ("- kind: a\n", "a mapping of keys"),
-        ("just text\n", "a mapping of keys"),
-    ],
-)
-def test_refuses_other_kinds(text: str, said: str) -> None:
-    assert_refused(text, said)
 
 
 @given(st.text(max_size=300))

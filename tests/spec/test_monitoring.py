@@ -2,7 +2,6 @@
 
 import pytest
 
-from nrs_design.errors import SpecError
 from nrs_design.spec import parse_spec
 from nrs_design.spec.describe import describe
 from tests.support import ROBOT
@@ -22,24 +21,6 @@ def test_bounds_in_si() -> None:
     lines = {line.name: line.written for line in describe(read())}
     assert lines["monitoring.surface"] == "free"
     assert lines["monitoring.torque_noise"] == "2 N*mm"
-
-
-@pytest.mark.parametrize(
-    ("said", "more", "message"),
-    [
-        (f"{SAID}, skew: 1 ms", "", "a skew moves the angle by its speed"),
-        (SAID.replace("free", "anywhere"), "", "surface"),
-        (SAID.replace("2 N", "0 N"), "", "must be positive"),
-        (SAID, "disturbances: {encoder_step: 0.011 deg}\n", "below half of `disturbances: enc"),
-        (SAID, "disturbances: {force_step: 5 N*mm}\n", "below half of `disturbances: force"),
-        (SAID, "sensor: {resolution: 5 N*mm}\n", "below half of `sensor: resolution`"),
-        (SAID, "sensor: {bias: 3 N*mm}\n", "is below `sensor: bias`, 3 N"),
-    ],
-)
-def test_what_cannot_be_meant(said: str, more: str, message: str) -> None:
-    with pytest.raises(SpecError, match=message) as caught:
-        read(said, more)
-    assert caught.value.remedy
 
 
 def test_half_a_step_is_enough() -> None:

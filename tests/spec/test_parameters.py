@@ -43,43 +43,6 @@ def test_a_matrix_needs_the_value_of_every_parameter() -> None:
         switched(SAMPLE).modes[1].matrix({"k": Fraction(1)})
 
 
-@pytest.mark.parametrize(
-    ("old", "new", "at", "said"),
-    [
-        ("-2 - k, -1", "-2 - q, -1", "-2 - q", "there is no parameter of that name"),
-        ("-2 - k, -1", "-2 - K, -1", "-2 - K", "did you mean k?"),
-        ("-2 - k, -1", "-2 - k*m, -1", "-2 - k*m", "it multiplies k by m"),
-        ("-2 - k, -1", "1/m, -1", "1/m", "a parameter of its own, with its own range"),
-        ("nominal: 43", "nominal: 91", "91", "nominal 91 is outside the range [25, 90]"),
-        ("nominal: 43", "nominal: 24.9", "24.9", "is outside the range [25, 90]"),
-        ("[25, 90]", "[90, 25]", "[90, 25]", "below its start 90"),
-        ("[25, 90]", "[25]", "[25]", "write [lowest, highest]"),
-        ("[25, 90]", "[25, 43, 90]", "[25, 43", "write [lowest, highest]"),
-        ("[25, 90]", "90", "90}", "write [lowest, highest]"),
-        ("[25, 90]", "[25, m]", "m]", "not a number"),
-        ("[25, 90]", "[25, [90]]", "[90]", "single value"),
-        ("[25, 90]", "[25, 1e31]", "1e31", "beyond +-1e30"),
-        ("[25, 90]", "[.nan, 90]", ".nan", "not a finite number"),
-        ("nominal: 43, ", "", "{range: [25", "`parameters.k.nominal` is missing"),
-        ("nominal: 43", "nomial: 43", "nomial", "did you mean nominal?"),
-        ("nominal: 43", "nominal: 43 N", "43 N", "not a number"),
-        ("varies: false", "varies: no", "no}", "write true or false"),
-        ("varies: false", "varies: 0", "0}", "write true or false"),
-        ("varies: false", "vary: false", "vary", "did you mean varies?"),
-        ("  k:", "  2k:", "2k", "not a name of a parameter"),
-        ("  k:", "  k-1:", "k-1", "not a name of a parameter"),
-        ("  k:", "  κ:", "κ", "not a name of a parameter"),
-        ("  k:", f"  {'k' * 33}:", "kk", "not a name of a parameter"),
-        ("  k:", "  Inf:", "Inf", "reserved word"),
-        ("  k:", "  on:", "on: {", "reserved word"),
-        ("  k:", "  q: {nominal: 1}\n  k:", "{nominal: 1}", "no matrix depends on this"),
-        ("{nominal: 43, range: [25, 90]}", "43", "43\n", "expected a mapping, not"),
-    ],
-)
-def test_refuses_with_place_and_remedy(old: str, new: str, at: str, said: str) -> None:
-    assert_refused(spoiled(SAMPLE, old, new), said, at)
-
-
 def test_parameters_are_a_mapping() -> None:
     head, _, tail = SAMPLE.partition("parameters:")
     text = f"{head}parameters: [k]\nmodes:{tail.partition('modes:')[2]}"

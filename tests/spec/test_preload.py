@@ -13,7 +13,7 @@ from nrs_design.spec.build_plant import build_plant
 from nrs_design.spec.environment import HuntCrossleySpec
 from nrs_design.spec.preload import ExponentSpec, power_box
 
-from .samples import IMPEDANCE, interaction, refusal, spoiled
+from .samples import IMPEDANCE, interaction, spoiled
 
 F = Fraction
 LAW = """model: hunt-crossley
@@ -109,22 +109,3 @@ def test_degrees_cancel():
     spec = interaction(spoiled(IMPEDANCE, LINEAR + "    lever_arm: 0.24 m\n", angles))
     stiffness = build_plant(spec).environment("soft").stiffness
     assert float(stiffness.high) == pytest.approx(800 * 2**0.3)
-
-
-@pytest.mark.parametrize(
-    ("old", "new", "message"),
-    [
-        ("about: 4 mm", "about: 1 mm", "not within the preload"),
-        ("about: 4 mm", "about: 0.1 rad", "is an angle, and a lever_arm is given"),
-        ("preload: [2 mm, 8 mm]", "preload: [2 mm, 3 deg]", "different units"),
-        ("preload: [2 mm, 8 mm]", "preload: [0 mm, 8 mm]", "must be positive"),
-        ("preload: [2 mm, 8 mm]", "preload: [8 mm, 2 mm]", "not within the preload"),
-        ("preload: [2 mm, 8 mm]", "preload: 2 mm", "preload"),
-        ("range: [1.1, 1.3]", "range: [0.9, 1.3]", "not between 1 and 3"),
-        ("range: [1.1, 1.3]", "range: [1.25, 1.3]", "outside the range"),
-        ("nominal: 1.2,", "nominal: 1.2001,", "finer than 1/1000"),
-        ("    exponent: {nominal: 1.2, range: [1.1, 1.3]}\n", "", "exponent"),
-    ],
-)
-def test_what_makes_no_sense_is_refused(old, new, message):
-    assert message in str(refusal(spoiled(TEXT, old, new)))

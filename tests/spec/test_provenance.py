@@ -27,24 +27,6 @@ def test_an_environment_says_where_it_comes_from():
     assert parse_spec(IMPEDANCE).environments["soft"].provenance == ()
 
 
-@pytest.mark.parametrize(
-    ("lines", "message"),
-    [
-        (ENTRY.replace(HASH, HASH[:-1]), "is not a SHA-256"),
-        (ENTRY.replace(HASH, HASH.upper()), "is not a SHA-256"),
-        (ENTRY.replace("synthetic", "guessed"), "data"),
-        (ENTRY.replace("file: a.csv, ", ""), "file"),
-        (REASON, "no doubts to accept"),
-        (f'{DOUBT}    accept_doubt: " "\n', "no reason is given"),
-        ("    range_covers: everything\n", "range_covers"),
-    ],
-)
-def test_wrong_origin_or_acceptance(lines, message):
-    with pytest.raises(SpecError, match=message) as caught:
-        parse_spec(spoiled(IMPEDANCE, ARM, ARM + lines))
-    assert caught.value.line is not None
-
-
 def test_intervals_of_the_actuator():
     """Each must hold the value; without them nothing is said."""
     spec = parse_spec(spoiled(IMPEDANCE, GAIN, f"{GAIN}\n  {INTERVALS}"))

@@ -6,7 +6,6 @@ import pytest
 
 from nrs_design.errors import SpecError
 from nrs_design.spec import InteractionDesignSpec, parse_spec
-from tests.spec.samples import assert_refused, refusal
 from tests.support import SOFT_TISSUE, replaced
 
 TEXT = SOFT_TISSUE.read_text(encoding="utf-8")
@@ -28,31 +27,6 @@ def test_reads_a_delay_or_its_range(written, delay):
     assert sampling.admittance == "exact"
 
 
-@pytest.mark.parametrize(
-    ("section", "said"),
-    [
-        ("{period: 2 ms}", "`sampling.delay` is missing"),
-        ("{delay: 1}", "`sampling.period` is missing"),
-        ("{period: 0 ms, delay: 1}", "must be positive"),
-        ("{period: 2, delay: 1}", "no unit"),
-        ("{period: 2 ms, delay: 1.5}", "a delay of 1.5 is no whole number of samples"),
-        (
-            "{period: 2 ms, delay: -1}",
-            "a delay of -1 samples is not modelled (write a number of samples from 0 to 10",
-        ),
-        ("{period: 2 ms, delay: [0, 11]}", "a delay of 11 samples is not modelled"),
-        ("{period: 2 ms, delay: [2, 0]}", "ends below its start"),
-        ("{period: 2 ms, delay: [0, 1, 2]}", "two of them"),
-        ("{period: 2 ms, delay: 2 ms}", "'2 ms' is a time, and a delay counts samples"),
-        ("{period: 1 kHz, delay: 1}", "that is a frequency: write the time, one over it"),
-        ("2 ms", "write sampling: {period: ..., delay: ...}"),
-        ("{period: 2 ms, delay: 1, admittance: tustin}", "admittance"),
-    ],
-)
-def test_refuses_with_place_and_remedy(section, said):
-    assert_refused(f"{TEXT}\nsampling: {section}\n", said)
-
-
 RANGED = TEXT.replace(
     "time_constant: 0.0351 s", "time_constant: {nominal: 0.0351 s, range: [0.034 s, 0.036 s]}"
 )
@@ -66,36 +40,10 @@ def test_ranges_of_the_actuator_are_for_impedance_controllers_with_and_without_s
         ]
 
 
-@pytest.mark.parametrize(
-    ("section", "said"),
-    [
-        ("{friction: 55.3 rpm}", "without sampling, friction is not modelled"),
-        ("{command: 8 deg/s, largest_angle: 20 deg}", "without sampling, largest_angle is not"),
-        ("{}", "no disturbance is named"),
-    ],
-)
-def test_what_may_disturb_a_loop_in_continuous_time(section, said):
-    assert said in str(refusal(f"{TEXT}\ndisturbances: {section}\n"))
-
-
 def test_the_largest_angle_may_stand_alone():
     spec = sampled("{period: 2 ms, delay: 0}\ndisturbances: {largest_angle: 20 deg}")
     assert spec.disturbances.largest_angle.text == "20 deg"
     assert spec.disturbances.bounds() == {}
-
-
-@pytest.mark.parametrize(
-    ("word", "meant"),
-    [("perod", "period"), ("sample_time", "period"), ("Ts", "period"), ("rate", "period"),
-     ("delays", "delay"), ("lag", "delay"), ("age", "delay")],
-)  # fmt: skip
-def test_a_wrong_key_is_told_by_the_one_that_is_meant(word, meant):
-    """Once, and not also as a key that is missing; what `identify` writes comes last."""
-    section = "{period: 2 ms, delay: 1}".replace(meant, word)
-    message = str(refusal(f"{TEXT}\nsampling: {section}\n"))
-    assert f"unknown key `sampling.{word}`" in message
-    assert "is missing" not in message
-    assert f"did you mean {meant}? keys here are period, delay, " in message
 
 
 OUTER = "\nsampling: {period: 2 ms, outer_period: 0.1 ms, delay: 0}\n"
@@ -118,17 +66,6 @@ def test_periods_that_meet(outer, round_, step):
     sampling = read(TEXT + OUTER.replace("0.1 ms", outer)).sampling
     assert (sampling.round, sampling.step) == (round_, Fraction(step))
     assert sampling.outer == sampling.outer_period.exact
-
-
-@pytest.mark.parametrize(
-    ("outer", "said"),
-    [("0.3 ms", "whole number"), ("3 ms", "whole number"), ("0.02 ms", "is 100 of the other")],
-)
-def test_periods_that_do_not_meet(outer, said):
-    with pytest.raises(SpecError, match=said) as caught:
-        read(TEXT + OUTER.replace("0.1 ms", outer))
-    assert "sampling.outer_period" in str(caught.value)
-    assert "1 to 50 periods" in caught.value.remedy
 
 
 def test_a_delay_counts_samples_of_the_force():

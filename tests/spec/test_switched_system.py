@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from .samples import SWITCHED, assert_refused, numbers, refusal, spoiled, switched
+from .samples import SWITCHED, numbers, refusal, spoiled, switched
 
 
 def test_reads_dayawansa_and_martin_exactly() -> None:
@@ -24,38 +24,6 @@ def test_decimals_are_not_rounded() -> None:
 
 def test_numbers_may_name_modes() -> None:
     assert switched(spoiled(SWITCHED, "name: a", "name: 1")).modes[0].name == "1"
-
-
-@pytest.mark.parametrize(
-    ("old", "new", "at", "said"),
-    [
-        ("time: continuous", "time: contiuous", "contiuous", "'continuous' or 'discrete'"),
-        ("time: continuous\n", "", "kind", "`time` is missing"),
-        ("name: b", "name: a", "a, A: [[-1, -6]", "another mode is named 'a'"),
-        ("name: b", "name: a b", "a b", "not a name"),
-        ("[[-1, -1], [1, -1]]", "[[-1, -1], [1]]", "[1]]", "row 2 has 1 entries, the first has 2"),
-        ("[[-1, -1], [1, -1]]", "[[-1, -1]]", "[[-1, -1]]", "1 x 2, not square"),
-        ("[[-1, -1], [1, -1]]", "[[-1]]", "[[-1, -6]", "a has 1 states and b has 2"),
-        ("[[-1, -1], [1, -1]]", "[]", "[]", "must not be empty"),
-        ("[[-1, -1], [1, -1]]", "[[]]", "[]]}", "must not be empty"),
-        ("[[-1, -1], [1, -1]]", "[-1, -1]", "-1, -1]}", "expected a list"),
-        ("[[-1, -1], [1, -1]]", "-1", "-1}", "expected a list"),
-        ("[[-1, -1], [1, -1]]", "{a: 1}", "{a: 1}", "expected a list"),
-        ("[[-1, -1], [1, -1]]", "[[-1, [1]], [1, -1]]", "[1]]", "single value"),
-        ("[[-1, -1], [1, -1]]", "[[-1, .nan], [1, -1]]", ".nan", "not a finite number"),
-        ("[[-1, -1], [1, -1]]", "[[-1, −1], [1, -1]]", "−1", "ASCII hyphen"),
-        ("[[-1, -1], [1, -1]]", "[[-1, 1/0], [1, -1]]", "1/0", "divides by zero"),
-        ("A: [[-1, -1]", "B: [[-1, -1]", "{name: a", "A` is missing"),
-        ("{name: a, ", "{", "{A: ", "name` is missing"),
-        ("{name: a, A: [[-1, -1], [1, -1]]}", "a", "a\n  - {name: b", "expected a mapping"),
-        ("switching: arbitrary", "switching: never", "never", "'arbitrary'"),
-        ("switching: arbitrary", "swiching: arbitrary", "swiching", "did you mean switching?"),
-        ("switching", "reset: []\nswitching", "reset", "did you mean resets?"),
-        ("[[-1, -1], [1, -1]]", "[[-1, k], [1, -1]]", "k]", "declare parameters"),
-    ],
-)
-def test_refuses_with_place_and_remedy(old: str, new: str, at: str, said: str) -> None:
-    assert_refused(spoiled(SWITCHED, old, new), said, at)
 
 
 @pytest.mark.parametrize("modes", ["[]", "{}", "a"])

@@ -1,0 +1,85 @@
+"""What is refused, where, and in which words: the tables of this folder, a line for each case.
+
+Of an edited spec, the fault that says these words (or all of a list) stands where the edit begins,
+or where the piece `at` first stands from the edited line on. A group says which spec its cases
+edit (`base`), or by which reader of `nrs_design.spec` their texts are refused.
+"""
+
+import os
+from functools import partial
+from importlib import import_module
+from pathlib import Path
+
+import pytest
+
+from nrs_design.errors import SpecError
+from nrs_design.spec import kinds
+from nrs_design.spec.quantity import parse_quantity
+from tests.spec.samples import assert_inside, refusal
+from tests.tables import edited, spec_text, table
+
+
+def cases(key):
+    """Return the cases of all groups of a kind, each with what its group says."""
+    return [
+        pytest.param({**group, **case}, id=f"{file.stem}-{first}-{number}")
+        for file in sorted(Path(__file__).parent.glob("*.yaml"))
+        for first, group in enumerate(table(file))
+        if key in group
+        for number, case in enumerate(group["cases"])
+    ]
+
+
+def edit_of(case):
+    """Return what a case replaces, and by what."""
+    if "replace" in case:
+        return [case["replace"], case["by"]]
+    if "before" in case:
+        return [case["before"], f"{case['add']}\n{case['before']}"]
+    if "after" in case:
+        return [case["after"], f"{case['after']}{case['add']}\n"]
+    return case["edit"]
+
+
+def place_of(text, piece, start):
+    where = text.find(piece, start)
+    before = text[: where if where >= 0 else text.index(piece)]
+    return before.count("\n") + 1, len(before) - before.rfind("\n")
+
+
+def words_of(case):
+    return [case["says"]] if isinstance(case["says"], str) else case["says"]
+
+
+@pytest.mark.parametrize("case", cases("base"))
+def test_a_spec_is_refused(case):
+    base, edit = spec_text(case["base"]), edit_of(case)
+    text = edited(base, edit)
+    said = [
+        fault
+        for fault in refusal(text).faults
+        if all(words in f"{fault.message} ({fault.remedy})" for words in words_of(case))
+    ]
+    changed = text.rfind("\n", 0, len(os.path.commonprefix([base, text]))) + 1
+    place = place_of(text, case.get("at", edit[1]), changed)
+    assert said
+    assert place in [(fault.line, fault.column) for fault in said]
+    assert all(fault.remedy for fault in said)
+
+
+@pytest.mark.parametrize("case", cases("reader"))
+def test_a_text_is_refused(case):
+    module, _, name = f"nrs_design.spec.{case['reader']}".rpartition(".")
+    read = getattr(import_module(module), name)
+    if read is parse_quantity:
+        read = partial(read, kind=getattr(kinds, case["kind"]))
+    with pytest.raises(SpecError) as caught:
+        read(case["text"])
+    error = caught.value
+    said = f"{error.message} ({error.remedy})"
+    assert error.remedy
+    assert all(words in said for words in words_of(case))
+    assert "never" not in case or case["never"] not in error.remedy
+    if name in ("parse_document", "parse_spec"):
+        assert_inside(error, case["text"])
+    assert case.get("place") in (None, [error.line, error.column])

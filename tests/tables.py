@@ -8,6 +8,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+import pytest
 from ruamel.yaml import YAML
 
 from tests.support import ROOT, replaced
@@ -26,3 +27,28 @@ def spec_text(name: str) -> str:
 
 def edited(text: str, edit: list[str]) -> str:
     return replaced(text, *zip(edit[::2], edit[1::2], strict=True))
+
+
+def cases_of(path: Path, key: str) -> list[Any]:
+    """Return the cases of all groups of a kind, each with what its group says."""
+    return [
+        pytest.param({**group, **case}, id=f"{path.stem}-{first}-{number}")
+        for first, group in enumerate(table(path))
+        if key in group
+        for number, case in enumerate(group["cases"])
+    ]
+
+
+def edit_of(case: dict[str, Any]) -> list[str]:
+    """Return what a case replaces, and by what."""
+    if "replace" in case:
+        return [case["replace"], case["by"]]
+    if "before" in case:
+        return [case["before"], f"{case['add']}\n{case['before']}"]
+    if "after" in case:
+        return [case["after"], f"{case['after']}{case['add']}\n"]
+    return list(case["edit"])
+
+
+def words_of(case: dict[str, Any]) -> list[str]:
+    return [case["says"]] if isinstance(case["says"], str) else list(case["says"])

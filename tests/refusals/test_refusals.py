@@ -5,9 +5,9 @@ or where the piece `at` first stands from the edited line on. A group says which
 edit (`base`), or by which reader of `nrs_design.spec` their texts are refused.
 """
 
-import os
 from functools import partial
 from importlib import import_module
+from itertools import takewhile, zip_longest
 from pathlib import Path
 
 import pytest
@@ -16,39 +16,25 @@ from nrs_design.errors import SpecError
 from nrs_design.spec import kinds
 from nrs_design.spec.quantity import parse_quantity
 from tests.spec.samples import assert_inside, refusal
-from tests.tables import edited, spec_text, table
+from tests.tables import cases_of, edit_of, edited, spec_text, words_of
 
 
 def cases(key):
-    """Return the cases of all groups of a kind, each with what its group says."""
-    return [
-        pytest.param({**group, **case}, id=f"{file.stem}-{first}-{number}")
-        for file in sorted(Path(__file__).parent.glob("*.yaml"))
-        for first, group in enumerate(table(file))
-        if key in group
-        for number, case in enumerate(group["cases"])
-    ]
+    files = sorted(Path(__file__).parent.glob("*.yaml"))
+    return [case for file in files for case in cases_of(file, key)]
 
 
-def edit_of(case):
-    """Return what a case replaces, and by what."""
-    if "replace" in case:
-        return [case["replace"], case["by"]]
-    if "before" in case:
-        return [case["before"], f"{case['add']}\n{case['before']}"]
-    if "after" in case:
-        return [case["after"], f"{case['after']}{case['add']}\n"]
-    return case["edit"]
+def changed_line(base, text):
+    """Return where the first line that is not the same begins."""
+    lines = zip_longest(base.splitlines(), text.splitlines())
+    same = [before for before, _ in takewhile(lambda pair: pair[0] == pair[1], lines)]
+    return len("\n".join([*same, ""]))
 
 
 def place_of(text, piece, start):
     where = text.find(piece, start)
     before = text[: where if where >= 0 else text.index(piece)]
     return before.count("\n") + 1, len(before) - before.rfind("\n")
-
-
-def words_of(case):
-    return [case["says"]] if isinstance(case["says"], str) else case["says"]
 
 
 @pytest.mark.parametrize("case", cases("base"))
@@ -60,8 +46,7 @@ def test_a_spec_is_refused(case):
         for fault in refusal(text).faults
         if all(words in f"{fault.message} ({fault.remedy})" for words in words_of(case))
     ]
-    changed = text.rfind("\n", 0, len(os.path.commonprefix([base, text]))) + 1
-    place = place_of(text, case.get("at", edit[1]), changed)
+    place = place_of(text, case.get("at", edit[1]), changed_line(base, text))
     assert said
     assert place in [(fault.line, fault.column) for fault in said]
     assert all(fault.remedy for fault in said)

@@ -3,6 +3,7 @@
 import json
 import re
 from itertools import combinations
+from pathlib import Path
 from string import Formatter
 
 import pytest
@@ -18,16 +19,8 @@ from nrs_design.spec.combinations import CHANGING, COMBINATIONS
 from nrs_design.spec.interaction_doubts import INTERACTION_DOUBTS
 from nrs_design.spec.load import SPEC_KINDS, model_of
 from nrs_design.spec.model import SpecModel
+from tests.tables import table
 
-IMPEDANCE = {
-    "type": "impedance",
-    "environment": "soft",
-    "Mt": "0.01 kg*m^2",
-    "Bt": "2.15 N*m*s/rad",
-}
-FORCE = {"type": "force", "environment": "soft", "proportional_gain": "0.02 rad/(N*m)"}
-PI = FORCE | {"type": "pi-force", "integral_gain": "0.5 rad/(N*m*s)"}
-ELASTIC = {"model": "elastic", "stiffness": "43 N*m/rad"}
 CREEPING = {
     "model": "kelvin-boltzmann",
     "parallel_stiffness": "30 N*m/rad",
@@ -35,168 +28,10 @@ CREEPING = {
     "damping": "3 N*m*s/rad",
 }
 SAMPLING = {"period": "2 ms", "delay": 0}
-LOAD = {"load_inertia": "1.213 kg*m^2"}
-TWO = {"environments": {"soft": ELASTIC, "stiff": ELASTIC}}
-CONSTANT = {"range": ["40 N*m/rad", "46 N*m/rad"], "varies": False}
-CONSTANT_LAG = {"nominal": "0.0351 s", "range": ["0.035 s", "0.036 s"], "varies": False}
-TAKES_TORQUES = {
-    "actuator": None,
-    "motion_loop": None,
-    "torque_interface": {"inertia": "0.2 kg*m^2", "friction": "0.5 N*m*s/rad"},
-    "controllers": {
-        name: {
-            "type": "torque-impedance",
-            "environment": "soft",
-            "stiffness": "30 N*m/rad",
-            "damping": "3 N*m*s/rad",
-        }
-        for name in ("first", "second")
-    },
-}
-BASE = {
-    "kind": "interaction-design",
-    "name": "combined",
-    "actuator": {"gain": "4.8417e-4 rad/s/rpm", "time_constant": "0.0351 s"},
-    "motion_loop": {"damping_ratio": 0.707, "settling_time": "0.1404 s"},
-    "limits": {"velocity": "8 deg/s", "torque": "0.3 N*m", "bandwidth": "2 Hz"},
-    "environments": {"soft": ELASTIC},
-    "controllers": {"first": IMPEDANCE, "second": IMPEDANCE | {"Bt": "4 N*m*s/rad"}},
-    "contact": "kept",
-    "switching": "arbitrary",
-}
-
-
-def tissue(model, **more):
-    return {"environments": {"soft": {"model": model} | more}}
-
-
-def first(**more):
-    return {"controllers": {"first": more}}
-
-
 # What a spec must say to have a feature, merged into the plainest one, in this order.
-CHANGES = {
-    f.SPRUNG: {"controllers": {name: {"Kt": "0.5 N*m/rad"} for name in ("first", "second")}},
-    f.RELAXED: {"controllers": {"second": IMPEDANCE}},
-    f.OTHERS: {"controllers": {"second": FORCE}},
-    f.BLEEDING: {"controllers": {"second": PI}, "idle_states": {"decay": "20 1/s"}},
-    f.OFFSET: {"controllers": {"second": FORCE | {"offset": "measured"}}},
-    f.IDLE: {"idle_states": {"decay": "20 1/s"}},
-    f.IDLE_RESET: {"idle_states": {"decay": "20 1/s", "reset": True}},
-    f.SAMPLED: {"sampling": SAMPLING},
-    f.CONTINUOUS: {},
-    f.UNFILTERED: {},
-    f.TWO_PERIODS: {"sampling": SAMPLING | {"outer_period": "4 ms"}},
-    f.MISSES: {"sampling": SAMPLING | {"misses": {"consecutive": 1, "command": "hold"}}},
-    f.ZEROED: {"sampling": SAMPLING | {"misses": {"consecutive": 1, "command": "zero"}}},
-    f.TIMED: {"actuator": {"dead_time": "1 ms"}},
-    f.LOSABLE: {"contact": "losable"},
-    f.NOT_KEPT: {"contact": "losable"},
-    f.GIVEN_LOOP: {
-        "motion_loop": {
-            "transfer_function": {"numerator": [28.4, 1619], "denominator": [1, 57, 1619]}
-        }
-    },
-    f.MOTOR_RANGE: {
-        "actuator": {"time_constant": {"nominal": "0.0351 s", "range": ["0.035 s", "0.036 s"]}}
-    },
-    f.LOADED: {"actuator": LOAD},
-    f.HAND: tissue("hand", damping="7 N*m*s/rad", mass="0.1 kg*m^2"),
-    f.RESTLESS: tissue("maxwell", damping="10 N*m*s/rad"),
-    f.MEMORY: tissue("maxwell", damping="10 N*m*s/rad"),
-    f.ANY_CONTACT: {
-        "controllers": {"second": {"type": "position"}},
-        "idle_states": {"decay": "20 1/s"},
-    },
-    f.PRELOADED: tissue(
-        "hunt-crossley",
-        damping="1 N*m*s/rad",
-        exponent=1.2,
-        about="0.02 rad",
-        preload=["0.01 rad", "0.03 rad"],
-    ),
-    f.DAMPED: tissue("kelvin-voigt", damping="1 N*m*s/rad"),
-    f.DAMPED_FORCE: tissue("kelvin-voigt", damping="1 N*m*s/rad")
-    | {"controllers": {"second": FORCE}},
-    f.TISSUE_RANGE: {
-        "environments": {
-            "soft": {"stiffness": {"nominal": "43 N*m/rad", "range": ["40 N*m/rad", "46 N*m/rad"]}}
-        }
-    },
-    f.AT_ONCE: TWO | first(contacts=[["soft", "stiff"]]),
-    f.HEAVY_AT_ONCE: {
-        "environments": {
-            "soft": ELASTIC,
-            "stiff": {"model": "maxwell", "stiffness": "9 N*m/rad", "damping": "1 N*m*s/rad"},
-        }
-    }
-    | first(contacts=[["soft", "stiff"]]),
-    f.LAGGING_AT_ONCE: {
-        "environments": {
-            "soft": ELASTIC,
-            "stiff": {"model": "kelvin-voigt", "stiffness": "9 N*m/rad", "damping": "1 N*m*s/rad"},
-        }
-    }
-    | first(contacts=[["soft", "stiff"]]),
-    f.SEVERAL_CONTACTS: TWO | first(contacts=["soft", "stiff"]),
-    f.FILTER: {"sensor": {"filter": {"cutoff": "30 Hz"}}},
-    f.DISTURBED: {"disturbances": {"command": "8 deg/s"}},
-    f.COMMAND: {"disturbances": {"command": "8 deg/s"}},
-    f.ANGLE: {"disturbances": {"largest_angle": "20 deg"}},
-    f.RULES: {"switching": {"transitions": [["first", "second"]]}},
-    f.DWELL: {"switching": {"dwell_time": "1 s"}},
-    f.SAMPLED_DWELL: {"switching": {"dwell_time": "1 s"}},
-    f.CONTACT_RULES: {"switching": {"transitions": [["first/soft", "second/soft"]]}},
-    f.SATURATED: {"limits": {"command": "2000 rpm"}, "goals": {"initial_force": "0.1 N*m"}},
-    f.STREAMED: {
-        "actuator": None,
-        "motion_loop": None,
-        "position_interface": {
-            "time_constant": {"nominal": "0.03 s", "range": ["0.029 s", "0.031 s"]}
-        },
-    },
-    f.VELOCITIES: {
-        "actuator": None,
-        "motion_loop": None,
-        "velocity_interface": {
-            "time_constant": {"nominal": "0.03 s", "range": ["0.029 s", "0.031 s"]}
-        },
-    },
-    f.PLACED: {
-        "actuator": None,
-        "motion_loop": None,
-        "position_interface": {"time_constant": "0.03 s"},
-    },
-    f.LIMITED: {"limits": {"command": "2000 rpm"}},
-    f.SLIDING: {"axis": "prismatic"},
-    f.MODE_LOGIC: {
-        "mode_logic": {
-            "type": "thresholds",
-            "start": "first",
-            "signals": {
-                "command": {"noise": "0.1 deg/s", "age": "4 ms", "largest_rate": "40 deg/s^2"}
-            },
-            "switches": [
-                {"from": "first", "to": "second", "command": {"below": "-0.5 deg/s"}},
-                {"from": "second", "to": "first", "command": {"above": "0.5 deg/s"}},
-            ],
-        }
-    },
-    f.TOOL: {
-        "sensor": {
-            "tool": {"mass": "70 g", "center_of_mass": {"x": "0 m", "y": "0 m", "z": "20 mm"}},
-            "pose_error": "1 deg",
-            "pivot": {"x": "0 m", "y": "0 m", "z": "-0.1 m"},
-        }
-    },
-    f.TORQUES: TAKES_TORQUES,
-    f.CONSTANT_TISSUE: {
-        "environments": {"soft": {"stiffness": CONSTANT | {"nominal": "43 N*m/rad"}}}
-    },
-    f.CONSTANT_MOTOR: {"actuator": {"time_constant": CONSTANT_LAG}},
-    f.OTHER_TISSUE: {"environments": {"stiff": ELASTIC}}
-    | {"controllers": {"second": {"environment": "stiff"}}},
-}
+FEATURES = table(Path(__file__).with_name("features.yaml"))
+BASE = FEATURES["BASE"]
+CHANGES = {getattr(f, name): changes for name, changes in FEATURES.items() if name != "BASE"}
 
 
 def merged(tree, changes):

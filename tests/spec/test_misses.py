@@ -5,20 +5,7 @@ from math import comb
 
 import pytest
 
-from nrs_design.spec import parse_spec
 from nrs_design.spec.misses import automaton_of
-
-TEXT = """\
-kind: switched-system
-name: weakly-hard
-time: discrete
-parameters: {k: {nominal: 1, range: [0.5, 1]}}
-modes:
-  - {name: hit, A: [["0.5*k"]]}
-  - {name: miss, A: [["1.5"]]}
-switching: arbitrary
-misses: {mode: miss, at_most: 1, of: 3}
-"""
 
 
 def follow(automaton, word):
@@ -73,10 +60,3 @@ def test_a_long_window_has_no_more_states_on_the_way():
         state = automaton.miss[state]
     assert automaton.miss[state] is None
     assert automaton.hit[state] == 0
-
-
-def test_a_number_in_a_row_is_a_window():
-    spec = parse_spec(TEXT.replace("at_most: 1, of: 3", "consecutive: 3"))
-    assert spec.misses.window == (3, 4)
-    assert str(spec.misses) == "at most 3 steps in a row in miss"
-    assert str(parse_spec(TEXT).misses) == "at most 1 of any 3 steps in a row in miss"

@@ -8,35 +8,9 @@ from nrs_design.spec.describe import describe
 
 from .samples import IMPEDANCE, spoiled
 
-HASH = "0123456789abcdef" * 4
 ARM = "    lever_arm: 0.24 m\n"
-ENTRY = f"    provenance: [{{file: a.csv, sha256: {HASH}, data: synthetic}}]\n"
 DOUBT = '    doubts: ["a: the residual is 46 % of the range of the force"]\n'
 REASON = "    accept_doubt: a phantom, to be measured again\n"
-GAIN = "gain: 4.8417e-4 rad/s/rpm"
-INTERVALS = (
-    "intervals: {gain: [4.8e-4 rad/s/rpm, 4.9e-4 rad/s/rpm], time_constant: [35 ms, 0.036 s]}"
-)
-
-
-def test_an_environment_says_where_it_comes_from():
-    spec = parse_spec(spoiled(IMPEDANCE, ARM, ARM + ENTRY))
-    (source,) = spec.environments["soft"].provenance
-    assert (source.file, source.sha256, source.data) == ("a.csv", HASH, "synthetic")
-    assert ("environments.soft.provenance[0]", "a.csv", "synthetic", "") in describe(spec)
-    assert parse_spec(IMPEDANCE).environments["soft"].provenance == ()
-
-
-def test_intervals_of_the_actuator():
-    """Each must hold the value; without them nothing is said."""
-    spec = parse_spec(spoiled(IMPEDANCE, GAIN, f"{GAIN}\n  {INTERVALS}"))
-    assert spec.actuator.intervals.time_constant[0].si == pytest.approx(0.035)
-    names = [row.name for row in describe(spec)]
-    assert "actuator.intervals.gain" in names
-    assert parse_spec(IMPEDANCE).actuator.intervals is None
-    wrong = INTERVALS.replace("4.8e-4", "4.85e-4")
-    with pytest.raises(SpecError, match=r"does not hold '4\.8417e-4 rad/s/rpm'"):
-        parse_spec(spoiled(IMPEDANCE, GAIN, f"{GAIN}\n  {wrong}"))
 
 
 def test_doubts_and_what_a_range_holds_are_listed():
@@ -67,9 +41,3 @@ def test_values_that_were_changed_by_hand_are_refused():
     ):
         with pytest.raises(SpecError, match="changed since they were identified"):
             parse_spec(spoiled(text, old, new))
-
-
-def test_a_doubt_that_nobody_accepts_is_a_warning():
-    spec = parse_spec(spoiled(IMPEDANCE, ARM, ARM + DOUBT))
-    (doubt,) = (item for item in doubt_spec(spec) if "in doubt" in item.message)
-    assert doubt.at == ("environments", "soft", "doubts")

@@ -4,7 +4,6 @@ import pytest
 
 from nrs_design.robot.models import build_robot
 from nrs_design.spec import RobotSpec, parse_spec
-from nrs_design.spec.describe import describe, si_unit
 from nrs_design.spec.templates import TEMPLATES
 
 from .samples import spoiled
@@ -36,19 +35,3 @@ def test_balance_and_control_may_be_left_out() -> None:
     text = TEXT[: TEXT.index("# Thesis 4.2 and 4.3")]
     spec = robot_spec(text)
     assert (spec.control, spec.balance) == (None, None)
-
-
-def test_description_lists_every_quantity() -> None:
-    rows = {row.name: row for row in describe(robot_spec())}
-    assert rows["legs.left.azimuth"].value == "-0.785398"
-    assert rows["legs.right.arm.center_of_mass[0]"][1:] == ("75.4 mm", "0.0754", "m")
-    assert rows["gravity"].unit == "m/s^2"
-    assert rows["drive.speed_torque_gradient"].unit == "s^2*rpm/kg/m^2"
-    assert rows["control.motion_loop.damping_ratio"].written == "0.707"
-    assert "name" not in rows
-
-
-def test_units_of_a_dimension() -> None:
-    assert si_unit((0,) * 8) == "1"
-    assert si_unit((0, 0, -1, 0, 0, 0, 0, 0)) == "1/s"
-    assert si_unit((1, 2, -2, -1, 0, 0, 0, 0)) == "kg*m^2/s^2/rad"

@@ -12,25 +12,14 @@ from nrs_design.spec import load_spec
 from nrs_design.spec.load import axes_at, read_axes
 from nrs_design.spec.schema import json_schema
 from nrs_design.spec.templates import TEMPLATES
+from tests.tables import edited, spec_text, table
 
 from .samples import FORCE, IMPEDANCE, SWITCHED, refusal, spoiled
 
 ROOT = Path(__file__).resolve().parents[2]
 SHIPPED = sorted([*ROOT.glob("specs/**/*.nrs.yaml"), *ROOT.glob("docs/examples/*.nrs.yaml")])
-RULES = """\
-kind: switched-system
-name: sample
-time: continuous
-parameters:
-  k: {nominal: 43, range: [25, 90]}
-  m: {nominal: 1, range: ["0.5", 2], varies: false}
-modes:
-  - {name: a, A: [[0, 1], [-2 - k, -1]]}
-  - {name: b, A: [["1/6", 1], ["-(3/4*k - m/10.0 + 0.5)", -1e-3]]}
-switching: {transitions: [[a, b], [b, a]]}
-resets:
-  - {from: a, to: b, map: [[1, 0], [0, "1/2"]]}
-"""
+RULES = spec_text("rules")
+SPRUNG = spoiled(IMPEDANCE, "    Bt:", "    Kt: 0.5 N*m/rad\n    Bt:")
 DWELL = spoiled(SWITCHED, "switching: arbitrary", "switching: {dwell_time: 2.76 s}")
 STEPS = SWITCHED.replace("continuous", "discrete").replace("arbitrary", "{dwell_time: 3 steps}")
 
@@ -63,7 +52,7 @@ def test_shipped_specs_validate_and_are_named_as_their_files(path: Path) -> None
 
 
 @pytest.mark.parametrize(
-    "text", [*TEMPLATES.values(), IMPEDANCE, FORCE, SWITCHED, RULES, DWELL, STEPS]
+    "text", [*TEMPLATES.values(), IMPEDANCE, FORCE, SWITCHED, RULES, DWELL, STEPS, SPRUNG]
 )
 def test_templates_and_samples_validate(text: str, tmp_path: Path) -> None:
     assert faults(text) == []
@@ -73,51 +62,15 @@ def test_templates_and_samples_validate(text: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("sample", "old", "new"),
+    ("base", "edit"),
     [
-        (SWITCHED, "kind: switched-system\n", ""),
-        (SWITCHED, "kind: switched-system", "kind: tissue"),
-        (SWITCHED, "name: sample", "nane: sample"),
-        (SWITCHED, "time: continuous", "time: never"),
-        (SWITCHED, '"1/6"', '"1/0"'),
-        (SWITCHED, '"1/6"', "true"),
-        (SWITCHED, "[[-1, -1], [1, -1]]", "[]"),
-        (SWITCHED, "switching: arbitrary\n", ""),
-        (SWITCHED, "switching: arbitrary", "switching: never"),
-        (SWITCHED, "switching: arbitrary", "switching: {}"),
-        (SWITCHED, "switching: arbitrary", "switching: {dwell: 1 s}"),
-        (SWITCHED, "switching: arbitrary", "switching: {dwell_time: 1}"),
-        (SWITCHED, "switching: arbitrary", "switching: {transitions: [[a]]}"),
-        (SWITCHED, "switching: arbitrary", "switching: {transitions: [[a, b, a]]}"),
-        (RULES, "range: [25, 90]", "range: [25]"),
-        (RULES, "nominal: 43", "nominal: 43 N"),
-        (RULES, "nominal: 43, ", ""),
-        (RULES, "varies: false", "varies: 1"),
-        (RULES, "  k:", "  k-1:"),
-        (RULES, "-2 - k", "k/0"),
-        (RULES, "-2 - k", "k^2"),
-        (RULES, "-2 - k", "k = 2"),
-        (RULES, "from: a, ", ""),
-        (RULES, "map: ", "matrix: "),
-        (RULES, '"1/2"]]', "k]]"),
-        (IMPEDANCE, "747.1461 N/m", "747.1461"),
-        (IMPEDANCE, "747.1461 N/m", "{nominal: 1 N/m, range: [1 N/m]}"),
-        (IMPEDANCE, "model: elastic", "model: rigid"),
-        (IMPEDANCE, "Mt: 0.01", "mt: 0.01"),
-        (IMPEDANCE, "0.3 N*m", "−0.3 N*m"),
-        (IMPEDANCE, "Bt: {min: 0.1 N*m*s/rad, ", "Bt: {"),
-        (
-            IMPEDANCE,
-            "Mt: 0.01",
-            "desired_impedance: 1 N*m*s/rad\n    desired_impedance_ratio: 0.5\n    Mt: 0.01",
-        ),
-        (FORCE, "(N*m)\n", "(N*m)\n    damping_ratio: 0.741\n"),
-        (FORCE, "    proportional_gain: 0.02 rad/(N*m)\n", ""),
-        (FORCE, "{type: position}", "{type: impedance}"),
+        (base, edit)
+        for base, edits in table(Path(__file__).with_name("schema.yaml")).items()
+        for edit in edits
     ],
 )
-def test_schema_and_loader_refuse_the_same(sample: str, old: str, new: str) -> None:
-    text = spoiled(sample, old, new)
+def test_schema_and_loader_refuse_the_same(base: str, edit: list[str]) -> None:
+    text = edited(spec_text(base), edit)
     assert faults(text)
     assert refusal(text)
 

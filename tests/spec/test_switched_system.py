@@ -22,10 +22,6 @@ def test_decimals_are_not_rounded() -> None:
     assert a * d - b * c == 0
 
 
-def test_numbers_may_name_modes() -> None:
-    assert switched(spoiled(SWITCHED, "name: a", "name: 1")).modes[0].name == "1"
-
-
 @pytest.mark.parametrize("modes", ["[]", "{}", "a"])
 def test_refuses_an_empty_or_absent_list_of_modes(modes: str) -> None:
     head = SWITCHED.partition("modes:")[0]

@@ -39,6 +39,11 @@ MACHINE = ("-M", "netduinoplus2", "-nographic", "-monitor", "none", "-serial", "
 SEMIHOSTING = ("-semihosting-config", "enable=on,target=native")
 
 
+def source_file(name: str) -> str:
+    """Read a program that is compiled or run together with what is exported."""
+    return (Path(__file__).parent / "sources" / name).read_text(encoding="utf-8")
+
+
 def frame(low_pass=None, limits=None, takes=None) -> StepFrame:
     return StepFrame(MOTION.Kp, MOTION.over(PERIOD), low_pass, limits or StepLimits(), takes)
 

@@ -2,28 +2,10 @@
 
 import pytest
 
-from tests.exporters.programs import built, compiler, run, write_formats
+from tests.exporters.programs import built, compiler, run, source_file, write_formats
 
-PROJECT = """cmake_minimum_required(VERSION 3.13)
-project(robot C CXX)
-enable_testing()
-include(firmware/soft-tissue.cmake)
-add_executable(robot main.cpp)
-target_link_libraries(robot PRIVATE nrs_soft_tissue)
-"""
-MAIN = """#include "soft-tissue.h"
-#include "soft-tissue_monitor.h"
-#include "soft-tissue_test.h"
-
-int main()
-{
-    nrs_soft_tissue_state_t state;
-    nrs_soft_tissue_monitor_t monitor;
-    nrs_soft_tissue_init(&state, 0.5F);
-    nrs_soft_tissue_monitor_init(&monitor, 0.0F);
-    return (state.reference == 0.5F) ? 0 : 1;
-}
-"""
+PROJECT = source_file("CMakeLists.txt")
+MAIN = source_file("robot.cpp")
 
 
 @pytest.fixture

@@ -9,7 +9,7 @@ import pytest
 from nrs_design.exporters.c_names import CNames
 from nrs_design.exporters.formats.c import header_text, source_text
 from nrs_design.spec.monitoring import MonitoringSpec
-from tests.exporters.programs import LAWS, run, write_formats
+from tests.exporters.programs import LAWS, run, source_file, write_formats
 
 pytestmark = pytest.mark.slow
 EVA = (
@@ -18,25 +18,7 @@ EVA = (
 )
 # Any bits of memory, also those of what is not a number; and all numbers that are finite.
 ANY, FINITE = "any_number", "Frama_C_float_interval(-FLT_MAX, FLT_MAX)"
-LOOP = """#include "x.h"
-#include <float.h>
-#include "__fc_builtin.h"
-
-volatile uint32_t any_mode;
-volatile float any_number;
-
-int main(void)
-{{
-    nrs_x_input_t in;
-    nrs_x_state_t state;
-    nrs_x_output_t out;
-    nrs_x_init(&state, {number});
-    for (;;) {{
-        in.mode = any_mode;
-{inputs}        nrs_x_step(&in, &state, &out);
-{bound}    }}
-}}
-"""
+LOOP = source_file("endless_law.c.txt")
 
 
 def frama_c():
@@ -89,30 +71,7 @@ def test_nothing_overflows_behind_the_guards(tmp_path, sampled_export, shape):
     assert (count, "status unknown" in said) == (0, False), said
 
 
-MONITOR = """#include "soft-tissue_monitor.h"
-
-volatile uint32_t any;
-volatile float any_number;
-
-int main(void)
-{
-    static nrs_soft_tissue_monitor_t m;
-    nrs_soft_tissue_monitor_init(&m, any_number);
-    for (;;) {
-        nrs_soft_tissue_monitor_input_t in;
-        in.mode = any;
-        in.age = any;
-        in.step = any_number;
-        in.angle = any_number;
-        in.torque = any_number;
-        in.command = any_number;
-        (void)nrs_soft_tissue_monitor_step(&in, &m);
-        if (any != 0U) {
-            nrs_soft_tissue_monitor_init(&m, any_number);
-        }
-    }
-}
-"""
+MONITOR = source_file("endless_monitor.c")
 
 
 @pytest.mark.parametrize("surface", ["", "fixed", "free"])

@@ -13,36 +13,11 @@ import pytest
 
 from nrs_design.controllers.replica import step
 from nrs_design.exporters.formats.vectors import csv_text, make_vectors, vectors_text
-from tests.exporters.programs import LAWS, compiler, run, write_formats
+from tests.exporters.programs import LAWS, compiler, run, source_file, write_formats
 
 # An implementation that has nothing in common with the package but the formulas: each operation in
 # double precision, then rounded once to single precision.
-PYTHON = """
-import struct
-
-def f(x):
-    return struct.unpack("f", struct.pack("f", x))[0]
-
-NUMBERS = {numbers}
-
-def step(mode, inputs, states):
-    limits = {limits}
-    given = inputs | states
-    if mode not in (0,) or not all(abs(given[k]) <= limits[k] for k in limits):
-        return {{"command": 0.0}}, False, states
-    n = NUMBERS
-    e = f(states["reference"] - inputs["angle"])
-    change = f(e - states["error_before"])
-    u = f(f(n["KP"] * e) + f(n["KD_OVER_T"] * change))
-    v = states["velocity"]
-    wanted = max(-n["VELOCITY_LIMIT"], min(n["VELOCITY_LIMIT"], inputs["velocity_command"]))
-    after = {{
-        "reference": f(states["reference"] + f(n["T"] * f(wanted - v))),
-        "error_before": e,
-        "velocity": f(f(n["A"] * v) + f(n["B"] * inputs["torque"])),
-    }}
-    return {{"command": u}}, True, after
-"""
+PYTHON = source_file("law.py.txt")
 
 
 @pytest.mark.parametrize("shape", LAWS)

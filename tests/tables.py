@@ -4,6 +4,7 @@ A spec is named by its file in `tests/specs`, or by a path from the root. An edi
 is replaced and what stands there instead, once or several times.
 """
 
+import shlex
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -52,3 +53,27 @@ def edit_of(case: dict[str, Any]) -> list[str]:
 
 def words_of(case: dict[str, Any]) -> list[str]:
     return [case["says"]] if isinstance(case["says"], str) else list(case["says"])
+
+
+def content(said: str | dict[str, Any]) -> str:
+    """Return the text of a file: as it stands, or a spec that is edited, cut and has more lines."""
+    if isinstance(said, str):
+        return said
+    text = edited(spec_text(said["base"]), said.get("edit", []))
+    return text.partition(said["cut"])[0] if "cut" in said else text + said.get("more", "")
+
+
+def write_files(files: dict[str, Any], folder: Path) -> None:
+    for name, said in files.items():
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_text(content(said), encoding="utf-8")
+
+
+def words_in(line: str) -> list[str | Path]:
+    """Return the words of a command line; those that begin with ``@`` are paths from the root."""
+    return [ROOT / word[1:] if word.startswith("@") else word for word in shlex.split(line)]
+
+
+def files_in(folder: Path) -> list[str]:
+    there = (path for path in folder.rglob("*") if path.is_file())
+    return sorted(str(path.relative_to(folder)) for path in there)

@@ -4,7 +4,7 @@ import pytest
 
 from nrs_design.cli.errors import MAX_LISTED, MAX_SHOWN, excerpt
 from tests.spec.samples import IMPEDANCE, SWITCHED, spoiled
-from tests.support import COMMUTING, ROOT, SOFT_TISSUE, document_of, run, typed
+from tests.support import ROOT, SOFT_TISSUE, document_of, run, typed
 from tests.terminal import run_on_terminal
 
 FAULTY = spoiled(
@@ -95,30 +95,6 @@ def test_wide_characters_count_twice_and_escapes_as_written():
 def test_slips_of_the_pen(tmp_path, old, new, said):
     (tmp_path / "a.nrs.yaml").write_text(spoiled(IMPEDANCE, old, new))
     assert said in run("check", "a.nrs.yaml", cwd=tmp_path).stderr
-
-
-@pytest.mark.parametrize(
-    ("arguments", "said"),
-    [
-        (("certify",), "no command 'certify' (did you mean certify-switching?"),
-        (("Gat",), "did you mean gate?"),
-        (("exprot",), "did you mean export?"),
-        (("zzz",), "there are init, check, explain"),
-        (("robot", "chek"), "did you mean check?"),
-        (("tune", COMMUTING), "nothing to tune"),
-        (("simulate", COMMUTING), "describes no interaction"),
-        (("optimize", COMMUTING), "nothing to design"),
-        (("verify", COMMUTING, COMMUTING), "this is a spec, not a certificate (name the"),
-        (("optimize", COMMUTING), "commuting.nrs.yaml:4:1"),
-        (("certify-switching", COMMUTING, "--margin"), "commuting.nrs.yaml:8:1"),
-        (("certify-switching", "a.nrs.yaml", "b.nrs.yaml"), "one spec at a time"),
-        (("explain", "NRS111"), "NRS111 is retired"),
-        # What has no document has no such option.
-        (("schema", "--json"), "No such option"),
-    ],
-)
-def test_wrong_use_says_what_is_meant(tmp_path, arguments, said):
-    assert said in run(*arguments, cwd=tmp_path, code=2).stderr
 
 
 def test_the_words_of_wrong_usage_are_printable(tmp_path):

@@ -30,13 +30,6 @@ def test_json(tmp_path):
     assert document_of("explain", "inconclusive", cwd=tmp_path)["word"] == "inconclusive"
 
 
-@pytest.mark.parametrize("name", ["NRS999", "", "\x1b[31m"])
-def test_unknown(tmp_path, name):
-    err = run("explain", name, cwd=tmp_path, code=2).stderr
-    assert "there is no rule or verdict" in err
-    assert "\x1b" not in err
-
-
 def test_explaining_needs_no_numerical_library(tmp_path):
     _, facts = loaded_by(tmp_path, "explain")
     assert not {"numpy", "scipy", "control", "flint"} & set(facts["modules"])

@@ -1,8 +1,6 @@
 import json
-import re
 import subprocess
 import sys
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -10,7 +8,6 @@ import pytest
 from nrs_design.certificates.certificate import content_id, dump
 from nrs_design.certificates.verify import verify
 from nrs_design.cli import main
-from nrs_design.exporters import format_names, format_of
 from nrs_design.exporters.record import ExportRecord
 from nrs_design.gating.lock import SCHEMA
 from nrs_design.pipeline.runs import run_certification
@@ -133,62 +130,6 @@ def test_certificate_that_is_none(export):
     assert files() == ["mine.json"]
 
 
-def test_refuted_design_is_not_exported(export, capsys):
-    text = SPEC.read_text().replace("768.17 N/m]}", "90000 N/m]}")
-    Path("stiff.nrs.yaml").write_text(text)
-    assert export("stiff.nrs.yaml") == 1
-    assert "not exported: the design is not proved: refuted" in capsys.readouterr().err
-    assert files() == ["stiff.nrs.yaml"]
-    refuting = run_certification(read_spec("stiff.nrs.yaml")).certificate
-    Path("mine.json").write_text(dump(refuting))
-    assert export("stiff.nrs.yaml", "--certificate", "mine.json", "--json") == 1
-    assert json.loads(capsys.readouterr().out)["verdict"] == "refuted"
-    assert files() == ["mine.json", "stiff.nrs.yaml"]
-
-
-def test_outputs_that_cannot_be(export, capsys):
-    Path("file").touch()
-    assert export(SPEC, "--out", "file/x.json") == 2
-    assert export(SPEC, "--out", "soft-tissue.cert.json") == 2
-    assert "is the certificate file" in capsys.readouterr().err
-    assert export(SPEC, "--format", "fortran") == 2
-    assert files() == ["file"]
-
-
-def test_list(export, capsys):
-    assert export("--list") == 0
-    text = capsys.readouterr().out
-    assert all(name in text for name in [*format_names(), "ros2"])
-    assert export("--list", "--json") == 0
-    formats = json.loads(capsys.readouterr().out)["formats"]
-    assert [entry["name"] for entry in formats] == [*format_names(), "ros2"]
-    assert ["NAME.export.json"] in [entry["files"] for entry in formats]
-    assert export() == 2
-    assert "--list" in capsys.readouterr().err
-
-
-def test_options_of_programs(export, capsys, monkeypatch):
-    for option in (["--unproved"], ["--sample-time", "2 ms"]):
-        assert export(SPEC, *option) == 2
-        assert "for programs" in capsys.readouterr().err
-    program = replace(format_of("json"), executable=True)
-    for reader in ("format_of", "known_format"):
-        monkeypatch.setattr(f"nrs_design.cli.export.{reader}", lambda name: program)
-    for wrong in ("2", "0 s", "-1 ms", "2 Hz"):
-        assert export(SPEC, "--format", "json", "--sample-time", wrong) == 2
-    assert export(SPEC, "--format", "json", "--sample-time", "2 ms") == 3
-    assert files() == []
-    arguments = (SPEC, "--format", "json", "--sample-time", "2 ms", "--unproved")
-    assert export(*arguments) == 3
-    assert "soft-tissue: UNPROVED (the certificate is about cont" in capsys.readouterr().out
-    assert files() == ["reports/soft-tissue.cert.json", "reports/soft-tissue.export.json"]
-    assert export(*arguments, "--json") == 3
-    assert json.loads(capsys.readouterr().out)["record"]["verdict"] == "unproved"
-
-
-SLOW = SPECS.parent / "docs/examples/slow-processor.nrs.yaml"
-
-
 def sampled_text():
     head, _, _ = SPEC.read_text().partition("  withdrawal:")
     sampling = "switching: arbitrary\nsampling: {period: 2 ms, delay: 0}\n"
@@ -267,23 +208,3 @@ int main(void) { return nrs_other_self_test() + nrs_every_2_ms_self_test() + 2; 
     subprocess.run([cc, *flags, "-DNRS_OTHER_TEST_PROGRAM", *sources], check=True)
     done = subprocess.run(["./program"], check=True, capture_output=True)
     assert done.stdout == b"other: all 1000 cases are the same\n"
-
-
-def test_a_refuted_program_says_so_in_every_file(export, capsys):
-    assert export(SLOW, "--format", "c") == 1
-    assert files() == []
-    assert "not exported" in capsys.readouterr().err
-    assert export(SLOW, "--format", "c", "--unproved") == 1
-    programs = [name for name in files() if not name.endswith(".json")]
-    assert programs == ["reports/slow-processor.c", "reports/slow-processor.h"]
-    for name in programs:
-        assert "verdict: UNPROVED: the design is not proved: refuted" in Path(name).read_text()
-        assert "0.01 s" in Path(name).read_text()
-
-
-def test_what_has_no_program_is_told_at_its_place(export, capsys):
-    offset = SPECS / "neuroboscope/force-limit-offset.nrs.yaml"
-    options = ("--format", "c", "--sample-time", "2 ms", "--unproved")
-    assert export(offset, *options) == 2
-    assert files() == []
-    assert re.search(r"force-limit-offset\.nrs\.yaml:\d+:\d+", capsys.readouterr().err)

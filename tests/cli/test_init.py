@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from nrs_design.cli.init import named_after
-from tests.support import run, typed
+from tests.support import run
 
 
 @pytest.mark.parametrize("template", ["interaction-design", "hybrid-force", "switched-system"])
@@ -18,26 +18,6 @@ def test_a_fresh_spec_passes_check_and_is_proved(tmp_path: Path, template: str) 
     assert first.startswith("# yaml-language-server: $schema=")
     run("check", "-q", "mine.nrs.yaml", cwd=tmp_path, code=0)
     run("certify-switching", "-q", "mine.nrs.yaml", cwd=tmp_path, code=0)
-
-
-def test_init_does_not_overwrite_unless_forced(tmp_path: Path) -> None:
-    target = tmp_path / "switched-system.nrs.yaml"
-    target.write_text("mine")
-    run("init", "switched-system", cwd=tmp_path, code=2)
-    assert target.read_text() == "mine"
-    run("init", "switched-system", "--force", cwd=tmp_path, code=0)
-    assert "kind: switched-system" in target.read_text()
-
-
-def test_init_names_the_templates_when_one_is_unknown(tmp_path: Path) -> None:
-    assert "interaction-design" in typed("init", "interaction", cwd=tmp_path, code=2).stderr
-    assert list(tmp_path.iterdir()) == []
-
-
-def test_two_kinds_in_one_folder_pass_the_gate(tmp_path: Path) -> None:
-    for template in ("interaction-design", "switched-system", "robot"):
-        assert run("init", template, "-q", cwd=tmp_path).stderr == ""
-    assert "3 specs" in run("gate", ".", "--no-reports", cwd=tmp_path, code=0).stdout
 
 
 def test_a_spec_is_named_after_its_file() -> None:

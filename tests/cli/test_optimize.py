@@ -3,7 +3,7 @@
 import pytest
 
 from tests.simulation.interactions import text_of
-from tests.support import FORCE_LIMIT, GIVEN, ROOT, SOFT_TISSUE, document_of, replaced, run
+from tests.support import ROOT, SOFT_TISSUE, document_of, run
 
 
 def write(tmp_path, text):
@@ -92,67 +92,6 @@ def test_one_sensitivity_peak_for_one_controller(tmp_path):
         assert controller["delay_margin_s"] == worst["min_delay_margin"]
 
 
-def test_what_is_not_computed_is_said(tmp_path):
-    """Of a force that is sampled more often than the motion loop; a goal for it is not judged."""
-    fast = loaded(
-        ("switching:", "sampling: {period: 2 ms, outer_period: 1 ms, delay: 0}\nswitching:")
-    )
-    fast = fast.replace(", load_inertia: 0.3 kg*m^2", "")
-    result = run("optimize", write(tmp_path, fast), cwd=tmp_path, code=0)
-    assert "warning: a: margins and k limit are not computed" in result.stderr
-    assert "not computed" in next(line for line in result.stdout.splitlines() if " a " in line)
-    wanted = fast.replace("switching:", "goals: {min_gain_margin: 2}\nswitching:")
-    assert "not judged" in run("optimize", write(tmp_path, wanted), cwd=tmp_path, code=3).stdout
-
-
-def test_nothing_to_optimize(tmp_path):
-    assert "no impedance controllers" in run("optimize", FORCE_LIMIT, cwd=tmp_path, code=0).stderr
-
-
-def spec_with(tmp_path, goals, *replacements):
-    wanted = ("switching: arb", f"goals: {goals}\nswitching: arb")
-    text = replaced(SOFT_TISSUE.read_text(), wanted, *replacements)
-    (tmp_path / "goals.nrs.yaml").write_text(text)
-    return "goals.nrs.yaml"
-
-
-def test_goals_are_respected_and_shown(tmp_path):
-    result = run(
-        "optimize", spec_with(tmp_path, "{max_sensitivity_peak: 2}"), "-v", cwd=tmp_path, code=0
-    )
-    rows = [line for line in result.stdout.splitlines() if "sensitivity peak Ms   " in line]
-    assert len(rows) == 2
-    assert all("at most 2" in row and row.rstrip().endswith("met") for row in rows)
-    assert "computed in floating point, not a proof" in result.stdout
-
-
-def test_gains_that_are_given_and_miss_a_goal_end_with_1(tmp_path):
-    path = spec_with(tmp_path, "{max_sensitivity_peak: 2}", *GIVEN)
-    assert run("optimize", path, cwd=tmp_path, code=1).stdout.count("MISSED") == 2
-    goals = document_of("optimize", path, cwd=tmp_path, code=1)["controllers"][1]["goals"]
-    peak = next(goal for goal in goals if goal["goal"] == "max_sensitivity_peak")
-    assert (peak["status"], peak["wanted"]) == ("missed", 2.0)
-    assert peak["worst"] == pytest.approx(3.753, abs=1e-3)
-    assert peak["at"] == "soft, k = 44.2466 N*m/rad"
-    assert [goal["status"] for goal in goals].count(None) == 5
-
-
-def test_a_goal_out_of_reach_is_an_error_with_the_best_value(tmp_path):
-    result = run("optimize", spec_with(tmp_path, "{min_gain_margin: 1e6}"), cwd=tmp_path, code=2)
-    assert "error[NRS002]: controller insertion: the goal min_gain_margin" in result.stderr
-    assert " --> goals.nrs.yaml:" in result.stderr
-    assert "the best is" in result.stderr
-
-
-def test_without_goals_a_doubtful_design_is_warned_of_and_the_exit_code_stays(tmp_path):
-    result = run("optimize", SOFT_TISSUE, "-v", cwd=tmp_path, code=0)
-    assert "warning: withdrawal: sensitivity peak Ms 3.753 (usual: at most 2)" in result.stderr
-    assert "warning: insertion: Mt is on its lower bound 0.01 kg*m^2" in result.stderr
-    warnings = document_of("optimize", SOFT_TISSUE, cwd=tmp_path)["warnings"]
-    assert [f"warning: {text}" for text in warnings] == result.stderr.splitlines()
-    assert run("optimize", SOFT_TISSUE, "-q", "-v", cwd=tmp_path).stderr == ""
-
-
 GOALS = ROOT / "docs" / "examples" / "gains-with-proof.nrs.yaml"
 REDESIGNED = ROOT / "specs" / "neuroboscope" / "soft-tissue-redesigned.nrs.yaml"
 
@@ -175,15 +114,6 @@ def test_gains_with_their_proof_are_written_with_it(tmp_path):
     assert {path.name for path in tmp_path.iterdir()} == {new.name, "reports"}
 
 
-def test_gains_are_written_with_their_proof_only(tmp_path):
-    for place, words in (("a.nrs.yaml", "only gains that were chosen"), ("a.yaml", "only gains")):
-        refused = run("optimize", SOFT_TISSUE, "--out", place, cwd=tmp_path, code=2)
-        assert words in refused.stderr
-    refused = run("optimize", GOALS, "--out", "a.yaml", cwd=tmp_path, code=2)
-    assert "is not the name of a spec" in refused.stderr
-    assert not list(tmp_path.iterdir())
-
-
 def test_line_ends_and_comments_are_kept(tmp_path):
     text = GOALS.read_text(encoding="utf-8").replace("\n", "\r\n")
     (tmp_path / "a.nrs.yaml").write_bytes(text.encode())
@@ -203,24 +133,3 @@ def test_line_ends_and_comments_are_kept(tmp_path):
         refused = run("optimize", GOALS, "--out", name, cwd=tmp_path, code=2)
         assert words in refused.stderr
         assert name in refused.stderr
-
-
-def test_an_axis_of_several_is_written_as_a_spec_of_its_own(tmp_path):
-    text = (ROOT / "docs" / "examples" / "six-axes.nrs.yaml").read_text(encoding="utf-8")
-    text = text.replace("Bt: 72 N*s/m", "Bt: {min: 10 N*s/m, max: 300 N*s/m}")
-    place = "    environments: {tissue"
-    text = text.replace(place, f"    goals: {{decay_rate: 2 1/s}}\n{place}")
-    (tmp_path / "arm.nrs.yaml").write_text(text)
-    written = "z.nrs.yaml"
-    document = document_of("optimize", "arm.nrs.yaml#z", "--out", written, cwd=tmp_path, code=0)
-    certified = document["certified"]
-    assert certified["decay_rate"] >= 2
-    assert certified["gains"].keys() == {"insertion.Bt"}
-    shown = run("verify", certified["certificate"], written, cwd=tmp_path, code=0).stdout
-    assert shown.startswith("PROVED")
-    assert "name: z\n" in (tmp_path / written).read_text()
-
-
-def test_quiet_of_several_axes_prints_no_table(tmp_path):
-    done = run("optimize", ROOT / "docs" / "examples" / "six-axes.nrs.yaml", "-q", cwd=tmp_path)
-    assert (done.stdout, done.stderr) == ("", "")

@@ -2,8 +2,6 @@
 
 import json
 
-import pytest
-
 from tests.simulation.interactions import text_of
 from tests.support import run
 
@@ -17,25 +15,6 @@ TEXT = text_of(
     },
     more="design: {significant_digits: 3}\ncontact: kept\n",
 ).replace("arbitrary", "RULES")
-
-
-@pytest.mark.slow
-def test_a_wrong_controller_that_is_unstable_is_proved_for_as_long_as_it_lasts(tmp_path):
-    """Under arbitrary switching it may last, and that is refuted."""
-    rules = (
-        "{dwell_time: {agile/tissue: 0.93 s, careful/tool: 0.93 s}, "
-        "longest_dwell_time: {agile/tool: 70 ms, careful/tissue: 70 ms}, "
-        "transitions: [[agile/tissue, agile/tool], [agile/tool, careful/tool], "
-        "[careful/tool, careful/tissue], [careful/tissue, agile/tissue]]}"
-    )
-    (tmp_path / "ours.nrs.yaml").write_text(TEXT.replace("RULES", rules))
-    run("certify-switching", "ours.nrs.yaml", "--out", "ours.cert.json", cwd=tmp_path, code=0)
-    run("verify", "ours.cert.json", "ours.nrs.yaml", cwd=tmp_path, code=0)
-    (tmp_path / "any.nrs.yaml").write_text(TEXT.replace("RULES", "arbitrary"))
-    refuted = run(
-        "certify-switching", "any.nrs.yaml", "--out", "any.cert.json", cwd=tmp_path, code=1
-    )
-    assert "agile/tool" in refuted.stdout
 
 
 def test_rules_about_contacts_by_hand_with_ranges(tmp_path):

@@ -1,6 +1,5 @@
 """`nrs-design simulate`, as a user types it."""
 
-import numpy as np
 import pytest
 
 from nrs_design.reporting.figures.simulated import draw_simulated
@@ -14,9 +13,6 @@ RUN = (
 )
 
 
-STILL = "command: {constant: 1 deg/s}, duration: %s, surfaces: [{environment: soft, at: %s}]"
-
-
 @pytest.fixture
 def spec(tmp_path):
     def write(scenario=RUN, more="", **options):
@@ -25,19 +21,6 @@ def spec(tmp_path):
         return path
 
     return write
-
-
-@pytest.mark.slow
-def test_metrics_and_files(spec, tmp_path):
-    result = run("simulate", spec(), "--out", "runs", "-v", cwd=tmp_path, code=0)
-    assert "run: exact engine" in result.stdout
-    assert "largest torque" in result.stdout
-    names = {path.name for path in (tmp_path / "runs").iterdir()}
-    assert names == {f"small.run.{suffix}" for suffix in ("csv", "svg", "png")}
-    table = np.genfromtxt(tmp_path / "runs/small.run.csv", delimiter=",", names=True, dtype=None)
-    assert (np.diff(table["time_s"]) > 0).all()
-    again = run("simulate", spec(), "--out", "runs", "--quiet", "-v", cwd=tmp_path)
-    assert (again.returncode, again.stdout, again.stderr) == (0, "", "")
 
 
 @pytest.mark.slow
@@ -72,25 +55,6 @@ def test_a_saturated_command_is_said(spec, tmp_path):
     assert f"met its limit at {saturated} samples" in told
 
 
-def test_what_an_engine_leaves_out_is_said(spec, tmp_path):
-    path = spec(RUN + ", errors: {force_noise: 0.01 N*m}")
-    assert "noise and jitter of the scenario" in run("simulate", path, "-v", cwd=tmp_path).stdout
-    result = run("simulate", path, "--engine", "sampled", "-v", cwd=tmp_path)
-    assert "noise and jitter" not in result.stdout
-    assert "other axes" in result.stdout
-
-
-def test_controllers_in_force_and_age_of_the_force_are_said(spec, tmp_path):
-    path = spec(scenario=None, more="sampling: {period: 2 ms, delay: [0, 1]}\n")
-    told = run("simulate", path, "-v", cwd=tmp_path).stdout
-    assert "in force: insertion, withdrawal; a sample every 0.002 s" in told
-    assert "age of the force in samples: 0 to 1, drawn anew at each\n" in told
-    late = run("simulate", path, "--delay", "3", "-v", cwd=tmp_path).stdout
-    assert "age of the force in samples: 3\n" in late
-    twice = run("simulate", path, "--outer-period", "0.001", "-v", cwd=tmp_path).stdout
-    assert "motion loop every 0.002 s, force sample every 0.001 s" in twice
-
-
 def test_a_bound_stands_beside_the_peak(spec, tmp_path):
     laws = {name: law.replace("0.01 kg", "0 kg") for name, law in IMPEDANCE.items()}
     path = spec(more="contact: losable\ndisturbances: {command: 8 deg/s}\n", controllers=laws)
@@ -116,28 +80,6 @@ def test_a_bound_stands_beside_the_peak(spec, tmp_path):
     assert "the spec has changed" in stale.stderr
 
 
-@pytest.mark.parametrize(
-    ("given", "arguments", "message"),
-    [
-        ({}, ["--scenario", "ran"], "no scenario 'ran'"),
-        ({"scenario": STILL % ("1 s", "-1 deg")}, [], "rests inside 'soft' at the start"),
-        ({"scenario": None}, ["--scenario", "a"], "write one of insertion-and-withdrawal"),
-        ({}, ["--engine", "exact", "--period", "0.002"], "has no samples"),
-        ({}, ["--certificate", "none.json"], "cannot be read"),
-        ({}, ["--engine", "foo"], "Invalid value for '--engine': 'foo' is not one of"),
-        ({}, ["--period", "1 parsec"], "parsec"),
-        (
-            {"more": "sampling: {period: 2 ms, outer_period: 0.1 ms, delay: 0}\n"},
-            ["--period", "0.00025"],
-            "do not meet at common samples",
-        ),
-    ],
-)
-def test_wrong_usage(spec, tmp_path, given, arguments, message):
-    done = run("simulate", spec(**given), *arguments, cwd=tmp_path, code=2)
-    assert (done.stdout, message in done.stderr) == ("", True)
-
-
 def test_an_outer_period_as_an_option_is_that_of_the_spec(spec, tmp_path):
     written = spec(more="sampling: {period: 2 ms, outer_period: 1 ms, delay: 1}\n")
 
@@ -151,27 +93,6 @@ def test_an_outer_period_as_an_option_is_that_of_the_spec(spec, tmp_path):
     force = spec(controllers=PLACED, more=SAMPLED)
     result = run("simulate", force, *option, cwd=tmp_path, code=2)
     assert "for impedance controllers alone" in result.stderr
-
-
-def test_a_profile_from_a_file(spec, tmp_path):
-    path = spec("command: {csv: hand.csv}, surfaces: [{environment: soft, at: 1 deg}]")
-    hand = tmp_path / "hand.csv"
-    hand.write_text("time_s,velocity_deg_s\n0,0\n1,5\n2,0\n")
-    found = document_of("simulate", path, cwd=tmp_path)["runs"][0]
-    assert found["metrics"]["duration"] == 2
-    for rows, message in (
-        ("0,0\n1,9\n", "beyond the spec's limit"),
-        ("0,0\n1,nan\n", "nan"),
-        ("", "fewer than two rows"),
-        ("0,0\n", "no profile"),
-        ("0,0\n2,1\n1,1\n", "no profile"),
-    ):
-        hand.write_text("time_s,velocity_deg_s\n" + rows)
-        assert message in run("simulate", path, "--out", "runs", cwd=tmp_path, code=2).stderr
-        checked = run("check", path, cwd=tmp_path)
-        assert (checked.returncode, checked.stdout) == (2, "")
-        assert message in checked.stderr
-        assert not (tmp_path / "runs").exists()
 
 
 def test_limits_of_a_scenario_stand_beside_its_peaks(spec, tmp_path):
@@ -200,15 +121,6 @@ def test_a_profile_behind_a_link(spec, tmp_path):
         link.unlink()
         link.symlink_to(target)
         assert message in run("simulate", path, cwd=tmp_path, code=2).stderr
-
-
-def test_a_chattering_logic_is_counted(spec, tmp_path):
-    """Noise around a command near zero: the signs of 6.3.2 have no bands."""
-    noisy = STILL.replace("1 deg/s", "-0.1 deg/s") % ("1 s", "0 deg")
-    path = spec(noisy + ", errors: {force_noise: 0.05 N*m}", SAMPLED)
-    assert "stays below 10 ms (chatter)" in run("simulate", path, "-v", cwd=tmp_path, code=0).stdout
-    document = document_of("simulate", path, cwd=tmp_path)
-    assert document["runs"][0]["metrics"]["chatter"] > 20
 
 
 def test_a_bound_far_away_is_named_not_drawn():

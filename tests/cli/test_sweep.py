@@ -196,25 +196,6 @@ def test_a_value_that_makes_no_valid_spec_is_a_wrong_point(tmp_path, spec):
     assert f"wrong: {STIFFNESS}=-5 N/m: " in told
 
 
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        (("--set", TWO, "--set", TWO, "check"), "is set twice"),
-        (("--set", TWO, "--set", f"{STIFFNESS}.nominal=1 N/m", "check"), "about one another"),
-        (("--set", TWO, "report"), "is no command that is run at every point"),
-        (("--set", TWO, "certify"), "did you mean certify-switching"),
-        (("--set", TWO, "check", "other.nrs.yaml"), "names no spec of its own"),
-        (("--set", TWO, "certify-switching", "--out", "x.json"), "takes no file"),
-        (("--set", TWO, "--store", "a", "--no-store", "check"), "exclude each other"),
-        (("--set", TWO, "--jobs", 2, "--dask", "tcp://127.0.0.1:1", "check"), "exclude each other"),
-        (("--set", TWO, "optimize", "--nope"), "No such option"),
-    ],
-)
-def test_wrong_usage(tmp_path, spec, arguments, message):
-    done = run("sweep", spec, *arguments, cwd=tmp_path, code=2)
-    assert message in " ".join(done.stderr.split())
-
-
 def test_options_belong_to_the_command_and_to_the_name_of_its_answer(tmp_path, spec):
     command = ("sweep", spec, "--set", f"{STIFFNESS}=700 N/m", "certify-switching")
     run(*command, cwd=tmp_path, code=0)

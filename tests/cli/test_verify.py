@@ -10,14 +10,10 @@ import pytest
 from nrs_design.certificates.certificate import content_id
 from tests.support import (
     COMMUTING,
-    HARD,
     PRINT_ERROR,
-    ROBOT,
     SOFT_TISSUE,
     document_of,
     run,
-    typed,
-    write_spec,
 )
 
 
@@ -28,40 +24,6 @@ def certified(tmp_path_factory):
         name = spec.name.removesuffix(".nrs.yaml")
         run("certify-switching", spec, "--out", f"{name}.json", cwd=folder)
     return folder
-
-
-def test_proof_holds(certified):
-    result = typed("verify", "soft-tissue.json", SOFT_TISSUE, "-v", cwd=certified, code=0)
-    assert result.stdout.startswith("PROVED for this spec, checked exactly")
-    assert "insertion: Mt = 0.00999999977648258209228515625 kg*m^2, Bt = 2.15" in result.stdout
-    said = "as recorded, within what the spec allows, not designed again (gate does): insertion Mt,"
-    assert said in result.stdout
-
-
-def test_the_derivative_gain_is_that_of_a_program(tmp_path):
-    """It multiplies by Kd/T, rounded to single precision; at 3 ms that is another Kd."""
-    text = (ROBOT / "force-limit-sampled.nrs.yaml").read_text().replace("2 ms", "3 ms")
-    (tmp_path / "slow.nrs.yaml").write_text(text)
-    run("certify-switching", "slow.nrs.yaml", "--out", "c.json", "-v", cwd=tmp_path, code=0)
-    shown = run("verify", "c.json", "slow.nrs.yaml", "-v", cwd=tmp_path, code=0).stdout
-    assert "Kd = 2060 rpm*s/rad" in shown
-    assert "multiplies by Kd/T = 686666.6875 rpm/rad, which makes its Kd about 2060.000062" in shown
-
-
-@pytest.mark.parametrize(
-    ("name", "code", "verdict"),
-    [
-        ("soft-tissue", 0, "PROVED"),
-        ("thesis-print-error", 1, "REFUTED"),
-        ("commuting", 0, "PROVED"),
-    ],
-)
-def test_without_a_spec_the_proof_is_checked_and_no_more(certified, name, code, verdict):
-    first, *_ = run("verify", f"{name}.json", cwd=certified, code=code).stdout.splitlines()
-    said = "for the modes in the file, checked exactly; name a SPEC to compare them with"
-    assert first == f"{verdict} {said}"
-    document = document_of("verify", f"{name}.json", cwd=certified)
-    assert (document["verdict"], document["spec"]) == (verdict.lower(), None)
 
 
 def test_without_a_spec_what_is_altered_is_rejected(certified, tmp_path):
@@ -75,30 +37,6 @@ def test_without_a_spec_what_is_altered_is_rejected(certified, tmp_path):
     document["id"] = content_id(document)
     (tmp_path / "c.json").write_text(json.dumps(document))
     assert "REJECTED: V does not decrease" in run("verify", "c.json", cwd=tmp_path, code=1).stdout
-
-
-@pytest.mark.parametrize(
-    ("arguments", "code", "said"),
-    [
-        (("thesis-print-error.json", PRINT_ERROR), 1, "REFUTED for this spec"),
-        (("soft-tissue.json", COMMUTING), 1, "REJECTED: it belongs to another spec"),
-        (("soft-tissue.json", PRINT_ERROR), 1, "REJECTED: it belongs to another spec"),
-        (("commuting.json", "none.nrs.yaml"), 2, "error[NRS001]"),
-        (("commuting.json", COMMUTING, "--deployed", "x.h"), 2, "no gains that could be deployed"),
-    ],
-)
-def test_what_is_no_proof_of_the_spec_says_why(certified, arguments, code, said):
-    result = run("verify", *arguments, cwd=certified, code=code)
-    assert said in (result.stderr if code == 2 else result.stdout)
-
-
-def test_remark_that_decides_nothing(tmp_path):
-    """It holds, and says so, but is no verdict: exit code 3."""
-    spec = write_spec(tmp_path / "hard.nrs.yaml", *HARD).path
-    run("certify-switching", spec, "--max-degree", 2, "--out", "c.json", "-v", cwd=tmp_path, code=3)
-    result = run("verify", "c.json", spec, "-v", cwd=tmp_path, code=3)
-    assert result.stdout.startswith("INCONCLUSIVE for this spec, checked exactly")
-    assert "does not exist. This alone says nothing about stability." in result.stdout
 
 
 @pytest.mark.parametrize("content", [None, b"", b"[]", b'{"a": NaN}', b"[" * 9000, b"9" * 5000])
@@ -189,11 +127,3 @@ def test_what_is_deployed_needs_its_own_spec(firmware):
     run("verify", "x/x.cert.json", "--deployed", "x", cwd=firmware, code=2)
     done = run("verify", "x/x.cert.json", COMMUTING, "--deployed", "x", cwd=firmware, code=1)
     assert "another spec" in done.stdout
-
-
-def test_swapped_files_are_named_in_their_order(tmp_path):
-    done = run("verify", "specs/a.nrs.yaml", "reports/a.cert.json", cwd=tmp_path, code=2)
-    assert done.stderr == (
-        "error[NRS004]: the arguments are swapped (the certificate comes first: "
-        "nrs-design verify reports/a.cert.json specs/a.nrs.yaml)\n"
-    )

@@ -40,17 +40,3 @@ def test_the_worst_case_beside_limits_and_bounds(spec, tmp_path):
     *_, bound, ratio = said.split()
     assert found["force"]["certified_bound"] <= float(bound)
     assert 1 <= float(ratio) / found["force"]["bound_over_found"] < 1.02
-
-
-def test_options_that_nothing_would_heed_are_refused(spec, tmp_path):
-    result = run("simulate", spec, "--worst-case", "--scenario", "run", cwd=tmp_path, code=2)
-    assert not result.stdout
-    assert "not within a scenario" in result.stderr
-
-
-def test_what_no_adversary_plays_against_is_said(tmp_path):
-    path = tmp_path / "small.nrs.yaml"
-    path.write_text(text_of({"position": "{type: position}"}, SOFT))
-    result = run("simulate", path, "--worst-case", cwd=tmp_path, code=2)
-    assert "position is given a position" in result.stderr
-    assert "without --worst-case" in result.stderr

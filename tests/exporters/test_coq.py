@@ -19,7 +19,7 @@ from nrs_design.proof.evidence.graph import Arc
 from nrs_design.proof.mode import Time
 from nrs_design.search.certify import Limits, certify
 from tests.search.support import thesis_robot
-from tests.support import ROOT, program_named, run
+from tests.support import ROOT, program_named
 
 SHIPPED = sorted(path.name.removesuffix(".cert.json") for path in ROOT.glob("reports/*.cert.json"))
 # A constant parameter has no theorem.
@@ -160,16 +160,6 @@ def test_kinds_and_shapes_without_a_theorem_are_refused():
     arcs = (Arc(target=0), Arc(source=0))
     with pytest.raises(DesignError, match="some of the forms"):
         text_of(with_evidence(certificate, edges=arcs))
-
-
-def test_matrices_are_exported_as_typed(tmp_path):
-    spec = ROOT / "specs/examples/failing-controller.nrs.yaml"
-    asked = ("export", spec, "--format", "coq", "--out", tmp_path)
-    assert "PROVED, exported" in run(*asked, cwd=tmp_path, code=0).stdout
-    names = ["failing-controller.cert.json", "failing_controller.v"]
-    assert sorted(path.name for path in tmp_path.iterdir()) == names
-    text = (tmp_path / "failing_controller.v").read_text()
-    assert "not in the theorem: what happens within a stay of a mode that must be left" in text
 
 
 def test_a_name_is_one_of_coq():

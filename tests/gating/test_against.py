@@ -12,7 +12,6 @@ from nrs_design.gating.find_specs import find_specs
 from nrs_design.gating.formats import FORMATS
 from nrs_design.gating.lock import read_lock
 from nrs_design.gating.locked import run_locked
-from tests.support import run
 
 from .conftest import BROKEN, GROWING, STABLE, edit
 
@@ -175,21 +174,3 @@ def test_a_base_that_is_not_read_any_more_is_not_taken_for_weaker(folders):
     edit(base / "specs/stable.nrs.yaml", "switching:", "coupling: {axes: 3}\nswitching:")
     (item,) = weaker(against(base))
     assert "that of the base cannot be read" in item.message
-
-
-def test_the_command(folders):
-    head, base = folders
-    done = run("gate", "specs", "--locked", "--against", str(base), cwd=head, code=0)
-    assert "0 weaker (NRS110)" in done.stdout
-    edit(head / "specs/stable.nrs.yaml", "arbitrary", "{dwell_time: 1 s}")
-    done = run("gate", "specs", "--no-reports", "--against", str(base), cwd=head, code=1)
-    assert "NRS110 missed: switching" in done.stdout
-    # What is weaker is no obligation of the spec by itself: the lock file does not hold it.
-    assert "NRS110" not in LOCK.read_text()
-    run("gate", "specs", "--locked", cwd=head, code=0)
-    run("gate", "specs", "--against", "nowhere", cwd=head, code=2)
-    beside = ("--lock", "../nrs.lock", "--against", str(base))
-    assert "not below the working folder" in run("gate", "specs", *beside, cwd=head, code=2).stderr
-    (base / LOCK).unlink()
-    done = run("gate", "specs", "--locked", "--against", str(base), cwd=head, code=1)
-    assert done.stdout.count("the base has locked no verdict and no proof to compare with") == 2

@@ -2,7 +2,8 @@
 
 Of an edited spec, the fault that says these words (or all of a list) stands where the edit begins,
 or where the piece `at` first stands from the edited line on. A group says which spec its cases
-edit (`base`), or by which reader of `nrs_design.spec` their texts are refused.
+edit (`base`), by which reader of `nrs_design.spec` their texts are refused, or with which words
+(`command`) their lines begin; such a line ends with 2 and writes nothing.
 """
 
 from functools import partial
@@ -16,7 +17,17 @@ from nrs_design.errors import SpecError
 from nrs_design.spec import kinds
 from nrs_design.spec.quantity import parse_quantity
 from tests.spec.samples import assert_inside, refusal
-from tests.tables import cases_of, edit_of, edited, spec_text, words_of
+from tests.support import run
+from tests.tables import (
+    cases_of,
+    edit_of,
+    edited,
+    files_in,
+    spec_text,
+    words_in,
+    words_of,
+    write_files,
+)
 
 
 def cases(key):
@@ -68,3 +79,16 @@ def test_a_text_is_refused(case):
     if name in ("parse_document", "parse_spec"):
         assert_inside(error, case["text"])
     assert case.get("place") in (None, [error.line, error.column])
+
+
+@pytest.mark.parametrize("case", cases("command"))
+def test_a_command_is_refused(case, tmp_path):
+    write_files(case.get("files", {}), tmp_path)
+    before = files_in(tmp_path)
+    done = run(*words_in(f"{case['command']} {case['run']}"), cwd=tmp_path, code=2)
+    said = " ".join(done.stderr.replace("│", " ").split())
+    for words in words_of(case):
+        assert words in said
+    assert done.stdout == ""
+    assert "Traceback" not in said
+    assert files_in(tmp_path) == before

@@ -68,21 +68,3 @@ def test_ablation(tmp_path):
     assert result.stdout.count("as designed") == 2
     assert "rotor inertia and motor damping in the law" in result.stdout
     assert "psi [deg]" in result.stdout
-
-
-@pytest.mark.parametrize(
-    ("change", "options", "said"),
-    [
-        (("", ""), ("--controller", "pid"), "pid"),
-        (("", ""), ("--period", "0"), "--period"),
-        (("# Thesis 4.4 and its", "END"), ("--controller", "balanced"), "no `balance`"),
-        (("rotor_inertia: 14.81e-7", "rotor_inertia: 30e-7"), (), "contradict each other"),
-        (("capstan_ratio: 5", "capstan_ratio: 0"), (), "capstan_ratio"),
-    ],
-)
-def test_wrong_use_is_one_message_and_exit_code_2(tmp_path, change, options, said):
-    text = TEMPLATES["robot"].replace(*change).split("END")[0]
-    (tmp_path / "mine.nrs.yaml").write_text(text)
-    result = run("robot", "track", "mine.nrs.yaml", *options, cwd=tmp_path, code=2)
-    assert said in " ".join(result.stderr.replace("│", " ").split())
-    assert result.stdout == ""

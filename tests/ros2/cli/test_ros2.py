@@ -9,7 +9,7 @@ import pytest
 from nrs_design.ros2.law import read_law
 from nrs_design.ros2.parameters import parse_nodes
 from tests.ros2.support import EXAMPLE, changed
-from tests.support import ROOT, document_of, replaced, run, typed
+from tests.support import ROOT, document_of, run, typed
 
 SOFT = ("--stiffness", "200..2000 N/m")
 
@@ -121,30 +121,6 @@ def test_export(spec, tmp_path):
     assert {path: path.read_bytes() for path in before} == before
 
 
-def test_export_overwrites_nothing_foreign(spec, tmp_path):
-    (tmp_path / "out").mkdir()
-    mine = tmp_path / "out/soft-tissue-sampled.withdrawal.ros2.yaml"
-    mine.write_text("controller_manager: {}\n")
-    assert "not overwritten" in run(*EXPORT, cwd=tmp_path, code=2).stderr
-    assert [path.name for path in (tmp_path / "out").iterdir()] == [mine.name]
-
-
-def test_nothing_is_exported_where_one_controller_is_refuted(spec, tmp_path):
-    spec.write_text(spec.read_text().replace("period: 2 ms", "period: 10 ms"))
-    done = run(*EXPORT, cwd=tmp_path, code=1)
-    assert "insertion: refuted with admittance_controller" in done.stderr
-    assert "not exported" in done.stderr
-    assert [path.name for path in tmp_path.iterdir()] == [spec.name]
-
-
-def test_export_asks_for_the_axis_and_the_lag(spec, tmp_path):
-    for options in (("--axis", "ry"), ("--lag", "0 ms"), ("--axis", "x", "--lag", "0 ms")):
-        run("ros2", "export", spec.name, *options, cwd=tmp_path, code=2)
-    matrices = ROOT / "specs/examples/ando-shih.nrs.yaml"
-    done = run("ros2", "export", matrices, "--axis", "ry", "--lag", "0 ms", cwd=tmp_path, code=2)
-    assert "no controllers to export" in done.stderr
-
-
 def test_all_axes_of_a_file_are_one_parameter_file(tmp_path):
     """The controllers of z, and beside each the only one of the other axes."""
     axes = ROOT / "docs/examples/six-axes.nrs.yaml"
@@ -165,22 +141,3 @@ def test_all_axes_of_a_file_are_one_parameter_file(tmp_path):
     again = ("ros2", "check", "reports/six-axes.insertion.ros2.yaml", *checked)
     done = run(*again, "--age", "1", "--lag", "27..33 ms", cwd=tmp_path, code=0)
     assert done.stdout.count("stable") == 6
-
-
-@pytest.mark.parametrize(
-    ("old", "new", "said"),
-    [
-        ("Mt: 0.16 kg, Bt: 72", "Mt: 0.16 kg, Bt: 73", "one joint_damping for all axes"),
-        ("  rz:\n", "  yaw:\n", "axis yaw is no rotary axis"),
-        ("  rx:\n    axis: rotary", "  q:\n    axis: rotary", "axis q is no rotary axis"),
-    ],
-)
-def test_axes_that_one_controller_cannot_run(tmp_path, old, new, said):
-    text = (ROOT / "docs/examples/six-axes.nrs.yaml").read_text(encoding="utf-8")
-    path = tmp_path / "six-axes.nrs.yaml"
-    path.write_text(replaced(text, (old, new)), encoding="utf-8")
-    done = run("ros2", "export", path, "--lag", "27..33 ms", cwd=tmp_path, code=2)
-    assert said in done.stderr.replace("\n", " ")
-    assert not (tmp_path / "reports").exists()
-    named = run("ros2", "export", path, "--axis", "x", "--lag", "0 ms", cwd=tmp_path, code=2)
-    assert "the file names its axes itself" in named.stderr

@@ -77,3 +77,8 @@ def words_in(line: str) -> list[str | Path]:
 def files_in(folder: Path) -> list[str]:
     there = (path for path in folder.rglob("*") if path.is_file())
     return sorted(str(path.relative_to(folder)) for path in there)
+
+
+def rows(file: str, name: str) -> list[Any]:
+    """Return the rows of a test, from the table beside its file."""
+    return list(table(Path(file).with_suffix(".yaml"))[name])

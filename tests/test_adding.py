@@ -17,6 +17,7 @@ from nrs_design.spec.load import SPEC_KINDS
 from nrs_design.spec.threshold_logic import ThresholdLogicSpec
 from tests.package import FILES, names_in, nodes_of
 from tests.support import ROOT
+from tests.tables import rows
 
 
 def named_paths(page: str) -> set[str]:
@@ -153,42 +154,7 @@ def with_unions(classes: frozenset[str], files: Iterable[Iterable[ast.AST]]) -> 
     return known
 
 
-@pytest.mark.parametrize(
-    ("text", "count"),
-    [
-        ("isinstance(law, Admittance)", 1),
-        ("isinstance(law, laws.Admittance | Maxwell)", 2),
-        ("match law:\n  case Admittance(): pass", 1),
-        ("spec.type == 'impedance'", 1),
-        ("'impedance' != spec.type", 1),
-        ("model == 'hunt-crossley'", 1),
-        ("law.name == 'hand'", 1),
-        ("str(spec.model) in {'elastic'}", 1),
-        ("law is Maxwell", 1),
-        ("type(law) is Maxwell", 1),
-        ("spec.model not in ('elastic', 'maxwell')", 2),
-        ("match spec.type:\n  case 'force': pass", 1),
-        ("match kind:\n  case 'robot' | 'switched-system': pass", 2),
-        ("spec.model.startswith('kelvin')", 1),
-        ("TEXTS.get(spec.model, 'a spring')", 1),
-        ("logic.type == 'thresholds'", 1),
-        ("isinstance(logic, ThresholdLogicSpec)", 1),
-        ("actuator.command != 'rpm'", 1),
-        ("evidence.kind == 'graph'", 1),
-        ("isinstance(e, evidence.FormsOnGraph)", 1),
-        ("RULED = (FormsOnGraph, BlockTriangular)\nisinstance(e, RULED)", 1),
-        ("Ruled = FormsOnGraph | BlockTriangular\nMORE = (Ruled, int)\nisinstance(e, MORE)", 1),
-        ("match e:\n  case GrowingSequence(steps=name): pass", 1),
-        ("type(e) in PARTS", 0),
-        ("isinstance(e, AbstractEvidence)", 0),
-        ("kind.kind == fields['kind']", 0),
-        ("block.kind == 'table'", 0),
-        ("spec.commands == 'velocity'", 0),
-        ("operation.kind == 'multiply'", 0),
-        ("OPINIONS.get(evidence.kind)", 0),
-        ("LAWS[spec.type]", 0),
-    ],
-)
+@pytest.mark.parametrize(("text", "count"), rows(__file__, "test_what_counts_as_a_question"))
 def test_what_counts_as_a_question(text, count):
     tree = ast.parse(text)
     classes = with_unions(law_classes(), [ast.walk(tree)])

@@ -8,23 +8,14 @@ from nrs_design.errors import InternalError, SpecError
 from nrs_design.spec import parse_spec
 from nrs_design.spec.templates import PRISMATIC, TEMPLATES
 from nrs_design.spec.units import parse_unit
+from tests.tables import rows
 
 SLIDE = AxisType.PRISMATIC
 TEXT = TEMPLATES[PRISMATIC["interaction-design"]]
 
 
 @pytest.mark.parametrize(
-    ("turning", "sliding"),
-    [
-        ("N*m/rad", "N/m"),
-        ("N m s/rad", "N s/m"),
-        ("kg·m²", "kg"),
-        ("rad/(N·m)", "m/N"),
-        ("rad/s/V", "m/s/V"),
-        ("counts*s/rad", "counts*s/m"),
-        ("deg/s", "mm/s"),
-        ("", ""),
-    ],
+    ("turning", "sliding"), rows(__file__, "test_units_are_those_without_the_lever")
 )
 def test_units_are_those_without_the_lever(turning, sliding):
     assert SLIDE.unit(turning) == sliding
@@ -67,17 +58,7 @@ def test_words_are_about_one_axis_at_a_time():
 
 @pytest.mark.parametrize(
     ("old", "new", "what"),
-    [
-        ("20 mm/s ", "8 deg/s ", "m/s"),
-        ("1 N ", "0.3 N*m ", "the axis is prismatic: write it in N, such as"),
-        ("Mt: 0.2 kg", "Mt: 0.01 kg*m^2", "the axis is prismatic: write it in kg"),
-        ("{min: 5 N*s/m, max", "{min: 1 N*m*s/rad, max", "the axis is prismatic"),
-        ("range: [450 N/m", "range: [43 N*m/rad", "the axis is prismatic"),
-        ("range: [450 N/m, 550 N/m]}", "range: [450 N/m, 550 N/m]}\n    lever_arm: 0.2 m", "pivot"),
-        ("1.1667e-4 m/s/rpm", "4.8417e-4 rad/s/rpm", "the axis is prismatic"),
-        ("axis: prismatic ", "axis: rotary ", "N*m"),
-        ("axis: prismatic ", "axis: turning ", "rotary"),
-    ],
+    rows(__file__, "test_quantities_of_the_other_axis_are_refused_with_a_remedy"),
 )
 def test_quantities_of_the_other_axis_are_refused_with_a_remedy(old, new, what):
     assert old in TEXT

@@ -6,6 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from nrs_design.printable import json_text, printable, visible
+from tests.tables import rows
 
 DECEPTIVE = {
     "newline": "\n",
@@ -68,20 +69,7 @@ def test_what_is_shown_is_one_line_and_shown_again_the_same(text):
     assert printable(shown) == shown
 
 
-@pytest.mark.parametrize(
-    ("text", "shown"),
-    [
-        ("mode a/b", "mode a/b"),
-        ("a\nb\r\nc", "a b c"),
-        ("a\u202eb", "a\\u202eb"),
-        ("\x1b[31m", "\\x1b[31m"),
-        ("\ud8ff.csv", "\\ud8ff.csv"),
-        ("\u3164", "\\u3164"),
-        ("::error::x", "::error::x"),
-        ("שלום", "שלום"),
-        ("中", "中"),
-    ],
-)
+@pytest.mark.parametrize(("text", "shown"), rows(__file__, "test_visible_shows_what_has_no_shape"))
 def test_visible_shows_what_has_no_shape(text, shown):
     assert visible(text) == shown
 

@@ -23,6 +23,7 @@ from tests.certificates.test_verify import (
     resign,
     signed,
 )
+from tests.tables import rows
 
 
 @pytest.fixture(scope="module", params=SPECS)
@@ -53,28 +54,7 @@ def altered(document, *path_and_value):
     return resign(changed(document, tuple(path), value))
 
 
-@pytest.mark.parametrize(
-    ("path", "value", "reason"),
-    [
-        (("modes", 0, "denominator"), 0, "no positive denominator"),
-        (("modes", 0, "denominator"), -1, "no positive denominator"),
-        (("modes", 0, "numerators"), [[1, 2], [3]], "different lengths"),
-        (("modes", 0, "numerators"), [[1, 2, 3], [4, 5, 6]], "not square"),
-        (("modes", 0, "numerators"), [], "different lengths"),
-        (("modes", 0, "numerators"), [[]], "different lengths"),
-        (("modes", 0, "numerators"), [[True, 0], [0, 1]], "expected an integer"),
-        (("modes", 0, "numerators"), {"0": 1}, "expected a list"),
-        (("modes", 0, "name"), "b", "two modes have the same name"),
-        (("modes",), [], "largest mode"),
-        (("states",), ["x1"], "largest mode"),
-        (("states",), ["x1", "x2", "x3"], "largest mode"),
-        (("states",), "x1", "expected a list"),
-        (("time",), "both", "not a valid Time"),
-        (("switching",), "free", "malformed"),
-        (("switching",), {}, "does not follow"),
-        (("switching",), None, "malformed"),
-    ],
-)
+@pytest.mark.parametrize(("path", "value", "reason"), rows(__file__, "test_malformed_systems"))
 def test_malformed_systems(path, value, reason):
     document, _ = signed("given")
     fault = prove(altered(document, *path, value)).fault

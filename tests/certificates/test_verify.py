@@ -41,6 +41,7 @@ from nrs_design.search.method import Method
 from nrs_design.spec import LoadedSpec, read_spec
 from tests.proof.graphs import common_quadratic
 from tests.support import COMMUTING, FORCE_LIMIT, PRINT_ERROR, ROOT, SOFT_TISSUE, holds, write_spec
+from tests.tables import rows
 
 EXAMPLES = ROOT / "specs" / "examples"
 SPECS = {
@@ -618,28 +619,8 @@ def test_wrong_kind_of_spec(name):
 
 
 @pytest.mark.parametrize(
-    "statements",
-    [
-        [{}],
-        [None],
-        {},
-        "proved",
-        [{"kind": "block-triangular", "blocks": [[0, 1]], "parts": []}],
-        [{"kind": "block-triangular", "blocks": [[], [0, 1]], "parts": [{}]}],
-        [{"kind": "growing-sequence", "steps": [], "doublings": 3}],
-        [{"kind": "growing-sequence", "steps": [["m0"]], "doublings": 3}],
-        [{"kind": "growing-sequence", "shares": "1/2"}],
-        [{"kind": "graph", "nodes": [], "denominator_log2": 0, "rate": "1"}],
-        [{"kind": "graph", "nodes": [{}], "denominator_log2": 0, "rate": "1"}],
-        [{"kind": "graph", "degree": 2, "vanishing": [[]], "rate": "1",
-          "denominator_log2": 0, "nodes": [{"place": "modes", "form": []}]}],
-        [{"kind": "common-quadratic", "Q": {}, "rate": "1"}],
-        [{"kind": "no-common-quadratic", "factors": [["m0", []]]}],
-        [{"kind": "no-common-quadratic", "factors": [["m9", [[1], [1]]]]}],
-        [{"kind": "constants-quadratic", "rate": "1", "functions": [],
-          "multipliers": [], "denominator_log2": 0}],
-    ],
-)  # fmt: skip
+    "statements", rows(__file__, "test_malformed_statements_are_rejections_and_not_crashes")
+)
 def test_malformed_statements_are_rejections_and_not_crashes(statements):
     document, spec = signed("average")
     assert verify_document(resign({**document, "statements": statements}), spec).fault is not None

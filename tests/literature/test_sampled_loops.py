@@ -14,6 +14,7 @@ from nrs_design.certificates.certificate import Verdict
 from nrs_design.search.certification import Limits
 from nrs_design.search.certify import certify
 from tests.loop.timed_loop import floats, sampled, timed
+from tests.tables import rows
 
 # Zhang, Branicky and Phillips, IEEE Control Systems Magazine 21(1), 2001; since then of Fridman,
 # Seuret and Richard, Automatica 40(8), 2004; Naghshtabrizi, Hespanha and Teel, Systems and Control
@@ -104,23 +105,7 @@ def test_a_constant_delay_against_its_border():
 
 
 @pytest.mark.parametrize(
-    ("period", "delay", "verdict"),
-    [
-        # x' = u, u = -x: x+ = (1 - h) x, so any periods below two are stable, in any order.
-        (("0.1", "1.999"), None, "proved"),
-        (("0.1", "2.001"), None, "refuted"),
-        # With u late by d: x+ = (1 - h + d) x - d x-, of which 1 + (1 - h + d) + d is zero at the
-        # longest period for d = (h - 2)/2, and the product of roots is d: below one is stable.
-        (("1", "1"), ("0.999", "0.999"), "proved"),
-        (("2", "2"), ("0.001", "0.001"), "proved"),
-        (("2.1", "2.1"), ("0.04", "0.04"), "refuted"),
-        # A whole period late: x+ = x - h x-, stable up to h = 1.
-        (("0.99", "0.99"), ("0.99", "0.99"), "proved"),
-        (("1.01", "1.01"), ("1.01", "1.01"), "refuted"),
-        # Two of them: z^3 - z^2 + h has its roots at the circle for h = (sqrt(5) - 1)/2.
-        (("0.61", "0.61"), ("1.22", "1.22"), "proved"),
-        (("0.62", "0.62"), ("1.24", "1.24"), "refuted"),
-    ],
+    ("period", "delay", "verdict"), rows(__file__, "test_one_integrator_by_hand")
 )
 def test_one_integrator_by_hand(period, delay, verdict):
     found = decide((([[0]], [[1]]), [[-1]]), period, delay, optimize_rate=False)

@@ -6,6 +6,7 @@ from nrs_design.errors import SpecError
 from nrs_design.ros2.law import is_admittance, read_law, unknown_names
 from nrs_design.ros2.parameters import read_nodes
 from tests.ros2.support import EXAMPLE, changed
+from tests.tables import rows
 
 
 def controller(file):
@@ -32,19 +33,7 @@ def test_defaults(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "message"),
-    [
-        ("mass: [5.0, 5.0", "mass: [5, 5.0", "integer for ROS 2"),
-        ("mass: [5.0, 5.0", "mass: [0.0, 5.0", "between 0.0001 and 1e"),
-        ("mass: [5.0, 5.0, 5.0, ", "mass: [5.0, 5.0, ", "expected a list of 6 values, found 5"),
-        ("joint_damping: 5.0", "joint_damping: -5.0", "at least 0"),
-        ("selected_axes: [true", "selected_axes: [1", "no truth value"),
-        ("      stiffness: [200.0, 200.0, 200.0, 10.0, 10.0, 10.0]\n", "", "is missing"),
-        ("filter_coefficient: 0.5", "filter_coefficient: [0.5, 0.5]", "expected one value"),
-        ("damping_ratio: [2.8,", "damping_ratio: [{a: 1},", "something else"),
-        # Five joints for six axes: the loop grows by 1.0058 a period where each axis is stable.
-        ("wrist_2, wrist_3]", "wrist_2]", "5 joints cannot move six axes"),
-    ],
+    ("old", "new", "message"), rows(__file__, "test_what_keeps_the_controller_from_starting")
 )
 def test_what_keeps_the_controller_from_starting(tmp_path, old, new, message):
     with pytest.raises(SpecError) as caught:

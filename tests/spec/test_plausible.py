@@ -12,6 +12,7 @@ from nrs_design.spec.plausible import doubt_size, doubt_sizes, size_of, sizes
 from nrs_design.spec.units import parse_unit
 from tests.spec.samples import IMPEDANCE, spoiled
 from tests.support import ROOT, SOFT_TISSUE
+from tests.tables import rows
 
 SHIPPED = sorted((ROOT / "specs").rglob("*.nrs.yaml"))
 
@@ -28,22 +29,7 @@ def test_no_shipped_spec_is_asked(path):
     assert list(doubt_sizes(read_spec(path).spec)) == []
 
 
-@pytest.mark.parametrize(
-    ("field", "value", "unit", "said"),
-    [
-        ("lever_arm", 240.0, "m", "did you mean 240 mm?"),
-        ("lever_arm", 24.0, "m", "did you mean 24 mm or 24 cm?"),
-        ("lever_arm", 0.00024, "m", "2e-03"),
-        ("time_constant", 35.1, "s", "did you mean 35.1 ms?"),
-        ("period", 2.0, "s", "did you mean 2 ms?"),
-        ("load_inertia", 1213.0, "kg*m^2", "did you mean 1213 g*m^2 or 1213 kg*cm^2?"),
-        ("stiffness", 7.5e8, "N/m", "1e+07 N/m is usual"),
-        ("mass", 797.0, "kg", "did you mean 797 g?"),
-        ("torque", 3e4, "N*m", "did you mean 3e+04 mN*m or 3e+04 N*mm?"),
-        ("velocity", 60.0, "rad/s", "did you mean 60 deg/s"),
-        ("gravity", 9810.0, "m/s^2", "did you mean 9810 mm/s^2"),
-    ],
-)
+@pytest.mark.parametrize(("field", "value", "unit", "said"), rows(__file__, "test_the_likely_slip"))
 def test_the_likely_slip(field, value, unit, said):
     if said == "2e-03":
         said = "0.002 m to 2 m is usual"
@@ -52,20 +38,7 @@ def test_the_likely_slip(field, value, unit, said):
 
 @pytest.mark.parametrize(
     ("field", "value", "unit"),
-    [
-        ("stiffness", 10.0, "N/m"),  # brain under a spatula
-        ("stiffness", 1e6, "N/m"),  # bone
-        ("stiffness", 0.233, "N*m/rad"),  # thesis table 2.4
-        ("lever_arm", 1.3, "m"),  # a large arm
-        ("load_inertia", 30.0, "kg*m^2"),
-        ("torque", 300.0, "N*m"),
-        ("time_constant", 0.0005, "s"),
-        ("period", 2.5e-5, "s"),
-        ("mass", 30.0, "kg"),
-        ("velocity", 3.9, "rad/s"),
-        ("age", 0.3, "s"),
-        ("damping", 0.0, "N*s/m"),
-    ],
+    rows(__file__, "test_what_surgical_and_coworker_robots_have_is_not_asked"),
 )
 def test_what_surgical_and_coworker_robots_have_is_not_asked(field, value, unit):
     assert doubt_size(field, value, unit) is None

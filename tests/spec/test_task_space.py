@@ -7,6 +7,7 @@ from nrs_design.spec import read_spec
 from nrs_design.spec.load import axes_at, is_there, read_axes
 from nrs_design.spec.task_space import file_of
 from tests.support import replaced
+from tests.tables import rows
 
 TEXT = """\
 kind: task-space
@@ -81,22 +82,7 @@ controllers: {guide: {type: impedance, environment: tissue, Mt: 0.01 kg*m^2, Bt:
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "line", "said"),
-    [
-        ("    axis: prismatic\n", "    axis: prismatic\n    name: z\n", 11, "said once for"),
-        ("  switching: arbitrary\n", "  switching: arbitrary\n  kind: robot\n", 7, "said once"),
-        (
-            "    axis: prismatic\n",
-            "    axis: prismatic\n    switching: arbitrary\n",
-            11,
-            "said of this axis, and of all in common",
-        ),
-        ("axes:\n", "axs:\n", 8, "axes"),
-        ("name: two\n", "", 1, "name"),
-        ("  z:\n", "  Z:\n", 9, "Z"),
-        ("stiffness: 740 N/m", "stiffness: 740 N*m/rad", 12, "prismatic"),
-        ("Bt: 60 N*s/m", "Bt: -60 N*s/m", 13, "must be positive"),
-    ],
+    ("old", "new", "line", "said"), rows(__file__, "test_what_is_wrong_is_told_at_its_place")
 )
 def test_what_is_wrong_is_told_at_its_place(write, old, new, line, said):
     path = write((old, new))

@@ -6,6 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from nrs_design.spec.units import ONE, UNITS, parse_unit
+from tests.tables import rows
 
 from .samples import message_of
 
@@ -46,25 +47,7 @@ def test_angles_and_frequencies_hold_pi(text: str, si: float) -> None:
     assert unit.pi_power != 0
 
 
-@pytest.mark.parametrize(
-    ("a", "b", "same"),
-    [
-        ("N*m*s/rad", "kg*m^2/(s*rad)", True),
-        ("N*m*s", "kg*m^2/s", True),
-        ("rad/s/rpm", "rad/(s*rpm)", True),
-        ("Hz", "rad/s", True),
-        ("N", "kg*m/s^2", True),
-        ("N*m/rad", "N*m", False),
-        ("Hz", "1/s", False),
-        ("rpm", "rad/s", False),
-        ("rad/s/rpm", "1", False),
-        ("rad/s*rpm", "rad/s/rpm", False),
-        ("rad/s/V", "rad/s/rpm", False),
-        ("rad/s/V", "rad/s/A", False),
-        ("V", "counts", False),
-        ("V*A", "N*m/s", False),
-    ],
-)
+@pytest.mark.parametrize(("a", "b", "same"), rows(__file__, "test_dimensions"))
 def test_dimensions(a: str, b: str, same: bool) -> None:
     assert (parse_unit(a).dimension == parse_unit(b).dimension) is same
 

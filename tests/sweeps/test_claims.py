@@ -3,22 +3,10 @@
 import pytest
 
 from nrs_design.sweeps.claims import claims_in, is_shown
+from tests.tables import rows
 
 
-@pytest.mark.parametrize(
-    "document",
-    [
-        {"verdict": "proved"},
-        {"verdict": "refuted"},
-        {"runs": [{"verdict": "proved"}]},
-        {"status": "Proved"},
-        {"margin": {"proved_scale": 1.5}},
-        {"goals": [{"proved": True}]},
-        {"statements": [{"claim": "all is well"}]},
-        {"common_quadratic": "exists"},
-        {"certified_bound": 0.0},
-    ],
-)
+@pytest.mark.parametrize("document", rows(__file__, "test_claims"))
 def test_claims(document):
     assert list(claims_in(document))
     assert not is_shown(document, {})

@@ -5,6 +5,7 @@ import pytest
 from nrs_design.errors import SpecError
 from nrs_design.spec import parse_exact
 from nrs_design.sweeps.values import parse_values
+from tests.tables import rows
 
 
 def listed(text):
@@ -12,20 +13,7 @@ def listed(text):
     return [values[at] for at in range(len(values))]
 
 
-@pytest.mark.parametrize(
-    ("text", "values"),
-    [
-        ("1,2, 5 N*m/rad", ["1 N*m/rad", "2 N*m/rad", "5 N*m/rad"]),
-        ("1 ms, 2 s", ["1 ms", "2 s"]),
-        ("0.5", ["0.5"]),
-        ("kept,losable", ["kept", "losable"]),
-        ("1..2/3 N", ["1 N", "1.5 N", "2 N"]),
-        ("-1..1 N", ["-1 N", "0 N", "1 N"]),
-        ("0..1/4", ["0", "1/3", "2/3", "1"]),
-        ("1e-3..2e-3/2 s", ["0.001 s", "0.002 s"]),
-        (".5..1.5/2 s", ["0.5 s", "1.5 s"]),
-    ],
-)
+@pytest.mark.parametrize(("text", "values"), rows(__file__, "test_values"))
 def test_values(text, values):
     assert listed(text) == values
 

@@ -1,6 +1,5 @@
 import json
 import math
-import shutil
 import threading
 from dataclasses import replace
 
@@ -9,13 +8,10 @@ import pytest
 from nrs_design.errors import CertificateError, OutputError
 from nrs_design.gating.find_specs import find_specs
 from nrs_design.gating.lock import LockedRemark, dump_lock, read_lock
-from nrs_design.gating.locked import run_locked
 from nrs_design.gating.obligations import Caution
 from nrs_design.gating.renew import certificates_of, check_folder, make_lock, write_lock
 from nrs_design.gating.run import Files, run_gate
 from nrs_design.output import alone_in
-
-from .conftest import BROKEN, STABLE
 
 STABLE_SPEC = "specs/stable.nrs.yaml"
 
@@ -27,15 +23,6 @@ def outcome_of(project, *names, folder="reports"):
 
 def gate(project, *names, prune=False):
     return write_lock(outcome_of(project, *names), project / "nrs.lock", prune=prune)
-
-
-def locked(project):
-    return [entry.path for entry in read_lock(project / "nrs.lock").specs]
-
-
-def re_check(project):
-    file, specs = project / "nrs.lock", find_specs([project / "specs"])
-    return run_locked(specs, read_lock(file), file, named=[project / "specs"])
 
 
 def test_lock_elsewhere_names_the_same_files(project):
@@ -53,70 +40,6 @@ def test_a_remark_on_a_value_without_bound_reads_back(project):
     assert remark == LockedRemark(message="Ms unbounded", at=["controllers", "a"], beyond=1e6)
 
 
-def test_one_part_after_the_other_keeps_both(project):
-    whole = (project / "nrs.lock").read_bytes()
-    (project / "nrs.lock").unlink()
-    gate(project, "specs/stable.nrs.yaml")
-    gate(project, "specs/soft-tissue.nrs.yaml")
-    assert (project / "nrs.lock").read_bytes() == whole
-
-
-def test_a_new_spec_is_added(project):
-    (project / "mine.nrs.yaml").write_text(STABLE.replace("name: stable", "name: mine"))
-    gate(project, "mine.nrs.yaml")
-    assert locked(project) == [
-        "mine.nrs.yaml",
-        "specs/soft-tissue.nrs.yaml",
-        "specs/stable.nrs.yaml",
-    ]
-
-
-def test_a_spec_without_a_verdict_has_no_entry_so_that_locked_fails(project):
-    (project / "specs/stable.nrs.yaml").write_text(BROKEN)
-    outcome = gate(project, "specs")
-    assert locked(project) == ["specs/soft-tissue.nrs.yaml"]
-    assert any("for want of a verdict: " in note for note in outcome.notes)
-    (project / "specs/stable.nrs.yaml").write_text(STABLE)
-    (broken,) = re_check(project).broken
-    assert "is not in nrs.lock" in broken.message
-
-
-def test_a_copy_of_the_same_name_does_not_drop_what_is_locked(project):
-    before = (project / "nrs.lock").read_bytes()
-    shutil.copy(project / "specs/stable.nrs.yaml", project / "specs/zopy.nrs.yaml")
-    outcome = gate(project, "specs")
-    assert outcome.severity == 3
-    assert (project / "nrs.lock").read_bytes() == before
-    missing, unchanged = (note for note in outcome.notes if "a verdict" in note)
-    assert missing.endswith("zopy.nrs.yaml")
-    assert unchanged.startswith("without a verdict now, but unchanged")
-    assert unchanged.endswith("stable.nrs.yaml")
-    (project / "specs/zopy.nrs.yaml").unlink()
-    assert re_check(project).severity == 0
-
-
-def test_a_spec_that_is_gone_stays_locked_until_it_is_pruned(project):
-    gate(project, "specs/soft-tissue.nrs.yaml", prune=True)
-    assert len(locked(project)) == 2
-    (project / "specs/stable.nrs.yaml").unlink()
-    outcome = gate(project, "specs")
-    gate(project, "specs/stable.nrs.yaml")
-    assert len(locked(project)) == 2
-    assert "--prune removes it): specs/stable.nrs.yaml" in outcome.notes[-1]
-    assert re_check(project).severity == 2
-    outcome = gate(project, "specs", prune=True)
-    assert locked(project) == ["specs/soft-tissue.nrs.yaml"]
-    assert outcome.notes[-1].endswith("nrs.lock: specs/stable.nrs.yaml")
-    assert re_check(project).severity == 0
-
-
-def test_a_renamed_spec_takes_its_certificate_along(project):
-    (project / "specs/stable.nrs.yaml").rename(project / "specs/other.nrs.yaml")
-    gate(project, "specs")
-    assert locked(project) == ["specs/other.nrs.yaml", "specs/soft-tissue.nrs.yaml"]
-    assert re_check(project).severity == 0
-
-
 def test_missed_goals_and_gains_are_locked(project):
     entry = read_lock(project / "nrs.lock").specs[0]
     assert entry.gains["insertion"]["Bt"] == "2.150000095367431640625"
@@ -124,15 +47,6 @@ def test_missed_goals_and_gains_are_locked(project):
         ("NRS103", "insertion", "met"),
         ("NRS103", "withdrawal", "met"),
     ]
-
-
-@pytest.mark.parametrize("text", ["", "precious", '{"schema": "nrs-design/lock/1"}'])
-def test_what_is_no_lock_is_not_overwritten(project, text):
-    outcome = outcome_of(project, STABLE_SPEC)
-    (project / "nrs.lock").write_text(text)
-    with pytest.raises(CertificateError):
-        write_lock(outcome, project / "nrs.lock")
-    assert (project / "nrs.lock").read_text() == text
 
 
 def test_unwritable_lock(project):
@@ -191,18 +105,6 @@ def test_whose_a_locked_certificate_is(project):
     found = certificates_of(read_lock(project / "nrs.lock"), project / "nrs.lock")
     name = project / "reports/stable.cert.json"
     assert found[name.resolve()] == (project / "specs/stable.nrs.yaml").resolve()
-
-
-def test_the_certificate_of_a_locked_spec_is_not_overwritten_even_where_it_is_missing(project):
-    """Only the lock file says whose it is."""
-    (project / "reports/stable.cert.json").unlink()
-    shutil.copy(project / "specs/stable.nrs.yaml", project / "mine.nrs.yaml")
-    owners = certificates_of(read_lock(project / "nrs.lock"), project / "nrs.lock")
-    files = Files(folder=project / "reports", html=False, locked=owners)
-    (broken,) = run_gate([project / "mine.nrs.yaml"], files).broken
-    assert broken.rule.id == "NRS005"
-    assert "is locked for specs/stable.nrs.yaml" in broken.message
-    assert not (project / "reports/stable.cert.json").exists()
 
 
 def test_the_lock_does_not_change_with_comments_and_line_ends(project):

@@ -1,4 +1,5 @@
 import json
+from pathlib import Path
 
 import jsonschema
 import pytest
@@ -8,61 +9,8 @@ from nrs_design.gating.obligations import Status
 from nrs_design.gating.rules import RULES
 from tests.gating.formats.support import HOSTILE, obligation, outcome_of
 
-
 # The parts of SARIF 2.1.0 (OASIS) that are written, with what that standard requires of them.
-def closed(*required, **properties):
-    """Return the schema of an object with these properties only."""
-    return {
-        "type": "object",
-        "required": [*required],
-        "properties": properties,
-        "additionalProperties": False,
-    }
-
-
-def listed(items, **more):
-    return {"type": "array", "items": items, **more}
-
-
-STRING, PLACE = {"type": "string"}, {"type": "integer", "minimum": 1}
-TEXT = closed("text", text={"type": "string", "minLength": 1})
-LEVEL = {"enum": ["none", "note", "warning", "error"]}
-RULE = closed(
-    "id",
-    id=STRING,
-    shortDescription=TEXT,
-    fullDescription=TEXT,
-    help=TEXT,
-    defaultConfiguration=closed(level=LEVEL),
-)
-LOCATION = closed(
-    physicalLocation=closed(
-        "artifactLocation",
-        artifactLocation=closed(
-            uri={"type": "string", "pattern": "^[A-Za-z0-9._~/%-]+$"},
-            uriBaseId={"const": "%SRCROOT%"},
-        ),
-        region=closed("startLine", startLine=PLACE, startColumn=PLACE),
-    )
-)
-RESULT = closed(
-    *("message", "ruleId", "ruleIndex"),
-    ruleId=STRING,
-    ruleIndex={"type": "integer", "minimum": 0},
-    level=LEVEL,
-    message=TEXT,
-    locations=listed(LOCATION, minItems=1),
-    partialFingerprints={"type": "object", "additionalProperties": STRING},
-)
-DRIVER = closed("name", name=STRING, semanticVersion=STRING, rules=listed(RULE, uniqueItems=True))
-RUN = closed(
-    *("tool", "results"),
-    tool=closed("driver", driver=DRIVER),
-    columnKind={"enum": ["utf16CodeUnits", "unicodeCodePoints"]},
-    results=listed(RESULT),
-)
-SARIF = closed("version", "runs", version={"const": "2.1.0"}, runs=listed(RUN, minItems=1))
-SARIF["properties"]["$schema"] = {"type": "string", "format": "uri"}
+SARIF = json.loads(Path(__file__).with_name("sarif.json").read_text(encoding="utf-8"))
 
 
 def sarif_of(outcome):

@@ -20,8 +20,6 @@ from tests.certificates.attacks import (
     POLYNOMIAL,
     QUADRATIC,
     SHIPPED,
-    call_it_discrete,
-    follow_nobody,
     found,
     named,
     shipped,
@@ -112,7 +110,8 @@ def test_forgeries_do_not_hold(judge, name, change):
     change(forged)
     assert forged != document
     # Polynomials in steps, and what is left after any time, are left to others.
-    left = change is follow_nobody or (name == POLYNOMIAL and change is call_it_discrete)
+    done = named(change)
+    left = done == "follow_nobody" or (name, done) == (POLYNOMIAL, "call_it_discrete")
     assert judge(forged) == (3 if left else 1)
     # Nor do they here.
     assert prove({**forged, "id": content_id(forged)}).fault is not None

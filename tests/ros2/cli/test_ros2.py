@@ -1,6 +1,5 @@
 """``nrs-design ros2`` as a user types it."""
 
-import json
 import re
 import shlex
 
@@ -8,37 +7,10 @@ import pytest
 
 from nrs_design.ros2.law import read_law
 from nrs_design.ros2.parameters import parse_nodes
-from tests.ros2.support import EXAMPLE, changed
-from tests.support import ROOT, document_of, run, typed
+from tests.ros2.support import changed
+from tests.support import ROOT, document_of, run
 
 SOFT = ("--stiffness", "200..2000 N/m")
-
-
-@pytest.mark.slow
-def test_proved(tmp_path):
-    done = typed(
-        "ros2", "check", EXAMPLE, *SOFT, "--age", "0..2", "--lag", "5..20 ms", cwd=tmp_path, code=0
-    )
-    assert "axis x: from 200 to 2000 N/m: stable, in contact, rho <= 0.99" in done.stdout
-    assert "PROVED" in done.stdout
-    assert "a lag of first order, 5 to 20 ms" in done.stdout
-
-
-def test_refuted_as_json_and_sarif(tmp_path):
-    stiff = ("--stiffness", "90000 N/m", "--age", "2")
-    (found,) = document_of("ros2", "check", EXAMPLE, *stiff, cwd=tmp_path, code=1)["specs"]
-    assert found["verdict"] == "refuted"
-    done = run("ros2", "check", EXAMPLE, *stiff, "--format", "sarif", cwd=tmp_path)
-    results = json.loads(done.stdout)["runs"][0]["results"]
-    assert {item["ruleId"] for item in results} == {"NRS202"}
-    region = results[0]["locations"][0]["physicalLocation"]["region"]
-    assert region["startLine"] == 30
-
-
-def test_what_surprises_people_is_on_stderr(tmp_path):
-    file = changed(tmp_path, ("mass: [5.0, ", "mass: [6.0, "))
-    done = run("ros2", "check", file, *SOFT, cwd=tmp_path, code=0)
-    assert "warning: admittance_controller: admittance.mass: masses differ" in done.stderr
 
 
 NO_RATE = ("    update_rate: 500\n", "")
@@ -81,13 +53,6 @@ def test_every_remedy_that_is_printed_works_when_pasted(tmp_path, changes, optio
         given = dict(zip(options[::2], options[1::2], strict=True)) | {option: value}
         again = run(*command, *(word for pair in given.items() for word in pair), cwd=tmp_path)
         assert again.returncode in (0, 1), (remedy, again.stderr)
-
-
-@pytest.mark.parametrize("rate", ["500", "500 1/s", "500 Hz", "500Hz"])
-def test_a_rate_may_have_its_unit(tmp_path, rate):
-    file = changed(tmp_path, NO_RATE)
-    done = run("ros2", "check", file, *SOFT, "--rate", rate, cwd=tmp_path, code=0)
-    assert "runs 500 times per second, as --rate says" in done.stdout
 
 
 @pytest.fixture

@@ -358,3 +358,31 @@ def test_the_reader_of_imports_sees_them():
     assert ("nrs_design.gating.run", "nrs_design.reporting") in lazy
     typed = {(item.source, item.target) for item in ours() if item.typing_only}
     assert ("nrs_design.cli.granted", "nrs_design.pipeline.certification") in typed
+
+
+# Folders whose tests are of their modules; what a file in one of them is across is listed.
+MIRRORED = (
+    "certificates",
+    "cli",
+    "exporters",
+    "gating",
+    "models",
+    "robot",
+    "ros2",
+    "simulation",
+    "spec",
+)
+
+
+def test_a_test_file_is_of_a_module_or_listed_as_one_across_them():
+    """A file for a module that was merged away would be looked for in vain."""
+    homes = {(path.relative_to(ROOT / "nrs_design").parts[0], path.stem) for path in FILES.values()}
+    homes |= {(room, path.parent.name) for room in MIRRORED for path in FILES.values()}
+    across = {
+        path.relative_to(ROOT / "tests").as_posix()
+        for room in MIRRORED
+        for path in (ROOT / "tests" / room).rglob("test_*.py")
+        if (room, path.stem.removeprefix("test_")) not in homes
+    }
+    listed = (ROOT / "tests" / "across.txt").read_text(encoding="utf-8").splitlines()
+    assert sorted(across) == [line for line in listed if not line.startswith("#")]

@@ -34,15 +34,6 @@ def kept(folder):
     return sorted(folder.rglob("*.json"))
 
 
-def test_a_table_of_every_combination(tmp_path, spec):
-    limits = "limits.bandwidth=1,2 Hz"
-    stable = f"{STIFFNESS}=700,800 N/m"
-    done = run("sweep", spec, "--set", stable, "--set", limits, "optimize", cwd=tmp_path, code=0)
-    assert "4 points: 4 met" in done.stdout
-    rows = [line.split()[:2] for line in done.stdout.splitlines() if " met " in line]
-    assert rows == [["700", "1"], ["700", "2"], ["800", "1"], ["800", "2"]]
-
-
 def test_what_a_point_says_is_what_the_command_says(tmp_path, spec):
     swept = document_of("sweep", spec, "--set", TWO, "certify-switching", cwd=tmp_path, code=1)
     assert [point["values"] for point in swept["points"]] == [["700 N/m"], ["2000 N/m"]]
@@ -184,26 +175,6 @@ def test_proved_is_used_again_only_with_a_certificate_that_holds(tmp_path, spec)
     assert "0 computed, 1 were there" in certified(tmp_path, spec).stderr
 
 
-def test_a_value_that_makes_no_valid_spec_is_a_wrong_point(tmp_path, spec):
-    mixed = f"{STIFFNESS}=700,-5 N/m"
-    swept = document_of("sweep", spec, "--set", mixed, "check", cwd=tmp_path, code=2)
-    good, bad = swept["points"]
-    assert (good["exit_code"], bad["exit_code"], bad["result"]) == (0, 2, None)
-    assert "-5 N/m" in bad["error"]["faults"][0]["message"]
-    # Nothing is kept of what is wrong.
-    assert len(kept(tmp_path / "mine.sweep")) == 1
-    told = run("sweep", spec, "--set", mixed, "check", cwd=tmp_path, code=2).stdout
-    assert f"wrong: {STIFFNESS}=-5 N/m: " in told
-
-
-def test_options_belong_to_the_command_and_to_the_name_of_its_answer(tmp_path, spec):
-    command = ("sweep", spec, "--set", f"{STIFFNESS}=700 N/m", "certify-switching")
-    run(*command, cwd=tmp_path, code=0)
-    assert "1 computed" in run(*command, "--method", "lmi", cwd=tmp_path).stderr
-    assert "0 computed" in run(*command, "--method=lmi", cwd=tmp_path).stderr
-    assert "0 computed" in run(*command, "--", "--method", "lmi", cwd=tmp_path).stderr
-
-
 def test_an_answer_stays_until_it_is_replaced(tmp_path, spec, monkeypatch):
     """Another run in the same folder may be about to read it."""
     path, what = tmp_path / spec, ("optimize",)
@@ -220,31 +191,6 @@ def test_an_answer_stays_until_it_is_replaced(tmp_path, spec, monkeypatch):
     # What `optimize` proves is computed again in every run.
     assert answer_point(job, 0) == first
     assert [kept.id(first.key) for kept in there] == [first.id]
-
-
-def test_a_store_that_cannot_be_one_is_no_defect(tmp_path, spec):
-    (tmp_path / "file").touch()
-    command = "sweep", spec, "--set", f"{STIFFNESS}=700 N/m", "--store", "file"
-    for what in ("check", "certify-switching"):
-        assert "cannot be written" in run(*command, what, cwd=tmp_path, code=2).stdout
-
-
-def test_no_store_keeps_nothing(tmp_path, spec):
-    run("sweep", spec, "--set", TWO, "--no-store", "check", cwd=tmp_path, code=0)
-    assert kept(tmp_path) == []
-    run("sweep", spec, "--set", TWO, "--store", "there", "check", cwd=tmp_path, code=0)
-    assert len(kept(tmp_path / "there")) == 2
-
-
-def test_a_table_as_csv(tmp_path, spec):
-    arguments = ("sweep", spec, "--set", TWO, "--csv", "t.csv", "check")
-    run(*arguments, cwd=tmp_path, code=0)
-    head, *rows = (tmp_path / "t.csv").read_text(encoding="utf-8").splitlines()
-    assert head.startswith(f"point,exit_code,message,{STIFFNESS} [N/m],")
-    assert [row.split(",")[:4] for row in rows] == [["0", "0", "", "700"], ["1", "0", "", "2000"]]
-    run(*arguments, cwd=tmp_path, code=0)
-    (tmp_path / "t.csv").write_text("mine", encoding="utf-8")
-    assert "not overwritten" in run(*arguments, cwd=tmp_path, code=2).stderr
 
 
 def test_every_command_of_the_table_is_run(tmp_path):

@@ -20,14 +20,6 @@ def document(*arguments, cwd):
     return found
 
 
-def test_check_says_what_is_out_of_reach_and_why(tmp_path):
-    result = run("robot", "check", ROBOT, "-q", cwd=tmp_path)
-    assert (result.returncode, result.stdout) == (1, "")
-    line = ROBOT.read_text().splitlines().index("workspace:") + 1
-    assert f"neuroboscope.nrs.yaml:{line}: 0.05 % of the declared workspace" in result.stderr
-    assert "the left leg is overstretched by 5.507 mm" in result.stderr
-
-
 @pytest.mark.slow
 def test_correction_table_for_the_controller(tmp_path):
     found = document("correction", "--table", "K.csv", "--figures", "out", cwd=tmp_path)

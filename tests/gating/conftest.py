@@ -9,35 +9,10 @@ from nrs_design.gating.find_specs import find_specs
 from nrs_design.gating.renew import make_lock, write_lock
 from nrs_design.gating.run import Files, run_gate
 from tests.support import SOFT_TISSUE, replaced
+from tests.tables import spec_text
 
-STABLE = """\
-kind: switched-system
-name: stable
-time: continuous
-modes:
-  - {name: a, A: [[-1, 1], [-1, -1]]}
-  - {name: b, A: [[-2, 3], [-3, -2]]}
-switching: arbitrary
-"""
-UNSTABLE = """\
-kind: switched-system
-name: unstable
-time: discrete
-modes:
-  - {name: good, A: [["1/2", 0], [0, "1/2"]]}
-  - {name: bad, A: [["1/2", 0], [0, 1]]}
-switching: arbitrary
-"""
-# Branicky 1998: both modes are Hurwitz.
-GROWING = """\
-kind: switched-system
-name: growing
-time: continuous
-modes:
-  - {name: a, A: [[-1, 10], [-100, -1]]}
-  - {name: b, A: [[-1, 100], [-10, -1]]}
-switching: arbitrary
-"""
+# `growing` is of Branicky 1998: both modes are Hurwitz.
+STABLE, UNSTABLE, GROWING = map(spec_text, ("stable", "unstable", "growing"))
 # Dayawansa and Martin 1999 with a = 11.2: stable, but beyond the degrees that are tried.
 HARD = GROWING.replace("growing", "hard").replace("[[-1, 10], [-100, -1]]", "[[-1, -1], [1, -1]]")
 HARD = HARD.replace("[[-1, 100], [-10, -1]]", "[[-1, -11.2], [5/56, -1]]")

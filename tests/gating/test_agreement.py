@@ -23,26 +23,11 @@ from nrs_design.pipeline.design import design_at_least_cost
 from nrs_design.pipeline.runs import run_certification, run_recorded
 from nrs_design.spec import read_spec
 from tests.support import ROOT
+from tests.tables import spec_text
 
 pytestmark = pytest.mark.slow
 # The loop of soft-tissue-sampled, for which gains of the least cost decay at 0.977 1/s.
-BY_RATE = """\
-kind: interaction-design
-name: by-rate
-actuator: {gain: MOTOR, time_constant: LAG}
-motion_loop: {damping_ratio: 0.707, settling_time: 0.1404 s, derivative_gain: 2060 rpm*s/rad}
-limits: {velocity: 8 deg/s, torque: 0.3 N*m, bandwidth: 2 Hz}
-environments:
-  soft: {model: elastic, lever_arm: 0.24 m, stiffness: STIFFNESS}
-controllers:
-  insertion: {type: impedance, environment: soft, MASSES}
-  OTHER
-design: {significant_digits: DIGITS}
-switching: arbitrary
-sampling: {period: 2 ms, delay: [0, 1]}
-contact: CONTACT
-goals: {GOALS}
-"""
+BY_RATE = spec_text("by-rate")
 CASE = {
     "OTHER": "withdrawal: {type: impedance, environment: soft, "
     "desired_impedance_ratio: 0.5, MASSES}",

@@ -10,6 +10,7 @@ from nrs_design.controllers.step_logic import StepLogic
 from nrs_design.errors import DesignError
 from nrs_design.spec import parse_spec
 from tests.simulation.interactions import IMPEDANCE, PLACED, SAMPLED, simulated, text_of
+from tests.tables import spec_text
 
 RUN = (
     "command: {points: [[0 s, 0 deg/s], [0.3 s, 8 deg/s], [0.6 s, 2 deg/s], [1 s, -6 deg/s]]}, "
@@ -158,18 +159,7 @@ def test_a_budget_ends_a_run():
     assert "budget" in run.stopped
 
 
-LOGIC = """\
-mode_logic:
-  type: thresholds
-  start: position
-  hold: 100 ms
-  signals:
-    command: {noise: 0.1 deg/s, age: 4 ms, largest_rate: 40 deg/s^2}
-    torque: {noise: 0.002 N*m, age: 4 ms, largest_rate: 6.2 N*m/s}
-  switches:
-    - {from: position, to: force, torque: {above: 0.27 N*m}, command: {above: 0.5 deg/s}}
-    - {from: force, to: position, command: {below: -0.5 deg/s}}
-"""
+LOGIC = spec_text("logic-with-timer")
 
 
 def test_the_timer_counts_samples_as_the_exported_logic_does():

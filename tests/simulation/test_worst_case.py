@@ -23,6 +23,7 @@ from nrs_design.spec import parse_spec
 from nrs_design.spec.load import LoadedSpec
 from tests.proof.systems import family, matrix
 from tests.simulation.interactions import text_of
+from tests.tables import spec_text
 
 
 def oscillator(*stiffness, damping="1", switching=ARBITRARY):
@@ -173,28 +174,7 @@ def test_the_exact_engine_comes_to_the_same():
     assert np.abs(again.response["torque"]).max() == pytest.approx(run.value, rel=0.01)
 
 
-FAR = """kind: interaction-design
-name: far
-actuator: {gain: 0.001338 rad/s/rpm, time_constant: 0.01239 s}
-motion_loop:
-  damping_ratio: 0.707
-  settling_time: 0.04956 s
-  derivative_gain: 59 rpm*s/rad
-  zero: 2.191 1/s
-limits: {velocity: 8 deg/s, torque: 0.9 N*m, bandwidth: 2 Hz}
-environments: {soft: {model: elastic, stiffness: 257 N*m/rad}}
-controllers:
-  c0: {type: impedance, environment: soft, Mt: 0.004453 kg*m^2, Bt: 2.412 N*m*s/rad}
-disturbances: {command: 8 deg/s}
-contact: losable
-switching: arbitrary
-scenarios:
-  far:
-    command: {constant: 8 deg/s}
-    duration: 25 s
-    surfaces: [{environment: soft, at: 86 deg}]
-    control: {fixed: c0}
-"""
+FAR = spec_text("far")
 
 
 @pytest.mark.parametrize("sampling", ["", "sampling: {period: 2 ms, delay: 0}\n"])

@@ -9,20 +9,10 @@ from nrs_design.spec.build_plant import build_plant
 from nrs_design.spec.environment import AbstractEnvironmentSpec
 from nrs_design.spec.quantity_fields import RangedQuantity
 from tests.support import SOFT_TISSUE
+from tests.tables import spec_text
 
 F = Fraction
-KELVIN_VOIGT = """\
-  hand:
-    model: kelvin-voigt
-    stiffness: {nominal: 1002 N/m, range: [434 N/m, 1570 N/m]}
-    damping: {nominal: 5 N*s/m, range: [0 N*s/m, 10 N*s/m]}
-    lever_arm: 0.24 m
-  rotational:
-    model: kelvin-voigt
-    stiffness: 43 N*m/rad
-    damping: 1/2 N*m*s/rad
-controllers:
-"""
+KELVIN_VOIGT = spec_text("two-hands")
 
 
 def test_soft_tissue_of_the_thesis():

@@ -16,6 +16,7 @@ from nrs_design.spec import SwitchedSystemSpec, load_spec, parse_spec, read_spec
 from nrs_design.spec.document import Node, hash_meaning, parse_document, to_data
 from nrs_design.spec.load import SPEC_KINDS, model_of
 from tests.support import COMMUTING
+from tests.tables import spec_text
 
 from .samples import FORCE, IMPEDANCE, SWITCHED, assert_inside, refusal
 
@@ -175,19 +176,7 @@ def test_every_kind_has_its_model() -> None:
     assert kinds == {kind: Literal[kind] for kind in SPEC_KINDS}
 
 
-BETWEEN = """\
-kind: interaction-design
-name: soft
-actuator: {gain: 4.8417e-4 GAIN, time_constant: 0.0351 s}
-motion_loop: {damping_ratio: 0.707, settling_time: 0.1404 s, derivative_gain: 2060 rpm*s/rad,
-              zero: 56.9706 1/s}
-limits: {velocity: 8 deg/s, torque: 0.3 N*m, bandwidth: 2 Hz}
-environments:
-  soft: {model: elastic, stiffness: 43 STIFFNESS}
-controllers:
-  a: {type: impedance, environment: sof, Mt: 0.01 kg*m^2, Bt: 2.15 N*m*s/rad}
-switching: {transitions: [[a, b]]}
-"""
+BETWEEN = spec_text("between")
 NO_ENVIRONMENT, NO_CONTROLLER = "there is no environment 'sof'", "there is no controller 'b'"
 
 

@@ -7,27 +7,9 @@ from nrs_design.spec import read_spec
 from nrs_design.spec.load import axes_at, is_there, read_axes
 from nrs_design.spec.task_space import file_of
 from tests.support import replaced
-from tests.tables import rows
+from tests.tables import rows, spec_text
 
-TEXT = """\
-kind: task-space
-name: two
-title: Two axes
-common:
-  velocity_interface: {time_constant: 30 ms}
-  switching: arbitrary
-  sampling: {period: 2 ms, delay: 1}
-axes:
-  z:
-    axis: prismatic
-    limits: {velocity: 30 mm/s, torque: 3 N, bandwidth: 2 Hz}
-    environments: {tissue: {model: elastic, stiffness: 740 N/m}}
-    controllers: {insertion: {type: impedance, environment: tissue, Mt: 0.2 kg, Bt: 60 N*s/m}}
-  rx:
-    limits: {velocity: 8 deg/s, torque: 0.3 N*m, bandwidth: 2 Hz}
-    environments: {tissue: {model: elastic, stiffness: 42 N*m/rad}}
-    controllers: {guide: {type: impedance, environment: tissue, Mt: 0.01 kg*m^2, Bt: 3 N*m*s/rad}}
-"""
+TEXT = spec_text("two-axes")
 
 
 @pytest.fixture
@@ -65,19 +47,8 @@ def test_places_are_those_of_the_file(write):
 def test_an_axis_is_what_its_keys_and_those_in_common_say(write, tmp_path):
     """The order of keys counts in the hash; here it is the same."""
     (_, rx) = read_axes(write())
-    alone = """\
-kind: interaction-design
-name: two-rx
-title: "Two axes: rx"
-velocity_interface: {time_constant: 30 ms}
-switching: arbitrary
-sampling: {period: 2 ms, delay: 1}
-limits: {velocity: 8 deg/s, torque: 0.3 N*m, bandwidth: 2 Hz}
-environments: {tissue: {model: elastic, stiffness: 42 N*m/rad}}
-controllers: {guide: {type: impedance, environment: tissue, Mt: 0.01 kg*m^2, Bt: 3 N*m*s/rad}}
-"""
     path = tmp_path / "alone.nrs.yaml"
-    path.write_text(alone, encoding="utf-8")
+    path.write_text(spec_text("one-axis-alone"), encoding="utf-8")
     assert read_spec(path).sha256 == rx.sha256
 
 

@@ -1,11 +1,12 @@
 import json
-import math
+from pathlib import Path
 
 import pytest
 
 from nrs_design.errors import CertificateError
 from nrs_design.gating.lock import MAX_BYTES, MAX_SPECS, Lock, dump_lock, read_lock
 from nrs_design.gating.rules import RETIRED
+from tests.tables import table
 
 
 @pytest.mark.slow
@@ -26,18 +27,9 @@ def test_lock_reads_back(project):
     assert Lock.model_validate(json.loads(dump_lock(lock))) == lock
 
 
-GOAL = {"rule": "NRS103", "subject": "tissue", "status": "met", "message": "reached"}
-REMARK = {"message": "far off", "at": ["limits"], "beyond": 2.0}
-ENTRY = {
-    "path": "a.nrs.yaml",
-    "sha256": "0" * 64,
-    "version": "0",
-    "verdict": "proved",
-    "rate": "1",
-    "certificate": {"file": "a.cert.json", "id": "1" * 64},
-    "gains": {"tissue": {"Mt": "0.25"}},
-    "goals": [GOAL],
-}
+TABLE = table(Path(__file__).with_suffix(".yaml"))
+ENTRY = TABLE["entry"]
+(GOAL,) = ENTRY["goals"]
 
 
 def document(*entries, **changes):
@@ -72,41 +64,19 @@ def test_an_inconclusive_spec_may_have_the_certificate_of_a_remark(tmp_path, cer
     assert read_lock(tmp_path / "nrs.lock").specs[0].verdict == "inconclusive"
 
 
+def spoiled(case):
+    if "text" in case:
+        return case["text"]
+    more = [{**ENTRY, **case["more"]}] if "more" in case else []
+    return document({**ENTRY, **case.get("entry", {})}, *more, **case.get("document", {}))
+
+
 @pytest.mark.parametrize(
     "text",
     [
-        "",
-        "[]",
-        "{",
+        *map(spoiled, TABLE["refused"]),
         "[" * 100_000,
-        "\x00",
-        document(schema="nrs-design/other/2"),
-        document(schema=2),
-        document(extra=1),
-        document(specs=None),
-        document(ENTRY, ENTRY),
-        document({**ENTRY, "verdict": "fine"}),
-        document({**ENTRY, "sha256": "0" * 63}),
-        document({**ENTRY, "certificate": None}),
-        document({**ENTRY, "verdict": "inconclusive"}),
-        document({**ENTRY, "path": 1}),
-        document({**ENTRY, "path": "/a.nrs.yaml"}),
-        document({**ENTRY, "path": "./a.nrs.yaml"}),
-        document({**ENTRY, "path": "b/../a.nrs.yaml"}),
-        document({**ENTRY, "path": "a\0.nrs.yaml"}),
         document({**ENTRY, "path": "a" * 5000}),
-        document(ENTRY, {**ENTRY, "path": "b.nrs.yaml"}),
-        document({**ENTRY, "certificate": {"file": "/dev/zero", "id": "1" * 64}}),
-        document({**ENTRY, "certificate": {"file": "../a.cert.json", "id": "1" * 64}}),
-        document({**ENTRY, "certificate": {"file": "..", "id": "1" * 64}}),
-        document({**ENTRY, "goals": [{**GOAL, "rule": "NRS102"}]}),
-        document({**ENTRY, "goals": [{**GOAL, "rule": "NRS999"}]}),
-        document({**ENTRY, "goals": [{**GOAL, "status": "fine"}]}),
-        document({**ENTRY, "goals": [{**GOAL, "status": "proved"}]}),
-        document({**ENTRY, "gains": {"tissue": {"Mt": 0.25}}}),
-        document({**ENTRY, "remark": {**REMARK, "at": [-9]}}),
-        document({**ENTRY, "remark": {**REMARK, "beyond": math.nan}}),
-        document({**ENTRY, "unknown": 1}),
         document(ENTRY).replace('"rate"', '"path"'),
     ],
 )

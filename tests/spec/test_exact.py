@@ -8,30 +8,14 @@ from hypothesis import strategies as st
 from nrs_design.errors import SpecError
 from nrs_design.spec.exact import parse_exact
 from tests.support import ends_soon
+from tests.tables import rows
 
 from .samples import message_of
 
 
-@pytest.mark.parametrize(
-    ("text", "value"),
-    [
-        ("0", Fraction(0)),
-        ("-0.36", Fraction(-9, 25)),
-        ("1/6", Fraction(1, 6)),
-        ("-22/7", Fraction(-22, 7)),
-        ("+4.8417e-4", Fraction(48417, 100_000_000)),
-        (".5", Fraction(1, 2)),
-        ("5.", Fraction(5)),
-        ("1E+2", Fraction(100)),
-        ("0.1", Fraction(1, 10)),
-        # The largest and the smallest that are read.
-        ("1e100", Fraction(10**100)),
-        ("1e-100", Fraction(1, 10**100)),
-        ("9" * 100, Fraction(10**100 - 1)),
-    ],
-)
-def test_reads_exactly(text: str, value: Fraction) -> None:
-    assert parse_exact(text) == value
+@pytest.mark.parametrize(("text", "value"), rows(__file__, "test_reads_exactly"))
+def test_reads_exactly(text: str, value: str) -> None:
+    assert parse_exact(text) == Fraction(value)
 
 
 @pytest.mark.parametrize(

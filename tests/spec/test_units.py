@@ -11,24 +11,9 @@ from tests.tables import rows
 from .samples import message_of
 
 
-@pytest.mark.parametrize(
-    ("text", "factor"),
-    [
-        ("mm", Fraction(1, 1000)),
-        ("cm^2", Fraction(1, 10_000)),
-        ("min", Fraction(60)),
-        ("kN*mm", Fraction(1)),
-        ("N/mm", Fraction(1000)),
-        ("g*cm^2", Fraction(1, 10_000_000)),
-        ("mrad/s", Fraction(1, 1000)),
-        ("1/s", Fraction(1)),
-        ("s^-1", Fraction(1)),
-        ("rad/(mN*m)", Fraction(1000)),
-        ("((m))", Fraction(1)),
-    ],
-)
-def test_rational_factors_are_exact(text: str, factor: Fraction) -> None:
-    assert parse_unit(text).factor == factor
+@pytest.mark.parametrize(("text", "factor"), rows(__file__, "test_rational_factors_are_exact"))
+def test_rational_factors_are_exact(text: str, factor: str) -> None:
+    assert parse_unit(text).factor == Fraction(factor)
     assert parse_unit(text).pi_power == 0
 
 

@@ -39,15 +39,6 @@ def test_without_a_spec_what_is_altered_is_rejected(certified, tmp_path):
     assert "REJECTED: V does not decrease" in run("verify", "c.json", cwd=tmp_path, code=1).stdout
 
 
-@pytest.mark.parametrize("content", [None, b"", b"[]", b'{"a": NaN}', b"[" * 9000, b"9" * 5000])
-def test_not_a_certificate(tmp_path, content):
-    if content is not None:
-        (tmp_path / "c.json").write_bytes(content)
-    result = run("verify", "c.json", COMMUTING, cwd=tmp_path, code=2)
-    assert result.stderr.startswith("error[NRS004]: c.json")
-    assert result.stdout == ""
-
-
 def test_disagreement_is_an_internal_error(certified):
     """Flint says no where the integer check says yes: exit code 4 and no verdict."""
     program = (

@@ -4,6 +4,7 @@ import pytest
 
 from nrs_design.errors import NrsDesignError, SpecError
 from nrs_design.gating.find_specs import find_misnamed, find_passed_over, find_specs
+from tests.tables import rows
 
 
 @pytest.fixture
@@ -91,22 +92,8 @@ def test_specs_by_another_name_are_listed(tmp_path):
 @pytest.mark.parametrize(
     "text",
     [
-        '"kind": robot\nname: a\n',
-        "'kind': 'robot'\nname: a\n",
-        '{"kind": "robot", "name": "a"}',
-        "{name: a, kind: robot}",
-        "kind:   # what this is\n  robot\nname: a\n",
-        "? kind\n: robot\n",
-        '"k\\x69nd": robot\n',
-        "\ufeffkind: robot\n",
-        "---\nkind: robot\n...\n",
-        "%YAML 1.2\n---\nkind : robot\n",
+        *rows(__file__, "test_a_kind_is_found_however_it_is_written"),
         "#" + 40_000 * " " + "\nkind: robot\n",
-        # No spec is read from these, and one was meant.
-        "kind: robot\nname: [\n",
-        "kind: !!str robot\n",
-        '"kind": &k "robot"\nlast: *k\n',
-        "name: a\n---\n{'kind': robot}\n",
     ],
 )
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-16"])
@@ -115,10 +102,7 @@ def test_a_kind_is_found_however_it_is_written(tmp_path, text, encoding):
     assert find_misnamed([tmp_path]) == (tmp_path / "arm.yaml",)
 
 
-@pytest.mark.parametrize(
-    "text",
-    ["kinds: robot\n", "a: {kind: robot}\n", "# kind: robot\na: b\n", "kind: robot-arm\n", "robot"],
-)
+@pytest.mark.parametrize("text", rows(__file__, "test_what_is_no_kind_of_a_spec"))
 def test_what_is_no_kind_of_a_spec(tmp_path, text):
     (tmp_path / "arm.yaml").write_text(text)
     assert find_misnamed([tmp_path]) == ()

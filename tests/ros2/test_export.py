@@ -10,7 +10,6 @@ import pytest
 
 from nrs_design.certificates.certificate import dump
 from nrs_design.certificates.prove import prove
-from nrs_design.errors import DesignError
 from nrs_design.pipeline.runs import run_design
 from nrs_design.ros2.export import export_controllers
 from nrs_design.ros2.law import read_law
@@ -112,30 +111,3 @@ def test_the_filter_is_written_out():
         share = law_in(item.text).filter_coefficient
         assert float(share) == pytest.approx(1 - np.exp(-100 * 0.002), rel=1e-6)
         assert len(item.certificates["ry"].system.states) == 5
-
-
-@pytest.mark.parametrize(
-    ("changes", "message"),
-    [
-        ([("sampling: {period: 2 ms, delay: 1}\ncontact: losable\n", "")], "when its law runs"),
-        ([("period: 2 ms", "period: 3 ms")], "no whole number of periods"),
-        ([("delay: 1", "outer_period: 1 ms, delay: 1")], "has one period"),
-        ([("delay: 1", "delay: 1, latency: 1 ms")], "takes commands at their sample"),
-        ([("delay: 1", "delay: [0, 1]")], "for one age of the force only"),
-        ([("contact: losable", f"{FILTER}contact: losable"), ("order: 1", "order: 2")], "order 2"),
-        (
-            [
-                ("model: elastic", "model: kelvin-voigt\n    damping: 10 N*s/m"),
-                ("contact: losable", "contact: kept"),
-            ],
-            "more than a spring",
-        ),
-        ([("    Bt: {min", "    Kt: 1 N*m/rad\n    Bt: {min")], "a spring"),
-        ([("Mt: {min: 0.01 kg*m^2", "Mt: {min: 5e-5 kg*m^2")], "mass: .* is not between 0.0001"),
-    ],
-    ids=["sampling", "rate", "periods", "late", "age", "filter", "damping", "spring", "bounds"],
-)
-def test_what_it_cannot_run(changes, message):
-    with pytest.raises(DesignError, match=message) as caught:
-        exported(designed(*changes))
-    assert caught.value.remedy

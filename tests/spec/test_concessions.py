@@ -14,30 +14,14 @@ from nrs_design.spec.edits import changed, with_edits
 from nrs_design.spec.load import respecified
 from nrs_design.spec.weaker import find_changes
 from tests.support import FORCE_LIMIT, ROOT, SOFT_TISSUE
+from tests.tables import edited, table
 
 TEXT = SOFT_TISSUE.read_text(encoding="utf-8")
 BT = "Bt: {min: 0.1 N*m*s/rad, max: 20 N*m*s/rad"
 STIFFNESS = "environments.soft.stiffness.range"
 CONSTANT = "environments.soft.stiffness.varies"
 CONTROLLERS = ["controllers.insertion", "controllers.withdrawal"]
-# What a spec may have besides, and the line that it could be proved without.
-PARTS_OF = {
-    "sampling.outer_period": "\nsampling: {period: 2 ms, outer_period: 4 ms, delay: 0}\n",
-    "sampling.misses": (
-        "\nsampling: {period: 2 ms, delay: 0, misses: {consecutive: 1, command: hold}}\n"
-    ),
-    "contact": "\ncontact: losable\n",
-    "sampling.delay": "\nsampling: {period: 2 ms, delay: [0, 3]}\n",
-    "sampling.latency": "\nsampling: {period: 2 ms, delay: 0, latency: [0.3 ms, 1 ms]}\n",
-    "sampling.jitter": "\nsampling: {period: 2 ms, delay: 0, jitter: 0.1 ms}\n",
-    "disturbances": "\ndisturbances: {command: 8 deg/s}\n",
-    "sensor": "\nsensor: {filter: {cutoff: 30 Hz}}\n",
-    "sensor.filter": "\nsensor: {bias: 5 N*mm, filter: {cutoff: 30 Hz}}\n",
-    "actuator.time_constant.range": (
-        "time_constant: 0.0351 s",
-        "time_constant: {nominal: 0.0351 s, range: [0.034 s, 0.036 s]}",
-    ),
-}
+PARTS_OF = table(Path(__file__).with_suffix(".yaml"))["parts"]
 
 
 def loaded(text: str) -> LoadedSpec:
@@ -58,9 +42,7 @@ def at_least(spec: LoadedSpec, line: Concession) -> LoadedSpec:
 @pytest.mark.parametrize("name", PARTS_OF)
 def test_a_line_is_named_where_it_is_there_and_a_spec_without_it_is_valid(name):
     assert set(lines_of(loaded(TEXT))) == {STIFFNESS, CONSTANT, *CONTROLLERS}
-    change = PARTS_OF[name]
-    text = TEXT.replace(*change, 1) if isinstance(change, tuple) else TEXT + change
-    spec = loaded(text)
+    spec = loaded(edited(TEXT, PARTS_OF[name]))
     line = lines_of(spec)[name]
     assert name not in lines_of(at_least(spec, line))
 

@@ -7,41 +7,18 @@ import pytest
 
 from nrs_design.ros2.law import read_law
 from nrs_design.ros2.parameters import parse_nodes
-from tests.ros2.support import changed
+from tests.ros2.support import EXAMPLE, changed
 from tests.support import ROOT, document_of, run
-
-SOFT = ("--stiffness", "200..2000 N/m")
-
-
-NO_RATE = ("    update_rate: 500\n", "")
-ROTATES = ("true, true, true, false", "true, true, true, true")
-OWN = ("    joints:", "    update_rate: 300\n    joints:")
-SHARED = ("# Parameters", "/**/controller_manager: {ros__parameters: {update_rate: 20}}\n# Param")
+from tests.tables import rows
 
 
 @pytest.mark.parametrize(
-    ("changes", "options", "message"),
-    [
-        ([NO_RATE], SOFT, "rate of the control loop"),
-        ([OWN], SOFT, "does not divide"),
-        ([SHARED], SOFT, "counts for controller_manager, too"),
-        ([ROTATES], SOFT, "give --rotational-stiffness"),
-        ([], (), "give --stiffness"),
-        ([], (*SOFT, "--rate", "fast"), "fast"),
-        ([], (*SOFT, "--rate", "-1 1/s"), "not positive"),
-        ([], (*SOFT, "--age", "one"), "no range of periods"),
-        ([], (*SOFT, "--age", "2..1"), "does not rise"),
-        ([], (*SOFT, "--lag", "5"), "has no unit"),
-        ([], (*SOFT, "--lag", "5 N"), "is not a time"),
-        ([], ("--stiffness", "200..2000"), "has no unit"),
-        ([], ("--stiffness", "200..2000 N*m/rad"), "not a stiffness for translations"),
-        ([], ("--stiffness", "2000..200 N/m"), "not a rising range"),
-        ([], ("--stiffness", "-5 N/m"), "not a rising range"),
-        ([ROTATES], (*SOFT, "--rotational-stiffness", "5..40"), "has no unit"),
-    ],
+    ("edit", "options", "message"),
+    rows(__file__, "test_every_remedy_that_is_printed_works_when_pasted"),
 )
-def test_every_remedy_that_is_printed_works_when_pasted(tmp_path, changes, options, message):
-    command = ("ros2", "check", changed(tmp_path, *changes), "--budget", "1")
+def test_every_remedy_that_is_printed_works_when_pasted(tmp_path, edit, options, message):
+    options = shlex.split(options)
+    command = ("ros2", "check", changed(tmp_path, edit) if edit else EXAMPLE, "--budget", "1")
     done = run(*command, *options, cwd=tmp_path)
     said = done.stdout + done.stderr
     assert done.returncode in (2, 3)

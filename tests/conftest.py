@@ -56,7 +56,7 @@ def _backwards(argument: str) -> list[str]:
     if not folder.is_dir():
         return [argument]
     inside = sorted(folder.iterdir(), reverse=True)
-    return [str(path) for path in inside if path.is_dir() or path.name.startswith("test_")]
+    return [str(path) for path in inside if path.is_dir() or path.match("test_*.py")]
 
 
 @pytest.hookimpl(wrapper=True)

@@ -20,7 +20,7 @@ def value_at(spec, path):
     for part in path.split("."):
         if isinstance(spec, Mapping):
             spec = spec[part]
-        elif isinstance(spec, tuple):
+        elif isinstance(spec, tuple) and part.isdigit():
             spec = spec[int(part)]
         else:
             spec = getattr(spec, part)

@@ -65,7 +65,7 @@ def _logarithmic(*, base_only: bool) -> Formatter:
     from nrs_design.plotting import LogFormatter
 
     class InPowers(LogFormatter):
-        def _num_to_string(self, value: float, low: float, high: float) -> str:
-            return in_full(value, value)
+        def __call__(self, value: float, pos: int | None = None) -> str:
+            return in_full(value, value) if super().__call__(value, pos) else ""
 
     return InPowers(labelOnlyBase=base_only)

@@ -89,7 +89,7 @@ class Rates:
 # Solutions take time: the largest rate is bracketed roughly, and a little less is claimed.
 POLYNOMIAL = Rates(
     resolution=2.0**-8,
-    smallest=2.0**-12,
+    smallest=2.0**-10,
     nearest=0.998,
     bits=digits(10),
     words="found with a decay rate near the largest",

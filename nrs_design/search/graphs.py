@@ -26,6 +26,7 @@ from nrs_design.search.cycle import growing_cycles
 from nrs_design.search.decay import (
     RESOLUTION,
     SMALLEST,
+    bisect_position,
     climb_position,
     limit_rate,
 )
@@ -39,7 +40,7 @@ from nrs_design.search.rounding import BACK_OFFS, claims, digits, position_of, r
 from nrs_design.search.rounds import turns_graph
 from nrs_design.search.stays import round_stays
 from nrs_design.search.step_graph import StepGraph
-from nrs_design.work import Cost
+from nrs_design.work import Cost, NotAffordableError
 
 Array = NDArray[np.float64]
 Exponents = NDArray[np.int64]
@@ -103,16 +104,56 @@ def propose(
     rates: Rates,
     coverings: Sequence[bool] = (False,),
 ) -> Candidates[FormsOnGraph]:
-    """Solve for any rate, and if asked to for larger ones; the largest is proposed first.
+    """Solve for any rate; then, if asked to, for the largest, which is proposed first.
 
-    What a solution shows is more than what it was asked for, and is claimed of it. Of `coverings`
-    in turn, forms leave room for errors that they are not solved for, or they do not. No form can
-    beat the limit.
+    Of `coverings` in turn, forms leave room for errors that they are not solved for, or they do
+    not. No form can beat the limit.
     """
-    time, part = program.time, family.allowance.part(rates.share / 2)
-    first = program.solve(rate_at(0.0, limit, time), family.allowance)
+    time, allowance = family.system.time, family.allowance
+    first, best = program.solve(rate_at(0.0, limit, time), allowance), 0.0
     if first is None:
         return NO_MARGIN
+    if program.is_dear:
+        return (yield from _propose_dear(program, first, family, limit, rates, coverings))
+    part = allowance.part(rates.share)
+    if family.optimize_rate or rates.always:
+        half = part.part(0.5)
+        best = bisect_position(
+            lambda s: program.solve(rate_at(s, limit, time), half) is not None,
+            rates.resolution,
+            rates.smallest,
+        )
+    for covered in coverings:
+        bits = WITH_ERRORS if covered else rates.bits
+        try:
+            for claim in claims(best, limit, time, rates.nearest, few=rates.few):
+                if (solution := program.solve(float(claim), part)) is not None:
+                    for evidence in program.roundings(solution, claim, bits, errors=covered):
+                        yield Candidate(evidence, rates.words)
+        except NotAffordableError:
+            if rates.always:
+                raise
+        if rates.always:
+            continue
+        for claim in claims(1.0, program.own_rate(first), time):
+            for evidence in program.roundings(first, claim, bits, errors=covered):
+                yield Candidate(evidence)
+    return None
+
+
+def _propose_dear(
+    program: FormsProgram,
+    first: Solution,
+    family: Family,
+    limit: float,
+    rates: Rates,
+    coverings: Sequence[bool],
+) -> Candidates[FormsOnGraph]:
+    """Propose forms of a program of which every solution takes long: no more of them than needed.
+
+    What a solution shows is more than what it was asked for, and is claimed of it.
+    """
+    time, part = program.time, family.allowance.part(rates.share / 2)
 
     def shown(solution: Solution) -> float:
         return position_of(program.own_rate(solution), limit, time)
@@ -127,15 +168,12 @@ def propose(
         return solution.margin, found[-1][0]
 
     if family.optimize_rate or rates.always:
-        start, dear = (first.margin, found[0][0]), OF_DEAR if program.is_dear else 0.0
-        climb_position(ask, start, max(rates.resolution, dear), rates.smallest)
-    nearest = min(rates.nearest, NEAR_OF_DEAR) if program.is_dear else rates.nearest
-    found.sort(key=lambda one: one[0], reverse=True)
-    for covered in coverings:
-        bits = WITH_ERRORS if covered else rates.bits
-        for position, solution in found:
-            few = rates.few and solution is not first
-            for claim in claims(position, limit, time, nearest, few=few):
+        start = first.margin, found[0][0]
+        climb_position(ask, start, max(rates.resolution, OF_DEAR), rates.smallest)
+    for position, solution in sorted(found, key=lambda one: one[0], reverse=True):
+        for covered in (True, False) if True in coverings else (False,):
+            bits = WITH_ERRORS if covered else rates.bits
+            for claim in claims(position, limit, time, min(rates.nearest, NEAR_OF_DEAR)):
                 for evidence in program.roundings(solution, claim, bits, errors=covered):
                     yield Candidate(evidence, rates.words)
     return None

@@ -195,12 +195,12 @@ def _forms(
 ) -> Iterator[tuple[Mode | None, IntegerMatrix]]:
     """Yield P, and the decrease in every mode: what must be positive definite."""
     yield None, P.numerators
-    form = _lyapunov_decrease if time is Time.CONTINUOUS else _stein_decrease
+    form = lyapunov_decrease if time is Time.CONTINUOUS else stein_decrease
     for mode in modes:
         yield mode, form(mode.A.numerators, mode.A.denominator, P.numerators, rate)
 
 
-def _lyapunov_decrease(
+def lyapunov_decrease(
     N: IntegerMatrix,
     denominator: int,
     Q: IntegerMatrix,
@@ -220,7 +220,7 @@ def _lyapunov_decrease(
     ]
 
 
-def _stein_decrease(
+def stein_decrease(
     N: IntegerMatrix, denominator: int, Q: IntegerMatrix, factor: Fraction
 ) -> list[list[int]]:
     """Form ``factor^2 Q - A'QA`` for ``A = N / denominator``, times a positive integer.

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from nrs_design.certificates.catalogue import sentences
 from nrs_design.cli.printing import detail, say, wants_details
 from nrs_design.proof.text import counted
 
@@ -14,6 +13,8 @@ if TYPE_CHECKING:
 
 def print_granted(result: Result) -> None:
     """Print what is taken for granted: all of it, or how much and what is not modelled."""
+    from nrs_design.certificates.catalogue import sentences
+
     certification = result.certification
     granted, names = certification.granted, [mode.name for mode in certification.system.modes]
     detail(f"  common quadratic function: {certification.common_quadratic}")

@@ -9,7 +9,6 @@ from time import perf_counter
 from typing import TYPE_CHECKING
 
 from nrs_design import __version__
-from nrs_design.certificates.catalogue import omitted
 from nrs_design.certificates.certificate import Certificate, Gains, Verdict, common_quadratic_of
 from nrs_design.errors import AssemblyError, DesignError
 from nrs_design.models.cut import RangeCut
@@ -58,6 +57,8 @@ class Result:
     @property
     def omits(self) -> tuple[str, ...]:
         """What is not modelled, in a few words each."""
+        from nrs_design.certificates.catalogue import omitted
+
         return omitted(self.certification.granted)
 
 

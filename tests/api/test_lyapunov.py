@@ -7,10 +7,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from nrs_design.api.lyapunov import (
-    _lyapunov_decrease,
-    _stein_decrease,
     check_quadratic,
     indefinite_vector,
+    lyapunov_decrease,
+    stein_decrease,
 )
 from nrs_design.proof.exact import TooLargeError
 from nrs_design.proof.matrix import RationalMatrix
@@ -255,7 +255,7 @@ def test_the_largest_numbers_for_which_a_rate_is_looked_for():
 
 @pytest.mark.parametrize("rate", ["0", "1/7", "2", "1/4", "1/24"])
 @pytest.mark.parametrize(
-    ("form", "time"), [(_lyapunov_decrease, Time.CONTINUOUS), (_stein_decrease, Time.DISCRETE)]
+    ("form", "time"), [(lyapunov_decrease, Time.CONTINUOUS), (stein_decrease, Time.DISCRETE)]
 )
 def test_what_must_be_definite_is_a_positive_multiple_of_the_decrease(form, time, rate):
     A, Q = matrix([["-1/2", "1/3"], ["0.25", -2]]), ((3, 1), (1, 2))

@@ -14,6 +14,7 @@ from nrs_design.proof.evidence import FormsOnGraph
 from nrs_design.proof.evidence.graph import Node
 from nrs_design.proof.evidence.growing_sequence import GrowingSequence
 from nrs_design.proof.evidence.no_common_quadratic import NoCommonQuadratic
+from nrs_design.proof.evidence.sentence import free_sentence
 from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Clock, Switching
 from nrs_design.search.cases import joined
@@ -54,6 +55,13 @@ def test_each_case_has_a_form_of_its_own():
     )
     assert rate_limit(CASES) == 0
     assert rate_limit(SWITCHED) == pytest.approx(2)
+
+
+def test_cases_are_claimed_through_the_loss_of_contact():
+    one = bouncing_in_steps()
+    every = replace(one, cases=(tuple(mode.name for mode in one.every_mode),))
+    said = free_sentence(every, Fraction(1, 2), 1, 1, lost=True, once=True)
+    assert "contact lost and made again at any time and switching arbitrarily among its" in said
 
 
 def test_nothing_grows_across_cases():

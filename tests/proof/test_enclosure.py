@@ -11,9 +11,11 @@ from hypothesis import strategies as st
 from scipy.linalg import expm
 
 from nrs_design.proof.enclosure import (
+    ball_around,
     balls,
     eigenvalues,
     exponential,
+    fraction_of,
     lower_integers,
     overlap,
     precision,
@@ -198,3 +200,9 @@ def test_coordinates_in_which_a_form_is_round():
         wide = arb(0.85, 0.28)
         form = arb_mat([[arb(0.73), wide], [wide, arb(1.86)]])
         assert unit_coordinates(form) == arb_mat([[1, 0], [0, 1]])
+
+
+def test_an_exact_ball_is_its_fraction():
+    for number in (Fraction(3, 8), Fraction(-5), Fraction(0), Fraction(2**70 + 1, 2**90)):
+        with precision():
+            assert fraction_of(ball_around(number)) == number

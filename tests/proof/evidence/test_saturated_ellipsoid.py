@@ -64,6 +64,13 @@ def test_a_limit_that_is_not_short_is_rounded_up():
     assert "the s at 1.11112 N (rounded up)" in claim
 
 
+def test_the_claim_names_what_is_not_at_rest_when_a_motion_begins():
+    system = pushed_away()
+    start = replace(system.saturation.start, beside="error kept")
+    claim = HELD.claim(replace(system, saturation=replace(system.saturation, start=start)))
+    assert "0.8125 m, the error kept being what it is then under one of the controllers" in claim
+
+
 def test_the_claim_says_that_contact_may_be_lost():
     system, evidence = genuine("saturated-ellipsoid")
     assert "contact lost and made again at any time" in evidence.claim(system)

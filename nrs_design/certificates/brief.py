@@ -30,7 +30,7 @@ def brief(evidence: AbstractEvidence, system: SwitchedSystem, arm: Fraction | No
         case Shows.BOUND:
             bound = evidence.bound(system)
             assert bound is not None
-            return _bound(bound, arm) + _contact(evidence, system)
+            return _bound(bound, arm) + _contact(evidence, system) + _unrounded(evidence, system)
         case Shows.NO_COMMON_QUADRATIC:
             return "no common quadratic function exists"
         case Shows.REGION:
@@ -41,7 +41,8 @@ def brief(evidence: AbstractEvidence, system: SwitchedSystem, arm: Fraction | No
             if size is not None:
                 of = f" with a {start.name} up to {lower(size, DIGITS)}{unit}"
                 of += start.exception
-            return f"although signals saturate, decays from rest{of}{_contact(evidence, system)}"
+            beside = _contact(evidence, system) + _unrounded(evidence, system)
+            return f"although signals saturate, decays from rest{of}{beside}"
         case _:
             # The signal that grows; what follows from it stands behind a colon, or a sentence.
             claim = evidence.claim_in_scope(system)
@@ -79,7 +80,14 @@ def _scope(evidence: AbstractEvidence, system: SwitchedSystem) -> str:
         rule = f"in rounds of {system.clock.length} steps"
         signals += f", {rule}" if system.clock.is_round else ", deadlines missed as the rule allows"
     rounded = ", rounding included" if system.roundings and evidence.covers_rounding else ""
-    return f" under {signals}{_contact(evidence, system)}{rounded}"
+    beside = rounded or _unrounded(evidence, system)
+    return f" under {signals}{_contact(evidence, system)}{beside}"
+
+
+def _unrounded(evidence: AbstractEvidence, system: SwitchedSystem) -> str:
+    """Say that a statement leaves out the rounding of the law, if it has any."""
+    covered = not system.roundings or evidence.covers_rounding
+    return "" if covered else ", for the law computed without rounding"
 
 
 def _contact(evidence: AbstractEvidence, system: SwitchedSystem) -> str:

@@ -29,7 +29,9 @@ class Standing(StrEnum):
 
 
 # Kind of the assumption that contact is maintained.
-KEPT = "contact-kept"
+CONTACT_KEPT = "contact-kept"
+# The table of texts that stand for keys, by field and key; it is no kind.
+_WORDS = "words"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -44,7 +46,6 @@ class AssumptionKind:
     test: str  # Test on the robot
     sentences: Mapping[str, str]  # Templates by name
     bounds: Mapping[str, str] = field(default_factory=dict)  # Templates of bounds by name
-    words: Mapping[str, Mapping[str, str]] = field(default_factory=dict)  # Texts by field and key
     about: str = ""  # Field of the spec, such as ``sampling.period``
     omits: str = ""  # Effects that are not modelled, in a few words
     argued: bool = False  # The construction of the controller implies it
@@ -78,10 +79,19 @@ class _Values(tuple[str, ...]):
 
 
 @cache
+def _table() -> dict[str, dict[str, Any]]:
+    return tomllib.loads(_TABLE.read_text(encoding="utf-8"))
+
+
+@cache
 def kinds() -> dict[str, AssumptionKind]:
     """Return the catalogue by id of the kind."""
-    table = tomllib.loads(_TABLE.read_text(encoding="utf-8"))
-    return {id: AssumptionKind(id, **row) for id, row in table.items()}
+    return {id: AssumptionKind(id, **row) for id, row in _table().items() if id != _WORDS}
+
+
+def keyed_texts() -> dict[str, dict[str, str]]:
+    """Return the texts that stand for keys, by field and key."""
+    return _table()[_WORDS]
 
 
 def catalogue_kind(assumption: Assumption) -> AssumptionKind:
@@ -90,12 +100,9 @@ def catalogue_kind(assumption: Assumption) -> AssumptionKind:
 
 
 def sentence(assumption: Assumption) -> str:
-    """Return the sentence of an assumption; id and fields if the catalogue does not have it."""
-    try:
-        template = catalogue_kind(assumption).sentences.get(_name(assumption))
-        return _rendered(assumption, template or _law_sentences()[assumption.id])
-    except (LookupError, ValueError):
-        return f"{assumption}, which this version does not know"
+    """Return the sentence of an assumption; a LookupError if the catalogue does not have it."""
+    template = catalogue_kind(assumption).sentences.get(_name(assumption))
+    return _rendered(assumption, template or _law_sentences()[assumption.id])
 
 
 def bound_of(assumption: Assumption) -> str:
@@ -105,11 +112,11 @@ def bound_of(assumption: Assumption) -> str:
 
 
 def sentence_with_bound(assumption: Assumption) -> str:
-    """Return the sentence of an assumption and its bound, if the catalogue has one."""
+    """Return the sentence of an assumption and its bound, even of a stranger's certificate."""
     try:
         return f"{sentence(assumption)} (within: {bound_of(assumption)})"
-    except LookupError:
-        return sentence(assumption)
+    except (LookupError, ValueError):
+        return f"{assumption}, which this version does not know"
 
 
 def sentences(assumptions: Iterable[Assumption]) -> tuple[str, ...]:
@@ -124,31 +131,22 @@ def _name(assumption: Assumption) -> str:
 @cache
 def _law_sentences() -> dict[str, str]:
     """Return the templates that only one law uses; they stand in the file of the law."""
-    from nrs_design.controllers.laws import LAWS as CONTROL
-    from nrs_design.models.contact import LAWS as CONTACT
-    from nrs_design.models.contact import LINEAR_LAWS
+    from nrs_design.controllers.laws import LAWS
+    from nrs_design.spec.environment import ENVIRONMENT_LAWS
 
-    laws: tuple[Any, ...] = (*CONTROL.values(), *CONTACT.values(), *LINEAR_LAWS.values())
+    laws: tuple[Any, ...] = (*LAWS.values(), *ENVIRONMENT_LAWS)
     return {id: text for law in laws for id, text in law.sentences.items()}
 
 
 def _rendered(assumption: Assumption, template: str) -> str:
-    """Return a template with the fields of an assumption; keys become the words of the kind."""
+    """Return a template with the fields of an assumption; a field left out has no words."""
     fields = {name: _Values(values) for name, values in assumption.fields}
-    for name, words in catalogue_kind(assumption).words.items():
-        texts = (words[key].format(**fields) for key in fields.get(name, ()))
-        fields[name] = _Values(texts)
+    for name, texts in keyed_texts().items():
+        fields[name] = _Values(texts[key].format(**fields) for key in fields.get(name, ()))
     return template.format(**fields)
 
 
 def omitted(assumptions: Iterable[Assumption]) -> tuple[str, ...]:
     """Return the effects that are not modelled, in a few words each."""
-    return tuple(dict.fromkeys(words for words in map(_omits, assumptions) if words))
-
-
-def _omits(assumption: Assumption) -> str:
-    words, saturation = catalogue_kind(assumption).omits, ", saturation"
-    if not words or "-disturbed" not in assumption.id:
-        return words
-    # The bounds of `disturbances` cover the effects before, not saturation.
-    return f"{words.removesuffix(saturation)} beyond what disturbances bound{saturation}"
+    found = (_rendered(item, catalogue_kind(item).omits) for item in assumptions)
+    return tuple(dict.fromkeys(text for text in found if text))

@@ -86,7 +86,8 @@ def _print(found: Comparison) -> None:
                 if text is not None:
                     detail(f"{part}, {side}: {text}")
         if texts and not wants_details():
-            say(f"{part}: {counted(len(texts), 'text')} differ (-v shows them)")
+            differ = "differs" if len(texts) == 1 else "differ"
+            say(f"{part}: {counted(len(texts), 'text')} {differ} (-v shows them)")
     if found.same:
         say(f"the same: {', '.join(found.same)}")
     for remark in found.remarks:

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 MAX_LISTED = 20
 assume = Assumption.create
 UNCOUPLED = assume("uncoupled.axes")
-GIVEN_MATRICES = (assume("matrices.given"), assume("at-a-switch.any-signal", states="one"))
+GIVEN_MATRICES = (assume("matrices.given"), assume("at-a-switch.any-signal", which="one"))
 _COMMAND = "command-unit.unit"
 # Sentence ids: for one mode or controller, and for every one.
 _STAYS = {
@@ -57,10 +57,10 @@ def _assume_switches(spec: SwitchedSystemSpec) -> tuple[Assumption, ...]:
     if (rule := spec.misses) is not None:
         most, of = rule.window
         missed = assume("rules.misses", mode=rule.mode, at_most=most, of=of)
-        return assume("at-a-switch.continuous", states="one"), missed
+        return assume("at-a-switch.continuous", which="one"), missed
     if spec.switching.is_arbitrary and not spec.resets:
         return GIVEN_MATRICES[1:]
-    jump = assume("at-a-switch.continuous", states="one")
+    jump = assume("at-a-switch.continuous", which="one")
     if spec.resets:
         switches = [(reset.source, reset.target) for reset in spec.resets]
         distinct = list(dict.fromkeys(switches))

@@ -57,8 +57,8 @@ def _assume_motion(loop: SharedState) -> Iterator[Assumption]:
     if joint is None:
         yield assume(f"nominal-motor.{'given' if loop.given else 'designed'}")
         return
-    kind = "nominal-motor" if joint.ranges.fixed else "motor"
-    yield assume(f"{kind}.joint", **joint.ranges.assumed(axis))
+    motor = "nominal-motor.joint" if joint.ranges.fixed else "motor.joint"
+    yield assume(motor, **joint.ranges.assumed(axis))
     if joint.load_inertia is None:
         yield assume("unloaded.continuous")
     else:
@@ -78,7 +78,7 @@ def _assume_inputs(loop: SharedState, *, losable: bool) -> Iterator[Assumption]:
         return
     yield assume("inputs.continuous", rest="contact" if losable else "always")
     sprung = any(c.law.spring for c in loop.design.controllers)
-    yield assume("inputs.bounded", integral=sprung and "bounded", air=losable and "open")
+    yield assume("inputs.bounded", also=sprung and "bounded", air=losable and "open")
     if sprung:
         yield assume("spring.shared" if loop.idle is None else "spring.idle")
 
@@ -97,6 +97,7 @@ def _assume_contact(loop: SharedState) -> Iterator[Assumption]:
 
 def _assume_idle(loop: SharedState, idle: IdleStatesSpec) -> Iterator[Assumption]:
     """Yield the evolution of idle states of impedance controllers."""
+    axis = loop.design.axis
     driving, others = (_names(loop.design, command) for command in ("velocity", "position"))
     decay = idle_decay(idle)
     if driving:
@@ -104,12 +105,12 @@ def _assume_idle(loop: SharedState, idle: IdleStatesSpec) -> Iterator[Assumption
             "idle.decay" if decay else "idle.held",
             driving=driving,
             others=others,
-            states=(*loop.law.states, REFERENCE),
+            states=tuple(map(axis.named, (*loop.law.states, REFERENCE))),
             decay=decay and exact_decimal(decay),
         )
     yield from _assume_bleeding(loop.design, decay)
     if idle.reset and driving:
-        yield assume("at-a-switch.zeroed", driving=driving, others=others, rest=loop.law.states)
+        yield assume("at-a-switch.zeroed", driving=driving, others=others)
     yield assume("rest-position.commanded")
     yield assume("at-a-switch.kick")
 
@@ -122,7 +123,7 @@ def _assume_bleeding(design: ControllerDesign, decay: Fraction) -> Iterator[Assu
         yield assume(
             "idle.integral" if decay else "idle.held-integral",
             others=tuple(others),
-            states=law.states,
+            states=tuple(map(design.axis.named, law.states)),
             law=law.name,
             decay=decay and exact_decimal(decay),
         )
@@ -138,9 +139,9 @@ def _assume_switches(loop: SharedState, rules: SwitchingSpec) -> Iterator[Assump
     reset = (loop.idle is not None and loop.idle.reset) or loop.offset == "measured"
     states = "others" if reset else "all"
     if rules.is_arbitrary:
-        yield assume("at-a-switch.any-signal", states=states)
+        yield assume("at-a-switch.any-signal", which=states)
         return
-    yield assume("at-a-switch.continuous", states=states)
+    yield assume("at-a-switch.continuous", which=states)
     yield from assume_rules(rules, "mode" if rules.names_contacts else "controller")
     if not rules.names_contacts and rules.dwell_time is None:
         yield assume("any-signal.environment")

@@ -49,8 +49,7 @@ def assume_sampled_loop(
     disturbed = conditions.disturbances is not None
     environments, program = plant.among(design.contacts), loop.program
     timing, axis = loop.calendar.timing, conditions.axis
-    # Sentences that do not hold for the disturbances of the spec begin with that.
-    but = "-disturbed" if disturbed else ""
+    beyond = disturbed and "disturbances"
     yield _assume_period(sampling, design)
     if sampling.round > 1:
         yield assume("period.order")
@@ -67,9 +66,14 @@ def assume_sampled_loop(
     if disturbed:
         yield assume("friction.period")
         yield assume("at-samples.force")
-    where = "-position" if loss in (Loss.BY_LAWS, Loss.UNDER_FORCE_CONTROL) else ""
-    rest = "contact" if loss is Loss.SURFACE else "always"
-    yield assume(f"inputs.sampled{where}{but}", rest=rest)
+    placed = loss in (Loss.BY_LAWS, Loss.UNDER_FORCE_CONTROL)
+    yield assume(
+        "inputs.sampled",
+        beyond=beyond,
+        inputs="position" if placed else "velocity",
+        place=placed and "position",
+        rest="contact" if loss is Loss.SURFACE else "always",
+    )
     if any(c.law.spring for c in design.controllers):
         yield assume("spring.shared" if program.idle is None else "spring.idle")
         yield assume("spring.sample")
@@ -83,15 +87,18 @@ def assume_sampled_loop(
         yield from assume_kept_contact(design, alone=program.idle is None)
     elif loss is not Loss.SURFACE:
         yield assume(loss.value)
-    yield assume("at-a-switch.sampled", states="others" if reset else "all")
+    yield assume("at-a-switch.sampled", which="others" if reset else "all")
     if misses is None:
         yield from assume_rules(conditions.switching, "controller")
     else:
         yield assume("any-signal.in-time")
     yield from _assume_arithmetic(conditions, loop, laws, design)
-    limited = "" if conditions.initial_force is None else "-limited"
-    sensed = "sensor" if conditions.sensed else "sampled"
-    yield assume(f"not-quantized.{sensed}{but}{limited}")
+    yield assume(
+        "not-quantized.sampled",
+        beyond=beyond,
+        quantized="encoder" if conditions.sensed else "sensors",
+        saturation="left-out" if conditions.initial_force is None else "stated",
+    )
     yield from assume_parts(environments)
 
 
@@ -103,7 +110,7 @@ def _assume_period(sampling: SamplingSpec, design: ControllerDesign) -> Assumpti
         values["jitter"] = exact_text(sampling.unsteady)
     if sampling.round == 1:
         return assume("period.single" if steady else "period.jitter", **values)
-    values |= {"outer": exact_text(sampling.outer), "filtered": design.sensor.filter and "filter"}
+    values |= {"outer": exact_text(sampling.outer), "sampled": design.sensor.filter and "filter"}
     return assume("period.double" if steady else "period.double-jitter", **values)
 
 
@@ -141,7 +148,7 @@ def _assume_motor(
     if loop.program.step.streams:
         del motor["gain"]
         return assume("motor.followed", **motor)
-    return assume(f"{'nominal-motor' if ranges.fixed else 'motor'}.sampled", **motor)
+    return assume("nominal-motor.sampled" if ranges.fixed else "motor.sampled", **motor)
 
 
 def _at_samples(moves: str) -> str:

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from fractions import Fraction
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal, get_args
 
 from pydantic import Discriminator
 
 from nrs_design.axis import AxisType, current
 from nrs_design.models.contact import (
+    AbstractContactLaw,
     AbstractLinearLaw,
     AbstractNonlinearLaw,
     Elastic,
@@ -342,6 +343,13 @@ EnvironmentSpec = Annotated[
     ElasticSpec | KelvinVoigtSpec | HandSpec | MaxwellSpec | KelvinBoltzmannSpec | HuntCrossleySpec,
     Discriminator("model"),
 ]
+# Laws that a spec may name: those of designs, and nonlinear ones.
+ENVIRONMENT_LAWS: tuple[type[AbstractContactLaw], ...] = tuple(
+    law
+    for model in get_args(get_args(EnvironmentSpec)[0])
+    for law in (model.law, model.nonlinear)
+    if law is not None
+)
 
 
 def _quantities(turned: Interval, unit: str) -> RangedQuantity:

@@ -343,7 +343,7 @@ RELAXED = _F(
     "{0!r}, an impedance controller without a spring,",
     "controllers.{0}.Kt",
     "give every impedance controller a spring Kt",
-    _controller(lambda c: c.type == "impedance" and not c.sprung),
+    _controller(lambda c: c.commands == "velocity" and not c.sprung),
 )
 BLEEDING = _F(
     "{0!r}, whose integral bleeds,",

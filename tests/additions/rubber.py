@@ -5,8 +5,9 @@ It is added to a copy of the package, as ``models/contact/rubber.py``.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import TYPE_CHECKING, ClassVar
 
 from nrs_design.models.contact.law import (
@@ -18,6 +19,7 @@ from nrs_design.models.contact.law import (
     Reaction,
 )
 from nrs_design.models.linear_form import LinearForm, combine
+from nrs_design.proof.assumption import Assumption
 
 if TYPE_CHECKING:
     from nrs_design.models.contact.motion import Array, Motion
@@ -33,9 +35,17 @@ class Rubber(AbstractLinearLaw):
     takes_velocity: ClassVar[bool] = True
     keys: ClassVar[tuple[str, ...]] = ("stiffness", "damping")
     front: ClassVar[str] = "k"
+    sentences: ClassVar[Mapping[str, str]] = MappingProxyType(
+        {"tissue.rubber": "The damping of {environment} is in proportion to its stiffness."}
+    )
 
     k: Number
     b: Number
+
+    @classmethod
+    def assumptions(cls, environment: str, *, alone: bool) -> Iterator[Assumption]:
+        """Yield that stiffness and damping go together."""
+        yield Assumption.create("tissue.rubber", environment=environment)
 
     def simulate(self, motion: Motion) -> Array:
         """Return the reaction at the samples."""

@@ -24,6 +24,8 @@ def test_every_kind_is_said_in_a_line(example):
     loses = system.contact is not None or system.flights is not None
     assert not ("may be lost" in said and not (loses and evidence.covers_lost_contact))
     assert ("rounding included" in said) <= evidence.covers_rounding
+    unrounded = evidence.shows.is_good and system.roundings and not evidence.covers_rounding
+    assert ("without rounding" in said) == bool(unrounded)
 
 
 @pytest.mark.parametrize("example", SYSTEMS)

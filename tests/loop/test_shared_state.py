@@ -77,7 +77,7 @@ def test_resets_lead_from_impedance_controllers_to_the_others():
     assert all(reset.map.fractions() == kept for reset in system.switching.resets)
     texts = " ".join(words_of(system))
     assert "they are set to zero" in texts
-    assert "start from the rest position, with vm = 0." in texts
+    assert "start from the rest position." in texts
     assert "All other states are continuous" in texts
 
 

@@ -65,6 +65,8 @@ def judge_run(
     A command limit is in units of the command; by default that of the spec. A log whose command is
     of another kind than the spec's is a `DataError`.
     """
+    if bounds.command == "rad/s":
+        log = log.in_radians()
     if log.command_unit not in ("", bounds.command):
         raise DataError(
             f"its command is read in {log.command_unit}, and the motor of the spec takes "

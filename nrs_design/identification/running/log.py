@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -41,6 +41,13 @@ class RunLog:
     def modes(self) -> Rows | None:
         """Index of the label in force at every row, or None."""
         return self.columns["mode"].astype(np.int64) if "mode" in self.columns else None
+
+    def in_radians(self) -> RunLog:
+        """Return the log with a command that is a velocity in rad/s, as a robot takes it."""
+        if self.command_unit != "rpm":
+            return self
+        columns = {**self.columns, "command": self.columns["command"] * (np.pi / 30)}
+        return replace(self, columns=columns, command_unit="rad/s")
 
 
 def read_run(data: Data, mapping: Mapping[str, str] | None = None) -> RunLog:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from nrs_design.certificates.catalogue import KEPT, catalogue_kind
+from nrs_design.certificates.catalogue import CONTACT_KEPT, catalogue_kind
 from nrs_design.certificates.certificate import Verdict
 from nrs_design.proof.evidence import Shows
 from nrs_design.proof.text import counted
@@ -55,7 +55,7 @@ def _proved(result: Result) -> str:
     certification, ranged = result.certification, result.loaded.spec.has_ranges
     system, evidence = certification.system, certification.evidence
     said = {s.shows: brief for s, brief in reversed(result.briefs)}
-    kept = any(catalogue_kind(item).id == KEPT for item in system.assumptions)
+    kept = any(catalogue_kind(item).id == CONTACT_KEPT for item in system.assumptions)
     once = evidence is None or evidence.bounds_at_once
     exact = evidence is None or not evidence.covers_rounding
     notes = (
@@ -85,10 +85,10 @@ def lights_of(result: Result, analysis: DesignAnalysis | None) -> tuple[Light, .
     if not isinstance(spec, InteractionDesignSpec):
         return (proof, _open(result))
     goals = Light("Goals", *judged_goals(result, analysis), GOALS)
-    return (proof, goals, _warnings(spec, analysis), _data(spec), _open(result))
+    return (proof, goals, _warnings(analysis), _data(spec), _open(result))
 
 
-def _warnings(spec: InteractionDesignSpec, analysis: DesignAnalysis | None) -> Light:
+def _warnings(analysis: DesignAnalysis | None) -> Light:
     if analysis is None:
         return Light("Design", State.BAD, "a nominal loop is unstable")
     state, text = State.GOOD, "no warning (floating point, no part of the proof)"

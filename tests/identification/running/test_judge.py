@@ -177,6 +177,14 @@ def test_a_command_of_another_kind_than_the_spec_has_is_refused(tmp_path):
     assert judged(log(tmp_path, text=text), replace(SOFT, command="V")).checks
 
 
+def test_a_robot_that_takes_velocities_is_judged_in_its_unit(tmp_path):
+    text = runs.text(*runs.run()).replace("command_rpm", "command_rad_s")
+    found = judged(log(tmp_path, text=text), replace(SOFT, command="rad/s"), command_limit=1e4)
+    assert "rad/s" in check(found, "saturation").measured
+    with pytest.raises(DataError, match="takes rad"):
+        judged(log(tmp_path, text=text.replace("rad_s", "V")), replace(SOFT, command="rad/s"))
+
+
 @pytest.mark.parametrize(("period", "said"), [(0.002, False), (0.0019, True), (0.001, False)])
 def test_steps_that_are_not_those_of_the_loop_are_said(tmp_path, period, said):
     jitter = check(judged(log(tmp_path), replace(SAMPLED, period=period)), "jitter")

@@ -366,6 +366,7 @@ MIRRORED = (
     "cli",
     "exporters",
     "gating",
+    "loop",
     "models",
     "robot",
     "ros2",

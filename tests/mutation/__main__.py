@@ -55,7 +55,7 @@ ELSEWHERE = {
     PACKAGE / f"{name}.py": [str(ROOT / "tests" / test) for test in tests]
     for name, tests in {
         "loop/entries": ("loop/test_entries.py", "loop/test_flow.py"),
-        "loop/hull": ("loop/test_simplex.py", "loop/test_flow.py"),
+        "loop/hull": ("loop/test_hull.py", "loop/test_flow.py"),
         "certificates/second_opinion": ("certificates/test_second_opinion.py",),
         "controllers/taylor": ("controllers/test_taylor.py",),
         "design/largest_ratio": ("design/test_largest_ratio.py",),

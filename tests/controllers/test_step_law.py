@@ -1,7 +1,6 @@
 """The list of operations: how often its terms are rounded, counted by hand, and its limits.
 
-`tests/loop/test_sampled_frame.py` holds the loops that are made of it against simulations step
-by step.
+`tests/oracle` holds the loops that are made of it against the pages.
 """
 
 from dataclasses import replace

@@ -13,7 +13,7 @@ from scipy.optimize import brentq
 from nrs_design.certificates.certificate import Verdict
 from nrs_design.search.certification import Limits
 from nrs_design.search.certify import certify
-from tests.loop.timed_loop import floats, sampled, timed
+from tests.literature.timed_loop import floats, sampled, timed
 from tests.tables import rows
 
 # Zhang, Branicky and Phillips, IEEE Control Systems Magazine 21(1), 2001; since then of Fridman,
@@ -110,3 +110,55 @@ def test_a_constant_delay_against_its_border():
 def test_one_integrator_by_hand(period, delay, verdict):
     found = decide((([[0]], [[1]]), [[-1]]), period, delay, optimize_rate=False)
     assert found.verdict == verdict
+
+
+def random_loop(rng):
+    """Return a loop of two states that random feedback often leaves near its border."""
+    A = [[f"{a}/10" for a in row] for row in rng.integers(-30, 20, (2, 2))]
+    K = [[f"{k}/20" for k in rng.integers(-40, 10, 2)]]
+    first, width, late = rng.integers((1, 0, 0), (7, 7, 5))
+    period = (Fraction(int(first), 10), Fraction(int(first + width), 10))
+    delay = None if late == 0 else (Fraction(0), period[0] * Fraction(int(late), 4))
+    return A, [["1/2"], ["1"]], K, period, delay
+
+
+def worst_of(rng, A, B, K, ends, rate):
+    """Return by how much random timings exceed a rate of decay, at most; one is not at all."""
+    worst = 0.0
+    for _ in range(60):
+        signal = [
+            [rng.choice(pair) if rng.random() < 0.6 else rng.uniform(*pair) for pair in ends]
+            for _ in range(int(rng.integers(1, 7)))
+        ]
+        product = np.eye(len(A) + len(K))
+        for h, d in signal:
+            product = sampled(A, B, h, d, K) @ product
+        claimed = np.exp(-rate * sum(h for h, _ in signal))
+        worst = max(worst, float(max(abs(np.linalg.eigvals(product)))) / claimed)
+    return worst
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_no_random_timing_is_beyond_what_is_proved(seed):
+    """And what refutes is a sequence of timings of the loop, along which a motion grows."""
+    rng = np.random.default_rng(seed)
+    A, B, K, period, delay = random_loop(rng)
+    system = timed((A, B), K, period, delay)
+    found = certify(system, limits=Limits(optimize_rate=False, budget=2))
+    A, B, K = map(floats, (A, B, K))
+    ends = [[float(t) for t in times] for times in (period, delay or (0, 0))]
+    if found.verdict is Verdict.INCONCLUSIVE:
+        return
+    assert found.evidence.find_fault(system) is None
+    if found.verdict is Verdict.PROVED:
+        assert worst_of(rng, A, B, K, ends, float(found.evidence.rate)) <= 1 + 1e-9
+        return
+    stays = {name: (stay.shortest, stay.longest) for name, stay in system.stays().items()}
+    product, wait, steps = np.eye(3), 0.0, found.evidence.steps
+    for name, time in (*steps[1:], steps[0]) if steps[0][0] == "period" else steps:
+        assert stays[name][0] <= time <= stays[name][1]
+        if name == "delay":
+            wait = float(time)
+        else:
+            product, wait = sampled(A, B, float(time), wait, K) @ product, 0.0
+    assert max(abs(np.linalg.eigvals(product))) > 1 - 1e-9

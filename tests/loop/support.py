@@ -1,17 +1,18 @@
 """What tests of modes share: the motion loop of the thesis, and how matrices are compared."""
 
 from fractions import Fraction
+from pathlib import Path
 
 import numpy as np
 from hypothesis import strategies as st
 
-from nrs_design.design.design import design_controllers
 from nrs_design.loop.assemble import assemble
 from nrs_design.models.motion_loop import MotionLoop, realize
+from nrs_design.pipeline.runs import run_design
 from nrs_design.proof.exact import characteristic_polynomial, is_hurwitz
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.spec import parse_spec
-from nrs_design.spec.build_plant import build_plant
+from nrs_design.spec import LoadedSpec, parse_spec
+from tests.support import SOFT_TISSUE, replaced
 
 F = Fraction
 # Thesis 6.3.2.2: Ap = [[0, 1], [-1618.80, -56.89]], Cp = [1618.80, 28.416].
@@ -20,11 +21,22 @@ MOTION = realize(LOOP)
 positive = st.fractions("1/100", 100, max_denominator=1000)
 
 
-def assembled(text):
-    """Design and assemble a spec, in deflection coordinates."""
-    spec = parse_spec(text)
-    plant = build_plant(spec)
-    return assemble(spec, plant, design_controllers(spec, plant))
+def loaded(text, *changes, more=""):
+    """Read a spec, the text or the file, in which pieces are replaced and lines added."""
+    text = text if isinstance(text, str) else text.read_text(encoding="utf-8")
+    text = replaced(text, *changes) + more
+    return LoadedSpec(path=Path("drawn.nrs.yaml"), sha256="", text=text, spec=parse_spec(text))
+
+
+def assembled(text, *changes, more=""):
+    """Design and assemble such a spec, in deflection coordinates."""
+    found = run_design(loaded(text, *changes, more=more))
+    return assemble(found.spec, found.plant, found.design)
+
+
+def sampled(sampling, *changes, text=SOFT_TISSUE):
+    """Design and assemble a spec that is sampled, by default the one of soft tissue."""
+    return assembled(text, *changes, more=f"\nsampling: {sampling}\n")
 
 
 def polynomial(rows):

@@ -8,13 +8,11 @@ from flint import fmpq as rational
 from flint import fmpq_mat
 from scipy.integrate import solve_ivp
 
-from nrs_design.design.design import design_controllers
 from nrs_design.loop.assemble import assemble
+from nrs_design.pipeline.runs import run_design
 from nrs_design.search.certify import certify
-from nrs_design.spec import parse_spec
-from nrs_design.spec.build_plant import build_plant
-from tests.loop.support import assembled
-from tests.simulation.interactions import FORCE, INSERTION, POSITION, text_of
+from tests.loop.support import assembled, loaded
+from tests.simulation.interactions import FORCE, INSERTION, POSITION, simulated, text_of
 
 PI = "{type: pi-force, environment: soft, proportional_gain: 0.02 rad/(N*m), "
 PI += "integral_gain: 0.5 rad/(N*m*s)}"
@@ -77,10 +75,8 @@ def test_run_against_motor_and_firmware(controller):
 def test_no_force_error_is_left(stiffness):
     """Exactly: the only rest of the mode under a constant Fd and X has the force Fd."""
     soft = f"{{model: elastic, stiffness: {stiffness} N*m/rad}}"
-    spec = parse_spec(text_of(BOTH, {"soft": soft}, more=IDLE))
-    plant = build_plant(spec)
-    design = design_controllers(spec, plant)
-    system = assemble(spec, plant, design)
+    found = run_design(loaded(text_of(BOTH, {"soft": soft}, more=IDLE)))
+    design, system = found.design, assemble(found.spec, found.plant, found.design)
     A = next(mode.A for mode in system.modes if mode.name == "force/soft").fractions()
     law, (wanted, X) = design.laws["force"], (Fraction("0.3"), Fraction("0.11"))
     # u has X + Kp Fd besides, and the integral gathers Ki Fd; xi' = Ap xi + Bp u with Bp = (0, 1).
@@ -115,3 +111,16 @@ def test_alone_nothing_is_idle():
     system = assembled(text_of({"force": PI}))
     assert system.states == ("xp1", "xp2", "integral [rad]")
     assert str(certify(system).verdict) == "proved"
+
+
+def test_the_run_in_single_precision_leaves_no_error():
+    """What rounding leaves of the error is below what a sample adds to the integral."""
+    text = text_of(
+        BOTH,
+        scenario="command: {points: [[0 s, 4 deg/s], [3 s, 4 deg/s]]}, "
+        "surfaces: [{environment: soft, at: 2 deg}], "
+        "control: {threshold: {position: position, force: force, torque: 0.27 N*m}}",
+        more=f"{IDLE}\nsampling: {{period: 2 ms, delay: 1}}\ncontact: kept\n",
+    )
+    run = simulated(text, engine="sampled")
+    assert run.response["torque"][-1] == pytest.approx(0.3, abs=2e-6)

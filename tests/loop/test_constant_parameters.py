@@ -12,8 +12,6 @@ from nrs_design.loop.constant_parameters import (
 )
 from nrs_design.loop.located import MatrixMode
 from nrs_design.loop.spot import Spot, spot_of
-from nrs_design.pipeline.certification import assemble_spec
-from nrs_design.pipeline.runs import run_design
 from nrs_design.proof.constant import corner_weights, system_at
 from nrs_design.proof.contradiction import find_contradiction
 from nrs_design.proof.matrix import RationalMatrix
@@ -21,7 +19,7 @@ from nrs_design.proof.switching import FixedParameter
 from nrs_design.search.certification import Limits
 from nrs_design.search.certify import Verdict, certify
 from nrs_design.search.method import Method
-from nrs_design.spec.load import read_spec
+from tests.loop.support import assembled
 from tests.support import ROOT, words_of
 
 SAMPLED = ROOT / "specs" / "neuroboscope" / "force-limit-pi-sampled.nrs.yaml"
@@ -37,15 +35,8 @@ def parameter(symbol, contact=None):
     return ConstantParameter(said, (f"{symbol}-min", f"{symbol}-max"), contact)
 
 
-def closed(tmp_path, *changes, path=SAMPLED):
-    text = path.read_text(encoding="utf-8")
-    for old, new in changes:
-        assert old in text
-        text = text.replace(old, new)
-    file = tmp_path / "a.nrs.yaml"
-    file.write_text(text, encoding="utf-8")
-    loaded = read_spec(file)
-    return assemble_spec(loaded, run_design(loaded))
+def closed(*changes):
+    return assembled(SAMPLED, *changes)
 
 
 def constant(*ranges):
@@ -84,15 +75,15 @@ def test_a_corner_without_a_mode_is_an_error():
         sets_of(("a/x/k-min",), parameter("k", "x"))
 
 
-def test_too_many_corners(monkeypatch, tmp_path):
+def test_too_many_corners(monkeypatch):
     monkeypatch.setattr(constant_parameters, "MAX_CORNERS", 50)
     with pytest.raises(AssemblyError, match="corners of the constant parameters"):
-        closed(tmp_path, *constant(GAIN, STIFFNESS))
+        closed(*constant(GAIN, STIFFNESS))
 
 
-def test_constants_of_a_sampled_design(tmp_path):
+def test_constants_of_a_sampled_design():
     """A time constant is enclosed by points around its curve, none of which is one of its own."""
-    system = closed(tmp_path, *constant(GAIN, LAG, STIFFNESS))
+    system = closed(*constant(GAIN, LAG, STIFFNESS))
     assert find_contradiction(system) is None
     said = [p.name for p in system.switching.fixed_parameters]
     assert said == ["actuator.gain", "actuator.time_constant", "environments.soft.stiffness"]
@@ -102,22 +93,22 @@ def test_constants_of_a_sampled_design(tmp_path):
     assert sum("but constant" in text for text in words_of(system)) == 3
 
 
-def test_the_loop_at_a_value_is_that_of_a_spec_with_this_value(tmp_path):
+def test_the_loop_at_a_value_is_that_of_a_spec_with_this_value():
     """Gain and stiffness are attained: the mean of the corners is the loop at the mean."""
-    system = closed(tmp_path, *constant(GAIN, STIFFNESS))
+    system = closed(*constant(GAIN, STIFFNESS))
     found = {m.name: m.A for m in system_at(system, (Fraction(1, 2),) * 2).modes}
     gain, stiffness = "4.8417e-4 rad/s/rpm", "744.365 N/m"
-    known = closed(tmp_path, (GAIN, f"[{gain}, {gain}]"), (STIFFNESS, f"[{stiffness}, 768.17 N/m]"))
+    known = closed((GAIN, f"[{gain}, {gain}]"), (STIFFNESS, f"[{stiffness}, 768.17 N/m]"))
     named = "position/soft/k-min/flow-0"
     modes = {m.name: m.A for m in known.modes}
     assert found["position/soft/flow-0"] == modes[named]
 
 
-def test_constants_of_a_continuous_design(tmp_path):
+def test_constants_of_a_continuous_design():
     text = CONTINUOUS.read_text(encoding="utf-8")
     stiffness = next(line for line in text.splitlines() if "range:" in line and "N/m" in line)
     ends = stiffness[stiffness.index("[") : stiffness.index("]") + 1]
-    system = closed(tmp_path, *constant(ends), path=CONTINUOUS)
+    system = assembled(CONTINUOUS, *constant(ends))
     (parameter_,) = system.switching.fixed_parameters
     assert parameter_.name.endswith("stiffness")
     assert not parameter_.inverse
@@ -128,15 +119,15 @@ def test_constants_of_a_continuous_design(tmp_path):
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("gain", "stiffness"), [("3.9e-4 to 5.8e-4", "600 to 900")])
-def test_a_sampled_design_that_needs_constants(tmp_path, gain, stiffness):
+def test_a_sampled_design_that_needs_constants(gain, stiffness):
     """No proof is found where both may jump at every sample, and there is one where they do not."""
     wide = [
         (GAIN, "[{} rad/s/rpm, {} rad/s/rpm]".format(*gain.split(" to "))),
         (STIFFNESS, "[{} N/m, {} N/m]".format(*stiffness.split(" to "))),
     ]
-    varying = certify(closed(tmp_path, *wide), limits=QUICK)
+    varying = certify(closed(*wide), limits=QUICK)
     assert varying.verdict is Verdict.INCONCLUSIVE
-    fixed = closed(tmp_path, *((old, f"{new}, varies: false") for old, new in wide))
+    fixed = closed(*((old, f"{new}, varies: false") for old, new in wide))
     found = certify(fixed, limits=QUICK)
     assert found.verdict is Verdict.PROVED
     claim = found.evidence.claim(found.system)

@@ -2,18 +2,17 @@
 
 import random
 from fractions import Fraction
-from pathlib import Path
 
 import control
 import numpy as np
 import pytest
 
 from nrs_design.design.loop_family import LoopFamily
+from nrs_design.loop.assemble import assemble
 from nrs_design.loop.cut_loop import ProcessorAxis, axis_of, characteristic
 from nrs_design.models.contact import KelvinVoigt
-from nrs_design.pipeline.certification import assemble_spec
 from nrs_design.pipeline.runs import run_design
-from nrs_design.spec import read_spec
+from tests.loop.support import loaded
 from tests.support import thinned
 
 # Plants by what they have; every random draw fills in its numbers.
@@ -74,13 +73,10 @@ def text_of(features, seed):
     return "\n".join(lines) + "\n"
 
 
-def one(tmp_path, features, seed):
-    path = Path(tmp_path) / "one.nrs.yaml"
-    path.write_text(text_of(features, seed))
-    loaded = read_spec(path)
-    designed = run_design(loaded)
+def one(features, seed):
+    designed = run_design(loaded(text_of(features, seed)))
     axis = axis_of(designed.spec, designed.plant, designed.design.motion, designed.design.sensor)
-    return loaded, designed, axis
+    return designed, axis
 
 
 def z_plane(polynomial, period):
@@ -92,9 +88,9 @@ def z_plane(polynomial, period):
 # Sampled, ranges of the motor make a triangle, which has corners that no motor is at.
 @pytest.mark.parametrize("features", [f for f in FEATURES.values() if "sampled motor" not in f])
 @pytest.mark.parametrize("seed", thinned(range(6), 1))
-def test_the_closed_loop_is_a_mode_of_the_proof(tmp_path, features, seed):
+def test_the_closed_loop_is_a_mode_of_the_proof(features, seed):
     """Every corner of the assembled system has the roots of a closed loop that is looked at."""
-    loaded, designed, axis = one(tmp_path, features, seed)
+    designed, axis = one(features, seed)
     period = None if axis.period is None else float(axis.period)
     (controller,), soft = designed.design.controllers, designed.plant.environment("soft")
     closed = [
@@ -102,7 +98,7 @@ def test_the_closed_loop_is_a_mode_of_the_proof(tmp_path, features, seed):
         for contact in (soft.nominal, *soft.corners)
         for place in axis.places
     ]
-    system = assemble_spec(loaded, designed, Fraction(1))
+    system = assemble(designed.spec, designed.plant, designed.design)
     modes = {mode.name: np.array(mode.A.floats()) for mode in system.modes}
     if "slow" in features:
         between = next(A for name, A in modes.items() if name.startswith("motion"))
@@ -117,9 +113,9 @@ def test_the_closed_loop_is_a_mode_of_the_proof(tmp_path, features, seed):
 
 @pytest.mark.parametrize("features", FEATURES.values(), ids=FEATURES)
 @pytest.mark.parametrize("seed", thinned(range(7, 13), 1))
-def test_margins_and_limit_against_python_control_and_eigenvalues(tmp_path, features, seed):
+def test_margins_and_limit_against_python_control_and_eigenvalues(features, seed):
     """The open loop is that of python-control, by state space; the limit by the spectrum."""
-    _, designed, axis = one(tmp_path, features, seed)
+    designed, axis = one(features, seed)
     (controller,), soft = designed.design.controllers, designed.plant.environment("soft")
     gains = controller.law.gains
     Mt, Bt = float(gains["Mt"]), float(gains["Bt"])
@@ -155,8 +151,8 @@ def test_margins_and_limit_against_python_control_and_eigenvalues(tmp_path, feat
 
 
 @pytest.mark.parametrize("late", thinned(["sampled", "sampled damping", "sampled filter"], 1))
-def test_a_force_that_is_older_by_the_delay_margin_is_stable_and_by_more_is_not(tmp_path, late):
-    _, designed, axis = one(tmp_path, late, 3)
+def test_a_force_that_is_older_by_the_delay_margin_is_stable_and_by_more_is_not(late):
+    designed, axis = one(late, 3)
     assert isinstance(axis, ProcessorAxis)
     (controller,), soft = designed.design.controllers, designed.plant.environment("soft")
     gains = controller.law.gains
@@ -179,9 +175,8 @@ def test_characteristic_polynomial():
     assert characteristic(rows) == (1, Fraction(-5, 6), Fraction(1, 6))
 
 
-def test_a_force_that_is_sampled_more_often_than_the_motion_loop_has_no_axis(tmp_path):
-    path = tmp_path / "fast.nrs.yaml"
-    path.write_text(text_of("sampled", 0).replace("2 ms,", "2 ms, outer_period: 1 ms,"))
-    designed = run_design(read_spec(path))
+def test_a_force_that_is_sampled_more_often_than_the_motion_loop_has_no_axis():
+    faster = "2 ms,", "2 ms, outer_period: 1 ms,"
+    designed = run_design(loaded(text_of("sampled", 0), faster))
     design = designed.design
     assert axis_of(designed.spec, designed.plant, design.motion, design.sensor) is None

@@ -10,10 +10,10 @@ import pytest
 from nrs_design.certificates.bounds import bound_on
 from nrs_design.certificates.certificate import dump
 from nrs_design.certificates.verify import verify_document
-from nrs_design.pipeline.certification import assemble_spec, search_limits
-from nrs_design.pipeline.runs import run_certification, run_design
+from nrs_design.pipeline.certification import search_limits
+from nrs_design.pipeline.runs import run_certification
 from nrs_design.reporting.sections.proof import proof_section
-from nrs_design.spec import read_spec
+from tests.loop.support import assembled, loaded
 from tests.support import SOFT_TISSUE, words_of
 
 TEXT = SOFT_TISSUE.read_text(encoding="utf-8")
@@ -24,29 +24,27 @@ COMMANDED = "disturbances: {command: 7.5 deg/s}\n"
 ERRORS = "disturbances: {command: 8 deg/s, encoder_step: 0.00878906 deg, largest_angle: 20 deg}\n"
 
 
-def spec_of(path, disturbances, limit="2000 rpm", sampling=SAMPLING):
+def spec_of(disturbances, limit="2000 rpm", sampling=SAMPLING):
     head, _, _ = TEXT.partition("controllers:")
     limits = "bandwidth: 2 Hz\n" + (f"  command: {limit}\n" if limit else "")
     text = (
         f"{head.replace('bandwidth: 2 Hz', limits)}controllers:\n  insertion: {{type: impedance, "
         "environment: soft, Mt: 0.01 kg*m^2, Bt: 2.15 N*m*s/rad}\nswitching: arbitrary\n"
     )
-    file = path / "driven.nrs.yaml"
-    file.write_text(text + sampling + disturbances, encoding="utf-8")
-    return read_spec(file)
+    return loaded(text + sampling + disturbances)
 
 
-def system_of(loaded):
-    return assemble_spec(loaded, run_design(loaded))
+def system_of(disturbances, **limit):
+    return assembled(spec_of(disturbances, **limit).text)
 
 
 def command_of(system):
     return next(o for o in system.outputs if o.name.startswith("motor command"))
 
 
-def test_rows_hold_every_rounding(tmp_path):
+def test_rows_hold_every_rounding():
     """``Kp e + D (e - e before)`` with each term off by any share that its roundings allow."""
-    system = system_of(spec_of(tmp_path, COMMANDED))
+    system = system_of(COMMANDED)
     output = command_of(system)
     assert (output.name, output.unit, output.limit) == ("motor command", "rpm", 2000)
     rows = [row.fractions()[0] for row in output.rows]
@@ -64,9 +62,9 @@ def test_rows_hold_every_rounding(tmp_path):
         assert max(values) - min(values) < 1e-5 * (abs(float(Kp + D) * now) + abs(float(D) * last))
 
 
-def test_errors_of_the_sample_are_taken_off_the_limit(tmp_path):
+def test_errors_of_the_sample_are_taken_off_the_limit():
     """An encoder that is half a step off changes the command of the sample by ``Kp + D`` times."""
-    system = system_of(spec_of(tmp_path, ERRORS))
+    system = system_of(ERRORS)
     output = command_of(system)
     assert output.name == "motor command before errors of its sample"
     half = np.radians(0.00878906) / 2
@@ -76,14 +74,13 @@ def test_errors_of_the_sample_are_taken_off_the_limit(tmp_path):
     (text,) = (t for t in words_of(system) if "it does not saturate" in t)
     assert f"less {taken:.5g}"[:8] in text
     # So large an error leaves nothing of the limit, and none is shown.
-    small = command_of(system_of(spec_of(tmp_path, ERRORS, limit="50 rpm")))
+    small = command_of(system_of(ERRORS, limit="50 rpm"))
     assert small.limit is None
 
 
-def test_where_it_is_not_asked_for(tmp_path):
+def test_where_it_is_not_asked_for():
     """Without a limit or disturbances, nothing is said of it."""
-    for loaded in (spec_of(tmp_path, COMMANDED, limit=None), spec_of(tmp_path, "")):
-        system = system_of(loaded)
+    for system in (system_of(COMMANDED, limit=None), system_of("")):
         assert all("motor command" not in o.name for o in system.outputs)
         assert "does not saturate" not in " ".join(words_of(system))
 
@@ -100,13 +97,13 @@ def worst_signs(system, mode):
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("speed", "level", "kept"), [("7.5", 1986, True), ("8", 2118, False)])
-def test_the_numbers_of_the_page(tmp_path, speed, level, kept):
+def test_the_numbers_of_the_page(speed, level, kept):
     """docs/certificates/invariant-ellipsoid.md: proved, and found at two stiffnesses.
 
     Where the limit is kept, runs in single precision stay below the bound and come near.
     """
-    loaded = spec_of(tmp_path, f"disturbances: {{command: {speed} deg/s}}\n")
-    result = run_certification(loaded, limits=search_limits(loaded.spec, optimize_rate=False))
+    driven = spec_of(f"disturbances: {{command: {speed} deg/s}}\n")
+    result = run_certification(driven, limits=search_limits(driven.spec, optimize_rate=False))
     system = result.certification.system
     bound = bound_on(system, result.certification.statements, "motor command")
     assert ceil(bound.level) == level
@@ -115,7 +112,7 @@ def test_the_numbers_of_the_page(tmp_path, speed, level, kept):
     assert claim.covers_rounding
     if not kept:
         return
-    stiffest = loaded.spec.environments["soft"].at_pivot()["stiffness"].range[1].si
+    stiffest = driven.spec.environments["soft"].at_pivot()["stiffness"].range[1].si
     for k, mode, found in ((43.0, 0, 1019), (stiffest, -1, 1040)):
         pushes = np.radians(7.5) * np.array([[*worst_signs(system, mode), 0.0]])
         assert int(np.abs(_commands(pushes, bound_law(result), k)).max()) == found
@@ -127,7 +124,7 @@ def test_the_numbers_of_the_page(tmp_path, speed, level, kept):
     said = str(proof_section(result))
     assert "the driver does not saturate." in said
     assert "saturation of motor or driver." not in said
-    assert verify_document(json.loads(dump(result.certificate)), loaded).fault is None
+    assert verify_document(json.loads(dump(result.certificate)), driven).fault is None
 
 
 def bound_law(result):

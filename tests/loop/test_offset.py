@@ -10,15 +10,11 @@ from scipy.linalg import expm
 
 from nrs_design.controllers.laws import PositionControl, ProportionalForce
 from nrs_design.errors import AssemblyError
-from nrs_design.loop.assemble import assemble
 from nrs_design.loop.modes import lead, position_mode, with_last
 from nrs_design.models.contact import Elastic
 from nrs_design.models.motion_loop import MotionLoop, realize
-from nrs_design.pipeline.runs import run_certification, run_design
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.spec import parse_spec, read_spec
-from nrs_design.spec.build_plant import build_plant
-from tests.loop.support import LOOP, MOTION, polynomial
+from tests.loop.support import LOOP, MOTION, assembled, polynomial
 from tests.support import FORCE_LIMIT, ROBOT, words_of
 
 F = Fraction
@@ -32,12 +28,7 @@ SECOND = """  gentle:
 
 
 def system(old="offset: measured", new="offset: measured"):
-    text = OFFSET.read_text()
-    assert old in text
-    spec = parse_spec(text.replace(old, new))
-    plant = build_plant(spec)
-    design = run_design(read_spec(OFFSET)).design
-    return assemble(spec, plant, design)
+    return assembled(OFFSET, (old, new))
 
 
 def test_lead_of_the_thesis_loop():
@@ -72,8 +63,7 @@ def test_a_loop_that_does_not_rest_at_its_command_is_refused():
 
 
 def test_without_offset_nothing_changes():
-    plain = run_design(read_spec(FORCE_LIMIT))
-    expected = assemble(plain.spec, plain.plant, plain.design)
+    expected = assembled(FORCE_LIMIT)
     found = system(new="offset: none")
     assert found.states == expected.states == ("xp1", "xp2")
     assert (found.modes, found.switching) == (expected.modes, expected.switching)
@@ -130,14 +120,7 @@ def test_run_with_the_memory_itself(seed, offset):
 
 
 def test_two_force_controllers_reset_between_them_too():
-    spec = parse_spec(OFFSET.read_text().replace("design:\n", SECOND + "design:\n", 1))
-    designed = run_certification(read_spec(OFFSET)).design
-    gentle = designed.controllers[1]
-    law = ProportionalForce(F(1, 64))
-    both = type(designed)(
-        designed.motion, (*designed.controllers, type(gentle)("gentle", law, "soft", ("soft",)))
-    )
-    found = assemble(spec, build_plant(spec), both)
+    found = system("design:\n", SECOND + "design:\n")
     pairs = {(r.source.split("/")[0], r.target.split("/")[0]) for r in found.switching.resets}
     names = ("position", "force", "gentle")
     assert pairs == {(a, b) for a in names for b in names if a != b}

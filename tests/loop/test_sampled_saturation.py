@@ -2,8 +2,6 @@
 
 from fractions import Fraction
 from functools import cache
-from pathlib import Path
-from tempfile import TemporaryDirectory
 
 import numpy as np
 import pytest
@@ -17,8 +15,8 @@ from nrs_design.search.saturated_steps import search_saturated_steps
 from nrs_design.simulation.norms import clipped, quadratic_norm
 from nrs_design.simulation.saturation import saturated_rates
 from nrs_design.simulation.step_program import StepProgram
-from nrs_design.spec import read_spec
 from nrs_design.work import Allowance
+from tests.loop.support import loaded
 from tests.proof.systems import pushed_away_in_steps
 from tests.support import ROOT, words_of
 
@@ -49,13 +47,10 @@ SOFTEST, HARDEST = 720.56 * 0.24**2, 768.17 * 0.24**2
 @cache
 def loop(kind):
     """Return the system, the law that ships, and the region of a kind of controllers."""
-    with TemporaryDirectory() as folder:
-        file = Path(folder) / "s.nrs.yaml"
-        file.write_text(TEXTS[kind], encoding="utf-8")
-        loaded = read_spec(file)
-    designed = run_design(loaded)
-    system = assemble_spec(loaded, designed)
-    law = shipped_law(loaded.spec, designed.design, PERIOD)
+    spec = loaded(TEXTS[kind])
+    designed = run_design(spec)
+    system = assemble_spec(spec, designed)
+    law = shipped_law(spec.spec, designed.design, PERIOD)
     evidence, _ = first_accepted(search_saturated_steps(system, Allowance()), system)
     return system, law, evidence
 

@@ -6,11 +6,10 @@ import numpy as np
 import pytest
 
 from nrs_design.certificates.catalogue import catalogue_kind
-from nrs_design.pipeline.certification import assemble_spec
-from nrs_design.pipeline.runs import run_certification, run_design
+from nrs_design.pipeline.runs import run_certification
 from nrs_design.proof.bounds import rounded_down
 from nrs_design.simulation.saturation import saturated_rates
-from nrs_design.spec import read_spec
+from tests.loop.support import assembled, loaded
 from tests.support import ROOT, words_of
 
 TEXT = (ROOT / "docs/examples/saturating.nrs.yaml").read_text("utf-8")
@@ -20,14 +19,8 @@ RANGED = TEXT.replace(
     "4.8417e-4 rad/s/rpm",
     "{nominal: 4.8417e-4 rad/s/rpm, range: [4.793283e-4 rad/s/rpm, 4.890117e-4 rad/s/rpm]}",
 )
+LARGEST = "initial_force: 0.5 N*m", "initial_force: largest"
 LOADED = TEXT.replace("0.0351 s\n", "0.0351 s\n  load_inertia: 1.213 kg*m^2\n")
-
-
-def system_of(path, text):
-    file = path / "saturating.nrs.yaml"
-    file.write_text(text, encoding="utf-8")
-    loaded = read_spec(file)
-    return assemble_spec(loaded, run_design(loaded))
 
 
 def by_hand(x, k, Mt, Bt, gain=KM, J=np.inf):
@@ -48,10 +41,10 @@ def random_states(n):
 
 
 @pytest.mark.parametrize("inertia", [0.01, 0.0])
-def test_the_canonical_form_moves_as_the_joint_does(tmp_path, inertia):
+def test_the_canonical_form_moves_as_the_joint_does(inertia):
     """e and omega are forms of the canonical states; both saturations act as by hand."""
     text = TEXT if inertia else TEXT.replace("Mt: 0.01", "Mt: 0")
-    system = system_of(tmp_path, text)
+    system = assembled(text)
     wn2, wn1 = KM * KP / TAU, (1 + KM * KD) / TAU
     # xp1 = (omega - Kd Km/tau xp2) / (Kp Km/tau), and e = xp2 + (1/tau) xp1.
     M = np.array([[wn1 - KM * KD / TAU, 1.0], [wn2, KM * KD / TAU]])
@@ -74,8 +67,8 @@ def test_the_canonical_form_moves_as_the_joint_does(tmp_path, inertia):
 
 
 @pytest.mark.parametrize(("text", "J"), [(RANGED, np.inf), (LOADED, 1.213)])
-def test_ranges_of_the_motor_and_its_load(tmp_path, text, J):
-    system = system_of(tmp_path, text)
+def test_ranges_of_the_motor_and_its_load(text, J):
+    system = assembled(text)
     assert system.states[:2] == ("e [rad]", "omega [rad/s]")
     rates, count = saturated_rates(system), len(system.modes)
     for x in random_states(4):
@@ -98,27 +91,23 @@ def test_ranges_of_the_motor_and_its_load(tmp_path, text, J):
         pytest.param(TEXT.replace("losable", "kept"), marks=pytest.mark.slow, id="kept"),
     ],
 )
-def test_a_region_is_found_for_each(tmp_path, text):
-    file = tmp_path / "saturating.nrs.yaml"
-    file.write_text(text.replace("0.5 N*m", "largest"), encoding="utf-8")
-    certification = run_certification(read_spec(file)).certification
+def test_a_region_is_found_for_each(text):
+    certification = run_certification(loaded(text, LARGEST)).certification
     evidence = certification.statements[-1]
     assert evidence.kind == "saturated-ellipsoid"
     assert evidence.find_fault(certification.system) is None
     assert evidence.start_size > Fraction(1, 10)
 
 
-def test_the_largest_force_of_the_example(tmp_path):
+def test_the_largest_force_of_the_example():
     """0.845 N m on the page, at the softest of the range."""
-    file = tmp_path / "saturating.nrs.yaml"
-    file.write_text(TEXT.replace("0.5 N*m", "largest"), encoding="utf-8")
-    evidence = run_certification(read_spec(file)).certification.statements[-1]
+    evidence = run_certification(loaded(TEXT, LARGEST)).certification.statements[-1]
     assert float(evidence.start_size) == pytest.approx(0.8459, rel=1e-3)
     assert rounded_down(evidence.start_size, "N*m").startswith("0.845")
 
 
-def test_what_is_taken_for_granted(tmp_path):
-    system = system_of(tmp_path, TEXT)
+def test_what_is_taken_for_granted():
+    system = assembled(TEXT)
     (said,) = [text for text in words_of(system) if "is cut off at" in text]
     assert "cut off at 0.139627 rad/s (rounded up)" in said
     assert "likewise at 2000 rpm" in said
@@ -128,7 +117,7 @@ def test_what_is_taken_for_granted(tmp_path):
     (kind,) = {k.name for k in map(catalogue_kind, system.assumptions) if "sampling" in k.name}
     assert kind == "no sampling or friction, and saturation only as stated"
     assert system.saturation.start.wanted == Fraction(1, 2)
-    plain = system_of(tmp_path, TEXT.replace("goals:\n  initial_force: 0.5 N*m\n", ""))
+    plain = assembled(TEXT.replace("goals:\n  initial_force: 0.5 N*m\n", ""))
     assert plain.saturation is None
     assert "friction and saturation are not modelled" in " ".join(words_of(plain))
     lowest = min(float(x.floats()[-1][0]) for x in system.saturation.start.states)

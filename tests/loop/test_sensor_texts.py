@@ -7,7 +7,7 @@ from nrs_design.controllers.float32 import exact_decimal
 from nrs_design.controllers.sensor import LowPass, Sensor
 from nrs_design.loop.assemble import assemble
 from nrs_design.pipeline.runs import run_design
-from nrs_design.spec import read_spec
+from tests.loop.support import loaded
 from tests.support import SOFT_TISSUE, words_of
 
 SENSOR = Sensor({"bias": Fraction(1, 3), "drift": Fraction(1, 2)}, LowPass(2, Fraction(200)), 1e-8)
@@ -37,28 +37,24 @@ def test_bounds_on_disturbances_take_them_up():
     assert "It is the force error of the statements that name one" in errors
 
 
-def sensed(folder, more):
-    """Design and assemble soft tissue, in contact that is kept, with what is sampled and sensed."""
-    path = folder / "sensed.nrs.yaml"
-    text = f"{SOFT_TISSUE.read_text(encoding='utf-8')}contact: kept\n{more}"
-    path.write_text(text, encoding="utf-8")
-    designed = run_design(read_spec(path))
-    return designed, assemble(designed.spec, designed.plant, designed.design)
+def sensed(more):
+    """Design soft tissue in contact that is kept, with what is sampled and sensed."""
+    found = run_design(loaded(SOFT_TISSUE, more=f"contact: kept\n{more}"))
+    return found, assemble(found.spec, found.plant, found.design)
 
 
-def test_the_filter_runs_with_the_outer_loop(tmp_path):
+def test_the_filter_runs_with_the_outer_loop():
     sampling = "sampling: {period: 2 ms, outer_period: 0.5 ms, delay: 0}\n"
-    designed, system = sensed(tmp_path, f"{sampling}sensor: {{filter: {{cutoff: 60 Hz}}}}\n")
-    step = designed.design.sensor.filter.discretize(Fraction(1, 2000))
+    found, system = sensed(f"{sampling}sensor: {{filter: {{cutoff: 60 Hz}}}}\n")
+    step = found.design.sensor.filter.discretize(Fraction(1, 2000))
     (text,) = (text for text in words_of(system) if "through one lag" in text)
     assert f"p = {exact_decimal(step.p)} and" in text
     kept = {mode.A.fractions()[5][5] for mode in system.modes}
     assert kept == {step.p}
 
 
-def test_the_sampled_loop_takes_the_errors_for_its_force_error(tmp_path):
+def test_the_sampled_loop_takes_the_errors_for_its_force_error():
     _, system = sensed(
-        tmp_path,
         "sampling: {period: 2 ms, delay: 0}\ndisturbances: {encoder_step: 1e-5 rad}\n"
         "sensor: {bias: 5e-3 N*m, filter: {cutoff: 60 Hz}}\n",
     )

@@ -8,17 +8,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from nrs_design.controllers.laws import Admittance
-from nrs_design.design.design import design_controllers
 from nrs_design.loop.assemble import assemble
 from nrs_design.loop.modes import position_mode, velocity_mode
 from nrs_design.models.actuator import Actuator
 from nrs_design.models.contact import KelvinVoigt
 from nrs_design.models.motion_loop import close_motion_loop, realize
 from nrs_design.pipeline.runs import run_design
-from nrs_design.spec import parse_spec, read_spec
-from nrs_design.spec.build_plant import build_plant
-from tests.loop.support import polynomial
-from tests.support import ROOT, words_of
+from tests.loop.support import assembled, loaded, polynomial
+from tests.support import ROOT, replaced, words_of
 
 F = Fraction
 MIXED = ROOT / "docs" / "examples" / "mixed-controllers.nrs.yaml"
@@ -28,15 +25,11 @@ MOTION = realize(close_motion_loop(Actuator(GAIN, TAU), KP, KD))
 positive = st.fractions("1/100", 100, max_denominator=100)
 
 
-def mixed(**changes):
-    text = MIXED.read_text()
-    for old, new in changes.values():
-        assert old in text
-        text = text.replace(old, new)
-    spec = parse_spec(text)
-    loaded = read_spec(MIXED)
-    design = run_design(loaded).design
-    return assemble(spec, build_plant(spec), design)
+RESET = "decay: 20 1/s", "decay: 20 1/s, reset: true"
+
+
+def mixed(*changes):
+    return assembled(MIXED, *changes)
 
 
 @given(k=positive, b=positive, Mt=positive, Bt=positive, massless=st.booleans())
@@ -52,7 +45,9 @@ def test_the_example_has_one_state_for_all():
     assert [mode.name for mode in system.modes][:3] == names
     assert system.states == ("xi1", "xi2", "vm [rad/s]", "reference [rad]")
     approach = system.modes[0].A.fractions()
-    assert [row[:2] for row in approach[:2]] == [list(row) for row in system_motion(system)]
+    motion = run_design(loaded(MIXED)).design.motion
+    own = realize(close_motion_loop(Actuator(GAIN, TAU), motion.Kp, motion.Kd)).A
+    assert [row[:2] for row in approach[:2]] == [list(row) for row in own]
     assert approach[2:] == [[0, 0, -20, 0], [0, 0, 0, -20]]
     assert not system.switching.resets
     texts = " ".join(words_of(system))
@@ -60,15 +55,8 @@ def test_the_example_has_one_state_for_all():
     assert "States are continuous at a switch" in texts
 
 
-def system_motion(system):
-    """Motion loop of the example, from its own gains."""
-    plant = build_plant(read_spec(MIXED).spec)
-    design = run_design(read_spec(MIXED)).design
-    return realize(plant.motion_loop(design.motion.Kp, design.motion.Kd)).A
-
-
 def test_resets_lead_from_impedance_controllers_to_the_others():
-    system = mixed(reset=("decay: 20 1/s", "decay: 20 1/s, reset: true"))
+    system = mixed(RESET)
     found = {(reset.source, reset.target) for reset in system.switching.resets}
     ends = [f"insertion/soft/k-{end}" for end in ("min", "max")]
     others = ["approach", "hold/soft/k-min", "hold/soft/k-max"]
@@ -83,25 +71,22 @@ def test_resets_lead_from_impedance_controllers_to_the_others():
 
 def test_resets_are_between_all_contacts_that_rules_name():
     rules = "{transitions: [[insertion/soft, hold/soft], [hold/soft, insertion/soft]]}"
-    changes = {"reset": ("decay: 20 1/s", "decay: 20 1/s, reset: true")}
-    system = mixed(**changes, rules=("switching: arbitrary", f"switching: {rules}"))
+    system = mixed(RESET, ("switching: arbitrary", f"switching: {rules}"))
     assert {(r.source, r.target) for r in system.switching.resets} == {
-        (reset.source, reset.target) for reset in mixed(**changes).switching.resets
+        (reset.source, reset.target) for reset in mixed(RESET).switching.resets
     }
     assert ("insertion/soft/k-min", "approach") not in system.switching.transitions
 
 
 def test_a_reset_leaves_what_shows_the_force_and_what_remembers_it():
-    text = MIXED.read_text().replace("decay: 20 1/s", "decay: 20 1/s, reset: true")
+    text = replaced(MIXED.read_text(), RESET)
     creeping = (
         "    model: kelvin-boltzmann\n    parallel_stiffness: 60 N*m/rad\n"
         "    series_stiffness: 80 N*m/rad\n    damping: 5 N*m*s/rad\n"
     )
     begin, end = text.index("    model: elastic"), text.index("\ncontrollers:")
-    text = f"{text[:begin]}{creeping}{text[end:]}sensor: {{filter: {{cutoff: 30 Hz}}}}\n"
-    spec = parse_spec(text)
-    plant = build_plant(spec)
-    system = assemble(spec, plant, design_controllers(spec, plant))
+    filtered = "sensor: {filter: {cutoff: 30 Hz}}\n"
+    system = assembled(text[:begin] + creeping + text[end:], more=filtered)
     zeroed = {"vm [rad/s]", "reference [rad]"}
     assert {*system.states} - zeroed == {
         *("xi1", "xi2", "filtered 1 [N*m]", "soft: damper deflection [rad]")
@@ -113,46 +98,36 @@ def test_a_reset_leaves_what_shows_the_force_and_what_remembers_it():
 
 
 def test_what_is_held_is_said_to_be():
-    texts = " ".join(words_of(mixed(held=("decay: 20 1/s", "decay: 0 1/s"))))
+    texts = " ".join(words_of(mixed(("decay: 20 1/s", "decay: 0 1/s"))))
     assert "act on nothing and are held" in texts
 
 
-def test_without_inertia_no_velocity_is_said_to_start_at_zero(tmp_path):
-    text = MIXED.read_text().replace("decay: 20 1/s", "decay: 20 1/s, reset: true")
-    path = tmp_path / "mixed-controllers.nrs.yaml"
-    path.write_text(text.replace("Mt: 0.01 kg*m^2", "Mt: 0 kg*m^2"))
-    designed = run_design(read_spec(path))
-    system = assemble(designed.spec, designed.plant, designed.design)
+def test_without_inertia_no_velocity_is_said_to_start_at_zero():
+    system = mixed(RESET, ("Mt: 0.01 kg*m^2", "Mt: 0 kg*m^2"))
     texts = " ".join(words_of(system))
     assert "impedance controllers start from the rest position." in texts
     assert "vm" not in texts
 
 
 def test_only_controllers_of_the_spec_are_named():
-    spec = parse_spec(MIXED.read_text())
-    design = run_design(read_spec(MIXED)).design
-    without = replace(design, controllers=design.controllers[:2])
-    texts = " ".join(words_of(assemble(spec, build_plant(spec), without)))
+    found = run_design(loaded(MIXED))
+    without = replace(found.design, controllers=found.design.controllers[:2])
+    texts = " ".join(words_of(assemble(found.spec, found.plant, without)))
     assert "Impedance controllers integrate" in texts
     assert "While a position controller is active" in texts
     assert "force controller" not in texts
 
 
 def test_decay_is_the_single_precision_number_that_the_robot_holds():
-    system = mixed(slow=("decay: 20 1/s", "decay: 0.1 1/s"))
+    system = mixed(("decay: 20 1/s", "decay: 0.1 1/s"))
     held = F(13421773, 2**27)
     assert abs(held - F("0.1")) < F(1, 10**8)
     assert system.modes[0].A.fractions()[2][2] == -held
     assert "decay at 0.100000001490116119384765625 1/s" in " ".join(words_of(system))
 
 
-def test_a_spring_acts_on_the_reference_that_others_leave_idle(tmp_path):
-    text = MIXED.read_text(encoding="utf-8")
-    sprung = text.replace("    Bt:", "    Kt: 0.5 N*m/rad\n    Bt:", 1)
-    path = tmp_path / "mixed.nrs.yaml"
-    path.write_text(sprung, encoding="utf-8")
-    designed = run_design(read_spec(path))
-    system = assemble(designed.spec, designed.plant, designed.design)
+def test_a_spring_acts_on_the_reference_that_others_leave_idle():
+    system = mixed(("    Bt:", "    Kt: 0.5 N*m/rad\n    Bt:"))
     texts = " ".join(words_of(system))
     assert "draws it to zero" in texts
     assert "which no switch resets" not in texts

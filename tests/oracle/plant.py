@@ -64,11 +64,16 @@ def _law(loop, before, force, none, active):
     for j in range(1, loop["lags"] + 1):
         force = p * before[f"filtered {j} before"] + single(1 - p) * force
         after[f"filtered {j} before"] = force
-    Mt, Bt = law["Mt"], law["Bt"]
-    if active == "force":
-        after["e before"] = e = -single(loop["force"]) * force - before["delta"]
-        left = single(np.exp(-loop["decay"] * T))
+    Mt, Bt, added = law["Mt"], law["Bt"], before.get("integral", none)
+    left = single(np.exp(-loop["decay"] * T))
+    after["integral"] = left * added
+    if active != "a":
+        e = added - before["delta"]
+        if active == "force":
+            e = e - single(loop["force"]) * force
+            after["integral"] = added - single(loop["integral"] * T) * force
         after |= {name: left * before.get(name, none) for name in ("vm", "reference")}
+        after["e before"] = e
         return after, e if drive == "position" else _motor(law, inner, e, before)
     if drive != "velocity":
         # Beside force controllers the reference is a state, and alone the error of motion.
@@ -82,9 +87,9 @@ def _law(loop, before, force, none, active):
     moved = e - single(outer) * (before["vm"] if Mt else vm)
     after |= {"e": moved, "reference": moved + before["delta"]}
     if drive == "position":
-        return after, e if loop["decay"] else moved
-    after["e before"] = e
-    return after, _motor(law, inner, e, before)
+        return after, e + added if loop["decay"] else moved
+    after["e before"] = e + added
+    return after, _motor(law, inner, e + added, before)
 
 
 def _motor(law, T, e, before):
@@ -149,8 +154,8 @@ def draw(loop, rng, contact):
     drawn["effects"] = [s + one(least, most) for s in starts[:-1] or starts]
     drawn["effects"] += [-np.inf] if waiting else []
     drawn["missed"] = bool(loop["misses"]) and rng.random() < 0.5
-    both = ["a", "force"] if loop["decay"] else ["force"] if loop["force"] else ["a"]
-    drawn["active"] = str(rng.choice(both))
+    any_one = ["a", "force"] if loop["decay"] else ["force"] if loop["force"] else ["a"]
+    drawn["active"] = str(rng.choice(any_one + ["position"] * (loop["integral"] > 0)))
     drawn["turn"] = str(rng.choice(["both", loop["turns"]])) if loop["turns"] else "both"
     drawn["age"] = int(rng.integers(loop["delay"][0], loop["delay"][1] + 1))
 

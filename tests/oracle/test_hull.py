@@ -41,7 +41,8 @@ def drives(loop):
         J, b = written(loop["inertia"], "kg*m^2"), written(loop["friction"], "N*m*s/rad")
         return f"torque_interface: {{inertia: {J}, friction: {b}}}"
     if loop["drive"] != "actuator":
-        return f"{loop['drive']}_interface: {{time_constant: {tau}}}"
+        dead = f", dead_time: {loop['dead']!r} s" * bool(loop["dead"])
+        return f"{loop['drive']}_interface: {{time_constant: {tau}{dead}}}"
     motion = f"derivative_gain: {law['Kd']!r} rpm*s/rad, zero: {law['zero']!r} 1/s"
     settling = f"damping_ratio: 0.707, settling_time: {2 * sum(loop['tau']):.6g} s"
     gain = written(loop["gain"], "rad/s/rpm")
@@ -61,7 +62,8 @@ def spec_of(loop):
     keys = f"period: {inner:.9g} s, delay: {span(*loop['delay'])}"
     keys += f", outer_period: {outer:.9g} s" * bool(loop["turns"])
     keys += f", jitter: {loop['jitter']!r} s" * bool(loop["jitter"])
-    keys += f", latency: {span(*loop['wait'], ' s')}" * bool(loop["wait"][1])
+    late = [float(f"{wait - loop['dead']:.9g}") for wait in loop["wait"]]
+    keys += f", latency: {span(*late, ' s')}" * bool(late[1])
     keys += f", misses: {{consecutive: 1, command: {loop['misses']}}}" * bool(loop["misses"])
     damped = bool(loop["b"][1])
     stiffness = written(loop["k"], "N*m/rad")
@@ -79,8 +81,11 @@ def spec_of(loop):
         gains = f"impedance, Mt: {law['Mt']!r} kg*m^2, Bt: {law['Bt']!r} N*m*s/rad"
         gains += f", Kt: {loop['spring']!r} N*m/rad" * bool(loop["spring"])
     each = f"  a: {{type: {gains}, environment: soft}}\n" * (loop["decay"] > 0 or not loop["force"])
-    gain = f"{{type: force, proportional_gain: {loop['force']!r} rad/(N*m), environment: soft}}"
-    each += f"  force: {gain}\n" * bool(loop["force"])
+    gain = f"force, proportional_gain: {loop['force']!r} rad/(N*m), environment: soft"
+    if loop["integral"]:
+        gain = f"pi-{gain}, integral_gain: {loop['integral']!r} rad/(N*m*s)"
+        each += "  position: {type: position}\n"
+    each += f"  force: {{type: {gain}}}\n" * bool(loop["force"])
     each += f"idle_states: {{decay: {loop['decay']!r} 1/s}}\n" * bool(loop["decay"])
     sensor = f"sensor: {{filter: {{order: {loop['lags']}, cutoff: {loop['cutoff']!r} Hz}}}}\n"
     return f"""{HEAD}{drives(loop)}
@@ -132,8 +137,10 @@ def some_loop(rng):
         and not ((decay and not spring) or (torque and (damped or len(wide) > 1)))
     )
     creep = (around("k1", 5, 50, 2), around("damper", 0.5, 10, 2)) if some(0.3) else ()
+    dead = longest / 3 * (drive in ("velocity", "position") and "wait" not in wide)
     if losable or damped or len(wide) > 1 + (not load and not torque):
         creep = ()
+    integral = size(0.1, 1) * (decay > 0 and not losable and not creep and some(0.5))
     return {
         "drive": drive, "law": gains if torque else law, "period": T,
         "wait": (size(longest / 9, longest) if "wait" in wide else longest, longest),
@@ -146,8 +153,8 @@ def some_loop(rng):
         "inertia": around("inertia", 0.1, 0.5, 3), "friction": around("friction", 0.2, 1, 2),
         "k": around("k", 10, 200, 3), "b": around("b", 0.1, 2, 3) if damped else (0.0, 0.0),
         "losable": losable, "creep": creep,
-        "load": load, "force": force, "decay": decay,
-        "spring": spring,
+        "load": load, "force": force, "decay": decay, "integral": integral,
+        "spring": spring, "dead": dead,
         "turns": turns, "round": int(rng.integers(2, 4)),
     }  # fmt: skip
 
@@ -192,18 +199,16 @@ def moving(names, matrices):
     return read
 
 
-def worst(loop, system, rng, times):
-    """Return the largest distance of drawn maps from the hull, and its numbers."""
+def assert_between(loop, system, rng):
+    """Draw maps, each of which must lie in the hull of the modes."""
     names = [name.partition(" [")[0] for name in system.states]
-    worst = (0.0, None)
-    for _ in range(times):
+    for _ in range(5):
         contact = not (loop["losable"] and rng.random() < 0.3)
         drawn = draw(loop, rng, contact)
         found = step(loop, names, drawn)
         read = moving(names, [found, *(np.array(mode.A.floats()) for mode in system.modes)])
         far = beside([A[read] for A in chosen(system, drawn, contact)], found[read])
-        worst = max(worst, (far, (contact, drawn)), key=lambda pair: pair[0])
-    return worst
+        assert far <= CLOSE, (spec_of(loop), contact, drawn)
 
 
 def plain(drive):
@@ -221,8 +226,8 @@ def plain(drive):
         "inertia": (0.2, 0.2), "friction": (0.5, 0.5), "k": (80.0, 80.0), "b": (0.5, 0.5),
         "losable": False, "load": 0.3 if "loaded" in drive else 0.0,
         "creep": ((30.0, 30.0), (3.0, 3.0)) if "creeping" in drive else (),
-        "force": 0.02 * mixed, "decay": 20.0 * mixed,
-        "spring": 30.0 * (drive in ("actuator", "position, sprung")),
+        "force": 0.02 * mixed, "decay": 20.0 * mixed, "integral": 0.5 * ("integral" in drive),
+        "spring": 30.0 * (drive in ("actuator", "position, sprung")), "dead": 0.0,
         "turns": "", "round": 1,
     }  # fmt: skip
 
@@ -240,8 +245,7 @@ def test_maps_of_drawn_loops_lie_between_the_modes(seeds):
         with contextlib.suppress(NrsDesignError):
             system = assembled(spec_of(loop))
             accepted += 1
-            far, numbers = worst(loop, system, rng, 5)
-            assert far <= CLOSE, (spec_of(loop), numbers)
+            assert_between(loop, system, rng)
     assert accepted >= len(seeds) / 2
 
 
@@ -255,6 +259,11 @@ TOGETHER = {
     "memory, load": ["creep", "load"],
     "memory, positions": ["creep", "placed"],
     "memory, mixture": ["creep", "decay"],
+    "integral": ["integral"],
+    "integral, positions": ["integral", "placed"],
+    "rounds": ["turns", "losable"],
+    "rounds, lags": ["turns", "lags", "spring"],
+    "dead time": ["dead", "force"],
 }
 
 
@@ -268,9 +277,17 @@ def test_maps_of_what_stands_together_lie_between_the_modes(name):
     few = [*islice((item for item in loops if has_all(item[1])), 3)]
     assert len(few) == 3
     for seed, loop in few:
-        system = assembled(spec_of(loop))
-        far, numbers = worst(loop, system, np.random.default_rng(seed), 5)
-        assert far <= CLOSE, (spec_of(loop), numbers)
+        assert_between(loop, assembled(spec_of(loop)), np.random.default_rng(seed))
+
+
+@pytest.mark.parametrize("Mt", [0.01, 0.0])
+@pytest.mark.parametrize("late", [0.0003, 0.001, 0.002, 0.0027, 0.005])
+@pytest.mark.parametrize("drive", ["actuator", "velocity", "position"])
+def test_maps_of_commands_that_are_late_lie_between_the_modes(drive, late, Mt):
+    """Within a period, by whole periods, and by more; of a robot, its dead time is a part of it."""
+    loop = plain(drive) | {"wait": (late, late), "dead": 0.0 if drive == "actuator" else late / 2}
+    loop["law"] = loop["law"] | {"Mt": Mt}
+    assert_between(loop, assembled(spec_of(loop)), np.random.default_rng(0))
 
 
 OF_DRIVE = {"actuator": ["Mt", "Bt", "Kd", "zero", "tau", "gain", "spring"]}
@@ -278,6 +295,7 @@ OF_DRIVE["loaded"] = [*OF_DRIVE["actuator"][:-1], "load", "loads"]
 OF_DRIVE["position, sprung"] = ["Mt", "Bt", "tau", "spring"]
 OF_DRIVE["position, mixed"] = ["force", "decay", "tau"]
 OF_DRIVE["mixed"] = ["force", "decay", "Kd", "zero"]
+OF_DRIVE["mixed, integral"] = ["force", "integral"]
 OF_DRIVE["actuator, creeping"] = OF_DRIVE["loaded, creeping"] = ["Bt", "tau", "rates", "follows"]
 OF_DRIVE["position, creeping"] = ["Bt", "tau", "rates", "follows"]
 # Stiffness, damping and rates of what is touched within a period.

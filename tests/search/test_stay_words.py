@@ -6,7 +6,7 @@ import pytest
 from nrs_design.search.graph import Graph
 from nrs_design.search.stay_words import stay_words
 from nrs_design.work import Allowance
-from tests.loop.timed_loop import timed
+from tests.literature.timed_loop import timed
 
 MOTION = ([[0, 1], [0, 0]], [[0], ["126.7"]])
 GAIN = [[-50, "-11.8"]]

@@ -1,0 +1,121 @@
+"""What tables beside the tests of evidence say: a system, the numbers, and what is found of them.
+
+A group or a case names an `example` of `systems.py`, or a `system`, with its `evidence`: a function
+of that file (with arguments, in a list), or the fields as a certificate has them, a matrix by its
+rows. `with` changes fields of the system, `but` fields of the evidence, by their dotted paths.
+`says` has words of the fault, or null if there is none; of the misfit, if it `asks` for that.
+`true` tells whether it is so by the definition, `fits` whether it covers the switching, and `claim`
+or `claims` what it says, or words of it.
+"""
+
+from dataclasses import fields, is_dataclass, replace
+from fractions import Fraction
+from pathlib import Path
+from types import NoneType, UnionType
+from typing import Any, get_args, get_origin, get_type_hints
+
+from nrs_design.proof.evidence import AbstractEvidence, class_of
+from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.mode import Time
+from nrs_design.proof.system import SwitchedSystem
+from tests.proof import systems
+from tests.proof.truth import holds
+from tests.tables import cases_of
+
+
+def cases(file: str) -> list[Any]:
+    return cases_of(Path(file).with_suffix(".yaml"), "cases")
+
+
+def check(case: dict[str, Any]) -> None:
+    system, evidence = system_in(case), evidence_in(case)
+    if "says" in case:
+        found = getattr(evidence, f"find_{case.get('asks', 'fault')}")(system)
+        assert (found is None) is (case["says"] is None), found
+        assert found is None or case["says"] in found, found
+    if "true" in case:
+        assert holds(system, evidence) is case["true"]
+    if "fits" in case:
+        assert evidence.fits(system.switching) is case["fits"]
+    if "claim" in case:
+        assert evidence.claim(system) == case["claim"]
+    for words in case.get("claims", ()):
+        assert words in evidence.claim(system)
+
+
+def system_in(case: dict[str, Any]) -> SwitchedSystem:
+    said = case.get("system")
+    if said is None:
+        system, _ = systems.genuine(case["example"])
+    elif isinstance(said, dict):
+        matrices = said["modes"]
+        other = {key: value for key, value in said.items() if key != "modes"}
+        system = _changed(SwitchedSystem, systems.family(*matrices), other)
+    else:
+        name, *arguments = said if isinstance(said, list) else [said]
+        times = {time.value: time for time in Time}
+        system = getattr(systems, name)(*(times.get(item, item) for item in arguments))
+    return _changed(SwitchedSystem, system, case.get("with", {}))
+
+
+def evidence_in(case: dict[str, Any]) -> AbstractEvidence:
+    said = case.get("evidence")
+    evidence = systems.genuine(case["example"])[1] if said is None else made(AbstractEvidence, said)
+    return _changed(type(evidence), evidence, case.get("but", {}))
+
+
+def made(hint: Any, value: Any) -> Any:
+    """Return what a table says as a value of a type; what is of another type is left as it is."""
+    if get_origin(hint) is UnionType and value is not None:
+        (hint,) = (part for part in get_args(hint) if part is not NoneType)
+    if hint is Fraction and isinstance(value, (int, str)):
+        return Fraction(value)
+    if hint is AbstractEvidence:
+        named = dict(value)
+        kind = class_of(named.pop("kind"))
+        return kind(**{name: made(part, named[name]) for name, part in _parts(kind, named)})
+    if hint is RationalMatrix:
+        return systems.matrix(value)
+    if hint is Time:
+        return Time(value)
+    if get_origin(hint) is tuple and isinstance(value, list):
+        first, *others = get_args(hint)
+        hints = [first] * len(value) if others == [...] else [first, *others]
+        return tuple(made(part, item) for part, item in zip(hints, value, strict=True))
+    if _has_fields(hint) and isinstance(value, (list, dict)):
+        named = value if isinstance(value, dict) else dict(zip(_names(hint), value, strict=False))
+        return hint(**{name: made(part, named[name]) for name, part in _parts(hint, named)})
+    return value
+
+
+def _changed(hint: Any, thing: Any, changes: dict[str, Any]) -> Any:
+    for path, value in changes.items():
+        thing = _put(hint, thing, path, value)
+    return thing
+
+
+def _put(hint: Any, thing: Any, path: str, value: Any) -> Any:
+    """Return a thing of which what a path leads to is another."""
+    if not path:
+        return made(hint, value)
+    if get_origin(hint) is UnionType:
+        (hint,) = (part for part in get_args(hint) if part is not NoneType)
+    name, _, rest = path.partition(".")
+    if isinstance(thing, tuple) and not hasattr(thing, "_fields"):
+        k = int(name)
+        inner = get_args(hint)[0 if get_args(hint)[-1] is ... else k]
+        return (*thing[:k], _put(inner, thing[k], rest, value), *thing[k + 1 :])
+    changed = {name: _put(get_type_hints(type(thing))[name], getattr(thing, name), rest, value)}
+    return thing._replace(**changed) if hasattr(thing, "_fields") else replace(thing, **changed)
+
+
+def _has_fields(hint: Any) -> bool:
+    return is_dataclass(hint) or hasattr(hint, "_fields")
+
+
+def _names(hint: Any) -> tuple[str, ...]:
+    return tuple(f.name for f in fields(hint)) if is_dataclass(hint) else hint._fields
+
+
+def _parts(hint: Any, named: dict[str, Any]) -> list[tuple[str, Any]]:
+    return [(name, get_type_hints(hint)[name]) for name in named]

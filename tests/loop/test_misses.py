@@ -117,7 +117,7 @@ def test_one_miss_after_another_is_proved():
     claim = done.evidence.claim(system)
     assert "that the rule for missed deadlines allows" in claim
     text = " ".join(words_of(system))
-    assert "at most 1 period in a row miss their deadline" in text
+    assert "Of any 2 periods of the law in a row, at most 1 miss their deadline" in text
     assert "Any switching signal is possible" not in text
 
 

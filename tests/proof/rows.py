@@ -1,11 +1,12 @@
 """What tables beside the tests of evidence say: a system, the numbers, and what is found of them.
 
-A group or a case names an `example` of `systems.py`, or a `system`, with its `evidence`: a function
-of that file (with arguments, in a list), or the fields as a certificate has them, a matrix by its
-rows. `with` changes fields of the system, `but` fields of the evidence, by their dotted paths.
-`says` has words of the fault, or null if there is none; of the misfit, if it `asks` for that.
-`true` tells whether it is so by the definition, `fits` whether it covers the switching, and `claim`
-or `claims` what it says, or words of it.
+A group or a case names an `example` of `systems.py`, or a `system` and `evidence`. A system is a
+function of that file, in a list with its arguments, or fields with the `modes`; evidence is its
+kind and its fields. A matrix stands as its rows, and what else has fields as their list. `with`
+changes fields of the system, `but` fields of the evidence, by their dotted paths. `says` has words
+of the fault, or null if there is none; of the misfit, if the case `asks` for that. `true` tells
+whether it is so by the definition, `fits` whether it covers the switching, and `claim` or `claims`
+what it says, or words of it.
 """
 
 from dataclasses import fields, is_dataclass, replace
@@ -52,10 +53,18 @@ def system_in(case: dict[str, Any]) -> SwitchedSystem:
         other = {key: value for key, value in said.items() if key != "modes"}
         system = _changed(SwitchedSystem, systems.family(*matrices), other)
     else:
-        name, *arguments = said if isinstance(said, list) else [said]
-        times = {time.value: time for time in Time}
-        system = getattr(systems, name)(*(times.get(item, item) for item in arguments))
+        system = _built(said if isinstance(said, list) else [said])
     return _changed(SwitchedSystem, system, case.get("with", {}))
+
+
+def _built(said: list[Any]) -> SwitchedSystem:
+    """Return what a function of `systems.py` makes of arguments; of lists, what is made first."""
+    name, *arguments = said
+    times = {time.value: time for time in Time}
+    made_first = (
+        _built(item) if isinstance(item, list) else times.get(item, item) for item in arguments
+    )
+    return getattr(systems, name)(*made_first)
 
 
 def evidence_in(case: dict[str, Any]) -> AbstractEvidence:

@@ -5,13 +5,13 @@ from fractions import Fraction
 
 import pytest
 
-from nrs_design.proof.evidence import BlockTriangular, NoCommonQuadratic, read_evidence
+from nrs_design.proof.evidence import BlockTriangular, read_evidence
 from nrs_design.proof.evidence.block_triangular import diagonal_block
 from nrs_design.proof.evidence.growing_sequence import staying
 from nrs_design.proof.mode import Time
-from nrs_design.proof.switching import Switching
 from tests.proof.graphs import common_polynomial, common_quadratic, mode_quadratic
-from tests.proof.systems import family, genuine, resets_between
+from tests.proof.rows import cases, check
+from tests.proof.systems import family, genuine
 from tests.support import ends_soon
 
 ONE = common_quadratic(((1,),), 0, Fraction(1, 2))
@@ -23,97 +23,13 @@ def test_the_rate_is_that_of_the_slowest_block():
     evidence = BlockTriangular(((0,), (1,)), ((0, ONE), (1, slow)))
     assert evidence.proved_rate(CASCADE) == Fraction(1, 8)
     steps = family([["1/8", 5], [0, "1/4"]], time=Time.DISCRETE)
-    assert BlockTriangular(((0,), (1,)), ((0, ONE), (1, slow))).find_fault(steps) is not None
     fast = BlockTriangular(((0,), (1,)), ((0, replace(ONE, rate=Fraction(1, 4))), (1, ONE)))
-    assert fast.find_fault(steps) is None
     assert fast.proved_rate(steps) == Fraction(1, 2)
 
 
-def test_the_order_of_blocks_is_the_direction_of_driving():
-    # State 1 is driven by state 2: block {1} comes first.
-    reversed_order = BlockTriangular(((1,), (0,)), ((0, ONE), (1, ONE)))
-    assert "triangular" in str(reversed_order.find_fault(CASCADE))
-
-
-def test_both_directions_of_driving_are_one_block():
-    # Each mode is triangular, but in different orders; their average is not stable.
-    system = family([[-1, 10], [0, -1]], [[-1, 0], [10, -1]])
-    for blocks in (((0,), (1,)), ((1,), (0,))):
-        evidence = BlockTriangular(blocks, ((0, ONE), (1, ONE)))
-        assert evidence.find_fault(system) is not None
-
-
-@pytest.mark.parametrize(
-    "blocks", [((0,),), ((0, 1), (1,)), ((0,), (1,), ()), ((0,), (2,)), ((0, 0), (1,)), ()]
-)
-def test_blocks_partition_the_states(blocks):
-    parts = tuple((k, ONE) for k in range(len(blocks)))
-    assert BlockTriangular(blocks, parts).find_fault(CASCADE) is not None
-
-
-@pytest.mark.parametrize("indices", [(0,), (1,), (0, 0), (1, 0), (0, 1, 1), (0, 2), (0, -1)])
-def test_stability_needs_every_block_once(indices):
-    parts = tuple((index, ONE) for index in indices)
-    assert BlockTriangular(((0,), (1,)), parts).find_fault(CASCADE) is not None
-
-
-def test_one_unstable_block_suffices():
-    system = family([[-1, 5, 1], [0, 0, 1], [0, -1, 0]])
-    evidence = BlockTriangular(((0,), (1, 2)), ((1, staying("m0")),))
-    assert evidence.find_fault(system) is None
-
-
-def test_resets_are_not_covered_whatever_the_parts_cover():
-    """A reset may couple blocks, and a part is only told of its own states."""
-    rows = [[1, 0], [0, -1]]
-    resets = Switching(resets=resets_between(("m0", "m1", [[1, 0], [0, 1]])))
-    system = family(rows, rows)
-    evidence = BlockTriangular(((0,), (1,)), ((0, staying("m0")),))
-    assert evidence.find_fault(system) is None
-    fault = evidence.find_fault(replace(system, switching=resets))
-    assert fault == "evidence of kind block-triangular does not cover this kind of switching"
-
-
-def test_every_part_must_fit_the_switching():
-    ends = replace(CASCADE, switching=Switching(fixed_ends=(("m0", "m1"),)))
-    each = mode_quadratic((("m0", ((1,),)), ("m1", ((1,),))), 0, Fraction(1, 2))
-    for parts in (((0, ONE), (1, each)), ((0, each), (1, ONE))):
-        evidence = BlockTriangular(((0,), (1,)), parts)
-        assert evidence.find_fault(CASCADE) is None
-        assert "does not cover this kind of switching" in evidence.find_fault(ends)
-    assert BlockTriangular(((0,), (1,)), ((0, ONE), (1, ONE))).find_fault(ends) is None
-
-
-def test_one_unstable_block_is_named_and_no_more():
-    system = family([[1, 0], [0, 1]])
-    unstable = staying("m0")
-    blocks, short = ((0,), (1,)), "there is not the evidence for the blocks that is needed"
-    for parts, fault in (
-        (((0, unstable),), None),
-        (((1, unstable),), None),
-        (((0, unstable), (1, unstable)), short),
-        (((2, unstable),), "a part is of no block"),
-        (((-1, unstable),), "a part is of no block"),
-        ((), "the parts do not show one and the same"),
-    ):
-        assert BlockTriangular(blocks, parts).find_fault(system) == fault
-    none = NoCommonQuadratic((("m0", ((1,),)),))
-    mixed = BlockTriangular(blocks, ((0, unstable), (1, none)))
-    assert mixed.find_fault(system) == "the parts do not show one and the same"
-
-
-def test_what_fails_in_a_block_is_said_of_it():
-    blocks, wide = ((0,), (1,)), common_quadratic(((1, 0), (0, 1)), 0, Fraction(1, 2))
-    for k in (0, 1):
-        parts = [ONE, ONE]
-        parts[k] = wide
-        evidence = BlockTriangular(blocks, tuple(enumerate(parts)))
-        size = "a form at modes: Q is not a 1 x 1 matrix"
-        assert evidence.find_fault(CASCADE) == f"block {k + 1}: {size}"
-        parts[k] = common_quadratic(((-1,),), 0, Fraction(1, 2))
-        evidence = BlockTriangular(blocks, tuple(enumerate(parts)))
-        failure = "a form at modes is not symmetric and positive definite"
-        assert evidence.find_fault(CASCADE) == f"block {k + 1}: {failure}"
+@pytest.mark.parametrize("case", cases(__file__))
+def test_what_a_row_says(case):
+    check(case)
 
 
 def test_the_claim_names_blocks_and_states():

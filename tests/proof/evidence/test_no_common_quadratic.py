@@ -9,37 +9,13 @@ from nrs_design.proof.contact import Contact
 from nrs_design.proof.evidence import NoCommonQuadratic
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
-from nrs_design.proof.switching import Switching
-from tests.proof.systems import ando_shih, dayawansa_martin, family, genuine
-
-IDENTITY = ((1, 0), (0, 1))
+from tests.proof.rows import cases, check
+from tests.proof.systems import family, genuine, matrix
 
 
-@pytest.mark.parametrize("example", ["no-common-quadratic", "no-common-quadratic, discrete"])
-def test_it_is_never_shown_for_a_family_that_has_one(example):
-    _, evidence = genuine(example)
-    for easy in (dayawansa_martin(5), ando_shih("0.7")):
-        assert evidence.find_fault(easy) is not None
-
-
-def test_a_hurwitz_mode_alone_has_a_function_whatever_the_factors():
-    system = family([[-1, 100], [0, -1]])
-    for L in (IDENTITY, ((1,), (0,)), ((3, -5), (2, 7)), ((0,), (0,))):
-        assert NoCommonQuadratic((("m0", L),)).find_fault(system) is not None
-
-
-def test_multipliers_cannot_be_negative():
-    # X = -I would "show" it for -I; a factor L makes X = L L' whatever its sign.
-    system = family([[-1, 0], [0, -1]])
-    assert NoCommonQuadratic((("m0", ((-1, 0), (0, -1))),)).find_fault(system) is not None
-
-
-def test_it_says_nothing_about_stability_and_holds_under_any_switching():
-    system, evidence = genuine("no-common-quadratic")
-    for switching in (Switching(transitions=()), Switching(fixed_ends=(("m0", "m1"),))):
-        assert evidence.find_fault(replace(system, switching=switching)) is None
-    assert evidence.proved_rate(system) is None
-    assert str(evidence.shows) == "no common quadratic function"
+@pytest.mark.parametrize("case", cases(__file__))
+def test_what_a_row_says(case):
+    check(case)
 
 
 def test_denominators_without_a_common_one_are_refused():
@@ -51,11 +27,11 @@ def test_denominators_without_a_common_one_are_refused():
     assert replace(evidence, factors=evidence.factors[:1]).find_fault(system) is None
 
 
-def test_a_statement_about_matrices_takes_no_contact_for_granted():
+def test_it_says_nothing_of_rates_and_takes_no_contact_for_granted():
     system, evidence = genuine("no-common-quadratic")
-    free = RationalMatrix.from_rows([[-1, 0], [1, 0]])
-    losable = replace(system, contact=Contact((Mode("f", free),)))
-    assert evidence.find_fault(losable) is None
+    assert evidence.proved_rate(system) is None
+    assert str(evidence.shows) == "no common quadratic function"
+    losable = replace(system, contact=Contact((Mode("f", matrix([[-1, 0], [1, 0]])),)))
     assert evidence.claim(losable) == evidence.claim(system)
 
 
@@ -84,24 +60,3 @@ def test_the_sum_of_two_states_by_hand(time):
         assert form == [[4 * 5, 4 * 8], [4 * 8, 4 * 12]]
     else:
         assert form == [[25 - 4, 30 - 8], [30 - 8, 36 - 16]]
-
-
-def test_every_factor_is_of_a_mode_and_has_rows_of_one_length():
-    system = family([[1, 0], [0, 1]], [[1, 0], [0, 1]])
-    good = ("m0", IDENTITY)
-    assert NoCommonQuadratic((good,)).find_fault(system) is None
-    assert NoCommonQuadratic((good, ("m1", ((1,), (0,))))).find_fault(system) is None
-    for name in ("m2", "m0"):
-        factors = (good, (name, IDENTITY))
-        assert NoCommonQuadratic(factors).find_fault(system) == "the factors are not those of modes"
-    for L in (((1, 0),), ((1, 0), (0, 1), (0, 0)), ((1, 0), (0,))):
-        fault = NoCommonQuadratic((good, ("m1", L))).find_fault(system)
-        assert fault == "a factor does not have 2 rows of one length"
-    for factors in ((), (("m0", ((), ())),)):
-        assert NoCommonQuadratic(factors).find_fault(system) is not None
-
-
-def test_the_claim_is_that_of_the_time():
-    evidence = NoCommonQuadratic(())
-    assert "satisfies A'Q + QA < 0 for all modes" in evidence.claim(family([[1]]))
-    assert "satisfies A'QA < Q for all modes" in evidence.claim(family([[1]], time=Time.DISCRETE))

@@ -2,11 +2,12 @@
 
 A group or a case names an `example` of `systems.py`, or a `system` and `evidence`. A system is a
 function of that file, in a list with its arguments, or fields with the `modes`; evidence is its
-kind and its fields. A matrix stands as its rows, and what else has fields as their list. `with`
-changes fields of the system, `but` fields of the evidence, by their dotted paths. `says` has words
-of the fault, or null if there is none; of the misfit, if the case `asks` for that. `true` tells
-whether it is so by the definition, `fits` whether it covers the switching, and `claim` or `claims`
-what it says, or words of it.
+kind and its fields. A matrix stands as its rows, or as `rows` `over` a denominator, and what else
+has fields as their list. `with` changes fields of the system, `but` fields of the evidence, by
+their dotted paths. `says` has words of the fault, or null if there is none; of the misfit, if the
+case `asks` for that. `true` tells whether it is so by the definition, `fits` whether it covers the
+switching, and `claim` or `claims` what it says, or words of it; `contradiction` is what is odd of a
+system alone.
 """
 
 from dataclasses import fields, is_dataclass, replace
@@ -15,21 +16,41 @@ from pathlib import Path
 from types import NoneType, UnionType
 from typing import Any, get_args, get_origin, get_type_hints
 
+import pytest
+
+from nrs_design.proof.contradiction import find_contradiction
 from nrs_design.proof.evidence import AbstractEvidence, class_of
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
 from tests.proof import systems
 from tests.proof.truth import holds
-from tests.tables import cases_of
+from tests.tables import table
+
+CHANGES = ("with", "but")
 
 
 def cases(file: str) -> list[Any]:
-    return cases_of(Path(file).with_suffix(".yaml"), "cases")
+    """Return the cases of the groups of a table; what both change is changed by both."""
+    path = Path(file).with_suffix(".yaml")
+    return [
+        pytest.param(
+            {**group, **case, **{key: group.get(key, {}) | case.get(key, {}) for key in CHANGES}},
+            id=f"{first}-{number}",
+        )
+        for first, group in enumerate(table(path))
+        for number, case in enumerate(group["cases"])
+    ]
 
 
 def check(case: dict[str, Any]) -> None:
-    system, evidence = system_in(case), evidence_in(case)
+    system = system_in(case)
+    if "contradiction" in case:
+        found, words = find_contradiction(system), case["contradiction"]
+        assert (found is None) is (words is None), found
+        assert found is None or words in found, found
+        return
+    evidence = evidence_in(case)
     if "says" in case:
         found = getattr(evidence, f"find_{case.get('asks', 'fault')}")(system)
         assert (found is None) is (case["says"] is None), found
@@ -54,7 +75,7 @@ def system_in(case: dict[str, Any]) -> SwitchedSystem:
         system = _changed(SwitchedSystem, systems.family(*matrices), other)
     else:
         system = _built(said if isinstance(said, list) else [said])
-    return _changed(SwitchedSystem, system, case.get("with", {}))
+    return _changed(SwitchedSystem, system, case["with"])
 
 
 def _built(said: list[Any]) -> SwitchedSystem:
@@ -70,7 +91,7 @@ def _built(said: list[Any]) -> SwitchedSystem:
 def evidence_in(case: dict[str, Any]) -> AbstractEvidence:
     said = case.get("evidence")
     evidence = systems.genuine(case["example"])[1] if said is None else made(AbstractEvidence, said)
-    return _changed(type(evidence), evidence, case.get("but", {}))
+    return _changed(type(evidence), evidence, case["but"])
 
 
 def made(hint: Any, value: Any) -> Any:
@@ -84,7 +105,9 @@ def made(hint: Any, value: Any) -> Any:
         kind = class_of(named.pop("kind"))
         return kind(**{name: made(part, named[name]) for name, part in _parts(kind, named)})
     if hint is RationalMatrix:
-        return systems.matrix(value)
+        if not isinstance(value, dict):
+            return systems.matrix(value)
+        return RationalMatrix(tuple(map(tuple, value["rows"])), value["over"])
     if hint is Time:
         return Time(value)
     if get_origin(hint) is tuple and isinstance(value, list):
@@ -111,7 +134,7 @@ def _put(hint: Any, thing: Any, path: str, value: Any) -> Any:
         (hint,) = (part for part in get_args(hint) if part is not NoneType)
     name, _, rest = path.partition(".")
     if isinstance(thing, tuple) and not hasattr(thing, "_fields"):
-        k = int(name)
+        k = int(name) % len(thing)
         inner = get_args(hint)[0 if get_args(hint)[-1] is ... else k]
         return (*thing[:k], _put(inner, thing[k], rest, value), *thing[k + 1 :])
     changed = {name: _put(get_type_hints(type(thing))[name], getattr(thing, name), rest, value)}

@@ -28,6 +28,7 @@ from nrs_design.proof.exact import (
 )
 from tests.proof.truth import times, transpose
 from tests.support import is_definite_by_ldl, is_stable_by_lyapunov, matrix
+from tests.tables import rows
 
 SMALL = st.integers(-4, 4)
 WIDE = st.integers(-(10**30), 10**30)
@@ -81,22 +82,8 @@ class TestPositiveDefinite:
         scaled[-1][-1] += 1
         assert is_positive_definite(scaled)
 
-    @pytest.mark.parametrize(
-        ("M", "definite"),
-        [
-            ([[1]], True),
-            ([[0]], False),
-            ([[-1]], False),
-            ([[2, -1, 0], [-1, 2, -1], [0, -1, 2]], True),  # second difference (Strang)
-            ([[2, -1, -1], [-1, 2, -1], [-1, -1, 2]], False),  # its periodic form is singular
-            ([[0, 1], [1, 0]], False),
-            ([[1, 2], [2, 1]], False),
-            ([[-1, 0], [0, -1]], False),  # both leading minors: -1, +1
-            ([[1, 1, 0], [1, 1, 0], [0, 0, 1]], False),  # zero pivot in the middle
-            ([[36, 48], [48, 64]], False),  # decimal-singular, 0.36 * 0.64 = 0.48^2
-        ],
-    )
-    def test_known(self, M, definite):
+    @pytest.mark.parametrize(("M", "definite"), rows(__file__, "test_known_definite"))
+    def test_known_definite(self, M, definite):
         assert is_positive_definite(M) is definite
 
     @given(squares(st.one_of(SMALL, WIDE)))
@@ -156,28 +143,14 @@ class TestLimits:
 
 
 class TestPositiveSemidefinite:
-    @pytest.mark.parametrize(
-        ("M", "semidefinite"),
-        [
-            ([[0]], True),
-            ([[1]], True),
-            ([[-1]], False),
-            ([[0, 0], [0, 0]], True),
-            ([[0, 1], [1, 0]], False),
-            ([[1, 1], [1, 1]], True),
-            ([[1, 2], [2, 1]], False),
-            ([[1, 2], [2, 4]], True),
-            ([[1, 2], [2, 3]], False),
-            ([[-1, 0], [0, 0]], False),
-            ([[2, 0], [0, -1]], False),
-            ([[2, -1, -1], [-1, 2, -1], [-1, -1, 2]], True),  # periodic second difference
-            ([[2, -1, -1], [-1, 2, -1], [-1, -1, 1]], False),
-            ([[1, 0, 0], [0, 0, 1], [0, 1, 0]], False),
-            ([[0, 0, 0], [0, 4, 6], [0, 6, 9]], True),
-        ],
-    )
-    def test_known(self, M, semidefinite):
+    @pytest.mark.parametrize(("M", "semidefinite"), rows(__file__, "test_known_semidefinite"))
+    def test_known_semidefinite(self, M, semidefinite):
         assert is_positive_semidefinite(M) is semidefinite
+
+    @pytest.mark.parametrize("M", [[], [[1, 2], [3, 1]], [[1, 0]]])
+    def test_not_symmetric_is_an_error(self, M):
+        with pytest.raises(ValueError, match=r"symmetric|zip"):
+            is_positive_semidefinite(M)
 
     @given(squares(SMALL, st.integers(1, 4)))
     def test_all_principal_minors(self, M):
@@ -236,68 +209,12 @@ class TestCharacteristicPolynomial:
 
 
 class TestHurwitz:
-    @pytest.mark.parametrize(
-        ("coefficients", "stable"),
-        [
-            ([1, 2, 3, 4, 5], False),  # Routh's textbook case: two roots in the right half-plane
-            ([1, 10, 35, 50, 24], True),  # (s+1)(s+2)(s+3)(s+4)
-            ([1, 1, 2, 24], False),  # Nise, example 6.1's sign changes
-            ([1, 2, 3, 6, 5, 3], False),  # zero in the first column (epsilon method)
-            ([1, 7, 6, 42, 8, 56], False),  # a whole row of zeros: roots on the axis
-            ([1, 1, 1, 1], False),  # (s+1)(s^2+1)
-            ([1, 0, 1], False),
-            ([1, 0, 2, 0, 1], False),  # (s^2+1)^2
-            ([1, 2, 1], True),
-            ([1, 1], True),
-            ([1, 0], False),
-            ([1, -1], False),
-            ([7], True),
-            ([-7], True),
-            ([-1, -6, -11, -6], True),  # a negative leading coefficient
-            ([1, 6, 11, 0], False),
-            ([1, 6, 0, 6], False),
-            ([1, -1, -2, 1], False),  # only the head of a row of two is negative
-            ([1, 6, 11, 66], False),  # a pair exactly on the axis, s^2 + 11
-            ([1, 6, 11, 65], True),
-            ([1, 6, 11, 67], False),
-        ],
-    )
+    @pytest.mark.parametrize(("coefficients", "stable"), rows(__file__, "test_known_polynomials"))
     def test_known_polynomials(self, coefficients, stable):
         assert is_hurwitz_polynomial(coefficients) is stable
 
-    @pytest.mark.parametrize(
-        ("A", "stable"),
-        [
-            ([["-0.36", "-0.48"], ["-0.48", "-0.64"]], False),  # an eigenvalue exactly 0
-            ([["-0.36", "-0.48"], ["-0.48", "-0.6400000000000001"]], True),
-            ([[0, 1], [-1, 0]], False),  # rotation, +-j
-            ([["-1e-100", 1], [-1, "-1e-100"]], True),
-            ([["1e-100", 1], [-1, "1e-100"]], False),
-            ([[0]], False),
-            ([[0, 0], [0, 0]], False),
-            ([[0, 1], [0, 0]], False),  # double integrator
-            # Thesis 6.3.2.2 as printed (+1618.80) and with the sign of its own motion loop.
-            (
-                [
-                    [0, 1, 0, 0],
-                    ["1618.80", "-56.89", -1, 0],
-                    [0, 0, -215, 100],
-                    ["70183.13", "1231.97", 0, 0],
-                ],
-                False,
-            ),
-            (
-                [
-                    [0, 1, 0, 0],
-                    ["-1618.80", "-56.89", -1, 0],
-                    [0, 0, -215, 100],
-                    ["70183.13", "1231.97", 0, 0],
-                ],
-                True,
-            ),
-        ],
-    )
-    def test_known_matrices(self, A, stable):
+    @pytest.mark.parametrize(("A", "stable"), rows(__file__, "test_known_hurwitz_matrices"))
+    def test_known_hurwitz_matrices(self, A, stable):
         assert is_hurwitz(matrix(A).numerators) is stable
 
     @settings(deadline=None)
@@ -317,29 +234,8 @@ class TestHurwitz:
 
 
 class TestSchur:
-    @pytest.mark.parametrize(
-        ("A", "stable"),
-        [
-            ([[1]], False),
-            ([[-1]], False),
-            ([[0]], True),
-            ([["0.999999999999999999999"]], True),
-            ([["-0.999999999999999999999"]], True),
-            ([["1.000000000000000000001"]], False),
-            ([["-1.000000000000000000001"]], False),
-            ([[0, 1], [-1, 0]], False),  # +-j
-            ([["0.6", "0.8"], ["-0.8", "0.6"]], False),  # 0.6 +- 0.8j, exactly on the circle
-            ([["0.6", "0.8"], ["-0.8", "0.5999999999999999999"]], True),
-            ([["0.6", "0.8"], ["-0.8", "0.6000000000000000001"]], False),
-            ([["0.5", "1e100"], [0, "-0.5"]], True),
-            ([[0, 1], [0, 0]], True),  # nilpotent
-            ([[0, 1], [1, 0]], False),  # +1 and -1
-            ([[2, 0], [0, "0.5"]], False),
-            ([[0, 0, 1], [1, 0, 0], [0, 1, 0]], False),  # third roots of unity
-            ([["0.7", 0], ["0.7", 0]], True),  # Ando and Shih 1998, scaled
-        ],
-    )
-    def test_known_matrices(self, A, stable):
+    @pytest.mark.parametrize(("A", "stable"), rows(__file__, "test_known_schur_matrices"))
+    def test_known_schur_matrices(self, A, stable):
         M = matrix(A)
         assert is_schur(M.numerators, M.denominator) is stable
 
@@ -370,12 +266,6 @@ def test_large_matrices(n):
     assert is_schur(T, 4)
     T[0][0] += 2  # then the largest eigenvalue is positive
     assert not is_hurwitz(T)
-
-
-@pytest.mark.parametrize("M", [[], [[1, 2], [3, 1]], [[1, 0]]])
-def test_semidefinite_needs_a_symmetric_matrix(M):
-    with pytest.raises(ValueError, match=r"symmetric|zip"):
-        is_positive_semidefinite(M)
 
 
 def test_multiples():

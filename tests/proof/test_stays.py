@@ -194,6 +194,10 @@ def test_pieces_are_limited(monkeypatch):
     for pieces in (0, -1, 4097):
         assert odd(system, ("m0",), pieces) == PIECES
     assert odd(system, ("m0",), 4096) is None
+    for count, fault in ((64, None), (65, PIECES)):
+        ways = tuple(("m0", f"m{k}") for k in range(1, count + 1))
+        many = family(*[[[-1]]] * 66, switching=left_within((1, 2), transitions=ways))
+        assert odd(many, ("m0",), 4096) == fault
     monkeypatch.setattr(module, "MAX_ENCLOSED", 20)
     assert odd(system, ("m0", "m1"), 5) is None
     monkeypatch.setattr(module, "MAX_ENCLOSED", 19)

@@ -228,6 +228,14 @@ def test_the_most_switches(monkeypatch, switching, count):
             assert odd(system) == SWITCHES
 
 
+@pytest.mark.parametrize(("beyond", "faults"), [(0, (None, None)), (1, (SWITCHES, LONG))])
+def test_a_million_switches_and_a_million_bits(beyond, faults):
+    rules = Switching(transitions=(("m0", "m1"),) * (2**20 + beyond))
+    assert odd(family([[-1]], [[-1]], switching=rules)) == faults[0]
+    long = family([[1]], [[1]], **IN_STEPS, switching=Switching(Fraction(4000)))
+    assert odd(long, bits=250 + beyond) == faults[1]
+
+
 @pytest.mark.parametrize(
     ("system", "limit", "value"),
     [

@@ -1,6 +1,7 @@
 """What a statement takes for granted, and what its words cover."""
 
 from fractions import Fraction
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -9,12 +10,24 @@ from nrs_design.loop.assemble import assemble
 from nrs_design.models.contact import HuntCrossley
 from nrs_design.models.motion_loop import realize
 from nrs_design.pipeline.runs import run_certification, run_design
-from nrs_design.spec import LoadedSpec, parse_spec, read_spec
+from nrs_design.spec import parse_spec, read_spec
 from nrs_design.spec.build_plant import build_plant
+from tests.loop.support import assembled
 from tests.support import ROBOT, words_of
+from tests.tables import cases_of, edited, spec_text
 
 CONCHA = ROBOT / "concha.nrs.yaml"
 LOW, HIGH, ABOUT = 0.1, 0.3, 0.2
+
+
+@pytest.mark.parametrize("case", cases_of(Path(__file__).with_suffix(".yaml"), "base"))
+def test_what_is_taken_for_granted(case):
+    text = edited(spec_text(case["base"]), case.get("edit", []))
+    system = assembled(text, more=f"\n{case.get('more', '')}\n")
+    said = " ".join(words_of(system))
+    assert [words for words in case["says"] if words not in said] == []
+    assert [words for words in case.get("never", []) if words in said] == []
+    assert "lost" not in case or (system.contact is not None) is case["lost"]
 
 
 @pytest.fixture(scope="module")
@@ -30,15 +43,11 @@ def test_what_the_range_of_a_motor_holds_is_assumed():
     text = text.replace("gain: 4.8417e-4 rad/s/rpm", f"{gain}\n  range_covers: prediction")
     said = "The range of the actuator was identified to hold the next record with 95 % probability"
     known = f"range_covers: prediction\n  range_id: {parse_spec(text).actuator.values_id()}"
-    for written, end in (
-        (text, ", unless it has been changed by hand since."),
-        (text.replace("range_covers: prediction", known), "."),
+    for edit, end in (
+        ((), ", unless it has been changed by hand since."),
+        ((("range_covers: prediction", known),), "."),
     ):
-        designed = run_design(
-            LoadedSpec(path=ROBOT, sha256="", text=written, spec=parse_spec(written))
-        )
-        system = assemble(designed.spec, designed.plant, designed.design)
-        assert said + end in words_of(system)
+        assert said + end in words_of(assembled(text, *edit))
 
 
 def hunt_crossley(rng):

@@ -17,7 +17,6 @@ from nrs_design.search.certify import Limits, certify
 from nrs_design.spec import parse_spec
 from nrs_design.spec.misses import automaton_of
 from tests.loop.support import sampled
-from tests.support import words_of
 
 TEXT = """\
 kind: switched-system
@@ -116,9 +115,6 @@ def test_one_miss_after_another_is_proved():
     assert done.evidence.covers_rounding
     claim = done.evidence.claim(system)
     assert "that the rule for missed deadlines allows" in claim
-    text = " ".join(words_of(system))
-    assert "Of any 2 periods of the law in a row, at most 1 miss their deadline" in text
-    assert "Any switching signal is possible" not in text
 
 
 def test_many_in_a_row_are_refuted_by_a_word_that_the_rule_allows():

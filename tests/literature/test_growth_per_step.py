@@ -67,7 +67,7 @@ def test_both_ends_meet_at_the_published_growth(name):
 
 
 # Beside others of their kind, each takes as long as all of those together.
-DEAR = ("G96 long", "GP13 0.9", "M20 3.1", "M20 thesis")
+DEAR = ("AJPR14", "G96 long", "GP13 0.9", "M20 3.1", "M20 thesis")
 STUDIED = [pytest.param(n, marks=[pytest.mark.nightly] if n in DEAR else []) for n in KNOWN]
 
 

@@ -164,9 +164,11 @@ def build_law(
         *(operation for part in reversed(parts) for operation in part.after),
     )
     force = {FORCE: _lagged(frame.order)}
+    # A robot that takes velocities is asked for its position by a spring alone.
+    takes_angle = frame.takes is not Takes.VELOCITY or any(o.left == "angle" for o in operations)
     return StepLaw(
         tuple(laws),
-        (*_measured(limits)[frame.takes is Takes.VELOCITY :], *map(limits.within, inputs.values())),
+        (*_measured(limits)[not takes_angle :], *map(limits.within, inputs.values())),
         (
             *map(limits.within, places),
             *(() if frame.streams else (error,)),
@@ -201,10 +203,12 @@ def _command(frame: StepFrame, placed: str, *, takes_force: bool) -> str:
 def _streamed(part: StepPart) -> StepPart:
     """Return the part of an admittance that moves no reference: its velocity is the command.
 
-    It is that of after the sample, where it is a state.
+    It is that of after the sample, where it is a state. A spring draws the measured position.
     """
     newest = part.following.get("velocity", "velocity")
+    sprung = "commanded" in part.following
     changes: dict[str, dict[str, Any]] = {
+        "offset": {"left": "angle"},
         "relative": {"right": newest},
         # What is used once counts as rounded with the command.
         "velocity": {"rounding": "term", "symbol": ""},
@@ -217,9 +221,9 @@ def _streamed(part: StepPart) -> StepPart:
     return replace(
         part,
         place=None,
-        gains=tuple(gain for gain in part.gains if gain.name != "T"),
+        gains=tuple(gain for gain in part.gains if sprung or gain.name != "T"),
         after=tuple(after),
-        following={name: made for name, made in part.following.items() if name == "velocity"},
+        following={name: made for name, made in part.following.items() if name != "reference"},
     )
 
 

@@ -17,6 +17,7 @@ from nrs_design.controllers.controller_design import Controller, ControllerDesig
 from nrs_design.controllers.sensor import LowPass
 from nrs_design.design.transfer import controllable_form
 from nrs_design.models.contact.law import AbstractLinearLaw
+from nrs_design.models.drive import Takes
 from nrs_design.models.linear_form import coordinates, zero
 from nrs_design.models.plant import Plant
 
@@ -61,7 +62,10 @@ def linear_parts(plant: Plant, design: ControllerDesign) -> LinearParts:
     return LinearParts(
         actuator,
         motion,
-        tuple(_controller_part(item) for item in design.controllers),
+        tuple(
+            _controller_part(item, measured=design.takes is Takes.VELOCITY)
+            for item in design.controllers
+        ),
         None if low_pass is None else _filter_part(low_pass),
         tuple(_contacts(plant, design)),
     )
@@ -91,13 +95,14 @@ def _plant_parts(plant: Plant, design: ControllerDesign) -> tuple[LinearPart, Li
     )
 
 
-def _controller_part(controller: Controller) -> LinearPart:
+def _controller_part(controller: Controller, *, measured: bool) -> LinearPart:
     """Return a law, from the force that it gets to what it adds to the command.
 
-    Where it has a spring, the offset q that the spring acts on is a state.
+    Where it has a spring, the offset q that the spring acts on is a state; where that is the
+    `measured` position, the force of the spring is a part of its input.
     """
     law = controller.law
-    own, spring = len(law.states), law.spring
+    own, spring = len(law.states), 0 if measured else law.spring
     size = own + (spring != 0) + 1
     forms = coordinates(size)
     force = list(forms[-1])

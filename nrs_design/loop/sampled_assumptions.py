@@ -75,8 +75,11 @@ def assume_sampled_loop(
         rest="contact" if loss is Loss.SURFACE else "always",
     )
     if any(c.law.spring for c in design.controllers):
-        yield assume("spring.shared" if program.idle is None else "spring.idle")
-        yield assume("spring.sample")
+        if program.step.takes is Takes.VELOCITY:
+            yield assume("spring.measured")
+        else:
+            yield assume("spring.shared" if program.idle is None else "spring.idle")
+            yield assume("spring.sample")
     yield from _assume_positions(program, design, reset=reset)
     yield UNCOUPLED
     yield from assume_contacts(design)

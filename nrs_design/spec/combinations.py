@@ -193,9 +193,14 @@ COMBINATIONS: tuple[Row[Spec], ...] = (
     *_beside(
         VELOCITIES,
         OTHERS,
-        SPRUNG,
         IDLE,
         because="a robot that takes velocities keeps no position reference",
+    ),
+    not_together(
+        VELOCITIES,
+        SPRUNG,
+        CONTINUOUS,
+        because="there a spring draws to the commanded position, which no sample holds",
     ),
     *_beside(STREAMED, TWO_PERIODS, SATURATED, because="its motion loop is not ours"),
     not_together(

@@ -171,7 +171,8 @@ class ImpedanceControllerSpec(AbstractControllerSpec):
     )
     Kt: field.SpringGain | None = optional(
         "admittance spring in N*m/rad, which draws the robot back to its position "
-        "reference: one quantity; > 0; default: no spring; with one, contact "
+        "reference, a robot that takes velocities to where the command alone leads: one "
+        "quantity; > 0; default: no spring; with one, contact "
         "is taken for kept unless the spec says `contact: losable`"
     )
     weights: CostWeights = Field(

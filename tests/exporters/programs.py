@@ -48,7 +48,9 @@ def frame(low_pass=None, limits=None, takes=None) -> StepFrame:
     return StepFrame(MOTION.Kp, MOTION.over(PERIOD), low_pass, limits or StepLimits(), takes)
 
 
-def law(*, Mt="0.01", Kt=("0", "0"), order=0, method="exact", limits=None) -> StepLaw:
+def law(
+    *, Mt="0.01", Kt=("0", "0"), order=0, method="exact", limits=None, takes=None
+) -> StepLaw:
     """Build two admittances of the thesis robot above its motion controller."""
     laws = {
         name: Admittance(*(to_float32(Fraction(gain)) for gain in (Mt, Bt, spring))).discretize(
@@ -59,7 +61,7 @@ def law(*, Mt="0.01", Kt=("0", "0"), order=0, method="exact", limits=None) -> St
         )
     }
     low_pass = LowPass(order, Fraction(200)).discretize(PERIOD) if order else None
-    return build_law(frame(low_pass, limits), laws)
+    return build_law(frame(low_pass, limits, takes), laws)
 
 
 PLACED = {"position": PositionControl(), "force": ProportionalForce(to_float32(Fraction("0.02")))}
@@ -89,6 +91,7 @@ LAWS = {
     "mixed, spring": mixture(LAG, insertion=SPRUNG),
     "positions": mixture(takes=Takes.POSITION),
     "positions, mixed": mixture(takes=Takes.POSITION, insertion=SPRUNG),
+    "velocities, spring": law(Kt=("0.5", "0"), order=1, takes=Takes.VELOCITY),
     "limits": law(limits=StepLimits(Fraction(1, 2), to_float32(Fraction("0.13")), Fraction(4000))),
 }
 

@@ -79,6 +79,8 @@ def _law(loop, before, force, none, active):
         # Beside force controllers the reference is a state, and alone the error of motion.
         e = before["reference"] - before["delta"] if loop["decay"] else before["e"]
         force = force + single(loop["spring"]) * (e + before["delta"])
+    else:
+        force = force + single(loop["spring"]) * before["delta"]
     a = np.exp(-Bt * outer / Mt) if Mt else 0.0
     vm = single(a) * before.get("vm", none) + single((1 - a) / Bt) * force
     after["vm"] = vm

@@ -127,7 +127,7 @@ def some_loop(rng):
     moved = drive in ("actuator", "position")
     load, force = size(0.01, 1) * (motor and some(0.5)), size(0.001, 0.1) * (moved and some(0.3))
     decay = size(1, 100) if force and some(0.5) else 0.0
-    spring = size(1, 100) * (moved and some(0.3))
+    spring = size(1, 100) * (not torque and some(0.3))
     turns = str(rng.choice(OTHER_TURNS)) if motor and not force and some(0.3) else ""
     if turns:
         misses = ""
@@ -214,12 +214,11 @@ def assert_between(loop, system, rng):
 def plain(drive):
     """Return a loop without ranges, every number of which counts."""
     law = {"stiffness": 20.0, "damping": 2.0, "R": 0.7}
-    motor, placed = drive.split(",")[0] in ("actuator", "loaded", "mixed"), "position" in drive
-    mixed = "mixed" in drive
+    motor, mixed = drive.split(",")[0] in ("actuator", "loaded", "mixed"), "mixed" in drive
     if drive != "torque":
         law = {"Mt": 0.01, "Bt": 2.0, "Kd": 2060.0, "zero": 56.9706}
     return {
-        "drive": "actuator" if motor else "position" if placed else drive, "law": law,
+        "drive": "actuator" if motor else drive.partition(",")[0], "law": law,
         "period": 0.002, "jitter": 0.0, "wait": (0.0007, 0.0007),
         "delay": (1, 1), "lags": int(drive != "torque"), "cutoff": 60.0, "misses": "",
         "tau": (0.01, 0.01), "gain": (4.8e-4, 4.8e-4) if motor else (1.0, 1.0),
@@ -227,7 +226,7 @@ def plain(drive):
         "losable": False, "load": 0.3 if "loaded" in drive else 0.0,
         "creep": ((30.0, 30.0), (3.0, 3.0)) if "creeping" in drive else (),
         "force": 0.02 * mixed, "decay": 20.0 * mixed, "integral": 0.5 * ("integral" in drive),
-        "spring": 30.0 * (drive in ("actuator", "position, sprung")), "dead": 0.0,
+        "spring": 30.0 * (drive == "actuator" or "sprung" in drive), "dead": 0.0,
         "turns": "", "round": 1,
     }  # fmt: skip
 
@@ -264,13 +263,15 @@ TOGETHER = {
     "rounds": ["turns", "losable"],
     "rounds, lags": ["turns", "lags", "spring"],
     "dead time": ["dead", "force"],
+    "velocities, spring": ["losable", "streamed", "spring"],
 }
 
 
 @pytest.mark.parametrize("name", TOGETHER)
 def test_maps_of_what_stands_together_lie_between_the_modes(name):
     def has_all(loop):
-        loop = loop | {"placed": loop["drive"] == "position"}
+        drive = loop["drive"]
+        loop = loop | {"placed": drive == "position", "streamed": drive == "velocity"}
         return all(loop[key] for key in TOGETHER[name])
 
     loops = ((seed, some_loop(np.random.default_rng(seed))) for seed in range(100_000))
@@ -292,7 +293,7 @@ def test_maps_of_commands_that_are_late_lie_between_the_modes(drive, late, Mt):
 
 OF_DRIVE = {"actuator": ["Mt", "Bt", "Kd", "zero", "tau", "gain", "spring"]}
 OF_DRIVE["loaded"] = [*OF_DRIVE["actuator"][:-1], "load", "loads"]
-OF_DRIVE["position, sprung"] = ["Mt", "Bt", "tau", "spring"]
+OF_DRIVE["position, sprung"] = OF_DRIVE["velocity, sprung"] = ["Mt", "Bt", "tau", "spring"]
 OF_DRIVE["position, mixed"] = ["force", "decay", "tau"]
 OF_DRIVE["mixed"] = ["force", "decay", "Kd", "zero"]
 OF_DRIVE["mixed, integral"] = ["force", "integral"]

@@ -13,6 +13,7 @@ from nrs_design.proof.evidence.abstract import (
     Shows,
 )
 from nrs_design.proof.mode import Time
+from nrs_design.proof.switching import Clock
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.proof.text import counted
 
@@ -77,11 +78,17 @@ def _scope(evidence: AbstractEvidence, system: SwitchedSystem) -> str:
     elif switching.is_arbitrary:
         signals = f"any switching among {counted(len(system.modes), 'mode')}"
     if system.clock is not None:
-        rule = f"in rounds of {system.clock.length} steps"
-        signals += f", {rule}" if system.clock.is_round else ", deadlines missed as the rule allows"
+        signals += _rule(system.clock)
     rounded = ", rounding included" if system.roundings and evidence.covers_rounding else ""
     beside = rounded or _unrounded(evidence, system)
     return f" under {signals}{_contact(evidence, system)}{beside}"
+
+
+def _rule(clock: Clock) -> str:
+    """Say what decides which modes may be in force at a step."""
+    if clock.is_round:
+        return f", in rounds of {clock.length} steps"
+    return " after dwell times" if clock.counts_stays else ", deadlines missed as the rule allows"
 
 
 def _unrounded(evidence: AbstractEvidence, system: SwitchedSystem) -> str:

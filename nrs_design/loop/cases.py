@@ -27,7 +27,10 @@ def in_cases(whole: SwitchedSystem, parts: Sequence[SwitchedSystem]) -> Switched
     if contact is not None:
         contact = replace(contact, free=_every(part.free for part in parts))
     if clock is not None:
-        clock = replace(clock, first=_named(part.clock.first for part in parts if part.clock))
+        clocks = [part.clock for part in parts if part.clock]
+        more = zip(*(own.more for own in clocks), strict=True)
+        first = _named(own.first for own in clocks)
+        clock = replace(clock, first=first, more=tuple(map(_named, more)))
     if flights is not None:
         flights = replace(
             flights,

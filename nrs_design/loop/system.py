@@ -33,13 +33,14 @@ from nrs_design.loop.sampled import SampledLoop
 from nrs_design.loop.sampled_assumptions import assume_sampled_loop
 from nrs_design.loop.sampled_modes import Modes, SampledMode, damping_of
 from nrs_design.loop.saturation import with_sampled_saturation
+from nrs_design.loop.stays import clock_of_stays
 from nrs_design.models.drive import Drive
 from nrs_design.models.linear_form import LinearForm, coordinates
 from nrs_design.models.plant import Plant
 from nrs_design.proof.channels import Channel, Rounding
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Time
-from nrs_design.proof.switching import Clock
+from nrs_design.proof.switching import ARBITRARY, Clock
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.spec import IdleStatesSpec
 from nrs_design.spec.interaction_parts import FREE
@@ -95,6 +96,10 @@ def close_sampled_loop(
         # It jumps after the sample, and the force of what is damped with it.
         damped = any(damping_of(environment).high for environment in environments)
         outputs = () if damped else tuple(one for one in outputs if one.name == "force")
+    # Beside an automaton of its own, a loop has no rules.
+    ruled = sampling.round == 1 and sampling.misses is None
+    stays = clock_of_stays(conditions.switching, grouped(items), sampling.longest_step)
+    stays = stays if ruled else None
     driven = motor_command(conditions.largest_command, conditions.command, loop, channels)
     system = SwitchedSystem(
         name=conditions.name,
@@ -105,7 +110,9 @@ def close_sampled_loop(
             *assume_sampled_loop(conditions, sampling, plant, loop, laws, design, loss),
             *(() if driven is None else (driven.assumption,)),
         ),
-        switching=assemble_switching(
+        switching=ARBITRARY
+        if stays is not None
+        else assemble_switching(
             conditions.switching, grouped(modes), _resets(conditions.idle, loop, design)
         ),
         contact=lost_on_surface((item.mode for item in free), pulls, conditions.contact)
@@ -115,7 +122,7 @@ def close_sampled_loop(
         channels=channels,
         outputs=(*outputs, *(() if driven is None else (driven.output,))),
         roundings=tuple(_roundings(loop, channels, items)),
-        clock=_clock(sampling, items),
+        clock=stays or _clock(sampling, items),
         flights=flights_of(modes, environments, pulls) if loss.anywhere else None,
         enclosures=tuple(enclosures_of(items)),
     )

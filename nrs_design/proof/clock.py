@@ -14,10 +14,10 @@ from nrs_design.proof.system import SwitchedSystem
 Leads: TypeAlias = tuple[int | None, ...]
 
 
-def on_turn(system: SwitchedSystem, clock: Clock, *, first: bool) -> SwitchedSystem:
+def on_turn(system: SwitchedSystem, clock: Clock, kind: int) -> SwitchedSystem:
     """Return a system whose modes take turns with the modes of one kind alone."""
-    names = frozenset(clock.first)
-    kept = [mode.name for mode in system.every_mode if (mode.name in names) is first]
+    names = [mode.name for mode in system.every_mode]
+    kept = (name for name, own in zip(names, clock.kind_of(names), strict=True) if own == kind)
     return replace(system.only(frozenset(kept)), clock=None)
 
 
@@ -28,12 +28,12 @@ def keeps_turns(clock: Clock, steps: Sequence[tuple[str, Fraction]]) -> bool:
     made as often as there are states, it has come back to a state at which it began, and goes on
     for ever.
     """
-    first = frozenset(clock.first)
     states = range(clock.length)
-    once = {kind: tuple(clock.after(k, first=kind) for k in states) for kind in (True, False)}
+    once = [tuple(clock.after(k, kind) for k in states) for kind in clock.kinds]
     whole: Leads = tuple(states)
-    for name, count in steps:
-        whole = _then(whole, _repeated(once[name in first], int(count)))
+    kinds = clock.kind_of(name for name, _ in steps)
+    for kind, (_, count) in zip(kinds, steps, strict=True):
+        whole = _then(whole, _repeated(once[kind], int(count)))
     return any(state is not None for state in _repeated(whole, clock.length))
 
 

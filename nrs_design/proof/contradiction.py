@@ -127,22 +127,31 @@ def _odd_clock(system: SwitchedSystem) -> Iterator[str]:
     if not system.switching.is_arbitrary:
         yield "modes take turns, and have rules of switching besides"
     yield from _odd_automaton(system.clock)
-    first = set(system.clock.first)
-    groups = [{mode.name for mode in part} for part in (system.modes, system.free) if part]
-    if not first <= set().union(*groups):
+    clock, every = system.clock, [mode.name for mode in system.every_mode]
+    named = [name for own in (clock.first, *clock.more) for name in own]
+    if not set(named) <= set(every):
         yield "a mode that does not exist is to take its turn"
-    if not all(first & group and group - first for group in groups):
-        yield "a step of a round has no mode, in contact or free"
+    if len(set(named)) < len(named):
+        yield "a mode is of two kinds"
+    kinds = set(clock.kinds)
+    groups = [clock.kind_of(mode.name for mode in part) for part in (system.modes, system.free)]
+    if not all(set(group) == kinds for group in groups if group):
+        yield "a kind of modes that take turns has none, in contact or free"
+    if any(len(set(clock.kind_of(names))) > 1 for names in system.enclosures):
+        yield "what is between the modes of an enclosure is of two kinds that take turns"
 
 
 def _odd_automaton(clock: Clock) -> Iterator[str]:
     if clock.is_round:
+        if clock.more:
+            yield "a round has modes of more than two kinds"
         return
-    if len(clock.ahead) != clock.length or any(len(pair) != 2 for pair in clock.ahead):
+    kinds = len(clock.kinds)
+    if len(clock.ahead) != clock.length or any(len(leads) != kinds for leads in clock.ahead):
         yield "what may follow is not said of every state of an automaton"
-    if any(not NOWHERE <= target < clock.length for pair in clock.ahead for target in pair):
+    if any(not NOWHERE <= target < clock.length for leads in clock.ahead for target in leads):
         yield "a step leads to a state that the automaton does not have"
-    if any(set(pair) == {NOWHERE} for pair in clock.ahead):
+    if any(set(leads) == {NOWHERE} for leads in clock.ahead):
         yield "no mode may be in force in a state of an automaton"
 
 

@@ -131,39 +131,58 @@ NOWHERE = -1
 
 @dataclass(frozen=True, slots=True)
 class Clock:
-    """Modes of two kinds, of which an automaton says which may be in force at a step.
+    """Modes of a few kinds, of which an automaton says which may be in force at a step.
 
     In a round, the modes of the first kind are in force at its first step, the others at all
     others. Where deadlines are missed, both kinds may be in force in most states of the automaton:
-    the first kind where a deadline is kept, the others where it is missed.
+    the first kind where a deadline is kept, the others where it is missed. Where controllers have
+    dwell times, the modes of each are a kind, and the automaton counts the steps of a stay.
     """
 
     # Steps of a round, or states of the automaton, at least two. Time zero may be any of them.
     length: int
     first: tuple[str, ...]  # Names of the modes of the first kind, in contact and free
-    # For each state, where a mode of the first kind and where one of the others leads; -1 where it
-    # may not be in force. Empty for a round.
-    ahead: tuple[tuple[int, int], ...] = ()
+    # For each state, where a mode of each kind leads; -1 where it may not be in force. Empty for a
+    # round.
+    ahead: tuple[tuple[int, ...], ...] = ()
+    # Names of the modes of the kinds after the first; those that are not named are the last kind.
+    more: tuple[tuple[str, ...], ...] = ()
 
     @property
     def is_round(self) -> bool:
         """Whether all it says is whose turn it is."""
         return not self.ahead
 
-    def after(self, state: int, *, first: bool) -> int | None:
-        """Return where a mode leads from a state; None where it may not be in force."""
-        if self.ahead:
-            target = self.ahead[state][not first]
-            return None if target == NOWHERE else target
-        return (state + 1) % self.length if first == (state == 0) else None
+    @property
+    def counts_stays(self) -> bool:
+        """Whether every kind of modes may stay in force, as it may after a dwell time."""
+        states = range(self.length)
+        return all(any(self.after(k, kind) == k for k in states) for kind in self.kinds)
 
-    def turns(self) -> Iterator[tuple[int, bool, int]]:
-        """Yield every state, whether a mode of the first kind is in force, and where it leads."""
+    @property
+    def kinds(self) -> range:
+        """The kinds of modes, by their numbers."""
+        return range(len(self.more) + 2)
+
+    def kind_of(self, names: Iterable[str]) -> list[int]:
+        """Return the kind of each mode, by its name."""
+        named = {name: k for k, own in enumerate((self.first, *self.more)) for name in own}
+        return [named.get(name, self.kinds[-1]) for name in names]
+
+    def after(self, state: int, kind: int) -> int | None:
+        """Return where a mode of a kind leads from a state; None where it may not be in force."""
+        if self.ahead:
+            target = self.ahead[state][kind]
+            return None if target == NOWHERE else target
+        return (state + 1) % self.length if (kind == 0) == (state == 0) else None
+
+    def turns(self) -> Iterator[tuple[int, int, int]]:
+        """Yield every state, each kind of modes that may be in force, and where these lead."""
         for state in range(self.length):
-            for first in (True, False):
-                target = self.after(state, first=first)
+            for kind in self.kinds:
+                target = self.after(state, kind)
                 if target is not None:
-                    yield state, first, target
+                    yield state, kind, target
 
 
 def constants_words(switching: Switching) -> str:

@@ -86,7 +86,10 @@ class SwitchedSystem:
         if contact is not None:
             contact = replace(contact, free=tuple(compress(contact.free, flying)))
         if clock is not None:
-            clock = replace(clock, first=tuple(name for name in clock.first if name in names))
+            first, *more = (
+                tuple(name for name in own if name in names) for own in (clock.first, *clock.more)
+            )
+            clock = replace(clock, first=first, more=tuple(more))
         roundings = (
             replace(
                 item,

@@ -6,7 +6,7 @@ with at least t to spare. The edges are those of the evidence, in floating point
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
@@ -138,6 +138,7 @@ class Inequality:
     is_flow: bool
     lasts: float  # Steps, or time in s of an enclosed stay
     is_strict: bool
+    share: float = 1.0  # What the form after a map counts besides
 
     def weight(self, rate: float, degree: int, time: Time) -> float:
         """Return what the form after a map counts, if that before it counts one.
@@ -146,7 +147,7 @@ class Inequality:
         """
         if time is Time.CONTINUOUS:
             return exp(2 * rate * self.lasts)
-        return float(rate ** (-2 * degree * self.lasts))
+        return self.share * float(rate ** (-2 * degree * self.lasts))
 
     @property
     def size(self) -> int:
@@ -182,11 +183,15 @@ class DualSolution:
 class FormsProgram:
     """The program of a drawing, at any rate."""
 
-    def __init__(self, drawing: Drawing) -> None:
+    def __init__(
+        self, drawing: Drawing, timed: Callable[[Inequality], Inequality] = lambda edge: edge
+    ) -> None:
+        """State the inequalities of a drawing; `timed` says what each leaves of a form."""
         self.drawing = drawing
         self.time, self.degree = drawing.system.time, drawing.graph.degree
         self.sizes = [len(one.T) for one in drawing.coordinates]
-        self.every, self.scales = _edges(drawing)
+        drawn, self.scales = _edges(drawing)
+        self.every = [timed(edge) for edge in drawn]
         self.edges, self.stands_for = _distinct(self.every)
         count = len(self.edges)
         # Where forms have few edges each, nearly all of these are needed.
@@ -500,7 +505,8 @@ class FormsProgram:
             if edge.is_flow:
                 rates.append(float(np.ldexp(least / (2 * self.degree), -self.unit)))
             elif edge.lasts:
-                rates.append(max(-least, 0.0) ** (0.5 / (self.degree * edge.lasts)))
+                kept = max(-least, 0.0) * edge.share
+                rates.append(kept ** (0.5 / (self.degree * edge.lasts)))
         return min(rates) if self.time is Time.CONTINUOUS else max(rates)
 
     def roundings(

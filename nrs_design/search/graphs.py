@@ -224,22 +224,26 @@ def search_periodic_quadratic(family: Family) -> Candidates[FormsOnGraph]:
     Where the arithmetic rounds, forms that cover that are tried before others, unless there are
     too many conditions to check.
     """
+    from nrs_design.search.counted_stays import search_stays, stays_of
+
     system, clock = family.system, family.system.clock
     if clock is None:
         return NO_MARGIN
     if not np.isfinite(family.matrices).all():
         return OUT_OF_RANGE
+    if (stays := stays_of(clock)) is not None:
+        return (yield from search_stays(family, clock, stays))
     limit, ended = _limit(family, clock), None
     every = [mode.name for mode in system.every_mode]
-    kinds = Counter(name in clock.first for name in every)
+    kinds = Counter(clock.kind_of(every))
     # At the largest rate itself there is no room for rounding.
     rates = Rates(0.5, resolution=2.0**-5, nearest=0.99, few=True, bits=digits(24))
     for drawing in draw_turns(family, clock):
         if not drawing.is_finite:
             return OUT_OF_RANGE
         of = drawing.forms[:: len(drawing.forms) // clock.length]
-        different = {(of[k], first, of[target]) for k, first, target in clock.turns()}
-        checked = sum(kinds[first] for _, first, _ in different)
+        different = {(of[k], kind, of[target]) for k, kind, target in clock.turns()}
+        checked = sum(kinds[kind] for _, kind, _ in different)
         rounds = bool(system.roundings) and checked <= MOST_ROUNDED
         coverings = (True, False) if rounds else (False,)
         ended = yield from propose(FormsProgram(drawing), family, limit, rates, coverings)
@@ -254,7 +258,7 @@ def draw_turns(family: Family, clock: Clock) -> Iterator[Drawing]:
     system, lost = family.system, family.system.contact is not None
     places = [MODES, FREE] if lost else [MODES]
     every = [f"{place} {k}" for k in range(clock.length) for place in places]
-    graph = _graph_of(every, len(system.roundings))
+    graph = graph_of(every, len(system.roundings))
     own = [FormCoordinates(family.exponents, T) for T in _coordinates(family, clock)]
     if not clock.is_round and clock.length > FEW_STATES:
         like = _alike(clock)
@@ -273,20 +277,20 @@ def _alike(clock: Clock) -> list[tuple[int, int]]:
     """
     ago = [LONG_AGO] * clock.length
     for _ in range(LONG_AGO):
-        for state, in_time, target in clock.turns():
-            ago[target] = min(ago[target], ago[state] + 1 if in_time else 0)
+        for state, missed, target in clock.turns():
+            ago[target] = min(ago[target], 0 if missed else ago[state] + 1)
     found = []
     for state, last in enumerate(ago):
-        more, at = 0, clock.after(state, first=False)
+        more, at = 0, clock.after(state, 1)
         while at is not None and more < clock.length:
-            more, at = more + 1, clock.after(at, first=False)
+            more, at = more + 1, clock.after(at, 1)
         found.append((more, last))
     return found
 
 
 def _turns(family: Family, clock: Clock) -> list[Array]:
-    """Return the modes of the first step of a round, and those of the others."""
-    parts = (on_turn(family.system, clock, first=first) for first in (True, False))
+    """Return the modes of each kind: of the first step of a round, and of the others."""
+    parts = (on_turn(family.system, clock, kind) for kind in clock.kinds)
     return [
         scale_states(to_floats([mode.A for mode in part.modes]), family.exponents) for part in parts
     ]
@@ -300,7 +304,7 @@ def _coordinates(family: Family, clock: Clock) -> Iterator[Array]:
     means = [matrices.mean(axis=0) for matrices in _turns(family, clock)]
     apart = round_coordinates if family.system.contact is None else separating
     if not clock.is_round:
-        graph = StepGraph.of_clock(clock, ("in time", "missed"), np.array(means), (True, False))
+        graph = StepGraph.of_clock(clock, [*map(str, clock.kinds)], np.array(means), clock.kinds)
         yield from map(apart, round_forms(graph))
         return
     each = [means[min(step, 1)] for step in range(clock.length)]
@@ -480,14 +484,14 @@ def draw_together(family: Family, degree: int, *, lost: bool = False) -> Drawing
     system = family.system
     places = [MODES, FREE] if lost else [MODES]
     # A form of monomials has no multipliers.
-    graph = _graph_of(places, len(system.roundings) if degree == 1 else 0, degree)
+    graph = graph_of(places, len(system.roundings) if degree == 1 else 0, degree)
     own = lifted_coordinates(family.exponents, degree)
     if degree == 1:
         own = FormCoordinates(family.exponents, separating_coordinates(family))
     return Drawing(system, graph, (0,) * len(places), (own,))
 
 
-def _graph_of(places: Sequence[str], roundings: int, degree: int = 1) -> FormsOnGraph:
+def graph_of(places: Sequence[str], roundings: int, degree: int = 1) -> FormsOnGraph:
     """Return a graph with a node at every place, and multipliers for so many roundings."""
     nodes = tuple(Node(place, ()) for place in places)
     multipliers = tuple(Multiplier(f"{ROUNDING} {k + 1}", 0) for k in range(roundings))

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from itertools import product
+from itertools import groupby, product
 
 import numpy as np
 
+from nrs_design.proof.clock import on_turn
 from nrs_design.proof.evidence import GrowingSequence
 from nrs_design.proof.evidence.growth import Steps
 from nrs_design.proof.switching import Clock
@@ -29,11 +30,12 @@ def search_rounds(family: Family) -> Candidates[GrowingSequence]:
     if not clock.is_round:
         graph = turns_graph(family, clock)
         for word, growth in best_words(graph, family.allowance.part(WORDS), 1.0):
-            yield from powers(system, graph.sequence(word)[0], (), growth ** len(word))
+            signal = _in_a_row(graph.sequence(word)[0])
+            yield from powers(system, signal, (), growth ** len(word))
         return NOTHING_GROWS
     first, others = (
-        distinct_modes([mode for mode in system.modes if (mode.name in clock.first) == begins])
-        for begins in (True, False)
+        distinct_modes(on_turn(system, clock, kind).modes)
+        for kind in clock.kinds
     )
     rest = clock.length - 1
     rounds = [
@@ -54,15 +56,19 @@ def search_rounds(family: Family) -> Candidates[GrowingSequence]:
 def turns_graph(family: Family, clock: Clock) -> StepGraph:
     """Return the steps that an automaton allows, of modes that differ by no more than rounding."""
     modes = [
-        (mode.name, A, first)
-        for first in (True, False)
-        for mode, A in distinct_modes(
-            [mode for mode in family.system.modes if (mode.name in clock.first) is first]
-        )
+        (mode.name, A, kind)
+        for kind in clock.kinds
+        for mode, A in distinct_modes(on_turn(family.system, clock, kind).modes)
     ]
-    texts, matrices, first = zip(*modes, strict=True)
+    texts, matrices, kinds = zip(*modes, strict=True)
     scaled = scale_states(np.array(matrices), family.exponents)
-    return StepGraph.of_clock(clock, texts, scaled, first)
+    return StepGraph.of_clock(clock, texts, scaled, kinds)
+
+
+def _in_a_row(steps: Steps) -> Steps:
+    """Join steps in one mode that follow each other."""
+    runs = groupby(steps, key=lambda step: step[0])
+    return tuple((name, sum((count for _, count in run), Fraction(0))) for name, run in runs)
 
 
 def _signal(rounds: list[tuple[str, str]], rest: int) -> Steps:

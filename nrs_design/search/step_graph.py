@@ -94,14 +94,14 @@ class StepGraph:
 
     @classmethod
     def of_clock(
-        cls, clock: Clock, names: Sequence[str], matrices: Array, first: Sequence[bool]
+        cls, clock: Clock, names: Sequence[str], matrices: Array, kinds: Sequence[int]
     ) -> StepGraph:
         """Return the graph of an automaton: a node is one of its states."""
         rows = [
             (state, target, k)
             for state, kind, target in clock.turns()
-            for k, own in enumerate(first)
-            if own is kind
+            for k, own in enumerate(kinds)
+            if own == kind
         ]
         sources, targets, modes = np.array(rows, dtype=np.int64).T
         # Every step is a stay of its own.

@@ -83,10 +83,12 @@ class _Loop:
         free = system.free
         touching = {m.name for m in system.modes} if flights is None else {*flights.touching}
         flying = {m.name for m in free} if flights is None else {*flights.flying}
-        first = frozenset(() if system.clock is None else system.clock.first)
-        kinds: dict[tuple[bool, ...], list[Mode]] = {}
-        for mode in system.every_mode:
-            kind = tuple(mode.name in part for part in (touching, flying, first))
+        every, clock = system.every_mode, system.clock
+        of_clock = [0] * len(every) if clock is None else clock.kind_of(m.name for m in every)
+        turn_of = dict(zip((mode.name for mode in every), of_clock, strict=True))
+        kinds: dict[tuple[int, ...], list[Mode]] = {}
+        for mode in every:
+            kind = mode.name in touching, mode.name in flying, turn_of[mode.name]
             kinds.setdefault(kind, []).append(mode)
         modes = [pair for group in kinds.values() for pair in distinct_modes(group)]
         names = tuple(mode.name for mode, _ in modes)
@@ -94,11 +96,11 @@ class _Loop:
         rows = rows if flights is None else flights.pulls
         pulls = [np.ldexp(np.array(row.floats())[0], family.exponents) for row in rows]
         turns = np.zeros((1, len(names)), dtype=np.int64)
-        if system.clock is not None:
-            begins = np.array([name in first for name in names])
-            turns = np.full((system.clock.length, len(names)), NOWHERE)
-            for turn, is_first, target in system.clock.turns():
-                turns[turn, begins == is_first] = target
+        if clock is not None:
+            own = np.array([turn_of[name] for name in names])
+            turns = np.full((clock.length, len(names)), NOWHERE)
+            for turn, of_turn, target in clock.turns():
+                turns[turn, own == of_turn] = target
         return cls(
             system,
             names,

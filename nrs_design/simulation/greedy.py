@@ -77,7 +77,7 @@ def _possible(system: SwitchedSystem) -> Callable[[int, Array], tuple[Indices, I
     """
     modes, clock = all_modes(system).modes, system.clock
     free = np.arange(len(modes)) >= len(system.modes)
-    first = np.array([clock is None or mode.name in clock.first for mode in modes])
+    kinds = np.array([0] if clock is None else clock.kind_of(mode.name for mode in modes))
 
     def possible(turn: int, x: Array) -> tuple[Indices, Indices]:
         lost = bool(free.any()) and x[-1] <= 0
@@ -86,9 +86,9 @@ def _possible(system: SwitchedSystem) -> Callable[[int, Array], tuple[Indices, I
             kept = np.flatnonzero(felt)
             return kept, np.zeros_like(kept)
         ahead = np.full(len(modes), NOWHERE)
-        for kind in (True, False):
-            if (target := clock.after(turn, first=kind)) is not None:
-                ahead[first == kind] = target
+        for kind in clock.kinds:
+            if (target := clock.after(turn, kind)) is not None:
+                ahead[kinds == kind] = target
         kept = np.flatnonzero(felt & (ahead != NOWHERE))
         return kept, ahead[kept]
 

@@ -84,9 +84,9 @@ def _turns(system: SwitchedSystem, clock: Clock) -> Rules:
     """
     actions: dict[tuple[int, int, int], int] = {}
     after: dict[int, list[int]] = {}
-    first = [mode.name in clock.first for mode in system.modes]
+    kinds = clock.kind_of(mode.name for mode in system.modes)
     for node, kind, target in clock.turns():
-        own = [k for k, of_first in enumerate(first) if of_first is kind]
+        own = [k for k, of_mode in enumerate(kinds) if of_mode == kind]
         found = [actions.setdefault((k, 0, target), len(actions)) for k in own]
         after.setdefault(node, []).extend(found)
     return _packed(actions, [np.eye(system.order)], after)

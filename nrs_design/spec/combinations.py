@@ -28,6 +28,7 @@ from nrs_design.spec.features import (
     LAGGING_AT_ONCE,
     LIMITED,
     LOADED,
+    LONGEST_STAY,
     LOSABLE,
     MEMORY,
     MISSES,
@@ -177,7 +178,11 @@ COMBINATIONS: tuple[Row[Spec], ...] = (
     # The sampled loop.
     not_together(OFFSET, SAMPLED, because="the program that ships stores no offset"),
     not_together(GIVEN_LOOP, SAMPLED, because="its program is not known"),
-    not_together(SAMPLED_DWELL, SAMPLED, because=_DWELLS),
+    not_together(
+        LONGEST_STAY, SAMPLED, because="what must be left may grow, and parameters change in it"
+    ),
+    *_beside(SAMPLED_DWELL, CONSTANT_MOTOR, CONSTANT_TISSUE, because=_CONSTANTS),
+    *_beside(SAMPLED_DWELL, IDLE_RESET, SATURATED, because="samples of a stay are counted instead"),
     *(not_together(DWELL, *features, because=_DWELLS) for features in CHANGING),
     not_together(
         TWO_PERIODS, OTHERS, because="it is not said in which of them a position is taken"

@@ -92,7 +92,7 @@ def _bleeding(spec: Spec) -> str | None:
     return None if all_alike else _first(n for n, c in spec.controllers.items() if c.bleeds)
 
 
-def _dwell(*, sampled: bool) -> Callable[[Spec], str | None]:
+def _dwell(*, sampled: bool, key: str = "") -> Callable[[Spec], str | None]:
     """Ask for the key of a dwell time; rules about single contacts are refused beside samples."""
 
     def find(spec: Spec) -> str | None:
@@ -100,7 +100,7 @@ def _dwell(*, sampled: bool) -> Callable[[Spec], str | None]:
             sampled and spec.switching.names_contacts
         ):
             return None
-        return _first(at[0] for at, _ in spec.switching.dwell_times())
+        return _first(at[0] for at, _ in spec.switching.dwell_times() if at[0].startswith(key))
 
     return find
 
@@ -404,6 +404,12 @@ RULES = _F(
 )
 DWELL = _F("a dwell time", "switching.{0}", "leave {0} out", _dwell(sampled=False))
 SAMPLED_DWELL = _F("a dwell time", "switching.{0}", "leave {0} out", _dwell(sampled=True))
+LONGEST_STAY = _F(
+    "a longest dwell time",
+    "switching.{0}",
+    "leave {0} out",
+    _dwell(sampled=True, key="longest_dwell_time"),
+)
 CONTACT_RULES = _F(
     "rules of switching about controllers in one contact each",
     "switching",

@@ -70,7 +70,7 @@ def test_what_is_in_force_at_a_step():
     (item,) = system.roundings
     wide = tuple(matrix([[*row.fractions()[0], 7]]) for row in item.rows)
     system = replace(system, roundings=(replace(item, rows=wide),))
-    first, other = (on_turn(system, system.clock, first=first) for first in (True, False))
+    first, other = (on_turn(system, system.clock, kind) for kind in (0, 1))
     assert [mode.name for mode in first.modes] == ["push 1", "push 2"]
     assert [mode.name for mode in first.contact.free] == ["fall"]
     assert [mode.name for mode in other.modes] == ["rest"]
@@ -90,14 +90,14 @@ def test_the_parts_of_a_rounding_are_those_of_their_modes():
     (item,) = system.roundings
     marked = tuple(replace(row, numerators=((k, 0),)) for k, row in enumerate(item.rows, start=1))
     system = replace(system, roundings=(replace(item, rows=marked, columns=item.columns),))
-    first, other = (on_turn(system, system.clock, first=first) for first in (True, False))
+    first, other = (on_turn(system, system.clock, kind) for kind in (0, 1))
     assert [row.numerators[0][0] for row in first.roundings[0].rows] == [1, 2, 4]
     assert [row.numerators[0][0] for row in other.roundings[0].rows] == [3, 5]
 
 
 def test_kept_contact_has_no_free_modes():
     system = replace(bouncing_in_turns(), contact=None, clock=Clock(2, ("push 1", "push 2")))
-    assert on_turn(system, system.clock, first=False).contact is None
+    assert on_turn(system, system.clock, 1).contact is None
 
 
 def test_a_signal_out_of_turn_refutes_nothing():
@@ -138,9 +138,9 @@ def test_signals_that_miss_deadlines(text, keeps):
 
 def test_what_an_automaton_allows():
     assert not ONE_OF_THREE.is_round
-    assert ONE_OF_THREE.after(0, first=True) == 0
-    assert ONE_OF_THREE.after(0, first=False) == 1
-    assert ONE_OF_THREE.after(1, first=False) is None
+    assert ONE_OF_THREE.after(0, 0) == 0
+    assert ONE_OF_THREE.after(0, 1) == 1
+    assert ONE_OF_THREE.after(1, 1) is None
     assert [*ONE_OF_THREE.turns()] == [(0, True, 0), (0, False, 1), (1, True, 2), (2, True, 0)]
     assert [*ROUND.turns()] == [(0, True, 1), (1, False, 2), (2, False, 0)]
 

@@ -134,7 +134,8 @@ def _read_matrix(value: Any) -> RationalMatrix:
 def read_integers(value: Any) -> Matrix:
     """Read a matrix of integers."""
     matrix = tuple(tuple(read_integer(entry) for entry in read_list(row)) for row in value)
-    if is_too_large(matrix):
+    # Nothing is decided of rows beyond a square, such as those of an automaton.
+    if matrix and is_too_large(matrix[: len(matrix[0])]):
         raise ValueError("a matrix is too large to check")
     return matrix
 

@@ -577,7 +577,7 @@ def steps_together(
     from nrs_design.proof.clock import on_turn
 
     clock = system.clock
-    parts = {kind: placed(on_turn(system, clock, first=kind)) for kind in (True, False)}
+    parts = [placed(on_turn(system, clock, kind)) for kind in clock.kinds]
     at = "step" if clock.is_round else "state"
     return tuple(
         replace(

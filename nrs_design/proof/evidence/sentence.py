@@ -66,9 +66,8 @@ def free_sentence(
         )
     if clock is not None:
         kept = ", with contact lost and made again at any time" if lost else ""
-        which = (
-            "whose turn it is" if clock.is_round else "that the rule for missed deadlines allows"
-        )
+        rule = "dwell times allow" if clock.counts_stays else "rule for missed deadlines allows"
+        which = "whose turn it is" if clock.is_round else f"that the {rule}"
         among = f"with any mode in force {which}{kept}"
     front = "" if once else "c "
     bound = f"{front}exp(-alpha t) |{x}(0)|" if continuous else f"{front}rho^t |{x}(0)|"

@@ -27,6 +27,11 @@ _MISSES = (
     "that of the state to which a period in time, or a missed one, leads. The claim is about every "
     "sample."
 )
+_STAYS = (
+    "While a controller is in force, its function decreases faster than the claim. So the functions "
+    "of a stay grow from sample to sample, up to its dwell time, and leave room for the rise at a "
+    "switch. The claim is about every sample."
+)
 _IN_THE_AIR = (
     "In free motion the deflection is left out of the function. So it measures motion, force and "
     "penetration, and not how far the axis has moved away from the surface: once it has come to "
@@ -155,7 +160,8 @@ def function(system: SwitchedSystem, *, lost: bool, each: bool) -> Iterator[str]
     `lost`: they cover the loss of contact. `each`: one for each mode, or for each step of a round.
     """
     if system.clock is not None:
-        yield _ROUNDS if system.clock.is_round else _MISSES
+        counted = _STAYS if system.clock.counts_stays else _MISSES
+        yield _ROUNDS if system.clock.is_round else counted
     elif lost and each:
         yield "Each mode has a function; the largest of them decreases in every step."
     if lost:
@@ -166,7 +172,9 @@ def function_limits(system: SwitchedSystem, *, lost: bool) -> Iterator[str]:
     """Say what a proof with functions leaves open; `lost`: they cover the loss of contact."""
     if lost or system.clock is not None:
         yield _MOVED_REST
-    if system.clock is not None and not system.clock.is_round:
+    if system.clock is not None and system.clock.counts_stays:
+        yield "Switches that come before a dwell time has passed."
+    elif system.clock is not None and not system.clock.is_round:
         yield "More missed deadlines than the rule allows, or others than it says."
     elif system.clock is not None:
         yield "Two loops whose periods drift against each other: they meet at every round."

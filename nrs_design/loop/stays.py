@@ -1,0 +1,55 @@
+"""Dwell times in a sampled loop: which controller may be in force at a sample."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+from math import ceil
+
+from nrs_design.proof.switching import NOWHERE, Clock
+from nrs_design.spec import SwitchingSpec
+
+# More states make a proof long; a stay that is counted up to fewer samples may be shorter.
+MOST_STATES = 600
+
+
+def clock_of_stays(
+    rules: SwitchingSpec, modes: Mapping[str, Sequence[str]], period: Fraction
+) -> Clock | None:
+    """Return which modes may be in force at a sample, or None where no stay is that long.
+
+    `modes` are those of each controller, in contact and free, and follow each other freely; the
+    period is the longest from sample to sample, in s. A state is how many samples a controller has
+    been in force, up to its dwell time.
+    """
+    names = [*modes]
+    counts = [_samples(rules, name, period, MOST_STATES // len(names)) for name in names]
+    if len(names) < 2 or max(counts) == 1:
+        return None
+    first = [sum(counts[:k]) for k in range(len(counts))]
+    allowed = None if rules.transitions is None else frozenset(rules.transitions)
+
+    def leads(k: int, spent: int) -> tuple[int, ...]:
+        """Return where each controller leads after so many samples of one."""
+        last = spent == counts[k] - 1
+        return tuple(
+            first[k] + min(spent + 1, counts[k] - 1)
+            if other == k
+            else first[other]
+            if last and (allowed is None or (names[k], name) in allowed)
+            else NOWHERE
+            for other, name in enumerate(names)
+        )
+
+    ahead = tuple(leads(k, spent) for k, count in enumerate(counts) for spent in range(count))
+    own, *more = (tuple(found) for found in modes.values())
+    return Clock(len(ahead), own, ahead, tuple(more[:-1]))
+
+
+def _samples(rules: SwitchingSpec, name: str, period: Fraction, most: int) -> int:
+    """Return how many samples a stay of a controller has at least."""
+    shortest, _ = rules.stay(name)
+    if shortest is None:
+        return 1
+    steps = shortest.value if shortest.unit == "steps" else shortest.value / period
+    return min(max(ceil(steps), 1), most)

@@ -1,0 +1,193 @@
+"""Search for a form for each controller, where the samples of a stay are counted (untrusted).
+
+While a controller is in force, its form decreases at a rate r of its own, faster than the rate rho
+that is claimed; at a switch it may rise. So the forms of a stay grow from sample to sample: the
+j-th is ``(rho/r)^2j`` times the first, and after N samples they have left room for the switch.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nrs_design.proof.clock import on_turn
+from nrs_design.proof.evidence import FormsOnGraph
+from nrs_design.proof.evidence.graph import FREE, MODES, Node, at_place
+from nrs_design.proof.mode import Time
+from nrs_design.proof.switching import NOWHERE, Clock
+from nrs_design.search.balance import own_norm, round_coordinates, scale_states, separating
+from nrs_design.search.candidates import NO_MARGIN, Candidate, Candidates
+from nrs_design.search.decay import limit_rate
+from nrs_design.search.family import Family, to_floats
+from nrs_design.search.forms import Drawing, FormCoordinates, FormsProgram, Inequality, Solution
+from nrs_design.search.graphs import Rates, graph_of, propose, search_together
+from nrs_design.search.rounding import digits, rate_at
+
+# Of the slowest decay that a controller has, what its form keeps while it is in force.
+SHARES = (0.7, 0.4, 0.85, 0.2, 0.1)
+# Of the mean mode of a controller, what its coordinates keep at most.
+KEPT = 0.99
+# Positions of rates that are tried for each, and the share of the budget for that.
+LOOKED_AT, LOOKING = (0.0, 0.1, 0.25, 0.4, 0.6), 0.05
+RATES = Rates(0.5, resolution=2.0**-5, nearest=0.99, few=True, bits=digits(24))
+# Digits of how much larger the forms of a stay are than the first.
+WEIGHT_BITS = 24
+
+Array = NDArray[np.float64]
+Stays = Sequence[Sequence[int]]
+
+
+def stays_of(clock: Clock) -> Stays | None:
+    """Return for each kind of modes the states of a stay in order, or None if it counts none."""
+    last = [[k for k in range(clock.length) if clock.after(k, kind) == k] for kind in clock.kinds]
+    if any(len(own) != 1 for own in last):
+        return None
+    ends, found = {own[0] for own in last}, list[list[int]]()
+    for kind, stay in zip(clock.kinds, last, strict=True):
+        while True:
+            before = [k for k in range(clock.length) if clock.after(k, kind) == stay[0]]
+            before = [k for k in before if k not in ends and k not in stay]
+            if len(before) != 1:
+                break
+            stay = [*before, *stay]
+        found.append(stay)
+    states = sorted(state for stay in found for state in stay)
+    return found if states == [*range(clock.length)] else None
+
+
+def search_stays(family: Family, clock: Clock, stays: Stays) -> Candidates[FormsOnGraph]:
+    """Search for one form under arbitrary switching; then for one for each controller."""
+    free = replace(family, system=replace(family.system, clock=None))
+    together = search_together(replace(free, allowance=family.allowance.part(LOOKING)))
+    everywhere = [(state, 1) for state in range(clock.length)]
+    for candidate in together:
+        graph = candidate.evidence
+        yield Candidate(_at_states(graph, [everywhere] * len(graph.nodes)), candidate.words)
+    parts = [
+        scale_states(
+            to_floats([mode.A for mode in on_turn(family.system, clock, kind).modes]),
+            family.exponents,
+        )
+        for kind in clock.kinds
+    ]
+    slowest = [limit_rate(own, Time.DISCRETE) for own in parts]
+    limit = max(slowest)
+    if not limit < 1:
+        return NO_MARGIN
+    programs = list[tuple[int, CountedProgram]]()
+    for share in SHARES:
+        own = [1 - share * (1 - rate) for rate in slowest]
+        drawing = _draw(family, clock, stays, parts, own)
+        if drawing.is_finite:
+            program = CountedProgram(drawing, Counted(stays, own))
+            programs.append((_reach(program, limit, family), program))
+    coverings = (True, False) if family.system.roundings else (False,)
+    # The rest of a rate is looked for where the most is known to be there.
+    for reached, program in sorted(programs, key=lambda item: -item[0]):
+        if reached:
+            yield from propose(program, family, limit, RATES, coverings)
+    return NO_MARGIN
+
+
+@dataclass(frozen=True)
+class Counted:
+    """Forms of controllers, each while its controller is in force."""
+
+    stays: Stays  # Of each, the states of a stay
+    rates: Sequence[float]  # At which it decreases then
+
+    def timed(self, edge: Inequality) -> Inequality:
+        """Return an inequality between forms of first samples, with what a stay leaves of them."""
+        rate, count = self.rates[edge.before], len(self.stays[edge.before])
+        if edge.before == edge.after:
+            return replace(edge, lasts=0.0, share=rate**-2)
+        return replace(edge, lasts=count, share=rate ** (2 * (count - 1)))
+
+    def expanded(self, graph: FormsOnGraph) -> FormsOnGraph:
+        """Return the forms of every sample of a stay, from those of the first ones."""
+        places = len(graph.nodes) // len(self.stays)
+        copies = []
+        for stay, rate in zip(self.stays, self.rates, strict=True):
+            growth = (float(graph.rate) / rate) ** 2
+            weights = [round(growth**spent * 2**WEIGHT_BITS) for spent in range(len(stay))]
+            copies += [[*zip(stay, weights, strict=True)]] * places
+        log2 = graph.denominator_log2 + WEIGHT_BITS
+        return _at_states(replace(graph, denominator_log2=log2), copies)
+
+
+class CountedProgram(FormsProgram):
+    """The program of the first samples of stays, whose solutions are forms of all samples."""
+
+    def __init__(self, drawing: Drawing, counted: Counted) -> None:
+        self.counted = counted
+        super().__init__(drawing, counted.timed)
+
+    def roundings(
+        self,
+        solution: Solution,
+        claim: Fraction,
+        digits: Sequence[int],
+        *,
+        errors: bool = False,
+    ) -> Iterator[FormsOnGraph]:
+        """Yield roundings of the forms of all samples."""
+        found = super().roundings(solution, claim, digits, errors=errors)
+        return map(self.counted.expanded, found)
+
+
+def _at_states(graph: FormsOnGraph, copies: Sequence[Sequence[tuple[int, int]]]) -> FormsOnGraph:
+    """Return a graph with copies of nodes, each at a state and so many times as large."""
+    nodes, targets = list[Node](), list[list[tuple[int, int]]]()
+    for node, own in zip(graph.nodes, copies, strict=True):
+        targets.append([(len(nodes) + k, weight) for k, (_, weight) in enumerate(own)])
+        word, _, _ = node.place.partition(" ")
+        for state, weight in own:
+            form = tuple(tuple(weight * entry for entry in row) for row in node.form)
+            nodes.append(Node(at_place(word, state), form))
+    multipliers = (
+        item._replace(value=weight * item.value, target=target)
+        for item in graph.multipliers
+        for own in (targets if item.target is None else [targets[item.target]])
+        for target, weight in own
+    )
+    return replace(graph, nodes=tuple(nodes), multipliers=tuple(multipliers))
+
+
+def _reach(program: CountedProgram, limit: float, family: Family) -> int:
+    """Return how many of some rates, the slowest first, a program has a solution for."""
+    part, found = family.allowance.part(LOOKING), 0
+    for position in LOOKED_AT:
+        if program.solve(rate_at(position, limit, Time.DISCRETE), part) is None:
+            break
+        found += 1
+    return found
+
+
+def _draw(
+    family: Family, clock: Clock, stays: Stays, parts: Sequence[Array], rates: Sequence[float]
+) -> Drawing:
+    """Draw a node for each controller, as if a stay had one state."""
+    system, lost = family.system, family.system.contact is not None
+    ahead = tuple(
+        tuple(
+            other if clock.after(stay[-1], other) is not None else NOWHERE for other in clock.kinds
+        )
+        for stay in stays
+    )
+    short = replace(system, clock=replace(clock, length=len(stays), ahead=ahead))
+    places = [MODES, FREE] if lost else [MODES]
+    every = [at_place(place, k) for k in clock.kinds for place in places]
+    apart = separating if lost else round_coordinates
+
+    def coordinates(own: Array, rate: float) -> FormCoordinates:
+        mean = own.mean(axis=0)
+        kept = mean / max(rate, limit_rate(mean[None], Time.DISCRETE) / KEPT)
+        return FormCoordinates(family.exponents, apart(own_norm(kept, Time.DISCRETE)))
+
+    forms = tuple(k for k in clock.kinds for _ in places)
+    drawn = tuple(map(coordinates, parts, rates))
+    return Drawing(short, graph_of(every, len(system.roundings)), forms, drawn)

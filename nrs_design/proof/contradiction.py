@@ -136,7 +136,7 @@ def _odd_clock(system: SwitchedSystem) -> Iterator[str]:
     kinds = set(clock.kinds)
     groups = [clock.kind_of(mode.name for mode in part) for part in (system.modes, system.free)]
     if not all(set(group) == kinds for group in groups if group):
-        yield "a kind of modes that take turns has none, in contact or free"
+        yield "a turn has no mode, in contact or free"
     if any(len(set(clock.kind_of(names))) > 1 for names in system.enclosures):
         yield "what is between the modes of an enclosure is of two kinds that take turns"
 

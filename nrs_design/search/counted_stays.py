@@ -16,8 +16,9 @@ from numpy.typing import NDArray
 
 from nrs_design.proof.clock import on_turn
 from nrs_design.proof.evidence import FormsOnGraph
-from nrs_design.proof.evidence.graph import FREE, MODES, Node, at_place
+from nrs_design.proof.evidence.graph import MODES, Node, at_place
 from nrs_design.proof.mode import Time
+from nrs_design.proof.steps import FREE
 from nrs_design.proof.switching import NOWHERE, Clock
 from nrs_design.search.balance import own_norm, round_coordinates, scale_states, separating
 from nrs_design.search.candidates import NO_MARGIN, Candidate, Candidates

@@ -33,10 +33,7 @@ def search_rounds(family: Family) -> Candidates[GrowingSequence]:
             signal = _in_a_row(graph.sequence(word)[0])
             yield from powers(system, signal, (), growth ** len(word))
         return NOTHING_GROWS
-    first, others = (
-        distinct_modes(on_turn(system, clock, kind).modes)
-        for kind in clock.kinds
-    )
+    first, others = (distinct_modes(on_turn(system, clock, kind).modes) for kind in clock.kinds)
     rest = clock.length - 1
     rounds = [
         (float(np.abs(np.linalg.eigvals(whole)).max()), (a.name, b.name), whole)

@@ -48,9 +48,7 @@ def frame(low_pass=None, limits=None, takes=None) -> StepFrame:
     return StepFrame(MOTION.Kp, MOTION.over(PERIOD), low_pass, limits or StepLimits(), takes)
 
 
-def law(
-    *, Mt="0.01", Kt=("0", "0"), order=0, method="exact", limits=None, takes=None
-) -> StepLaw:
+def law(*, Mt="0.01", Kt=("0", "0"), order=0, method="exact", limits=None, takes=None) -> StepLaw:
     """Build two admittances of the thesis robot above its motion controller."""
     laws = {
         name: Admittance(*(to_float32(Fraction(gain)) for gain in (Mt, Bt, spring))).discretize(

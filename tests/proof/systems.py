@@ -135,6 +135,26 @@ def resets_between(*maps: tuple[str, str, Rows]) -> tuple[Reset, ...]:
     return tuple(Reset(source, target, matrix(rows)) for source, target, rows in maps)
 
 
+def sheared_in_stays(count: int) -> SwitchedSystem:
+    """Return two shears and a map between, each in force for at least so many steps.
+
+    In turns for N steps each, the shears keep ``(1 + 2 N^2 + 2 N sqrt(N^2 + 1))/4^N`` of a state:
+    1.46 for one step, 1.12 for two, 0.594 for three.
+    """
+    shears = (
+        [["1/2", "1"], ["0", "1/2"]],
+        [["1/2", "0"], ["1", "1/2"]],
+        [["1/2", "0"], ["0", "1/4"]],
+    )
+    names, ahead = ["m0", "m1", "m2"], []
+    for kind, spent in product(range(3), range(count)):
+        last = spent == count - 1
+        own = kind * count + min(spent + 1, count - 1)
+        ahead.append(tuple(own if k == kind else k * count if last else -1 for k in range(3)))
+    clock = Clock(3 * count, (names[0],), tuple(ahead), ((names[1],),))
+    return replace(family(*shears, time=Time.DISCRETE), clock=clock)
+
+
 def rectangular() -> SwitchedSystem:
     """A mode of two states and one of one, joined by contracting resets."""
     resets = resets_between(("m0", "m1", [["1/2", 0]]), ("m1", "m0", [["1/2"], [0]]))
@@ -526,6 +546,8 @@ SYSTEMS = {
         family([["1/2"]], [["3/2"]], time=Time.DISCRETE),
         clock=Clock(2, ("m0",), ((0, 1), (0, NOWHERE))),
     ),
+    "periodic-quadratic, stays": lambda: sheared_in_stays(3),
+    "growing-sequence, stays": lambda: sheared_in_stays(2),
     "growing-sequence, in turns": lambda: doubled_in_turns(3),
     "constants-quadratic": lambda: companion("0.9", "0.9"),
     "constants-quadratic, continuous": two_springs,

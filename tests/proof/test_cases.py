@@ -80,7 +80,7 @@ def test_nothing_grows_across_cases():
         ({"cases": (("m0", "m1"), ("m1",))}, "a mode is in no case, or in two"),
         ({"switching": Switching(transitions=(("m0", "m1"),))}, "rules of switching"),
         ({"cases": (("m0", "m1"), ())}, "a case has no mode"),
-        ({"clock": Clock(2, ("m0",))}, "a step of a round has no mode"),
+        ({"clock": Clock(2, ("m0",))}, "a turn has no mode"),
         ({"enclosures": (("m0", "m1"),)}, "is in no case"),
     ],
 )

@@ -15,7 +15,14 @@ from nrs_design.proof.evidence.growing_sequence import staying
 from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Clock
 from nrs_design.proof.system import SwitchedSystem
-from tests.proof.systems import bouncing_in_turns, doubled_in_turns, family, matrix, pushed
+from tests.proof.systems import (
+    bouncing_in_turns,
+    doubled_in_turns,
+    family,
+    matrix,
+    pushed,
+    sheared_in_stays,
+)
 
 ROUND = Clock(3, ("a", "b"))
 
@@ -96,6 +103,9 @@ def test_the_parts_of_a_rounding_are_those_of_their_modes():
 
 
 def test_kept_contact_has_no_free_modes():
+    stays = sheared_in_stays(2)
+    parts = [on_turn(stays, stays.clock, kind) for kind in stays.clock.kinds]
+    assert [[mode.name for mode in part.modes] for part in parts] == [["m0"], ["m1"], ["m2"]]
     system = replace(bouncing_in_turns(), contact=None, clock=Clock(2, ("push 1", "push 2")))
     assert on_turn(system, system.clock, 1).contact is None
 
@@ -115,6 +125,26 @@ def test_a_signal_out_of_turn_refutes_nothing():
 
 # At most one of any three missed: what may follow after none, after one, and after a step more.
 ONE_OF_THREE = Clock(3, ("m0",), ((0, 1), (2, -1), (0, -1)))
+
+
+# Modes a for at least two steps, b for one, and others; what is not a follows no b.
+STAYS = Clock(4, ("a",), ((1, -1, -1), (1, 2, -1), (0, 2, 3), (0, -1, 3)), (("b",),))
+
+
+@pytest.mark.parametrize(
+    ("text", "keeps"),
+    [
+        ("a:1", True),
+        ("a:2 b:1", True),
+        ("a:1 b:1", False),
+        ("a:2 c:1", False),
+        ("a:2 b:1 c:1", True),
+        ("a:2 b:1 c:1 b:1", False),
+        ("a:1 b:1 c:1 a:1", True),
+    ],
+)
+def test_signals_that_keep_dwell_times(text, keeps):
+    assert keeps_turns(STAYS, signal(text)) is keeps
 
 
 @pytest.mark.parametrize(
@@ -141,8 +171,12 @@ def test_what_an_automaton_allows():
     assert ONE_OF_THREE.after(0, 0) == 0
     assert ONE_OF_THREE.after(0, 1) == 1
     assert ONE_OF_THREE.after(1, 1) is None
-    assert [*ONE_OF_THREE.turns()] == [(0, True, 0), (0, False, 1), (1, True, 2), (2, True, 0)]
-    assert [*ROUND.turns()] == [(0, True, 1), (1, False, 2), (2, False, 0)]
+    assert [*ONE_OF_THREE.turns()] == [(0, 0, 0), (0, 1, 1), (1, 0, 2), (2, 0, 0)]
+    assert [*ROUND.turns()] == [(0, 0, 1), (1, 1, 2), (2, 1, 0)]
+    own = [(0, 0, 1), (1, 0, 1), (1, 1, 2), (2, 0, 0), (2, 1, 2), (2, 2, 3), (3, 0, 0), (3, 2, 3)]
+    assert [*STAYS.turns()] == own
+    assert [one.counts_stays for one in (ONE_OF_THREE, ROUND, STAYS)] == [False, False, True]
+    assert STAYS.kind_of(["c", "a", "b", "any other"]) == [2, 0, 1, 2]
 
 
 def missing(hit: str, miss: str) -> SwitchedSystem:

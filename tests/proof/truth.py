@@ -30,6 +30,7 @@ from nrs_design.proof.evidence import (
 )
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
+from nrs_design.proof.switching import Clock
 from nrs_design.proof.system import SwitchedSystem
 
 Rows = list[list[Fraction]]
@@ -347,7 +348,6 @@ def moves(
         system.time is Time.CONTINUOUS,
     )
     at = "" if turn is None else f" {turn}"
-    to = at if turn is None else f" {(turn + 1) % system.clock.length}"
     pulls = () if contact is None else contact.pulls
     errors = [(f"rounding {i}", r) for i, r in enumerate(system.roundings, 1) if rounding]
     width = n + len(channels) + len(errors)
@@ -360,8 +360,10 @@ def moves(
 
     free = () if contact is None else contact.free
     for k, mode in enumerate((*system.modes, *free)):
-        if turn is not None and (mode.name in system.clock.first) != (turn == 0):
+        leads = None if turn is None else led(system.clock, turn, mode.name)
+        if leads == -1:
             continue
+        to = at if leads is None else f" {leads}"
         wide, count = mode.A.fractions(), len(system.modes)
         for part in (*(system.channels[i] for i in channels), *(part for _, part in errors)):
             wide = [
@@ -369,7 +371,7 @@ def moves(
             ]
         sizes = [(name, size(part.rows[k].fractions()[0])) for name, part in errors]
 
-        def move(where, source, target, image, *crossings, mode=mode.name, sizes=sizes):
+        def move(where, source, target, image, *crossings, mode=mode.name, sizes=sizes, to=to):
             flies = source == "free"
             if flies:
                 image, rows = _without([*image], n - 1), _without([q for _, q in sizes], n - 1)
@@ -779,11 +781,8 @@ def _grows_in_contact(system: SwitchedSystem, item: GrowingSequence) -> bool:
     touching = {m.name for m in system.modes} if flights is None else set(flights.touching)
     matrices = {m.name: np.array(m.A.floats()) for m in (*system.modes, *free)}
     names = [name for name, count in item.steps for _ in range(int(count))]
-    if system.clock is not None:
-        turns = [name in system.clock.first for name in names]
-        if len(names) % 2 or turns not in ([True, False] * (len(names) // 2),
-                                           [False, True] * (len(names) // 2)):  # fmt: skip
-            return False
+    if system.clock is not None and not goes_on(system.clock, names):
+        return False
     M = np.eye(system.order)
     for name in names:
         M = matrices[name] @ M
@@ -851,14 +850,28 @@ def _grows_in_a_period(system: SwitchedSystem, item: GrowingSequence) -> bool:
 
 
 def _takes_turns(system: SwitchedSystem, item: GrowingSequence) -> bool:
-    """Write every step down, and find a step of the round at which the period may begin."""
+    """Write every step down, and find a state in which the period may begin for ever."""
     assert system.clock is not None
-    length = system.clock.length
-    every = [name in system.clock.first for name, count in item.steps for _ in range(int(count))]
-    return len(every) % length == 0 and any(
-        all(first == ((start + k) % length == 0) for k, first in enumerate(every))
-        for start in range(length)
-    )
+    return goes_on(system.clock, [name for name, n in item.steps for _ in range(int(n))])
+
+
+def led(clock: Clock, state: int, name: str) -> int:
+    """Return where a mode leads from a state; -1 where it is not its turn."""
+    kinds = [clock.first, *clock.more, (name,)]
+    kind = next(k for k, own in enumerate(kinds) if name in own)
+    if clock.ahead:
+        return clock.ahead[state][kind]
+    return (state + 1) % clock.length if (kind == 0) == (state == 0) else -1
+
+
+def goes_on(clock: Clock, names: Sequence[str]) -> bool:
+    """Tell whether steps may be repeated from some state, as often as there are states."""
+    for state in range(clock.length):
+        for name in [*names] * clock.length:
+            state = state if state == -1 else led(clock, state, name)
+        if state != -1:
+            return True
+    return False
 
 
 def _grows_at_value(system: SwitchedSystem, item: GrowingSequence) -> bool:

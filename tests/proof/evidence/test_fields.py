@@ -39,6 +39,7 @@ from tests.proof.systems import (
     genuine,
     juggling_among_modes,
     matrix,
+    sheared_in_stays,
 )
 from tests.support import number_in
 
@@ -264,6 +265,11 @@ def test_a_rule_for_misses_is_read_as_it_was_written():
     fields = system_fields(system)
     assert fields["clock"] == {"length": 2, "first": ["m0"], "ahead": [[0, 1], [0, -1]]}
     assert read_system(system.name, fields).clock == system.clock
+    # An automaton of many states is no matrix that something is decided of.
+    stays = sheared_in_stays(300)
+    fields = system_fields(stays)
+    assert fields["clock"]["more"] == [["m1"]]
+    assert read_system(stays.name, fields).clock == stays.clock
 
 
 @pytest.mark.parametrize(
@@ -277,7 +283,8 @@ def test_a_rule_for_misses_is_read_as_it_was_written():
         ({"length": 1001, "first": ["m0"], "ahead": [[0, 1]]}, "from 2 to 1000 steps or states"),
         ({"length": 2, "first": ["m0"], "ahead": [[0, 1]] * 1001}, "from 2 to 1000 steps or"),
         ({"length": 2, "first": ["m0"], "ahead": [[0, None]]}, "expected an integer"),
-        ({"length": 2, "first": ["m0"], "ahead": [[0]]}, "zip"),
+        ({"length": 2, "first": ["m0"], "ahead": [0]}, "expected a list"),
+        ({"length": 2, "first": ["m0"], "ahead": [[0, 1]] * 2, "more": ["m1"]}, "expected a list"),
     ],
 )
 def test_malformed_turns(clock, reason):

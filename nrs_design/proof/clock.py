@@ -31,8 +31,7 @@ def keeps_turns(clock: Clock, steps: Sequence[tuple[str, Fraction]]) -> bool:
     states = range(clock.length)
     once = [tuple(clock.after(k, kind) for k in states) for kind in clock.kinds]
     whole: Leads = tuple(states)
-    kinds = clock.kind_of(name for name, _ in steps)
-    for kind, (_, count) in zip(kinds, steps, strict=True):
+    for kind, (_, count) in zip(clock.kind_of(name for name, _ in steps), steps, strict=True):
         whole = _then(whole, _repeated(once[kind], int(count)))
     return any(state is not None for state in _repeated(whole, clock.length))
 

@@ -129,25 +129,19 @@ def _odd_clock(system: SwitchedSystem) -> Iterator[str]:
     yield from _odd_automaton(system.clock)
     clock, every = system.clock, [mode.name for mode in system.every_mode]
     named = [name for own in (clock.first, *clock.more) for name in own]
-    if not set(named) <= set(every):
-        yield "a mode that does not exist is to take its turn"
-    if len(set(named)) < len(named):
-        yield "a mode is of two kinds"
-    kinds = set(clock.kinds)
+    if not set(named) <= set(every) or len(set(named)) < len(named):
+        yield "a mode that does not exist is to take its turn, or one is of two kinds"
     groups = [clock.kind_of(mode.name for mode in part) for part in (system.modes, system.free)]
-    if not all(set(group) == kinds for group in groups if group):
+    if not all({*group} == {*clock.kinds} for group in groups if group):
         yield "a turn has no mode, in contact or free"
     if any(len(set(clock.kind_of(names))) > 1 for names in system.enclosures):
         yield "what is between the modes of an enclosure is of two kinds that take turns"
 
 
 def _odd_automaton(clock: Clock) -> Iterator[str]:
-    if clock.is_round:
-        if clock.more:
-            yield "a round has modes of more than two kinds"
+    if clock.is_round and not clock.more:
         return
-    kinds = len(clock.kinds)
-    if len(clock.ahead) != clock.length or any(len(leads) != kinds for leads in clock.ahead):
+    if [*map(len, clock.ahead)] != [len(clock.kinds)] * clock.length:
         yield "what may follow is not said of every state of an automaton"
     if any(not NOWHERE <= target < clock.length for leads in clock.ahead for target in leads):
         yield "a step leads to a state that the automaton does not have"

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from fractions import Fraction
+from itertools import product
 
 from nrs_design.proof.matrix import RationalMatrix, exact_fraction
 from nrs_design.proof.mode import Mode
@@ -178,11 +179,10 @@ class Clock:
 
     def turns(self) -> Iterator[tuple[int, int, int]]:
         """Yield every state, each kind of modes that may be in force, and where these lead."""
-        for state in range(self.length):
-            for kind in self.kinds:
-                target = self.after(state, kind)
-                if target is not None:
-                    yield state, kind, target
+        for state, kind in product(range(self.length), self.kinds):
+            target = self.after(state, kind)
+            if target is not None:
+                yield state, kind, target
 
 
 def constants_words(switching: Switching) -> str:

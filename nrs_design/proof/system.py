@@ -86,10 +86,8 @@ class SwitchedSystem:
         if contact is not None:
             contact = replace(contact, free=tuple(compress(contact.free, flying)))
         if clock is not None:
-            first, *more = (
-                tuple(name for name in own if name in names) for own in (clock.first, *clock.more)
-            )
-            clock = replace(clock, first=first, more=tuple(more))
+            kinds = [tuple(n for n in own if n in names) for own in (clock.first, *clock.more)]
+            clock = replace(clock, first=kinds[0], more=tuple(kinds[1:]))
         roundings = (
             replace(
                 item,

@@ -450,7 +450,8 @@ class FormsOnGraph(AbstractFunction):
 
     def _decides(self, step: Step, a: int, b: int, system: SwitchedSystem) -> Hashable:
         """TRUSTED: return what an inequality follows from, while its step lives."""
-        before, after = self._restricted(a, step.states, system), self._after(step, b, system)
+        before = self._restricted(a, step.states, system)
+        after = self._restricted(b, len(step.rows), system)
         parts = (step.rows, step.units, step.errors, step.crossings, step.weights)
         facts = frozenset(self._multipliers_to(b).items()) if step.facts else None
         numbers = step.states, step.over, step.is_flow, step.time
@@ -465,14 +466,12 @@ class FormsOnGraph(AbstractFunction):
         """
         if not isinstance(step, Step):
             return step.form(self.nodes[a].form, self.nodes[b].form, self.rate)
-        before, after = self._restricted(a, step.states, system), self._after(step, b, system)
+        before = self._restricted(a, step.states, system)
+        after = self._restricted(b, len(step.rows), system)
         facts, d = self._multipliers_to(b) if step.facts else {}, self.degree
         keeps = 2 * d * self.rate if step.is_flow else self.rate ** (2 * d * step.time)
         moved = step if d == 1 else lifted(step, d, self.rate)
         return moved.form(before, after, keeps, lambda fact: facts.get(fact, 0), multiply=multiply)
-
-    def _after(self, step: Step, b: int, system: SwitchedSystem) -> Matrix:
-        return self._restricted(b, len(step.rows), system)
 
     def _restricted(self, node: int, states: int, system: SwitchedSystem) -> Matrix:
         """Return the form of a node where all but the first states are zero."""
@@ -572,11 +571,10 @@ def steps_together(
         steps = steps_of(part, acting, grain, lost=lost)
         return tuple(replace(s, source=at[s.source], target=at[s.target]) for s in steps)
 
-    if system.clock is None:
+    if (clock := system.clock) is None:
         return placed(system)
     from nrs_design.proof.clock import on_turn
 
-    clock = system.clock
     parts = [placed(on_turn(system, clock, kind)) for kind in clock.kinds]
     at = "step" if clock.is_round else "state"
     return tuple(

@@ -28,9 +28,9 @@ _MISSES = (
     "sample."
 )
 _STAYS = (
-    "While a controller is in force, its function decreases faster than the claim. So the functions "
-    "of a stay grow from sample to sample, up to its dwell time, and leave room for the rise at a "
-    "switch. The claim is about every sample."
+    "While a controller is in force, its function decreases faster than the claim. So the "
+    "functions of a stay grow from sample to sample, up to its dwell time, and leave room for the "
+    "rise at a switch. The claim is about every sample."
 )
 _IN_THE_AIR = (
     "In free motion the deflection is left out of the function. So it measures motion, force and "

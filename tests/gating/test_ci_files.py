@@ -22,8 +22,10 @@ ROOT = Path(__file__).parents[2]
 WORKFLOW = ROOT / "docs/ci/github-actions.yml"
 GITLAB = ROOT / "docs/ci/gitlab-ci.yml"
 HOOKS = ROOT / ".pre-commit-hooks.yaml"
-GUIDE = ROOT / "docs/ci/README.md"
+PRE_COMMIT = ROOT / ".pre-commit-config.yaml"
 CLEARED = "rm -rf gate"
+UPDATES = ROOT / ".github/dependabot.yml"
+FORMS = ROOT / ".github/ISSUE_TEMPLATE"
 
 
 ACTION = ROOT / "docs/ci/action.yml"
@@ -38,10 +40,8 @@ def steps():
 
 
 def local_hooks():
-    (block,) = re.findall(r"```yaml\n(.*?)```", GUIDE.read_text(), re.DOTALL)
-    (repository,) = parse(block)["repos"]
-    assert repository["repo"] == "local"
-    return repository["hooks"]
+    (own,) = (each for each in parse(PRE_COMMIT)["repos"] if each["repo"] == "local")
+    return own["hooks"]
 
 
 def gitlab_lines():
@@ -109,6 +109,50 @@ def test_actions_are_pinned_by_commit():
     used = [step["uses"] for step in steps() if "uses" in step]
     assert len(used) == 13
     assert all(re.fullmatch(r"[\w./-]+@[0-9a-f]{40}", action) for action in used)
+
+
+def test_the_workflow_runs_what_ci_runs():
+    """On a push and on a pull request, which may only read; at night the studies."""
+    workflow = parse(ROOT / ".github/workflows/ci.yml")
+    assert workflow["permissions"] == {"contents": "read"}
+    assert {"push", "pull_request", "schedule"} == workflow["on"].keys()
+    runs = {name: job["steps"][-1]["run"] for name, job in workflow["jobs"].items()}
+    assert runs["run"] == ".ci/run"
+    assert os.access(ROOT / ".ci/run", os.X_OK)
+    assert runs["nightly"].endswith("nox -s nightly")
+    used = {step["uses"] for job in workflow["jobs"].values() for step in job["steps"][:-1]}
+    assert used <= {step["uses"] for step in steps() if "uses" in step}
+
+
+def test_ruff_is_one_version():
+    (ruff,) = (each for each in parse(PRE_COMMIT)["repos"] if "ruff" in each["repo"])
+    assert f"ruff=={ruff['rev'].removeprefix('v')}\n" in (ROOT / "constraints.txt").read_text()
+
+
+def test_updates_find_their_files():
+    updates = {each["package-ecosystem"]: each for each in parse(UPDATES)["updates"]}
+    folders = [ROOT / name.strip("/") for name in updates["pip"]["directories"]]
+    assert all(list(folder.glob("*.txt")) for folder in folders)
+    assert updates.keys() == {"pip", "github-actions"}
+
+
+@pytest.mark.parametrize("form", sorted(FORMS.glob("[0-9]-*.yml")), ids=lambda path: path.stem)
+def test_issue_forms_ask_for_what_is_needed(form):
+    asked = parse(form)
+    assert asked["name"]
+    assert asked["description"]
+    fields = [each for each in asked["body"] if each["type"] != "markdown"]
+    assert len({each["id"] for each in fields}) == len(fields)
+    assert all(each["attributes"]["label"] for each in fields)
+    needed = {each["id"] for each in fields if each.get("validations", {}).get("required")}
+    assert (
+        needed
+        == {
+            "1-wrong-verdict": {"spec", "command", "reason", "versions"},
+            "2-error": {"command", "expected", "versions"},
+            "3-proposal": {"task"},
+        }[form.stem]
+    )
 
 
 def test_what_is_installed_is_pinned_by_hash():

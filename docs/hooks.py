@@ -15,11 +15,12 @@ from making.assumptions import assumptions_table
 from making.combinations import combinations_table
 from making.commands import commands_page
 from making.cost import cost_figures
+from making.dissertation import misprints_table, reproduced_table
 from making.faults import refuse
 from making.fields import spec_page
 from making.floors import drawing
+from making.growth import growth_table
 from making.library import library_page
-from making.misprints import misprints_table
 from making.notebook import made, notebook_of, page_of
 from making.offline import loaded_from_elsewhere
 from making.rules import rules_page
@@ -78,18 +79,15 @@ def _figures() -> dict[str, str | bytes]:
 
 def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Files) -> str:
     """Put in what is made, and point links at specs, beside the documentation, to their copies."""
-
-    def make(match: re.Match[str]) -> str:
-        if match[1] == "floors":
-            return drawing(ROOT / "nrs_design", markdown)
-        if match[1] == "combinations":
-            return combinations_table()
-        if match[1] == "assumptions":
-            return assumptions_table()
-        assert match[1] == "misprints"
-        return misprints_table()
-
-    markdown = MADE.sub(make, markdown)
+    makers = {
+        "assumptions": assumptions_table,
+        "combinations": combinations_table,
+        "floors": lambda: drawing(ROOT / "nrs_design", markdown),
+        "growth": lambda: growth_table(ROOT / "tests" / "literature" / "growth_per_step.yaml"),
+        "misprints": misprints_table,
+        "reproduced": reproduced_table,
+    }
+    markdown = MADE.sub(lambda match: makers[match[1]](), markdown)
     return re.sub(r"\]\(\.\./((?:\.\./)*specs/)", r"](\1", markdown)
 
 

@@ -24,6 +24,16 @@ def text_of(page: str) -> str:
     return (ROOT / page).read_text(encoding="utf-8")
 
 
+def kind_pages() -> dict[str, str]:
+    """The page of each kind of evidence, by the table of `docs/certificates/README.md`."""
+    rows = re.findall(
+        r"^\| `([\w-]+)` \| .* \| \[.*\]\(([\w-]+\.md)",
+        text_of("docs/certificates/README.md"),
+        re.MULTILINE,
+    )
+    return {kind: f"docs/certificates/{page}" for kind, page in rows}
+
+
 def session_of(page: str) -> list[tuple[str, str]]:
     """Commands behind ``$``, each with what it prints, in the order of the page."""
     return [step for block in CONSOLE.findall(text_of(page)) for step in STEP.findall(block)]

@@ -11,14 +11,15 @@ from nrs_design.proof.evidence import KINDS, class_of
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import SwitchedSystem
 from tests.certificates.attacks import SHIPPED, shipped
-from tests.docs.pages import text_of
+from tests.docs.pages import kind_pages, text_of
 
 PAGE = text_of("docs/certificates/format.md")
+PAGES = kind_pages()
 
 
 def named(*kinds):
     """Words within code, such as those of ``{name, unit, bound, columns}``."""
-    text = "\n".join([PAGE, *(text_of(f"docs/certificates/{kind}.md") for kind in kinds)])
+    text = "\n".join([PAGE, *(text_of(PAGES[kind]) for kind in kinds)])
     text = re.sub(r"^```.*?^```", "", text, flags=re.DOTALL | re.MULTILINE)
     return {word for code in re.findall(r"`([^`]+)`", text) for word in re.findall(r"\w+", code)}
 
@@ -45,9 +46,7 @@ def test_every_field_of_a_system_is_there():
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_every_field_of_a_statement_is_there(kind):
-    # An offset ellipsoid has the fields of the other one; its page says what differs.
-    more = ["invariant-ellipsoid"] if kind == "offset-ellipsoid" else []
-    assert set(names(class_of(kind))) - named(kind, *more) == set()
+    assert set(names(class_of(kind))) - named(kind) == set()
 
 
 def test_every_field_that_ships_is_there():

@@ -4,13 +4,15 @@ import re
 
 import pytest
 from making.cost import problem_of
+from making.dissertation import misprints_table, reproduced_table, rows
 from making.floors import drawing, floors_of, imports_between, label
-from making.misprints import misprints_table
+from making.growth import growth_table
 from making.offline import loaded_from_elsewhere
 
 from nrs_design.design.impedance_optimum import impedance_cost, optimize_impedance
-from nrs_design.thesis.table import printed_errors, reproduce
+from nrs_design.thesis.table import counts_line, printed_errors
 from tests.support import ROOT, SOFT_TISSUE
+from tests.tables import table
 
 ARCHITECTURE = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
 TABLE = "| `top` | words |\n| `middle`, `beside` | words |\n| `ground` | words |\n"
@@ -78,16 +80,30 @@ def test_the_cost_that_is_drawn_is_that_of_the_design():
     problem = problem_of(SOFT_TISSUE, "insertion")
     optimum = optimize_impedance(problem)
     assert optimum.Mt == 0.01
-    # As the README shows.
+    # As `optimize` prints.
     assert float(impedance_cost(problem, optimum.Mt, optimum.Bt)) == pytest.approx(0.1552, abs=1e-4)
 
 
 @pytest.mark.slow
-def test_every_misprint_has_a_row():
-    table = misprints_table().splitlines()[2:]
-    errors = printed_errors(reproduce())
-    rows = [row for _, touched in errors for row in touched]
-    assert len(table) == len(rows)
-    assert all(f" | {row.section} | " in line for line, row in zip(table, rows, strict=True))
+def test_every_number_of_the_dissertation_has_a_row():
+    counts, _, _, _, *listed = reproduced_table().splitlines()
+    assert counts == counts_line(rows())
+    verdicts = [row.verdict for row in rows()]
+    compared = {"reproduced", "fitted", "derived"}
+    assert len(listed) == sum(verdict in compared for verdict in verdicts)
+    assert any(line.endswith("| 2.14859 | N m s/rad | reproduced |") for line in listed)
+    misprints = misprints_table().splitlines()[2:]
+    errors = printed_errors(rows())
+    touched = [row for _, of_one in errors for row in of_one]
+    assert len(misprints) == len(touched)
+    assert all(f" | {row.section} | " in x for x, row in zip(misprints, touched, strict=True))
     # Named on the first of its rows only.
-    assert [line.startswith("|  |") for line in table].count(False) == len(errors)
+    assert [line.startswith("|  |") for line in misprints].count(False) == len(errors)
+
+
+def test_every_published_growth_has_a_row():
+    path = ROOT / "tests/literature/growth_per_step.yaml"
+    _, _, *rows = growth_table(path).splitlines()
+    assert len(rows) == len(table(path))
+    assert "| G96 long |  | 13 |" in rows
+    assert "| L17 long | 1.68418528 | 41 |" in rows

@@ -23,7 +23,7 @@ from tests.test_readme import assert_same
 # The README has a test of its own, in process.
 SESSIONS = [page for page in pages() if session_of(page) and page != "README.md"]
 # Searches for gains, of which one takes as long as ten other pages.
-NIGHTLY = ("docs/design/gains-with-proof.md", "docs/design/task-space.md")
+NIGHTLY = ("docs/design/gains-with-proof.md", "docs/design/axes.md")
 WRITTEN = {
     "docs/tutorial.md": {"arm.cert.json", "arm.html", "nrs.lock", "arm.c", "arm.h"},
     "docs/ci/README.md": {"mine.cert.json", "nrs.lock"},

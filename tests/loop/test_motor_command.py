@@ -98,7 +98,7 @@ def worst_signs(system, mode):
 @pytest.mark.slow
 @pytest.mark.parametrize(("speed", "level", "kept"), [("7.5", 1986, True), ("8", 2118, False)])
 def test_the_numbers_of_the_page(speed, level, kept):
-    """docs/certificates/invariant-ellipsoid.md: proved, and found at two stiffnesses.
+    """docs/certificates/reference.md: proved, and found at two stiffnesses.
 
     Where the limit is kept, runs in single precision stay below the bound and come near.
     """

@@ -112,7 +112,7 @@ def test_without_a_period_or_a_motor_nothing_runs():
 
 
 def two_clocks(period, outer, delay, duration):
-    """The two loops as docs/certificates/two-periods.md has them, in double."""
+    """The two loops as docs/certificates/timing.md has them, in double."""
     Km, tau, Kd, zero, k, at = 4.8417e-4, 0.0351, 2060.0, 56.9706, 43.0, np.radians(1)
     h = min(period, outer)
     step = expm(h * np.array([[0, 1, 0], [0, -1 / tau, Km / tau], [0, 0, 0]]))

@@ -18,7 +18,6 @@ BENCHMARKS = (
     "verify_shipped",
     "many_modes",
     "tight_margins",
-    "high_order",
     "exact_check",
     "random_families",
     "gradient_share",

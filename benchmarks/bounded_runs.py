@@ -62,16 +62,7 @@ def hold_against_bound(
 ) -> tuple[float, float, bool]:
     """Return the proved bound, the largest force of all runs, and whether rounding is covered.
 
-    Parameters
-    ----------
-    controllers : tuple of str
-        Names in the spec.
-    inertia : str
-        Mt in kg m^2.
-    contact : {"kept", "losable"}
-        What is proved, and simulated.
-    runs : int
-        How many runs.
+    `inertia` is Mt in kg m^2, `contact` ``kept`` or ``losable``, as proved and simulated.
     """
     loaded = _spec(controllers, inertia, contact)
     limits = search_limits(loaded.spec, Overrides(budget=BUDGET), optimize_rate=False)

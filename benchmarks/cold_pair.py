@@ -53,40 +53,16 @@ def run(size: Size) -> tuple[Comparison, ...]:
         f"{'kept' if proof <= WANTED_SECONDS else 'MISSED'}"
     )
     bare = f"python -c '{IMPORTS}'"
-    times = f"at most {MOST_IMPORTS} times as long is wanted: {{:.2f}} times"
+    pair, least = "one pair, cold process, no rate search", 1 / MOST_IMPORTS
+    limit = f"at most {MOST_IMPORTS} times as long is wanted: {{:.2f}} times"
+    start = f"{empty / imports:.2f} times: what a proof on these libraries starts from"
+    nothing = "command that does nothing"
+    parts = f"{nothing}: these imports, flint, one model of pydantic, Typer's parse"
+    verified = "its certificate verified, cold process"
     return (
-        Comparison(
-            "one pair, cold process, no rate search", "cvxpy script", script, proof, TARGET, note
-        ),
-        Comparison(
-            "one pair, cold process, no rate search",
-            bare,
-            imports,
-            proof,
-            1 / MOST_IMPORTS,
-            times.format(proof / imports),
-        ),
-        Comparison(
-            "one pair, cold process, no rate search",
-            "command that does nothing, on the same libraries",
-            empty,
-            proof,
-            None,
-        ),
-        Comparison(
-            "command that does nothing: these imports, flint, one model of pydantic, Typer's parse",
-            bare,
-            imports,
-            empty,
-            None,
-            f"{empty / imports:.2f} times: what a proof on these libraries starts from",
-        ),
-        Comparison(
-            "its certificate verified, cold process",
-            bare,
-            imports,
-            check,
-            1 / MOST_IMPORTS,
-            times.format(check / imports),
-        ),
+        Comparison(pair, "cvxpy script", script, proof, TARGET, note),
+        Comparison(pair, bare, imports, proof, least, limit.format(proof / imports)),
+        Comparison(pair, f"{nothing}, on the same libraries", empty, proof, None),
+        Comparison(parts, bare, imports, empty, None, start),
+        Comparison(verified, bare, imports, check, least, limit.format(check / imports)),
     )

@@ -39,45 +39,26 @@ LINE, WAIT = 16, 5
 
 @dataclass(frozen=True)
 class Counts:
-    """What a law took, over many inputs and states.
+    """Instructions and cycles of each case; stack and code in bytes.
 
-    Parameters
-    ----------
-    instructions : ndarray
-        For each case, with the return.
-    by_clock : ndarray
-        The same by the clock of QEMU.
-    cycles, cold_cycles : ndarray
-        For each case: without wait states, loads one after the other pipelined, one cycle to
-        refill after a branch; and with five wait states for each new line of flash, none in the
-        cache before, and for each load, as if all came from flash, and three to refill.
-    stack : int
-        Bytes.
-    code : int
-        Bytes of the function, with the numbers between its instructions.
+    `cycles`: without wait states, loads one after the other pipelined, one cycle to refill after a
+    branch. `cold_cycles`: with five wait states for each new line of flash, none in the cache
+    before, and for each load, as if all came from flash, and three to refill.
     """
 
-    instructions: NDArray[np.int64]
-    by_clock: NDArray[np.int64]
+    instructions: NDArray[np.int64]  # With the return
+    by_clock: NDArray[np.int64]  # The same by the clock of QEMU
     cycles: NDArray[np.int64]
     cold_cycles: NDArray[np.int64]
     stack: int
-    code: int
+    code: int  # Of the function, with the numbers between its instructions
 
 
 @dataclass(frozen=True)
 class Instruction:
-    """One line of a disassembly.
+    """One line of a disassembly, as objdump writes it."""
 
-    Parameters
-    ----------
-    size : int
-        Bytes.
-    name, operands : str
-        As objdump writes them.
-    """
-
-    size: int
+    size: int  # Bytes
     name: str
     operands: str
 
@@ -95,14 +76,10 @@ class Instruction:
         return 2 * ("rd" in self.name) or int(bool(re.match("v?(ldr|str)", self.name)))
 
     def cycles(self, *, refill: int | None, pipelined: bool) -> int:
-        """Return how long it takes without wait states, as the manual of the core has it.
+        """Return how long it takes without wait states, by the manual of the core.
 
-        Parameters
-        ----------
-        refill : int or None
-            Cycles after a branch that is taken; None for what is none.
-        pipelined : bool
-            Whether a load is hidden behind its neighbour.
+        `refill`: cycles after a branch that is taken. `pipelined`: a load is hidden behind its
+        neighbour.
         """
         base = 14 if re.match("v(div|sqrt)", self.name) else 1
         base = 3 if re.match("v(f?n?ml[as]|f?n?m[as])", self.name) else base
@@ -120,40 +97,18 @@ def _registers(text: str) -> int:
 
 @dataclass(frozen=True)
 class Compiled:
-    """The C of a law, and what it is called with.
+    """The exported C of a law, and what it is called with."""
 
-    Parameters
-    ----------
-    name : str
-        Of the header and the source.
-    header, source : str
-        As they are exported.
-    own : str
-        Beginning of the names in C.
-    rows : ndarray of uint32
-        Shape (n, words): the mode, where there is one, inputs and states.
-    states : int
-        How many of the words are states.
-    """
-
-    name: str
+    name: str  # Of the header and the source
     header: str
     source: str
-    own: str
-    rows: NDArray[np.uint32]
-    states: int
+    own: str  # Beginning of the names in C
+    rows: NDArray[np.uint32]  # Shape (n, words): the mode, where there is one, inputs and states
+    states: int  # Words that are states
 
 
 def measure(folder: Path, law: Compiled) -> Counts:
-    """Compile a law and count.
-
-    Parameters
-    ----------
-    folder : Path
-        For files.
-    law : Compiled
-        What is counted.
-    """
+    """Compile a law in a folder, and count."""
     (folder / f"{law.name}.h").write_text(law.header)
     (folder / "law.c").write_text(law.source)
     (folder / "law.h").write_text(_renamed(law))

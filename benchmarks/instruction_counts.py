@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -14,7 +12,6 @@ from numpy.typing import NDArray
 
 from benchmarks.cortex import Compiled, Counts, measure, versions
 from benchmarks.measure import Finding, Size
-from nrs_design.controllers.operations import StepLaw
 from nrs_design.controllers.shipped import shipped_law
 from nrs_design.exporters.build import build_unproved
 from nrs_design.exporters.c_names import CNames
@@ -29,59 +26,20 @@ PERIOD = Fraction(1, 500)
 COUNT, FEW, FEWEST = 1000, 100, 20
 
 
-@dataclass(frozen=True)
-class Exported:
-    """A law with its C.
-
-    Parameters
-    ----------
-    law : StepLaw
-        Its operations.
-    name : str
-        Of the header and the source.
-    header, source : str
-        Their texts.
-    own : str
-        Beginning of the names in C.
-    """
-
-    law: StepLaw
-    name: str
-    header: str
-    source: str
-    own: str
-
-
-def _of_spec(file: Path) -> Callable[[], Exported]:
-    """Return what designs a spec; what the comments of its C say of a proof is not compiled."""
-
-    def make() -> Exported:
-        loaded = read_spec(file)
-        designed = run_design(loaded)
-        assert designed is not None
-        law = shipped_law(designed.spec, designed.design, PERIOD)
-        record = build_unproved(loaded, designed.design, "a benchmark", PERIOD, None)
-        names = CNames(record.spec.name)
-        texts = header_text(record, law, names), source_text(record, law, names)
-        return Exported(law, names.spec, *texts, names.lower)
-
-    return make
-
-
-# Each law by its name: what makes it, and how many instructions are aimed for.
-LAWS: dict[str, tuple[Callable[[], Exported], int | None]] = {
-    "hybrid impedance axis with guards": (_of_spec(HERE / "hybrid.nrs.yaml"), 200),
-    "soft-tissue-sampled": (_of_spec(SPECS / "soft-tissue-sampled.nrs.yaml"), None),
-    "force-limit-sampled": (_of_spec(SPECS / "force-limit-sampled.nrs.yaml"), None),
+# Each law by its name: its spec, and how many instructions are aimed for.
+LAWS = {
+    "hybrid impedance axis with guards": (HERE / "hybrid.nrs.yaml", 200),
+    "soft-tissue-sampled": (SPECS / "soft-tissue-sampled.nrs.yaml", None),
+    "force-limit-sampled": (SPECS / "force-limit-sampled.nrs.yaml", None),
 }
 
 
 def run(size: Size) -> tuple[Finding, ...]:
     """Count every law; one more line says whether both ways of counting agree."""
     count, alike, findings = size.pick(COUNT, FEW, FEWEST), [], []
-    for name, (make, goal) in LAWS.items():
+    for name, (file, goal) in LAWS.items():
         begin = perf_counter()
-        found, valid = _count(make(), count)
+        found, valid = _count(file, count)
         seconds = perf_counter() - begin
         alike.append(bool((found.instructions == found.by_clock).all()))
         most = int(found.instructions.max())
@@ -94,11 +52,18 @@ def run(size: Size) -> tuple[Finding, ...]:
     return (*findings, Finding("instructions, counted twice", result, aim, all(alike), 0.0))
 
 
-def _count(made: Exported, count: int) -> tuple[Counts, NDArray[np.bool_]]:
-    """Count cases of which a part is refused; which are not comes back, too."""
-    law, vectors = made.law, make_vectors(made.law, count)
+def _count(file: Path, count: int) -> tuple[Counts, NDArray[np.bool_]]:
+    """Count cases of the law of a spec, and return which of them are not refused."""
+    loaded = read_spec(file)
+    designed = run_design(loaded)
+    assert designed is not None
+    law = shipped_law(designed.spec, designed.design, PERIOD)
+    # What the comments of its C say of a proof is not compiled.
+    record = build_unproved(loaded, designed.design, "a benchmark", PERIOD, None)
+    names, vectors = CNames(record.spec.name), make_vectors(law, count)
+    texts = header_text(record, law, names), source_text(record, law, names)
     rows = vectors.rows[:, : bool(law.modes) + len(law.inputs) + len(law.states)]
-    compiled = Compiled(made.name, made.header, made.source, made.own, rows, len(law.states))
+    compiled = Compiled(names.spec, *texts, names.lower, rows, len(law.states))
     with TemporaryDirectory() as folder:
         found = measure(Path(folder), compiled)
     return found, vectors.rows[:, vectors.columns.index("valid")] == 1

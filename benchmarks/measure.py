@@ -27,31 +27,13 @@ LIBRARIES = ("nrs-design", "numpy", "scipy", "clarabel", "cvxpy", "sympy")
 
 @dataclass(frozen=True)
 class Comparison:
-    """One line of the results.
-
-    Parameters
-    ----------
-    work : str
-        What both sides do.
-    peer : str
-        What is compared with.
-    peer_seconds : float or None
-        Median; None if it did not end, see `note`.
-    our_seconds : float
-        Median.
-    target : float or None
-        Least ratio peer/ours that is aimed for; None if the ratio is only reported.
-    note : str
-        Verdicts, memory and other circumstances.
-    at_least_seconds : float or None
-        Time after which a peer that did not end was stopped.
-    """
+    """A ratio of two times, one row of the results."""
 
     work: str
     peer: str
-    peer_seconds: float | None
-    our_seconds: float
-    target: float | None
+    peer_seconds: float | None  # Median; None if it was stopped after `at_least_seconds`
+    our_seconds: float  # Median
+    target: float | None  # Least ratio peer/ours; None if the ratio is only reported
     note: str = ""
     at_least_seconds: float | None = None
 
@@ -68,24 +50,10 @@ class Comparison:
 
 @dataclass(frozen=True)
 class Finding:
-    """One line of the results that is not a ratio of two times.
-
-    Parameters
-    ----------
-    work : str
-        What is done.
-    result : str
-        What came out, with units.
-    aim : str
-        What is aimed for.
-    met : bool
-        Whether the aim is met.
-    seconds : float
-        Time that it took.
-    """
+    """A row of the results that is not a ratio of two times."""
 
     work: str
-    result: str
+    result: str  # With units
     aim: str
     met: bool
     seconds: float
@@ -93,19 +61,9 @@ class Finding:
 
 @dataclass(frozen=True)
 class Failure:
-    """One line about a benchmark that gave no results.
+    """A row about a benchmark that raised an error."""
 
-    Parameters
-    ----------
-    work : str
-        Its name.
-    error : str
-        What was raised.
-    seconds : float
-        Time until then.
-    """
-
-    work: str
+    work: str  # Its name
     error: str
     seconds: float
     met: bool = False
@@ -178,15 +136,8 @@ def run_child(command: Sequence[str], bytecode: str | None = None) -> Child:
     """Run a command in a cold process of its own.
 
     A small launcher waits for it: the peak memory that Linux reports for a child is never less
-    than that of the process which started it.
-
-    Parameters
-    ----------
-    command : sequence of str
-        Program and arguments.
-    bytecode : str, optional
-        Folder where Python finds and keeps compiled modules, ours and those of the peer alike, as
-        an installation would have compiled them.
+    than that of the process which started it. Python keeps compiled modules in the folder
+    `bytecode`, as an installation would have compiled them.
     """
     environment = dict(os.environ)
     if bytecode is not None:

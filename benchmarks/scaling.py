@@ -1,12 +1,17 @@
-"""Time and peak memory against the number of modes and against the order."""
+"""Time and peak memory against the number of modes and against the order.
+
+``python -m benchmarks.scaling n m`` proves one random family in a process of its own.
+"""
 
 from __future__ import annotations
 
 import sys
 from dataclasses import dataclass
 from pathlib import Path
+from time import perf_counter
 
-from benchmarks.measure import Finding, Size, run_child
+from benchmarks.families import stable_family, to_system
+from benchmarks.measure import Finding, Size, prove, run_child
 
 MODES, QUICK_MODES, SMOKE_MODES = (16, 64, 256, 1024, 4096, 16384), (16, 64, 256), (4,)
 ORDERS, QUICK_ORDERS, SMOKE_ORDERS = (5, 10, 20, 30, 40), (5, 10), (3,)
@@ -38,7 +43,7 @@ def run(size: Size) -> tuple[Finding, ...]:
 
 
 def _measure(n: int, m: int) -> Point:
-    child = run_child([sys.executable, "-m", "benchmarks.scaling_child", str(n), str(m)])
+    child = run_child([sys.executable, "-m", "benchmarks.scaling", str(n), str(m)])
     verdict, seconds = child.output.split() if child.code == 0 else ("failed", child.seconds)
     return Point(n, m, verdict, float(seconds), child.megabytes)
 
@@ -73,3 +78,15 @@ def _draw(by_modes: list[Point], by_order: list[Point]) -> None:
     axes[1, 0].set_ylabel("peak memory of the process (MB)")
     FIGURE.parent.mkdir(exist_ok=True)
     figure.savefig(FIGURE, dpi=150)
+
+
+def main() -> None:
+    n, m = map(int, sys.argv[1:])
+    system = to_system(stable_family(n, m, seed=n * m), decimals=3)
+    start = perf_counter()
+    verdict = prove(system).verdict
+    print(f"{verdict} {perf_counter() - start}")
+
+
+if __name__ == "__main__":
+    main()

@@ -39,18 +39,8 @@ def simulate_single_precision(
 ) -> Array:
     """Return the force at every sample, from rest at the surface; shape (S, N + 1).
 
-    Parameters
-    ----------
-    law : StepLaw
-        Impedance control.
-    period : float
-        In s.
-    choices : Choices
-        What happens.
-    offset : ndarray, shape (S,)
-        Angle of the surface in rad.
-    losable : bool
-        Whether the environment does not pull.
+    `period` is in s, `offset` the angle of the surface in rad, shape (S,); where contact is
+    `losable`, the environment does not pull.
     """
     runs, steps = choices.law.shape
     theta, omega, every = offset.copy(), np.zeros(runs), np.arange(runs)

@@ -13,13 +13,7 @@ from nrs_design.cli.app import make_app
 
 
 def commands_page(command: Any = None) -> str:
-    """Describe every command.
-
-    Parameters
-    ----------
-    command : click.Command, optional
-        The program by default.
-    """
+    """Describe every command, of the program by default."""
     command = command or typer.main.get_command(make_app())
     refuse("commands, arguments or options without help", silent(command, "nrs-design"))
     context = typer.Context(command, info_name="nrs-design")

@@ -26,15 +26,7 @@ BLUE, ORANGE, GREY = "#0b5394", "#b45309", "#555555"
 
 
 def problem_of(spec: Path, controller: str) -> ImpedanceProblem:
-    """Return what the package minimizes for a controller of a spec.
-
-    Parameters
-    ----------
-    spec : Path
-        An interaction design.
-    controller : str
-        An impedance controller of it.
-    """
+    """Return what the package minimizes for a controller of a spec."""
     designed = run_design(read_spec(spec))
     assert designed is not None
     (found,) = [one for one in run_analysis(designed).impedance if one.name == controller]

@@ -24,14 +24,8 @@ def examples_of(
 ) -> dict[tuple[str, str], Example]:
     """Return the first short value of each key, by the names of definition and key.
 
-    Parameters
-    ----------
-    specs : list of (str, Path)
-        Link and file.
-    definitions : dict
-        Schemas by name.
-    roots : dict
-        Name of the definition to the kind of spec.
+    `specs` are links with their files, `definitions` schemas by name, `roots` the kind of spec of a
+    definition.
     """
     found: dict[tuple[str, str], Example] = {}
     for link, path in specs:

@@ -22,15 +22,7 @@ their links lead there.
 
 
 def spec_page(specs: list[tuple[str, Path]], definitions: dict[str, Schema] | None = None) -> str:
-    """Describe every field of a spec.
-
-    Parameters
-    ----------
-    specs : list of (str, Path)
-        Link and file of the specs that examples are taken from.
-    definitions : dict, optional
-        Schemas by name; those of the package by default.
-    """
+    """Describe every field of a spec."""
     definitions = definitions or json_schema()["definitions"]
     refuse_silence(definitions)
     roots = {model_of(kind).__name__: kind for kind in SPEC_KINDS}

@@ -52,15 +52,7 @@ def _targets(path: Path, package: str) -> Iterator[str]:
 
 
 def drawing(package: Path, text: str) -> str:
-    """Return the matrix of imports as an SVG that takes its colour from the page.
-
-    Parameters
-    ----------
-    package : Path
-        Folder of the package.
-    text : str
-        The page with the table of floors.
-    """
+    """Return the matrix of imports as an SVG that takes its colour from the page."""
     floors = floors_of(text)
     counted = imports_between(package, floors)
     upward = sum(floors.index(target) < floors.index(source) for source, target in counted)

@@ -11,13 +11,7 @@ from making.faults import refuse
 
 
 def library_page(package: ModuleType = nrs_design) -> str:
-    """List what the package offers; its docstrings are read where the page is built.
-
-    Parameters
-    ----------
-    package : module
-        With ``__all__``.
-    """
+    """List what the package offers; its docstrings are read where the page is built."""
     offered = {name: getattr(package, name) for name in package.__all__}
     refuse("public names without a docstring", undocumented(offered))
     lines = ["# Library", "", "`import nrs_design as nrs` offers:", ""]

@@ -68,15 +68,7 @@ def _drawn(figure: Any) -> bytes:
 
 
 def page_of(cells: list[Cell], name: str) -> tuple[str, dict[str, bytes]]:
-    """Return the notebook as Markdown, and its images by file name.
-
-    Parameters
-    ----------
-    cells : list of Cell
-        As they ran.
-    name : str
-        How files are named.
-    """
+    """Return the notebook as Markdown, and its images by file name."""
     lines: list[str] = []
     images: dict[str, bytes] = {}
     for cell in cells:

@@ -30,13 +30,7 @@ def schema_text(name: str) -> str:
 
 
 def schemas_page(texts: dict[str, str]) -> str:
-    """Describe the schemas, with links to the files.
-
-    Parameters
-    ----------
-    texts : dict
-        The schemas, as text, by name.
-    """
+    """Describe the schemas, with links to the files."""
     lines = [INTRODUCTION]
     for name, text in texts.items():
         schema: Schema = json.loads(text)

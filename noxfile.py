@@ -14,18 +14,18 @@ nox.needs_version = ">=2025.10.14"
 nox.options.sessions = ["lint", "types", "tests"]
 nox.options.default_venv_backend = "virtualenv"
 
-# Who is done takes over from the other: some tests are a thousand times as long as others.
+# A free process takes tests from the other: some take a thousand times as long as others.
 TWO_PROCESSES = ("-n", "2", "--dist", "worksteal")
 CONSTRAINTS = ("-c", "constraints.txt")
 IN_ENVIRONMENT = {"venv_backend": "none", "requires": ["environment"]}
-# What pip is told of places of packages, and how uv is told the same.
-PLACES = {
+# Settings of pip for package indexes, and those of uv.
+INDEX_SETTINGS = {
     "index-url": "UV_DEFAULT_INDEX",
     "extra-index-url": "UV_INDEX",
     "find-links": "UV_FIND_LINKS",
     "no-index": "UV_NO_INDEX",
 }
-# What the package is installed on; as pyproject.toml says.
+# As in pyproject.toml.
 PYTHONS = ("3.11", "3.12", "3.13")
 SOURCES = ("nrs_design", "tests", "benchmarks", "docs", "noxfile.py")
 
@@ -40,37 +40,34 @@ def lint(session: nox.Session) -> None:
 
 @nox.session
 def environment(session: nox.Session) -> None:
-    """Install the package and what tests, mypy and pages need, once for all sessions in it."""
+    """Install the package with the needs of tests, mypy and pages, once for all sessions."""
     install(session, ".[docs,test]", "mypy", "scipy-stubs")
 
 
 def install(session: nox.Session, *wanted: str) -> None:
-    """Install by uv, in a tenth of the time of pip; by pip where uv is not there or finds nothing.
-
-    What is never imported is not compiled; the rest is when it is imported first.
-    """
+    """Install by uv, in a tenth of the time of pip; by pip where uv fails. Compile nothing."""
     quick = ("uv", "pip", "install", "--quiet", "--reinstall-package", "nrs-design")
     try:
         session.install("uv", *CONSTRAINTS)
-        session.run_install(*quick, *wanted, *CONSTRAINTS, env=places_of_pip(session))
+        session.run_install(*quick, *wanted, *CONSTRAINTS, env=index_settings(session))
     except CommandFailed:
         session.install("--no-compile", *wanted, *CONSTRAINTS)
 
 
-def places_of_pip(session: nox.Session) -> dict[str, str]:
-    """Tell uv where pip looks for packages; as for pip, no place goes before another."""
-    told = session.run_install("python", "-m", "pip", "config", "list", silent=True)
-    settings = [line.partition("=") for line in str(told or "").splitlines()]
+def index_settings(session: nox.Session) -> dict[str, str]:
+    """Return the settings of uv for the indexes of pip, all of the same priority."""
+    listed = session.run_install("python", "-m", "pip", "config", "list", silent=True)
+    settings = [line.partition("=") for line in str(listed or "").splitlines()]
     env = {"UV_INDEX_STRATEGY": "unsafe-best-match"}
-    # What the environment says counts for pip, too, whatever a file says.
+    # For pip, too, the environment overrides files.
     for name, _, value in sorted(settings, key=lambda setting: setting[0].startswith(":env:")):
-        if place := PLACES.get(name.rpartition(".")[2]):
-            env[place] = " ".join(ast.literal_eval(value).split())
+        if setting := INDEX_SETTINGS.get(name.rpartition(".")[2]):
+            env[setting] = " ".join(ast.literal_eval(value).split())
     return env
 
 
 def run_there(session: nox.Session, program: str, *arguments: str, **settings: str) -> None:
-    """Run a program of the environment, which keeps the bytecode of what it imports."""
+    """Run a program of the environment, which keeps the bytecode of its imports."""
     programs = session.env_dir.parent / "environment" / "bin"
     path = f"{programs}{os.pathsep}{os.environ['PATH']}"
     env = {"PATH": path, "PYTHONDONTWRITEBYTECODE": None, **settings}
@@ -84,7 +81,7 @@ def types(session: nox.Session) -> None:
 
 @nox.session(**IN_ENVIRONMENT)
 def tests(session: nox.Session) -> None:
-    """Run all but the dear tests; in CI those too, and `coverage` has the ones of the proofs."""
+    """Run all but slow tests; in CI those too, without `tests/proof`, which `coverage` runs."""
     chosen = ("-m", "not slow")
     if os.environ.get("CI") == "true":
         chosen = ("-m", "not nightly", "--ignore=tests/proof")
@@ -93,7 +90,7 @@ def tests(session: nox.Session) -> None:
 
 @nox.session(**IN_ENVIRONMENT)
 def accessibility(session: nox.Session) -> None:
-    """Hold reports and the pages in site/ against the rules of axe-core, in Chromium."""
+    """Check reports and the pages in site/ by the rules of axe-core, in Chromium."""
     folder = session.create_tmp()
     session.run("npm", "install", "--prefix", folder, "axe-core@4.14.1", external=True, silent=True)
     axe = f"{folder}/node_modules/axe-core/axe.min.js"
@@ -103,14 +100,14 @@ def accessibility(session: nox.Session) -> None:
 
 @nox.session(**IN_ENVIRONMENT)
 def coverage(session: nox.Session) -> None:
-    """Every line and every branch of what decides is run by its own tests."""
+    """Run every line and branch of the kernel by its own tests."""
     measured = ("--cov", "--cov-report=term:skip-covered")
     run_there(session, "pytest", *TWO_PROCESSES, "-m", "not nightly", *measured, "tests/proof")
 
 
 @nox.session(**IN_ENVIRONMENT)
 def mutation(session: nox.Session) -> None:
-    """Make every small error in what decides, and run its tests: a quarter of an hour."""
+    """Make every small error in the kernel, and run its tests: half an hour."""
     run_there(session, "python", "-m", "tests.mutation", *session.posargs)
 
 
@@ -119,7 +116,7 @@ def nightly(session: nox.Session) -> None:
     """Run the studies, many more examples of every property, and all benchmarks: an hour."""
     chosen = ("-m", "nightly or hypothesis", "--hypothesis-profile", "many")
     run_there(session, "pytest", *TWO_PROCESSES, *chosen, *session.posargs)
-    # Whether each still runs; how fast is for `benchmarks`.
+    # Only that each runs; `benchmarks` measures.
     run_there(session, "python", "-m", "benchmarks", "--smoke")
 
 
@@ -145,10 +142,10 @@ def package(session: nox.Session) -> None:
     session.run("python", "-m", "build", "--outdir", str(folder))
     source, wheel = sorted(map(str, folder.iterdir()), reverse=True)
     session.run("twine", "check", "--strict", source, wheel)
-    env = places_of_pip(session) | {"UV_PYTHON_DOWNLOADS": "never"}
+    env = index_settings(session) | {"UV_PYTHON_DOWNLOADS": "never"}
     for python in PYTHONS:
         place = folder / f"python{python}"
-        # 2: this machine has no such Python, which is no fault of the package.
+        # 2: this machine has no such Python.
         create = ("uv", "venv", "--quiet", "--python", python, str(place))
         session.run(*create, env=env, success_codes=(0, 2))
         if place.exists():

@@ -2,6 +2,7 @@
 
 import re
 
+import pytest
 from ruamel.yaml import YAML
 
 from nrs_design.proof.evidence import KINDS
@@ -49,6 +50,24 @@ def test_no_heading_begins_with_a_digit():
     """The theme looks headings up by their ids, and an id of CSS begins with a letter."""
     headings = [line for page in pages() for line in re.findall(r"^#+ \d.*", text_of(page), re.M)]
     assert headings == []
+
+
+# mkdocs checks the links between the pages of docs/.
+BESIDE = ("README.md", "CONTRIBUTING.md", "SECURITY.md", "CHANGELOG.md", "benchmarks/README.md")
+
+
+def anchors_of(page):
+    headings = re.findall(r"^#+ (.*)", text_of(page), re.MULTILINE)
+    return {re.sub(r"[^\w\s-]", "", line).strip().lower().replace(" ", "-") for line in headings}
+
+
+@pytest.mark.parametrize("page", BESIDE)
+def test_links_beside_the_pages_lead_somewhere(page):
+    for link in re.findall(r"\]\((?!https?:)([^)\s]+)\)", text_of(page)):
+        name, _, anchor = link.partition("#")
+        target = (ROOT / page).parent / name if name else ROOT / page
+        assert target.exists(), link
+        assert not anchor or anchor in anchors_of(target.resolve().relative_to(ROOT).as_posix())
 
 
 def test_every_kind_of_evidence_has_its_heading_and_its_row():

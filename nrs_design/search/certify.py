@@ -152,11 +152,14 @@ def prove_together(
 
     With a wanted decay in 1/s, forms that show less are none.
     """
+    from nrs_design.search.counted_stays import search_stays
     from nrs_design.search.graphs import search_periodic_quadratic, search_together
 
     with floats_in_silence():
         family = Family.of(system, allowance, optimize_rate=wanted is not None)
-    search = search_together if system.clock is None else search_periodic_quadratic
+    search = search_together
+    if (clock := system.clock) is not None:
+        search = search_stays if clock.counts_stays else search_periodic_quadratic
     found, outcome = _take(partial(search, family), system, allowance)
     shown = None if found is None else rate_per_second(found.rate, system)
     if wanted is not None and shown is not None and shown < wanted:

@@ -60,8 +60,11 @@ def stays_of(clock: Clock) -> Stays | None:
     return found if states == [*range(clock.length)] else None
 
 
-def search_stays(family: Family, clock: Clock, stays: Stays) -> Candidates[FormsOnGraph]:
+def search_stays(family: Family) -> Candidates[FormsOnGraph]:
     """Search for one form under arbitrary switching; then for one for each controller."""
+    clock = family.system.clock
+    if clock is None or (stays := stays_of(clock)) is None:
+        return NO_MARGIN
     free = replace(family, system=replace(family.system, clock=None))
     together = search_together(replace(free, allowance=family.allowance.part(LOOKING)))
     everywhere = [(state, 1) for state in range(clock.length)]

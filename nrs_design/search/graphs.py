@@ -224,15 +224,11 @@ def search_periodic_quadratic(family: Family) -> Candidates[FormsOnGraph]:
     Where the arithmetic rounds, forms that cover that are tried before others, unless there are
     too many conditions to check.
     """
-    from nrs_design.search.counted_stays import search_stays, stays_of
-
     system, clock = family.system, family.system.clock
     if clock is None:
         return NO_MARGIN
     if not np.isfinite(family.matrices).all():
         return OUT_OF_RANGE
-    if (stays := stays_of(clock)) is not None:
-        return (yield from search_stays(family, clock, stays))
     limit, ended = _limit(family, clock), None
     every = [mode.name for mode in system.every_mode]
     kinds = Counter(clock.kind_of(every))

@@ -26,9 +26,16 @@ def _in(module: str, name: str) -> Callable[..., Any]:
 # Cheapest first. A rung that rises is tried here with its first degrees, with higher ones at last.
 LADDER: tuple[Rung, ...] = (
     Rung(
+        "quadratic for each controller",
+        Method.PERIODIC_QUADRATIC,
+        lambda f: f.counts_stays,
+        _in("counted_stays", "search_stays"),
+        clocked=True,
+    ),
+    Rung(
         "periodic quadratic",
         Method.PERIODIC_QUADRATIC,
-        _always,
+        lambda f: not f.counts_stays,
         _in("graphs", "search_periodic_quadratic"),
         clocked=True,
     ),

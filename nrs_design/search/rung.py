@@ -50,6 +50,11 @@ class Facts:
         return self.system.switching.is_arbitrary
 
     @property
+    def counts_stays(self) -> bool:
+        """Whether modes take turns as dwell times allow."""
+        return self.system.clock is not None and self.system.clock.counts_stays
+
+    @property
     def may_share_a_function(self) -> bool:
         """Whether one function for all modes could prove anything."""
         system = self.system

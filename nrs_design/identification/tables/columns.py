@@ -97,12 +97,13 @@ def _check_mapped(mapping: Mapping[str, str], header: Sequence[str], fail: Fail)
             near = difflib.get_close_matches(theirs, header, n=1)
             hint = f"did you mean {near[0]!r}?" if near else f"it has {_listed(header)}"
             raise fail(f"there is no column {theirs!r} to map", remedy=hint)
-        check_stated(theirs, stated_unit(theirs, _split(ours, fail).quantity), ours, fail)
+        check_stated(theirs, theirs, ours, fail)
 
 
-def check_stated(theirs: str, unit: str | None, ours: str, fail: Fail) -> None:
-    """Refuse a mapping whose unit contradicts the name of the column."""
+def check_stated(theirs: str, text: str, ours: str, fail: Fail) -> None:
+    """Refuse a mapping whose unit contradicts a text about the column, such as its name."""
     name = _split(ours, fail)
+    unit = stated_unit(text, name.quantity)
     if unit in (None, name.unit) or name.unit in ("", "any"):
         return
     if unit in UNITS[name.quantity]:

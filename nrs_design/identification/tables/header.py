@@ -16,7 +16,6 @@ from nrs_design.identification.tables.names import (
     UNITS,
     read_name,
     read_unit,
-    stated_unit,
 )
 
 MAX_COLUMNS = 1000
@@ -57,8 +56,7 @@ def read_header(
     units = split_cells(lines[below], separator) if below < len(lines) else []
     if _are_units(units, len(names)):
         bare = [match[1] if (match := _BRACKETS.match(unit)) else unit for unit in units]
-        _check_mapped_units(names, bare, mapped, path)
-        names = [_with_unit(*pair, mapped) for pair in zip(names, bare, strict=True)]
+        names = [_with_unit(*pair, mapped, path) for pair in zip(names, bare, strict=True)]
         below = _below_blanks(lines, below + 1)
     cells = [cell for text in lines[below:] for cell in split_cells(text, separator) if "," in cell]
     if cells and all(_THOUSANDS.match(cell) for cell in cells):
@@ -73,13 +71,12 @@ def read_header(
     return Header(names, separator, comma, below, synthetic)
 
 
-def is_decimal(text: str) -> bool:
-    """Tell whether a cell is a decimal number."""
+def read_decimal(text: str) -> float | None:
+    """Return the number that a cell is; None for other text, such as ``1_0``."""
     try:
-        float(text)
+        return float(text) if "_" not in text and text.isascii() else None
     except ValueError:
-        return False
-    return "_" not in text and text.isascii()
+        return None
 
 
 def split_cells(text: str, separator: str | None) -> list[str]:
@@ -109,7 +106,7 @@ def _find(
     if first is None:
         raise DataError("has no header line", path=path, remedy="name the columns in a line")
     separator = max(SEPARATORS[:3], key=lambda s: lines[first].count(s or ","))
-    if any(map(is_decimal, split_cells(lines[first], separator))):
+    if any(read_decimal(cell) is not None for cell in split_cells(lines[first], separator)):
         raise DataError(
             "begins with numbers, not with the names of its columns",
             path=path,
@@ -146,7 +143,11 @@ def _names(text: str, separator: str | None, path: Path, line: int) -> list[str]
 
 def _are_units(cells: Sequence[str], width: int) -> bool:
     """Tell whether a line below the names holds their units, such as ``(s);(mm);(N)``."""
-    if len(cells) != width or not any(cells) or any(is_decimal(cell) for cell in cells):
+    if (
+        len(cells) != width
+        or not any(cells)
+        or any(read_decimal(cell) is not None for cell in cells)
+    ):
         return False
     return all(
         not cell or _BRACKETS.match(cell) or any(read_unit(cell, q) in UNITS[q] for q in _MEASURED)
@@ -154,19 +155,10 @@ def _are_units(cells: Sequence[str], width: int) -> bool:
     )
 
 
-def _with_unit(name: str, unit: str, mapped: Collection[str]) -> str:
-    found = read_name(name)
-    if not unit or name in mapped or (found is not None and found.known):
+def _with_unit(name: str, unit: str, mapped: Mapping[str, str], path: Path) -> str:
+    """Return a name with the unit of the line below, which must not contradict a mapping."""
+    if name in mapped:
+        check_stated(name, f"column [{unit}]", mapped[name], partial(DataError, path=path))
         return name
-    return f"{name} [{unit}]"
-
-
-def _check_mapped_units(
-    names: Sequence[str], units: Sequence[str], mapped: Mapping[str, str], path: Path
-) -> None:
-    """Check mapped columns against the line of units below the names."""
-    for theirs, unit in zip(names, units, strict=True):
-        ours = read_name(mapped.get(theirs, ""))
-        if ours is not None:
-            said = stated_unit(f"column [{unit}]", ours.quantity)
-            check_stated(theirs, said, mapped[theirs], partial(DataError, path=path))
+    found = read_name(name)
+    return name if not unit or (found is not None and found.known) else f"{name} [{unit}]"

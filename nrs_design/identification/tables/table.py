@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import hashlib
-import warnings
-from collections.abc import Iterator, Mapping, Sequence
+from array import array
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from itertools import chain
+from itertools import chain, islice
 from pathlib import Path
 from typing import Any, BinaryIO, NoReturn
 
@@ -16,7 +16,7 @@ from nrs_design.errors import DataError
 from nrs_design.files import open_regular
 from nrs_design.identification.numeric import Array
 from nrs_design.identification.tables.columns import Column, find_columns
-from nrs_design.identification.tables.header import UNDECIDED, Header, is_decimal, read_header
+from nrs_design.identification.tables.header import UNDECIDED, Header, read_decimal, read_header
 from nrs_design.identification.tables.names import UNITS, standard_name
 from nrs_design.proof.text import quoted
 from nrs_design.spec.quantity import LARGEST
@@ -102,40 +102,25 @@ def _read_arrays(
     mapping: Mapping[str, str],
     optional: tuple[str, ...],
 ) -> MeasurementTable:
-    given = {str(name): np.asarray(data[name]) for name in data.keys()}  # noqa: SIM118
-    layout, columns = find_columns([*given], layouts, mapping, _IN_MEMORY, None, optional)
-    hashed, labels = hashlib.sha256(), _Labels()
-    found: dict[str, Array] = {}
+    arrays = {str(name): np.asarray(data[name]) for name in data.keys()}  # noqa: SIM118
+    layout, columns = find_columns([*arrays], layouts, mapping, _IN_MEMORY, None, optional)
+    hashed, cells = hashlib.sha256(), _Cells(_IN_MEMORY)
+    values: dict[str, Array] = {}
     for quantity, column in columns.items():
-        values = given[column.name]
-        if values.ndim != 1 or len(values) != len(next(iter(given.values()))):
+        raw = arrays[column.name]
+        if raw.ndim != 1 or len(raw) != len(next(iter(arrays.values()))):
             raise DataError(
                 f"{column.name} is no column of one length", remedy="give arrays of shape (n,)"
             )
         try:
-            numbers = values.astype(float)
+            numbers = raw.astype(float)
         except ValueError:
-            numbers = np.array([labels.number(str(word)) for word in values.tolist()])
-        found[quantity] = numbers * column.factor
+            words = enumerate(map(str, raw.tolist()))
+            numbers = np.array([cells.number(column, word, row) for row, word in words])
+        values[quantity] = numbers * column.factor
         hashed.update(column.name.encode() + numbers.tobytes())
     source = Source(_IN_MEMORY, hashed.hexdigest(), synthetic=False)
-    return MeasurementTable(source, layout, found, columns, tuple(labels.words), 0)
-
-
-@dataclass(slots=True)
-class _Labels:
-    """Words of a column of modes, in the order in which they come; a number stands for each."""
-
-    words: list[str] = field(default_factory=list)
-
-    def number(self, word: str) -> float:
-        """Return the number of a word."""
-        word = word.strip().strip('"')
-        if word not in self.words:
-            if not word or len(self.words) >= MAX_LABELS:
-                raise ValueError
-            self.words.append(word)
-        return float(self.words.index(word))
+    return MeasurementTable(source, layout, values, columns, tuple(cells.labels), 0)
 
 
 def _read(
@@ -145,24 +130,25 @@ def _read(
     mapping: Mapping[str, str],
     optional: tuple[str, ...],
 ) -> MeasurementTable:
-    hashed = hashlib.sha256()
-    while block := file.read(_LONGEST_LINE):
-        hashed.update(block)
+    sha256 = hashlib.file_digest(file, "sha256").hexdigest()
     file.seek(0)
     lines = _lines(file, path)
-    head = [line for _, line in zip(range(_PREAMBLE + 1), lines, strict=False)]
+    head = list(islice(lines, _PREAMBLE + 1))
     example = ",".join(key if "any" in UNITS[key] else standard_name(key) for key in layouts[0])
     header = read_header(head, path, mapping, example)
     layout, columns = find_columns(header.names, layouts, mapping, path, header.line, optional)
-    rows = _Rows(path, header, [*columns.values()])
-    numbers = rows.load(chain(head[header.line :], lines))
+    cells = _Cells(path, header.decimal_comma)
+    numbers = array("d")
+    for line, row in _rows(chain(head[header.line :], lines), header, path):
+        numbers.extend([cells.number(c, row[c.index].strip(), line) for c in columns.values()])
     # What leaves the floats is refused with the other sizes.
     with np.errstate(over="ignore"):
-        scaled = numbers.T * np.array([[column.factor] for column in columns.values()])
+        scaled = np.reshape(numbers, (-1, len(columns))).T * np.array(
+            [[column.factor] for column in columns.values()]
+        )
     values = dict(zip(columns, scaled, strict=True))
-    source = Source(path, hashed.hexdigest(), header.synthetic)
-    labels = tuple(rows.labels.words)
-    return MeasurementTable(source, layout, values, columns, labels, header.line + 1)
+    source = Source(path, sha256, header.synthetic)
+    return MeasurementTable(source, layout, values, columns, tuple(cells.labels), header.line + 1)
 
 
 def _lines(file: BinaryIO, path: Path) -> Iterator[str]:
@@ -183,90 +169,59 @@ def _lines(file: BinaryIO, path: Path) -> Iterator[str]:
             yield raw.decode("cp1252", "replace").strip("\r\n ")
 
 
+def _rows(lines: Iterable[str], header: Header, path: Path) -> Iterator[tuple[int, list[str]]]:
+    """Yield line number and cells of each row; every row has as many cells as the header."""
+    width, empty = len(header.names), 0
+    for line, text in enumerate(lines, header.line + 1):
+        if not text:
+            empty = empty or line
+            continue
+        if empty:
+            raise DataError("the row is empty", path=path, line=empty, remedy="remove it")
+        if line - header.line > MAX_ROWS:
+            raise DataError(
+                f"has more than {MAX_ROWS} rows", path=path, remedy="record more slowly"
+            )
+        cells = header.cells(text) if '"' in text else text.split(header.separator)
+        if len(cells) != width:
+            remedy = "complete the row, or end the record before it"
+            if header.separator == "," and len(cells) > width:
+                remedy = "write numbers with a decimal point, or separate them by semicolons"
+            raise DataError(
+                f"the row has {len(cells)} values, the header {width}",
+                path=path,
+                line=line,
+                remedy=remedy,
+            )
+        yield line, cells
+
+
 @dataclass(slots=True)
-class _Rows:
-    """Turns lines into numbers."""
+class _Cells:
+    """Turns cells into numbers."""
 
     path: Path  # For errors
-    header: Header  # How the file is written
-    columns: list[Column]  # Those that are needed
-    labels: _Labels = field(default_factory=_Labels)
-    line: int = 0  # Which line was read last
-    text: str = ""  # That line
+    decimal_comma: bool = False
+    # Words of a column of modes, each with its number: the order in which they come.
+    labels: dict[str, float] = field(default_factory=dict)
 
-    def load(self, lines: Iterator[str]) -> Array:
-        """Return the numbers, shape (n, columns)."""
-        words: Any = {c.index: self.labels.number for c in self.columns if c.unit == ""}
-        with warnings.catch_warnings():
-            # Callers that need rows report that there are none.
-            warnings.simplefilter("ignore")
-            try:
-                values = np.loadtxt(
-                    self._regular(lines),
-                    delimiter="\t",
-                    usecols=[column.index for column in self.columns],
-                    ndmin=2,
-                    comments=None,
-                    converters=words or None,
-                )
-            except ValueError:
-                self._explain()
-        return np.asarray(values, float).reshape(-1, len(self.columns))
-
-    def _regular(self, lines: Iterator[str]) -> Iterator[str]:
-        """Yield lines with tabs between their cells; refuse one that is not as long as others."""
-        width, separator = len(self.header.names), self.header.separator
-        empty, self.line = 0, self.header.line
-        for text in lines:
-            self.line += 1
-            if not text:
-                empty = empty or self.line
-                continue
-            if empty:
-                self._fail("the row is empty", empty, "remove it")
-            if self.line - self.header.line > MAX_ROWS:
-                raise DataError(
-                    f"has more than {MAX_ROWS} rows", path=self.path, remedy="record more slowly"
-                )
-            cells = self.header.cells(text) if '"' in text else text.split(separator)
-            if len(cells) != width:
-                doubled = separator == "," and len(cells) > width
-                self._fail(
-                    f"the row has {len(cells)} values, the header {width}",
-                    self.line,
-                    "write numbers with a decimal point, or separate them by semicolons"
-                    if doubled
-                    else "complete the row, or end the record before it",
-                )
-            if self.header.decimal_comma:
-                self._refuse_points(cells)
-                cells = [cell.replace(",", ".") for cell in cells]
-            self.text = "\t".join(cells)
-            yield self.text
-
-    def _refuse_points(self, cells: Sequence[str]) -> None:
-        """Refuse a point beside decimal commas: it may stand between thousands."""
-        for column in self.columns:
-            cell = cells[column.index].strip()
-            if "." in cell and is_decimal(cell):
-                fault = f"{column.name} is {cell} where others have a decimal comma"
-                self._fail(fault, self.line, UNDECIDED)
-
-    def _explain(self) -> NoReturn:
-        """Say what is wrong with the line that was read last."""
-        cells = self.text.split("\t")
-        for column in self.columns:
-            name, cell = column.name, cells[column.index].strip()
-            if not cell:
-                remedy = "end the record before it, or fill the gap"
-                self._fail(f"{name} is missing", self.line, remedy)
-            if column.unit and not is_decimal(cell):
-                thousands = "," in cell and is_decimal(cell.replace(",", ""))
-                remedy = UNDECIDED if thousands else "write decimal numbers"
-                self._fail(f"{name} is {quoted(cell)}, not a number", self.line, remedy)
-        raise DataError(
-            "cannot be read", path=self.path, line=self.line, remedy="save it as plain CSV"
-        )
-
-    def _fail(self, message: str, line: int, remedy: str) -> NoReturn:
-        raise DataError(message, path=self.path, line=line, remedy=remedy)
+    def number(self, column: Column, cell: str, line: int) -> float:
+        """Return the number in a cell, or that of its word in a column of modes."""
+        if column.unit and not (self.decimal_comma and "." in cell):
+            number = read_decimal(cell.replace(",", ".") if self.decimal_comma else cell)
+            if number is not None:
+                return number
+        word = cell.strip(' "')
+        if column.unit == "" and word and (word in self.labels or len(self.labels) < MAX_LABELS):
+            return self.labels.setdefault(word, float(len(self.labels)))
+        fault, remedy = f"is {quoted(cell)}, not a number", "write decimal numbers"
+        if not word:
+            fault, remedy = "is missing", "end the record before it, or fill the gap"
+        elif column.unit == "":
+            fault, remedy = f"has more than {MAX_LABELS} words", "map another column"
+        elif self.decimal_comma and read_decimal(cell) is not None:
+            # A point beside decimal commas may stand between thousands.
+            fault, remedy = f"is {cell} where others have a decimal comma", UNDECIDED
+        elif "," in cell and read_decimal(cell.replace(",", "")) is not None:
+            remedy = UNDECIDED
+        raise DataError(f"{column.name} {fault}", path=self.path, line=line, remedy=remedy)

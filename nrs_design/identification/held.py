@@ -1,4 +1,4 @@
-"""Commands that are held between samples and act later, and what linear models make of them.
+"""Delayed commands with zero-order hold, and the response of linear models.
 
 Exact for any steps of time and any delay: a command that acts within a step parts it.
 """
@@ -15,13 +15,13 @@ import numpy as np
 from nrs_design.identification.numeric import Array, Rows
 from nrs_design.models.recursion import run_first_order
 
-# Poles that are nearer to each other are taken apart by so much.
+# Least distance of two poles.
 _APART = 1e-4
 
 
 @dataclass(frozen=True)
 class Held:
-    """A command as it acts: constant between the times of a grid that holds all samples."""
+    """A delayed command: constant between the times of a grid that contains all samples."""
 
     grid: Array  # Shape (m,). Times in s.
     command: Array  # Shape (m - 1,). From each time to the next.
@@ -50,7 +50,7 @@ class Lags:
     """A linear model of unit gain as a sum of first-order lags."""
 
     times: tuple[complex, ...]  # Time constants in s
-    shares: tuple[complex, ...]  # They add up to 1
+    shares: tuple[complex, ...]  # Factors with the sum 1
 
     @classmethod
     def first_order(cls, time_constant: float) -> Self:
@@ -58,12 +58,12 @@ class Lags:
         return cls((time_constant,), (1.0,))
 
     @classmethod
-    def second_order(cls, frequency: float, damping: float) -> Self:
-        """Return ``w^2/(s^2 + 2 zeta w s + w^2)``; equal poles are taken apart a little."""
+    def second_order(cls, time: float, damping: float) -> Self:
+        """Return ``1/(T^2 s^2 + 2 zeta T s + 1)``; equal poles are taken apart a little."""
         if abs(damping - 1) < _APART:
             damping = 1 + _APART
         root = np.sqrt(complex(damping**2 - 1))
-        p, q = frequency * (-damping + root), frequency * (-damping - root)
+        p, q = (1 / time) * (-damping + root), (1 / time) * (-damping - root)
         return cls(
             (complex(-1 / p), complex(-1 / q)), (complex(-q / (p - q)), complex(p / (p - q)))
         )
@@ -88,7 +88,7 @@ class Lags:
         return np.column_stack([np.ones_like(time), *kept] if angle else kept)
 
     def _pairs(self) -> Iterator[tuple[complex, complex]]:
-        """Yield times and shares; of two that are conjugate, one with twice its share.
+        """Yield time constants and shares; for a conjugate pair, one with twice its share.
 
         Only the real part of the sum counts, and it is the same.
         """

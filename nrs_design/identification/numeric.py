@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from itertools import pairwise
 
 import numpy as np
@@ -33,7 +34,7 @@ def beyond(basis: Array, values: Array) -> Array:
 
 
 def smoothed(values: Array, count: int) -> Array:
-    """Return the mean of so many values about each; those at the ends go on beyond them."""
+    """Return the moving average over `count` values; the end values continue outside."""
     padded = np.pad(values, (count // 2, count - 1 - count // 2), mode="edge")
     return np.convolve(padded, np.full(count, 1 / count), "valid")
 
@@ -57,3 +58,46 @@ def runs(flags: Flags) -> list[tuple[int, int]]:
     """Return first row and end of every stretch of true flags."""
     edges = np.flatnonzero(np.diff(flags, prepend=False, append=False)).tolist()
     return list(zip(edges[::2], edges[1::2], strict=True))
+
+
+Errors = Callable[[Array], Array]  # From parameters (p,) to measured less fitted output (n,)
+
+_STEPS = 100
+# Relative change of the squared errors, and change of the scaled parameters.
+_CONVERGED, _SETTLED = 1e-12, 1e-9
+
+
+def search(
+    errors: Errors,
+    sensitivities: Errors,
+    start: Array,
+    scale: Array | float = 1.0,
+    bounds: tuple[Array | float, Array | float] = (-np.inf, np.inf),
+    converged: float = _CONVERGED,
+) -> tuple[Array, bool]:
+    """Return the parameters, and whether the search has settled.
+
+    Sensitivities are of the fitted output, shape (n, p). A first step is of the size of the scale.
+    """
+    from scipy.optimize import least_squares
+
+    size = float(np.linalg.norm(errors(start))) or 1.0
+    low, high = ((np.asarray(end) - start) / scale for end in bounds)
+
+    def missed(z: Array) -> Array:
+        return errors(start + scale * z) / size
+
+    def slopes(z: Array) -> Array:
+        return -sensitivities(start + scale * z) * scale / size
+
+    found = least_squares(
+        missed,
+        np.zeros(len(start)),
+        jac=slopes,
+        bounds=(low, high),
+        ftol=converged,
+        xtol=_SETTLED,
+        gtol=None,
+        max_nfev=_STEPS,
+    )
+    return start + scale * np.asarray(found.x, float), bool(found.success)

@@ -6,17 +6,17 @@ import numpy as np
 
 from nrs_design.identification.numeric import Array, Flags, usual_step
 
-# Changes of a rounded signal are whole numbers of its step: so near, and so many of them.
+# Changes of a rounded signal are multiples of its step: largest deviation, and least share of them.
 _WHOLE = 0.06
 _MOST = 0.9
-# What is small, in steps; and how many of the changes must be.
+# Size of a small change in steps, and least share of small changes.
 _SMALL = 10.5
 _SHARE = 0.1
-# Changes that stand out between two equal ones: so many at least, and so many of all changes.
+# Changes that stand out between two equal ones: least number, and least share of all changes.
 _FEWEST_BLIPS, _BLIPS = 2, 0.05
 # Steps that are tried: a reading may be rounded twice, by its sensor and by the digits of its file.
 _CANDIDATES = 50
-# A probe rests where a reading stays so many times longer than usual.
+# A probe rests if its reading stays this many times longer than usual.
 _REST = 3.0
 
 
@@ -52,7 +52,7 @@ def resolution(readings: Array) -> float:
 
 
 def _are_whole(sizes: Array, step: float) -> Flags:
-    """Tell which sizes are whole numbers of a step, and not none."""
+    """Tell which sizes are positive multiples of a step."""
     ratios = sizes / step
     whole = np.round(ratios)
     return np.asarray((whole > 0) & (np.abs(ratios - whole) < _WHOLE * whole))

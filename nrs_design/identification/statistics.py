@@ -149,7 +149,7 @@ def fisher_tail(above: int, below: int, ratio: float) -> float:
 
 
 def joint_level(count: int) -> float:
-    """Return the level of each of so many intervals that hold together with 95 %."""
+    """Return the level of each of `count` intervals that hold together with 95 %."""
     return 1 - (1 - CONFIDENCE) / count
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from decimal import ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_EVEN, Decimal
 from math import isfinite
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from nrs_design.axis import AxisType
 from nrs_design.errors import DataError, SpecError
@@ -43,8 +43,23 @@ NARROWER = "narrower than the declared one"
 # Ends are rounded outwards.
 ROUNDED = 1.01
 _WITH_A_PLACE = f"--model {' or --model '.join(TISSUE_LAWS)}"
-# What only a power law has in a spec.
+# Keys that only a power law has in a spec.
 _POWER_KEYS = ("exponent", "about", "preload")
+
+SamplingKey = Literal["delay", "latency"]
+# Meaning of each delay in the spec, and how to record it without dynamics.
+_MERE_DELAYS: Mapping[SamplingKey, tuple[str, str]] = {
+    "delay": (
+        "the age of a sample",
+        "name the force as measured by --command and the force that the law used by --measured; "
+        "dynamics between them belong into the model",
+    ),
+    "latency": (
+        "a latency",
+        "name the command as the law computed it by --command, and as the drive took it by "
+        "--measured; what the drive does with it belongs into its model",
+    ),
+}
 
 
 def merge_tissue(
@@ -100,7 +115,7 @@ def merge_tissue(
 
 
 def _power_values(about: Tangent, length: str) -> dict[str, object]:
-    """Return what a Hunt-Crossley law has beside its tangent."""
+    """Return the keys of a Hunt-Crossley law in addition to its tangent."""
     low, high = _exponent_range(about.power[2])
     nominal = min(max(round(Decimal(about.power[2].value), 3), low), high)
     return {
@@ -150,64 +165,46 @@ def merge_actuator(
     return document.text()
 
 
-def merge_delay(loaded: LoadedSpec, found: DelayIdentification) -> str:
-    """Return the text of a spec of a sampled loop with the age of its force sample.
+def merge_sampling(loaded: LoadedSpec, found: DelayIdentification, key: SamplingKey) -> str:
+    """Return the text of a spec of a sampled loop with the age of its force sample, or its latency.
 
     A record that shows dynamics and no mere delay is a `DataError`.
     """
-    sampling = check_delay_place(loaded)
-    _check_copy(
-        found,
-        "the age of a sample",
-        "name the force as measured by --command and the force that the law used by --measured; "
-        "dynamics between them belong into the model",
-    )
+    sampling = check_sampling(loaded, key)
+    command, output = found.record.names
+    if found.is_lag:
+        quantity, remedy = _MERE_DELAYS[key]
+        raise DataError(
+            f"{output} follows {command} by {found.chosen.follower.name}: that is more than "
+            f"{quantity}",
+            remedy=remedy,
+        )
+    document = SpecDocument(loaded)
+    writer = _Writer(document, document.root["sampling"], found.sources)
+    writer.put(key, _age(found, sampling) if key == "delay" else _latency(found, sampling))
+    writer.put_origin(found.caveats)
+    return document.text()
+
+
+def _age(found: DelayIdentification, sampling: SamplingSpec) -> int | list[int]:
     low, high = found.in_periods(sampling.outer)
     if high > LONGEST_DELAY:
         raise DataError(
             f"the force is up to {high} periods old, a spec takes {LONGEST_DELAY} at most",
             remedy="record longer or livelier forces, or sample with a longer period",
         )
-    return _with_sampling(loaded, found, "delay", low if low == high else [low, high])
+    return low if low == high else [low, high]
 
 
-def merge_latency(loaded: LoadedSpec, found: DelayIdentification) -> str:
-    """Return the text of a spec with the time from a sample to its command.
-
-    A record that shows dynamics and no mere delay is a `DataError`.
-    """
-    sampling = check_latency_place(loaded)
-    _check_copy(
-        found,
-        "a latency",
-        "name the command as the law computed it by --command, and as the drive took it by "
-        "--measured; what the drive does with it belongs into its model",
-    )
-    (sent, seen), (low, high) = found.record.names, found.held_s
+def _latency(found: DelayIdentification, sampling: SamplingSpec) -> list[str]:
+    (command, output), (low, high) = found.record.names, found.delay_range
     if high <= 0 or high > LONGEST_DELAY * sampling.period.exact:
         raise DataError(
-            f"{seen} comes up to {float(high):.4g} s after {sent}; a spec takes up to "
+            f"{output} comes up to {float(high):.4g} s after {command}; a spec takes up to "
             f"{LONGEST_DELAY} periods, and none before",
             remedy="see that the columns are not swapped, and record more rows in a period",
         )
-    least = max(float(low), 0.0)
-    latency = _outwards(Estimate(least, least, float(high)), "s")["range"]
-    return _with_sampling(loaded, found, "latency", latency)
-
-
-def _check_copy(found: DelayIdentification, what: str, remedy: str) -> None:
-    if found.is_lag:
-        sent, seen = found.record.names
-        name = found.chosen.follower.name
-        raise DataError(f"{seen} follows {sent} by {name}: that is more than {what}", remedy=remedy)
-
-
-def _with_sampling(loaded: LoadedSpec, found: DelayIdentification, key: str, value: Any) -> str:
-    document = SpecDocument(loaded)
-    writer = _Writer(document, document.root["sampling"], found.sources)
-    writer.put(key, value)
-    writer.put_origin(found.caveats)
-    return document.text()
+    return _outwards(Estimate(float(low), float(low), float(high)), "s")["range"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -262,7 +259,7 @@ class _Writer:
         *,
         replace: bool,
     ) -> list[str]:
-        """Say which ranges, relative to the nominal value, get narrower by few records or by much.
+        """Return texts about relative ranges that get narrower by few records or by much.
 
         Unless these may replace the declared ones, that is a `DataError`.
         """
@@ -300,7 +297,7 @@ def law_to_write(
     preloaded: bool,
     rotational: bool,
 ) -> str:
-    """Return the law whose parameters go into an environment: its own, unless another is asked for.
+    """Return the law to write into an environment: the declared one, unless the user names another.
 
     All that can be refused before a fit is refused here.
     """
@@ -343,28 +340,22 @@ def check_actuator(loaded: LoadedSpec, unit: str) -> InteractionDesignSpec:
     return spec
 
 
-def check_latency_place(loaded: LoadedSpec) -> SamplingSpec:
-    """Refuse, before a fit, a spec that no latency can go into."""
-    sampling, spec = check_delay_place(loaded), check_interaction(loaded)
-    if not spec.takes_dead_time:
-        raise SpecError(
-            "commands of this loop take effect at once: with two periods a latency is not modelled",
-            path=loaded.path,
-            remedy="write into a spec with one period",
-        )
-    return sampling
-
-
-def check_delay_place(loaded: LoadedSpec) -> SamplingSpec:
-    """Refuse, before a fit, a spec that no delay can go into."""
-    sampling = check_interaction(loaded).sampling
-    if sampling is None:
+def check_sampling(loaded: LoadedSpec, key: SamplingKey) -> SamplingSpec:
+    """Refuse, before a fit, a spec that no delay, or no latency, can go into."""
+    spec = check_interaction(loaded)
+    if spec.sampling is None:
         raise SpecError(
             "the spec has no sampling, and a delay counts in its periods",
             path=loaded.path,
             remedy="add `sampling: {period: 2 ms, delay: 0}`, with the period of your processor",
         )
-    return sampling
+    if key == "latency" and not spec.takes_dead_time:
+        raise SpecError(
+            "commands of this loop take effect at once: with two periods a latency is not modelled",
+            path=loaded.path,
+            remedy="write into a spec with one period",
+        )
+    return spec.sampling
 
 
 def check_interaction(loaded: LoadedSpec) -> InteractionDesignSpec:
@@ -401,10 +392,19 @@ def _no_place(law: str, preload: tuple[Quantity, Quantity] | None = None) -> Dat
 def _place(
     loaded: LoadedSpec, environment: str | None, arm: str | None, *, rotational: bool
 ) -> str:
-    """Return the name of the environment, which a lever arm leads to."""
-    spec = check_interaction(loaded)
-    name = _environment(spec, environment, loaded.path)
-    if not rotational and arm is None and spec.environments[name].lever_arm is None:
+    """Return the name of the environment to write to, which a lever arm leads to."""
+    environments = check_interaction(loaded).environments
+    names = list(environments)
+    name = names[0] if environment is None and len(names) == 1 else environment
+    if name not in names:
+        fault = "there are several environments" if names else "there is no environment to write to"
+        names_text = ", ".join(names) or "no environments"
+        raise SpecError(
+            f"no environment {name!r}" if name else fault,
+            path=loaded.path,
+            remedy=f"name one with --environment; the spec has {names_text}",
+        )
+    if not rotational and arm is None and environments[name].lever_arm is None:
         raise SpecError(
             f"the environment {name} has no lever_arm, and the records are linear",
             path=loaded.path,
@@ -413,22 +413,8 @@ def _place(
     return name
 
 
-def _environment(spec: InteractionDesignSpec, name: str | None, path: Path) -> str:
-    names = list(spec.environments)
-    if name in names:
-        return name
-    if name is None and len(names) == 1:
-        return names[0]
-    said = "there are several environments" if names else "there is no environment to write to"
-    raise SpecError(
-        f"no environment {name!r}" if name else said,
-        path=path,
-        remedy=f"name one with --environment; the spec has {', '.join(names) or 'no environments'}",
-    )
-
-
 def has_place(about: Tangent) -> bool:
-    """Tell whether a power law has a place in a spec as it is: its exponent is at least 1."""
+    """Tell whether a spec can hold the power law: its exponent is at least 1."""
     low, high = _exponent_range(about.power[2])
     return low >= LEAST and high <= LARGEST
 
@@ -450,7 +436,7 @@ def _one_line(text: str) -> str:
 
 
 def _outwards(estimate: Estimate, unit: str) -> dict[str, Any]:
-    """Write an estimate of either sign with ends rounded outwards, so that nothing is lost."""
+    """Write an estimate of either sign, its ends rounded outwards."""
     low = few_digits(estimate.low, _DIGITS, ROUND_FLOOR)
     high = few_digits(estimate.high, _DIGITS, ROUND_CEILING)
     nominal = min(max(few_digits(estimate.value, _DIGITS, ROUND_HALF_EVEN), low), high)

@@ -5,7 +5,7 @@ from collections import deque
 
 import numpy as np
 
-from nrs_design.identification.datasets.records import ActuatorRecord
+from nrs_design.identification.datasets.records import SignalRecord
 from tests.identification.support import source
 
 RATE = 500.0
@@ -91,4 +91,4 @@ def record(kind, seed=0, *, noise=None, is_angle=True, **options):
     random = np.random.default_rng([seed, 3])
     output = angle if is_angle else velocity
     output = output + noise * random.normal(size=len(output))
-    return ActuatorRecord(source(f"{kind}-{seed}"), time(), sent, output, is_angle)
+    return SignalRecord(source(f"{kind}-{seed}"), time(), sent, output, is_angle)

@@ -1,6 +1,12 @@
-"""Synthetic logs of a robot at soft tissue. None is a measurement."""
+"""Synthetic logs of a robot at soft tissue, and their audits. None is a measurement."""
 
 import numpy as np
+
+from nrs_design.identification.running.bounds import read_run_bounds
+from nrs_design.identification.running.judge import judge_run
+from nrs_design.identification.running.log import read_run
+from nrs_design.spec import read_spec
+from tests.support import ROBOT, SOFT_TISSUE
 
 RATE = 500.0
 # soft-tissue: 747.1461 N/m at 0.24 m.
@@ -29,3 +35,21 @@ def text(t, angle, torque, command, modes):
 
 def without_modes(data):
     return "\n".join(line.rsplit(",", 1)[0] for line in text(*data).split("\n"))
+
+
+SOFT = read_run_bounds(read_spec(SOFT_TISSUE))
+SAMPLED = read_run_bounds(read_spec(ROBOT / "soft-tissue-sampled.nrs.yaml"))
+
+
+def log(tmp_path, data=None, csv=None):
+    path = tmp_path / "run.csv"
+    path.write_text(text(*(data or run())) if csv is None else csv)
+    return read_run(path)
+
+
+def judged(record, bounds=SOFT, **options):
+    return judge_run(record, bounds, proved=True, **options)
+
+
+def check(found, name):
+    return next(item for item in found.checks if item.name == name)

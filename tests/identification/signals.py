@@ -35,7 +35,7 @@ def held(seed, delay, *, lasts=1.0, begins=0.0, noise=0.01, count=400):
 
     samples = np.arange(count)
     seen = 0.9 * at(samples - delay) + noise * random.normal(size=count)
-    return SignalRecord(source("held"), samples / RATE, at(samples), seen, ("sent", "seen"))
+    return SignalRecord(source("held"), samples / RATE, at(samples), seen, names=("sent", "seen"))
 
 
 def lag(seed, kind="PRBS", *, is_angle=False, second=0.0):
@@ -46,4 +46,4 @@ def lag(seed, kind="PRBS", *, is_angle=False, second=0.0):
 
 
 def pair(sent, seen):
-    return SignalRecord(source("pair"), np.arange(COUNT) / RATE, sent, seen, ("sent", "seen"))
+    return SignalRecord(source("pair"), np.arange(COUNT) / RATE, sent, seen, names=("sent", "seen"))

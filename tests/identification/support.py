@@ -6,10 +6,11 @@ from pathlib import Path
 
 import numpy as np
 
-from nrs_design.identification.datasets.records import ActuatorRecord, TissueRecord
+from nrs_design.identification.datasets.records import SignalRecord, TissueRecord
 from nrs_design.identification.tables.table import Source
 from nrs_design.models.contact import AbstractContactLaw, Motion
 from tests.identification import synthetic
+from tests.support import ROOT
 
 
 def source(name: str) -> Source:
@@ -41,9 +42,9 @@ def quick(seed: int = 0) -> Motion:
 
 def sinusoids(
     seed: int, frequencies: Sequence[float] = synthetic.FREQUENCIES
-) -> list[ActuatorRecord]:
+) -> list[SignalRecord]:
     return [
-        ActuatorRecord(source(f"{hertz:g}"), *synthetic.actuator_record(hertz, 100 * seed + i))
+        SignalRecord(source(f"{hertz:g}"), *synthetic.actuator_record(hertz, 100 * seed + i))
         for i, hertz in enumerate(frequencies)
     ]
 
@@ -56,3 +57,9 @@ def wobble(seed: int, count: int = 60) -> Motion:
 
 def holds(estimates, values):
     return [e.covers(v) for e, v in zip(estimates, values, strict=True)]
+
+
+DATA = ROOT / "specs" / "data"
+SOFT = sorted(DATA.glob("silicone-soft-*.csv"))
+NOSE = sorted(DATA.glob("nose-*.csv"))
+SINUSOIDS = sorted(DATA.glob("actuator-*hz.csv"))

@@ -21,9 +21,9 @@ def late(delay):
     ("lags", "system"),
     [
         (Lags.first_order(0.03), ([1], [0.03, 1])),
-        (Lags.second_order(40.0, 0.3), ([1600], [1, 24, 1600])),
-        (Lags.second_order(40.0, 1.7), ([1600], [1, 136, 1600])),
-        (Lags.second_order(40.0, 1.0), ([1600], [1, 80, 1600])),
+        (Lags.second_order(1 / 40, 0.3), ([1600], [1, 24, 1600])),
+        (Lags.second_order(1 / 40, 1.7), ([1600], [1, 136, 1600])),
+        (Lags.second_order(1 / 40, 1.0), ([1600], [1, 80, 1600])),
     ],
 )
 def test_against_fine_steps(lags, system, delay):
@@ -39,6 +39,6 @@ def test_against_fine_steps(lags, system, delay):
 
 @pytest.mark.parametrize("damping", [0.4, 2.0])
 def test_free_motion_has_two_states(damping):
-    lags = Lags.second_order(30.0, damping)
+    lags = Lags.second_order(1 / 30, damping)
     assert lags.free(TIME, angle=False).shape == (300, 2)
     assert lags.free(TIME, angle=True).shape == (300, 3)

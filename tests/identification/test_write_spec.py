@@ -13,8 +13,7 @@ from nrs_design.identification.tissue.identify import identify_tissue
 from nrs_design.identification.write_spec import (
     law_to_write,
     merge_actuator,
-    merge_delay,
-    merge_latency,
+    merge_sampling,
     merge_tissue,
 )
 from nrs_design.models.contact import Elastic, KelvinVoigt
@@ -222,9 +221,9 @@ def test_delay_in_periods_of_the_processor():
     """1.84 to 3.06 samples of 2 ms are 3.69 to 6.13 periods of 1 ms."""
     found = delayed(signals.DELAY)
     loaded = read_spec(SAMPLED)
-    assert parse_spec(merge_delay(loaded, found)).sampling.delay == (1, 4)
+    assert parse_spec(merge_sampling(loaded, found, "delay")).sampling.delay == (1, 4)
     faster = parse_spec(loaded.text.replace("period: 2 ms", "period: 1 ms"))
-    written = parse_spec(merge_delay(replace(loaded, spec=faster), found)).sampling
+    written = parse_spec(merge_sampling(replace(loaded, spec=faster), found, "delay")).sampling
     assert (written.delay, written.doubts) == ((3, 7), ())
     assert [source.file for source in written.provenance] == ["pair.csv"]
 
@@ -233,9 +232,9 @@ def test_a_latency_in_seconds():
     """From 1.84 to 3.06 samples of 2 ms, and what a held command hides, rounded outwards."""
     found = delayed(signals.DELAY)
     loaded = read_spec(SAMPLED)
-    written = parse_spec(merge_latency(loaded, found)).sampling
+    written = parse_spec(merge_sampling(loaded, found, "latency")).sampling
     low, high = (float(end.exact) for end in written.latency[:2])
-    held = [float(end) for end in found.held_s]
+    held = [float(end) for end in found.delay_range]
     assert held[0] - 1e-4 <= low <= held[0] < held[1] <= high <= held[1] + 1e-4
     assert low / 0.002 < signals.DELAY < high / 0.002
     assert written.delay == loaded.spec.sampling.delay
@@ -247,30 +246,30 @@ def test_no_latency_is_written_beside_two_periods(tmp_path):
     two = "sampling: {period: 2 ms, outer_period: 4 ms, delay: 0}\n"
     path.write_text(SOFT_TISSUE.read_text() + two)
     with pytest.raises(SpecError, match="at once") as caught:
-        merge_latency(read_spec(path), delayed(signals.DELAY))
+        merge_sampling(read_spec(path), delayed(signals.DELAY), "latency")
     assert caught.value.remedy
 
 
 @pytest.mark.parametrize(
-    ("merge", "spec", "delay", "error", "message"),
+    ("key", "spec", "delay", "error", "message"),
     [
-        (merge_delay, SOFT_TISSUE, signals.DELAY, SpecError, "has no sampling"),
-        (merge_delay, COMMUTING, signals.DELAY, SpecError, "no place"),
-        (merge_delay, SAMPLED, 30.0, DataError, "31 periods"),
-        (merge_latency, SOFT_TISSUE, signals.DELAY, SpecError, "has no sampling"),
-        (merge_latency, SAMPLED, 30.0, DataError, "10 periods"),
+        ("delay", SOFT_TISSUE, signals.DELAY, SpecError, "has no sampling"),
+        ("delay", COMMUTING, signals.DELAY, SpecError, "no place"),
+        ("delay", SAMPLED, 30.0, DataError, "31 periods"),
+        ("latency", SOFT_TISSUE, signals.DELAY, SpecError, "has no sampling"),
+        ("latency", SAMPLED, 30.0, DataError, "10 periods"),
     ],
 )
-def test_what_is_no_age_of_the_force_and_no_latency(merge, spec, delay, error, message):
+def test_what_is_no_age_of_the_force_and_no_latency(key, spec, delay, error, message):
     with pytest.raises(error, match=message) as caught:
-        merge(read_spec(spec), delayed(delay))
+        merge_sampling(read_spec(spec), delayed(delay), key)
     assert caught.value.remedy
 
 
 @pytest.mark.slow
 def test_a_lag_is_no_age_of_the_force():
     with pytest.raises(DataError, match="by a first-order lag") as caught:
-        merge_delay(read_spec(SAMPLED), identify_delay(signals.lag(1)))
+        merge_sampling(read_spec(SAMPLED), identify_delay(signals.lag(1)), "delay")
     assert caught.value.remedy
 
 

@@ -10,9 +10,8 @@ import numpy as np
 from nrs_design.errors import DataError
 from nrs_design.identification.actuator.motor import MotorModel
 from nrs_design.identification.actuator.scan import longest_delay
-from nrs_design.identification.datasets.records import ActuatorRecord, FrequencyResponse
-from nrs_design.identification.least_squares import search
-from nrs_design.identification.numeric import Array, Complex, bic
+from nrs_design.identification.datasets.records import FrequencyResponse, SignalRecord
+from nrs_design.identification.numeric import Array, Complex, bic, search
 from nrs_design.identification.rounding import rounding_scatter
 from nrs_design.identification.statistics import (
     Estimate,
@@ -22,9 +21,9 @@ from nrs_design.identification.statistics import (
     uncertainty,
 )
 
-# From so many records on, their spread says how far they agree; before, that of parts of them.
+# From this number of records on, the covariance comes from their spread; below, from parts of them.
 MANY_RECORDS = 5
-# Friction is told where it is so many standard errors; where it is among the parameters.
+# Least ratio of the friction to its standard error, and its index among the parameters.
 _CLEAR = 4.0
 _FRICTION = 2
 _FEWEST_FREQUENCIES = 3
@@ -39,14 +38,14 @@ FROM_THE_ROW = (
 class ActuatorFit:
     """``tau v' + v = gain (delta(t - D) - friction sign v)``."""
 
-    method: str  # How it was found
+    method: str  # Method of the fit
     gain: Estimate  # In rad/s for each unit of the command
     time_constant: Estimate  # In s
     # Coulomb friction in units of the command; None where the data cannot tell.
     friction: Estimate | None
-    uncertainty: Uncertainty  # Of `MotorModel.parameters`, or of the logarithms of the first two
-    dead_time: Estimate | None = None  # D in s; None where it was taken for zero or is not told
-    # What was fitted in time; None for a fit in the frequency domain.
+    uncertainty: Uncertainty  # For `MotorModel.parameters`, or the logarithms of the first two
+    dead_time: Estimate | None = None  # D in s; None if assumed zero or not determined
+    # Motor fitted in time; None for a fit in the frequency domain.
     motor: MotorModel | None = None
     # Shape (n,). Measured less fitted, of all records in turn.
     errors: Array = field(default_factory=lambda: np.empty(0))
@@ -77,7 +76,7 @@ class ActuatorFit:
         return np.asarray(lag * np.exp(-s * late))
 
 
-def fit_in_time(records: Sequence[ActuatorRecord], start: MotorModel) -> ActuatorFit:
+def fit_in_time(records: Sequence[SignalRecord], start: MotorModel) -> ActuatorFit:
     """Refine a motor in the time domain, its dead time with it.
 
     The command is held between samples and the velocity is solved exactly. Initial angle and
@@ -123,7 +122,7 @@ def _dead_time(delay: float, known: Uncertainty, longest: float) -> Estimate | N
     return Estimate(*(max(end, 0.0) for end in ends)) if ends[-1] <= longest else None
 
 
-def _uncertainty(records: Sequence[ActuatorRecord], J: Array, errors: Array) -> Uncertainty:
+def _uncertainty(records: Sequence[SignalRecord], J: Array, errors: Array) -> Uncertainty:
     ends = np.cumsum([0, *(len(record.time) for record in records)]).tolist()
     starts = ends[:-1] if len(records) >= MANY_RECORDS else None
     parts = zip(records, np.split(J, ends[1:-1]), strict=True)

@@ -2,22 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from nrs_design.errors import DataError
-from nrs_design.identification.actuator.doubts import find_doubts
 from nrs_design.identification.actuator.fit import (
     FROM_THE_ROW,
     ActuatorFit,
     fit_in_time,
     fit_response,
 )
-from nrs_design.identification.actuator.scan import scan_motor
+from nrs_design.identification.actuator.scan import scan_motor, tells_friction
 from nrs_design.identification.datasets.checks import doubt_step
-from nrs_design.identification.datasets.records import ActuatorRecord, FrequencyResponse
+from nrs_design.identification.datasets.records import FrequencyResponse, SignalRecord
 from nrs_design.identification.statistics import WHITE, Estimate, span
 from nrs_design.identification.tables.table import Source
 from nrs_design.identification.tissue.ranges import check_spread, spread_ranges
@@ -33,13 +32,13 @@ UNDETERMINED = (
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ActuatorIdentification:
-    """What records say of one actuator."""
+    """Motor identified from records, with intervals and doubts."""
 
-    data: tuple[ActuatorRecord | FrequencyResponse, ...]  # Records, or one ready response
+    data: tuple[SignalRecord | FrequencyResponse, ...]  # Records, or one ready response
     fit: ActuatorFit  # The motor
-    doubts: tuple[str, ...]  # What speaks against it
-    ranges: tuple[Estimate, ...]  # Of gain and time constant, for a spec
-    coverage: Coverage = "confidence"  # What the ranges hold
+    doubts: tuple[str, ...]  # Evidence against the fit
+    ranges: tuple[Estimate, ...]  # Ranges of gain and time constant for a spec
+    coverage: Coverage = "confidence"  # Coverage of the ranges
 
     @property
     def sources(self) -> tuple[Source, ...]:
@@ -47,9 +46,9 @@ class ActuatorIdentification:
         return tuple({item.source.sha256: item.source for item in self.data}.values())
 
     @property
-    def records(self) -> tuple[ActuatorRecord, ...]:
+    def records(self) -> tuple[SignalRecord, ...]:
         """The records in time."""
-        return tuple(item for item in self.data if isinstance(item, ActuatorRecord))
+        return tuple(item for item in self.data if isinstance(item, SignalRecord))
 
     @property
     def unit(self) -> str:
@@ -63,12 +62,12 @@ class ActuatorIdentification:
 
     @property
     def covers(self) -> str:
-        """What the ranges hold, in words."""
+        """Coverage of the ranges, in words."""
         return MOTOR_COVERS[self.coverage]
 
     @property
     def remarks(self) -> tuple[str, ...]:
-        """How pauses part records, in words."""
+        """Pauses in the records, in words."""
         return tuple(f"{r.name}: {r.pauses}" for r in self.records if r.pauses)
 
     @property
@@ -94,7 +93,7 @@ class ActuatorIdentification:
 
 
 def identify_actuator(
-    data: Sequence[ActuatorRecord | FrequencyResponse],
+    data: Sequence[SignalRecord | FrequencyResponse],
     coverage: Coverage = "confidence",
     progress: Progress = silent,
 ) -> ActuatorIdentification:
@@ -104,7 +103,7 @@ def identify_actuator(
     too, which takes more than one record; else `DataError`.
     """
     responses = [item for item in data if isinstance(item, FrequencyResponse)]
-    records = [item for item in data if isinstance(item, ActuatorRecord)]
+    records = [item for item in data if isinstance(item, SignalRecord)]
     _check(records, responses, coverage)
     progress("fitting")
     if responses:
@@ -121,7 +120,7 @@ def identify_actuator(
 
 
 def _check(
-    records: Sequence[ActuatorRecord], responses: Sequence[FrequencyResponse], coverage: Coverage
+    records: Sequence[SignalRecord], responses: Sequence[FrequencyResponse], coverage: Coverage
 ) -> None:
     if coverage != "confidence":
         check_spread(coverage, len({r.source.sha256 for r in records}) + len(responses))
@@ -142,9 +141,9 @@ def _check(
         )
 
 
-def _spread(records: Sequence[ActuatorRecord], coverage: Coverage) -> tuple[Estimate, ...]:
-    """Return ranges that hold other records, from a fit to each of these by itself."""
-    wholes: dict[str, list[ActuatorRecord]] = {}
+def _spread(records: Sequence[SignalRecord], coverage: Coverage) -> tuple[Estimate, ...]:
+    """Return ranges for other records, from one fit to each file."""
+    wholes: dict[str, list[SignalRecord]] = {}
     for record in records:
         wholes.setdefault(record.source.sha256, []).append(record)
     fits = [_alone(parts) for parts in wholes.values()]
@@ -153,7 +152,7 @@ def _spread(records: Sequence[ActuatorRecord], coverage: Coverage) -> tuple[Esti
     return spread_ranges(coverage, logarithms, single)
 
 
-def _alone(parts: Sequence[ActuatorRecord]) -> ActuatorFit:
+def _alone(parts: Sequence[SignalRecord]) -> ActuatorFit:
     try:
         return _fit(parts)
     except DataError as error:
@@ -165,7 +164,7 @@ def _alone(parts: Sequence[ActuatorRecord]) -> ActuatorFit:
 
 
 def _slips(fit: ActuatorFit, unit: str) -> tuple[str, ...]:
-    """Return what is asked about the sizes of what was found."""
+    """Return questions about implausible sizes of the parameters."""
     sizes = (
         ("gain", fit.gain.value, f"rad/s/{unit}"),
         ("time_constant", fit.time_constant.value, "s"),
@@ -177,7 +176,7 @@ def _slips(fit: ActuatorFit, unit: str) -> tuple[str, ...]:
     )
 
 
-def _fit(records: Sequence[ActuatorRecord]) -> ActuatorFit:
+def _fit(records: Sequence[SignalRecord]) -> ActuatorFit:
     """Return a motor with friction only where that is better.
 
     The scan may find friction where there is none, as its times are coarse.
@@ -196,3 +195,37 @@ def _fit(records: Sequence[ActuatorRecord]) -> ActuatorFit:
         return min(found, fit_in_time(records, without), key=lambda fit: fit.bic)
     except DataError:
         return found
+
+
+# Largest part of the output that a fit may miss in errors that are not white.
+_MISSED = 0.01
+# Relative standard error beyond which a parameter is undetermined.
+_UNSURE = 0.5
+
+
+def find_doubts(records: Sequence[SignalRecord], found: ActuatorFit) -> Iterator[str]:
+    """Yield what speaks against a fit in time, with its evidence."""
+    motor, step = found.motor, min(record.step for record in records)
+    assert motor is not None
+    if motor.delay < -2 * float(found.uncertainty.errors[-1]):
+        yield (
+            f"the output comes {-motor.delay:.3g} s before its command "
+            f"({-motor.delay / step:.2g} samples): the clocks of the columns "
+            "differ, or command and output are swapped"
+        )
+    if motor.friction is None and not tells_friction(records, motor.time_constant, motor.delay):
+        yield (
+            "the command has one level only: friction cannot be told from a smaller gain, and the "
+            "gain is that of this level"
+        )
+    names = ["gain", "time constant"] + ["friction"] * (motor.friction is not None)
+    for name, error in zip(names, found.uncertainty.errors.tolist(), strict=False):
+        if error > _UNSURE:
+            yield f"the records do not determine the {name}: its relative error is {error:.2g}"
+    spread = np.sqrt(sum(float(np.sum((r.output - r.output.mean()) ** 2)) for r in records))
+    missed = float(np.linalg.norm(found.errors)) / spread
+    if found.uncertainty.whiteness < WHITE and missed > _MISSED:
+        yield (
+            f"the model misses {100 * missed:.2g} % of the motion, in errors that are not noise, "
+            "as of a second lag, a limit or an offset of the command, or backlash"
+        )

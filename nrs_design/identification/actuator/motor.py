@@ -1,18 +1,62 @@
-"""The motor in time: its output for given parameters, and how that depends on them."""
+"""The motor in time: output for given parameters, and its derivatives."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from typing import Self
 
 import numpy as np
 
-from nrs_design.identification.actuator.friction import friction_shape
-from nrs_design.identification.datasets.records import ActuatorRecord
+from nrs_design.identification.datasets.records import SignalRecord
 from nrs_design.identification.held import Held, Lags
 from nrs_design.identification.numeric import Array, beyond
 
-# Of a logarithm; and of the dead time, in samples and in these.
+
+def friction_shape(held: Held, gain: float, tau: float, friction: float) -> Array:
+    """Return friction over its largest value, the mean over each interval, shape (m - 1,).
+
+    It is 1 or -1 against the motion, from rest on. Where the velocity reaches zero while the
+    command is below the friction (in units of the command), the motor sticks, and the friction is
+    just the command. A reversal within an interval is found exactly.
+    """
+    decays = np.exp(-held.steps / tau)
+    factor = (1 - decays) * gain
+    steps = zip(
+        held.steps.tolist(),
+        held.command.tolist(),
+        decays.tolist(),
+        (factor * (held.command - friction)).tolist(),
+        (factor * (held.command + friction)).tolist(),
+        strict=True,
+    )
+    shape = []
+    velocity, direction = 0.0, 1.0
+    # A loop: each reversal depends on the motion before it.
+    for step, command, decay, forward, backward in steps:
+        if velocity == 0.0:
+            if abs(command) <= friction:
+                shape.append(command / friction)
+                continue
+            direction = math.copysign(1.0, command)
+        before = velocity
+        velocity = decay * before + (forward if direction > 0.0 else backward)
+        if velocity * direction >= 0.0:
+            shape.append(direction)
+            continue
+        target = gain * (command - friction * direction)
+        stop = -tau * math.log(target / (target - before))
+        if abs(command) <= friction:
+            velocity, after = 0.0, command / friction
+        else:
+            turned = gain * (command + friction * direction)
+            velocity, after = turned * -math.expm1((stop - step) / tau), -direction
+        shape.append((stop * direction + (step - stop) * after) / step)
+        direction = -direction
+    return np.array(shape)
+
+
+# Difference in a logarithm; that of the dead time, in samples, is larger by this factor.
 _DIFFERENCE = 1e-5
 _DELAY_DIFFERENCE = 100.0
 
@@ -23,7 +67,7 @@ class MotorModel:
 
     gain: float  # In rad/s for each unit of the command
     time_constant: float  # In s
-    friction: float | None  # In units of the command; None leaves it out
+    friction: float | None  # In units of the command; None for a motor without friction
     delay: float  # Dead time in s
 
     @property
@@ -48,33 +92,33 @@ class MotorModel:
             delay=float(x[-1]),
         )
 
-    def hold(self, record: ActuatorRecord) -> tuple[Held, Array | None]:
+    def hold(self, record: SignalRecord) -> tuple[Held, Array | None]:
         """Return the command of a record as it acts, and the shape of the friction."""
         held = Held.of(record.time, record.command, self.delay)
         if self.friction is None:
             return held, None
         return held, friction_shape(held, self.gain, self.time_constant, self.friction)
 
-    def forced(self, record: ActuatorRecord, held: Held, shape: Array | None) -> Array:
+    def forced(self, record: SignalRecord, held: Held, shape: Array | None) -> Array:
         """Return the output from rest at the samples of a record, shape (n,)."""
         friction = 0.0 if shape is None or self.friction is None else self.friction * shape
         inputs = self.gain * (held.command - friction)
         output = self.lags.angle if record.is_angle else self.lags.velocity
         return output(held, inputs)[held.samples]
 
-    def free(self, record: ActuatorRecord) -> Array:
+    def free(self, record: SignalRecord) -> Array:
         """Return what initial angle and velocity add, shape (n, p)."""
         return self.lags.free(record.time, angle=record.is_angle)
 
-    def simulate(self, record: ActuatorRecord) -> Array:
+    def simulate(self, record: SignalRecord) -> Array:
         """Return the output in rad or rad/s, its initial state fitted to a record, shape (n,)."""
         return record.output - self.errors(record)
 
-    def errors(self, record: ActuatorRecord) -> Array:
+    def errors(self, record: SignalRecord) -> Array:
         """Return measured less fitted output, shape (n,)."""
         return self.beyond_start(record, record.output - self.forced(record, *self.hold(record)))
 
-    def derivatives(self, record: ActuatorRecord) -> Array:
+    def derivatives(self, record: SignalRecord) -> Array:
         """Return the derivatives of the fitted output by the parameters, shape (n, p).
 
         With the parameters, the times move at which the motor turns or sticks: differences of
@@ -92,7 +136,7 @@ class MotorModel:
         columns = [(output(x + h) - output(x - h)) / (2 * h.sum()) for h in steps]
         return self.beyond_start(record, np.column_stack(columns))
 
-    def beyond_start(self, record: ActuatorRecord, values: Array) -> Array:
+    def beyond_start(self, record: SignalRecord, values: Array) -> Array:
         """Return what no initial state explains."""
         free, _ = np.linalg.qr(self.free(record))
         return beyond(free, values)

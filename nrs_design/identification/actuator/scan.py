@@ -9,28 +9,28 @@ import numpy as np
 
 from nrs_design.errors import DataError
 from nrs_design.identification.actuator.motor import MotorModel
-from nrs_design.identification.datasets.records import ActuatorRecord
+from nrs_design.identification.datasets.records import SignalRecord
 from nrs_design.identification.numeric import TINY, Array
 
 _TIME_CONSTANTS = 14
 # In samples.
 _DELAYS = (0.0, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0)
-# Of a record, the largest part that a dead time or a time constant may take.
+# Longest dead time or time constant, as a part of a record.
 _LONGEST = 0.1
-# Two effects that are alike to this part of their power cannot be told apart.
+# Largest independent part of the power at which two effects are indistinguishable.
 _ALIKE = 1e-3
-# Friction belongs to the model where it stands out of its standard error so far.
+# Least ratio of gain or friction to its standard error.
 _CLEAR = 4.0
 # Squared errors up to so many times the least are nearly as good.
 _NEARLY = 4.0
 
 
-def longest_delay(records: Sequence[ActuatorRecord]) -> float:
+def longest_delay(records: Sequence[SignalRecord]) -> float:
     """Return the longest dead time, or time constant, that is looked for, in s."""
     return _LONGEST * max(float(record.time[-1]) for record in records)
 
 
-def scan_motor(records: Sequence[ActuatorRecord]) -> MotorModel:
+def scan_motor(records: Sequence[SignalRecord]) -> MotorModel:
     """Return the best of many motors; whatever the command is, gain and friction are linear."""
     tried = [(*_solve(records, *pair), *pair) for pair in _grid(records)]
     best = min(tried, key=lambda item: item[0])
@@ -41,7 +41,7 @@ def scan_motor(records: Sequence[ActuatorRecord]) -> MotorModel:
             "the output does not follow the command",
             remedy="check that both columns belong to one motor and one clock",
         )
-    # A poor model may turn the sign; that of the columns is opposite if no other fits nearly.
+    # A poor model may invert the sign: the columns differ in sign if no other model fits nearly.
     if not along or (against and min(item[0] for item in along) > _NEARLY * best[0]):
         raise DataError(
             "the output moves against the command: their signs are opposite",
@@ -53,8 +53,8 @@ def scan_motor(records: Sequence[ActuatorRecord]) -> MotorModel:
     return MotorModel(gain, tau, float(solution[1]) / gain if clear else None, delay)
 
 
-def tells_friction(records: Sequence[ActuatorRecord], tau: float, delay: float) -> bool:
-    """Whether friction acts otherwise than a smaller gain would; under one step it does not.
+def tells_friction(records: Sequence[SignalRecord], tau: float, delay: float) -> bool:
+    """Tell whether friction differs from a smaller gain; under one step it does not.
 
     Time constant and dead time are in s.
     """
@@ -62,14 +62,14 @@ def tells_friction(records: Sequence[ActuatorRecord], tau: float, delay: float) 
 
 
 def _differ(X: Array) -> bool:
-    """Whether the output of the command and that of friction are more than multiples."""
+    """Tell whether the columns of command and friction are linearly independent."""
     power = np.einsum("ij,ij->j", X, X)
     if not power.all():
         return False
     return float(X[:, 0] @ X[:, 1]) ** 2 < (1 - _ALIKE) * float(power[0] * power[1])
 
 
-def _grid(records: Sequence[ActuatorRecord]) -> Iterator[tuple[float, float]]:
+def _grid(records: Sequence[SignalRecord]) -> Iterator[tuple[float, float]]:
     step = min(record.step for record in records)
     longest = longest_delay(records)
     taus = np.geomspace(step, max(longest, 4 * step), _TIME_CONSTANTS)
@@ -77,9 +77,7 @@ def _grid(records: Sequence[ActuatorRecord]) -> Iterator[tuple[float, float]]:
     return ((float(tau), delay) for delay in delays for tau in taus)
 
 
-def _solve(
-    records: Sequence[ActuatorRecord], tau: float, delay: float
-) -> tuple[float, Array, Array]:
+def _solve(records: Sequence[SignalRecord], tau: float, delay: float) -> tuple[float, Array, Array]:
     """Return squared errors, gain and gain times friction, and their standard errors."""
     rows = [_regressors(record, tau, delay) for record in records]
     X = np.concatenate([x for x, _ in rows])
@@ -95,8 +93,8 @@ def _solve(
     return power, np.asarray(solution, float), np.maximum(spread, TINY)
 
 
-def _regressors(record: ActuatorRecord, tau: float, delay: float) -> tuple[Array, Array]:
-    """Return what a command and what its friction make of a motor of unit gain, and the output."""
+def _regressors(record: SignalRecord, tau: float, delay: float) -> tuple[Array, Array]:
+    """Return the outputs of a unit gain for command and friction, (n, 2), and the measured one."""
     motor = MotorModel(1.0, tau, None, delay)
     held, _ = motor.hold(record)
     against = replace(held, command=-np.sign(motor.lags.velocity(held, held.command)[:-1]))

@@ -1,4 +1,4 @@
-"""What the library asks of this wing: records and runs, as results of its own kind."""
+"""Entry points of the library: results for records and for logs of runs."""
 
 from __future__ import annotations
 
@@ -11,20 +11,14 @@ from nrs_design.api.audit import Audit, AuditCheck
 from nrs_design.api.identified import FittedRange, Identification
 from nrs_design.errors import DataError
 from nrs_design.identification.actuator.identify import identify_actuator
-from nrs_design.identification.datasets.records import (
-    read_actuator,
-    read_signals,
-    read_tissue,
-)
+from nrs_design.identification.datasets.records import read_actuator, read_signals, read_tissue
 from nrs_design.identification.delay.identify import identify_delay
-from nrs_design.identification.finding import is_synthetic
 from nrs_design.identification.reporting.actuator import view_actuator
 from nrs_design.identification.reporting.delay import view_delay
 from nrs_design.identification.reporting.running import run_facts, run_report
 from nrs_design.identification.reporting.tissue import view_tissue
-from nrs_design.identification.reporting.view import FindingView
-from nrs_design.identification.running.bounds import proof_of, read_run_bounds
-from nrs_design.identification.running.check import Check
+from nrs_design.identification.reporting.view import FindingView, is_synthetic
+from nrs_design.identification.running.bounds import Check, proof_of, read_run_bounds
 from nrs_design.identification.running.judge import judge_run
 from nrs_design.identification.running.log import read_run
 from nrs_design.identification.tables.columns import parse_mapping
@@ -36,9 +30,9 @@ from nrs_design.models.contact import LAWS
 if TYPE_CHECKING:
     from nrs_design.spec import LoadedSpec
 
-Columns = Mapping[str, str]  # From a name in the file to ours
+Columns = Mapping[str, str]  # From standard names to names in the file
 
-# How the columns of a delay are called by those who name them.
+# Standard names of the columns of a delay.
 _OF_DELAY = {"command": "input_any", "measured": "output_any"}
 
 
@@ -74,7 +68,7 @@ def identify_records(
 
 
 def _check(files: Sequence[object], kind: object, law: str | None) -> None:
-    """Refuse words that are none, and arguments in each other's place."""
+    """Refuse unknown kinds and laws, and swapped arguments."""
     kinds = tuple(_KINDS)
     if kind not in kinds:
         if any(isinstance(file, str) and file in kinds for file in files):

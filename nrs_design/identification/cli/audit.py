@@ -85,7 +85,7 @@ def audit(
     )
 
 
-# What a check that is not modelled takes for granted.
+# Assumption behind each check that is not modelled.
 _GRANTED = {
     "delay": "the motion is no later behind its command than the spec says",
     "jitter": "the steps of time are even",

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from enum import StrEnum
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, TypeVar
+from typing import TYPE_CHECKING, Annotated, Literal, TypeVar
 
 import typer
 
@@ -41,12 +41,8 @@ Replace = Annotated[
 ]
 
 
-class CoversOption(StrEnum):
-    """What the range in a spec holds."""
-
-    CONFIDENCE = "confidence"
-    TOLERANCE = "tolerance"
-    PREDICTION = "prediction"
+# Coverage of the range in a spec.
+Covers = Literal["confidence", "tolerance", "prediction"]
 
 
 class ModelOption(StrEnum):
@@ -56,13 +52,6 @@ class ModelOption(StrEnum):
     AUTO = "auto"
     for law in LAWS:
         vars()[law.replace("-", "_").upper()] = law
-
-
-class Into(StrEnum):
-    """Where a delay is written to."""
-
-    DELAY = "delay"
-    LATENCY = "latency"
 
 
 T = TypeVar("T")
@@ -90,7 +79,7 @@ def read_all(
 def _deliver(
     outputs: Destinations, view: FindingView, merge: Callable[[LoadedSpec], str]
 ) -> Answer:
-    """Print and write what was found; where it is in doubt, the answer is inconclusive."""
+    """Print and write a result; with doubts, the answer is inconclusive."""
     found = view.found
     code = exit_codes.INCONCLUSIVE if found.doubts else exit_codes.PROVED
     answer = Answer(lambda: view.document, partial(_show, view), code)
@@ -98,13 +87,12 @@ def _deliver(
 
 
 def _show(view: FindingView) -> None:
-    from nrs_design.identification.finding import is_synthetic
-    from nrs_design.identification.reporting.view import SYNTHETIC
+    from nrs_design.identification.reporting.view import SYNTHETIC, is_synthetic
 
     if is_synthetic(view.found.sources):
         say(SYNTHETIC)
     if wants_details():
-        # Of the page, which its headings explain.
+        # The table of the page, without its caption.
         print_table("", view.fits.columns, view.fits.rows)
     for line in view.lines:
         say(line)
@@ -134,9 +122,9 @@ def tissue(
         ),
     ] = None,
     covers: Annotated[
-        CoversOption,
+        Covers,
         typer.Option(help="What the range holds: the mean, 95 % of specimens, or the next one."),
-    ] = CoversOption.CONFIDENCE,
+    ] = "confidence",
     preload: Annotated[
         str | None,
         typer.Option(metavar="LOW..HIGH", help="Deflections of a power law, as in '1 mm..3 mm'."),
@@ -194,7 +182,7 @@ def tissue(
             records,
             law,
             preparation,
-            covers.value,
+            covers,
             deflections,
             progress=step,
             declared=asked is None,
@@ -212,9 +200,9 @@ def actuator(
     data: DataFiles,
     columns: ColumnMap = None,
     covers: Annotated[
-        CoversOption,
+        Covers,
         typer.Option(help="What the range holds: this motor, 95 % of records, or the next one."),
-    ] = CoversOption.CONFIDENCE,
+    ] = "confidence",
     write: WriteTo = None,
     narrower: Replace = False,
     report: ReportTo = None,
@@ -240,7 +228,7 @@ def actuator(
         for record in records:
             check_actuator(outputs.spec, record.unit)
     with progress("fitting") as step:
-        found = identify_actuator(records, covers.value, step)
+        found = identify_actuator(records, covers, step)
     view = view_actuator(found)
     return _deliver(outputs, view, lambda spec: merge_actuator(spec, found, replace=narrower))
 
@@ -258,8 +246,9 @@ def delay(
     ] = None,
     columns: ColumnMap = None,
     into: Annotated[
-        Into, typer.Option(help="What --write puts down: delay of the force, or latency.")
-    ] = Into.DELAY,
+        Literal["delay", "latency"],
+        typer.Option(help="What --write puts down: delay of the force, or latency."),
+    ] = "delay",
     write: WriteTo = None,
     report: ReportTo = None,
     date: Date = None,
@@ -278,14 +267,8 @@ def delay(
     from nrs_design.identification.datasets.records import read_signals
     from nrs_design.identification.delay.identify import identify_delay
     from nrs_design.identification.reporting.delay import view_delay
-    from nrs_design.identification.write_spec import (
-        check_delay_place,
-        check_latency_place,
-        merge_delay,
-        merge_latency,
-    )
+    from nrs_design.identification.write_spec import check_sampling, merge_sampling
 
-    late = into is Into.LATENCY
     if (command is None) != (measured is None):
         raise typer.BadParameter("name both columns or none", param_hint="--command, --measured")
     if command is not None and command == measured:
@@ -293,18 +276,17 @@ def delay(
     if write is not None and command is None:
         raise typer.BadParameter(
             "name the command as computed by --command, and as the drive took it by --measured"
-            if late
+            if into == "latency"
             else "name the force as measured by --command, and as the law used it by --measured",
             param_hint="--write",
         )
     outputs = Destinations.checked(write, report, date)
     if outputs.spec is not None:
-        (check_latency_place if late else check_delay_place)(outputs.spec)
+        check_sampling(outputs.spec, into)
     entries = list(columns or [])
     if command is not None:
         entries += [f"input_any={command}", f"output_any={measured}"]
     (record,) = read_all([log], read_signals, entries)
     with progress("fitting"):
         found = identify_delay(record)
-    merge = merge_latency if late else merge_delay
-    return _deliver(outputs, view_delay(found), lambda spec: merge(spec, found))
+    return _deliver(outputs, view_delay(found), lambda spec: merge_sampling(spec, found, into))

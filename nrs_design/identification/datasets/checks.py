@@ -14,12 +14,12 @@ from nrs_design.spec.plausible import doubt_size
 from nrs_design.spec.quantity import SMALLEST
 
 FEWEST_ROWS = 50
-# A step of more than so many usual ones is a gap.
+# Length of a gap, in usual steps.
 GAP = 3.0
 # A sensor is saturated when its extreme reading repeats while this part of the motion passes.
 _FLAT_ROWS = 10
 _FLAT_MOTION = 0.05
-# Changes of so many units in the last place are none.
+# Changes up to this number of units in the last place are rounding.
 _ROUNDED = 8
 
 
@@ -37,12 +37,12 @@ def gaps_in(time: Array) -> Flags:
 
 
 def stretches_in(time: Array) -> tuple[slice, ...]:
-    """Return the rows between gaps, all of them, in their order; one slice where there is none."""
+    """Return the rows between gaps, in order; one slice for a record without gaps."""
     return tuple(slice(a, b) for a, b in parted(gaps_in(time)))
 
 
 def long_stretches(time: Array) -> tuple[slice, ...]:
-    """Return those of them that are long enough to tell anything."""
+    """Return the stretches that are long enough for a fit."""
     return tuple(rows for rows in stretches_in(time) if rows.stop - rows.start >= FEWEST_ROWS)
 
 
@@ -95,7 +95,7 @@ def check_advance(table: MeasurementTable, time: Array) -> None:
 
 
 def check_turns(table: MeasurementTable, angle: Array) -> None:
-    """Check that an angle does not jump by a whole turn, as one that restarts at 360 deg does."""
+    """Check that an angle does not jump by a whole turn, as a reading modulo 360 deg does."""
     steps = np.abs(np.diff(angle))
     jumps = np.flatnonzero(np.abs(steps - 2 * np.pi) < np.pi / 4)
     if len(jumps) and float(np.median(steps)) < np.pi / 4:
@@ -107,7 +107,7 @@ def check_turns(table: MeasurementTable, angle: Array) -> None:
 
 
 def check_saturation(table: MeasurementTable, name: str, values: Array, moving: Array) -> None:
-    """Check that a sensor does not rest at its extreme reading while what drives it moves on."""
+    """Check that a sensor does not rest at its extreme reading during a motion."""
     span = float(np.ptp(moving))
     for extreme in {float(values.max()), float(values.min())} - {0.0}:
         for first, last in runs(values == extreme):

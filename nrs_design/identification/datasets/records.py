@@ -18,12 +18,7 @@ from nrs_design.identification.datasets.checks import (
     stretches_in,
 )
 from nrs_design.identification.numeric import Array, Complex, usual_step
-from nrs_design.identification.tables.table import (
-    Data,
-    MeasurementTable,
-    Source,
-    read_table,
-)
+from nrs_design.identification.tables.table import Data, MeasurementTable, Source, read_table
 from nrs_design.models.contact.motion import Motion
 
 LINEAR = ("time", "deflection", "force")
@@ -32,7 +27,7 @@ ANGLE = ("time", "command", "angle")
 VELOCITY = ("time", "command", "velocity")
 FREE = (("input", "output"),)
 FOLLOWED = tuple(
-    ("command", seen) for seen in ("angle", "velocity", "torque", "force", "deflection")
+    ("command", output) for output in ("angle", "velocity", "torque", "force", "deflection")
 )
 RESPONSE = ("frequency", "magnitude", "phase")
 # In dB.
@@ -55,18 +50,20 @@ class TissueRecord:
 
 
 @dataclass(frozen=True, eq=False)
-class ActuatorRecord:
-    """Response of the actuator to a command."""
+class SignalRecord:
+    """A command and a measured signal that follows it."""
 
     source: Source  # The file
-    # time, command, output: shape (n,). In s, in the unit of the command, and in rad or rad/s.
+    # time, command, output: shape (n,). In s, in the unit of the command, and of a motor in rad or
+    # rad/s.
     time: Array
     command: Array
     output: Array
-    is_angle: bool = True  # Whether the output is an angle; otherwise it is a velocity
-    unit: str = "rpm"  # Of the command, such as ``rpm``, ``V``, ``A`` or ``counts``
-    part: int = 0  # Which of the stretches between pauses of a file this is, from 0
-    pauses: str | None = None  # How pauses part the file, in words, with the first part
+    is_angle: bool = True  # Output of a motor: angle, or velocity if False
+    unit: str = "rpm"  # Unit of the command: ``rpm``, ``V``, ``A`` or ``counts``
+    part: int = 0  # Number of the stretch between pauses of the file, from 0
+    pauses: str | None = None  # Pauses of the file in words, with the first part
+    names: tuple[str, str] = ("command", "output")  # Names of both columns in the file
 
     @property
     def name(self) -> str:
@@ -79,6 +76,16 @@ class ActuatorRecord:
         """Usual time between samples in s."""
         return usual_step(self.time)
 
+    @cached_property
+    def stretches(self) -> tuple[slice, ...]:
+        """The rows between pauses of the record."""
+        return stretches_in(self.time)
+
+    @cached_property
+    def longest(self) -> slice:
+        """The rows of the longest stretch."""
+        return max(self.stretches, key=lambda rows: rows.stop - rows.start)
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FrequencyResponse:
@@ -88,7 +95,7 @@ class FrequencyResponse:
     frequency: Array  # Shape (m,). In rad/s.
     # Shape (m,). In rad/s for each unit of the command.
     response: Complex
-    unit: str = "rpm"  # Of the command, which no column says: that of the motor of the thesis
+    unit: str = "rpm"  # Unit of the command of the thesis; no column states it
 
 
 def read_tissue(data: Data, mapping: Mapping[str, str] | None = None) -> TissueRecord:
@@ -110,7 +117,7 @@ def read_tissue(data: Data, mapping: Mapping[str, str] | None = None) -> TissueR
 
 def read_actuator(
     data: Data, mapping: Mapping[str, str] | None = None
-) -> tuple[ActuatorRecord | FrequencyResponse, ...]:
+) -> tuple[SignalRecord | FrequencyResponse, ...]:
     """Read a record of the actuator, in parts between its pauses, or a frequency response.
 
     Columns are ``time_s, command_rpm`` and ``angle_rad`` or ``velocity_rad_s``, or
@@ -122,37 +129,7 @@ def read_actuator(
     return tuple(_actuator(table))
 
 
-@dataclass(frozen=True, eq=False)
-class SignalRecord:
-    """What was sent, and what came of it."""
-
-    source: Source  # The file
-    # time, sent, seen: shape (n,). In s, and in whatever units.
-    time: Array
-    sent: Array
-    seen: Array
-    names: tuple[str, str]  # Of both columns in the file
-
-    @cached_property
-    def step(self) -> float:
-        """Usual time between samples in s."""
-        return usual_step(self.time)
-
-    @cached_property
-    def stretches(self) -> tuple[slice, ...]:
-        """The rows between pauses of the record."""
-        return stretches_in(self.time)
-
-    @cached_property
-    def longest(self) -> slice:
-        """The longest of these."""
-        return max(self.stretches, key=lambda rows: rows.stop - rows.start)
-
-
-def read_signals(
-    data: Data,
-    mapping: Mapping[str, str] | None = None,
-) -> SignalRecord:
+def read_signals(data: Data, mapping: Mapping[str, str] | None = None) -> SignalRecord:
     """Read two columns: a command, and what follows it.
 
     They are ``time_s, command_rpm`` and ``angle_rad`` or another measured one; any two others are
@@ -162,18 +139,17 @@ def read_signals(
     chosen = {"input_any", "output_any"} & set(mapping.values())
     layouts = [("time", *pair) for pair in (FREE if chosen else FOLLOWED)]
     table = read_table(data, layouts, mapping)
-    time, sent, seen = table.values.values()
-    found = table.columns
+    time, command, output = table.values.values()
     check_time(table, time)
-    names = found[table.layout[1]].name, found[table.layout[2]].name
+    names = table.columns[table.layout[1]].name, table.columns[table.layout[2]].name
     if table.layout[2] == "angle":
-        check_turns(table, seen)
-    for name, values in zip(names, (sent, seen), strict=True):
+        check_turns(table, output)
+    for name, values in zip(names, (command, output), strict=True):
         check_varies(table, name, values)
-    return SignalRecord(table.source, time - time[0], sent, seen, names)
+    return SignalRecord(table.source, time - time[0], command, output, names=names)
 
 
-def _actuator(table: MeasurementTable) -> list[ActuatorRecord]:
+def _actuator(table: MeasurementTable) -> list[SignalRecord]:
     """Return a record for every stretch between pauses in which the motor moves."""
     time, command, output = table.values.values()
     check_time(table, time)
@@ -183,12 +159,12 @@ def _actuator(table: MeasurementTable) -> list[ActuatorRecord]:
     is_angle = table.layout == ANGLE
     if is_angle:
         check_turns(table, output)
-    parts: list[ActuatorRecord] = []
+    parts: list[SignalRecord] = []
     for rows in long_stretches(time):
         t, u, y = time[rows], command[rows], output[rows]
         if np.ptp(u) > 0 and np.ptp(y) > 0:
             part = len(parts), None if parts else pauses_text(time - time[0])
-            parts.append(ActuatorRecord(table.source, t - t[0], u, y, is_angle, unit, *part))
+            parts.append(SignalRecord(table.source, t - t[0], u, y, is_angle, unit, *part))
     if not parts:
         table.fail("the motor moves in no stretch between its pauses", 0, "record a motion")
     return parts

@@ -1,1 +1,1 @@
-"""The delay of a running loop, from what was sent and what came of it."""
+"""Delay of a running loop, from a command and the response."""

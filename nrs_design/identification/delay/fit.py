@@ -1,31 +1,100 @@
-"""A delay by least squares, beside the dynamics that it must not be mistaken for."""
+"""Least-squares fits of a delay together with possible dynamics."""
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import lru_cache
+from math import exp
 
 import numpy as np
 
 from nrs_design.identification.datasets.records import SignalRecord
-from nrs_design.identification.delay.models import AbstractFollower, HeldCopy
-from nrs_design.identification.least_squares import search
-from nrs_design.identification.numeric import Array, Rows, beyond, bic, column_sizes
+from nrs_design.identification.held import Held, Lags
+from nrs_design.identification.numeric import Array, Rows, beyond, bic, column_sizes, search
 from nrs_design.identification.statistics import Uncertainty, uncertainty
 
-# So far from where columns are most alike, in samples, a whole number of them is sought.
+# Half width, in samples, of the search for a whole number of them about the peak of correlation.
 _AROUND = 8
 _DIFFERENCE = 1e-4
 # Errors of this part of the power are rounding.
 EXACT = 1e-24
 
 
+@dataclass(frozen=True)
+class AbstractFollower(ABC):
+    """A model of the response to a command; gain, offset and initial state are linear."""
+
+    shape: tuple[float, ...] = ()  # Logarithms of its other parameters
+    name: str = "a copy"
+
+    @abstractmethod
+    def columns(self, record: SignalRecord, delay: float) -> Array:
+        """Return the columns that the output is a combination of, (n, p), at a delay in s."""
+
+
+class SmoothCopy(AbstractFollower):
+    """The command, later; smooth between samples."""
+
+    def columns(self, record: SignalRecord, delay: float) -> Array:
+        """Return the command and a constant."""
+        from scipy.interpolate import CubicSpline
+
+        at = np.clip(record.time - delay, record.time[0], record.time[-1])
+        return np.column_stack([CubicSpline(record.time, record.command)(at), np.ones_like(at)])
+
+
+class HeldCopy(AbstractFollower):
+    """The command, whole samples later; its values between samples are unknown."""
+
+    def columns(self, record: SignalRecord, delay: float) -> Array:
+        """Return the command and a constant."""
+        rows = np.arange(len(record.time)) - round(delay / record.step)
+        at = np.clip(rows, 0, len(record.time) - 1)
+        return np.column_stack([record.command[at], np.ones(len(at))])
+
+
+@dataclass(frozen=True)
+class Lagged(AbstractFollower):
+    """Lags of the command that is held between samples, or their integral."""
+
+    lags: Callable[..., Lags] = Lags.first_order  # By the parameters
+    angle: bool = False  # Integrate the lag, as for the angle of a velocity-controlled motor
+
+    def columns(self, record: SignalRecord, delay: float) -> Array:
+        """Return output, constant (a drift for an integral) and initial states."""
+        lags, held = self.lags(*map(exp, self.shape)), _hold(record, delay)
+        output = (lags.angle if self.angle else lags.velocity)(held, held.command)[held.samples]
+        constant = record.time if self.angle else np.ones_like(output)
+        return np.column_stack([output, constant, _free(record, lags, angle=self.angle)])
+
+
+@lru_cache(maxsize=32)
+def _hold(record: SignalRecord, delay: float) -> Held:
+    """Return the delayed command; several shapes are tried at each delay."""
+    return Held.of(record.time, record.command, delay)
+
+
+def _free(record: SignalRecord, lags: Lags, *, angle: bool) -> Array:
+    """Return the outputs of initial states, those of every stretch between pauses, (n, p)."""
+    parts = []
+    for rows in record.stretches:
+        free = lags.free(record.time[rows], angle=angle)
+        part = np.zeros((len(record.time), free.shape[1]))
+        part[rows] = free
+        parts.append(part)
+    return np.column_stack(parts)
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class DelayFit:
     """One model with the delay that fits best."""
 
+    record: SignalRecord  # The data, n samples
     follower: AbstractFollower  # The model
     delay: float  # In s
-    # Of the delay in samples, first, and of the logarithms of the other parameters.
+    # For the delay in samples, then the logarithms of the other parameters.
     uncertainty: Uncertainty
     # sensitivity, errors: shape (m,). Change of the output by one sample of delay, and measured
     # less fitted.
@@ -33,7 +102,6 @@ class DelayFit:
     errors: Array
     # Shape (m,). Samples that were fitted: those that the command before the record cannot reach.
     rows: Rows
-    seen: Array  # Shape (m,). What was measured.
     fitted: Array  # Shape (n,). Output of the model.
     # Shape (p,). Gain, offset and initial state: factors of the columns of the model.
     solution: Array
@@ -43,21 +111,38 @@ class DelayFit:
         """Output over input."""
         return float(self.solution[0])
 
-    def output(self, record: SignalRecord, delay: float) -> Array:
-        """Return the output of the model with another delay in s, shape (n,)."""
-        return np.asarray(self.follower.columns(record, delay) @ self.solution, float)
+    @property
+    def samples(self) -> float:
+        """The delay in samples of the record."""
+        return self.delay / self.record.step
+
+    @property
+    def measured(self) -> Array:
+        """Measured output in the fitted samples, shape (m,)."""
+        return self.record.output[self.rows]
+
+    @property
+    def missed_part(self) -> float:
+        """Root mean square of the errors over that of the motion."""
+        motion = np.linalg.norm(self.measured - self.measured.mean())
+        return float(np.linalg.norm(self.errors) / motion)
+
+    def output(self, samples: float) -> Array:
+        """Return the output of the model with another delay in samples, shape (n,)."""
+        columns = self.follower.columns(self.record, samples * self.record.step)
+        return np.asarray(columns @ self.solution, float)
 
     @property
     def bic(self) -> float:
         """Bayesian information criterion, up to a constant of the record."""
-        least = EXACT * float(self.seen @ self.seen)
+        least = EXACT * float(self.measured @ self.measured)
         return bic(self.errors, 1 + len(self.follower.shape), least)
 
 
 def fit_delay(
     record: SignalRecord, follower: AbstractFollower, delay: float, rows: Rows
 ) -> DelayFit:
-    """Refine delay in s and shape of a model by least squares over the rows that count.
+    """Refine delay in s and shape of a model by least squares over the given rows.
 
     Gain, offset and initial state are eliminated everywhere.
     """
@@ -76,43 +161,39 @@ def fit_delay(
     scale = np.array([1.0, *[0.5] * len(follower.shape)])
     start = np.array([delay / record.step, *follower.shape])
     x, _ = search(errors, sensitivities, start, scale)
-    error = errors(x)
-    J, (model, late) = sensitivities(x), shaped(x)
-    columns = model.columns(record, late)
-    solution = solve(columns[rows], record.seen[rows])
-    fitted, known = columns @ solution, uncertainty(J, error)
-    return DelayFit(model, late, known, J[:, 0], error, rows, record.seen[rows], fitted, solution)
+    error, J, (model, late) = errors(x), sensitivities(x), shaped(x)
+    fitted, solution = _solve(record, model.columns(record, late), rows)
+    known = uncertainty(J, error)
+    return DelayFit(record, model, late, known, J[:, 0], error, rows, fitted, solution)
 
 
 def fit_held(record: SignalRecord, delay: float, rows: Rows) -> DelayFit:
     """Find the whole number of samples by which a copy is late, near a delay in s."""
     follower, near = HeldCopy(), round(delay / record.step)
 
-    def missed(late: int) -> float:
-        error = errors_at(record, follower, late * record.step, rows)
-        return float(error @ error)
+    def key(samples: int) -> tuple[float, int]:
+        error = errors_at(record, follower, samples * record.step, rows)
+        return float(error @ error), abs(samples - near)
 
-    best = min(range(near - _AROUND, near + _AROUND + 1), key=lambda k: (missed(k), abs(k - near)))
+    best = min(range(near - _AROUND, near + _AROUND + 1), key=key)
     before, at, after = (follower.columns(record, (best + k) * record.step) for k in (-1, 0, 1))
-    solution = solve(at[rows], record.seen[rows])
-    fitted = at @ solution
+    fitted, solution = _solve(record, at, rows)
     slope = (after - before)[rows] @ solution / 2
-    error = record.seen[rows] - fitted[rows]
-    known = uncertainty(slope[:, None], error)
-    return DelayFit(
-        follower, best * record.step, known, slope, error, rows, record.seen[rows], fitted, solution
-    )
+    error = record.output[rows] - fitted[rows]
+    known, late = uncertainty(slope[:, None], error), best * record.step
+    return DelayFit(record, follower, late, known, slope, error, rows, fitted, solution)
 
 
-def solve(columns: Array, seen: Array) -> Array:
-    """Return the factors of the columns, shape (p,), that fit best, whatever their units."""
-    sizes = column_sizes(columns)
-    found = np.linalg.lstsq(columns / sizes, seen, rcond=None)[0]
-    return np.asarray(found / sizes, float)
+def _solve(record: SignalRecord, columns: Array, rows: Rows) -> tuple[Array, Array]:
+    """Return the best output of a model in all samples, and the factors of its columns."""
+    sizes = column_sizes(columns[rows])
+    scaled = np.linalg.lstsq(columns[rows] / sizes, record.output[rows], rcond=None)[0]
+    solution = np.asarray(scaled / sizes, float)
+    return columns @ solution, solution
 
 
 def errors_at(record: SignalRecord, follower: AbstractFollower, delay: float, rows: Rows) -> Array:
     """Return measured less fitted output, with the best gain, offset and start."""
     columns = follower.columns(record, delay)[rows]
     basis, _ = np.linalg.qr(columns / column_sizes(columns))
-    return beyond(basis, record.seen[rows])
+    return beyond(basis, record.output[rows])

@@ -1,1 +1,1 @@
-"""What is said of identifications and audits: for JSON, terminals and pages, one file each."""
+"""Output of identifications and audits: for JSON, terminals and pages, one file each."""

@@ -1,4 +1,4 @@
-"""What is said of the identification of an actuator."""
+"""Output of the identification of an actuator."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from nrs_design.reporting.document import Bullets, Illustration, Section, Table
 
 
 def view_actuator(found: ActuatorIdentification) -> FindingView:
-    """Say everything about the identification of an actuator."""
+    """Return the output of the identification of an actuator."""
     fit, rows = found.fit, _rows(found)
     lines = [f"{name} = {value} {unit}" for name, value, unit, _ in rows]
     if fit.dead_time and found.step:
@@ -48,10 +48,8 @@ def view_actuator(found: ActuatorIdentification) -> FindingView:
     )
 
 
-def _rows(
-    found: ActuatorIdentification,
-) -> list[tuple[str, Estimate | str, str, Estimate | None]]:
-    """Return name, estimate or why there is none, unit, and range for a spec."""
+def _rows(found: ActuatorIdentification) -> list[tuple[str, Estimate | str, str, Estimate | None]]:
+    """Return name, estimate or reason for none, unit, and range for a spec."""
     fit, (gain, time_constant) = found.fit, found.ranges
     late = "taken for zero" if fit.motor is None else "not determined"
     return [

@@ -1,4 +1,4 @@
-"""What is said of an identified delay."""
+"""Output of the identification of a delay."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _MEANING = (
 
 
 def view_delay(found: DelayIdentification) -> FindingView:
-    """Say everything about the delay of a record."""
+    """Return the output of the identification of a delay."""
     (sent, seen), (lag, correlation) = found.record.names, found.peak
     model, step, whole = found.chosen.follower.name, found.record.step, span(*found.whole_samples)
     when = f"{abs(lag):.4g} s {'later' if lag >= 0 else 'earlier'}"
@@ -97,7 +97,7 @@ def _sections(found: DelayIdentification) -> Iterator[Section]:
     parts = Table("Delay in parts of the record", ("Middle [s]", "Samples"), rows)
     yield Section("Models", (_table(found), parts))
     record = found.record
-    figure = draw_fit(record.time, record.seen, found.chosen.fitted, record.names[1])
+    figure = draw_fit(record.time, record.output, found.chosen.fitted, record.names[1])
     note = label_of(found.sources)
     drawn = Illustration("following", "Measured against fitted", note, figure)
     yield Section("Figures", (drawn,))

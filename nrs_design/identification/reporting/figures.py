@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from nrs_design.identification.running.judge import RunJudgement
 
-# More points than these cannot be told apart on a page.
+# Most points of a curve on a page.
 _POINTS = 1500
 _MEASURED = "#7d8894"
 _UNUSED = "#d9b7a0"

@@ -1,4 +1,4 @@
-"""What is said of a run and its bounds."""
+"""Output of an audit."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from nrs_design.identification.reporting.view import (
     source_facts,
     source_section,
 )
-from nrs_design.identification.running.check import Check
+from nrs_design.identification.running.bounds import Check
 from nrs_design.identification.running.judge import RunJudgement
 from nrs_design.reporting.document import Block, Bullets, Illustration, Report, Section, Table
 from nrs_design.spec import LoadedSpec

@@ -1,4 +1,4 @@
-"""What is said of the identification of a tissue."""
+"""Output of the identification of a tissue."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ _MEANING = (
 
 
 def view_tissue(found: TissueIdentification, arm: float | None = None) -> FindingView:
-    """Say everything about a tissue; with a lever arm in m, the law at the pivot, too."""
+    """Return the output for a tissue; with a lever arm in m, the law at the pivot, too."""
     model, law = found.chosen, found.chosen.law
     ranges = _named(law, model.ranges, found.rotational)
     values = _in_words(_named(law, map(str, model.ranges), found.rotational))
@@ -86,7 +86,7 @@ def _units(law: AbstractContactLaw, rotational: bool) -> tuple[str, ...]:
 
 
 def _notes(found: TissueIdentification, arm: float | None) -> Iterator[str]:
-    """Say what the parameters are besides: a tangent, a law at the pivot."""
+    """Yield the tangent, and the law at the pivot, in words."""
     law, about = found.chosen.law, found.tangent
     if about is not None:
         length = "rad" if found.rotational else "m"
@@ -101,7 +101,7 @@ def _notes(found: TissueIdentification, arm: float | None) -> Iterator[str]:
 
 
 def _used(found: TissueIdentification) -> tuple[str, ...]:
-    """Say of each record what is used of it, and which offsets it has."""
+    """Return the used samples and the offsets of each record, in words."""
     return tuple(
         "; ".join(
             (

@@ -1,4 +1,4 @@
-"""What is said of any finding: facts for JSON, lines for a terminal, sections of a page."""
+"""Output of an identification: facts for JSON, lines for a terminal, sections of a page."""
 
 from __future__ import annotations
 
@@ -9,13 +9,25 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from nrs_design import __version__
-from nrs_design.identification.finding import Finding, is_synthetic
 from nrs_design.proof.text import counted
 from nrs_design.reporting.document import Bullets, Light, Report, Section, State, Table
 
 if TYPE_CHECKING:
+    from nrs_design.identification.actuator.identify import ActuatorIdentification
+    from nrs_design.identification.delay.identify import DelayIdentification
     from nrs_design.identification.statistics import Estimate
     from nrs_design.identification.tables.table import Source
+    from nrs_design.identification.tissue.identify import TissueIdentification
+
+    # Each has its sources; remarks on what the numbers rest on; doubts that make them inconclusive;
+    # and caveats for a proof that uses them: the doubts, and what it leaves out.
+    Finding = TissueIdentification | ActuatorIdentification | DelayIdentification
+
+
+def is_synthetic(sources: Sequence[Source]) -> bool:
+    """Tell whether a simulation made some of the data."""
+    return any(source.synthetic for source in sources)
+
 
 # Of JSON.
 Facts = dict[str, Any]
@@ -34,16 +46,16 @@ class FindingView:
     found: Finding
     kind: str  # ``tissue``, ``actuator`` or ``delay``
     chosen: str  # Law, method or model
-    reason: str  # Why that one, or what it is about
+    reason: str  # Reason of the choice, or the columns
     ranges: Mapping[str, tuple[Estimate, str]]  # The numbers and their units, by name
-    facts: Facts  # What it has beside what all findings have
+    facts: Facts  # Facts of this kind of identification
     lines: Sequence[str]  # For a terminal
-    details: Sequence[str]  # Where more is wanted
+    details: Sequence[str]  # Further lines with ``-v``
     fits: Table  # All fits
-    title: str  # Of the page
-    claim: str  # Its first sentences
-    sections: Callable[[], Iterable[Section]]  # Draws the rest of it
-    meaning: tuple[str, ...] = ()  # How to read it
+    title: str  # Title of the page
+    claim: str  # First sentences of the page
+    sections: Callable[[], Iterable[Section]]  # Draws the rest of the page
+    meaning: tuple[str, ...] = ()  # Explanations of the page
 
     @property
     def document(self) -> Facts:

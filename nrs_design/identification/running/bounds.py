@@ -1,10 +1,12 @@
-"""What a spec promises about a run, as far as a log can show it."""
+"""Bounds of a spec that a log can show."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from enum import StrEnum
 from pathlib import Path
+from typing import Self
 
 from nrs_design.certificates.verify import verify
 from nrs_design.controllers.sector import Sector, sector_of
@@ -15,34 +17,71 @@ from nrs_design.spec.exact import parse_exact
 from nrs_design.spec.quantity import parse_quantity
 
 
+class BoundStatus(StrEnum):
+    """Result of a check."""
+
+    INSIDE = "inside"
+    OUTSIDE = "outside"
+    # Intervals lie across the bound.
+    UNDECIDED = "undecided"
+    NOT_JUDGED = "not judged"
+    # The proof assumes that the effect is absent, and has no bound.
+    NOT_MODELLED = "not modelled"
+
+
+@dataclass(frozen=True, slots=True)
+class Violation:
+    """Where a run first left a bound."""
+
+    time: float  # In s, as in the log
+    words: str  # What happened
+
+
+@dataclass(frozen=True, slots=True)
+class Check:
+    """One bound and what the run says about it."""
+
+    name: str  # Quantity or rule
+    status: BoundStatus  # The outcome
+    measured: str  # What the log shows, or the reason for no verdict
+    allowed: str = ""  # The bound
+    basis: str = ""  # Origin of the bound
+    first: Violation | None = None  # The first time it was left
+
+    @classmethod
+    def open(cls, name: str, why: str, allowed: str = "", basis: str = "") -> Self:
+        """Return a check that is not judged."""
+        return cls(name, BoundStatus.NOT_JUDGED, why, allowed, basis)
+
+
 @dataclass(frozen=True, slots=True)
 class RunBounds:
     """What a run may do."""
 
     stays: Mapping[str, tuple[float, float]]  # Shortest and longest time in each controller, in s
     transitions: frozenset[tuple[str, str]] | None  # Allowed switches; None allows all
-    names_contacts: bool  # Whether there are other rules, about what is touched, which no log says
+    names_contacts: bool  # Whether rules name contacts, which no log shows
     torque: float  # Largest torque in N m
-    delay: float | None  # Delay margin that the design must keep, in s; None if none is asked for
-    # That turns linear columns into rotational ones, in m; None where environments have none or
+    delay: float | None  # Required delay margin in s
+    # In m, to convert linear columns into rotational ones; None where environments have none or
     # several.
     lever_arm: float | None
-    # Of the processor that the proof is about, in s; None for a proof in continuous time.
+    # Sample period of the proof in s; None for a proof in continuous time.
     period: float | None
-    # Whether the spec asks for a proof that holds while contact is lost; None if it leaves that to
+    # Whether the spec requires a proof for lost contact; None if it leaves that to
     # the proof.
     losable: bool | None
     command: str  # Unit of the motor's command
-    # By environment, deflections that are taken for granted, in words; no log shows them.
+    # Assumed deflections of each environment, in words; no log shows them.
     preloads: Mapping[str, str] = field(default_factory=dict)
-    # Command at which the driver saturates, in that unit; None if the spec does not say.
+    # Command at which the driver saturates, in that unit; None if unknown.
     saturates: float | None = None
-    # What torque and angle keep in every row; a text says why that is not known.
+    # Condition on torque and angle of every row, or the reason why there is none.
     sector: Sector | str = ""
     oldest: float = 0.0  # How old a torque may be in its row, in s
-    # When commands take effect, in words, where that is not at their sample.
+    # Time from a sample to its command, in words; empty for none.
     late: str = ""
-    proved: bool = False  # Whether a valid certificate proves the spec; else it is only declared
+    proved: bool = False  # Whether a valid certificate proves the spec
 
     @property
     def source(self) -> str:
@@ -84,7 +123,7 @@ def proof_of(certificate: Path | None, loaded: LoadedSpec) -> tuple[str, bool]:
     verdict, statements = outcome.certificate.verdict, outcome.certificate.statements
     if verdict != "proved":
         return f"its certificate says {verdict}", False
-    # A proof of a spec that asks for it holds while contact is lost, whatever its evidence.
+    # A proof of a spec with losable contact covers lost contact, whatever its evidence.
     asked = loaded.spec.kind == "interaction-design" and loaded.spec.contact == "losable"
     covered = any(s.shows is Shows.STABILITY and s.covers_lost_contact for s in statements)
     return "", asked or covered

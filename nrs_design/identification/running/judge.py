@@ -5,8 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from nrs_design.errors import DataError
-from nrs_design.identification.running.bounds import RunBounds
-from nrs_design.identification.running.check import BoundStatus, Check
+from nrs_design.identification.running.bounds import BoundStatus, Check, RunBounds
 from nrs_design.identification.running.log import RunLog
 from nrs_design.identification.running.sector import hint, judge_sector
 from nrs_design.identification.running.signals import (
@@ -28,7 +27,7 @@ class RunJudgement:
     log: RunLog  # The data
     bounds: RunBounds  # What the spec promises
     checks: tuple[Check, ...]  # One for each bound
-    # Of the rows, in which a stiffness far off would have been told; None if nothing tells.
+    # Share of the rows in which a stiffness far off would show; None without a test.
     judged: float | None = None
 
     @property
@@ -39,7 +38,7 @@ class RunJudgement:
 
     @property
     def hint(self) -> str:
-        """Why the stiffness is not tested, and how it would be; empty if it is."""
+        """Reason for an untested stiffness, with a remedy; empty for a tested one."""
         return hint(self.log, self.bounds)
 
     @property
@@ -94,7 +93,7 @@ def judge_run(
 
 
 def _judge_contact(bounds: RunBounds, *, losable: bool | None) -> Check:
-    """Say whether contact may be lost, which is None if nothing says it."""
+    """Return the check of lost contact; `losable` is None if nothing states it."""
     if losable:
         basis = "covered by the proof" if bounds.proved else "asked for by the spec, not proved"
         allowed = "lost and made again at any time"

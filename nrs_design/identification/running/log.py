@@ -25,7 +25,7 @@ class RunLog:
     columns: dict[str, Array]
     labels: tuple[str, ...]  # Names of modes in the order in which they come
     begin: float  # Time of the first row in the file, in s
-    command_unit: str  # Of the command, if there is one
+    command_unit: str  # Unit of the command; empty without a command
 
     @property
     def step(self) -> float:
@@ -51,7 +51,7 @@ class RunLog:
 
 
 def read_run(data: Data, mapping: Mapping[str, str] | None = None) -> RunLog:
-    """Read ``time_s`` and those of the other columns that are there.
+    """Read ``time_s`` and the other columns that the file has.
 
     They are ``angle_rad, torque_Nm`` or ``deflection_m, force_N``, ``velocity_rad_s``,
     ``command_UNIT`` and ``mode``, the name of the controller in force.

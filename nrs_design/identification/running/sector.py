@@ -12,18 +12,17 @@ import numpy as np
 from nrs_design.controllers.sector import JUDGED, Sector
 from nrs_design.identification.numeric import Array, Flags, runs
 from nrs_design.identification.rounding import resolution
-from nrs_design.identification.running.bounds import RunBounds
-from nrs_design.identification.running.check import BoundStatus, Check, Violation
+from nrs_design.identification.running.bounds import BoundStatus, Check, RunBounds, Violation
 from nrs_design.identification.running.log import RunLog
 from nrs_design.identification.statistics import span
 
-# What double precision loses of an angle, and of a number of the size of the noise.
+# Relative rounding error of an angle, and of a number of the size of the noise.
 _ROUNDED = 2.0**-48
-# Rows that are further apart than so many periods leave samples out.
+# Rows further apart than this number of periods leave samples out.
 _SAME = 1.5
-# In so many standard deviations a normal noise stays over an hour of samples, nearly always.
+# Standard deviations that bound normal noise over an hour of samples, nearly always.
 _SCATTERS = 6.0
-# Of a row: an age that is no longer than a whole number of rows but for that is one.
+# Part of a row by which an age may exceed a whole number of rows.
 _EVEN = 0.05
 
 
@@ -68,7 +67,7 @@ def judge_sector(log: RunLog, bounds: RunBounds) -> tuple[tuple[Check, ...], flo
         first = min(first, left)
     pulled = np.flatnonzero((rows.most < 0) & (not sector.kept))
     first = min(first, float(pulled[0]) if len(pulled) else inf)
-    # From then on nothing is told of the surface.
+    # After a violation, the surface is unknown.
     judged[int(min(first, len(judged))) :] = False
     share = float((judged & certain).mean())
     check = _stiffness(log, columns[1], first, share, allowed, basis)
@@ -151,7 +150,7 @@ def _one_surface(
     lowest = np.maximum.accumulate(rows.lowest[part] + moved)
     highest = np.minimum.accumulate(rows.highest[part] - moved)
     empty = np.flatnonzero(lowest - moved > highest + moved)
-    # What the rows before leave: a row that is off would move its own.
+    # From the rows before: a row that is off would move its own interval.
     before = np.concatenate([[-inf], lowest[:-1]]) - moved
     after = np.concatenate([[inf], highest[:-1]]) + moved
     factor, low, high = float(JUDGED), float(sector.low), float(sector.high)

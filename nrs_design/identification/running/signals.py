@@ -10,8 +10,7 @@ from nrs_design.errors import DataError
 from nrs_design.identification.datasets.records import SignalRecord
 from nrs_design.identification.delay.identify import identify_delay
 from nrs_design.identification.rounding import noise_variance
-from nrs_design.identification.running.bounds import RunBounds
-from nrs_design.identification.running.check import BoundStatus, Check, Violation
+from nrs_design.identification.running.bounds import BoundStatus, Check, RunBounds, Violation
 from nrs_design.identification.running.log import RunLog
 from nrs_design.identification.statistics import joint_level, span, student_quantile
 from nrs_design.proof.bounds import lower, upper
@@ -28,7 +27,7 @@ def judge_delay(log: RunLog, bounds: RunBounds) -> Check:
         return Check.open("delay", f"no column for {gone}")
     pair = log.columns["command"], log.columns[seen]
     try:
-        found = identify_delay(SignalRecord(log.source, log.time, *pair, ("command", seen)))
+        found = identify_delay(SignalRecord(log.source, log.time, *pair, names=("command", seen)))
     except DataError as error:
         return Check.open("delay", error.message)
     low, high = found.delay.low, found.delay.high
@@ -105,7 +104,7 @@ def judge_force(log: RunLog, bounds: RunBounds) -> Check:
         return Check.open("force", "no column for torque or force", allowed, basis)
     size = np.abs(torque)
     largest = f"largest torque {size.max():.4g} N m"
-    # So far may noise reach in any row, at 95 % for all of them together.
+    # Largest noise of any row, at 95 % for all rows together.
     reach = student_quantile(len(size), joint_level(len(size)))
     reach *= float(np.sqrt(noise_variance(torque)))
     over = np.flatnonzero(size - reach > bounds.torque)

@@ -1,4 +1,4 @@
-"""How long each controller was active, and what followed it."""
+"""Dwell times and the order of controllers."""
 
 from __future__ import annotations
 
@@ -9,29 +9,28 @@ from math import inf
 import numpy as np
 
 from nrs_design.identification.numeric import Rows, parted
-from nrs_design.identification.running.bounds import RunBounds
-from nrs_design.identification.running.check import BoundStatus, Check, Violation
+from nrs_design.identification.running.bounds import BoundStatus, Check, RunBounds, Violation
 from nrs_design.identification.running.log import RunLog
 from nrs_design.identification.statistics import span
 from nrs_design.proof.text import counted
 
 _NAME = "dwell times"
-# A step of a log is a period if it is no longer than so many.
+# Longest step of a log, in periods, that leaves no sample out.
 _SAME = 1.5
 
 
 @dataclass(frozen=True, slots=True)
 class _Stay:
-    """A time in one mode; a log tells switches to a row, and not what was before and after it."""
+    """A stay in one mode, with switches known to a row; the log may cut its begin or end."""
 
     mode: str  # The controller
     begin: float  # Time of its first row, in s
-    # shortest, longest: between which it lasted in s, whatever was before the log.
+    # shortest, longest: bounds of its length in s, with the time before the log.
     shortest: float
     longest: float
-    logged: float  # How long it may have been within the log, in s
-    ended: bool  # Whether a switch ended it within the log
-    gap: bool  # Whether rows are missing within or beside it
+    logged: float  # Longest possible length within the log, in s
+    ended: bool  # Whether a switch within the log ended the stay
+    gap: bool  # Whether rows are missing within or next to the stay
 
 
 def judge_stays(log: RunLog, bounds: RunBounds) -> Check:
@@ -53,7 +52,7 @@ def judge_stays(log: RunLog, bounds: RunBounds) -> Check:
     if not allowed:
         return Check(_NAME, BoundStatus.INSIDE, measured, "arbitrary", basis)
     step = float(np.diff(log.time).max())
-    # Where every sample of the loop has its row, there is nothing in between.
+    # With a row for every sample of the loop, no stay is shorter.
     if bounds.period is None or step > _SAME * bounds.period:
         measured += f"; a stay between two rows (up to {step:.3g} s) is not seen"
     if (first := next(_violations(stays, bounds), None)) is not None:

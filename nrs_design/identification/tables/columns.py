@@ -23,7 +23,7 @@ Fail = Callable[..., DataError]
 
 @dataclass(frozen=True, slots=True)
 class Column:
-    """One column of a file: where it is, and what turns it into SI."""
+    """One column of a file: its place, and its factor to SI."""
 
     index: int  # Counted from 0
     name: str  # In the file
@@ -32,7 +32,7 @@ class Column:
 
 
 def parse_mapping(entries: Sequence[str]) -> dict[str, str]:
-    """Read ``OURS=THEIRS`` entries of the option ``--map``: from the name in the file to ours."""
+    """Read ``OURS=THEIRS`` entries of ``--map``; return standard names by names in the file."""
     mapping: dict[str, str] = {}
     for entry in entries:
         ours, equals, theirs = (part.strip() for part in entry.partition("="))

@@ -1,4 +1,4 @@
-"""Where the table of a text file begins, and how its cells are separated."""
+"""Begin and cell separator of the table in a text file."""
 
 from __future__ import annotations
 
@@ -11,19 +11,14 @@ from pathlib import Path
 
 from nrs_design.errors import DataError
 from nrs_design.identification.tables.columns import check_stated
-from nrs_design.identification.tables.names import (
-    FULL_WORDS,
-    UNITS,
-    read_name,
-    read_unit,
-)
+from nrs_design.identification.tables.names import FULL_WORDS, UNITS, read_name, read_unit
 
 MAX_COLUMNS = 1000
 MAX_NAME = 100
 # Blanks, None, come last: names may hold them.
 SEPARATORS = (",", ";", "\t", None)
 UNDECIDED = "save it with a decimal point and without marks between thousands"
-# What a line of units may be about.
+# Quantities of a line of units.
 _MEASURED = ("time", "deflection", "force", "angle", "torque", "velocity", "command")
 
 _DECIMAL_COMMA = re.compile(r"^[+-]?\d+,\d+([eE][+-]?\d+)?$")
@@ -35,9 +30,9 @@ _BRACKETS = re.compile(r"^[\[({](.*)[\])}]$")
 class Header:
     """How a text file is to be read."""
 
-    names: list[str]  # Of the columns, with the units of the next line where it has them
+    names: list[str]  # Names of the columns, with the units of the next line if it has units
     separator: str | None  # Between cells; None for any number of blanks
-    decimal_comma: bool  # Whether numbers have one
+    decimal_comma: bool  # Whether numbers have a decimal comma
     line: int  # Last line above the rows
     synthetic: bool  # Whether a comment above says so
 
@@ -117,7 +112,7 @@ def _find(
 
 
 def _below_blanks(lines: Sequence[str], at: int) -> int:
-    """Return the first line that is not empty, if there is one: rows need not follow at once."""
+    """Return the first line that is not empty, if there is one."""
     return next((i for i in range(at, len(lines)) if lines[i]), at)
 
 

@@ -1,4 +1,4 @@
-"""What a column is called: a quantity and its unit."""
+"""Names of columns: a quantity and its unit."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ UNITS: Mapping[str, Mapping[str, float]] = MappingProxyType(
 )
 # The unit that values of a command have once they are read.
 _READ_AS = {"rad_s": "rpm", "deg_s": "rpm", "mV": "V", "mA": "A"}
-# What other words and letters stand for, if their unit fits: a position in deg is an angle.
+# Quantities of other words and letters, if their unit fits: a position in deg is an angle.
 _WORDS: Mapping[str, tuple[str, ...]] = {
     "t": ("time", "torque"),
     **dict.fromkeys(("load", "f"), ("force",)),
@@ -51,9 +51,9 @@ _WORDS: Mapping[str, tuple[str, ...]] = {
     **dict.fromkeys(("x", "y", "z", "d", "s", "delta"), ("deflection",)),
     **dict.fromkeys(("phi", "theta", "alpha"), ("angle",)),
 }
-# Those that count before an underscore, too, or above a unit: a letter there may be anything.
+# Words that count before an underscore, too, or above a unit; letters there may mean anything.
 FULL_WORDS = frozenset({"t", "load", "moment", "speed", "displacement", "extension", "indentation"})
-# How other programs spell a unit, in small letters without blanks.
+# Units as other programs spell them, in small letters without blanks.
 _SPELLINGS = {
     **dict.fromkeys(("sec", "second", "seconds"), "s"),
     **{"msec": "ms", "usec": "us", "µs": "us", "nsec": "ns"},
@@ -69,7 +69,7 @@ _BRACKETED = re.compile(r"^(?P<what>[^\[\](){}]+?)\s*[\[({](?P<unit>[^\[\](){}]*
 _SLASHED = re.compile(r"^(?P<what>[A-Za-z ]+?)\s*[/,]\s*(?P<unit>\S+)$")
 # Endings of foreign names that may be a unit, and are as often a minimum, a motor or a sensor A.
 _NO_ENDINGS = frozenset({"", "any", "s", "m", "min", "in", "A"})
-# Units in brackets that none of our quantities has: what says one is not to be taken for ours.
+# Units in brackets of other quantities.
 _FOREIGN = frozenset({"g", "kg", "lb", "oz", "nN", "nm", "ft", "Pa", "kPa", "MPa", "%", "h"})
 
 
@@ -78,7 +78,7 @@ class Name:
     """A name, taken apart."""
 
     quantity: str  # Of `UNITS`
-    unit: str  # As written, or as we write it where that is known
+    unit: str  # In standard spelling if known, else as written
 
     @property
     def known(self) -> bool:

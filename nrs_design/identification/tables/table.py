@@ -35,9 +35,9 @@ _IN_MEMORY = Path("arrays")
 class Source:
     """Where data come from."""
 
-    path: Path  # The file, as it was named
+    path: Path  # The file, as the user named it
     sha256: str  # Hash of its bytes, in hexadecimal
-    # Whether the comments at its top say that the record is synthetic, not measured.
+    # Whether a comment above the table says that the record is synthetic, not measured.
     synthetic: bool
 
 
@@ -48,8 +48,8 @@ class MeasurementTable:
     source: Source  # The file
     layout: tuple[str, ...]  # Quantities that were found
     values: dict[str, Array]  # By quantity, shape (n,) each
-    columns: dict[str, Column]  # Where they come from, and their units
-    labels: tuple[str, ...]  # Words of the column of modes; its values are their indices
+    columns: dict[str, Column]  # Their columns in the file
+    labels: tuple[str, ...]  # Words of the column of modes, whose values are indices of them
     first_line: int  # Line of the first row, for messages
 
     def fail(self, message: str, row: int, remedy: str) -> NoReturn:
@@ -141,7 +141,7 @@ def _read(
     numbers = array("d")
     for line, row in _rows(chain(head[header.line :], lines), header, path):
         numbers.extend([cells.number(c, row[c.index].strip(), line) for c in columns.values()])
-    # What leaves the floats is refused with the other sizes.
+    # Values beyond the floats are refused with the other sizes.
     with np.errstate(over="ignore"):
         scaled = np.reshape(numbers, (-1, len(columns))).T * np.array(
             [[column.factor] for column in columns.values()]
@@ -202,7 +202,7 @@ class _Cells:
 
     path: Path  # For errors
     decimal_comma: bool = False
-    # Words of a column of modes, each with its number: the order in which they come.
+    # Words of a column of modes, numbered in the order of their first use.
     labels: dict[str, float] = field(default_factory=dict)
 
     def number(self, column: Column, cell: str, line: int) -> float:
@@ -220,7 +220,7 @@ class _Cells:
         elif column.unit == "":
             fault, remedy = f"has more than {MAX_LABELS} words", "map another column"
         elif self.decimal_comma and read_decimal(cell) is not None:
-            # A point beside decimal commas may stand between thousands.
+            # A point next to decimal commas may separate thousands.
             fault, remedy = f"is {cell} where others have a decimal comma", UNDECIDED
         elif "," in cell and read_decimal(cell.replace(",", "")) is not None:
             remedy = UNDECIDED

@@ -1,4 +1,4 @@
-"""Where a probe meets the tissue: air before and after, several touches, loss while it pulls back.
+"""Detection of contact: air before and after, several touches, loss at withdrawal.
 
 In air the force stays while the probe moves; in contact it rises. The position of contact is the
 corner of a curve that is flat on one side, found by least squares over a grid of corners.
@@ -6,16 +6,16 @@ corner of a curve that is flat on one side, found by least squares over a grid o
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 
 from nrs_design.identification.datasets.records import TissueRecord
 from nrs_design.identification.numeric import Array, Flags, runs, smoothed
 from nrs_design.identification.statistics import independent
-from nrs_design.identification.tissue.cycles import find_cycles
 
 _GRID = 50
 _COARSE = 500
@@ -25,10 +25,10 @@ _RIDGE = 1e-9
 _CYCLES = 4
 # Terms of the curve behind the corner.
 _PLAIN, _GROWING = 4, 5
-# Air must be this part of the travel at least, with so many samples.
+# Least air, as a part of the travel and in samples.
 _LEAST_AIR = 0.01
 _FEWEST = 10
-# Stiffness of air over that of the contact: what is stiffer is tissue.
+# Largest ratio of the slope of the force in air to that in contact.
 _FLAT = 0.3
 # Corners must lower n log(SSE) by this against smooth curves without one, with n independent
 # samples, and each explain so much.
@@ -36,9 +36,11 @@ _BETTER = 20.0
 _EXPLAINED = 0.1
 # Quantile of chi^2 with one degree of freedom at 99 %.
 _PLAUSIBLE = 6.635
-# A smoothed force beyond so many of its standard deviations from the air is one of contact.
+# Standard deviations by which a smoothed force in contact differs from the air.
 _CLEAR = 5.0
 _SMOOTH = 5
+# A turn counts where the deflection comes back by this part of its range.
+_TURN = 0.3
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,11 +62,11 @@ class DetectedContact:
     """Which samples are in contact."""
 
     zero: float  # Position of contact, m (rad); the deflection is counted from it
-    # Of the 99 % interval of the position of contact, from there into the tissue.
+    # Ends of the 99 % interval of the position of contact, relative to it, into the tissue.
     ends: tuple[float, float]
     side: int  # 1 if the tissue is where positions are larger, else -1
     beyond: Flags  # Shape (n,). Beyond the position of contact.
-    clear: Flags  # Shape (n,). With a force that is clearly not that of the air.
+    clear: Flags  # Shape (n,). With a force that clearly differs from the air.
 
     @cached_property
     def touches(self) -> tuple[Touch, ...]:
@@ -80,18 +82,18 @@ class DetectedContact:
 
 @dataclass(frozen=True, slots=True)
 class _Corner:
-    """Where a force leaves that of the air, on one way in."""
+    """Position at which the force of one insertion leaves the force in air."""
 
     # at, low, high: position, and its 99 % interval.
     at: float
     low: float
     high: float
     gain: float  # What n log(SSE) gains against a smooth curve without a corner
-    flat: bool  # Whether the force stays before it, and it explains enough
+    flat: bool  # Whether the force is constant before the corner, which explains enough
 
 
 def find_contact(record: TissueRecord) -> DetectedContact | None:
-    """Find where contact begins; None if no air shows in the record."""
+    """Find the position of contact; None if the record shows no air."""
     x, force = record.motion.deflection, record.force
     velocity = smoothed(record.motion.velocity, _SMOOTH)
     corners: dict[int, list[_Corner]] = {1: [], -1: []}
@@ -113,7 +115,7 @@ def find_contact(record: TissueRecord) -> DetectedContact | None:
 
 
 def _way_in(u: Array, velocity: Array, force: Array, cycle: slice) -> tuple[Array, Array, Array]:
-    """Return what there is on the way in: a tissue that relaxes lets go elsewhere."""
+    """Return the samples of the insertion: a relaxing tissue separates at another position."""
     rows = np.arange(len(u))[cycle]
     way_in = rows[velocity[cycle] > 0.02 * np.abs(velocity[cycle]).max()]
     rows = way_in if len(way_in) >= 5 * _FEWEST else rows
@@ -124,7 +126,7 @@ def _way_in(u: Array, velocity: Array, force: Array, cycle: slice) -> tuple[Arra
 def _corner(u: Array, velocity: Array, force: Array) -> Iterator[_Corner]:
     """Yield the best corner, if there are samples on both sides of it."""
     low, span = float(u.min()), float(np.ptp(u))
-    # Between 0 and 1, powers are told apart.
+    # Between 0 and 1, powers are well conditioned.
     v, centered = (u - low) / span, force - force.mean()
     curve, best, error = _best_corner(v, velocity, centered)
     air = v < best
@@ -177,7 +179,7 @@ def _errors(curve: int, w: Array, velocity: Array, force: Array) -> Array:
 
 
 def _left(curve: int, w: Array, velocity: Array, force: Array) -> Array:
-    """Return what such curves leave of the force, of the shape of w."""
+    """Return the residual force of such curves, of the shape of w."""
     terms = [np.ones_like(w), w, w**2, velocity * (w > 0), velocity * w]
     X = np.stack(terms[:curve], axis=-2)
     X /= np.maximum(np.linalg.norm(X, axis=-1, keepdims=True), np.finfo(float).tiny)
@@ -210,8 +212,68 @@ def inner(touching: Flags) -> Flags:
 
 
 def _clear(force: Array, beyond: Flags) -> Flags:
-    """Find where the force is clearly not that of the air."""
+    """Flag samples whose force clearly differs from the force in air."""
     air = force[~beyond]
     noise = float(np.std(air)) / np.sqrt(_SMOOTH)
     away = np.abs(smoothed(force, _SMOOTH) - float(np.median(air)))
     return np.asarray(beyond & (away > _CLEAR * noise))
+
+
+def find_cycles(deflection: Array) -> tuple[slice, ...]:
+    """Return the rows of each cycle, from the rest before loading to the end of unloading.
+
+    Together they are all rows; there is one at least.
+    """
+    lows = _lows(deflection, _TURN * float(np.ptp(deflection)))
+    edges = [0, *lows, len(deflection)]
+    return tuple(slice(a, b) for a, b in pairwise(edges))
+
+
+def _lows(values: Array, least: float) -> list[int]:
+    """Return the rows between a large fall and a large rise, where it is lowest."""
+    lows: list[int] = []
+    at_low, at_high, rising = 0, 0, True
+    values_list = values.tolist()
+    for row, value in enumerate(values_list):
+        if rising:
+            at_high = row if value >= values_list[at_high] else at_high
+            if values_list[at_high] - value > least:
+                rising, at_low = False, row
+        else:
+            # The last of equal rows: a cycle begins with its load.
+            at_low = row if value <= values_list[at_low] else at_low
+            if value - values_list[at_low] > least:
+                lows.append(at_low)
+                rising, at_high = True, row
+    return lows
+
+
+def surface(
+    time: Array, position: Array, touches: Sequence[Touch], least: float
+) -> tuple[Array, Flags]:
+    """Return the deflection of the tissue, touched or not, and the samples in contact.
+
+    A tissue that relaxes is lost before the probe is back where it was met: its surface creeps back
+    without force, exponentially in time for every linear law with one relaxation. Loss and next
+    touch are two points of that curve, so that it needs no parameter of the law. Positions are in m
+    (rad) from the contact; below the least deflection the tissue counts as come back.
+    """
+    deflection, touching = np.zeros(len(time)), np.zeros(len(time), bool)
+    # The first touch meets a tissue at rest: so deep it is before noise lets see its force.
+    rest = max(float(position[touches[0].met]), 0.0) + least if touches else 0.0
+    lost, since = 0.0, 0
+    for touch in touches:
+        met, left = float(position[touch.met]), float(position[touch.lost - 1])
+        late = lost > 0 and met > rest
+        # Only a force shows that a separated tissue has come back.
+        begin = touch.met if lost > 0 else touch.first
+        rows = slice(begin, touch.lost if left > rest else touch.end)
+        deflection[rows], touching[rows] = position[rows], True
+        if lost > 0:
+            gap = slice(since, rows.start)
+            part = (time[gap] - time[since - 1]) / (time[rows.start] - time[since - 1])
+            deflection[gap] = lost * ((min(met, lost) if late else least) / lost) ** part
+        lost, since = left if left > rest else 0.0, rows.stop
+    # The deflection after the last touch has no effect; a jump would be a velocity.
+    deflection[since:] = lost
+    return np.maximum(deflection, 0.0), touching

@@ -34,12 +34,12 @@ def doubts(
     residuals: Array,
     sensitivities: Array,
 ) -> tuple[str, ...]:
-    """List what makes a fit doubtful, in words; nothing for a sound one.
+    """Return the doubts about a fit, in words; none for a sound fit.
 
     Bounds are the logarithms, lower and upper, between which the parameters were sought.
     """
     wrong = (*_units(trial), *doubt_signs(trial, residuals, sensitivities[:, len(law.values) :]))
-    # What comes of a record that was read wrongly has no size of its own.
+    # A record in wrong units makes the sizes of its parameters meaningless.
     read = wrong or tuple(_sizes(law, rotational=trial.record.rotational))
     return (
         *read,

@@ -12,11 +12,7 @@ from nrs_design.identification.tissue.pool import ModelFit, fit_model
 from nrs_design.identification.tissue.ranges import check_spread
 from nrs_design.identification.tissue.tangent import Tangent, check_preload, tangent_of
 from nrs_design.identification.tissue.trial import Preparation, prepare
-from nrs_design.models.contact import (
-    LAWS,
-    AbstractNonlinearLaw,
-    HuntCrossley,
-)
+from nrs_design.models.contact import LAWS, AbstractNonlinearLaw, HuntCrossley
 from nrs_design.progress import Progress, silent
 from nrs_design.spec.provenance import COVERS, Coverage
 
@@ -27,9 +23,9 @@ class TissueIdentification:
 
     records: tuple[TissueRecord, ...]  # The data
     models: tuple[ModelFit, ...]  # In the order of `LAWS`
-    chosen: ModelFit  # One of them
-    reason: str  # Why that one
-    tangent: Tangent | None = None  # Of the chosen law about a preload, if one is given
+    chosen: ModelFit  # The chosen law
+    reason: str  # Reason of the choice
+    tangent: Tangent | None = None  # Tangent of the chosen law at a preload
 
     @property
     def sources(self) -> tuple[Source, ...]:
@@ -60,7 +56,7 @@ class TissueIdentification:
 
     @property
     def covers(self) -> str:
-        """What the ranges hold, in words."""
+        """Coverage of the ranges, in words."""
         if len(self.records) == 1:
             return "what this one record leaves open, with 95 % confidence, and no other specimen"
         return COVERS[self.chosen.coverage]

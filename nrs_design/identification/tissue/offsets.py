@@ -1,4 +1,4 @@
-"""Offsets of a record: where contact begins, and what the force sensor shows in air.
+"""Offsets of a record: position of contact, force in air and drift.
 
 For a law that is linear in its deflection, both are constants that add to the force: one in air and
 one in contact. Where a record has no air, only their sum shows, and one of them must be given, or
@@ -20,7 +20,7 @@ from nrs_design.identification.tissue.trial import Trial
 from nrs_design.models.contact import AbstractContactLaw, AbstractLinearLaw, Motion
 
 ZERO, TARE, CONTACT, DRIFT = "zero", "tare", "contact", "drift"
-# In words, and with the units of a linear motion and of a rotation.
+# Names, and units of a linear motion and of a rotation.
 OFFSET_WORDS: Mapping[str, str] = MappingProxyType(
     {ZERO: "position of contact", TARE: "force in air", DRIFT: "drift of the force"}
 )
@@ -35,11 +35,11 @@ class Offset:
 
     name: str  # ``zero`` (position of contact), ``tare`` (force in air) or ``drift`` (of the tare)
     estimate: Estimate  # In m, N or N/s (rad, N m, N m/s)
-    fitted: bool  # Whether it was fitted; else it is as given
-    provided: str = ""  # What it rests on, empty for the record alone
+    fitted: bool  # Fitted, or given by the user if False
+    provided: str = ""  # Condition of the value; empty for none
 
     def text(self, *, rotational: bool) -> str:
-        """Return it in words."""
+        """Return name, value and unit in words."""
         value = str(self.estimate) if self.fitted else f"{self.estimate.value:.5g}"
         rest = f" ({self.provided})" if self.provided else "" if self.fitted else " (given)"
         return f"{OFFSET_WORDS[self.name]} {value} {OFFSET_UNITS[self.name][rotational]}{rest}"

@@ -10,8 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from nrs_design.identification.datasets.records import TissueRecord
-from nrs_design.identification.least_squares import search
-from nrs_design.identification.numeric import TINY, Array
+from nrs_design.identification.numeric import TINY, Array, search
 from nrs_design.identification.rounding import rounding_scatter
 from nrs_design.identification.statistics import (
     CONFIDENCE,
@@ -30,9 +29,9 @@ from nrs_design.models.contact import AbstractContactLaw
 STARTS = 3
 # Samples that suffice to find the right valley.
 COARSE = 2_000
-# What the cost may still change by, as a part of it, where a search ends.
+# Relative changes of the cost at which a search ends.
 _ROUGHLY, _EXACTLY = 1e-9, 1e-12
-# How far the position of contact is sought from where it was found, in travels of the record.
+# Half width of the search for the position of contact, in travels of the record.
 _REACH = 0.5
 
 
@@ -40,11 +39,11 @@ _REACH = 0.5
 class RecordFit:
     """A law that fits a record best, and how well it is known."""
 
-    trial: Trial  # The data as they were fitted
+    trial: Trial  # The prepared data
     law: AbstractContactLaw  # With the fitted parameters
     offsets: tuple[Offset, ...]  # Position of contact, tare and drift
     fitted: Array  # Shape (n,). Force of law and offsets in all samples of the trial.
-    uncertainty: Uncertainty  # Of the logarithms of the parameters
+    uncertainty: Uncertainty  # For the logarithms of the parameters
     rmse: float  # Root of the mean squared force error, in N (N m)
     free: int  # Parameters and offsets that were fitted
     doubts: tuple[str, ...]  # Why the record may not determine the parameters
@@ -149,7 +148,7 @@ def _search(start: Point, bounds: tuple[Array, Array], accuracy: float) -> Point
     last = [start]
 
     def at(x: Array) -> Point:
-        # Derivatives are asked for where the error was.
+        # The search requests derivatives at the point of the last errors.
         if not np.array_equal(x, last[0].values):
             last[0] = Point(problem, x.copy())
         return last[0]

@@ -9,12 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from nrs_design.identification.numeric import Array
-from nrs_design.identification.statistics import (
-    CONFIDENCE,
-    Estimate,
-    joint_level,
-    student_quantile,
-)
+from nrs_design.identification.statistics import CONFIDENCE, Estimate, joint_level, student_quantile
 from nrs_design.identification.tissue.output_error import RecordFit, fit_record
 from nrs_design.identification.tissue.ranges import hulls, spread_ranges
 from nrs_design.identification.tissue.trial import Trial
@@ -34,7 +29,7 @@ class ModelFit:
     law: AbstractContactLaw  # With the pooled parameters
     # Pooled parameters with 95 % intervals that contain the spread between records.
     estimates: tuple[Estimate, ...]
-    coverage: Coverage  # What the ranges hold
+    coverage: Coverage  # Coverage of the ranges
 
     @property
     def ranges(self) -> tuple[Estimate, ...]:
@@ -53,14 +48,12 @@ class ModelFit:
 
     @property
     def doubts(self) -> tuple[str, ...]:
-        """Doubts with the record that they are about; those of many records only once."""
+        """Doubts of all records, with the name of the record."""
         return tuple(f"{fit.record.name}: {text}" for fit in self.fits for text in fit.doubts)
 
 
 def fit_model(
-    kind: type[AbstractContactLaw],
-    trials: Sequence[Trial],
-    coverage: Coverage = "confidence",
+    kind: type[AbstractContactLaw], trials: Sequence[Trial], coverage: Coverage = "confidence"
 ) -> ModelFit:
     """Fit a law to every record, and pool the parameters."""
     fits = tuple(fit_record(kind, trial) for trial in trials)

@@ -15,11 +15,7 @@ from functools import cached_property
 import numpy as np
 
 from nrs_design.identification.numeric import Array, Flags, beyond
-from nrs_design.identification.tissue.offsets import (
-    measured_force,
-    offset_columns,
-    offset_names,
-)
+from nrs_design.identification.tissue.offsets import measured_force, offset_columns, offset_names
 from nrs_design.identification.tissue.starts import scan
 from nrs_design.identification.tissue.trial import Trial
 from nrs_design.models.contact import (
@@ -29,9 +25,9 @@ from nrs_design.models.contact import (
     Motion,
 )
 
-# Of a difference in the logarithm of a parameter.
+# Difference in the logarithm of a parameter.
 _STEP = 1e-6
-# Where the position of contact is first sought, in travels of the record.
+# First guesses of the position of contact, in travels of the record.
 _SHIFTS = (0.0, 0.01, -0.01, 0.04, -0.04, 0.15, -0.15, 0.4, -0.4)
 
 
@@ -49,12 +45,12 @@ class LeastSquaresProblem:
 
     @cached_property
     def offsets(self) -> Array:
-        """What a unit of each offset adds to the force, shape (n, m)."""
+        """Force per unit of each offset, shape (n, m)."""
         return offset_columns(self.names, self.trial)[self.trial.used]
 
     @cached_property
     def begins(self) -> tuple[slice, ...]:
-        """Stretches that do not begin at rest, for a law that remembers."""
+        """Stretches with an unknown initial state, for a law with memory."""
         remembers = issubclass(self.kind, AbstractLinearLaw) and self.kind.remembers
         return self.trial.unrested if remembers else ()
 
@@ -90,7 +86,7 @@ class LeastSquaresProblem:
 
     @cached_property
     def reached(self) -> Flags:
-        """Samples in contact; where its position is sought, the way in to it, too."""
+        """Samples in contact; also the insertion, if the position of contact is fitted."""
         if not len(self.no_shift):
             return self.trial.touching
         return np.asarray(self.trial.touching | (self.position.velocity > 0))
@@ -107,7 +103,7 @@ class LeastSquaresProblem:
 
 @dataclass(frozen=True, eq=False)
 class Point:
-    """A law with a position of contact, and what follows from them; each thing is computed once."""
+    """A law with a position of contact; each derived quantity is computed once."""
 
     problem: LeastSquaresProblem  # With n used samples
     # Shape (p,). Logarithms of the parameters, and the move of the zero in travels of the record.
@@ -143,7 +139,7 @@ class Point:
 
     @cached_property
     def states(self) -> Array:
-        """What each stretch that does not begin at rest has left of its beginning, (n, s).
+        """Free response of the initial state of each such stretch, shape (n, s).
 
         The force of a relaxing element at the beginning is not known; it fades exponentially.
         """
@@ -175,7 +171,7 @@ class Point:
 
     @cached_property
     def best(self) -> Array:
-        """The best constants; the smallest ones where they cannot be told from each other."""
+        """The best constants; the smallest ones if the columns are dependent."""
         basis, triangle = self._factors
         cutoff = len(basis) * np.finfo(float).eps
         return np.asarray(np.linalg.pinv(triangle, rcond=cutoff) @ (basis.T @ self._rest))
@@ -187,7 +183,7 @@ class Point:
 
     @cached_property
     def left(self) -> Array:
-        """What no constants explain of the error: the residuals, where all constants are told."""
+        """Error orthogonal to all constants: the residuals, if the columns are independent."""
         return beyond(self._factors[0], self._rest)
 
     @cached_property
@@ -212,7 +208,7 @@ class Point:
         return J + self._growing() if self.problem.begins else J
 
     def _growing(self) -> Array:
-        """Return what the states add to the derivatives: they fade at the rate of the law."""
+        """Return the derivatives of the initial states, which decay at the rate of the law."""
         problem, tau = self.problem, self.law.relaxation_time
         if not tau:
             return np.zeros((len(problem.force), len(self.values)))

@@ -1,4 +1,4 @@
-"""The range of a parameter that a proof shall cover: what it holds is a choice with a name.
+"""The range of a parameter that a proof shall cover; its coverage is a choice with a name.
 
 - ``confidence``: the mean of the specimens.
 - ``tolerance``: a share of all specimens like those of the records.

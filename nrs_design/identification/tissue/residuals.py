@@ -1,4 +1,4 @@
-"""What residuals say against a fit: how large they are, and what they still follow."""
+"""Doubts from residuals: their size and their structure."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from nrs_design.identification.statistics import (
 )
 from nrs_design.identification.tissue.trial import Trial
 
-# Parts of the range of the force: of the whole residual, and of what it follows.
+# Largest residual, and largest structure in it, as parts of the range of the force.
 LARGEST_RESIDUAL = 0.1
 LARGEST_STRUCTURE = 0.03
 LEAST_R2 = 0.9
@@ -27,7 +27,7 @@ _SPREADS = 3.0
 _NOT_LINEAR = "follow the deflection: the tissue is not linear in it"
 _OTHERWISE_DAMPED = "follow the velocity: the law has another damping"
 _WANDERING = "are not white but wander with time"
-# An offset that was given disagrees where another lowers BIC by this much.
+# Decrease of BIC by another offset that contradicts the given one.
 _BIC = 10.0
 
 
@@ -158,7 +158,7 @@ def _drift(trial: Trial, residuals: Array, sensitivities: Array) -> Iterator[str
 
 
 def _gain(residuals: Array, sensitivities: Array, columns: Array) -> float:
-    """Return by how much BIC falls with more columns, shape (n, q), beside a linearized fit."""
+    """Return the decrease of BIC by more columns, shape (n, q), in a linearized fit."""
     n = len(residuals)
     X = np.column_stack([sensitivities, columns])
     size = column_sizes(X)

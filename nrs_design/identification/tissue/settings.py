@@ -11,7 +11,7 @@ from nrs_design.named_values import read_named_values
 from nrs_design.spec.kinds import ANGLE, FORCE, LENGTH, LEVER_ARM, TORQUE
 from nrs_design.spec.quantity import QuantityKind, parse_quantity
 
-# In m: what is longer was meant in mm.
+# In m; longer arms were meant in mm.
 _LONGEST_ARM = 10.0
 
 

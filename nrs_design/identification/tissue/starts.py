@@ -1,4 +1,4 @@
-"""Where the search for parameters begins, and the box that it stays in.
+"""Initial guesses of the parameters, and their bounds.
 
 Every law is linear in its stiffnesses and dampings once its time constant or exponent is fixed:
 a scan over that one number, with a linear fit at each, finds all valleys of the cost.
@@ -18,7 +18,7 @@ from nrs_design.models.contact.law import DAMPING, STIFFNESS
 
 # A coefficient that the linear fit would make zero or negative starts at this part of its scale.
 _FLOOR = 1e-3
-# Box around the scale of a stiffness; a damping may also act over one step or the whole record.
+# Bounds relative to the scale of a stiffness, and of a damping over one step or the whole record.
 _STIFFNESS_BOX = 1e4
 _SHORTEST, _LONGEST = 1e-4, 1e3
 

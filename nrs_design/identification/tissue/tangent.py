@@ -23,7 +23,7 @@ class Tangent:
     """A spring and a damper for every small motion about a range of preloads."""
 
     law: KelvinVoigt  # In the middle of the preloads
-    ranges: tuple[Estimate, ...]  # Of stiffness and damping over all preloads
+    ranges: tuple[Estimate, ...]  # Ranges of stiffness and damping over all preloads
     # low, high: preloads: deflections in m (rad).
     low: float
     high: float
@@ -82,7 +82,7 @@ def _ranges_at(model: ModelFit, depth: float, *, with_exponent: bool = False) ->
     if len(single) == 1:
         return single[0]
     logs = np.log([[e.value for e in row] for row in single])
-    # The mean of few records is sure by what would hold the next one, too.
+    # For few records, a prediction interval is a safe choice for the mean.
     coverage = "prediction" if model.coverage == "confidence" else model.coverage
     return spread_ranges(coverage, logs, single)
 

@@ -1,4 +1,4 @@
-"""A record made ready for a fit: what of it is used, from where deflection and force count."""
+"""Preparation of a record for a fit: used samples, and zeros of deflection and force."""
 
 from __future__ import annotations
 
@@ -12,20 +12,24 @@ from nrs_design.identification.datasets.checks import long_stretches, pauses_tex
 from nrs_design.identification.datasets.records import TissueRecord
 from nrs_design.identification.numeric import Array, Flags, Rows, parted
 from nrs_design.identification.statistics import span
-from nrs_design.identification.tissue.contact import DetectedContact, find_contact, inner
-from nrs_design.identification.tissue.cycles import find_cycles
-from nrs_design.identification.tissue.surface import surface
+from nrs_design.identification.tissue.contact import (
+    DetectedContact,
+    find_contact,
+    find_cycles,
+    inner,
+    surface,
+)
 from nrs_design.models.contact import Motion
 from nrs_design.proof.text import counted
 
 FEWEST = 50
-# So many are left, if there are, where a record is thinned for a first look.
+# Least number of used samples of a thinned record.
 _LEAST_USED = 4 * FEWEST
 # So near to the position of contact, as a part of the travel, a sample may be in air or not.
 _EDGE = 0.02
-# Farther from it, more would be lost by leaving samples out than by a few that are in air.
+# Farther away, the lost samples would matter more than a few in air.
 _FARTHEST = 0.25
-# Air tells a drift: so many samples, over so much of the record, with so many in contact between.
+# Air shows a drift: least samples, least part of the record, and least samples of contact between.
 _FEWEST_IN_AIR, _SPREAD, _BETWEEN = 30, 0.3, 20
 # A record that begins at this part of its deflection need not begin relaxed.
 _LOADED = 0.1
@@ -33,16 +37,16 @@ _LOADED = 0.1
 
 @dataclass(frozen=True, slots=True)
 class Preparation:
-    """What is done to every record before it is fitted."""
+    """Settings for the preparation of all records."""
 
     # start, end: part of the record, in s from its beginning.
     start: float | None = None
     end: float | None = None
-    # Look for air, or take the whole record as in contact.
+    # Detect air, or treat the whole record as in contact.
     contact: Literal["auto", "given"] = "auto"
     zero: float | None = None  # Position of contact in m (rad); None fits it
     tare: float | None = None  # Force in air in N (N m); None fits it
-    # Whether the tare moves in proportion to time; ``auto`` where the air tells.
+    # Fit a tare that drifts in proportion to time; ``auto``: if the air shows it.
     drift: Literal["auto", "fit", "none"] = "auto"
     negate: bool = False  # Change the sign of the force
 
@@ -51,8 +55,8 @@ class Preparation:
 class Trial:
     """A record as it is fitted."""
 
-    record: TissueRecord  # As it was read
-    preparation: Preparation  # What was asked for
+    record: TissueRecord  # The original record
+    preparation: Preparation  # The settings
     motion: Motion  # Deflection of the tissue, positive into it and 0 in air; n samples
     position: Array  # Shape (n,). The same, but negative in air.
     force: Array  # Shape (n,). On the tissue in N (N m), with any tare.
@@ -62,7 +66,7 @@ class Trial:
     side: int  # 1 if the tissue is where positions are larger, else -1
     found: DetectedContact | None  # None if no air shows, or was not looked for
     drift: bool  # Whether the tare is fitted as moving
-    cuts: tuple[str, ...]  # What is not used, and why, in words
+    cuts: tuple[str, ...]  # Unused parts and reasons, in words
     cycles: tuple[slice, ...]  # Loading cycles, among all samples
     stretch: Rows  # Shape (n,). Counts up at every pause of the record.
 
@@ -111,7 +115,7 @@ class Trial:
 
     @property
     def remarks(self) -> tuple[str, ...]:
-        """What was found about contact, tare and parts that are not used, in words."""
+        """Contact, drift and unused parts, in words."""
         said = []
         if self.found is not None:
             part = 100 * float(np.mean(~self.touching))
@@ -128,7 +132,7 @@ class Trial:
         return (*said, *self.cuts)
 
     def thinned(self, most: int) -> Trial:
-        """Return the trial with at most so many samples, or more where few of them are used."""
+        """Return the trial with at most `most` samples, or more if few of them are used."""
         every = min(-(-len(self.force) // most), max(1, int(self.used.sum()) // _LEAST_USED))
         if every == 1:
             return self
@@ -262,7 +266,7 @@ def _side(x: Array) -> int:
 
 
 def _cut(time: Array, flags: Flags, reason: str) -> list[str]:
-    """Say which samples are not used, if there are some: they may be many short stretches."""
+    """Return a text about unused samples, if there are some."""
     inside = time[flags]
     if not len(inside):
         return []

@@ -10,7 +10,7 @@ from nrs_design.identification.actuator.fit import fit_in_time
 from nrs_design.identification.actuator.identify import identify_actuator
 from nrs_design.identification.actuator.motor import MotorModel
 from nrs_design.identification.actuator.scan import scan_motor
-from nrs_design.identification.datasets.records import ActuatorRecord
+from nrs_design.identification.datasets.records import SignalRecord
 from tests.identification import motors, synthetic
 from tests.identification.support import sinusoids, source
 
@@ -84,7 +84,7 @@ def test_a_square_wave_without_friction(is_angle):
     time = np.arange(5000) / motors.RATE
     command = np.where(time % 2 < 1, 1000.0, -1000.0)
     command[0] = 0.0
-    record = ActuatorRecord(source("square"), time, command, time, is_angle)
+    record = SignalRecord(source("square"), time, command, time, is_angle)
     true = replace(TRUE, time_constant=0.05, friction=None, delay=0.01)
     output = true.forced(record, *true.hold(record))
     noise = 5e-4 * np.ptp(output) * np.random.default_rng(1).normal(size=len(output))

@@ -30,8 +30,8 @@ def test_a_copy():
 
 def test_a_whole_number_of_samples_without_noise():
     record = signals.copy(1)
-    seen = np.concatenate([np.full(4, record.sent[0]), record.sent[:-4]])
-    found = identify_delay(replace(record, seen=seen))
+    seen = np.concatenate([np.full(4, record.command[0]), record.command[:-4]])
+    found = identify_delay(replace(record, output=seen))
     assert found.samples.value == pytest.approx(4.0, abs=1e-6)
     assert found.whole_samples == (4, 4)
     assert found.in_periods(Fraction(found.record.step)) == (4, 4)
@@ -99,7 +99,7 @@ def test_of_one_frequency_every_delay_up_to_that_of_a_copy_is_held():
     phase = w * (record.time - 3 / rate) - np.arctan(w * tau)
     noise = 1e-3 * np.random.default_rng(2).normal(size=len(phase))
     seen = np.sin(phase) / np.hypot(1, w * tau) + noise
-    found = identify_delay(replace(record, sent=np.sin(w * record.time), seen=seen))
+    found = identify_delay(replace(record, command=np.sin(w * record.time), output=seen))
     low, high = found.whole_samples
     assert low == 0
     assert high >= 5
@@ -118,14 +118,14 @@ def test_a_delay_beyond_what_is_looked_for_has_no_interval():
     late = count // 8
     seen = np.concatenate([np.zeros(late), held[:-late]])
     with pytest.raises(DataError, match="no delay, with or without a lag, explains") as caught:
-        identify_delay(replace(record, sent=held, seen=seen))
+        identify_delay(replace(record, command=held, output=seen))
     assert "a tenth of the record" in caught.value.remedy
 
 
 def test_columns_without_relation():
     record = signals.copy(5)
     with pytest.raises(DataError, match="does not follow") as caught:
-        identify_delay(replace(record, seen=np.random.default_rng(0).normal(size=signals.COUNT)))
+        identify_delay(replace(record, output=np.random.default_rng(0).normal(size=signals.COUNT)))
     assert "--command" in caught.value.remedy
 
 
@@ -157,7 +157,7 @@ def test_what_is_smooth_between_samples():
     assert is_smooth(signals.copy(1))
     assert not is_smooth(signals.held(1, 0.0, lasts=30.0))
     noise = np.random.default_rng(0).normal(size=signals.COUNT)
-    assert not is_smooth(replace(signals.copy(1), sent=noise))
+    assert not is_smooth(replace(signals.copy(1), command=noise))
 
 
 @pytest.mark.slow
@@ -167,7 +167,7 @@ def test_what_is_smooth_between_samples():
 )
 def test_a_pause_parts_a_record(record, name, delay):
     kept = np.r_[0:700, 760:1400, 1430:2000]
-    columns = {key: getattr(record, key)[kept] for key in ("time", "sent", "seen")}
+    columns = {key: getattr(record, key)[kept] for key in ("time", "command", "output")}
     found = identify_delay(replace(record, **columns))
     assert found.chosen.follower.name == name
     assert found.samples.covers(delay)

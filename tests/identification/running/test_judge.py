@@ -6,13 +6,12 @@ import numpy as np
 import pytest
 
 from nrs_design.errors import DataError, DesignError
-from nrs_design.identification.running.bounds import bounds_of_spec, read_run_bounds
-from nrs_design.identification.running.check import BoundStatus
+from nrs_design.identification.running.bounds import BoundStatus, bounds_of_spec, read_run_bounds
 from nrs_design.identification.running.judge import judge_run
 from nrs_design.identification.running.log import read_run
 from nrs_design.spec import parse_spec, read_spec
 from tests.identification import runs
-from tests.identification.running.support import SAMPLED, SOFT, check, judged, log
+from tests.identification.runs import SAMPLED, SOFT, check, judged, log
 from tests.support import COMMUTING, ROBOT
 
 
@@ -116,7 +115,7 @@ def test_a_tissue_that_remembers(tmp_path):
     text = (ROBOT / "nose.nrs.yaml").read_text()
     noise = "{torque_noise: 3 N*mm, angle_noise: 1e-5 rad, surface: fixed}"
     bounds = bounds_of_spec(parse_spec(f"{text}\nmonitoring: {noise}\n"))
-    record = log(tmp_path, text=runs.without_modes(runs.run()))
+    record = log(tmp_path, csv=runs.without_modes(runs.run()))
     assert "does not follow from" in check(judged(record, bounds), "stiffness").measured
 
 
@@ -130,7 +129,7 @@ def test_a_tissue_that_remembers(tmp_path):
 )
 def test_wrong_logs(tmp_path, text, message):
     with pytest.raises(DataError, match=message) as caught:
-        log(tmp_path, text=text)
+        log(tmp_path, csv=text)
     assert caught.value.remedy
 
 
@@ -142,7 +141,7 @@ def test_a_delay_that_the_record_does_not_tell(tmp_path):
     command = 50 * np.gradient(angle, t)
     torque = 43.0356 * angle / 20
     text = runs.text(t, angle, torque, command, np.full(len(t), "insertion"))
-    found = check(judged(log(tmp_path, text=text)), "delay")
+    found = check(judged(log(tmp_path, csv=text)), "delay")
     assert "[" not in found.measured
     assert found.measured.startswith("not told by this record")
 
@@ -172,17 +171,17 @@ def test_one_swing_tells_no_delay_from_a_lag(tmp_path):
 def test_a_command_of_another_kind_than_the_spec_has_is_refused(tmp_path):
     text = runs.text(*runs.run()).replace("command_rpm", "command_V")
     with pytest.raises(DataError, match="the motor of the spec takes rpm") as caught:
-        judged(log(tmp_path, text=text))
+        judged(log(tmp_path, csv=text))
     assert "command_rpm" in caught.value.remedy
-    assert judged(log(tmp_path, text=text), replace(SOFT, command="V")).checks
+    assert judged(log(tmp_path, csv=text), replace(SOFT, command="V")).checks
 
 
 def test_a_robot_that_takes_velocities_is_judged_in_its_unit(tmp_path):
     text = runs.text(*runs.run()).replace("command_rpm", "command_rad_s")
-    found = judged(log(tmp_path, text=text), replace(SOFT, command="rad/s"), command_limit=1e4)
+    found = judged(log(tmp_path, csv=text), replace(SOFT, command="rad/s"), command_limit=1e4)
     assert "rad/s" in check(found, "saturation").measured
     with pytest.raises(DataError, match="takes rad"):
-        judged(log(tmp_path, text=text.replace("rad_s", "V")), replace(SOFT, command="rad/s"))
+        judged(log(tmp_path, csv=text.replace("rad_s", "V")), replace(SOFT, command="rad/s"))
 
 
 @pytest.mark.parametrize(("period", "said"), [(0.002, False), (0.0019, True), (0.001, False)])

@@ -11,7 +11,7 @@ from nrs_design.identification.running.judge import judge_run
 from nrs_design.identification.running.sector import judge_sector
 from nrs_design.spec import parse_spec
 from tests.identification import runs
-from tests.identification.running.support import check, log
+from tests.identification.runs import check, log
 from tests.support import ROBOT
 
 TEXT = (ROBOT / "soft-tissue-sampled.nrs.yaml").read_text()
@@ -130,7 +130,7 @@ def test_a_linear_log_is_turned(tmp_path):
     t, angle, torque, *_ = pressed()
     rows = zip(t, angle * 0.24, torque / 0.24, strict=True)
     text = "time_s,deflection_m,force_N\n" + "\n".join(f"{a},{b},{c}" for a, b, c in rows) + "\n"
-    record = log(tmp_path, text=text)
+    record = log(tmp_path, csv=text)
     assert judge_sector(record, bounds())[0][0].first is None
     record.columns["force"][:] *= 1.5
     assert judge_sector(record, bounds())[0][0].first is not None

@@ -8,7 +8,7 @@ import pytest
 from nrs_design.identification.running.bounds import read_run_bounds
 from nrs_design.spec import read_spec
 from tests.identification import runs
-from tests.identification.running.support import check, judged, log
+from tests.identification.runs import check, judged, log
 from tests.support import SOFT_TISSUE
 
 
@@ -95,7 +95,7 @@ def test_rules_that_name_contacts_are_not_taken_for_none(tmp_path):
 
 
 def test_rules_without_a_column(tmp_path):
-    record = log(tmp_path, text=runs.without_modes(runs.run()))
+    record = log(tmp_path, csv=runs.without_modes(runs.run()))
     assert check(judged(record), "dwell times").status == "inside"
     found = judged(record, with_switching(tmp_path, "{dwell_time: 2 s}"))
     assert check(found, "dwell times").measured == "no column for mode"

@@ -1,10 +1,12 @@
 """One law, one record: the thesis's parameters come back."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from nrs_design.identification.datasets.records import TissueRecord
 from nrs_design.identification.tissue import output_error
 from nrs_design.identification.tissue.output_error import fit_record
 from nrs_design.identification.tissue.problem import LeastSquaresProblem, Point
@@ -18,7 +20,7 @@ from nrs_design.models.contact import (
     Motion,
 )
 from tests.identification import synthetic
-from tests.identification.support import holds, quick, record, slow
+from tests.identification.support import holds, quick, record, slow, source
 from tests.identification.unilateral import robot_record
 
 # Thesis 6.1, and tables 2.4 and 2.5 (a Maxwell law that relaxes within the record).
@@ -88,3 +90,32 @@ def test_derivatives_of_stretches_that_do_not_begin_at_rest(law):
     steps = 1e-5 * np.eye(len(point.values))
     slopes = [(force(point.values + h) - force(point.values - h)) / 2e-5 for h in steps]
     assert point.sensitivities == pytest.approx(np.column_stack(slopes), abs=1e-8)
+
+
+LAW = KelvinBoltzmann(400.0, 900.0, 2000.0)
+TIME = np.arange(2000) / 20
+
+
+def measured(motion, force, noise, seed):
+    error = noise * np.random.default_rng(seed).standard_normal(len(force))
+    return TissueRecord(source(f"{seed}"), motion, force + error, False)
+
+
+def test_stress_relaxation():
+    motion = Motion(TIME, 0.005 * np.clip((TIME - 2) / 0.5, 0, 1))
+    fit = fit_record(KelvinBoltzmann, measured(motion, LAW.simulate(motion), 0.01, 1))
+    assert all(holds(fit.estimates, LAW.values))
+    assert fit.doubts == ()
+
+
+def test_creep():
+    force = 2.0 * np.clip((TIME - 2) / 0.5, 0, 1)
+    rate, d, damper = LAW.k1 / LAW.b, 0.0, [0.0]
+    for i in range(1, len(TIME)):
+        h = TIME[i] - TIME[i - 1]
+        slope, a = (force[i] - force[i - 1]) / h, math.exp(-rate * h)
+        d = a * d + (force[i - 1] * (1 - a) / rate + slope * (h / rate - (1 - a) / rate**2)) / LAW.b
+        damper.append(d)
+    motion = Motion(TIME, force / LAW.k2 + np.array(damper))
+    fit = fit_record(KelvinBoltzmann, measured(motion, force, 0.01, 2))
+    assert all(holds(fit.estimates, LAW.values))

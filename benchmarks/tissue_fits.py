@@ -16,8 +16,7 @@ from benchmarks.measure import Comparison, Size
 from nrs_design.identification.datasets.records import TissueRecord
 from nrs_design.identification.tables.table import Source
 from nrs_design.identification.tissue.output_error import RecordFit, fit_record
-from nrs_design.identification.tissue.problem import LeastSquaresProblem
-from nrs_design.identification.tissue.starts import box
+from nrs_design.identification.tissue.problem import LeastSquaresProblem, box
 from nrs_design.identification.tissue.trial import prepare
 from nrs_design.models.contact import (
     LAWS,

@@ -16,6 +16,10 @@ Rows = NDArray[np.int64]
 TINY = float(np.finfo(float).tiny)
 # A column below this has faded to denormal numbers, whose digits say nothing.
 _FADED = 1e-300
+# Largest number of evaluations in a search.
+_STEPS = 100
+# Relative change of the squared errors, and change of the scaled parameters.
+_CONVERGED, _SETTLED = 1e-12, 1e-9
 
 
 def usual_step(time: Array) -> float:
@@ -61,10 +65,6 @@ def runs(flags: Flags) -> list[tuple[int, int]]:
 
 
 Errors = Callable[[Array], Array]  # From parameters (p,) to measured less fitted output (n,)
-
-_STEPS = 100
-# Relative change of the squared errors, and change of the scaled parameters.
-_CONVERGED, _SETTLED = 1e-12, 1e-9
 
 
 def search(

@@ -13,8 +13,9 @@ from nrs_design.identification.actuator.fit import (
     ActuatorFit,
     fit_in_time,
     fit_response,
+    scan_motor,
+    tells_friction,
 )
-from nrs_design.identification.actuator.scan import scan_motor, tells_friction
 from nrs_design.identification.datasets.checks import doubt_step
 from nrs_design.identification.datasets.records import FrequencyResponse, SignalRecord
 from nrs_design.identification.statistics import WHITE, Estimate, span
@@ -28,6 +29,11 @@ UNDETERMINED = (
     "the records do not determine the dead time: it may be a tenth of a record, or longer (record "
     "steps, or more samples of fast motions)"
 )
+
+# Largest part of the output that a fit may miss in errors that are not white.
+_MISSED = 0.01
+# Relative standard error beyond which a parameter is undetermined.
+_UNSURE = 0.5
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -195,12 +201,6 @@ def _fit(records: Sequence[SignalRecord]) -> ActuatorFit:
         return min(found, fit_in_time(records, without), key=lambda fit: fit.bic)
     except DataError:
         return found
-
-
-# Largest part of the output that a fit may miss in errors that are not white.
-_MISSED = 0.01
-# Relative standard error beyond which a parameter is undetermined.
-_UNSURE = 0.5
 
 
 def find_doubts(records: Sequence[SignalRecord], found: ActuatorFit) -> Iterator[str]:

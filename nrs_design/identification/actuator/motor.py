@@ -12,6 +12,10 @@ from nrs_design.identification.datasets.records import SignalRecord
 from nrs_design.identification.held import Held, Lags
 from nrs_design.identification.numeric import Array, beyond
 
+# Difference in a logarithm; that of the dead time, in samples, is larger by this factor.
+_DIFFERENCE = 1e-5
+_DELAY_DIFFERENCE = 100.0
+
 
 def friction_shape(held: Held, gain: float, tau: float, friction: float) -> Array:
     """Return friction over its largest value, the mean over each interval, shape (m - 1,).
@@ -54,11 +58,6 @@ def friction_shape(held: Held, gain: float, tau: float, friction: float) -> Arra
         shape.append((stop * direction + (step - stop) * after) / step)
         direction = -direction
     return np.array(shape)
-
-
-# Difference in a logarithm; that of the dead time, in samples, is larger by this factor.
-_DIFFERENCE = 1e-5
-_DELAY_DIFFERENCE = 100.0
 
 
 @dataclass(frozen=True, slots=True)

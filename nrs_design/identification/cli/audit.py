@@ -47,9 +47,9 @@ def audit(
     """Tell whether a run stayed inside what was proved: times, stiffness, delay, command, force.
 
     Columns, as far as they are there: time_s; angle_rad and torque_Nm (or deflection_m and
-    force_N); velocity_rad_s; the command in the unit of the motor of the spec (command_rpm, _V, _A,
-    _counts); mode, the name of the controller in force. The stiffness is tested where the spec says
-    by `monitoring` how far readings are off. What cannot be judged is said.
+    force_N); velocity_rad_s; the command in the unit of the spec (command_rpm, _V, _A, _counts; of
+    a robot _rad_s, _rad, _Nm); mode, the name of the controller in force. The stiffness is tested
+    where the spec says by `monitoring` how far readings are off. What cannot be judged is said.
 
     Exit code 0: inside. 1: left. 3: not everything could be judged, or the spec is not proved.
 

@@ -8,6 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
+from nrs_design.axis import COMMAND_UNITS
 from nrs_design.identification.datasets.checks import (
     check_saturation,
     check_time,
@@ -156,6 +157,9 @@ def _actuator(table: MeasurementTable) -> list[SignalRecord]:
     check_varies(table, "command", command)
     check_varies(table, table.layout[2], output)
     unit = table.columns["command"].unit
+    if unit not in COMMAND_UNITS:
+        units = ", ".join(f"command_{unit}" for unit in COMMAND_UNITS)
+        table.fail(f"the motor takes a command in {unit}, and no velocity", 0, f"give {units}")
     is_angle = table.layout == ANGLE
     if is_angle:
         check_turns(table, output)

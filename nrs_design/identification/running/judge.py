@@ -67,12 +67,13 @@ def judge_run(
     if bounds.command == "rad/s":
         log = log.in_radians()
     if log.command_unit not in ("", bounds.command):
+        column = "command_" + bounds.command.replace("/", "_").replace("*", "")
         raise DataError(
             f"its command is read in {log.command_unit}, and the motor of the spec takes "
             f"{bounds.command}",
             path=log.source.path,
-            remedy=f"name the column that the motor is sent command_{bounds.command} in its "
-            "header, or leave the other out",
+            remedy=f"name the column that the motor is sent {column} in its header, or leave the "
+            "other out",
         )
     bounds = replace(bounds, proved=proved)
     tested, judged = judge_sector(log, bounds)

@@ -10,8 +10,13 @@ from functools import partial
 from pathlib import Path
 
 from nrs_design.errors import DataError
-from nrs_design.identification.tables.columns import check_stated
-from nrs_design.identification.tables.names import FULL_WORDS, UNITS, read_name, read_unit
+from nrs_design.identification.tables.columns import (
+    FULL_WORDS,
+    UNITS,
+    check_stated,
+    read_name,
+    read_unit,
+)
 
 MAX_COLUMNS = 1000
 MAX_NAME = 100

@@ -15,9 +15,8 @@ import numpy as np
 from nrs_design.errors import DataError
 from nrs_design.files import open_regular
 from nrs_design.identification.numeric import Array
-from nrs_design.identification.tables.columns import Column, find_columns
+from nrs_design.identification.tables.columns import UNITS, Column, find_columns, standard_name
 from nrs_design.identification.tables.header import UNDECIDED, Header, read_decimal, read_header
-from nrs_design.identification.tables.names import UNITS, standard_name
 from nrs_design.proof.text import quoted
 from nrs_design.spec.quantity import LARGEST
 

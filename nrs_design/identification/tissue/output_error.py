@@ -21,8 +21,7 @@ from nrs_design.identification.statistics import (
 )
 from nrs_design.identification.tissue.doubts import doubts, reaches_zero
 from nrs_design.identification.tissue.offsets import Offset, estimate_offsets
-from nrs_design.identification.tissue.problem import LeastSquaresProblem, Point
-from nrs_design.identification.tissue.starts import box
+from nrs_design.identification.tissue.problem import LeastSquaresProblem, Point, box
 from nrs_design.identification.tissue.trial import Trial, prepare
 from nrs_design.models.contact import AbstractContactLaw
 

@@ -33,14 +33,6 @@ def parse_arm(text: str | None, *, rotational: bool) -> float | None:
     return arm
 
 
-def parse_offset(setting: str, text: str, *, rotational: bool) -> float | None:
-    """Read ``zero``, a position, or ``tare``, a force, in SI; ``fit`` is None."""
-    if text == "fit":
-        return None
-    kinds = {"zero": (LENGTH, ANGLE), "tare": (FORCE, TORQUE)}
-    return _parse(setting, text, kinds[setting][rotational])
-
-
 def parse_preload(text: str | None, *, rotational: bool) -> tuple[float, float] | None:
     """Read ``--preload``, such as ``1 mm..3 mm``: deflections from the contact, in SI."""
     if text is None:
@@ -69,12 +61,17 @@ def read_preparation(entries: Iterable[str], *, rotational: bool) -> Preparation
         "start": _seconds,
         "end": _seconds,
         "contact": _out_of("auto", "given"),
-        "zero": lambda text: parse_offset("zero", text, rotational=rotational),
-        "tare": lambda text: parse_offset("tare", text, rotational=rotational),
+        "zero": _offset("zero", (LENGTH, ANGLE)[rotational]),
+        "tare": _offset("tare", (FORCE, TORQUE)[rotational]),
         "drift": _out_of("auto", "fit", "none"),
         "negate": lambda text: _out_of("true", "false")(text) == "true",
     }
     return Preparation(**read_named_values(entries, readers, "a record"))
+
+
+def _offset(name: str, kind: QuantityKind) -> Callable[[str], float | None]:
+    """Return a reader of an offset in SI; ``fit`` is None."""
+    return lambda text: None if text == "fit" else _parse(name, text, kind)
 
 
 def _seconds(text: str) -> float:

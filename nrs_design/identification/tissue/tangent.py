@@ -58,7 +58,6 @@ def tangent_of(model: ModelFit, preload: tuple[float, float]) -> Tangent:
     give the ends of the range.
     """
     law, (low, high) = model.law, preload
-    check_preload(type(law), [fit.trial for fit in model.fits], preload)
     assert isinstance(law, AbstractNonlinearLaw)
     ends = [_ranges_at(model, depth) for depth in (low, high)]
     middle = KelvinVoigt(*law.tangent((low + high) / 2))

@@ -150,16 +150,6 @@ def prepare(record: TissueRecord, preparation: Preparation | None = None) -> Tri
     wanted = preparation or Preparation()
     kept, cuts = _window(record, wanted)
     found = find_contact(kept) if wanted.contact == "auto" else None
-    return _assemble(record, kept, wanted, found, cuts)
-
-
-def _assemble(
-    record: TissueRecord,
-    kept: TissueRecord,
-    wanted: Preparation,
-    found: DetectedContact | None,
-    cuts: list[str],
-) -> Trial:
     x, time = kept.motion.deflection, kept.motion.time
     side = _side(x) if found is None else found.side
     reference = side * float(np.min(side * x)) if found is None else found.zero
@@ -185,13 +175,12 @@ def _assemble(
             path=record.source.path,
             remedy="record longer, or say by --set contact=given, start=S or end=S what to use",
         )
-    force = side * kept.force
-    air = used & ~touching
-    moving = wanted.drift == "fit" or (wanted.drift == "auto" and _shows_drift(time, air))
-    motion = Motion(time, deflection)
+    drift = wanted.drift == "fit"
+    if wanted.drift == "auto":
+        drift = _shows_drift(time, used & ~touching)
     return Trial(
-        record, wanted, motion, position, force, used, touching, reference, side, found, moving,
-        tuple(cuts), find_cycles(deflection), stretch,
+        record, wanted, Motion(time, deflection), position, side * kept.force, used, touching,
+        reference, side, found, drift, tuple(cuts), find_cycles(deflection), stretch,
     )  # fmt: skip
 
 
@@ -249,15 +238,10 @@ def _window(record: TissueRecord, wanted: Preparation) -> tuple[TissueRecord, li
             path=record.source.path,
             remedy=f"the record lasts from 0 s to {time[-1]:.6g} s",
         )
-    kept = _rows(record, inside)
-    if wanted.negate:
-        kept = replace(kept, force=-kept.force)
+    motion = Motion(time[inside], record.motion.deflection[inside])
+    force = (-record.force if wanted.negate else record.force)[inside]
+    kept = replace(record, motion=motion, force=force)
     return kept, _cut(time, ~inside, "outside start and end")
-
-
-def _rows(record: TissueRecord, rows: slice | Flags) -> TissueRecord:
-    motion = Motion(record.motion.time[rows], record.motion.deflection[rows])
-    return replace(record, motion=motion, force=record.force[rows])
 
 
 def _side(x: Array) -> int:

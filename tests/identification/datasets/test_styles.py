@@ -7,8 +7,7 @@ import pytest
 
 from nrs_design.errors import DataError
 from nrs_design.identification.datasets.records import read_tissue
-from nrs_design.identification.tables.columns import find_columns, parse_mapping
-from nrs_design.identification.tables.names import Name, read_name
+from nrs_design.identification.tables.columns import Name, find_columns, parse_mapping, read_name
 
 N = 80
 TIME = np.arange(N) / 100

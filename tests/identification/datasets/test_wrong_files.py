@@ -105,6 +105,8 @@ OTHERS = {
     "no command": (read_actuator, rows("time_s,angle_rad", clock, swing), "command", 1),
     "a command in ohm": (read_actuator, rows("time_s,command_ohm,angle_rad", clock, swing, swing),
         "'ohm'", 1),
+    "a position for a motor": (read_actuator, rows("time_s,command_deg,angle_rad", clock, swing,
+        swing), "a command in rad, and no velocity", 2),
     "a velocity without unit": (read_actuator, rows("time_s,command_V,velocity", clock, swing,
         swing), "velocity.*has no unit", 1),
     "a command that never changes": (read_actuator, rows("time_s,command_rpm,angle_rad", clock,

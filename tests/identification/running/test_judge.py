@@ -176,12 +176,20 @@ def test_a_command_of_another_kind_than_the_spec_has_is_refused(tmp_path):
     assert judged(log(tmp_path, csv=text), replace(SOFT, command="V")).checks
 
 
-def test_a_robot_that_takes_velocities_is_judged_in_its_unit(tmp_path):
-    text = runs.text(*runs.run()).replace("command_rpm", "command_rad_s")
-    found = judged(log(tmp_path, csv=text), replace(SOFT, command="rad/s"), command_limit=1e4)
-    assert "rad/s" in check(found, "saturation").measured
-    with pytest.raises(DataError, match="takes rad"):
-        judged(log(tmp_path, csv=text.replace("rad_s", "V")), replace(SOFT, command="rad/s"))
+@pytest.mark.parametrize(
+    ("column", "command"),
+    [("rad_s", "rad/s"), ("deg_s", "rad/s"), ("rad", "rad"), ("deg", "rad"), ("Nm", "N*m")],
+)
+def test_a_robot_is_judged_in_the_unit_that_it_takes(tmp_path, column, command):
+    csv = runs.text(*runs.run()).replace("command_rpm", f"command_{column}")
+    bounds = replace(SOFT, command=command)
+    found = check(judged(log(tmp_path, csv=csv), bounds, command_limit=1e4), "saturation")
+    assert found.allowed == f"below 10000 {command}"
+    largest = float(found.measured.split()[2])
+    assert largest == pytest.approx(2000 * np.radians(1) if "deg" in column else 2000, rel=1e-3)
+    with pytest.raises(DataError, match="motor of the spec takes") as caught:
+        judged(log(tmp_path, csv=csv.replace(f"command_{column}", "command_V")), bounds)
+    assert f"command_{column.replace('deg', 'rad')}" in caught.value.remedy
 
 
 @pytest.mark.parametrize(("period", "said"), [(0.002, False), (0.0019, True), (0.001, False)])

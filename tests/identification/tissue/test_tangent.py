@@ -8,7 +8,7 @@ import pytest
 
 from nrs_design.errors import DataError
 from nrs_design.identification.tissue.identify import identify_tissue
-from nrs_design.identification.tissue.tangent import tangent_of
+from nrs_design.identification.tissue.tangent import check_preload
 from nrs_design.identification.write_spec import merge_tissue
 from nrs_design.models.contact import Elastic, HuntCrossley
 from nrs_design.spec import parse_spec, read_spec
@@ -83,4 +83,4 @@ def test_a_linear_law_has_none():
 @pytest.mark.parametrize("preload", [(0.0, 0.001), (0.001, 0.02)])
 def test_beyond_the_record(preload):
     with pytest.raises(DataError, match="are not within the deflections"):
-        tangent_of(identified(1).chosen, preload)
+        check_preload(HuntCrossley, [fit.trial for fit in identified(1).chosen.fits], preload)

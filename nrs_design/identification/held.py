@@ -16,11 +16,11 @@ from nrs_design.identification.numeric import Array, Rows
 from nrs_design.models.recursion import run_first_order
 
 # Least distance of two poles.
-_APART = 1e-4
+_LEAST_DISTANCE = 1e-4
 
 
 @dataclass(frozen=True)
-class Held:
+class HeldCommand:
     """A delayed command: constant between the times of a grid that contains all samples."""
 
     grid: Array  # Shape (m,). Times in s.
@@ -60,20 +60,20 @@ class Lags:
     @classmethod
     def second_order(cls, time: float, damping: float) -> Self:
         """Return ``1/(T^2 s^2 + 2 zeta T s + 1)``; equal poles are taken apart a little."""
-        if abs(damping - 1) < _APART:
-            damping = 1 + _APART
+        if abs(damping - 1) < _LEAST_DISTANCE:
+            damping = 1 + _LEAST_DISTANCE
         root = np.sqrt(complex(damping**2 - 1))
         p, q = (1 / time) * (-damping + root), (1 / time) * (-damping - root)
         return cls(
             (complex(-1 / p), complex(-1 / q)), (complex(-q / (p - q)), complex(p / (p - q)))
         )
 
-    def velocity(self, held: Held, inputs: Array) -> Array:
+    def velocity(self, held: HeldCommand, inputs: Array) -> Array:
         """Return the output of the model from rest, shape (m,), to m - 1 held inputs."""
         parts = (s * _lag(t, held.steps, inputs) for t, s in self._pairs())
         return np.asarray(sum(parts).real, float)
 
-    def angle(self, held: Held, inputs: Array) -> Array:
+    def angle(self, held: HeldCommand, inputs: Array) -> Array:
         """Return the integral of the output, from zero; parameters as for `velocity`."""
         parts = (s * _traveled(t, held.steps, inputs) for t, s in self._pairs())
         return np.asarray(sum(parts).real, float)

@@ -32,8 +32,8 @@ def column_sizes(X: Array) -> Array:
     return np.asarray(np.maximum(np.linalg.norm(X, axis=0), _FADED))
 
 
-def beyond(basis: Array, values: Array) -> Array:
-    """Return values less their projection on orthonormal columns."""
+def reject(basis: Array, values: Array) -> Array:
+    """Return the rejection of values from orthonormal columns."""
     return np.asarray(values - basis @ (basis.T @ values), float)
 
 

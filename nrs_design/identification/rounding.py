@@ -8,7 +8,7 @@ from nrs_design.identification.numeric import Array, Flags, usual_step
 
 # Changes of a rounded signal are multiples of its step: largest deviation, and least share of them.
 _WHOLE = 0.06
-_MOST = 0.9
+_LEAST_SHARE = 0.9
 # Size of a small change in steps, and least share of small changes.
 _SMALL = 10.5
 _SHARE = 0.1
@@ -17,7 +17,7 @@ _FEWEST_BLIPS, _BLIPS = 2, 0.05
 # Steps that are tried: a reading may be rounded twice, by its sensor and by the digits of its file.
 _CANDIDATES = 50
 # A probe rests if its reading stays this many times longer than usual.
-_REST = 3.0
+_REST_LENGTH = 3.0
 
 
 def resolution(readings: Array) -> float:
@@ -46,7 +46,7 @@ def resolution(readings: Array) -> float:
         small = sizes[sizes < _SMALL * step]
         if len(small) < _SHARE * len(sizes):
             continue
-        if float(np.mean(_are_whole(small, step))) > _MOST:
+        if float(np.mean(_are_whole(small, step))) > _LEAST_SHARE:
             found = step
     return found
 
@@ -81,7 +81,7 @@ def rounding_scatter(
     sums = np.add.reduceat(sensitivities, starts, axis=0)
     if returns:
         lengths = np.diff([*starts, len(readings)])
-        rests = lengths > _REST * np.median(lengths)
+        rests = lengths > _REST_LENGTH * np.median(lengths)
         _, same = np.unique(readings[starts[rests]], return_inverse=True)
         together = np.zeros((same.max(initial=-1) + 1, sensitivities.shape[1]))
         np.add.at(together, same, sums[rests])

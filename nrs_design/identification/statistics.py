@@ -1,4 +1,4 @@
-"""Covariance, confidence intervals and whiteness of residuals."""
+"""Covariance, intervals, ranges for a spec, and whiteness of residuals."""
 
 from __future__ import annotations
 
@@ -9,7 +9,9 @@ from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 
 import numpy as np
 
+from nrs_design.errors import DataError
 from nrs_design.identification.numeric import Array, Rows
+from nrs_design.spec.provenance import Coverage
 
 CONFIDENCE = 0.95
 _DIGITS = 5
@@ -141,11 +143,11 @@ def independent(residuals: Array) -> float:
     return len(residuals) * (1 - alike) / (1 + alike)
 
 
-def fisher_tail(above: int, below: int, ratio: float) -> float:
+def fisher_tail(numerator: int, denominator: int, ratio: float) -> float:
     """Return the p-value of an F-test."""
     from scipy.special import fdtrc
 
-    return float(fdtrc(above, below, ratio))
+    return float(fdtrc(numerator, denominator, ratio))
 
 
 def joint_level(count: int) -> float:
@@ -228,3 +230,45 @@ def _inverse(J: Array) -> Array:
     values, vectors = np.linalg.eigh(scaled.T @ scaled)
     inverse: Array = (vectors / np.maximum(values, _SINGULAR)) @ vectors.T
     return inverse / np.outer(size, size)
+
+
+def spread_ranges(
+    coverage: Coverage, logarithms: Array, single: Sequence[Sequence[Estimate]]
+) -> tuple[Estimate, ...]:
+    """Return ranges for other specimens than those measured; one record does not tell them.
+
+    ``tolerance``: a share of all specimens like those of the records. ``prediction``: the specimen
+    of the next record. Both hold the interval of every measured record too. Several parameters make
+    a box: each side has its share of the 5 % that may fail (Bonferroni), so that the box as a whole
+    holds with 95 %.
+
+    The scatter between the records is that of the specimens and of the fits together, which errs
+    to the wide side. Logarithms, shape (n, p), are taken as normal.
+    """
+    n, p = logarithms.shape
+    level = joint_level(p)
+    if coverage == "tolerance":
+        factor = tolerance_factor(n, share=level, confidence=level)
+    else:
+        factor = student_quantile(n - 1, level) * math.sqrt(1 + 1 / n)
+    means, scatter = logarithms.mean(axis=0), logarithms.std(axis=0, ddof=1)
+    halves = zip(means.tolist(), (factor * scatter).tolist(), strict=True)
+    return hulls([Estimate.from_log(mean, half) for mean, half in halves], single)
+
+
+def check_spread(coverage: Coverage, count: int) -> None:
+    """Refuse one record, which does not tell how specimens differ."""
+    if count < 2:
+        raise DataError(
+            f"a range for {coverage} needs several records, and there is one: it says nothing of "
+            "the spread between specimens",
+            remedy="give more records, or take --covers confidence",
+        )
+
+
+def hulls(pooled: Sequence[Estimate], single: Sequence[Sequence[Estimate]]) -> tuple[Estimate, ...]:
+    """Widen the interval of each parameter to those of single records."""
+    return tuple(
+        Estimate(own.value, min(e.low for e in (own, *row)), max(e.high for e in (own, *row)))
+        for own, *row in zip(pooled, *single, strict=True)
+    )

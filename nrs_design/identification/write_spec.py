@@ -38,11 +38,11 @@ from nrs_design.spec.spec_document import SpecDocument
 _DIGITS = 6
 # Fewer records say nothing of how much a tissue, or a motor, varies; nor is a range so many times
 # narrower than the declared one likely to hold what that one was for.
-FEW, MUCH = 3, 10
+FEW_RECORDS, MUCH_NARROWER = 3, 10
 NARROWER = "narrower than the declared one"
 # Ends are rounded outwards.
-ROUNDED = 1.01
-_WITH_A_PLACE = f"--model {' or --model '.join(TISSUE_LAWS)}"
+ROUNDING_SLACK = 1.01
+_MODEL_OPTIONS = f"--model {' or --model '.join(TISSUE_LAWS)}"
 # Keys that only a power law has in a spec.
 _POWER_KEYS = ("exponent", "about", "preload")
 
@@ -76,8 +76,8 @@ def merge_tissue(
     Its range is written, which covers the pooled interval and that of every record. Linear records
     need a lever arm such as ``0.24 m``, by default the one of the spec.
     """
-    model, about, rotational = found.chosen, found.tangent, found.rotational
-    law, ranges = (model.law, model.ranges) if about is None else (about.law, about.ranges)
+    model, tangent, rotational = found.chosen, found.tangent, found.rotational
+    law, ranges = (model.law, model.ranges) if tangent is None else (tangent.law, tangent.ranges)
     name = _place(loaded, environment, arm, rotational=rotational)
     if not isinstance(law, AbstractLinearLaw):
         raise _no_place(law.name)
@@ -90,16 +90,16 @@ def merge_tissue(
     writer = _Writer(document, document.root["environments"][name], found.sources)
     declared = check_interaction(loaded).environments[name].ranges
     narrow = writer.narrowed(declared, dict(zip(law.keys, ranges, strict=True)), replace=replace)
-    power = about is not None and has_place(about)
-    if about is not None and power:
-        ranges = about.power[:2]
+    power = tangent is not None and has_place(tangent)
+    if tangent is not None and power:
+        ranges = tangent.power[:2]
     units = law.units(rotational=rotational)
     rows = zip(law.keys, ranges, units, strict=True)
-    values: dict[str, object] = {key: _ranged(e, unit, key) for key, e, unit in rows}
-    if about is not None:
+    values: dict[str, object] = {key: _positive_range(e, unit, key) for key, e, unit in rows}
+    if tangent is not None:
         length = "rad" if rotational else "m"
-        ends = f"deflections of {span(about.low, about.high, length, 6)}"
-        values |= _power_values(about, length) if power else {"linearized_about": ends}
+        ends = f"deflections of {span(tangent.low, tangent.high, length, 6)}"
+        values |= _power_values(tangent, length) if power else {"linearized_about": ends}
     if rotational or arm is not None:
         values["lever_arm"] = arm
     values["range_covers"] = model.coverage
@@ -114,14 +114,14 @@ def merge_tissue(
     return document.text()
 
 
-def _power_values(about: Tangent, length: str) -> dict[str, object]:
+def _power_values(tangent: Tangent, length: str) -> dict[str, object]:
     """Return the keys of a Hunt-Crossley law in addition to its tangent."""
-    low, high = _exponent_range(about.power[2])
-    nominal = min(max(round(Decimal(about.power[2].value), 3), low), high)
+    low, high = _exponent_range(tangent.power[2])
+    nominal = min(max(round(Decimal(tangent.power[2].value), 3), low), high)
     return {
         "exponent": {"nominal": str(nominal), "range": [str(low), str(high)]},
-        "about": f"{about.about!r} {length}",
-        "preload": [f"{end!r} {length}" for end in (about.low, about.high)],
+        "about": f"{tangent.about!r} {length}",
+        "preload": [f"{end!r} {length}" for end in (tangent.low, tangent.high)],
     }
 
 
@@ -149,14 +149,15 @@ def merge_actuator(
         declared = {name: getattr(spec.actuator, name) for name in by_name}
         narrow = writer.narrowed(declared, by_name, replace=replace)
     written = {
-        name: _ranged(e, unit, name) for (name, e), unit in zip(by_name.items(), units, strict=True)
+        name: _positive_range(e, unit, name)
+        for (name, e), unit in zip(by_name.items(), units, strict=True)
     }
     for name, value in written.items():
         writer.put(name, value if covered else value["nominal"])
     intervals = {name: value["range"] for name, value in written.items()}
     writer.put("intervals", None if covered else intervals)
     writer.put("range_covers", found.coverage if covered else None)
-    late = found.late if spec.takes_dead_time else None
+    late = found.clear_dead_time if spec.takes_dead_time else None
     writer.put("dead_time", late and _outwards(late, "s")["range"])
     writer.put_origin((*(found.doubts if late else found.caveats), *narrow))
     rewritten = writer.identified().actuator
@@ -187,7 +188,7 @@ def merge_sampling(loaded: LoadedSpec, found: DelayIdentification, key: Sampling
 
 
 def _age(found: DelayIdentification, sampling: SamplingSpec) -> int | list[int]:
-    low, high = found.in_periods(sampling.outer)
+    low, high = found.periods(sampling.outer)
     if high > LONGEST_DELAY:
         raise DataError(
             f"the force is up to {high} periods old, a spec takes {LONGEST_DELAY} at most",
@@ -204,7 +205,8 @@ def _latency(found: DelayIdentification, sampling: SamplingSpec) -> list[str]:
             f"{LONGEST_DELAY} periods, and none before",
             remedy="see that the columns are not swapped, and record more rows in a period",
         )
-    return _outwards(Estimate(float(low), float(low), float(high)), "s")["range"]
+    ends: list[str] = _outwards(Estimate(float(low), float(low), float(high)), "s")["range"]
+    return ends
 
 
 @dataclass(frozen=True, slots=True)
@@ -269,14 +271,16 @@ class _Writer:
             low, high = (end.si for end in declared[key].range)
             before = (high - low) / declared[key].nominal.si
             after = (found[key].high - found[key].low) / found[key].value
-            if ROUNDED * after < before and (records < FEW or MUCH * after <= before):
+            if ROUNDING_SLACK * after < before and (
+                records < FEW_RECORDS or MUCH_NARROWER * after <= before
+            ):
                 times = f"{before / after:.3g} times {NARROWER}"
                 texts.append(f"{key}: the range from {counted(records, 'record')} is {times}")
         if texts and not replace:
             raise DataError(
                 "; ".join(texts),
-                remedy=f"give {FEW} records or more that show how much it varies, or take it all "
-                "the same with --replace, which keeps the doubt in the spec",
+                remedy=f"give {FEW_RECORDS} records or more that show how much it varies, or take "
+                "it all the same with --replace, which keeps the doubt in the spec",
             )
         return texts
 
@@ -292,7 +296,7 @@ def law_to_write(
     loaded: LoadedSpec,
     environment: str | None,
     arm: str | None,
-    asked: str | None,
+    requested: str | None,
     *,
     preloaded: bool,
     rotational: bool,
@@ -303,12 +307,12 @@ def law_to_write(
     """
     name = _place(loaded, environment, arm, rotational=rotational)
     declared = check_interaction(loaded).environments[name]
-    law = asked or declared.model
+    law = requested or declared.model
     if law not in LAWS:
         raise SpecError(
             f"the environment {name} is a {law}, which no record of a press tells",
             path=loaded.path,
-            remedy=f"name the law that shall replace it: {_WITH_A_PLACE}",
+            remedy=f"name the law that shall replace it: {_MODEL_OPTIONS}",
         )
     if law not in TISSUE_LAWS and not preloaded:
         raise _no_place(law, declared.preload_range)
@@ -385,7 +389,7 @@ def _no_place(law: str, preload: tuple[Quantity, Quantity] | None = None) -> Dat
     return DataError(
         f"the law {law} has no place in a spec without a preload",
         remedy=f"say by --preload at which deflections{said}, or choose one that has a place: "
-        f"{_WITH_A_PLACE}",
+        f"{_MODEL_OPTIONS}",
     )
 
 
@@ -413,9 +417,9 @@ def _place(
     return name
 
 
-def has_place(about: Tangent) -> bool:
+def has_place(tangent: Tangent) -> bool:
     """Tell whether a spec can hold the power law: its exponent is at least 1."""
-    low, high = _exponent_range(about.power[2])
+    low, high = _exponent_range(tangent.power[2])
     return low >= LEAST and high <= LARGEST
 
 
@@ -440,11 +444,11 @@ def _outwards(estimate: Estimate, unit: str) -> dict[str, Any]:
     low = few_digits(estimate.low, _DIGITS, ROUND_FLOOR)
     high = few_digits(estimate.high, _DIGITS, ROUND_CEILING)
     nominal = min(max(few_digits(estimate.value, _DIGITS, ROUND_HALF_EVEN), low), high)
-    texts = [f"{_plain(number)} {unit}" for number in (nominal, low, high)]
+    texts = [f"{_number_text(number)} {unit}" for number in (nominal, low, high)]
     return {"nominal": texts[0], "range": texts[1:]}
 
 
-def _ranged(estimate: Estimate, unit: str, name: str) -> dict[str, Any]:
+def _positive_range(estimate: Estimate, unit: str, name: str) -> dict[str, Any]:
     """Write a positive estimate; refuse one that the records do not tell."""
     if not _is_limited(estimate):
         raise DataError(
@@ -458,6 +462,6 @@ def _is_limited(estimate: Estimate) -> bool:
     return isfinite(estimate.high) and estimate.low > 0
 
 
-def _plain(number: Decimal) -> str:
+def _number_text(number: Decimal) -> str:
     usual = not number or 1e-3 <= number < 10**_DIGITS
     return f"{number:f}" if usual else f"{number.normalize():e}"

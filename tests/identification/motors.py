@@ -1,16 +1,16 @@
-"""Synthetic motors under any command, simulated in fine steps. None is a measurement."""
-
-import math
-from collections import deque
+"""Synthetic motors under any command. None is a measurement."""
 
 import numpy as np
 
 from nrs_design.identification.datasets.records import SignalRecord
+from tests.identification import synthetic
 from tests.identification.support import source
 
-RATE = 500.0
+# Thesis 4.1.
+GAIN, TIME_CONSTANT, FRICTION = synthetic.GAIN, synthetic.TIME_CONSTANT, synthetic.FRICTION
+RATE = synthetic.RATE
 DURATION = 4.0
-GAIN, TIME_CONSTANT, FRICTION, DELAY = 4.8417e-4, 0.0351, 276.575, 0.0073
+DELAY = 0.0073
 AMPLITUDE = 3000.0
 
 
@@ -36,44 +36,8 @@ def command(kind, seed=0):
     raise ValueError(kind)
 
 
-def simulate(u, *, delay=DELAY, friction=FRICTION, second=0.0, play=0.0, limit=math.inf, fine=20):
-    """Return angle, velocity and command at the samples.
-
-    The command is an array, or a function of the number of the sample and the angle there; a second
-    lag in s, a play in rad and a limit of the command may be added.
-    """
-    h = 1 / RATE / fine
-    late = round(delay / h)
-    decay = math.exp(-h / TIME_CONSTANT)
-    angle = velocity = behind = lagged = 0.0
-    angles, velocities, sent, queue = [], [], [], deque()
-    for i in range(len(time()) * fine):
-        if i % fine == 0:
-            angles.append(behind if play else angle)
-            velocities.append(lagged if second else velocity)
-            sent.append(float(u(i // fine, angles[-1]) if callable(u) else u[i // fine]))
-            if not queue:
-                queue.extend([sent[0]] * late)
-        queue.append(min(max(sent[-1], -limit), limit))
-        value = queue.popleft()
-        before = lagged if second else velocity
-        if not (velocity == 0.0 and abs(value) <= friction):
-            direction = math.copysign(1.0, velocity or value)
-            target = GAIN * (value - friction * direction)
-            new = target + (velocity - target) * decay
-            if new * velocity < 0:
-                # The motor stops within this step; what is left of it, it sticks or turns.
-                part = velocity / (velocity - new)
-                angle += h * part * velocity / 2
-                turned = GAIN * (value + friction * direction)
-                new = turned * (1 - part) * h / TIME_CONSTANT if abs(value) > friction else 0.0
-                angle -= h * (before + new) / 2 - h * (1 - part) * new / 2
-            velocity = new
-        if second:
-            lagged += (velocity - lagged) * -math.expm1(-h / second)
-        angle += h * (before + (lagged if second else velocity)) / 2
-        behind = min(max(behind, angle - play / 2), angle + play / 2)
-    return np.array(angles), np.array(velocities), np.array(sent)
+def simulate(u, *, delay=DELAY, **options):
+    return synthetic.simulate_motor(u, len(time()), delay=delay, **options)
 
 
 def follow(seed):

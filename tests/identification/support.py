@@ -10,7 +10,13 @@ from nrs_design.identification.datasets.records import SignalRecord, TissueRecor
 from nrs_design.identification.tables.table import Source
 from nrs_design.models.contact import AbstractContactLaw, Motion
 from tests.identification import synthetic
+from tests.identification.synthetic import Array
 from tests.support import ROOT
+
+
+def write_csv(path: Path, header: str, *columns: Array) -> Path:
+    np.savetxt(path, np.column_stack(columns), "%.9g", ",", header=header, comments="")
+    return path
 
 
 def source(name: str) -> Source:

@@ -17,6 +17,7 @@ from __future__ import annotations
 
 import argparse
 import math
+from collections import deque
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
@@ -38,6 +39,7 @@ NOSE_NOISE = (0.0216, 0.0165, 0.0062, 0.0111)
 CONCHA_NOISE = (0.0157, 0.0085, 0.0128, 0.0055, 0.0080)
 # Thesis 4.1: (rad/s)/rpm, s, rpm.
 GAIN, TIME_CONSTANT, FRICTION = 4.8417e-4, 0.0351, 276.575
+RATE = 500.0
 FREQUENCIES = (0.5, 0.8, 1.2, 2.0, 3.0, 4.5, 6.0, 8.0, 11.0, 15.0)
 
 COUNT = 0.1 * 2 * math.pi / 4096
@@ -76,44 +78,63 @@ def actuator_record(
     seed: int,
     *,
     amplitude: float = 3000.0,
-    rate: float = 500.0,
     periods: int = 8,
     noise: float = 3e-4,
 ) -> tuple[Array, Array, Array]:
     """Return time, command and angle of a sinusoid of a frequency in Hz, an amplitude in rpm.
 
-    The motor is simulated in steps of a twentieth of a sample and sticks while the command is
-    below the friction; noise in rad comes before the rounding of the encoder.
+    Noise in rad comes before the rounding of the encoder.
     """
     generator = np.random.default_rng(seed)
-    count = round(max(periods / frequency, 1.5) * rate) + 1
-    time = np.arange(count) / rate
+    count = round(max(periods / frequency, 1.5) * RATE) + 1
+    time = np.arange(count) / RATE
     command = np.round(amplitude * np.sin(2 * np.pi * frequency * time), 1)
-    angle = _stick_slip(command, 1 / rate) + noise * generator.standard_normal(count)
+    angle, _, _ = simulate_motor(command, count)
+    angle = angle + noise * generator.standard_normal(count)
     return time, command, ENCODER * np.round(angle / ENCODER)
 
 
-def _stick_slip(command: Array, step: float, fine: int = 20) -> Array:
-    decay = math.exp(-step / fine / TIME_CONSTANT)
-    travel = TIME_CONSTANT * (1 - decay)
-    h = step / fine
-    angle, velocity, angles = 0.0, 0.0, []
-    for value in command.tolist():
-        angles.append(angle)
-        for _ in range(fine):
-            if velocity == 0.0 and abs(value) <= FRICTION:
-                continue
+def simulate_motor(
+    u, count, *, delay=0.0, friction=FRICTION, second=0.0, play=0.0, limit=math.inf, fine=20
+):
+    """Return angle, velocity and command at the samples, simulated in fine steps.
+
+    The motor sticks while the command is below the friction. The command is an array, or a function
+    of the number of the sample and the angle there; a delay and a second lag in s, a play in rad
+    and a limit of the command may be added.
+    """
+    h = 1 / RATE / fine
+    late = round(delay / h)
+    decay = math.exp(-h / TIME_CONSTANT)
+    angle = velocity = behind = lagged = 0.0
+    angles, velocities, sent, queue = [], [], [], deque()
+    for i in range(count * fine):
+        if i % fine == 0:
+            angles.append(behind if play else angle)
+            velocities.append(lagged if second else velocity)
+            sent.append(float(u(i // fine, angles[-1]) if callable(u) else u[i // fine]))
+            if not queue:
+                queue.extend([sent[0]] * late)
+        queue.append(min(max(sent[-1], -limit), limit))
+        value = queue.popleft()
+        before = lagged if second else velocity
+        if not (velocity == 0.0 and abs(value) <= friction):
             direction = math.copysign(1.0, velocity or value)
-            target = GAIN * (value - FRICTION * direction)
-            angle += target * h + (velocity - target) * travel
+            target = GAIN * (value - friction * direction)
             new = target + (velocity - target) * decay
             if new * velocity < 0:
-                # What is left of the step, in the other direction or stuck.
-                rest = new / (new - velocity)
-                target = GAIN * (value + FRICTION * direction)
-                new = target * rest * h / TIME_CONSTANT if abs(value) > FRICTION else 0.0
+                # The motor stops within this step; what is left of it, it sticks or turns.
+                part = velocity / (velocity - new)
+                angle += h * part * velocity / 2
+                turned = GAIN * (value + friction * direction)
+                new = turned * (1 - part) * h / TIME_CONSTANT if abs(value) > friction else 0.0
+                angle -= h * (before + new) / 2 - h * (1 - part) * new / 2
             velocity = new
-    return np.array(angles)
+        if second:
+            lagged += (velocity - lagged) * -math.expm1(-h / second)
+        angle += h * (before + (lagged if second else velocity)) / 2
+        behind = min(max(behind, angle - play / 2), angle + play / 2)
+    return np.array(angles), np.array(velocities), np.array(sent)
 
 
 def samples() -> Iterator[tuple[str, str]]:

@@ -13,11 +13,11 @@ from nrs_design.identification.statistics import (
     ljung_box,
     quotients,
     span,
+    spread_ranges,
     student_quantile,
     tolerance_factor,
     uncertainty,
 )
-from nrs_design.identification.tissue.ranges import spread_ranges
 
 
 # Student's table.

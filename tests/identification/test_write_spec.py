@@ -203,7 +203,7 @@ def test_a_dead_time_is_no_age_of_the_force(late):
     assert late.doubts == ()
     assert all("narrower" in doubt for doubt in written.actuator.doubts)
     first, last = (end.exact for end in written.actuator.dead_time[:2])
-    assert float(first) <= late.late.low < late.late.high <= float(last)
+    assert float(first) <= late.clear_dead_time.low < late.clear_dead_time.high <= float(last)
     assert written.sampling == loaded.spec.sampling
 
 

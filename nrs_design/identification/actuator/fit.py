@@ -37,7 +37,7 @@ MANY_RECORDS = 5
 _FRICTION = 2
 _FEWEST_FREQUENCIES = 3
 # A log does not say when within a sample a command began.
-FROM_THE_ROW = (
+DEAD_TIME_NOTE = (
     "counted from the row that first holds a command; one that began before it, by up to a sample, "
     "is later by as much"
 )
@@ -120,7 +120,7 @@ def _regressors(record: SignalRecord, tau: float, delay: float) -> tuple[Array, 
     held, _ = motor.hold(record)
     against = replace(held, command=-np.sign(motor.lags.velocity(held, held.command)[:-1]))
     columns = [motor.forced(record, inputs, None) for inputs in (held, against)]
-    both = motor.beyond_start(record, np.column_stack([*columns, record.output]))
+    both = motor.remove_initial_state(record, np.column_stack([*columns, record.output]))
     return both[:, :2], both[:, 2]
 
 
@@ -175,11 +175,11 @@ def fit_in_time(records: Sequence[SignalRecord], start: MotorModel) -> ActuatorF
     """
 
     def errors(x: Array) -> Array:
-        motor = start.with_parameters(x)
+        motor = start.replace_parameters(x)
         return np.concatenate([motor.errors(record) for record in records])
 
     def slopes(x: Array) -> Array:
-        motor = start.with_parameters(x)
+        motor = start.replace_parameters(x)
         return np.concatenate([motor.derivatives(record) for record in records])
 
     scale = np.ones(len(start.parameters))
@@ -190,7 +190,7 @@ def fit_in_time(records: Sequence[SignalRecord], start: MotorModel) -> ActuatorF
             "the fit in the time domain does not settle",
             remedy="check the records, or give a ready frequency response",
         )
-    motor, left = start.with_parameters(x), errors(x)
+    motor, left = start.replace_parameters(x), errors(x)
     known = _uncertainty(records, slopes(x), left)
     gain, time_constant, *friction = known.estimates(x)[:-1]
     return ActuatorFit(
@@ -236,11 +236,11 @@ def fit_response(data: FrequencyResponse) -> ActuatorFit:
 
     def errors(x: Array) -> Array:
         gain, tau = np.exp(x)
-        return _stacked(np.log(data.response * (1 + 1j * data.frequency * tau) / gain))
+        return _stack_real(np.log(data.response * (1 + 1j * data.frequency * tau) / gain))
 
     def slopes(x: Array) -> Array:
         pole = 1j * data.frequency * np.exp(x[1])
-        return _stacked(np.column_stack([np.ones(len(pole), complex), -pole / (1 + pole)]))
+        return _stack_real(np.column_stack([np.ones(len(pole), complex), -pole / (1 + pole)]))
 
     start = np.array([np.log(np.abs(data.response).max()), -np.log(np.median(data.frequency))])
     x, settled = search(errors, slopes, start, np.ones(2))
@@ -255,7 +255,7 @@ def fit_response(data: FrequencyResponse) -> ActuatorFit:
     return ActuatorFit("ready frequency response", gain, time_constant, None, known)
 
 
-def _stacked(values: Complex) -> Array:
+def _stack_real(values: Complex) -> Array:
     """Write complex equations as real ones, real and imaginary parts in turn."""
     parts = np.stack([values.real, values.imag], axis=1)
     return np.asarray(parts.reshape(-1, *values.shape[1:]), float)

@@ -9,7 +9,7 @@ import numpy as np
 
 from nrs_design.errors import DataError
 from nrs_design.identification.actuator.fit import (
-    FROM_THE_ROW,
+    DEAD_TIME_NOTE,
     ActuatorFit,
     fit_in_time,
     fit_response,
@@ -18,9 +18,8 @@ from nrs_design.identification.actuator.fit import (
 )
 from nrs_design.identification.datasets.checks import doubt_step
 from nrs_design.identification.datasets.records import FrequencyResponse, SignalRecord
-from nrs_design.identification.statistics import WHITE, Estimate, span
+from nrs_design.identification.statistics import WHITE, Estimate, check_spread, span, spread_ranges
 from nrs_design.identification.tables.table import Source
-from nrs_design.identification.tissue.ranges import check_spread, spread_ranges
 from nrs_design.progress import Progress, silent
 from nrs_design.spec.plausible import doubt_size
 from nrs_design.spec.provenance import MOTOR_COVERS, Coverage
@@ -77,22 +76,22 @@ class ActuatorIdentification:
         return tuple(f"{r.name}: {r.pauses}" for r in self.records if r.pauses)
 
     @property
-    def late(self) -> Estimate | None:
+    def clear_dead_time(self) -> Estimate | None:
         """The dead time in s, where it is clearly above zero."""
-        late = self.fit.dead_time
-        return None if late is None or late.low == 0.0 else late
+        estimate = self.fit.dead_time
+        return None if estimate is None or estimate.low == 0.0 else estimate
 
     @property
     def caveats(self) -> tuple[str, ...]:
         """Doubts, and a dead time, for a spec that has no place for it."""
         if self.fit.motor is not None and self.fit.dead_time is None:
             return (*self.doubts, UNDETERMINED)
-        if self.late is None:
+        if self.clear_dead_time is None:
             return self.doubts
-        wide = self.late.outward(3)
+        wide = self.clear_dead_time.outward(3)
         return (
             *self.doubts,
-            f"the motor has a dead time of {span(wide.low, wide.high, 's')} ({FROM_THE_ROW}), "
+            f"the motor has a dead time of {span(wide.low, wide.high, 's')} ({DEAD_TIME_NOTE}), "
             "which the proof leaves out: it acts on the motion loop, so that it is no part of "
             "sampling.delay (the age of the force sample)",
         )
@@ -121,7 +120,7 @@ def identify_actuator(
     ranges: Sequence[Estimate] = fit.ranges
     if coverage != "confidence":
         progress("each record by itself")
-        ranges = _spread(records, coverage)
+        ranges = _other_ranges(records, coverage)
     return ActuatorIdentification(tuple(data), fit, doubts, tuple(ranges), coverage)
 
 
@@ -147,18 +146,18 @@ def _check(
         )
 
 
-def _spread(records: Sequence[SignalRecord], coverage: Coverage) -> tuple[Estimate, ...]:
+def _other_ranges(records: Sequence[SignalRecord], coverage: Coverage) -> tuple[Estimate, ...]:
     """Return ranges for other records, from one fit to each file."""
     wholes: dict[str, list[SignalRecord]] = {}
     for record in records:
         wholes.setdefault(record.source.sha256, []).append(record)
-    fits = [_alone(parts) for parts in wholes.values()]
+    fits = [_fit_file(parts) for parts in wholes.values()]
     single = [(fit.gain, fit.time_constant) for fit in fits]
     logarithms = np.log([[estimate.value for estimate in row] for row in single])
     return spread_ranges(coverage, logarithms, single)
 
 
-def _alone(parts: Sequence[SignalRecord]) -> ActuatorFit:
+def _fit_file(parts: Sequence[SignalRecord]) -> ActuatorFit:
     try:
         return _fit(parts)
     except DataError as error:

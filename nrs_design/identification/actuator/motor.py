@@ -9,15 +9,15 @@ from typing import Self
 import numpy as np
 
 from nrs_design.identification.datasets.records import SignalRecord
-from nrs_design.identification.held import Held, Lags
-from nrs_design.identification.numeric import Array, beyond
+from nrs_design.identification.held import HeldCommand, Lags
+from nrs_design.identification.numeric import Array, reject
 
 # Difference in a logarithm; that of the dead time, in samples, is larger by this factor.
 _DIFFERENCE = 1e-5
 _DELAY_DIFFERENCE = 100.0
 
 
-def friction_shape(held: Held, gain: float, tau: float, friction: float) -> Array:
+def friction_shape(held: HeldCommand, gain: float, tau: float, friction: float) -> Array:
     """Return friction over its largest value, the mean over each interval, shape (m - 1,).
 
     It is 1 or -1 against the motion, from rest on. Where the velocity reaches zero while the
@@ -80,7 +80,7 @@ class MotorModel:
         positive = (self.gain, self.time_constant, self.friction)
         return np.array([*(np.log(p) for p in positive if p is not None), self.delay])
 
-    def with_parameters(self, x: Array) -> Self:
+    def replace_parameters(self, x: Array) -> Self:
         """Return the same kind of motor with other parameters."""
         gain, tau, *friction = np.exp(x[:-1]).tolist()
         return replace(
@@ -91,14 +91,14 @@ class MotorModel:
             delay=float(x[-1]),
         )
 
-    def hold(self, record: SignalRecord) -> tuple[Held, Array | None]:
+    def hold(self, record: SignalRecord) -> tuple[HeldCommand, Array | None]:
         """Return the command of a record as it acts, and the shape of the friction."""
-        held = Held.of(record.time, record.command, self.delay)
+        held = HeldCommand.of(record.time, record.command, self.delay)
         if self.friction is None:
             return held, None
         return held, friction_shape(held, self.gain, self.time_constant, self.friction)
 
-    def forced(self, record: SignalRecord, held: Held, shape: Array | None) -> Array:
+    def forced(self, record: SignalRecord, held: HeldCommand, shape: Array | None) -> Array:
         """Return the output from rest at the samples of a record, shape (n,)."""
         friction = 0.0 if shape is None or self.friction is None else self.friction * shape
         inputs = self.gain * (held.command - friction)
@@ -115,7 +115,9 @@ class MotorModel:
 
     def errors(self, record: SignalRecord) -> Array:
         """Return measured less fitted output, shape (n,)."""
-        return self.beyond_start(record, record.output - self.forced(record, *self.hold(record)))
+        return self.remove_initial_state(
+            record, record.output - self.forced(record, *self.hold(record))
+        )
 
     def derivatives(self, record: SignalRecord) -> Array:
         """Return the derivatives of the fitted output by the parameters, shape (n, p).
@@ -128,14 +130,14 @@ class MotorModel:
         sizes[-1] *= _DELAY_DIFFERENCE * record.step
 
         def output(y: Array) -> Array:
-            motor = self.with_parameters(y)
+            motor = self.replace_parameters(y)
             return motor.forced(record, *motor.hold(record))
 
         steps = np.diag(sizes)
         columns = [(output(x + h) - output(x - h)) / (2 * h.sum()) for h in steps]
-        return self.beyond_start(record, np.column_stack(columns))
+        return self.remove_initial_state(record, np.column_stack(columns))
 
-    def beyond_start(self, record: SignalRecord, values: Array) -> Array:
+    def remove_initial_state(self, record: SignalRecord, values: Array) -> Array:
         """Return what no initial state explains."""
         free, _ = np.linalg.qr(self.free(record))
-        return beyond(free, values)
+        return reject(free, values)

@@ -30,10 +30,10 @@ from nrs_design.models.contact import LAWS
 if TYPE_CHECKING:
     from nrs_design.spec import LoadedSpec
 
-Columns = Mapping[str, str]  # From standard names to names in the file
+Columns = Mapping[str, str]  # From names in the file to standard names
 
 # Standard names of the columns of a delay.
-_OF_DELAY = {"command": "input_any", "measured": "output_any"}
+_DELAY_COLUMNS = {"command": "input_any", "measured": "output_any"}
 
 
 def identify_records(
@@ -44,11 +44,11 @@ def identify_records(
 ) -> Identification:
     """Identify what records are of; see `nrs_design.api.identify`."""
     _check(files, kind, law)
-    named_ours = {_OF_DELAY.get(k, k) if kind == "delay" else k: v for k, v in columns.items()}
+    named_ours = {_DELAY_COLUMNS.get(k, k) if kind == "delay" else k: v for k, v in columns.items()}
     mapping = parse_mapping([f"{ours}={theirs}" for ours, theirs in named_ours.items()])
     data = [Path(file) if isinstance(file, str | Path) else file for file in files]
     view = _KINDS[kind](data, mapping, law)
-    found = view.found
+    result = view.result
     return Identification(
         kind=kind,
         chosen=view.chosen,
@@ -57,11 +57,11 @@ def identify_records(
             name: FittedRange(estimate.value, estimate.low, estimate.high, unit)
             for name, (estimate, unit) in view.ranges.items()
         },
-        files=tuple(source.path for source in found.sources),
-        synthetic=is_synthetic(found.sources),
-        remarks=tuple(found.remarks),
-        doubts=tuple(found.doubts),
-        caveats=tuple(found.caveats),
+        files=tuple(source.path for source in result.sources),
+        synthetic=is_synthetic(result.sources),
+        remarks=tuple(result.remarks),
+        doubts=tuple(result.doubts),
+        caveats=tuple(result.caveats),
         facts=view.document,
         page=view.page,
     )
@@ -109,21 +109,21 @@ def judge_log(log: Path, loaded: LoadedSpec, certificate: Path | None) -> Audit:
     """Judge whether a run stayed inside what was proved; see `nrs_design.api.Study.audit`."""
     check_turning(loaded.spec, loaded.path)
     reason, losable = proof_of(certificate, loaded)
-    found = judge_run(read_run(log), read_run_bounds(loaded), proved=not reason, losable=losable)
-    checks = {id(check): _told(check) for check in found.checks}
+    result = judge_run(read_run(log), read_run_bounds(loaded), proved=not reason, losable=losable)
+    checks = {id(check): _audit_check(check) for check in result.checks}
     return Audit(
         name=loaded.spec.name,
-        verdict=found.verdict,
+        verdict=result.verdict,
         unproved_because=reason,
         checks=tuple(checks.values()),
-        first=None if found.first is None else checks[id(found.first)],
-        synthetic=found.log.source.synthetic,
-        facts=run_facts(found, loaded, certificate, reason),
-        page=partial(run_report, found, loaded.spec.name, reason),
+        first=None if result.first is None else checks[id(result.first)],
+        synthetic=result.log.source.synthetic,
+        facts=run_facts(result, loaded, certificate, reason),
+        page=partial(run_report, result, loaded.spec.name, reason),
     )
 
 
-def _told(check: Check) -> AuditCheck:
+def _audit_check(check: Check) -> AuditCheck:
     first = check.first
     when, what = (None, "") if first is None else (first.time, first.words)
     status = str(check.status)

@@ -74,44 +74,44 @@ def audit(
     reason, losable = proof_of(certificate, loaded)
     (run,) = read_all([log], read_run, columns or [])
     with progress("judging"):
-        found = judge_run(run, bounds, proved=not reason, losable=losable, command_limit=limit)
+        judgement = judge_run(run, bounds, proved=not reason, losable=losable, command_limit=limit)
     return outputs.deliver(
         Answer(
-            lambda: run_facts(found, loaded, certificate, reason),
-            lambda: _print(found, loaded.spec.name, reason),
-            _EXIT[found.verdict],
+            lambda: run_facts(judgement, loaded, certificate, reason),
+            lambda: _print(judgement, loaded.spec.name, reason),
+            _EXIT[judgement.verdict],
         ),
-        page=lambda: run_report(found, loaded.spec.name, reason),
+        page=lambda: run_report(judgement, loaded.spec.name, reason),
     )
 
 
 # Assumption behind each check that is not modelled.
-_GRANTED = {
+_ASSUMPTIONS = {
     "delay": "the motion is no later behind its command than the spec says",
     "jitter": "the steps of time are even",
 }
 
 
-def _print(found: RunJudgement, name: str, reason: str) -> None:
+def _print(judgement: RunJudgement, name: str, reason: str) -> None:
     from nrs_design.identification.reporting.running import CLAIMS, first_violation, unproved_text
     from nrs_design.identification.reporting.view import SYNTHETIC
 
-    if found.log.source.synthetic:
+    if judgement.log.source.synthetic:
         say(SYNTHETIC)
     if reason:
         say(unproved_text(reason))
-    say(f"{name}: {found.verdict.upper()}: {CLAIMS[found.verdict]}")
-    if first := first_violation(found):
+    say(f"{name}: {judgement.verdict.upper()}: {CLAIMS[judgement.verdict]}")
+    if first := first_violation(judgement):
         say(first)
-    for c in found.checks:
+    for c in judgement.checks:
         allowed = f" (allowed: {c.allowed})" if c.allowed else ""
         say(f"{c.name}: {c.status}: {c.measured}{allowed}")
         if c.status == "not modelled":
-            who = found.bounds.source
+            who = judgement.bounds.source
             comma = "," if "," in who else ""
-            detail(f"not covered: {who}{comma} takes for granted that {_GRANTED[c.name]}")
-    for basis in dict.fromkeys(c.basis for c in found.checks if c.basis):
-        of = ", ".join(c.name for c in found.checks if c.basis == basis)
+            detail(f"not covered: {who}{comma} takes for granted that {_ASSUMPTIONS[c.name]}")
+    for basis in dict.fromkeys(c.basis for c in judgement.checks if c.basis):
+        of = ", ".join(c.name for c in judgement.checks if c.basis == basis)
         detail(f"bound of {of}: {basis}")
-    if found.hint:
-        say(found.hint)
+    if judgement.hint:
+        say(judgement.hint)

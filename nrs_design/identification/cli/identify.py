@@ -80,16 +80,16 @@ def _deliver(
     outputs: Destinations, view: FindingView, merge: Callable[[LoadedSpec], str]
 ) -> Answer:
     """Print and write a result; with doubts, the answer is inconclusive."""
-    found = view.found
-    code = exit_codes.INCONCLUSIVE if found.doubts else exit_codes.PROVED
+    result = view.result
+    code = exit_codes.INCONCLUSIVE if result.doubts else exit_codes.PROVED
     answer = Answer(lambda: view.document, partial(_show, view), code)
-    return outputs.deliver(answer, view.page, merge, found.doubts, found.caveats)
+    return outputs.deliver(answer, view.page, merge, result.doubts, result.caveats)
 
 
 def _show(view: FindingView) -> None:
     from nrs_design.identification.reporting.view import SYNTHETIC, is_synthetic
 
-    if is_synthetic(view.found.sources):
+    if is_synthetic(view.result.sources):
         say(SYNTHETIC)
     if wants_details():
         # The table of the page, without its caption.
@@ -98,9 +98,9 @@ def _show(view: FindingView) -> None:
         say(line)
     for line in view.details:
         detail(line)
-    for remark in view.found.remarks:
+    for remark in view.result.remarks:
         say(remark)
-    for doubt in view.found.doubts:
+    for doubt in view.result.doubts:
         say(f"doubt: {doubt}")
 
 
@@ -178,19 +178,13 @@ def tissue(
     elif environment is not None:
         raise typer.BadParameter("name a spec by --write, too", param_hint="--environment")
     with progress("fitting") as step:
-        found = identify_tissue(
-            records,
-            law,
-            preparation,
-            covers,
-            deflections,
-            progress=step,
-            declared=asked is None,
+        result = identify_tissue(
+            records, law, preparation, covers, deflections, progress=step, declared=asked is None
         )
     return _deliver(
         outputs,
-        view_tissue(found, arm),
-        lambda spec: merge_tissue(spec, found, environment, lever_arm, replace=replace),
+        view_tissue(result, arm),
+        lambda spec: merge_tissue(spec, result, environment, lever_arm, replace=replace),
     )
 
 
@@ -228,9 +222,9 @@ def actuator(
         for record in records:
             check_actuator(outputs.spec, record.unit)
     with progress("fitting") as step:
-        found = identify_actuator(records, covers, step)
-    view = view_actuator(found)
-    return _deliver(outputs, view, lambda spec: merge_actuator(spec, found, replace=narrower))
+        result = identify_actuator(records, covers, step)
+    view = view_actuator(result)
+    return _deliver(outputs, view, lambda spec: merge_actuator(spec, result, replace=narrower))
 
 
 @identify.command("delay")
@@ -288,5 +282,5 @@ def delay(
         entries += [f"input_any={command}", f"output_any={measured}"]
     (record,) = read_all([log], read_signals, entries)
     with progress("fitting"):
-        found = identify_delay(record)
-    return _deliver(outputs, view_delay(found), lambda spec: merge_sampling(spec, found, into))
+        result = identify_delay(record)
+    return _deliver(outputs, view_delay(result), lambda spec: merge_sampling(spec, result, into))

@@ -20,7 +20,7 @@ GAP = 3.0
 _FLAT_ROWS = 10
 _FLAT_MOTION = 0.05
 # Changes up to this number of units in the last place are rounding.
-_ROUNDED = 8
+_ROUNDING_UNITS = 8
 
 
 def doubt_step(step: float) -> Iterator[str]:
@@ -30,25 +30,25 @@ def doubt_step(step: float) -> Iterator[str]:
         yield f"the steps of time are {step:.3g} s: {asked} (--map names another)"
 
 
-def gaps_in(time: Array) -> Flags:
+def find_gaps(time: Array) -> Flags:
     """Tell between which of n rows others are missing, shape (n - 1,)."""
     steps = np.diff(time)
     return np.asarray(steps > GAP * np.median(steps))
 
 
-def stretches_in(time: Array) -> tuple[slice, ...]:
+def find_stretches(time: Array) -> tuple[slice, ...]:
     """Return the rows between gaps, in order; one slice for a record without gaps."""
-    return tuple(slice(a, b) for a, b in parted(gaps_in(time)))
+    return tuple(slice(a, b) for a, b in parted(find_gaps(time)))
 
 
 def long_stretches(time: Array) -> tuple[slice, ...]:
     """Return the stretches that are long enough for a fit."""
-    return tuple(rows for rows in stretches_in(time) if rows.stop - rows.start >= FEWEST_ROWS)
+    return tuple(rows for rows in find_stretches(time) if rows.stop - rows.start >= FEWEST_ROWS)
 
 
 def pauses_text(time: Array) -> str | None:
     """Say how a record is parted by pauses; None if it is not."""
-    if (count := len(stretches_in(time)) - 1) == 0:
+    if (count := len(find_stretches(time)) - 1) == 0:
         return None
     kept = long_stretches(time)
     spans = ", ".join(span(time[r.start], time[r.stop - 1], "s") for r in kept)
@@ -69,7 +69,7 @@ def check_time(table: MeasurementTable, time: Array) -> None:
         )
     check_advance(table, time)
     if not long_stretches(time):
-        row, steps = stretches_in(time)[0].stop, np.diff(time)
+        row, steps = find_stretches(time)[0].stop, np.diff(time)
         table.fail(
             f"a gap of {steps[row - 1]:.4g} s, where steps are {np.median(steps):.4g} s, and no "
             f"{FEWEST_ROWS} rows without one",
@@ -123,6 +123,6 @@ def check_saturation(table: MeasurementTable, name: str, values: Array, moving: 
 def check_varies(table: MeasurementTable, name: str, values: Array) -> None:
     """Check that a column is not constant, but for the rounding of its numbers."""
     change = float(np.ptp(values))
-    if change <= max(SMALLEST, _ROUNDED * np.finfo(float).eps * float(np.abs(values).max())):
+    if change <= max(SMALLEST, _ROUNDING_UNITS * np.finfo(float).eps * float(np.abs(values).max())):
         by = f" by more than {change:.1g}, which is rounding" if change else ""
         table.fail(f"the {name} never changes{by}", 0, "record a motion, from before it begins")

@@ -14,9 +14,9 @@ from nrs_design.identification.datasets.checks import (
     check_time,
     check_turns,
     check_varies,
+    find_stretches,
     long_stretches,
     pauses_text,
-    stretches_in,
 )
 from nrs_design.identification.numeric import Array, Complex, usual_step
 from nrs_design.identification.tables.table import Data, MeasurementTable, Source, read_table
@@ -80,7 +80,7 @@ class SignalRecord:
     @cached_property
     def stretches(self) -> tuple[slice, ...]:
         """The rows between pauses of the record."""
-        return stretches_in(self.time)
+        return find_stretches(self.time)
 
     @cached_property
     def longest(self) -> slice:

@@ -11,12 +11,12 @@ from math import exp
 import numpy as np
 
 from nrs_design.identification.datasets.records import SignalRecord
-from nrs_design.identification.held import Held, Lags
-from nrs_design.identification.numeric import Array, Rows, beyond, bic, column_sizes, search
+from nrs_design.identification.held import HeldCommand, Lags
+from nrs_design.identification.numeric import Array, Rows, bic, column_sizes, reject, search
 from nrs_design.identification.statistics import Uncertainty, uncertainty
 
 # Half width, in samples, of the search for a whole number of them about the peak of correlation.
-_AROUND = 8
+_COPY_RANGE = 8
 _DIFFERENCE = 1e-4
 # Errors of this part of the power are rounding.
 EXACT = 1e-24
@@ -71,9 +71,9 @@ class Lagged(AbstractFollower):
 
 
 @lru_cache(maxsize=32)
-def _hold(record: SignalRecord, delay: float) -> Held:
+def _hold(record: SignalRecord, delay: float) -> HeldCommand:
     """Return the delayed command; several shapes are tried at each delay."""
-    return Held.of(record.time, record.command, delay)
+    return HeldCommand.of(record.time, record.command, delay)
 
 
 def _free(record: SignalRecord, lags: Lags, *, angle: bool) -> Array:
@@ -151,7 +151,7 @@ def fit_delay(
         return replace(follower, shape=tuple(x[1:].tolist())), float(x[0]) * record.step
 
     def errors(x: Array) -> Array:
-        return errors_at(record, *shaped(x), rows)
+        return fit_errors(record, *shaped(x), rows)
 
     def sensitivities(x: Array) -> Array:
         steps = _DIFFERENCE * np.eye(len(x))
@@ -172,10 +172,10 @@ def fit_held(record: SignalRecord, delay: float, rows: Rows) -> DelayFit:
     follower, near = HeldCopy(), round(delay / record.step)
 
     def key(samples: int) -> tuple[float, int]:
-        error = errors_at(record, follower, samples * record.step, rows)
+        error = fit_errors(record, follower, samples * record.step, rows)
         return float(error @ error), abs(samples - near)
 
-    best = min(range(near - _AROUND, near + _AROUND + 1), key=key)
+    best = min(range(near - _COPY_RANGE, near + _COPY_RANGE + 1), key=key)
     before, at, after = (follower.columns(record, (best + k) * record.step) for k in (-1, 0, 1))
     fitted, solution = _solve(record, at, rows)
     slope = (after - before)[rows] @ solution / 2
@@ -192,8 +192,8 @@ def _solve(record: SignalRecord, columns: Array, rows: Rows) -> tuple[Array, Arr
     return columns @ solution, solution
 
 
-def errors_at(record: SignalRecord, follower: AbstractFollower, delay: float, rows: Rows) -> Array:
+def fit_errors(record: SignalRecord, follower: AbstractFollower, delay: float, rows: Rows) -> Array:
     """Return measured less fitted output, with the best gain, offset and start."""
     columns = follower.columns(record, delay)[rows]
     basis, _ = np.linalg.qr(columns / column_sizes(columns))
-    return beyond(basis, record.output[rows])
+    return reject(basis, record.output[rows])

@@ -12,7 +12,12 @@ from itertools import pairwise
 import numpy as np
 
 from nrs_design.errors import DataError
-from nrs_design.identification.datasets.checks import FEWEST_ROWS, doubt_step, gaps_in, pauses_text
+from nrs_design.identification.datasets.checks import (
+    FEWEST_ROWS,
+    doubt_step,
+    find_gaps,
+    pauses_text,
+)
 from nrs_design.identification.datasets.records import SignalRecord
 from nrs_design.identification.delay.fit import (
     EXACT,
@@ -21,8 +26,8 @@ from nrs_design.identification.delay.fit import (
     HeldCopy,
     Lagged,
     SmoothCopy,
-    errors_at,
     fit_delay,
+    fit_errors,
     fit_held,
 )
 from nrs_design.identification.held import Lags
@@ -42,7 +47,7 @@ _LONGEST = 0.1
 # Accuracy of a search for a delay beside a lag, in samples.
 _OFF = 2e-3
 # Distance from a whole number that is rounding of a fit without noise.
-_SAME = Fraction(1, 10**6)
+_NEARLY_WHOLE = Fraction(1, 10**6)
 _PARTS = 10
 _PART_STEPS = 6
 # A model with more parameters must lower BIC by this much (very strong evidence: Kass and Raftery
@@ -58,15 +63,15 @@ _RELATED = 0.2
 _MISSED = 0.02
 _UNEXPLAINED = 0.1
 # A command with less of its power outside one frequency shows one phase only.
-_OTHER = 0.01
+_OTHER_POWER = 0.01
 # A command is smooth between its samples if a spline through every other sample misses those
 # between by less than this part of the change from sample to sample.
 _SMOOTH = 0.05
 # Half width in samples of the search for the delay of a part of the record.
-_AROUND = 50
+_PART_RANGE = 50
 # Rows before a pause that a spline across it may miss, and rows after it that the command before
 # may reach.
-_BEFORE, _AFTER = 5, 5
+_ROWS_BEFORE, _ROWS_AFTER = 5, 5
 # Grid of a first search: time constants and delays in samples, and the rows that it uses.
 _TIMES = (0.3, 1.0, 3.0, 10.0, 30.0, 100.0)
 _SHIFTS = (0.0, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0)
@@ -135,7 +140,7 @@ class DelayIdentification:
     @cached_property
     def one_frequency(self) -> bool:
         """Whether the command has one frequency, which shows one phase only."""
-        return _other_than_one_frequency(self.record) < _OTHER
+        return _part_of_other_frequencies(self.record) < _OTHER_POWER
 
     @cached_property
     def delay_range(self) -> tuple[Fraction, Fraction]:
@@ -153,15 +158,15 @@ class DelayIdentification:
         low, high = (Fraction(max(end, 0.0)) * Fraction(self.record.step) for end in ends)
         return low, high
 
-    def in_periods(self, period: Fraction) -> tuple[int, int]:
+    def periods(self, period: Fraction) -> tuple[int, int]:
         """Return `delay_range` in whole periods of a length in s, rounded outward."""
         low, high = (end / period for end in self.delay_range)
-        return math.floor(low + _SAME), math.ceil(high - _SAME)
+        return math.floor(low + _NEARLY_WHOLE), math.ceil(high - _NEARLY_WHOLE)
 
     @property
     def whole_samples(self) -> tuple[int, int]:
         """`delay_range` in whole samples of the record."""
-        return self.in_periods(Fraction(self.record.step))
+        return self.periods(Fraction(self.record.step))
 
     @property
     def is_lag(self) -> bool:
@@ -226,7 +231,7 @@ def identify_delay(record: SignalRecord) -> DelayIdentification:
             path=record.source.path,
             remedy="name other columns with --command and --measured, or record a livelier motion",
         )
-    rows = _reached(record, peak[0])
+    rows = _fitted_rows(record, peak[0])
     if is_smooth(record):
         copy = fit_delay(record, SmoothCopy(), peak[0], rows)
     else:
@@ -292,14 +297,14 @@ def is_smooth(record: SignalRecord) -> bool:
     return missed <= _SMOOTH**2 * moved
 
 
-def _reached(record: SignalRecord, lag: float) -> Rows:
+def _fitted_rows(record: SignalRecord, lag: float) -> Rows:
     """Return the rows that no command from before the record, or a pause of it, can reach."""
-    skipped = max(lag, 0.0) + _AFTER * record.step
+    skipped = max(lag, 0.0) + _ROWS_AFTER * record.step
     kept = []
     for number, rows in enumerate(record.stretches):
         time = record.time[rows]
         inside = np.flatnonzero(time >= time[0] + skipped) + rows.start
-        kept.append(inside if number == len(record.stretches) - 1 else inside[:-_BEFORE])
+        kept.append(inside if number == len(record.stretches) - 1 else inside[:-_ROWS_BEFORE])
     found = np.concatenate(kept)
     if len(found) < FEWEST_ROWS:
         raise DataError(
@@ -328,9 +333,9 @@ def _held_interval(fit: DelayFit, rows: Rows, confidence: float) -> Estimate:
     """
     from scipy.special import chdtri
 
-    late = round(fit.samples) + np.arange(-_AROUND, _AROUND + 1)
-    measured = fit.record.output[rows]
-    errors = [measured - fit.output(k)[rows] for k in late]
+    late = round(fit.samples) + np.arange(-_PART_RANGE, _PART_RANGE + 1)
+    measured: Array = fit.record.output[rows]
+    errors = [measured - fit.output(float(k))[rows] for k in late]
     powers = np.array([float(error @ error) for error in errors])
     best = int(np.argmin(powers))
     # Neighbours that are alike count less; and without noise, rounding decides nothing.
@@ -402,7 +407,7 @@ def _starts(
     inside = rows[rows < len(part.time)]
 
     def missed(pair: tuple[AbstractFollower, float]) -> float:
-        error = errors_at(part, *pair, inside)
+        error = fit_errors(part, *pair, inside)
         return float(error @ error)
 
     for family in families:
@@ -444,7 +449,7 @@ def _own_delay(fit: DelayFit, rows: Rows) -> tuple[float, float]:
     return own, power
 
 
-def _other_than_one_frequency(record: SignalRecord) -> float:
+def _part_of_other_frequencies(record: SignalRecord) -> float:
     """Return which part of the command's power no swing of one frequency explains."""
     from scipy.optimize import minimize_scalar
 
@@ -510,7 +515,7 @@ def _doubts(found: DelayIdentification) -> Iterator[str]:
         missed = f"{100 * fit.missed_part:.2g} %"
         yield f"the model misses {missed} of the motion, in errors that are not noise"
     steps = np.diff(record.time)
-    jitter = float(np.ptp(steps[~gaps_in(record.time)])) / record.step
+    jitter = float(np.ptp(steps[~find_gaps(record.time)])) / record.step
     if jitter > 0.1:
         yield f"the steps of time vary by {100 * jitter:.0f} %: a sample is no unit of time here"
     estimates = [part for _, part in found.parts]

@@ -6,12 +6,12 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from nrs_design.identification.actuator.fit import FROM_THE_ROW
+from nrs_design.identification.actuator.fit import DEAD_TIME_NOTE
 from nrs_design.identification.actuator.identify import ActuatorIdentification
 from nrs_design.identification.datasets.records import FrequencyResponse
 from nrs_design.identification.reporting.figures import draw_fit, draw_response
 from nrs_design.identification.reporting.view import (
-    DRAWN,
+    MAX_FIGURES,
     Facts,
     FindingView,
     estimate_numbers,
@@ -22,89 +22,89 @@ from nrs_design.identification.statistics import Estimate
 from nrs_design.reporting.document import Bullets, Illustration, Section, Table
 
 
-def view_actuator(found: ActuatorIdentification) -> FindingView:
+def view_actuator(result: ActuatorIdentification) -> FindingView:
     """Return the output of the identification of an actuator."""
-    fit, rows = found.fit, _rows(found)
+    fit, rows = result.fit, _rows(result)
     lines = [f"{name} = {value} {unit}" for name, value, unit, _ in rows]
-    if fit.dead_time and found.step:
-        samples = fit.dead_time.scaled(1 / found.step)
-        lines.append(f"dead time = {samples} samples of {found.step:.4g} s, {FROM_THE_ROW}")
+    if fit.dead_time and result.step:
+        samples = fit.dead_time.scaled(1 / result.step)
+        lines.append(f"dead time = {samples} samples of {result.step:.4g} s, {DEAD_TIME_NOTE}")
     lines += [f"range: {name} {wide} {unit}" for name, _, unit, wide in rows if wide]
-    lines.append(f"the range holds {found.covers}")
+    lines.append(f"the range holds {result.covers}")
     said = (f"{name} {value} {unit}" for name, value, unit, _ in rows)
     return FindingView(
-        found,
+        result,
         kind="actuator",
         chosen=fit.method,
         reason="",
         ranges={name.replace(" ", "_"): (wide, unit) for name, _, unit, wide in rows if wide},
-        facts=_facts(found),
+        facts=_facts(result),
         lines=lines,
         details=(f"fit to the {fit.method}",),
-        fits=_table(found),
+        fits=_table(result),
         title="Velocity model with Coulomb friction and dead time",
         claim=f"Fit to the {fit.method}: {', '.join(said)}.",
-        sections=lambda: _sections(found),
+        sections=lambda: _sections(result),
     )
 
 
-def _rows(found: ActuatorIdentification) -> list[tuple[str, Estimate | str, str, Estimate | None]]:
+def _rows(result: ActuatorIdentification) -> list[tuple[str, Estimate | str, str, Estimate | None]]:
     """Return name, estimate or reason for none, unit, and range for a spec."""
-    fit, (gain, time_constant) = found.fit, found.ranges
+    fit, (gain, time_constant) = result.fit, result.ranges
     late = "taken for zero" if fit.motor is None else "not determined"
     return [
-        ("gain", fit.gain, f"(rad/s)/{found.unit}", gain),
+        ("gain", fit.gain, f"(rad/s)/{result.unit}", gain),
         ("time constant", fit.time_constant, "s", time_constant),
-        ("friction", fit.friction or "not determined", found.unit, None),
+        ("friction", fit.friction or "not determined", result.unit, None),
         ("dead time", fit.dead_time or late, "s", None),
     ]
 
 
-def _table(found: ActuatorIdentification) -> Table:
+def _table(result: ActuatorIdentification) -> Table:
     rows = tuple(
-        (name, str(value), str(wide or ""), unit) for name, value, unit, wide in _rows(found)
+        (name, str(value), str(wide or ""), unit) for name, value, unit, wide in _rows(result)
     )
     columns = ("Parameter", "Value [95 % interval]", "Range for a spec", "Unit")
     return Table("Estimates", columns, rows)
 
 
-def _facts(found: ActuatorIdentification) -> Facts:
-    fit, late = found.fit, found.fit.dead_time
-    gain = f"gain_rad_s_{found.unit}"
+def _facts(result: ActuatorIdentification) -> Facts:
+    fit, late = result.fit, result.fit.dead_time
+    gain = f"gain_rad_s_{result.unit}"
     return {
-        "command_unit": found.unit,
-        "sampling_step_s": found.step,
+        "command_unit": result.unit,
+        "sampling_step_s": result.step,
         "method": fit.method,
         gain: estimate_numbers(fit.gain),
         "time_constant_s": estimate_numbers(fit.time_constant),
-        f"friction_{found.unit}": estimate_numbers(fit.friction) if fit.friction else None,
+        f"friction_{result.unit}": estimate_numbers(fit.friction) if fit.friction else None,
         "dead_time_s": estimate_numbers(late) if late else None,
         "whiteness_p": fit.uncertainty.whiteness,
         "range": {
-            gain: estimate_numbers(found.ranges[0]),
-            "time_constant_s": estimate_numbers(found.ranges[1]),
+            gain: estimate_numbers(result.ranges[0]),
+            "time_constant_s": estimate_numbers(result.ranges[1]),
         },
-        "range_covers": found.coverage,
-        "range_covers_words": found.covers,
+        "range_covers": result.coverage,
+        "range_covers_words": result.covers,
     }
 
 
-def _sections(found: ActuatorIdentification) -> Iterator[Section]:
-    text = f"The range holds {found.covers}. A proof over that range is about these motors."
-    yield Section("Parameters", (_table(found), Bullets("", (text,))))
-    yield Section("Measured against fitted", tuple(_figures(found)))
+def _sections(result: ActuatorIdentification) -> Iterator[Section]:
+    text = f"The range holds {result.covers}. A proof over that range is about these motors."
+    yield Section("Parameters", (_table(result), Bullets("", (text,))))
+    yield Section("Measured against fitted", tuple(_figures(result)))
 
 
-def _figures(found: ActuatorIdentification) -> Iterator[Illustration]:
-    note, motor = label_of(found.sources), found.fit.motor
-    for item in found.data:
+def _figures(result: ActuatorIdentification) -> Iterator[Illustration]:
+    note, motor = label_of(result.sources), result.fit.motor
+    for item in result.data:
         if isinstance(item, FrequencyResponse):
             w = item.frequency
             fine = np.geomspace(w.min() / 1.5, w.max() * 1.5, 200)
-            figure = draw_response(w, item.response, (fine, found.fit.response(fine)))
-            about = f"{note}Magnitude relative to 1 (rad/s)/{found.unit}."
+            figure = draw_response(w, item.response, (fine, result.fit.response(fine)))
+            about = f"{note}Magnitude relative to 1 (rad/s)/{result.unit}."
             yield Illustration("response", "Velocity over command", about, figure)
-    records = found.records[:DRAWN]
+    records = result.records[:MAX_FIGURES]
     for record, name in zip(records, figure_names([r.name for r in records]), strict=True):
         assert motor is not None
         label = "Angle [rad]" if record.is_angle else "Velocity [rad/s]"

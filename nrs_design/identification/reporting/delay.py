@@ -25,60 +25,64 @@ _MEANING = (
 )
 
 
-def view_delay(found: DelayIdentification) -> FindingView:
+def view_delay(result: DelayIdentification) -> FindingView:
     """Return the output of the identification of a delay."""
-    (sent, seen), (lag, correlation) = found.record.names, found.peak
-    model, step, whole = found.chosen.follower.name, found.record.step, span(*found.whole_samples)
+    (sent, seen), (lag, correlation) = result.record.names, result.peak
+    model, step, whole = (
+        result.chosen.follower.name,
+        result.record.step,
+        span(*result.whole_samples),
+    )
     when = f"{abs(lag):.4g} s {'later' if lag >= 0 else 'earlier'}"
     return FindingView(
-        found,
+        result,
         kind="delay",
         chosen=model,
         reason=f"from {sent} to {seen}",
-        ranges={"delay": (found.delay, "s"), "samples": (found.samples, "samples")},
-        facts=_facts(found),
+        ranges={"delay": (result.delay, "s"), "samples": (result.samples, "samples")},
+        facts=_facts(result),
         lines=(
             f"{seen} is most like {sent} {when} (correlation {correlation:.3f})",
-            f"delay = {found.samples} samples of {step:.4g} s [95 %]",
-            f"delay = {found.delay} s, beside {model}",
+            f"delay = {result.samples} samples of {step:.4g} s [95 %]",
+            f"delay = {result.delay} s, beside {model}",
             f"whole samples that hold it, and every part of the record: {whole}",
         ),
         details=(),
-        fits=_table(found),
+        fits=_table(result),
         title=f"Delay from {sent} to {seen}",
-        claim=f"{found.samples} samples of {number(step, 4)} s, beside {model}. Whole "
+        claim=f"{result.samples} samples of {number(step, 4)} s, beside {model}. Whole "
         f"samples that hold it and every part of the record: {whole}.",
-        sections=lambda: _sections(found),
+        sections=lambda: _sections(result),
         meaning=_MEANING,
     )
 
 
-def _table(found: DelayIdentification) -> Table:
-    least = min(fit.bic for fit in found.fits)
+def _table(result: DelayIdentification) -> Table:
+    least = min(fit.bic for fit in result.fits)
     rows = tuple(
         (
-            marked(fit.follower.name, chosen=fit is found.chosen),
-            number(fit.delay / found.record.step),
+            marked(fit.follower.name, chosen=fit is result.chosen),
+            number(fit.delay / result.record.step),
             number(fit.bic - least),
         )
-        for fit in found.fits
+        for fit in result.fits
     )
     return Table("Delay beside each model", ("Beside", "Samples", "BIC - least"), rows)
 
 
-def _facts(found: DelayIdentification) -> Facts:
-    record = found.record
+def _facts(result: DelayIdentification) -> Facts:
+    record = result.record
     return {
         "columns": {"command": record.names[0], "measured": record.names[1]},
         "sampling_step_s": record.step,
-        "correlation_peak": {"lag_s": found.peak[0], "correlation": found.peak[1]},
-        "chosen": found.chosen.follower.name,
-        "delay_s": estimate_numbers(found.delay),
-        "delay_samples": estimate_numbers(found.samples),
+        "correlation_peak": {"lag_s": result.peak[0], "correlation": result.peak[1]},
+        "chosen": result.chosen.follower.name,
+        "delay_s": estimate_numbers(result.delay),
+        "delay_samples": estimate_numbers(result.samples),
         "parts": [
-            {"time_s": time, "samples": estimate_numbers(part)} for time, part in found.parts
+            {"time_s": time, "samples": estimate_numbers(part)} for time, part in result.parts
         ],
-        "whole_samples": list(found.whole_samples),
+        "whole_samples": list(result.whole_samples),
         "fits": [
             {
                 "beside": fit.follower.name,
@@ -86,18 +90,18 @@ def _facts(found: DelayIdentification) -> Facts:
                 "bic": fit.bic,
                 "whiteness_p": fit.uncertainty.whiteness,
             }
-            for fit in found.fits
+            for fit in result.fits
         ],
-        "smooth_between_samples": found.smooth,
+        "smooth_between_samples": result.smooth,
     }
 
 
-def _sections(found: DelayIdentification) -> Iterator[Section]:
-    rows = tuple((number(time), str(part)) for time, part in found.parts)
+def _sections(result: DelayIdentification) -> Iterator[Section]:
+    rows = tuple((number(time), str(part)) for time, part in result.parts)
     parts = Table("Delay in parts of the record", ("Middle [s]", "Samples"), rows)
-    yield Section("Models", (_table(found), parts))
-    record = found.record
-    figure = draw_fit(record.time, record.output, found.chosen.fitted, record.names[1])
-    note = label_of(found.sources)
+    yield Section("Models", (_table(result), parts))
+    record = result.record
+    figure = draw_fit(record.time, record.output, result.chosen.fitted, record.names[1])
+    note = label_of(result.sources)
     drawn = Illustration("following", "Measured against fitted", note, figure)
     yield Section("Figures", (drawn,))

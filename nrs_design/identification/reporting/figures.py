@@ -86,9 +86,9 @@ def draw_response(frequency: Array, measured: Complex, model: tuple[Array, Compl
 
 
 @styled
-def draw_log(found: RunJudgement) -> Figure:
+def draw_log(run: RunJudgement) -> Figure:
     """Draw every column of a log over time."""
-    log, first = found.log, found.first
+    log, first = run.log, run.first
     names = [name for name in _LABELS if name in log.columns]
     figure = new_figure(0.8 + 1.15 * len(names))
     rows = figure.subplots(len(names), 1, sharex=True, squeeze=False)[:, 0]
@@ -102,7 +102,7 @@ def draw_log(found: RunJudgement) -> Figure:
             axes.set_yticks(range(len(log.labels)), log.labels)
         if name == "torque":
             for sign in (-1, 1):
-                axes.axhline(sign * found.bounds.torque, color=MUTED, linestyle=":", linewidth=1)
+                axes.axhline(sign * run.bounds.torque, color=MUTED, linestyle=":", linewidth=1)
         if first is not None and first.first is not None:
             axes.axvline(first.first.time, color=ALARM, linestyle="--", linewidth=1.2)
     rows[-1].set_xlabel("Time [s]")

@@ -25,7 +25,7 @@ CLAIMS = {
 }
 _FOOTER = "Page of nrs-design. A run is one run, not a proof."
 _PROVED = "A run inside its bounds is one run; the proof is about all of them."
-_DECLARED = (
+_NO_PROOF = (
     "A run inside its bounds is one run, and nothing is proved about others: name a certificate by "
     "--certificate."
 )
@@ -36,9 +36,9 @@ _MEANING = (
 )
 
 
-def first_violation(found: RunJudgement) -> str:
+def first_violation(run: RunJudgement) -> str:
     """Say what was left first, and when; empty for nothing."""
-    first = found.first
+    first = run.first
     if first is None or first.first is None:
         return ""
     return f"first at t = {first.first.time:.6g} s: {first.name}: {first.first.words}"
@@ -50,16 +50,16 @@ def unproved_text(reason: str) -> str:
 
 
 def run_facts(
-    found: RunJudgement, loaded: LoadedSpec, certificate: Path | None, reason: str
+    run: RunJudgement, loaded: LoadedSpec, certificate: Path | None, reason: str
 ) -> Facts:
     """Return the verdict and every check; the reason says why it is not proved, empty if it is."""
-    first = found.first
+    first = run.first
     return {
-        "verdict": found.verdict,
-        "proved": found.bounds.proved,
+        "verdict": run.verdict,
+        "proved": run.bounds.proved,
         "unproved_because": reason or None,
-        "synthetic": found.log.source.synthetic,
-        "log": source_facts([found.log.source]),
+        "synthetic": run.log.source.synthetic,
+        "log": source_facts([run.log.source]),
         "spec": {"name": loaded.spec.name, "sha256": loaded.sha256},
         "certificate": None if certificate is None else str(certificate),
         "first_violation": _violation(first) if first is not None else None,
@@ -72,10 +72,10 @@ def run_facts(
                 "basis": c.basis or None,
                 "first_violation": _violation(c),
             }
-            for c in found.checks
+            for c in run.checks
         ],
-        "judged_share_of_rows": found.judged,
-        "stiffness_not_tested_because": found.hint or None,
+        "judged_share_of_rows": run.judged,
+        "stiffness_not_tested_because": run.hint or None,
     }
 
 
@@ -85,22 +85,22 @@ def _violation(check: Check) -> Facts | None:
     return {"check": check.name, "time_s": check.first.time, "what": check.first.words}
 
 
-def run_report(found: RunJudgement, name: str, reason: str) -> Report:
+def run_report(run: RunJudgement, name: str, reason: str) -> Report:
     """Return the page of a run."""
-    sources = [found.log.source]
-    claim = first_violation(found) or CLAIMS[found.verdict]
-    limit = _PROVED if found.bounds.proved else _DECLARED
+    sources = [run.log.source]
+    claim = first_violation(run) or CLAIMS[run.verdict]
+    limit = _PROVED if run.bounds.proved else _NO_PROOF
     about = "Dashed: the first violation, if there is one."
-    figure = Illustration("run", "The log", about, draw_log(found))
+    figure = Illustration("run", "The log", about, draw_log(run))
     return Report(
         name=f"run-{name}",
         title=f"A run of {name}",
-        verdict=found.verdict,
+        verdict=run.verdict,
         claim=f"{label_of(sources)}{claim[0].upper()}{claim[1:]}.",
         remarks=(unproved_text(reason),) if reason else (),
         facts=facts_of(sources),
         sections=(
-            Section("Checks", tuple(_tables(found))),
+            Section("Checks", tuple(_tables(run))),
             Section("Figures", (figure,)),
             Section("How to read this", (Bullets("", (*_MEANING, limit)),), boxed=True),
             source_section(sources),
@@ -109,13 +109,13 @@ def run_report(found: RunJudgement, name: str, reason: str) -> Report:
     )
 
 
-def _tables(found: RunJudgement) -> Iterator[Block]:
-    judged = tuple((c.name, str(c.status), c.measured) for c in found.checks)
+def _tables(run: RunJudgement) -> Iterator[Block]:
+    judged = tuple((c.name, str(c.status), c.measured) for c in run.checks)
     yield Table("What the log shows", ("Check", "Outcome", "Measured"), judged)
-    bounds = tuple((c.name, c.allowed, c.basis) for c in found.checks if c.allowed)
+    bounds = tuple((c.name, c.allowed, c.basis) for c in run.checks if c.allowed)
     yield Table("Bounds", ("Check", "Allowed", "Which is"), bounds)
     left = tuple(
-        f"{c.name}: at {c.first.time:.6g} s, {c.first.words}." for c in found.checks if c.first
+        f"{c.name}: at {c.first.time:.6g} s, {c.first.words}." for c in run.checks if c.first
     )
     if left:
         yield Bullets("First violations", left)

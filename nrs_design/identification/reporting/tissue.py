@@ -7,7 +7,7 @@ from typing import TypeVar
 
 from nrs_design.identification.reporting.figures import draw_fit
 from nrs_design.identification.reporting.view import (
-    DRAWN,
+    MAX_FIGURES,
     Facts,
     FindingView,
     estimate_numbers,
@@ -41,33 +41,33 @@ _MEANING = (
 )
 
 
-def view_tissue(found: TissueIdentification, arm: float | None = None) -> FindingView:
+def view_tissue(result: TissueIdentification, arm: float | None = None) -> FindingView:
     """Return the output for a tissue; with a lever arm in m, the law at the pivot, too."""
-    model, law = found.chosen, found.chosen.law
-    ranges = _named(law, model.ranges, found.rotational)
-    values = _in_words(_named(law, map(str, model.ranges), found.rotational))
+    model, law = result.chosen, result.chosen.law
+    ranges = _parameter_rows(law, model.ranges, result.rotational)
+    values = _parameter_text(_parameter_rows(law, map(str, model.ranges), result.rotational))
     return FindingView(
-        found,
+        result,
         kind="tissue",
         chosen=law.name,
-        reason=found.reason,
+        reason=result.reason,
         ranges={name: (estimate, unit) for name, estimate, unit in ranges},
-        facts=_facts(found, arm),
+        facts=_facts(result, arm),
         lines=(
-            found.reason,
-            *(f"{_in_words([row])} holds {found.covers}" for row in ranges),
-            *_notes(found, arm),
+            result.reason,
+            *(f"{_parameter_text([row])} holds {result.covers}" for row in ranges),
+            *_notes(result, arm),
         ),
-        details=_used(found),
-        fits=_table(found),
-        title=f"Tissue law from {counted(len(found.records), 'record')}",
-        claim=f"{law.formula} with {values}. {found.reason}",
-        sections=lambda: _sections(found, arm),
+        details=_record_texts(result),
+        fits=_table(result),
+        title=f"Tissue law from {counted(len(result.records), 'record')}",
+        claim=f"{law.formula} with {values}. {result.reason}",
+        sections=lambda: _sections(result, arm),
         meaning=_MEANING,
     )
 
 
-def _named(
+def _parameter_rows(
     law: AbstractContactLaw, values: Iterable[T], rotational: bool
 ) -> list[tuple[str, T, str]]:
     """Return name, value and unit of each parameter of a law."""
@@ -75,7 +75,7 @@ def _named(
     return list(zip(law.parameters(), values, units, strict=True))
 
 
-def _in_words(parameters: Iterable[tuple[str, object, str]]) -> str:
+def _parameter_text(parameters: Iterable[tuple[str, object, str]]) -> str:
     """Write parameters with their values and units."""
     return ", ".join(f"{name} = {value} {unit}".rstrip() for name, value, unit in parameters)
 
@@ -85,84 +85,86 @@ def _units(law: AbstractContactLaw, rotational: bool) -> tuple[str, ...]:
     return tuple(unit.replace("*", " ") for unit in law.units(rotational=rotational))
 
 
-def _notes(found: TissueIdentification, arm: float | None) -> Iterator[str]:
+def _notes(result: TissueIdentification, arm: float | None) -> Iterator[str]:
     """Yield the tangent, and the law at the pivot, in words."""
-    law, about = found.chosen.law, found.tangent
-    if about is not None:
-        length = "rad" if found.rotational else "m"
-        values = _in_words(_named(about.law, about.ranges, found.rotational))
-        yield f"small motions about {span(about.low, about.high, length, 5)}: {values}"
-        *power, exponent = about.power
-        values = _in_words([*_named(about.law, power, found.rotational), ("phi", exponent, "")])
-        yield f"the law itself, by its tangent at {about.about:.5g} {length}: {values}"
+    law, tangent = result.chosen.law, result.tangent
+    if tangent is not None:
+        length = "rad" if result.rotational else "m"
+        values = _parameter_text(_parameter_rows(tangent.law, tangent.ranges, result.rotational))
+        yield f"small motions about {span(tangent.low, tangent.high, length, 5)}: {values}"
+        *power, exponent = tangent.power
+        values = _parameter_text(
+            [*_parameter_rows(tangent.law, power, result.rotational), ("phi", exponent, "")]
+        )
+        yield f"the law itself, by its tangent at {tangent.about:.5g} {length}: {values}"
     if arm is not None:
         turned = [f"{value:.6g}" for value in law.at_pivot(arm).values]
-        yield f"at the pivot: {_in_words(_named(law, turned, True))}"
+        yield f"at the pivot: {_parameter_text(_parameter_rows(law, turned, True))}"
 
 
-def _used(found: TissueIdentification) -> tuple[str, ...]:
+def _record_texts(result: TissueIdentification) -> tuple[str, ...]:
     """Return the used samples and the offsets of each record, in words."""
     return tuple(
         "; ".join(
             (
                 f"{fit.record.name}: {int(fit.trial.used.sum())} of "
                 f"{counted(len(fit.record.force), 'sample')} used",
-                *(offset.text(rotational=found.rotational) for offset in fit.offsets),
+                *(offset.text(rotational=result.rotational) for offset in fit.offsets),
                 *fit.trial.remarks,
             )
         )
-        for fit in found.chosen.fits
+        for fit in result.chosen.fits
     )
 
 
-def _table(found: TissueIdentification) -> Table:
+def _table(result: TissueIdentification) -> Table:
     """Return how well each law describes the records."""
-    records = [record.name for record in found.records]
-    least = min(model.bic for model in found.models)
+    records = [record.name for record in result.records]
+    least = min(model.bic for model in result.models)
     rows = tuple(
         (
-            marked(model.law.name, chosen=model is found.chosen),
+            marked(model.law.name, chosen=model is result.chosen),
             *(number(fit.rmse, 3) for fit in model.fits),
             number(model.bic - least),
             f"{min(fit.uncertainty.whiteness for fit in model.fits):.2g}",
             str(len(model.doubts)),
         )
-        for model in found.models
+        for model in result.models
     )
-    unit = "N m" if found.rotational else "N"
+    unit = "N m" if result.rotational else "N"
     columns = ("Law", *records, "BIC - least", "White p", "Doubts")
     return Table(f"RMSE [{unit}] in each record, and criteria", columns, rows)
 
 
-def _facts(found: TissueIdentification, arm: float | None) -> Facts:
-    law, about = found.chosen.law, found.tangent
+def _facts(result: TissueIdentification, arm: float | None) -> Facts:
+    law, tangent = result.chosen.law, result.tangent
     turned = None if arm is None else law.at_pivot(arm).values
     return {
         "chosen": law.name,
-        "reason": found.reason,
-        "ranges": _numbers(law, found.chosen.ranges, found.rotational),
-        "tangent": None if about is None else _tangent(about, found.rotational),
-        "range_covers": found.chosen.coverage,
-        "range_covers_words": found.covers,
+        "reason": result.reason,
+        "ranges": _numbers(law, result.chosen.ranges, result.rotational),
+        "tangent": None if tangent is None else _tangent(tangent, result.rotational),
+        "range_covers": result.chosen.coverage,
+        "range_covers_words": result.covers,
         "at_pivot": turned and dict(zip(law.parameters(), turned, strict=True)),
-        "models": [_model(model, found.rotational) for model in found.models],
+        "models": [_model(model, result.rotational) for model in result.models],
     }
 
 
 def _numbers(law: AbstractContactLaw, estimates: Iterable[Estimate], rotational: bool) -> Facts:
     return {
         name: estimate_numbers(estimate) | {"unit": unit}
-        for name, estimate, unit in _named(law, estimates, rotational)
+        for name, estimate, unit in _parameter_rows(law, estimates, rotational)
     }
 
 
-def _tangent(about: Tangent, rotational: bool) -> Facts:
-    *power, exponent = about.power
-    law = _numbers(about.law, power, rotational) | {"phi": estimate_numbers(exponent)}
+def _tangent(tangent: Tangent, rotational: bool) -> Facts:
+    *power, exponent = tangent.power
+    law = _numbers(tangent.law, power, rotational) | {"phi": estimate_numbers(exponent)}
     return {
-        "preload": [about.low, about.high],
-        "ranges": _numbers(about.law, about.ranges, rotational),
-        "about": about.about,
+        "preload": [tangent.low, tangent.high],
+        "ranges": _numbers(tangent.law, tangent.ranges, rotational),
+        "about": tangent.about,
         "law": law,
     }
 
@@ -198,48 +200,50 @@ def _record(fit: RecordFit, rotational: bool) -> Facts:
     }
 
 
-def _sections(found: TissueIdentification, arm: float | None) -> Iterator[Section]:
-    used = Bullets("Offsets are with 95 % intervals", _used(found))
+def _sections(result: TissueIdentification, arm: float | None) -> Iterator[Section]:
+    used = Bullets("Offsets are with 95 % intervals", _record_texts(result))
     yield Section("What of the records is used", (used,))
-    yield Section("Comparison of laws", (_table(found), *_doubts(found)))
-    yield Section("Parameters of the chosen law", tuple(_parameters(found, arm)))
-    yield Section("Measured against fitted", tuple(_figures(found)))
+    yield Section("Comparison of laws", (_table(result), *_doubts(result)))
+    yield Section("Parameters of the chosen law", tuple(_parameters(result, arm)))
+    yield Section("Measured against fitted", tuple(_figures(result)))
 
 
-def _doubts(found: TissueIdentification) -> Iterator[Block]:
+def _doubts(result: TissueIdentification) -> Iterator[Block]:
     doubts = tuple(
-        f"{model.law.name}: {shortened(model.doubts, 4)}." for model in found.models if model.doubts
+        f"{model.law.name}: {shortened(model.doubts, 4)}."
+        for model in result.models
+        if model.doubts
     )
     if doubts:
         yield Bullets("Doubts: what the records do not determine", doubts)
 
 
-def _parameters(found: TissueIdentification, arm: float | None) -> Iterator[Block]:
-    model, law = found.chosen, found.chosen.law
-    units = _units(law, found.rotational)
+def _parameters(result: TissueIdentification, arm: float | None) -> Iterator[Block]:
+    model, law = result.chosen, result.chosen.law
+    units = _units(law, result.rotational)
     names = (f"{n} [{u or '1'}]" for n, u in zip(law.parameters(), units, strict=True))
     rows = (
         *((fit.record.name, *map(str, fit.estimates)) for fit in model.fits),
         ("pooled", *map(str, model.estimates)),
-        (f"range: {found.covers}", *map(str, model.ranges)),
+        (f"range: {result.covers}", *map(str, model.ranges)),
     )
     yield Table("Estimates [95 % interval]", ("Record", *names), rows)
-    notes = [f"{note[0].upper()}{note[1:].rstrip('.')}." for note in _notes(found, arm)]
+    notes = [f"{note[0].upper()}{note[1:].rstrip('.')}." for note in _notes(result, arm)]
     if law.relaxation_time is not None:
         notes.append(f"The force relaxes in {number(law.relaxation_time)} s at rest.")
     if notes:
         yield Bullets("", tuple(notes))
 
 
-def _figures(found: TissueIdentification) -> Iterator[Illustration]:
-    fits = found.chosen.fits[:DRAWN]
+def _figures(result: TissueIdentification) -> Iterator[Illustration]:
+    fits = result.chosen.fits[:MAX_FIGURES]
     for fit, name in zip(fits, figure_names([fit.record.name for fit in fits]), strict=True):
         trial = fit.trial
-        label = "Torque [N m]" if found.rotational else "Force [N]"
+        label = "Torque [N m]" if result.rotational else "Force [N]"
         yield Illustration(
             f"fit-{name}",
             fit.record.name,
-            f"{label_of(found.sources)}Fit to this record alone: RMSE {number(fit.rmse)}, "
+            f"{label_of(result.sources)}Fit to this record alone: RMSE {number(fit.rmse)}, "
             f"whiteness p = {fit.uncertainty.whiteness:.2g}.",
             draw_fit(trial.motion.time, trial.force, fit.fitted, label, trial.used),
         )

@@ -34,7 +34,7 @@ Facts = dict[str, Any]
 
 SYNTHETIC = "SYNTHETIC data: made by a simulation, not measured."
 # Records of which figures are drawn.
-DRAWN = 6
+MAX_FIGURES = 6
 _FOOTER = "Page of nrs-design. An identification is an estimate, not a proof."
 _FILES = "Data files"
 
@@ -43,7 +43,7 @@ _FILES = "Data files"
 class FindingView:
     """A finding in words and numbers."""
 
-    found: Finding
+    result: Finding
     kind: str  # ``tissue``, ``actuator`` or ``delay``
     chosen: str  # Law, method or model
     reason: str  # Reason of the choice, or the columns
@@ -60,46 +60,46 @@ class FindingView:
     @property
     def document(self) -> Facts:
         """The facts for JSON."""
-        found = self.found
+        result = self.result
         return {
-            "synthetic": is_synthetic(found.sources),
-            "records": source_facts(found.sources),
+            "synthetic": is_synthetic(result.sources),
+            "records": source_facts(result.sources),
             **self.facts,
-            "remarks": list(found.remarks),
-            "doubts": list(found.doubts),
-            "caveats": list(found.caveats),
+            "remarks": list(result.remarks),
+            "doubts": list(result.doubts),
+            "caveats": list(result.caveats),
         }
 
     def page(self) -> Report:
         """Return the page; the claim begins with what the data are."""
-        found = self.found
+        result = self.result
         read = Section("How to read this", (Bullets("", self.meaning),), boxed=True)
         return Report(
             name=f"{self.kind}-{self.chosen}" if self.kind == "tissue" else self.kind,
             title=self.title,
             verdict="identified",
-            claim=f"{label_of(found.sources)}{self.claim}",
+            claim=f"{label_of(result.sources)}{self.claim}",
             remarks=(
-                *(f"Remark: {remark}." for remark in found.remarks),
-                *(f"Doubt: {caveat}." for caveat in found.caveats),
+                *(f"Remark: {remark}." for remark in result.remarks),
+                *(f"Doubt: {caveat}." for caveat in result.caveats),
             ),
-            lights=_lights(found),
-            facts=facts_of(found.sources),
+            lights=_lights(result),
+            facts=facts_of(result.sources),
             sections=(
                 *self.sections(),
                 *([read] if self.meaning else ()),
-                source_section(found.sources),
+                source_section(result.sources),
             ),
             footer=_FOOTER,
         )
 
 
-def _lights(found: Finding) -> tuple[Light, Light]:
+def _lights(result: Finding) -> tuple[Light, Light]:
     data = Light("Data", State.GOOD, "measured", _FILES)
-    if is_synthetic(found.sources):
+    if is_synthetic(result.sources):
         data = Light("Data", State.DOUBTFUL, "SYNTHETIC, made by a simulation", _FILES)
-    if found.caveats:
-        return data, Light("Doubts", State.DOUBTFUL, counted(len(found.caveats), "doubt"))
+    if result.caveats:
+        return data, Light("Doubts", State.DOUBTFUL, counted(len(result.caveats), "doubt"))
     return data, Light("Doubts", State.GOOD, "none")
 
 

@@ -49,16 +49,17 @@ class Check:
     first: Violation | None = None  # The first time it was left
 
     @classmethod
-    def open(cls, name: str, why: str, allowed: str = "", basis: str = "") -> Self:
+    def open(cls, name: str, reason: str, allowed: str = "", basis: str = "") -> Self:
         """Return a check that is not judged."""
-        return cls(name, BoundStatus.NOT_JUDGED, why, allowed, basis)
+        return cls(name, BoundStatus.NOT_JUDGED, reason, allowed, basis)
 
 
 @dataclass(frozen=True, slots=True)
 class RunBounds:
     """What a run may do."""
 
-    stays: Mapping[str, tuple[float, float]]  # Shortest and longest time in each controller, in s
+    # Shortest and longest time in each controller, in s.
+    dwell_times: Mapping[str, tuple[float, float]]
     transitions: frozenset[tuple[str, str]] | None  # Allowed switches; None allows all
     names_contacts: bool  # Whether rules name contacts, which no log shows
     torque: float  # Largest torque in N m
@@ -80,7 +81,7 @@ class RunBounds:
     sector: Sector | str = ""
     oldest: float = 0.0  # How old a torque may be in its row, in s
     # Time from a sample to its command, in words; empty for none.
-    late: str = ""
+    latency: str = ""
     proved: bool = False  # Whether a valid certificate proves the spec
 
     @property
@@ -89,7 +90,7 @@ class RunBounds:
         return "the proof" if self.proved else "the spec, which is not proved"
 
     @property
-    def granted(self) -> str:
+    def assumed_by(self) -> str:
         """The basis of what no check shows."""
         return f"taken for granted by {self.source}"
 
@@ -155,7 +156,7 @@ def bounds_of_spec(spec: InteractionDesignSpec) -> RunBounds:
     transitions = rules.transitions
     margin = spec.goals.min_delay_margin if spec.goals else None
     return RunBounds(
-        stays={name: _stay(rules, name) for name in spec.controllers},
+        dwell_times={name: _stay(rules, name) for name in spec.controllers},
         transitions=None if transitions is None else frozenset(transitions),
         names_contacts=spec.switching.names_contacts,
         torque=spec.limits.torque.si,
@@ -172,11 +173,11 @@ def bounds_of_spec(spec: InteractionDesignSpec) -> RunBounds:
         saturates=None if spec.limits.command is None else spec.limits.command.si,
         sector=sector_of(spec),
         oldest=0.0 if spec.sampling is None else float(spec.sampling.oldest),
-        late=_late(spec),
+        latency=_latency_text(spec),
     )
 
 
-def _late(spec: InteractionDesignSpec) -> str:
+def _latency_text(spec: InteractionDesignSpec) -> str:
     if spec.late_at is None:
         return ""
     first, last = (f"{float(end):g} s" for end in spec.late)

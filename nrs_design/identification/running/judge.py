@@ -65,7 +65,7 @@ def judge_run(
     of another kind than the spec's is a `DataError`.
     """
     if bounds.command == "rad/s":
-        log = log.in_radians()
+        log = log.convert_to_radians()
     if log.command_unit not in ("", bounds.command):
         column = "command_" + bounds.command.replace("/", "_").replace("*", "")
         raise DataError(
@@ -86,7 +86,7 @@ def judge_run(
         judge_saturation(log, bounds, bounds.saturates if command_limit is None else command_limit),
         judge_force(log, bounds),
         *(
-            Check.open(f"preload of {name}", _NO_SURFACE, allowed, bounds.granted)
+            Check.open(f"preload of {name}", _NO_SURFACE, allowed, bounds.assumed_by)
             for name, allowed in bounds.preloads.items()
         ),
     )

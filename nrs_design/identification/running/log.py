@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from nrs_design.errors import DataError
-from nrs_design.identification.datasets.checks import FEWEST_ROWS, check_advance, gaps_in
+from nrs_design.identification.datasets.checks import FEWEST_ROWS, check_advance, find_gaps
 from nrs_design.identification.numeric import Array, Flags, Rows, usual_step
 from nrs_design.identification.tables.table import Data, Source, read_table
 
@@ -35,14 +35,14 @@ class RunLog:
     @property
     def gaps(self) -> Flags:
         """Between which rows others are missing, shape (n - 1,)."""
-        return gaps_in(self.time)
+        return find_gaps(self.time)
 
     @property
     def modes(self) -> Rows | None:
         """Index of the label in force at every row, or None."""
         return self.columns["mode"].astype(np.int64) if "mode" in self.columns else None
 
-    def in_radians(self) -> RunLog:
+    def convert_to_radians(self) -> RunLog:
         """Return the log with a command that is a velocity in rad/s, as a robot takes it."""
         if self.command_unit != "rpm":
             return self

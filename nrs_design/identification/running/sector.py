@@ -17,13 +17,13 @@ from nrs_design.identification.running.log import RunLog
 from nrs_design.identification.statistics import span
 
 # Relative rounding error of an angle, and of a number of the size of the noise.
-_ROUNDED = 2.0**-48
+_ROUNDING = 2.0**-48
 # Rows further apart than this number of periods leave samples out.
-_SAME = 1.5
+_LONGEST_STEP = 1.5
 # Standard deviations that bound normal noise over an hour of samples, nearly always.
 _SCATTERS = 6.0
 # Part of a row by which an age may exceed a whole number of rows.
-_EVEN = 0.05
+_AGE_TOLERANCE = 0.05
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -56,10 +56,10 @@ def judge_sector(log: RunLog, bounds: RunBounds) -> tuple[tuple[Check, ...], flo
     basis = "proved range" if bounds.proved else "range of the spec, not proved"
     allowed = span(float(sector.low), float(sector.high), "N m/rad", 5)
     every = bounds.period or bounds.oldest or inf
-    if (bounds.oldest or sector.surface != "fixed") and log.step > _SAME * every:
+    if (bounds.oldest or sector.surface != "fixed") and log.step > _LONGEST_STEP * every:
         words = "rows are missing that the age of a torque, or a contact, is told by: log all"
         return (Check.open("stiffness", words, allowed, basis),), 0.0
-    rows = _rows(log, columns, sector, ceil(bounds.oldest / log.step - _EVEN))
+    rows = _rows(log, columns, sector, ceil(bounds.oldest / log.step - _AGE_TOLERANCE))
     certain = rows.least > 0
     first, judged = inf, np.zeros(len(log.time), dtype=np.bool_)
     for begin, end in _contacts(log, certain, sector):
@@ -109,13 +109,13 @@ def _rows(log: RunLog, columns: tuple[Array, Array], sector: Sector, old: int) -
     noise, error = float(sector.torque_noise), float(sector.angle_noise)
     low, high = float(sector.low), float(sector.high)
     size = np.abs(angle).max() + np.abs(torque).max() / low
-    about = error * (1 + _ROUNDED) + _ROUNDED * float(size)
+    about = error * (1 + _ROUNDING) + _ROUNDING * float(size)
     late = [np.concatenate([np.full(k, np.nan), angle[: len(angle) - k]]) for k in range(old + 1)]
     # Before the log, and before a gap, an angle is not known: NaN stays NaN.
     first, last = np.min(late, axis=0) - about, np.max(late, axis=0) + about
     for k in np.flatnonzero(log.gaps):
         first[k + 1 : k + 1 + old] = last[k + 1 : k + 1 + old] = np.nan
-    least, most = torque - noise * (1 + _ROUNDED), torque + noise * (1 + _ROUNDED)
+    least, most = torque - noise * (1 + _ROUNDING), torque + noise * (1 + _ROUNDING)
     lowest = first - np.maximum(most / low, most / high)
     highest = last - np.minimum(least / low, least / high)
     unknown = np.isnan(first)
@@ -184,7 +184,7 @@ def _speed(log: RunLog, angle: Array, sector: Sector, basis: str) -> Iterator[Ch
     # Stamps may be early or late where the samples are not.
     step = np.maximum(np.diff(log.time), log.step)
     size = np.abs(np.diff(angle))
-    noise = 2 * float(sector.reading) + _ROUNDED * float(np.abs(angle).max())
+    noise = 2 * float(sector.reading) + _ROUNDING * float(np.abs(angle).max())
     over = np.flatnonzero(size > limit * step * (1 + 1e-9) + noise)
     measured = f"at least {max(float(size.max()) - noise, 0.0):.3g} rad in a row"
     if not len(over):

@@ -38,7 +38,7 @@ def judge_delay(log: RunLog, bounds: RunBounds) -> Check:
     if found.doubts:
         return Check.open("delay", f"not told by this record: {found.doubts[0]}")
     if bounds.delay is None:
-        return Check("delay", BoundStatus.NOT_MODELLED, words, _time_of(bounds), bounds.granted)
+        return Check("delay", BoundStatus.NOT_MODELLED, words, _time_of(bounds), bounds.assumed_by)
     status = BoundStatus.UNDECIDED if high >= bounds.delay else BoundStatus.INSIDE
     first = None
     if low > bounds.delay:
@@ -56,7 +56,7 @@ def judge_jitter(log: RunLog, bounds: RunBounds) -> Check:
         count = max(round(log.step / bounds.period), 1)
         if abs(log.step - count * bounds.period) > _UNEVEN * bounds.period:
             words += f": no whole number of periods of {bounds.period:g} s"
-    return Check("jitter", BoundStatus.NOT_MODELLED, words, _time_of(bounds), bounds.granted)
+    return Check("jitter", BoundStatus.NOT_MODELLED, words, _time_of(bounds), bounds.assumed_by)
 
 
 def _time_of(bounds: RunBounds) -> str:
@@ -64,13 +64,10 @@ def _time_of(bounds: RunBounds) -> str:
     model = "proof" if bounds.proved else "spec"
     if bounds.period is None:
         return f"none: the {model} is in continuous time"
-    if bounds.late:
-        return (
-            f"{bounds.late} from a sample to its command in the {model}, every {bounds.period:g} s"
-        )
-    return (
-        f"none: the {model} is about a motion without dead time, sampled every {bounds.period:g} s"
-    )
+    every = f"every {bounds.period:g} s"
+    if bounds.latency:
+        return f"{bounds.latency} from a sample to its command in the {model}, {every}"
+    return f"none: the {model} is about a motion without dead time, sampled {every}"
 
 
 def judge_saturation(log: RunLog, bounds: RunBounds, limit: float | None) -> Check:
@@ -86,10 +83,10 @@ def judge_saturation(log: RunLog, bounds: RunBounds, limit: float | None) -> Che
     allowed = f"below {limit:g} {log.command_unit}"
     met = np.flatnonzero(size >= limit)
     if not len(met):
-        return Check("saturation", BoundStatus.INSIDE, largest, allowed, bounds.granted)
+        return Check("saturation", BoundStatus.INSIDE, largest, allowed, bounds.assumed_by)
     words = f"the command is {log.columns['command'][met[0]]:.5g} {log.command_unit}"
     first = Violation(log.begin + float(log.time[met[0]]), words)
-    return Check("saturation", BoundStatus.OUTSIDE, largest, allowed, bounds.granted, first)
+    return Check("saturation", BoundStatus.OUTSIDE, largest, allowed, bounds.assumed_by, first)
 
 
 def judge_force(log: RunLog, bounds: RunBounds) -> Check:

@@ -16,7 +16,7 @@ from nrs_design.proof.text import counted
 
 _NAME = "dwell times"
 # Longest step of a log, in periods, that leaves no sample out.
-_SAME = 1.5
+_LONGEST_STEP = 1.5
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +35,7 @@ class _Stay:
 
 def judge_stays(log: RunLog, bounds: RunBounds) -> Check:
     """Judge times in each mode, and the order of modes."""
-    allowed, basis = _allowed(bounds), f"switching rules of {bounds.source}"
+    allowed, basis = _rules_text(bounds), f"switching rules of {bounds.source}"
     if bounds.names_contacts:
         reason = "the rules name contacts, and a log does not say what is touched"
         return Check.open(_NAME, reason, "", basis)
@@ -44,7 +44,7 @@ def judge_stays(log: RunLog, bounds: RunBounds) -> Check:
             return Check(_NAME, BoundStatus.INSIDE, "any switching is allowed", "arbitrary", basis)
         return Check.open(_NAME, "no column for mode", allowed, basis)
     stays = list(_stays(log, modes))
-    unknown = [stay.mode for stay in stays if stay.mode not in bounds.stays]
+    unknown = [stay.mode for stay in stays if stay.mode not in bounds.dwell_times]
     if unknown:
         reason = f"{unknown[0]!r} is no controller of the spec"
         return Check.open(_NAME, reason, allowed, basis)
@@ -53,7 +53,7 @@ def judge_stays(log: RunLog, bounds: RunBounds) -> Check:
         return Check(_NAME, BoundStatus.INSIDE, measured, "arbitrary", basis)
     step = float(np.diff(log.time).max())
     # With a row for every sample of the loop, no stay is shorter.
-    if bounds.period is None or step > _SAME * bounds.period:
+    if bounds.period is None or step > _LONGEST_STEP * bounds.period:
         measured += f"; a stay between two rows (up to {step:.3g} s) is not seen"
     if (first := next(_violations(stays, bounds), None)) is not None:
         return Check(_NAME, BoundStatus.OUTSIDE, measured, allowed, basis, first)
@@ -62,9 +62,9 @@ def judge_stays(log: RunLog, bounds: RunBounds) -> Check:
     return Check(_NAME, BoundStatus.INSIDE, measured, allowed, basis)
 
 
-def _allowed(bounds: RunBounds) -> str:
+def _rules_text(bounds: RunBounds) -> str:
     rules = []
-    for name, (shortest, longest) in bounds.stays.items():
+    for name, (shortest, longest) in bounds.dwell_times.items():
         if shortest > 0:
             rules.append(f"{name} at least {shortest:g} s")
         if longest < inf:
@@ -96,7 +96,7 @@ def _violations(stays: list[_Stay], bounds: RunBounds) -> Iterator[Violation]:
     """Yield what no reading of the log allows."""
     before = ""
     for stay in stays:
-        shortest, longest = bounds.stays[stay.mode]
+        shortest, longest = bounds.dwell_times[stay.mode]
         allowed = bounds.transitions
         ordered = allowed is None or not before or (before, stay.mode) in allowed
         if not ordered and not stay.gap:
@@ -113,7 +113,7 @@ def _violations(stays: list[_Stay], bounds: RunBounds) -> Iterator[Violation]:
 def _doubts(stays: list[_Stay], bounds: RunBounds) -> Iterator[str]:
     """Yield what some reading of the log does not allow."""
     for place, stay in enumerate(stays):
-        shortest, longest = bounds.stays[stay.mode]
+        shortest, longest = bounds.dwell_times[stay.mode]
         if stay.gap:
             yield f"rows are missing about {stay.begin:.6g} s, where switches may have been"
         if stay.ended and stay.shortest < shortest:

@@ -46,8 +46,8 @@ UNITS: Mapping[str, Mapping[str, float]] = MappingProxyType(
 )
 # The unit that values of a command have once they are read.
 _READ_AS = {
-    **{"rad_s": "rpm", "deg_s": "rpm", "mV": "V", "mA": "A"},
-    **{"deg": "rad", "Nm": "N*m"},
+    **dict.fromkeys(("rad_s", "deg_s"), "rpm"),
+    **{"mV": "V", "mA": "A", "deg": "rad", "Nm": "N*m"},
 }
 # Quantities of other words and letters, if their unit fits: a position in deg is an angle.
 _WORDS: Mapping[str, tuple[str, ...]] = {
@@ -90,7 +90,7 @@ class Name:
     unit: str  # In standard spelling if known, else as written
 
     @property
-    def known(self) -> bool:
+    def is_known(self) -> bool:
         """Whether the quantity may be written in this unit."""
         return self.unit in UNITS[self.quantity]
 
@@ -132,7 +132,7 @@ def read_name(text: str) -> Name | None:
         return None
     names = [Name(q, read_unit(rest, q)) for q in quantities]
     # Another word counts only with its unit.
-    return next((name for name in names if name.known or word in UNITS), None)
+    return next((name for name in names if name.is_known or word in UNITS), None)
 
 
 def read_unit(text: str, quantity: str) -> str:
@@ -176,7 +176,7 @@ def parse_mapping(entries: Sequence[str]) -> dict[str, str]:
         ours, equals, theirs = (part.strip() for part in entry.partition("="))
         if not (ours and equals and theirs):
             raise DataError(f"--map {entry!r} is not a pair", remedy="write --map force_N=Fz")
-        _split(ours, DataError, f"--map {entry!r}: ")
+        _read_standard_name(ours, DataError, f"--map {entry!r}: ")
         if theirs in mapping or ours in mapping.values():
             raise DataError(f"--map {entry!r}: the column is mapped twice", remedy="keep one")
         mapping[theirs] = ours
@@ -198,7 +198,7 @@ def find_columns(
     fail = partial(DataError, path=path, line=line)
     _check_mapped(mapping, header, fail)
     wanted = {quantity for layout in layouts for quantity in layout} | set(optional)
-    named = {_split(ours, fail).quantity for ours in mapping.values()}
+    named = {_read_standard_name(ours, fail).quantity for ours in mapping.values()}
     found: dict[str, Column] = {}
     faults: list[DataError] = []
     for index, text in enumerate(header):
@@ -208,7 +208,7 @@ def find_columns(
             continue
         if text not in mapping and name.quantity in named:
             continue
-        if not name.known:
+        if not name.is_known:
             faults.append(_unknown_unit(name, text, "", fail))
             # What would be judged must not fall away in silence.
             if name.quantity in optional:
@@ -233,14 +233,14 @@ def _check_mapped(mapping: Mapping[str, str], header: Sequence[str], fail: Fail)
     for theirs, ours in mapping.items():
         if theirs not in header:
             near = difflib.get_close_matches(theirs, header, n=1)
-            hint = f"did you mean {near[0]!r}?" if near else f"it has {_listed(header)}"
+            hint = f"did you mean {near[0]!r}?" if near else f"it has {_header_text(header)}"
             raise fail(f"there is no column {theirs!r} to map", remedy=hint)
         check_stated(theirs, theirs, ours, fail)
 
 
 def check_stated(theirs: str, text: str, ours: str, fail: Fail) -> None:
     """Refuse a mapping whose unit contradicts a text about the column, such as its name."""
-    name = _split(ours, fail)
+    name = _read_standard_name(ours, fail)
     unit = stated_unit(text, name.quantity)
     if unit in (None, name.unit) or name.unit in ("", "any"):
         return
@@ -255,7 +255,7 @@ def check_stated(theirs: str, text: str, ours: str, fail: Fail) -> None:
     )
 
 
-def _split(text: str, fail: Fail, prefix: str = "") -> Name:
+def _read_standard_name(text: str, fail: Fail, prefix: str = "") -> Name:
     """Take a name of ours apart, and check its unit."""
     name = read_name(text)
     if name is None:
@@ -263,7 +263,7 @@ def _split(text: str, fail: Fail, prefix: str = "") -> Name:
             f"{prefix}{text!r} is no column of ours",
             remedy=f"these are {', '.join(map(standard_name, UNITS))}",
         )
-    if not name.known:
+    if not name.is_known:
         raise _unknown_unit(name, text, prefix, fail)
     return name
 
@@ -284,7 +284,7 @@ def _missing(
     missing = [_called(quantity) for quantity in nearest if quantity not in present]
     expected = " or ".join(", ".join(map(_called, layout)) for layout in layouts)
     return fail(
-        f"the columns {', '.join(missing)} are missing: it has {_listed(header)}",
+        f"the columns {', '.join(missing)} are missing: it has {_header_text(header)}",
         remedy=f"expected {expected}, in these units or others; name foreign columns with --map "
         f"{missing[0]}=NAME",
     )
@@ -296,6 +296,6 @@ def _called(quantity: str) -> str:
     return options.get(quantity) or standard_name(quantity)
 
 
-def _listed(header: Sequence[str]) -> str:
+def _header_text(header: Sequence[str]) -> str:
     names = [name if len(name) <= 30 else name[:27] + "..." for name in header[:12]]
     return ", ".join(names) + (f" and {len(header) - 12} more" if len(header) > 12 else "")

@@ -56,7 +56,7 @@ def read_header(
     units = split_cells(lines[below], separator) if below < len(lines) else []
     if _are_units(units, len(names)):
         bare = [match[1] if (match := _BRACKETS.match(unit)) else unit for unit in units]
-        names = [_with_unit(*pair, mapped, path) for pair in zip(names, bare, strict=True)]
+        names = [_add_unit(*pair, mapped, path) for pair in zip(names, bare, strict=True)]
         below = _below_blanks(lines, below + 1)
     cells = [cell for text in lines[below:] for cell in split_cells(text, separator) if "," in cell]
     if cells and all(_THOUSANDS.match(cell) for cell in cells):
@@ -95,7 +95,7 @@ def _find(
 ) -> tuple[int, str | None]:
     """Return the line with the most names that are known, else the first one, to complain of."""
     scores = [
-        (sum(_is_known(name, mapped) for name in split_cells(text, separator)), -at, -rank)
+        (sum(_counts_as_name(name, mapped) for name in split_cells(text, separator)), -at, -rank)
         for at, text in enumerate(lines)
         for rank, separator in enumerate(SEPARATORS)
     ]
@@ -121,11 +121,11 @@ def _below_blanks(lines: Sequence[str], at: int) -> int:
     return next((i for i in range(at, len(lines)) if lines[i]), at)
 
 
-def _is_known(name: str, mapped: Collection[str]) -> bool:
+def _counts_as_name(name: str, mapped: Collection[str]) -> bool:
     found = read_name(name)
     if name in mapped or name.lower() in FULL_WORDS:
         return True
-    return found is not None and (found.known or not found.unit)
+    return found is not None and (found.is_known or not found.unit)
 
 
 def _names(text: str, separator: str | None, path: Path, line: int) -> list[str]:
@@ -155,10 +155,10 @@ def _are_units(cells: Sequence[str], width: int) -> bool:
     )
 
 
-def _with_unit(name: str, unit: str, mapped: Mapping[str, str], path: Path) -> str:
+def _add_unit(name: str, unit: str, mapped: Mapping[str, str], path: Path) -> str:
     """Return a name with the unit of the line below, which must not contradict a mapping."""
     if name in mapped:
         check_stated(name, f"column [{unit}]", mapped[name], partial(DataError, path=path))
         return name
     found = read_name(name)
-    return name if not unit or (found is not None and found.known) else f"{name} [{unit}]"
+    return name if not unit or (found is not None and found.is_known) else f"{name} [{unit}]"

@@ -27,7 +27,7 @@ MAX_ROWS = 10_000_000
 MAX_LABELS = 1000
 _LONGEST_LINE = 1 << 20
 _PREAMBLE = 100
-_IN_MEMORY = Path("arrays")
+_ARRAYS = Path("arrays")
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,8 +102,8 @@ def _read_arrays(
     optional: tuple[str, ...],
 ) -> MeasurementTable:
     arrays = {str(name): np.asarray(data[name]) for name in data.keys()}  # noqa: SIM118
-    layout, columns = find_columns([*arrays], layouts, mapping, _IN_MEMORY, None, optional)
-    hashed, cells = hashlib.sha256(), _Cells(_IN_MEMORY)
+    layout, columns = find_columns([*arrays], layouts, mapping, _ARRAYS, None, optional)
+    hashed, cells = hashlib.sha256(), _Cells(_ARRAYS)
     values: dict[str, Array] = {}
     for quantity, column in columns.items():
         raw = arrays[column.name]
@@ -118,7 +118,7 @@ def _read_arrays(
             numbers = np.array([cells.number(column, word, row) for row, word in words])
         values[quantity] = numbers * column.factor
         hashed.update(column.name.encode() + numbers.tobytes())
-    source = Source(_IN_MEMORY, hashed.hexdigest(), synthetic=False)
+    source = Source(_ARRAYS, hashed.hexdigest(), synthetic=False)
     return MeasurementTable(source, layout, values, columns, tuple(cells.labels), 0)
 
 
@@ -129,7 +129,9 @@ def _read(
     mapping: Mapping[str, str],
     optional: tuple[str, ...],
 ) -> MeasurementTable:
-    sha256 = hashlib.file_digest(file, "sha256").hexdigest()
+    hashed = hashlib.sha256()
+    while block := file.read(_LONGEST_LINE):
+        hashed.update(block)
     file.seek(0)
     lines = _lines(file, path)
     head = list(islice(lines, _PREAMBLE + 1))
@@ -146,7 +148,7 @@ def _read(
             [[column.factor] for column in columns.values()]
         )
     values = dict(zip(columns, scaled, strict=True))
-    source = Source(path, sha256, header.synthetic)
+    source = Source(path, hashed.hexdigest(), header.synthetic)
     return MeasurementTable(source, layout, values, columns, tuple(cells.labels), header.line + 1)
 
 

@@ -24,7 +24,7 @@ _FINE = 15
 _RIDGE = 1e-9
 _CYCLES = 4
 # Terms of the curve behind the corner.
-_PLAIN, _GROWING = 4, 5
+_BASIC, _FULL = 4, 5
 # Least air, as a part of the travel and in samples.
 _LEAST_AIR = 0.01
 _FEWEST = 10
@@ -99,7 +99,7 @@ def find_contact(record: TissueRecord) -> DetectedContact | None:
     corners: dict[int, list[_Corner]] = {1: [], -1: []}
     for cycle in find_cycles(x)[:_CYCLES]:
         for side, row in corners.items():
-            row += _corner(*_way_in(side * x, side * velocity, force, cycle))
+            row += _corner(*_insertion(side * x, side * velocity, force, cycle))
         # Independent touches add up what they tell of air.
         gain, side = max(
             (sum(max(c.gain, 0.0) for c in row if c.flat), side) for side, row in corners.items()
@@ -114,7 +114,7 @@ def find_contact(record: TissueRecord) -> DetectedContact | None:
     return None
 
 
-def _way_in(u: Array, velocity: Array, force: Array, cycle: slice) -> tuple[Array, Array, Array]:
+def _insertion(u: Array, velocity: Array, force: Array, cycle: slice) -> tuple[Array, Array, Array]:
     """Return the samples of the insertion: a relaxing tissue separates at another position."""
     rows = np.arange(len(u))[cycle]
     way_in = rows[velocity[cycle] > 0.02 * np.abs(velocity[cycle]).max()]
@@ -133,7 +133,7 @@ def _corner(u: Array, velocity: Array, force: Array) -> Iterator[_Corner]:
     if min(air.sum(), (~air).sum()) < _FEWEST or best < _LEAST_AIR:
         return
     smooth = float(_errors(curve, v[None], velocity, centered)[0])
-    count = independent(_left(curve, np.maximum(v - best, 0.0), velocity, centered))
+    count = independent(_residuals(curve, np.maximum(v - best, 0.0), velocity, centered))
     grid = np.linspace(0.0, 1.0, 2 * _GRID)
     errors = _errors(curve, np.maximum(v - grid[:, None], 0.0), velocity, centered)
     # Likelihood-ratio interval; a step more than what the grid shows.
@@ -150,8 +150,8 @@ def _best_corner(v: Array, velocity: Array, force: Array) -> tuple[int, float, f
 
     Damping that grows with the deflection must be clear: without it, its curve is too free.
     """
-    plain, grows = (_corner_of(curve, v, velocity, force) for curve in (_PLAIN, _GROWING))
-    left = _left(_PLAIN, np.maximum(v - plain[1], 0.0), velocity, force)
+    plain, grows = (_corner_of(curve, v, velocity, force) for curve in (_BASIC, _FULL))
+    left = _residuals(_BASIC, np.maximum(v - plain[1], 0.0), velocity, force)
     clear = plain[2] > grows[2] * np.exp(_BETTER / independent(left))
     return grows if clear else plain
 
@@ -174,11 +174,11 @@ def _errors(curve: int, w: Array, velocity: Array, force: Array) -> Array:
     The curve is quadratic, with a force in proportion to the velocity that begins with a jump, and
     perhaps one that grows with the deflection, too. Deflections w, shape (m, n), are from 0 to 1.
     """
-    rest = _left(curve, w, velocity, force)
+    rest = _residuals(curve, w, velocity, force)
     return np.asarray(np.einsum("...n,...n->...", rest, rest))
 
 
-def _left(curve: int, w: Array, velocity: Array, force: Array) -> Array:
+def _residuals(curve: int, w: Array, velocity: Array, force: Array) -> Array:
     """Return the residual force of such curves, of the shape of w."""
     terms = [np.ones_like(w), w, w**2, velocity * (w > 0), velocity * w]
     X = np.stack(terms[:curve], axis=-2)

@@ -18,7 +18,7 @@ from nrs_design.spec.plausible import doubt_size
 
 LARGEST_ERROR = 0.5
 # Distance from a bound, in the logarithm, that counts as reaching it.
-_NEAR = 1e-3
+_BOUND_DISTANCE = 1e-3
 # Part of the power of the velocity that may be rounding of the deflection.
 _ROUNDING = 0.1
 # Standard errors by which an estimate may be off on average.
@@ -29,7 +29,7 @@ _LOADED = 0.1
 def doubts(
     law: AbstractContactLaw,
     trial: Trial,
-    found: Uncertainty,
+    uncertainty: Uncertainty,
     bounds: tuple[Array, Array],
     residuals: Array,
     sensitivities: Array,
@@ -45,9 +45,9 @@ def doubts(
         *read,
         *doubt_residuals(trial, residuals, sensitivities),
         *_bounds(law, bounds),
-        *_errors(law, found),
+        *_errors(law, uncertainty),
         *_times(law, trial),
-        *_motion(law, trial, found),
+        *_motion(law, trial, uncertainty),
     )
 
 
@@ -78,21 +78,21 @@ def _units(trial: Trial) -> Iterator[str]:
 def _bounds(law: AbstractContactLaw, bounds: tuple[Array, Array]) -> Iterator[str]:
     logs = np.log(law.values)
     for name, log, low, high in zip(law.parameters(), logs, *bounds, strict=True):
-        if min(log - low, high - log) < _NEAR:
+        if min(log - low, high - log) < _BOUND_DISTANCE:
             end = "lower" if log - low < high - log else "upper"
             yield f"{name} is at the {end} end of its box"
 
 
-def reaches_zero(law: AbstractContactLaw, found: Uncertainty) -> tuple[bool, ...]:
+def reaches_zero(law: AbstractContactLaw, uncertainty: Uncertainty) -> tuple[bool, ...]:
     """Tell of each parameter whether it is a stiffness that the 95 % interval lets be 0."""
-    quantile = student_quantile(found.degrees)
-    pairs = zip(law.kinds, found.errors, strict=True)
+    quantile = student_quantile(uncertainty.degrees)
+    pairs = zip(law.kinds, uncertainty.errors, strict=True)
     return tuple(kind == STIFFNESS and not quantile * error < 1 for kind, error in pairs)
 
 
-def _errors(law: AbstractContactLaw, found: Uncertainty) -> Iterator[str]:
-    zeros = reaches_zero(law, found)
-    for name, error, zero in zip(law.parameters(), found.errors, zeros, strict=True):
+def _errors(law: AbstractContactLaw, uncertainty: Uncertainty) -> Iterator[str]:
+    zeros = reaches_zero(law, uncertainty)
+    for name, error, zero in zip(law.parameters(), uncertainty.errors, zeros, strict=True):
         if not error <= LARGEST_ERROR:
             size = f"{100 * error:.0f} %" if error < 10 else "over 1000 %"
             yield f"{name} has a relative standard error of {size}"
@@ -115,14 +115,14 @@ def _times(law: AbstractContactLaw, trial: Trial) -> Iterator[str]:
         )
 
 
-def _motion(law: AbstractContactLaw, trial: Trial, found: Uncertainty) -> Iterator[str]:
+def _motion(law: AbstractContactLaw, trial: Trial, uncertainty: Uncertainty) -> Iterator[str]:
     motion = trial.motion
     if law.takes_velocity:
         part = rounding_of_velocity(motion.time, trial.position)
         dampings = [kind.endswith(DAMPING) for kind in law.kinds]
         # A damping comes out too small by this part: by half a standard error, an interval that
         # should hold in 95 % of records holds in 92 %.
-        if part > min(_ROUNDING, _BIAS * float(found.errors[dampings].min())):
+        if part > min(_ROUNDING, _BIAS * float(uncertainty.errors[dampings].min())):
             yield (
                 f"{100 * min(part, 1.0):.2g} % of the power of the velocity is rounding of the "
                 "deflection, so that the damping comes out too small"

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 from nrs_design.errors import DataError
 from nrs_design.identification.datasets.records import TissueRecord
+from nrs_design.identification.statistics import check_spread
 from nrs_design.identification.tables.table import Source
 from nrs_design.identification.tissue.pool import ModelFit, fit_model
-from nrs_design.identification.tissue.ranges import check_spread
 from nrs_design.identification.tissue.tangent import Tangent, check_preload, tangent_of
 from nrs_design.identification.tissue.trial import Preparation, prepare
 from nrs_design.models.contact import LAWS, AbstractNonlinearLaw, HuntCrossley
@@ -92,7 +92,7 @@ def identify_tissue(
     for name, kind in LAWS.items():
         progress(name)
         models.append(fit_model(kind, trials, coverage))
-    chosen, reason = _choose(models) if law is None else _told(models, law, declared=declared)
+    chosen, reason = _choose(models) if law is None else _keep_law(models, law, declared=declared)
     about = None
     if preload is not None and isinstance(chosen.law, AbstractNonlinearLaw):
         about = tangent_of(chosen, preload)
@@ -139,7 +139,7 @@ def _choose(models: Sequence[ModelFit]) -> tuple[ModelFit, str]:
     )
 
 
-def _told(models: Sequence[ModelFit], law: str, *, declared: bool) -> tuple[ModelFit, str]:
+def _keep_law(models: Sequence[ModelFit], law: str, *, declared: bool) -> tuple[ModelFit, str]:
     chosen = next(model for model in models if model.law.name == law)
     own, _ = _choose(models)
     agrees = "as by the comparison" if own is chosen else f"the comparison prefers {own.law.name}"

@@ -35,8 +35,8 @@ class Offset:
 
     name: str  # ``zero`` (position of contact), ``tare`` (force in air) or ``drift`` (of the tare)
     estimate: Estimate  # In m, N or N/s (rad, N m, N m/s)
-    fitted: bool  # Fitted, or given by the user if False
-    provided: str = ""  # Condition of the value; empty for none
+    fitted: bool  # Whether the value is fitted
+    provided: str = ""  # Condition or origin of the value; empty for none
 
     def text(self, *, rotational: bool) -> str:
         """Return name, value and unit in words."""
@@ -51,7 +51,7 @@ def offset_names(kind: type[AbstractContactLaw], trial: Trial) -> tuple[str, ...
     keeps_force = issubclass(kind, AbstractLinearLaw) and kind.has_rest
     if wanted.tare is None:
         names.append(TARE)
-    if keeps_force and wanted.zero is None and (trial.found is not None or not names):
+    if keeps_force and wanted.zero is None and (trial.contact is not None or not names):
         names.append(CONTACT)
     return (*names, DRIFT) if trial.drift else tuple(names)
 
@@ -64,12 +64,6 @@ def offset_columns(names: Sequence[str], trial: Trial) -> Array:
         DRIFT: trial.motion.time - trial.motion.time[0],
     }
     return np.column_stack([np.empty((len(trial.used), 0)), *(columns[name] for name in names)])
-
-
-def measured_force(trial: Trial) -> Array:
-    """Return the force of the used samples, less a tare that is given."""
-    tare = trial.preparation.tare
-    return trial.measured if tare is None else trial.measured - trial.side * tare
 
 
 def estimate_offsets(
@@ -103,7 +97,7 @@ def estimate_offsets(
     elif shift is not None:
         offsets.append(signed(ZERO, trial.reference))
     elif constant in fitted and _static(law)[0]:
-        assumed = trial.found is None and wanted.tare is None
+        assumed = trial.contact is None and wanted.tare is None
         balanced = _balanced(law, trial, known, *fitted[constant])
         offsets.append(Offset(ZERO, balanced, True, "if the tare is 0" if assumed else ""))
     if wanted.tare is not None:

@@ -31,7 +31,7 @@ COARSE = 2_000
 # Relative changes of the cost at which a search ends.
 _ROUGHLY, _EXACTLY = 1e-9, 1e-12
 # Half width of the search for the position of contact, in travels of the record.
-_REACH = 0.5
+_ZERO_RANGE = 0.5
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -55,9 +55,9 @@ class RecordFit:
     @property
     def estimates(self) -> tuple[Estimate, ...]:
         """The parameters with their 95 % intervals."""
-        return self.estimates_at(CONFIDENCE)
+        return self.intervals(CONFIDENCE)
 
-    def estimates_at(self, confidence: float) -> tuple[Estimate, ...]:
+    def intervals(self, confidence: float) -> tuple[Estimate, ...]:
         """Return the parameters with intervals of some confidence.
 
         They are symmetric in the logarithm; that of a stiffness which the 95 % interval does not
@@ -115,7 +115,7 @@ def _judge(point: Point, bounds: tuple[Array, Array]) -> RecordFit:
     offsets = estimate_offsets(law, trial, names, point.best[: len(names)], shift, placed)
     own = Uncertainty(known.covariance[:p, :p], known.degrees, known.whiteness)
     said = list(doubts(law, trial, own, bounds, residuals, J))
-    if shift is not None and abs(point.values[p]) > _REACH * (1 - 1e-3):
+    if shift is not None and abs(point.values[p]) > _ZERO_RANGE * (1 - 1e-3):
         said.append("the position of contact is at the end of its box")
     return RecordFit(
         trial=trial,
@@ -140,7 +140,7 @@ def _uncertainty(trial: Trial, J: Array, residuals: Array, *, returns: bool = Fa
 def _search(start: Point, bounds: tuple[Array, Array], accuracy: float) -> Point:
     problem = start.problem
     p = len(problem.kind.kinds)
-    reach = np.full(len(start.values) - p, _REACH)
+    reach = np.full(len(start.values) - p, _ZERO_RANGE)
     low, high = np.append(bounds[0], -reach), np.append(bounds[1], reach)
     # The search needs room around its start.
     room = 1e-6 * (high - low)
@@ -158,5 +158,5 @@ def _search(start: Point, bounds: tuple[Array, Array], accuracy: float) -> Point
         return J
 
     first = np.clip(start.values, low + room, high - room)
-    found, _ = search(lambda x: at(x).left, slopes, first, bounds=(low, high), converged=accuracy)
+    found, _ = search(lambda x: at(x).misfit, slopes, first, bounds=(low, high), converged=accuracy)
     return at(found)

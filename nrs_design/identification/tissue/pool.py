@@ -9,9 +9,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from nrs_design.identification.numeric import Array
-from nrs_design.identification.statistics import CONFIDENCE, Estimate, joint_level, student_quantile
+from nrs_design.identification.statistics import (
+    CONFIDENCE,
+    Estimate,
+    hulls,
+    joint_level,
+    spread_ranges,
+    student_quantile,
+)
 from nrs_design.identification.tissue.output_error import RecordFit, fit_record
-from nrs_design.identification.tissue.ranges import hulls, spread_ranges
 from nrs_design.identification.tissue.trial import Trial
 from nrs_design.models.contact import AbstractContactLaw
 from nrs_design.spec.provenance import Coverage
@@ -33,9 +39,9 @@ class ModelFit:
 
     @property
     def ranges(self) -> tuple[Estimate, ...]:
-        """What a proof should cover: see `nrs_design.identification.tissue.ranges`."""
+        """What a proof should cover: see `nrs_design.identification.statistics`."""
         level = joint_level(len(self.estimates))
-        single = [fit.estimates_at(level) for fit in self.fits]
+        single = [fit.intervals(level) for fit in self.fits]
         if self.coverage != "confidence":
             logs = np.log([fit.law.values for fit in self.fits])
             return spread_ranges(self.coverage, logs, single)
@@ -71,7 +77,7 @@ def pool(fits: Sequence[RecordFit], confidence: float = CONFIDENCE) -> tuple[Est
     distribution with one degree of freedom less than there are records (Hartung and Knapp 2001).
     """
     if len(fits) == 1:
-        return fits[0].estimates_at(confidence)
+        return fits[0].intervals(confidence)
     logs = np.log([fit.law.values for fit in fits])
     variances = np.array([np.diag(fit.uncertainty.covariance) for fit in fits])
     return tuple(_pool(x, s, confidence) for x, s in zip(logs.T, variances.T, strict=True))
@@ -79,7 +85,7 @@ def pool(fits: Sequence[RecordFit], confidence: float = CONFIDENCE) -> tuple[Est
 
 def _pool(logs: Array, variances: Array, confidence: float) -> Estimate:
     count = len(logs)
-    weights = 1 / (variances + _between(logs, variances))
+    weights = 1 / (variances + _variance_between_records(logs, variances))
     within = 1 / float(weights.sum())
     weights *= within
     mean = float(weights @ logs)
@@ -91,7 +97,7 @@ def _pool(logs: Array, variances: Array, confidence: float) -> Estimate:
     return Estimate.from_log(mean, student_quantile(count - 1, confidence) * error)
 
 
-def _between(logs: Array, variances: Array) -> float:
+def _variance_between_records(logs: Array, variances: Array) -> float:
     """Estimate the variance between records by the method of moments."""
     weights = 1 / variances
     total = float(weights.sum())

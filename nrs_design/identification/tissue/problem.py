@@ -14,8 +14,8 @@ from functools import cached_property
 
 import numpy as np
 
-from nrs_design.identification.numeric import Array, Flags, beyond, column_sizes
-from nrs_design.identification.tissue.offsets import measured_force, offset_columns, offset_names
+from nrs_design.identification.numeric import Array, Flags, column_sizes, reject
+from nrs_design.identification.tissue.offsets import offset_columns, offset_names
 from nrs_design.identification.tissue.trial import Trial
 from nrs_design.models.contact import (
     AbstractContactLaw,
@@ -46,12 +46,12 @@ def scan(
     a scan over that one number, with a linear fit at each, finds all valleys of the cost.
     """
     basis = np.linalg.qr(offsets)[0]
-    force = beyond(basis, trial.measured)
+    force = reject(basis, trial.measured)
     floor = _FLOOR * float(np.linalg.norm(force))
 
     def solve(*regressors: Array) -> tuple[float, ...]:
         """Fit positive coefficients: least squares, what comes out too small is lifted."""
-        X = beyond(basis, np.column_stack([regressor[trial.used] for regressor in regressors]))
+        X = reject(basis, np.column_stack([regressor[trial.used] for regressor in regressors]))
         size = column_sizes(X)
         scaled = np.linalg.lstsq(X / size, force, rcond=None)[0]
         if (scaled < floor).any() and len(size) > 1:
@@ -111,7 +111,8 @@ class LeastSquaresProblem:
     @cached_property
     def force(self) -> Array:
         """Measured force, less a tare that is given, shape (n,)."""
-        return measured_force(self.trial)
+        tare = self.trial.preparation.tare or 0.0
+        return self.trial.measured - self.trial.side * tare
 
     @cached_property
     def travel(self) -> float:
@@ -139,7 +140,7 @@ class LeastSquaresProblem:
         return Motion(self.trial.motion.time, self.trial.position)
 
     @cached_property
-    def reached(self) -> Flags:
+    def contact_samples(self) -> Flags:
         """Samples in contact; also the insertion, if the position of contact is fitted."""
         if not len(self.no_shift):
             return self.trial.touching
@@ -188,12 +189,12 @@ class Point:
 
     def _pushing(self, values: Array) -> Array:
         """Return a force, or its derivatives, without what a surface that nothing touches has."""
-        values[~self.problem.reached] = 0.0
+        values[~self.problem.contact_samples] = 0.0
         return values
 
     @cached_property
     def states(self) -> Array:
-        """Free response of the initial state of each such stretch, shape (n, s).
+        """Free response of each stretch with an unknown initial state, shape (n, s).
 
         The force of a relaxing element at the beginning is not known; it fades exponentially.
         """
@@ -203,10 +204,10 @@ class Point:
     def _fading(self) -> Array:
         """The same in all samples."""
         problem, tau = self.problem, self.law.relaxation_time
-        left = np.zeros((len(problem.ages), len(problem.begins)))
-        for column, rows in zip(left.T, problem.begins, strict=True):
+        states = np.zeros((len(problem.ages), len(problem.begins)))
+        for column, rows in zip(states.T, problem.begins, strict=True):
             column[rows] = np.exp(-problem.ages[rows] / tau) if tau else 0.0
-        return left
+        return states
 
     @cached_property
     def constants(self) -> Array:
@@ -220,7 +221,7 @@ class Point:
         return np.asarray(basis), np.asarray(triangle)
 
     @cached_property
-    def _rest(self) -> Array:
+    def _error(self) -> Array:
         return self.problem.force - self.force
 
     @cached_property
@@ -228,27 +229,27 @@ class Point:
         """The best constants; the smallest ones if the columns are dependent."""
         basis, triangle = self._factors
         cutoff = len(basis) * np.finfo(float).eps
-        return np.asarray(np.linalg.pinv(triangle, rcond=cutoff) @ (basis.T @ self._rest))
+        return np.asarray(np.linalg.pinv(triangle, rcond=cutoff) @ (basis.T @ self._error))
 
     @property
     def residuals(self) -> Array:
         """The error with the best constants, shape (n,)."""
-        return np.asarray(self._rest - self.constants @ self.best)
+        return np.asarray(self._error - self.constants @ self.best)
 
     @cached_property
-    def left(self) -> Array:
+    def misfit(self) -> Array:
         """Error orthogonal to all constants: the residuals, if the columns are independent."""
-        return beyond(self._factors[0], self._rest)
+        return reject(self._factors[0], self._error)
 
     @cached_property
     def cost(self) -> float:
         """The mean squared error with the best constants."""
-        return float(self.left @ self.left) / len(self.left)
+        return float(self.misfit @ self.misfit) / len(self.misfit)
 
     @property
     def slopes(self) -> Array:
         """The derivatives of the force at constants that follow (Kaufman 1975)."""
-        return beyond(self._factors[0], self.sensitivities)
+        return reject(self._factors[0], self.sensitivities)
 
     @cached_property
     def sensitivities(self) -> Array:
@@ -285,5 +286,4 @@ class Point:
         # Stretches without a used sample have no state of their own.
         constants = np.column_stack([offsets, self._fading])
         force = self._pushing(self.law.simulate(self.motion)) + constants @ self.best
-        tare = trial.preparation.tare
-        return force if tare is None else force + trial.side * tare
+        return force + trial.side * (trial.preparation.tare or 0.0)

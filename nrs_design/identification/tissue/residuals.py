@@ -87,9 +87,9 @@ def doubt_signs(trial: Trial, residuals: Array, offsets: Array) -> Iterator[str]
 def _ends(trial: Trial, columns: Sequence[Array], offsets: Array) -> Iterator[tuple[float, float]]:
     """Yield the 95 % interval of the factor of each column that the force is a sum of."""
     X = np.column_stack([*columns, offsets])
-    found = np.linalg.lstsq(X, trial.measured, rcond=None)[0]
-    known = uncertainty(X, trial.measured - X @ found)
-    for factor, error in zip(found[: len(columns)], known.errors, strict=False):
+    solution = np.linalg.lstsq(X, trial.measured, rcond=None)[0]
+    known = uncertainty(X, trial.measured - X @ solution)
+    for factor, error in zip(solution[: len(columns)], known.errors, strict=False):
         half = student_quantile(known.degrees) * float(error)
         yield float(factor) - half, float(factor) + half
 
@@ -145,7 +145,7 @@ def _given_offsets(trial: Trial, residuals: Array, sensitivities: Array) -> Iter
 
 def _drift(trial: Trial, residuals: Array, sensitivities: Array) -> Iterator[str]:
     """Doubt a tare that moves, straight or bent, where no air was asked."""
-    if trial.found is not None:
+    if trial.contact is not None:
         return
     time = trial.motion.time[trial.used]
     part = (time - time[0]) / (time[-1] - time[0])

@@ -85,9 +85,9 @@ def _seconds(text: str) -> float:
 
 
 def _out_of(*choices: str) -> Callable[[str], str]:
-    def chosen(text: str) -> str:
+    def read(text: str) -> str:
         if text not in choices:
             raise ValueError(f"write one of {', '.join(choices)}")
         return text
 
-    return chosen
+    return read

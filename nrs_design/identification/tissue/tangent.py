@@ -8,10 +8,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from nrs_design.errors import DataError
-from nrs_design.identification.statistics import Estimate, joint_level
+from nrs_design.identification.statistics import Estimate, joint_level, spread_ranges
 from nrs_design.identification.tissue.output_error import RecordFit
 from nrs_design.identification.tissue.pool import ModelFit
-from nrs_design.identification.tissue.ranges import spread_ranges
 from nrs_design.identification.tissue.trial import Trial
 from nrs_design.models.contact import AbstractContactLaw, AbstractNonlinearLaw, KelvinVoigt
 
@@ -59,18 +58,20 @@ def tangent_of(model: ModelFit, preload: tuple[float, float]) -> Tangent:
     """
     law, (low, high) = model.law, preload
     assert isinstance(law, AbstractNonlinearLaw)
-    ends = [_ranges_at(model, depth) for depth in (low, high)]
+    ends = [_ranges_near(model, depth) for depth in (low, high)]
     middle = KelvinVoigt(*law.tangent((low + high) / 2))
     ranges = tuple(
         Estimate(value, min(at_low.low, at_high.low), max(at_low.high, at_high.high))
         for value, at_low, at_high in zip(middle.values, *ends, strict=True)
     )
     about = min(max(float(f"{(low + high) / 2:.{_DIGITS}g}"), low), high)
-    stiffness, damping, exponent = _ranges_at(model, about, with_exponent=True)
+    stiffness, damping, exponent = _ranges_near(model, about, with_exponent=True)
     return Tangent(middle, ranges, low, high, about, (stiffness, damping, exponent))
 
 
-def _ranges_at(model: ModelFit, depth: float, *, with_exponent: bool = False) -> Sequence[Estimate]:
+def _ranges_near(
+    model: ModelFit, depth: float, *, with_exponent: bool = False
+) -> Sequence[Estimate]:
     """Return stiffness and damping at one deflection, with what the model's ranges hold.
 
     With the exponent beside them, each has a smaller share of the 5 % that may fail.

@@ -8,7 +8,7 @@ from typing import Literal
 import numpy as np
 
 from nrs_design.errors import DataError
-from nrs_design.identification.datasets.checks import long_stretches, pauses_text, stretches_in
+from nrs_design.identification.datasets.checks import find_stretches, long_stretches, pauses_text
 from nrs_design.identification.datasets.records import TissueRecord
 from nrs_design.identification.numeric import Array, Flags, Rows, parted
 from nrs_design.identification.statistics import span
@@ -30,7 +30,7 @@ _EDGE = 0.02
 # Farther away, the lost samples would matter more than a few in air.
 _FARTHEST = 0.25
 # Air shows a drift: least samples, least part of the record, and least samples of contact between.
-_FEWEST_IN_AIR, _SPREAD, _BETWEEN = 30, 0.3, 20
+_FEWEST_IN_AIR, _AIR_SPAN, _LEAST_CONTACT = 30, 0.3, 20
 # A record that begins at this part of its deflection need not begin relaxed.
 _LOADED = 0.1
 
@@ -64,7 +64,7 @@ class Trial:
     touching: Flags  # Shape (n,). Samples in contact.
     reference: float  # Position that the deflection is counted from, m (rad)
     side: int  # 1 if the tissue is where positions are larger, else -1
-    found: DetectedContact | None  # None if no air shows, or was not looked for
+    contact: DetectedContact | None  # None if no air shows, or was not looked for
     drift: bool  # Whether the tare is fitted as moving
     cuts: tuple[str, ...]  # Unused parts and reasons, in words
     cycles: tuple[slice, ...]  # Loading cycles, among all samples
@@ -79,7 +79,7 @@ class Trial:
         """
         parts = np.where(self.touching, self.stretch, -1)
         loaded = float(self.motion.deflection[0]) > _LOADED * float(self.motion.deflection.max())
-        whole = self.found is None and self.stretch[-1] == self.stretch[0]
+        whole = self.contact is None and self.stretch[-1] == self.stretch[0]
         if whole and not loaded and not self.preparation.start:
             return ()
         return tuple(
@@ -117,9 +117,9 @@ class Trial:
     def remarks(self) -> tuple[str, ...]:
         """Contact, drift and unused parts, in words."""
         said = []
-        if self.found is not None:
+        if self.contact is not None:
             part = 100 * float(np.mean(~self.touching))
-            said.append(f"{counted(len(self.found.touches), 'touch')}; {part:.0f} % of it is air")
+            said.append(f"{counted(len(self.contact.touches), 'touch')}; {part:.0f} % of it is air")
         elif self.preparation.contact == "auto":
             said.append(
                 "no air shows: all of it is taken as in contact, and a tare that moves with time "
@@ -131,9 +131,9 @@ class Trial:
             said.append("the tare is fitted as moving in proportion to time")
         return (*said, *self.cuts)
 
-    def thinned(self, most: int) -> Trial:
+    def thinned(self, count: int) -> Trial:
         """Return the trial with at most `most` samples, or more if few of them are used."""
-        every = min(-(-len(self.force) // most), max(1, int(self.used.sum()) // _LEAST_USED))
+        every = min(-(-len(self.force) // count), max(1, int(self.used.sum()) // _LEAST_USED))
         if every == 1:
             return self
         pick = slice(None, None, every)
@@ -147,27 +147,29 @@ def prepare(record: TissueRecord, preparation: Preparation | None = None) -> Tri
 
     By default, air and drift are looked for, and both zeros are fitted.
     """
-    wanted = preparation or Preparation()
-    kept, cuts = _window(record, wanted)
-    found = find_contact(kept) if wanted.contact == "auto" else None
+    settings = preparation or Preparation()
+    kept, cuts = _window(record, settings)
+    contact = find_contact(kept) if settings.contact == "auto" else None
     x, time = kept.motion.deflection, kept.motion.time
-    side = _side(x) if found is None else found.side
-    reference = side * float(np.min(side * x)) if found is None else found.zero
-    if wanted.zero is not None:
-        reference = wanted.zero
+    side = _side(x) if contact is None else contact.side
+    reference = side * float(np.min(side * x)) if contact is None else contact.zero
+    if settings.zero is not None:
+        reference = settings.zero
     deflection = position = side * (x - reference)
     used = touching = np.ones(len(x), bool)
-    if found is not None:
+    if contact is not None:
         width = _EDGE * float(np.ptp(x))
-        deflection, touching = surface(time, position, found.touches, width)
-        edge = _edge(position, width, wanted, found)
+        deflection, touching = surface(time, position, contact.touches, width)
+        edge = _edge(position, width, settings, contact)
         edge |= touching & ~inner(touching)
-        free = found.beyond & ~touching & ~edge
-        cuts += _cut(time, edge, "at the edge of contact")
-        cuts += _cut(time, free, "no contact yet: the tissue has not come back from a touch")
+        free = contact.beyond & ~touching & ~edge
+        cuts += _unused_text(time, edge, "at the edge of contact")
+        cuts += _unused_text(
+            time, free, "no contact yet: the tissue has not come back from a touch"
+        )
         used = ~edge & ~free
     stretch, beside = _pauses(time)
-    cuts += _cut(time, beside, "beside a pause of the record, or between two of them")
+    cuts += _unused_text(time, beside, "beside a pause of the record, or between two of them")
     used = used & ~beside
     if used.sum() < FEWEST or np.ptp(x[used]) == 0:
         raise DataError(
@@ -175,12 +177,12 @@ def prepare(record: TissueRecord, preparation: Preparation | None = None) -> Tri
             path=record.source.path,
             remedy="record longer, or say by --set contact=given, start=S or end=S what to use",
         )
-    drift = wanted.drift == "fit"
-    if wanted.drift == "auto":
+    drift = settings.drift == "fit"
+    if settings.drift == "auto":
         drift = _shows_drift(time, used & ~touching)
     return Trial(
-        record, wanted, Motion(time, deflection), position, side * kept.force, used, touching,
-        reference, side, found, drift, tuple(cuts), find_cycles(deflection), stretch,
+        record, settings, Motion(time, deflection), position, side * kept.force, used, touching,
+        reference, side, contact, drift, tuple(cuts), find_cycles(deflection), stretch,
     )  # fmt: skip
 
 
@@ -193,9 +195,9 @@ def _shows_drift(time: Array, air: Flags) -> bool:
     that is soft at first would pass for a drift.
     """
     rows = np.flatnonzero(air)
-    if len(rows) < _FEWEST_IN_AIR or np.ptp(time[rows]) < _SPREAD * np.ptp(time):
+    if len(rows) < _FEWEST_IN_AIR or np.ptp(time[rows]) < _AIR_SPAN * np.ptp(time):
         return False
-    return bool(np.diff(rows).max() >= _BETWEEN)
+    return bool(np.diff(rows).max() >= _LEAST_CONTACT)
 
 
 def _pauses(time: Array) -> tuple[Rows, Flags]:
@@ -206,7 +208,7 @@ def _pauses(time: Array) -> tuple[Rows, Flags]:
     """
     stretch = np.zeros(len(time), np.int64)
     beside = np.zeros(len(time), bool)
-    kept, every = long_stretches(time), stretches_in(time)
+    kept, every = long_stretches(time), find_stretches(time)
     for number, rows in enumerate(every):
         stretch[rows] = number
         beside[rows] = rows not in kept
@@ -215,22 +217,22 @@ def _pauses(time: Array) -> tuple[Rows, Flags]:
     return stretch, beside
 
 
-def _edge(position: Array, width: float, wanted: Preparation, found: DetectedContact) -> Flags:
+def _edge(position: Array, width: float, settings: Preparation, contact: DetectedContact) -> Flags:
     """Find samples that may be in air or not.
 
     They are where the position of contact may lie by the noise, unless it is given, and a width
     beyond: its curve is none of the laws.
     """
-    low, high = found.ends if wanted.zero is None else (0.0, 0.0)
-    most = _FARTHEST * float(np.ptp(position))
-    low, high = max(low, -most) - width, min(high, most) + width
+    low, high = contact.ends if settings.zero is None else (0.0, 0.0)
+    count = _FARTHEST * float(np.ptp(position))
+    low, high = max(low, -count) - width, min(high, count) + width
     return np.asarray((position > low) & (position < high))
 
 
-def _window(record: TissueRecord, wanted: Preparation) -> tuple[TissueRecord, list[str]]:
+def _window(record: TissueRecord, settings: Preparation) -> tuple[TissueRecord, list[str]]:
     time = record.motion.time
-    start = -np.inf if wanted.start is None else wanted.start
-    end = np.inf if wanted.end is None else wanted.end
+    start = -np.inf if settings.start is None else settings.start
+    end = np.inf if settings.end is None else settings.end
     inside = (time >= start) & (time <= end)
     if inside.sum() < FEWEST:
         raise DataError(
@@ -239,9 +241,9 @@ def _window(record: TissueRecord, wanted: Preparation) -> tuple[TissueRecord, li
             remedy=f"the record lasts from 0 s to {time[-1]:.6g} s",
         )
     motion = Motion(time[inside], record.motion.deflection[inside])
-    force = (-record.force if wanted.negate else record.force)[inside]
+    force = (-record.force if settings.negate else record.force)[inside]
     kept = replace(record, motion=motion, force=force)
-    return kept, _cut(time, ~inside, "outside start and end")
+    return kept, _unused_text(time, ~inside, "outside start and end")
 
 
 def _side(x: Array) -> int:
@@ -249,7 +251,7 @@ def _side(x: Array) -> int:
     return -1 if x.max() < 0.05 * np.ptp(x) and x.min() < -0.5 * np.ptp(x) else 1
 
 
-def _cut(time: Array, flags: Flags, reason: str) -> list[str]:
+def _unused_text(time: Array, flags: Flags, reason: str) -> list[str]:
     """Return a text about unused samples, if there are some."""
     inside = time[flags]
     if not len(inside):

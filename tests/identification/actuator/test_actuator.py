@@ -9,7 +9,7 @@ from nrs_design.errors import DataError
 from nrs_design.identification.actuator.identify import identify_actuator
 from nrs_design.identification.datasets.records import FrequencyResponse, read_actuator
 from tests.identification import motors
-from tests.identification.support import sinusoids, source
+from tests.identification.support import sinusoids, source, write_csv
 
 FEW = (1.2, 2.0, 3.0, 5.0, 8.0, 14.0)
 
@@ -116,9 +116,8 @@ def test_no_range_for_other_records(runs, data, said):
 def test_pauses_part_a_record_whose_stretches_are_fitted_together(tmp_path):
     whole = motors.record("PRBS", 1)
     kept = np.r_[0:800, 900:1000, 1010:1040, 1100 : len(whole.time)]
-    rows = np.column_stack([whole.time, whole.command, whole.output])[kept]
-    path = tmp_path / "paused.csv"
-    np.savetxt(path, rows, "%.9g", ",", header="time_s,command_rpm,angle_rad", comments="")
+    columns = (values[kept] for values in (whole.time, whole.command, whole.output))
+    path = write_csv(tmp_path / "paused.csv", "time_s,command_rpm,angle_rad", *columns)
     records = read_actuator(path)
     assert [(r.name, len(r.time)) for r in records] == [
         ("paused", 800), ("paused, part 2", 100), ("paused, part 3", len(whole.time) - 1100),

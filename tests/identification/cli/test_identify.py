@@ -5,13 +5,12 @@ import json
 import shutil
 from unittest.mock import patch
 
-import numpy as np
 import pytest
 
 from nrs_design.models.contact import Elastic, KelvinVoigt
 from nrs_design.spec import read_spec
 from tests.identification import signals
-from tests.identification.support import DATA, NOSE, SINUSOIDS, SOFT, quick, record
+from tests.identification.support import DATA, NOSE, SINUSOIDS, SOFT, quick, record, write_csv
 from tests.identification.unilateral import robot_record
 from tests.support import ROBOT, ROOT, SOFT_TISSUE, document_of, run
 
@@ -67,8 +66,7 @@ DELAY = ("identify", "delay", "loop.csv", "--command", "raw", "--measured", "use
 
 
 def write_loop(folder, time, raw, used):
-    rows = np.column_stack([time, raw, used])
-    np.savetxt(folder / "loop.csv", rows, "%.6f", ",", header="time_s,raw,used", comments="")
+    write_csv(folder / "loop.csv", "time_s,raw,used", time, raw, used)
 
 
 @pytest.mark.slow
@@ -159,9 +157,7 @@ def test_writing_a_law_that_fits_worse_warns(tmp_path):
 def press_csv(folder, data, scales=(1.0, 1.0)):
     """Write a record, whose deflection and force may be in another unit."""
     columns = (data.motion.time, scales[0] * data.motion.deflection, scales[1] * data.force)
-    rows, path = np.column_stack(columns), folder / "press.csv"
-    np.savetxt(path, rows, "%.12g", ",", header="t [s],x [m],F [N]", comments="")
-    return path
+    return write_csv(folder / "press.csv", "t [s],x [m],F [N]", *columns)
 
 
 @pytest.mark.slow

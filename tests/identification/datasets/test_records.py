@@ -18,16 +18,14 @@ from nrs_design.identification.datasets.records import (
 from nrs_design.identification.tables import table as tables
 from nrs_design.identification.tables.columns import parse_mapping
 from nrs_design.identification.tables.table import read_table
+from tests.identification.support import write_csv
 
 TIME = np.arange(200) / 100
 DEFLECTION = 0.005 * (1 - np.cos(3 * TIME))
 
 
 def write(tmp_path, header, *columns):
-    path = tmp_path / "record.csv"
-    rows = (",".join(f"{v:.9g}" for v in row) for row in zip(*columns, strict=True))
-    path.write_text(header + "\n" + "\n".join(rows) + "\n")
-    return path
+    return write_csv(tmp_path / "record.csv", header, *columns)
 
 
 def tissue(tmp_path, time=TIME, deflection=DEFLECTION, force=None):
@@ -121,11 +119,9 @@ print(len(record.force), peak() - before)
 
 @pytest.mark.slow
 def test_a_million_rows(tmp_path):
-    path = tmp_path / "large.csv"
     time = np.arange(ROWS) / 1000
     deflection = 0.01 * np.sin(time)
-    rows = np.column_stack([time, deflection, 750 * deflection])
-    np.savetxt(path, rows, "%.6f", ",", header="time_s,deflection_m,force_N", comments="")
+    path = write(tmp_path, "time_s,deflection_m,force_N", time, deflection, 750 * deflection)
     command = [sys.executable, "-c", SCRIPT, str(path)]
     done = subprocess.run(command, capture_output=True, text=True, check=True)
     count, kilobytes = map(int, done.stdout.split())

@@ -34,8 +34,8 @@ def test_a_whole_number_of_samples_without_noise():
     found = identify_delay(replace(record, output=seen))
     assert found.samples.value == pytest.approx(4.0, abs=1e-6)
     assert found.whole_samples == (4, 4)
-    assert found.in_periods(Fraction(found.record.step)) == (4, 4)
-    assert found.in_periods(Fraction(found.record.step) * 3) == (1, 2)
+    assert found.periods(Fraction(found.record.step)) == (4, 4)
+    assert found.periods(Fraction(found.record.step) * 3) == (1, 2)
 
 
 @pytest.mark.parametrize(

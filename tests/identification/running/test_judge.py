@@ -12,11 +12,13 @@ from nrs_design.identification.running.log import read_run
 from nrs_design.spec import parse_spec, read_spec
 from tests.identification import runs
 from tests.identification.runs import SAMPLED, SOFT, check, judged, log
-from tests.support import COMMUTING, ROBOT
+from tests.support import COMMUTING, ROBOT, ROOT
 
 
 def test_bounds_of_the_spec():
-    assert (SOFT.torque, SOFT.transitions, SOFT.delay) == (0.3, None, None)
+    assert (SOFT.torque, SOFT.transitions, SOFT.delay, SOFT.latency) == (0.3, None, None, "")
+    arm = read_run_bounds(read_spec(ROOT / "docs/examples/torque-arm.nrs.yaml"))
+    assert (arm.command, arm.latency) == ("N*m", "0.0003 s")
     with pytest.raises(DesignError, match="kind switched-system"):
         read_run_bounds(read_spec(COMMUTING))
 
@@ -197,8 +199,10 @@ def test_steps_that_are_not_those_of_the_loop_are_said(tmp_path, period, said):
     jitter = check(judged(log(tmp_path), replace(SAMPLED, period=period)), "jitter")
     assert ("no whole number of periods" in jitter.measured) is said
     assert f"sampled every {period:g} s" in jitter.allowed
-    late = check(judged(log(tmp_path), replace(SAMPLED, period=period, late="0.001 s")), "jitter")
-    assert late.allowed.startswith("0.001 s from a sample to its command")
+    late = replace(SAMPLED, period=period, latency="0.001 s")
+    assert check(judged(log(tmp_path), late), "jitter").allowed.startswith(
+        "0.001 s from a sample to its command"
+    )
 
 
 def test_the_spec_may_say_where_the_driver_saturates(tmp_path):

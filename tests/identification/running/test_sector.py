@@ -80,19 +80,19 @@ def test_a_stiffness_outside_is_told_once_its_torque_is_enough(tmp_path, factor,
     assert 4.0 < first.time <= (enough[0] if len(enough) else 10.0)
 
 
-def test_a_surface_that_moves_in_the_air(tmp_path):
-    """Pressed anew 1 mrad deeper each time."""
-    data = pressed(surface=lambda t, x: 0.001 * np.floor(t * 0.7 + 0.25))
-    data = (data[0], data[1], data[2], *data[3:])
+@pytest.mark.parametrize(
+    ("surface", "known"),
+    [
+        # Pressed anew 1 mrad deeper each time.
+        (lambda t, x: 0.001 * np.floor(t * 0.7 + 0.25), bounds("free")),
+        (lambda t, x: 0.0005 * np.sin(2 * t), bounds(more=", surface_speed: 1e-3 rad/s")),
+    ],
+    ids=["in the air", "all the time"],
+)
+def test_a_surface_that_moves(tmp_path, surface, known):
+    data = pressed(surface=surface)
     assert check(judged(tmp_path, data, bounds()), "stiffness").first is not None
-    assert check(judged(tmp_path, data, bounds("free")), "stiffness").first is None
-
-
-def test_a_surface_that_moves_all_the_time(tmp_path):
-    data = pressed(surface=lambda t, x: 0.0005 * np.sin(2 * t))
-    assert check(judged(tmp_path, data, bounds()), "stiffness").first is not None
-    moving = bounds(more=", surface_speed: 1e-3 rad/s")
-    assert check(judged(tmp_path, data, moving), "stiffness").first is None
+    assert check(judged(tmp_path, data, known), "stiffness").first is None
 
 
 def test_a_pull_is_told_unless_contact_is_kept(tmp_path):

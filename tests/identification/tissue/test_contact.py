@@ -60,12 +60,18 @@ def test_the_edge_holds_the_position_of_contact(law):
     assert sum(held) >= 18
 
 
-@pytest.mark.parametrize("seed", [36, 79, 113])
-def test_air_that_shows_in_a_later_cycle_only(seed):
-    """The second touch meets a tissue that has not come back, a fifth of the travel deeper."""
+@pytest.mark.parametrize("seed", [27, 124, 147, 183, 36, 79, 113])
+def test_air_that_no_single_touch_shows(seed):
+    """Four touches of a soft tissue in noise tell together what each leaves open.
+
+    In the last three the second touch meets a tissue that has not come back, a fifth of the travel
+    deeper.
+    """
     motion = slow(seed)
     found = find_contact(robot_record(synthetic.NOSE, motion, 0.0165, seed, tare=-0.04))
-    assert abs(found.zero) < 0.1 * 1.4 * np.ptp(motion.deflection)
+    assert found is not None
+    if seed in (36, 79, 113):
+        assert abs(found.zero) < 0.1 * 1.4 * np.ptp(motion.deflection)
 
 
 def test_samples_whose_noise_decides_where_a_touch_ends_are_left_out():
@@ -81,10 +87,3 @@ def test_a_tissue_that_relaxes_is_lost_early_and_met_late():
     second = found.touches[1]
     assert second.met > second.first
     assert second.lost < second.end
-
-
-@pytest.mark.parametrize("seed", [27, 124, 147, 183])
-def test_air_that_no_touch_shows_alone(seed):
-    """Four touches of a soft tissue in noise tell together what each leaves open."""
-    found = find_contact(robot_record(synthetic.NOSE, slow(seed), 0.0165, seed, tare=-0.04))
-    assert found is not None

@@ -67,7 +67,7 @@ def test_an_interval_that_reaches_zero():
     fit = fit_record(Elastic, data)
     assert "the interval of k reaches 0" in "; ".join(fit.doubts)
     # It does, at any confidence, and grows with it.
-    (small,), (middle,), (large,) = (fit.estimates_at(level) for level in (0.5, 0.95, 0.99))
+    (small,), (middle,), (large,) = (fit.intervals(level) for level in (0.5, 0.95, 0.99))
     assert small.low == middle.low == large.low == 0.0
     assert small.high < middle.high < large.high < np.inf
 

@@ -82,10 +82,10 @@ def rounding_scatter(
     if returns:
         lengths = np.diff([*starts, len(readings)])
         rests = lengths > _REST_LENGTH * np.median(lengths)
-        _, same = np.unique(readings[starts[rests]], return_inverse=True)
-        together = np.zeros((same.max(initial=-1) + 1, sensitivities.shape[1]))
-        np.add.at(together, same, sums[rests])
-        sums = np.concatenate([sums[~rests], together])
+        _, places = np.unique(readings[starts[rests]], return_inverse=True)
+        place_sums = np.zeros((places.max(initial=-1) + 1, sensitivities.shape[1]))
+        np.add.at(place_sums, places, sums[rests])
+        sums = np.concatenate([sums[~rests], place_sums])
     scatter: Array = (sums.T @ sums) * (slope * resolution(readings)) ** 2 / 12
     return scatter
 

@@ -36,8 +36,8 @@ from nrs_design.spec.sampling import LONGEST_DELAY, SamplingSpec
 from nrs_design.spec.spec_document import SpecDocument
 
 _DIGITS = 6
-# Fewer records say nothing of how much a tissue, or a motor, varies; nor is a range so many times
-# narrower than the declared one likely to hold what that one was for.
+# Fewer records do not show how specimens vary. A range that is narrower than the declared one by
+# the second factor is unlikely to cover the specimens that the declared one was for.
 FEW_RECORDS, MUCH_NARROWER = 3, 10
 NARROWER = "narrower than the declared one"
 # Ends are rounded outwards.
@@ -247,8 +247,8 @@ class _Writer:
             # The range that was declared before the same records is not there any more.
             texts += [old for old in before if old.endswith(NARROWER)]
         if len(texts) > MAX_DOUBTS:
-            more = len(texts) - MAX_DOUBTS + 1
-            texts = [*texts[: MAX_DOUBTS - 1], f"and {more} more"]
+            count = len(texts) - MAX_DOUBTS + 1
+            texts = [*texts[: MAX_DOUBTS - 1], f"and {count} more"]
         self.put("provenance", provenance)
         if texts != before:
             self.put("accept_doubt", None)
@@ -385,10 +385,10 @@ def check_turning(spec: object, path: Path) -> None:
 
 
 def _no_place(law: str, preload: tuple[Quantity, Quantity] | None = None) -> DataError:
-    said = "" if preload is None else f" (the spec has '{preload[0].text}..{preload[1].text}')"
+    text = "" if preload is None else f" (the spec has '{preload[0].text}..{preload[1].text}')"
     return DataError(
         f"the law {law} has no place in a spec without a preload",
-        remedy=f"say by --preload at which deflections{said}, or choose one that has a place: "
+        remedy=f"say by --preload at which deflections{text}, or choose one that has a place: "
         f"{_MODEL_OPTIONS}",
     )
 
@@ -435,8 +435,8 @@ def _exponent_range(estimate: Estimate) -> tuple[Decimal, Decimal]:
 
 
 def _one_line(text: str) -> str:
-    plain = "".join(letter if letter.isprintable() else " " for letter in text)
-    return plain if len(plain) <= MAX_TITLE else f"{plain[: MAX_TITLE - 4]} ..."
+    printable = "".join(letter if letter.isprintable() else " " for letter in text)
+    return printable if len(printable) <= MAX_TITLE else f"{printable[: MAX_TITLE - 4]} ..."
 
 
 def _outwards(estimate: Estimate, unit: str) -> dict[str, Any]:

@@ -53,22 +53,22 @@ def scan_motor(records: Sequence[SignalRecord]) -> MotorModel:
 
     Gain and friction are linear in the output for every command.
     """
-    tried = [(*_solve(records, *pair), *pair) for pair in _grid(records)]
-    best = min(tried, key=lambda item: item[0])
-    along = [item for item in tried if item[1][0] > _CLEAR * item[2][0]]
+    candidates = [(*_solve(records, *pair), *pair) for pair in _grid(records)]
+    best = min(candidates, key=lambda item: item[0])
+    positive = [item for item in candidates if item[1][0] > _CLEAR * item[2][0]]
     against = best[1][0] < -_CLEAR * best[2][0]
-    if not along and not against:
+    if not positive and not against:
         raise DataError(
             "the output does not follow the command",
             remedy="check that both columns belong to one motor and one clock",
         )
     # A poor model may invert the sign: the columns differ in sign if no other model fits nearly.
-    if not along or (against and min(item[0] for item in along) > _NEARLY * best[0]):
+    if not positive or (against and min(item[0] for item in positive) > _NEARLY * best[0]):
         raise DataError(
             "the output moves against the command: their signs are opposite",
             remedy="turn the sign of one column, or swap the leads of the sensor",
         )
-    _, solution, errors, tau, delay = min(along, key=lambda item: item[0])
+    _, solution, errors, tau, delay = min(positive, key=lambda item: item[0])
     gain = float(solution[0])
     clear = solution[1] > _CLEAR * errors[1] and tells_friction(records, tau, delay)
     return MotorModel(gain, tau, float(solution[1]) / gain if clear else None, delay)
@@ -107,11 +107,11 @@ def _solve(records: Sequence[SignalRecord], tau: float, delay: float) -> tuple[f
         # Else a friction above the command would pass for a motor that is wired the other way.
         X = X * [1.0, 0.0]
     solution = np.linalg.lstsq(X, y, rcond=None)[0]
-    rest = y - X @ solution
-    power = float(rest @ rest)
+    residuals = y - X @ solution
+    power = float(residuals @ residuals)
     inverse = np.linalg.pinv(X.T @ X)
-    spread = np.sqrt(np.diag(inverse) * power / max(len(y) - 2, 1))
-    return power, np.asarray(solution, float), np.maximum(spread, TINY)
+    deviations = np.sqrt(np.diag(inverse) * power / max(len(y) - 2, 1))
+    return power, np.asarray(solution, float), np.maximum(deviations, TINY)
 
 
 def _regressors(record: SignalRecord, tau: float, delay: float) -> tuple[Array, Array]:
@@ -135,8 +135,7 @@ class ActuatorFit:
     friction: Estimate | None
     uncertainty: Uncertainty  # For `MotorModel.parameters`, or the logarithms of the first two
     dead_time: Estimate | None = None  # D in s; None if assumed zero or not determined
-    # Motor fitted in time; None for a fit in the frequency domain.
-    motor: MotorModel | None = None
+    motor: MotorModel | None = None  # Motor fitted in time; None for a fit in the frequency domain
     # Shape (n,). Measured less fitted, of all records in turn.
     errors: Array = field(default_factory=lambda: np.empty(0))
 

@@ -175,9 +175,9 @@ def _slips(fit: ActuatorFit, unit: str) -> tuple[str, ...]:
         ("time_constant", fit.time_constant.value, "s"),
     )
     return tuple(
-        f"the {name.replace('_', ' ')} is {value:.4g} {si}: {asked}"
+        f"the {name.replace('_', ' ')} is {value:.4g} {si}: {question}"
         for name, value, si in sizes
-        if (asked := doubt_size(name, value, si))
+        if (question := doubt_size(name, value, si))
     )
 
 
@@ -187,17 +187,17 @@ def _fit(records: Sequence[SignalRecord]) -> ActuatorFit:
     The scan may find friction where there is none, as its times are coarse.
     """
     start = scan_motor(records)
-    without = replace(start, friction=None)
+    frictionless = replace(start, friction=None)
     if start.friction is None:
-        return fit_in_time(records, without)
+        return fit_in_time(records, frictionless)
     try:
         found = fit_in_time(records, start)
     except DataError:
-        return fit_in_time(records, without)
+        return fit_in_time(records, frictionless)
     if found.uncertainty.whiteness >= WHITE and found.tells_friction:
         return found
     try:
-        return min(found, fit_in_time(records, without), key=lambda fit: fit.bic)
+        return min(found, fit_in_time(records, frictionless), key=lambda fit: fit.bic)
     except DataError:
         return found
 
@@ -221,8 +221,8 @@ def find_doubts(records: Sequence[SignalRecord], found: ActuatorFit) -> Iterator
     for name, error in zip(names, found.uncertainty.errors.tolist(), strict=False):
         if error > _UNSURE:
             yield f"the records do not determine the {name}: its relative error is {error:.2g}"
-    spread = np.sqrt(sum(float(np.sum((r.output - r.output.mean()) ** 2)) for r in records))
-    missed = float(np.linalg.norm(found.errors)) / spread
+    motion = np.sqrt(sum(float(np.sum((r.output - r.output.mean()) ** 2)) for r in records))
+    missed = float(np.linalg.norm(found.errors)) / motion
     if found.uncertainty.whiteness < WHITE and missed > _MISSED:
         yield (
             f"the model misses {100 * missed:.2g} % of the motion, in errors that are not noise, "

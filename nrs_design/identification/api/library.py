@@ -125,6 +125,6 @@ def judge_log(log: Path, loaded: LoadedSpec, certificate: Path | None) -> Audit:
 
 def _audit_check(check: Check) -> AuditCheck:
     first = check.first
-    when, what = (None, "") if first is None else (first.time, first.words)
+    when, event = (None, "") if first is None else (first.time, first.words)
     status = str(check.status)
-    return AuditCheck(check.name, status, check.measured, check.allowed, check.basis, when, what)
+    return AuditCheck(check.name, status, check.measured, check.allowed, check.basis, when, event)

@@ -165,13 +165,13 @@ def tissue(
     arm = parse_arm(lever_arm, rotational=rotational)
     preparation = read_preparation(settings or (), rotational=rotational)
     deflections = parse_preload(preload, rotational=rotational)
-    law = asked = None if model is ModelOption.AUTO else str(model)
+    law = requested = None if model is ModelOption.AUTO else str(model)
     if outputs.spec is not None:
         law = law_to_write(
             outputs.spec,
             environment,
             lever_arm,
-            asked,
+            requested,
             preloaded=deflections is not None,
             rotational=rotational,
         )
@@ -179,7 +179,13 @@ def tissue(
         raise typer.BadParameter("name a spec by --write, too", param_hint="--environment")
     with progress("fitting") as step:
         result = identify_tissue(
-            records, law, preparation, covers, deflections, progress=step, declared=asked is None
+            records,
+            law,
+            preparation,
+            covers,
+            deflections,
+            progress=step,
+            declared=requested is None,
         )
     return _deliver(
         outputs,

@@ -25,9 +25,9 @@ _ROUNDING_UNITS = 8
 
 def doubt_step(step: float) -> Iterator[str]:
     """Doubt a usual step in s that no logger has: seconds were read as milliseconds, or back."""
-    if asked := doubt_size("recorded_step", step, "s", f"{step:.3g}"):
-        asked = asked.replace("its unit", "their unit")
-        yield f"the steps of time are {step:.3g} s: {asked} (--map names another)"
+    if question := doubt_size("recorded_step", step, "s", f"{step:.3g}"):
+        question = question.replace("its unit", "their unit")
+        yield f"the steps of time are {step:.3g} s: {question} (--map names another)"
 
 
 def find_gaps(time: Array) -> Flags:
@@ -50,13 +50,13 @@ def pauses_text(time: Array) -> str | None:
     """Say how a record is parted by pauses; None if it is not."""
     if (count := len(find_stretches(time)) - 1) == 0:
         return None
-    kept = long_stretches(time)
-    spans = ", ".join(span(time[r.start], time[r.stop - 1], "s") for r in kept)
-    left = len(time) - sum(rows.stop - rows.start for rows in kept)
+    long = long_stretches(time)
+    spans = ", ".join(span(time[r.start], time[r.stop - 1], "s") for r in long)
+    left = len(time) - sum(rows.stop - rows.start for rows in long)
     short = f"; {counted(left, 'sample')} in shorter stretches: left out" if left else ""
     many = f"{count} pauses part the record" if count > 1 else "a pause parts the record"
-    joined = "its stretches are fitted together" if len(kept) > 1 else "this stretch is fitted"
-    return f"{many}: {joined} ({spans}){short}"
+    use = "its stretches are fitted together" if len(long) > 1 else "this stretch is fitted"
+    return f"{many}: {use} ({spans}){short}"
 
 
 def check_time(table: MeasurementTable, time: Array) -> None:

@@ -94,8 +94,7 @@ class FrequencyResponse:
 
     source: Source  # The file
     frequency: Array  # Shape (m,). In rad/s.
-    # Shape (m,). In rad/s for each unit of the command.
-    response: Complex
+    response: Complex  # Shape (m,). In rad/s for each unit of the command.
     unit: str = "rpm"  # Unit of the command of the thesis; no column states it
 
 

@@ -135,8 +135,8 @@ class DelayFit:
     @property
     def bic(self) -> float:
         """Bayesian information criterion, up to a constant of the record."""
-        least = EXACT * float(self.measured @ self.measured)
-        return bic(self.errors, 1 + len(self.follower.shape), least)
+        floor = EXACT * float(self.measured @ self.measured)
+        return bic(self.errors, 1 + len(self.follower.shape), floor)
 
 
 def fit_delay(

@@ -241,8 +241,8 @@ def identify_delay(record: SignalRecord) -> DelayIdentification:
     fits = (copy, *(fit for fit in lagged if abs(fit.delay) <= _longest(record)))
     # A fast second lag and a delay are nearly alike: chance alone would choose it now and then, and
     # its interval for the delay would not hold. So the simplest is chosen.
-    least = min(fit.bic for fit in fits)
-    good = [fit for fit in fits if fit.bic <= least + _CLEARLY]
+    lowest = min(fit.bic for fit in fits)
+    good = [fit for fit in fits if fit.bic <= lowest + _CLEARLY]
     chosen = min(good, key=lambda fit: (len(fit.follower.shape), fit.bic))
     found = DelayIdentification(fits, chosen, peak)
     _check_explained(found)
@@ -303,8 +303,8 @@ def _fitted_rows(record: SignalRecord, lag: float) -> Rows:
     kept = []
     for number, rows in enumerate(record.stretches):
         time = record.time[rows]
-        inside = np.flatnonzero(time >= time[0] + skipped) + rows.start
-        kept.append(inside if number == len(record.stretches) - 1 else inside[:-_ROWS_BEFORE])
+        part_rows = np.flatnonzero(time >= time[0] + skipped) + rows.start
+        kept.append(part_rows if number == len(record.stretches) - 1 else part_rows[:-_ROWS_BEFORE])
     found = np.concatenate(kept)
     if len(found) < FEWEST_ROWS:
         raise DataError(
@@ -340,8 +340,8 @@ def _held_interval(fit: DelayFit, rows: Rows, confidence: float) -> Estimate:
     best = int(np.argmin(powers))
     # Neighbours that are alike count less; and without noise, rounding decides nothing.
     count = max(independent(errors[best]), 1.0)
-    least = max(float(powers[best]), EXACT * float(np.sum(measured**2)))
-    kept = late[powers <= least * np.exp(float(chdtri(1, 1 - confidence)) / count)]
+    lowest = max(float(powers[best]), EXACT * float(np.sum(measured**2)))
+    kept = late[powers <= lowest * np.exp(float(chdtri(1, 1 - confidence)) / count)]
     low, high = float(min(kept, default=late[best])), float(max(kept, default=late[best]))
     return Estimate(float(late[best]), low - 1.0, high + 1.0)
 
@@ -404,10 +404,10 @@ def _starts(
     part = replace(
         record, **{name: getattr(record, name)[:_SCANNED] for name in ("time", "command", "output")}
     )
-    inside = rows[rows < len(part.time)]
+    part_rows = rows[rows < len(part.time)]
 
     def missed(pair: tuple[AbstractFollower, float]) -> float:
-        error = fit_errors(part, *pair, inside)
+        error = fit_errors(part, *pair, part_rows)
         return float(error @ error)
 
     for family in families:
@@ -463,8 +463,8 @@ def _part_of_other_frequencies(record: SignalRecord) -> float:
     def missed(frequency: float) -> float:
         phase = 2 * math.pi * frequency * time
         columns = np.column_stack([np.sin(phase), np.cos(phase), np.ones(count)])
-        rest = command - columns @ np.linalg.lstsq(columns, command, rcond=None)[0]
-        return float(rest @ rest)
+        residuals = command - columns @ np.linalg.lstsq(columns, command, rcond=None)[0]
+        return float(residuals @ residuals)
 
     # A frequency between bins is within one of the largest.
     found = minimize_scalar(
@@ -497,8 +497,8 @@ def _doubts(found: DelayIdentification) -> Iterator[str]:
     command, output = record.names
     yield from doubt_step(record.step)
     late = found.delay.value
-    if asked := doubt_size("delay", late, "s"):
-        yield f"the delay is {late:.4g} s: {asked}"
+    if question := doubt_size("delay", late, "s"):
+        yield f"the delay is {late:.4g} s: {question}"
     early, error = -fit.samples, (found.interval.high - found.interval.low) / 2
     if untold is not None:
         yield f"the delay is {untold}"

@@ -27,29 +27,29 @@ _MEANING = (
 
 def view_delay(result: DelayIdentification) -> FindingView:
     """Return the output of the identification of a delay."""
-    (sent, seen), (lag, correlation) = result.record.names, result.peak
+    (command, output), (lag, correlation) = result.record.names, result.peak
     model, step, whole = (
         result.chosen.follower.name,
         result.record.step,
         span(*result.whole_samples),
     )
-    when = f"{abs(lag):.4g} s {'later' if lag >= 0 else 'earlier'}"
+    direction = f"{abs(lag):.4g} s {'later' if lag >= 0 else 'earlier'}"
     return FindingView(
         result,
         kind="delay",
         chosen=model,
-        reason=f"from {sent} to {seen}",
+        reason=f"from {command} to {output}",
         ranges={"delay": (result.delay, "s"), "samples": (result.samples, "samples")},
         facts=_facts(result),
         lines=(
-            f"{seen} is most like {sent} {when} (correlation {correlation:.3f})",
+            f"{output} is most like {command} {direction} (correlation {correlation:.3f})",
             f"delay = {result.samples} samples of {step:.4g} s [95 %]",
             f"delay = {result.delay} s, beside {model}",
             f"whole samples that hold it, and every part of the record: {whole}",
         ),
         details=(),
         fits=_table(result),
-        title=f"Delay from {sent} to {seen}",
+        title=f"Delay from {command} to {output}",
         claim=f"{result.samples} samples of {number(step, 4)} s, beside {model}. Whole "
         f"samples that hold it and every part of the record: {whole}.",
         sections=lambda: _sections(result),
@@ -58,12 +58,12 @@ def view_delay(result: DelayIdentification) -> FindingView:
 
 
 def _table(result: DelayIdentification) -> Table:
-    least = min(fit.bic for fit in result.fits)
+    lowest = min(fit.bic for fit in result.fits)
     rows = tuple(
         (
             marked(fit.follower.name, chosen=fit is result.chosen),
             number(fit.delay / result.record.step),
-            number(fit.bic - least),
+            number(fit.bic - lowest),
         )
         for fit in result.fits
     )
@@ -103,5 +103,5 @@ def _sections(result: DelayIdentification) -> Iterator[Section]:
     record = result.record
     figure = draw_fit(record.time, record.output, result.chosen.fitted, record.names[1])
     note = label_of(result.sources)
-    drawn = Illustration("following", "Measured against fitted", note, figure)
-    yield Section("Figures", (drawn,))
+    illustration = Illustration("following", "Measured against fitted", note, figure)
+    yield Section("Figures", (illustration,))

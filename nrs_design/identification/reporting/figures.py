@@ -48,21 +48,21 @@ def draw_fit(
     Samples that were not used for the fit are pale.
     """
     pick = _thinned(len(time))
-    kept = np.ones(len(time), bool)[pick] if used is None else used[pick]
+    shown = np.ones(len(time), bool)[pick] if used is None else used[pick]
     figure = new_figure(4.4)
-    above, below = figure.subplots(2, 1, sharex=True, height_ratios=[2.4, 1.0])
+    upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=[2.4, 1.0])
     t, data, curve = time[pick], measured[pick], fitted[pick]
-    above.plot(t[kept], data[kept], ".", color=_MEASURED, markersize=4.0, label="data")
-    if not kept.all():
-        above.plot(t[~kept], data[~kept], "x", color=_UNUSED, markersize=3.5, label="not used")
-    above.plot(t, np.where(kept, curve, np.nan), color=BLUE, label="fitted", linewidth=1.4)
-    above.set_ylabel(label)
-    below.plot(t[kept], (data - curve)[kept], ".", color=VERMILLION, markersize=2.5)
-    below.axhline(0.0, color=INK, linewidth=0.8)
+    upper.plot(t[shown], data[shown], ".", color=_MEASURED, markersize=4.0, label="data")
+    if not shown.all():
+        upper.plot(t[~shown], data[~shown], "x", color=_UNUSED, markersize=3.5, label="not used")
+    upper.plot(t, np.where(shown, curve, np.nan), color=BLUE, label="fitted", linewidth=1.4)
+    upper.set_ylabel(label)
+    lower.plot(t[shown], (data - curve)[shown], ".", color=VERMILLION, markersize=2.5)
+    lower.axhline(0.0, color=INK, linewidth=0.8)
     # Short enough for its height.
-    below.set_ylabel("Data - fitted")
-    below.set_xlabel("Time [s]")
-    legend(figure, above)
+    lower.set_ylabel("Data - fitted")
+    lower.set_xlabel("Time [s]")
+    legend(figure, upper)
     return figure
 
 
@@ -70,18 +70,18 @@ def draw_fit(
 def draw_response(frequency: Array, measured: Complex, model: tuple[Array, Complex]) -> Figure:
     """Draw magnitude and phase of data and model over frequencies in rad/s."""
     figure = new_figure(4.8)
-    above, below = figure.subplots(2, 1, sharex=True)
+    upper, lower = figure.subplots(2, 1, sharex=True)
     for w, values, style, color, label in (
         (frequency, measured, "o", VERMILLION, "data"),
         (*model, "-", BLUE, "fitted"),
     ):
         decibel = 20 * np.log10(np.abs(values))
-        above.semilogx(w, decibel, style, color=color, label=label)
-        below.semilogx(w, np.degrees(np.angle(values)), style, color=color)
-    above.set_ylabel("Magnitude [dB]")
-    below.set_ylabel("Phase [deg]")
-    below.set_xlabel("Frequency [rad/s]")
-    legend(figure, above)
+        upper.semilogx(w, decibel, style, color=color, label=label)
+        lower.semilogx(w, np.degrees(np.angle(values)), style, color=color)
+    upper.set_ylabel("Magnitude [dB]")
+    lower.set_ylabel("Phase [deg]")
+    lower.set_xlabel("Frequency [rad/s]")
+    legend(figure, upper)
     return figure
 
 

@@ -90,8 +90,8 @@ def run_report(run: RunJudgement, name: str, reason: str) -> Report:
     sources = [run.log.source]
     claim = first_violation(run) or CLAIMS[run.verdict]
     limit = _PROVED if run.bounds.proved else _NO_PROOF
-    about = "Dashed: the first violation, if there is one."
-    figure = Illustration("run", "The log", about, draw_log(run))
+    note = "Dashed: the first violation, if there is one."
+    figure = Illustration("run", "The log", note, draw_log(run))
     return Report(
         name=f"run-{name}",
         title=f"A run of {name}",

@@ -120,12 +120,12 @@ def _record_texts(result: TissueIdentification) -> tuple[str, ...]:
 def _table(result: TissueIdentification) -> Table:
     """Return how well each law describes the records."""
     records = [record.name for record in result.records]
-    least = min(model.bic for model in result.models)
+    lowest = min(model.bic for model in result.models)
     rows = tuple(
         (
             marked(model.law.name, chosen=model is result.chosen),
             *(number(fit.rmse, 3) for fit in model.fits),
-            number(model.bic - least),
+            number(model.bic - lowest),
             f"{min(fit.uncertainty.whiteness for fit in model.fits):.2g}",
             str(len(model.doubts)),
         )

@@ -67,10 +67,8 @@ class RunBounds:
     # In m, to convert linear columns into rotational ones; None where environments have none or
     # several.
     lever_arm: float | None
-    # Sample period of the proof in s; None for a proof in continuous time.
-    period: float | None
-    # Whether the spec requires a proof for lost contact; None if it leaves that to
-    # the proof.
+    period: float | None  # Sample period of the proof in s; None for a proof in continuous time
+    # Whether the spec requires a proof for lost contact; None without a requirement.
     losable: bool | None
     command: str  # Unit of the motor's command
     # Assumed deflections of each environment, in words; no log shows them.
@@ -80,8 +78,7 @@ class RunBounds:
     # Condition on torque and angle of every row, or the reason why there is none.
     sector: Sector | str = ""
     oldest: float = 0.0  # How old a torque may be in its row, in s
-    # Time from a sample to its command, in words; empty for none.
-    latency: str = ""
+    latency: str = ""  # Time from a sample to its command, in words; empty for none
     proved: bool = False  # Whether a valid certificate proves the spec
 
     @property

@@ -109,10 +109,10 @@ def _rows(log: RunLog, columns: tuple[Array, Array], sector: Sector, old: int) -
     noise, error = float(sector.torque_noise), float(sector.angle_noise)
     low, high = float(sector.low), float(sector.high)
     size = np.abs(angle).max() + np.abs(torque).max() / low
-    about = error * (1 + _ROUNDING) + _ROUNDING * float(size)
+    margin = error * (1 + _ROUNDING) + _ROUNDING * float(size)
     late = [np.concatenate([np.full(k, np.nan), angle[: len(angle) - k]]) for k in range(old + 1)]
     # Before the log, and before a gap, an angle is not known: NaN stays NaN.
-    first, last = np.min(late, axis=0) - about, np.max(late, axis=0) + about
+    first, last = np.min(late, axis=0) - margin, np.max(late, axis=0) + margin
     for k in np.flatnonzero(log.gaps):
         first[k + 1 : k + 1 + old] = last[k + 1 : k + 1 + old] = np.nan
     least, most = torque - noise * (1 + _ROUNDING), torque + noise * (1 + _ROUNDING)
@@ -169,11 +169,11 @@ def _stiffness(
         words = f"the range explains every row; {within}"
         return Check("stiffness", BoundStatus.UNDECIDED, words, allowed, basis)
     at = int(first)
-    what = Violation(
+    violation = Violation(
         log.begin + float(log.time[at]),
         f"no stiffness of the range explains {torque[at]:.4g} N m and the rows before",
     )
-    return Check("stiffness", BoundStatus.OUTSIDE, within, allowed, basis, what)
+    return Check("stiffness", BoundStatus.OUTSIDE, within, allowed, basis, violation)
 
 
 def _speed(log: RunLog, angle: Array, sector: Sector, basis: str) -> Iterator[Check]:
@@ -185,12 +185,12 @@ def _speed(log: RunLog, angle: Array, sector: Sector, basis: str) -> Iterator[Ch
     step = np.maximum(np.diff(log.time), log.step)
     size = np.abs(np.diff(angle))
     noise = 2 * float(sector.reading) + _ROUNDING * float(np.abs(angle).max())
-    over = np.flatnonzero(size > limit * step * (1 + 1e-9) + noise)
+    rows_above = np.flatnonzero(size > limit * step * (1 + 1e-9) + noise)
     measured = f"at least {max(float(size.max()) - noise, 0.0):.3g} rad in a row"
-    if not len(over):
+    if not len(rows_above):
         yield Check(name, BoundStatus.INSIDE, measured, f"up to {limit:.4g} rad/s", basis)
         return
-    at = int(over[0]) + 1
+    at = int(rows_above[0]) + 1
     words = f"{size[at - 1]:.3g} rad in {step[at - 1]:.3g} s"
     first = Violation(log.begin + float(log.time[at]), words)
     yield Check(name, BoundStatus.OUTSIDE, measured, f"up to {limit:.4g} rad/s", basis, first)

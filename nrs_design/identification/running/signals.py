@@ -23,8 +23,8 @@ def judge_delay(log: RunLog, bounds: RunBounds) -> Check:
     """Judge how late the motion follows the command."""
     seen = next((name for name in ("angle", "velocity") if name in log.columns), None)
     if "command" not in log.columns or seen is None:
-        gone = "command" if "command" not in log.columns else "angle or velocity"
-        return Check.open("delay", f"no column for {gone}")
+        missing = "command" if "command" not in log.columns else "angle or velocity"
+        return Check.open("delay", f"no column for {missing}")
     pair = log.columns["command"], log.columns[seen]
     try:
         found = identify_delay(SignalRecord(log.source, log.time, *pair, names=("command", seen)))
@@ -64,10 +64,10 @@ def _time_of(bounds: RunBounds) -> str:
     model = "proof" if bounds.proved else "spec"
     if bounds.period is None:
         return f"none: the {model} is in continuous time"
-    every = f"every {bounds.period:g} s"
+    period_text = f"every {bounds.period:g} s"
     if bounds.latency:
-        return f"{bounds.latency} from a sample to its command in the {model}, {every}"
-    return f"none: the {model} is about a motion without dead time, sampled {every}"
+        return f"{bounds.latency} from a sample to its command in the {model}, {period_text}"
+    return f"none: the {model} is about a motion without dead time, sampled {period_text}"
 
 
 def judge_saturation(log: RunLog, bounds: RunBounds, limit: float | None) -> Check:
@@ -81,11 +81,11 @@ def judge_saturation(log: RunLog, bounds: RunBounds, limit: float | None) -> Che
         reason = f"{largest}; {unknown}: give --command-limit, or the spec `limits: command`"
         return Check.open("saturation", reason)
     allowed = f"below {limit:g} {log.command_unit}"
-    met = np.flatnonzero(size >= limit)
-    if not len(met):
+    rows = np.flatnonzero(size >= limit)
+    if not len(rows):
         return Check("saturation", BoundStatus.INSIDE, largest, allowed, bounds.assumed_by)
-    words = f"the command is {log.columns['command'][met[0]]:.5g} {log.command_unit}"
-    first = Violation(log.begin + float(log.time[met[0]]), words)
+    words = f"the command is {log.columns['command'][rows[0]]:.5g} {log.command_unit}"
+    first = Violation(log.begin + float(log.time[rows[0]]), words)
     return Check("saturation", BoundStatus.OUTSIDE, largest, allowed, bounds.assumed_by, first)
 
 
@@ -102,12 +102,12 @@ def judge_force(log: RunLog, bounds: RunBounds) -> Check:
     size = np.abs(torque)
     largest = f"largest torque {size.max():.4g} N m"
     # Largest noise of any row, at 95 % for all rows together.
-    reach = student_quantile(len(size), joint_level(len(size)))
-    reach *= float(np.sqrt(noise_variance(torque)))
-    over = np.flatnonzero(size - reach > bounds.torque)
-    if not len(over):
+    noise = student_quantile(len(size), joint_level(len(size)))
+    noise *= float(np.sqrt(noise_variance(torque)))
+    rows = np.flatnonzero(size - noise > bounds.torque)
+    if not len(rows):
         status = BoundStatus.UNDECIDED if size.max() > bounds.torque else BoundStatus.INSIDE
-        return Check("force", status, f"{largest}, noise up to {reach:.2g} N m", allowed, basis)
-    words = f"the torque is {torque[over[0]]:.4g} N m"
-    first = Violation(log.begin + float(log.time[over[0]]), words)
+        return Check("force", status, f"{largest}, noise up to {noise:.2g} N m", allowed, basis)
+    words = f"the torque is {torque[rows[0]]:.4g} N m"
+    first = Violation(log.begin + float(log.time[rows[0]]), words)
     return Check("force", BoundStatus.OUTSIDE, largest, allowed, basis, first)

@@ -47,14 +47,12 @@ _TURN = 0.3
 class Touch:
     """Rows of one touch."""
 
-    # Beyond the position of contact.
-    first: int
-    # met, lost: with force. Where the tissue is not at rest, it is met later than at the position
-    # of contact, and lost earlier.
+    first: int  # First row beyond the position of contact
+    # met, lost: first row with force, and end of the rows with force. A tissue that is not at rest
+    # is met beyond the position of contact, and lost before it.
     met: int
     lost: int
-    # Beyond the position of contact.
-    end: int
+    end: int  # End of the rows beyond the position of contact
 
 
 @dataclass(frozen=True, eq=False)
@@ -174,8 +172,8 @@ def _errors(curve: int, w: Array, velocity: Array, force: Array) -> Array:
     The curve is quadratic, with a force in proportion to the velocity that begins with a jump, and
     perhaps one that grows with the deflection, too. Deflections w, shape (m, n), are from 0 to 1.
     """
-    rest = _residuals(curve, w, velocity, force)
-    return np.asarray(np.einsum("...n,...n->...", rest, rest))
+    residual = _residuals(curve, w, velocity, force)
+    return np.asarray(np.einsum("...n,...n->...", residual, residual))
 
 
 def _residuals(curve: int, w: Array, velocity: Array, force: Array) -> Array:
@@ -191,8 +189,8 @@ def _residuals(curve: int, w: Array, velocity: Array, force: Array) -> Array:
 def _is_flat(u: Array, force: Array, corner: float) -> bool:
     """Tell whether the force stays in air: a slope that is small against that of the contact."""
     air = u < corner
-    inside = u - u.mean()
-    centered = inside[air] - inside[air].mean()
+    depth = u - u.mean()
+    centered = depth[air] - depth[air].mean()
     slope = float(centered @ force[air]) / max(float(centered @ centered), np.finfo(float).tiny)
     noise = force[air] - force[air].mean() - slope * centered
     error = float(np.sqrt(np.mean(noise**2) / max(float(centered @ centered), 1e-300)))
@@ -215,8 +213,8 @@ def _clear(force: Array, beyond: Flags) -> Flags:
     """Flag samples whose force clearly differs from the force in air."""
     air = force[~beyond]
     noise = float(np.std(air)) / np.sqrt(_SMOOTH)
-    away = np.abs(smoothed(force, _SMOOTH) - float(np.median(air)))
-    return np.asarray(beyond & (away > _CLEAR * noise))
+    distance = np.abs(smoothed(force, _SMOOTH) - float(np.median(air)))
+    return np.asarray(beyond & (distance > _CLEAR * noise))
 
 
 def find_cycles(deflection: Array) -> tuple[slice, ...]:
@@ -259,21 +257,21 @@ def surface(
     (rad) from the contact; below the least deflection the tissue counts as come back.
     """
     deflection, touching = np.zeros(len(time)), np.zeros(len(time), bool)
-    # The first touch meets a tissue at rest: so deep it is before noise lets see its force.
-    rest = max(float(position[touches[0].met]), 0.0) + least if touches else 0.0
+    # Depth at which noise lets the force show: the first touch meets a tissue at rest.
+    depth = max(float(position[touches[0].met]), 0.0) + least if touches else 0.0
     lost, since = 0.0, 0
     for touch in touches:
         met, left = float(position[touch.met]), float(position[touch.lost - 1])
-        late = lost > 0 and met > rest
+        late = lost > 0 and met > depth
         # Only a force shows that a separated tissue has come back.
         begin = touch.met if lost > 0 else touch.first
-        rows = slice(begin, touch.lost if left > rest else touch.end)
+        rows = slice(begin, touch.lost if left > depth else touch.end)
         deflection[rows], touching[rows] = position[rows], True
         if lost > 0:
             gap = slice(since, rows.start)
             part = (time[gap] - time[since - 1]) / (time[rows.start] - time[since - 1])
             deflection[gap] = lost * ((min(met, lost) if late else least) / lost) ** part
-        lost, since = left if left > rest else 0.0, rows.stop
+        lost, since = left if left > depth else 0.0, rows.stop
     # The deflection after the last touch has no effect; a jump would be a velocity.
     deflection[since:] = lost
     return np.maximum(deflection, 0.0), touching

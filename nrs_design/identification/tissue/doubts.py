@@ -57,8 +57,8 @@ def _sizes(law: AbstractContactLaw, *, rotational: bool) -> Iterator[str]:
         return
     units = law.units(rotational=rotational)
     for name, key, value, si in zip(law.parameters(), law.keys, law.values, units, strict=True):
-        if asked := doubt_size(key, value, si, f"{value:.3g}"):
-            yield f"{name} is {value:.3g} {si}: {asked}"
+        if question := doubt_size(key, value, si, f"{value:.3g}"):
+            yield f"{name} is {value:.3g} {si}: {question}"
 
 
 def _units(trial: Trial) -> Iterator[str]:
@@ -70,8 +70,8 @@ def _units(trial: Trial) -> Iterator[str]:
     ):
         span = float(np.ptp(values))
         field, si = f"recorded_{name[rotational]}", unit[rotational]
-        if asked := doubt_size(field, span, si, f"{span:.3g}"):
-            yield f"the {what} spans {span:.3g} {si}: {asked} (--map names another)"
+        if question := doubt_size(field, span, si, f"{span:.3g}"):
+            yield f"the {what} spans {span:.3g} {si}: {question} (--map names another)"
     yield from doubt_step(trial.step)
 
 

@@ -111,17 +111,17 @@ def _check(records: Sequence[TissueRecord]) -> None:
             path=odd.source.path,
             remedy="identify them one after the other",
         )
-    seen: dict[str, TissueRecord] = {}
+    by_hash: dict[str, TissueRecord] = {}
     for record in records:
-        if record.source.sha256 in seen:
-            twin = seen[record.source.sha256]
+        if record.source.sha256 in by_hash:
+            twin = by_hash[record.source.sha256]
             raise DataError(
                 f"has the same content as {twin.source.path}: a record counted twice would "
                 "narrow the interval",
                 path=record.source.path,
                 remedy="name it once",
             )
-        seen[record.source.sha256] = record
+        by_hash[record.source.sha256] = record
 
 
 def _choose(models: Sequence[ModelFit]) -> tuple[ModelFit, str]:
@@ -141,9 +141,9 @@ def _choose(models: Sequence[ModelFit]) -> tuple[ModelFit, str]:
 
 def _keep_law(models: Sequence[ModelFit], law: str, *, declared: bool) -> tuple[ModelFit, str]:
     chosen = next(model for model in models if model.law.name == law)
-    own, _ = _choose(models)
-    agrees = "as by the comparison" if own is chosen else f"the comparison prefers {own.law.name}"
+    best, _ = _choose(models)
+    agrees = "as by the comparison" if best is chosen else f"the comparison prefers {best.law.name}"
     if not declared:
         return chosen, f"{law} was asked for; {agrees}."
-    other = "" if own is chosen else f" (--model {own.law.name} would write that)"
+    other = "" if best is chosen else f" (--model {best.law.name} would write that)"
     return chosen, f"{law} is the law of the spec, which is kept; {agrees}{other}."

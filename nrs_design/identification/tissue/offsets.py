@@ -47,11 +47,11 @@ class Offset:
 
 def offset_names(kind: type[AbstractContactLaw], trial: Trial) -> tuple[str, ...]:
     """Return the offsets that add to the force in proportion."""
-    wanted, names = trial.preparation, []
+    settings, names = trial.preparation, []
     keeps_force = issubclass(kind, AbstractLinearLaw) and kind.has_rest
-    if wanted.tare is None:
+    if settings.tare is None:
         names.append(TARE)
-    if keeps_force and wanted.zero is None and (trial.contact is not None or not names):
+    if keeps_force and settings.zero is None and (trial.contact is not None or not names):
         names.append(CONTACT)
     return (*names, DRIFT) if trial.drift else tuple(names)
 
@@ -81,7 +81,7 @@ def estimate_offsets(
     moved = [] if shift is None else [(ZERO, shift)]
     constants = [*moved, *zip(names, values.tolist(), strict=True)]
     fitted = {name: (at, value) for at, (name, value) in enumerate(constants, len(law.values))}
-    quantile, wanted = student_quantile(known.degrees), trial.preparation
+    quantile, settings = student_quantile(known.degrees), trial.preparation
 
     def signed(name: str, reference: float = 0.0) -> Offset:
         at, value = fitted[name]
@@ -92,16 +92,16 @@ def estimate_offsets(
     offsets, constant = [], CONTACT if CONTACT in fitted else TARE
     # Only the sum of both shows.
     assumed = False
-    if wanted.zero is not None:
-        offsets.append(Offset(ZERO, Estimate(wanted.zero, wanted.zero, wanted.zero), False))
+    if settings.zero is not None:
+        offsets.append(Offset(ZERO, Estimate(settings.zero, settings.zero, settings.zero), False))
     elif shift is not None:
         offsets.append(signed(ZERO, trial.reference))
     elif constant in fitted and _static(law)[0]:
-        assumed = trial.contact is None and wanted.tare is None
+        assumed = trial.contact is None and settings.tare is None
         balanced = _balanced(law, trial, known, *fitted[constant])
         offsets.append(Offset(ZERO, balanced, True, "if the tare is 0" if assumed else ""))
-    if wanted.tare is not None:
-        offsets.append(Offset(TARE, Estimate(wanted.tare, wanted.tare, wanted.tare), False))
+    if settings.tare is not None:
+        offsets.append(Offset(TARE, Estimate(settings.tare, settings.tare, settings.tare), False))
     elif assumed:
         offsets.append(Offset(TARE, Estimate(0.0, 0.0, 0.0), False, "taken as zero"))
     else:

@@ -113,19 +113,19 @@ def _judge(point: Point, bounds: tuple[Array, Array]) -> RecordFit:
     p = len(law.values)
     shift = point.shift if len(point.values) > p else None
     offsets = estimate_offsets(law, trial, names, point.best[: len(names)], shift, placed)
-    own = Uncertainty(known.covariance[:p, :p], known.degrees, known.whiteness)
-    said = list(doubts(law, trial, own, bounds, residuals, J))
+    law_uncertainty = Uncertainty(known.covariance[:p, :p], known.degrees, known.whiteness)
+    texts = list(doubts(law, trial, law_uncertainty, bounds, residuals, J))
     if shift is not None and abs(point.values[p]) > _ZERO_RANGE * (1 - 1e-3):
-        said.append("the position of contact is at the end of its box")
+        texts.append("the position of contact is at the end of its box")
     return RecordFit(
         trial=trial,
         law=law,
         offsets=offsets,
         fitted=point.whole_force,
-        uncertainty=own,
+        uncertainty=law_uncertainty,
         rmse=float(np.sqrt(np.mean(residuals**2))),
         free=J.shape[1],
-        doubts=tuple(said),
+        doubts=tuple(texts),
     )
 
 

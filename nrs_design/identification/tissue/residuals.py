@@ -125,14 +125,14 @@ def _structure(trial: Trial, residuals: Array) -> Iterator[str]:
     ):
         if size > LARGEST_STRUCTURE * span and p < WHITE:
             # A p-value that leaves the floats is not 0.
-            said = f"p = {p:.1g}" if p > 1e-99 else "p < 1e-99"
-            part = f"{100 * size / span:.2g} % of the range of the force, {test} {said}"
+            p_text = f"p = {p:.1g}" if p > 1e-99 else "p < 1e-99"
+            part = f"{100 * size / span:.2g} % of the range of the force, {test} {p_text}"
             yield f"the residuals {what} ({part})"
 
 
 def _given_offsets(trial: Trial, residuals: Array, sensitivities: Array) -> Iterator[str]:
-    wanted = trial.preparation
-    if wanted.zero is None and wanted.tare is None:
+    settings = trial.preparation
+    if settings.zero is None and settings.tare is None:
         return
     columns = np.column_stack([np.ones(len(residuals)), trial.touching[trial.used]])
     gain = _gain(residuals, sensitivities, columns)
@@ -164,11 +164,11 @@ def _gain(residuals: Array, sensitivities: Array, columns: Array) -> float:
     size = column_sizes(X)
     found, _, rank, _ = np.linalg.lstsq(X / size, residuals, rcond=1e-9)
     left = residuals - (X / size) @ found
-    more = int(rank) - np.linalg.matrix_rank(sensitivities / size[: sensitivities.shape[1]])
-    if more < 1 or not (left @ left):
+    difference = int(rank) - np.linalg.matrix_rank(sensitivities / size[: sensitivities.shape[1]])
+    if difference < 1 or not (left @ left):
         return 0.0
     fall = float(np.log((residuals @ residuals) / (left @ left)))
-    gain = n * fall - float(more) * float(np.log(n))
+    gain = n * fall - float(difference) * float(np.log(n))
     # Colored residuals hold fewer samples than they count.
     return gain * (1.0 if ljung_box(left) >= WHITE else _BINS / n * 2)
 
@@ -187,11 +187,11 @@ def _conditioning(trial: Trial, residuals: Array) -> Iterator[str]:
     if len(gains) < 3:
         return
     first, later = gains[0], np.array(gains[1:])
-    more = first - float(later.mean())
-    if abs(more) > max(_CONDITIONING, _SPREADS * float(np.ptp(later))):
-        word = "stiffer" if more > 0 else "softer"
+    difference = first - float(later.mean())
+    if abs(difference) > max(_CONDITIONING, _SPREADS * float(np.ptp(later))):
+        word = "stiffer" if difference > 0 else "softer"
         start = trial.motion.time[trial.cycles[1].start]
         yield (
-            f"the first loading cycle is {100 * abs(more):.2g} % {word} than the later ones "
+            f"the first loading cycle is {100 * abs(difference):.2g} % {word} than the later ones "
             f"(conditioning): --set start={start:.4g} sets it apart"
         )

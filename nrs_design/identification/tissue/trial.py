@@ -116,20 +116,22 @@ class Trial:
     @property
     def remarks(self) -> tuple[str, ...]:
         """Contact, drift and unused parts, in words."""
-        said = []
+        texts = []
         if self.contact is not None:
             part = 100 * float(np.mean(~self.touching))
-            said.append(f"{counted(len(self.contact.touches), 'touch')}; {part:.0f} % of it is air")
+            texts.append(
+                f"{counted(len(self.contact.touches), 'touch')}; {part:.0f} % of it is air"
+            )
         elif self.preparation.contact == "auto":
-            said.append(
+            texts.append(
                 "no air shows: all of it is taken as in contact, and a tare that moves with time "
                 "would pass for relaxation"
             )
         if pauses := pauses_text(self.record.motion.time):
-            said.append(pauses)
+            texts.append(pauses)
         if self.drift:
-            said.append("the tare is fitted as moving in proportion to time")
-        return (*said, *self.cuts)
+            texts.append("the tare is fitted as moving in proportion to time")
+        return (*texts, *self.cuts)
 
     def thinned(self, count: int) -> Trial:
         """Return the trial with at most `most` samples, or more if few of them are used."""
@@ -168,9 +170,9 @@ def prepare(record: TissueRecord, preparation: Preparation | None = None) -> Tri
             time, free, "no contact yet: the tissue has not come back from a touch"
         )
         used = ~edge & ~free
-    stretch, beside = _pauses(time)
-    cuts += _unused_text(time, beside, "beside a pause of the record, or between two of them")
-    used = used & ~beside
+    stretch, excluded = _pauses(time)
+    cuts += _unused_text(time, excluded, "beside a pause of the record, or between two of them")
+    used = used & ~excluded
     if used.sum() < FEWEST or np.ptp(x[used]) == 0:
         raise DataError(
             f"{used.sum()} samples in {len(x)} are left to fit, at least {FEWEST} are needed",
@@ -207,14 +209,14 @@ def _pauses(time: Array) -> tuple[Rows, Flags]:
     stretches that are too short.
     """
     stretch = np.zeros(len(time), np.int64)
-    beside = np.zeros(len(time), bool)
+    excluded = np.zeros(len(time), bool)
     kept, every = long_stretches(time), find_stretches(time)
     for number, rows in enumerate(every):
         stretch[rows] = number
-        beside[rows] = rows not in kept
-        beside[rows.start] |= number > 0
-        beside[rows.stop - 1] |= number < len(every) - 1
-    return stretch, beside
+        excluded[rows] = rows not in kept
+        excluded[rows.start] |= number > 0
+        excluded[rows.stop - 1] |= number < len(every) - 1
+    return stretch, excluded
 
 
 def _edge(position: Array, width: float, settings: Preparation, contact: DetectedContact) -> Flags:
@@ -256,5 +258,5 @@ def _unused_text(time: Array, flags: Flags, reason: str) -> list[str]:
     inside = time[flags]
     if not len(inside):
         return []
-    when = span(inside[0], inside[-1], "s")
-    return [f"{counted(len(inside), 'sample')} at {when}: {reason}"]
+    times = span(inside[0], inside[-1], "s")
+    return [f"{counted(len(inside), 'sample')} at {times}: {reason}"]

@@ -164,6 +164,8 @@ def test_arrays_are_read_as_a_file_is():
         read_table(frame | {"x_raw": time[1:]}, LAYOUTS, mapping)
     with pytest.raises(DataError, match="is nan"):
         read_table(frame | {"x_raw": np.nan * time}, LAYOUTS, mapping)
+    with pytest.raises(DataError, match="x_raw is 'a', not a number"):
+        read_table(frame | {"x_raw": ["a", "b", "c"]}, LAYOUTS, mapping)
 
 
 def test_files_that_cannot_be_read(tmp_path):
@@ -194,7 +196,10 @@ def test_mapping_of_a_column_that_is_not_there(tmp_path):
     assert "did you mean 'force_N'" in caught.value.remedy
 
 
-def test_too_many_rows(tmp_path, monkeypatch):
+def test_too_many_rows_or_words(tmp_path, monkeypatch):
     monkeypatch.setattr(tables, "MAX_ROWS", 3)
     with pytest.raises(DataError, match="more than 3 rows"):
         read(tmp_path, GOOD)
+    monkeypatch.setattr(tables, "MAX_LABELS", 1)
+    with pytest.raises(DataError, match="mode has more than 1 words"):
+        read_table({"time_s": [0, 1], "mode": ["a", "b"]}, (("time",),), {}, ("mode",))

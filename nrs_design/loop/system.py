@@ -40,9 +40,9 @@ from nrs_design.models.plant import Plant
 from nrs_design.proof.channels import Channel, Rounding
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Time
-from nrs_design.proof.switching import ARBITRARY, Clock
+from nrs_design.proof.switching import Clock
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.spec import IdleStatesSpec
+from nrs_design.spec import IdleStatesSpec, SwitchingSpec
 from nrs_design.spec.interaction_parts import FREE
 from nrs_design.spec.misses import automaton_of
 from nrs_design.spec.operating import OperatingConditions
@@ -96,10 +96,9 @@ def close_sampled_loop(
         # It jumps after the sample, and the force of what is damped with it.
         damped = any(damping_of(environment).high for environment in environments)
         outputs = () if damped else tuple(one for one in outputs if one.name == "force")
-    # Beside an automaton of its own, a loop has no rules.
-    ruled = sampling.round == 1 and sampling.misses is None
-    stays = clock_of_stays(conditions.switching, grouped(items), sampling.longest_step)
-    stays = stays if ruled else None
+    own = _clock(sampling, items)
+    rules, period = conditions.switching, sampling.longest_step
+    stays = clock_of_stays(rules, grouped(items), period) if own is None else None
     driven = motor_command(conditions.largest_command, conditions.command, loop, channels)
     system = SwitchedSystem(
         name=conditions.name,
@@ -110,10 +109,11 @@ def close_sampled_loop(
             *assume_sampled_loop(conditions, sampling, plant, loop, laws, design, loss),
             *(() if driven is None else (driven.assumption,)),
         ),
-        switching=ARBITRARY
-        if stays is not None
-        else assemble_switching(
-            conditions.switching, grouped(modes), _resets(conditions.idle, loop, design)
+        switching=assemble_switching(
+            # What an automaton says of switches is no rule besides; a reset would be one.
+            conditions.switching if stays is None else SwitchingSpec(),
+            grouped(modes),
+            _resets(conditions.idle, loop, design),
         ),
         contact=lost_on_surface((item.mode for item in free), pulls, conditions.contact)
         if free
@@ -122,7 +122,7 @@ def close_sampled_loop(
         channels=channels,
         outputs=(*outputs, *(() if driven is None else (driven.output,))),
         roundings=tuple(_roundings(loop, channels, items)),
-        clock=stays or _clock(sampling, items),
+        clock=stays or own,
         flights=flights_of(modes, environments, pulls) if loss.anywhere else None,
         enclosures=tuple(enclosures_of(items)),
     )

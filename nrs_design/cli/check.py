@@ -52,7 +52,7 @@ def _axes_at(path: Path) -> tuple[Path, ...]:
 
 
 def _understood(path: Path) -> dict[str, Any]:
-    from nrs_design.gating.places import Places
+    from nrs_design.gating.places import SourcePositions
     from nrs_design.spec import doubt_spec
     from nrs_design.spec.describe import describe
 
@@ -61,7 +61,7 @@ def _understood(path: Path) -> dict[str, Any]:
         from nrs_design.simulation.build_scenario import check_recordings
 
         check_recordings(loaded.spec, path.parent)
-    places = Places(loaded)
+    places = SourcePositions(loaded)
     return {
         "path": str(path),
         "valid": True,

@@ -204,10 +204,12 @@ def _asked(name: tuple[str, ...], spec: Path, options: tuple[str, ...]) -> tuple
 def _points(job: Job, jobs: int, dask: str | None) -> list[PointAnswer]:
     """Compute what is not there, and return all points in the order of the grid."""
     from nrs_design.cli.sweep_point import answer_point
-    from nrs_design.sweeps.spread import spread, spread_by_dask
+    from nrs_design.sweeps.spread import map_in_processes, spread_by_dask
 
     work, every = partial(answer_point, job), range(job.grid.count)
-    coming = spread(work, every, jobs) if dask is None else spread_by_dask(work, every, dask)
+    coming = (
+        map_in_processes(work, every, jobs) if dask is None else spread_by_dask(work, every, dask)
+    )
     found: dict[int, PointAnswer] = {}
     computed, start = 0, perf_counter()
     with progress(f"{job.grid.count} points") as step:

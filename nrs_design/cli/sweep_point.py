@@ -27,7 +27,7 @@ from nrs_design.spec.load import read_axes
 from nrs_design.spec.task_space import file_of
 from nrs_design.sweeps.claims import is_shown
 from nrs_design.sweeps.grid import Grid
-from nrs_design.sweeps.store import Kept, Store, key_of
+from nrs_design.sweeps.store import CachedAnswer, Store, key_of
 
 # Commands that write a certificate, to the place that this option names.
 CERTIFYING = {"certify-switching": "--out"}
@@ -85,7 +85,7 @@ def answer_point(job: Job, index: int) -> PointAnswer:
             return PointAnswer(texts, exit_codes.INTERNAL, error=_defect(error))
 
 
-def _holds(kept: Kept, shown: Mapping[str, Any]) -> bool:
+def _holds(kept: CachedAnswer, shown: Mapping[str, Any]) -> bool:
     """Tell whether answer and exit code say no more than what was shown just now."""
     code = exit_codes.OF_VERDICT.get(str(shown.get("verdict")), kept.code)
     return kept.code == code and is_shown(kept.result, shown)
@@ -128,13 +128,13 @@ def _shown(certificate: Path, axes: Sequence[LoadedSpec]) -> dict[str, Any]:
     return facts
 
 
-def _computed(job: Job, key: str) -> Kept:
+def _computed(job: Job, key: str) -> CachedAnswer:
     place = CERTIFYING.get(" ".join(job.command))
     placed = () if place is None else (place, str(job.store.certificate(key)))
     arguments = [*job.command, str(job.spec), *job.options, *placed, "--json", "--quiet"]
     with taking_json() as documents:
         code = _run(program_of(job.command[0]), arguments)
-    return Kept(code, _lasting(json.loads(documents[-1])))
+    return CachedAnswer(code, _lasting(json.loads(documents[-1])))
 
 
 def _run(program: Any, arguments: list[str]) -> int:

@@ -34,14 +34,14 @@ from nrs_design.gating.obligations import (
     SpecOutcome,
     Status,
 )
-from nrs_design.gating.places import Places
+from nrs_design.gating.places import SourcePositions
 from nrs_design.gating.recorded import hash_recorded
 from nrs_design.gating.rules import NOT_WEAKER
 from nrs_design.proof.bounds import lower, upper
 from nrs_design.spec import LoadedSpec, read_spec
 from nrs_design.spec.load import is_there
+from nrs_design.spec.spec_weakening import Change, find_changes
 from nrs_design.spec.task_space import file_of
-from nrs_design.spec.weaker import Change, find_changes
 
 _GONE = "this spec of the base is gone: what it asked for is no longer shown"
 # Verdicts, from the one that shows most.
@@ -247,7 +247,7 @@ def _with(spec: SpecOutcome, changes: Sequence[Change]) -> SpecOutcome:
     broken = []
     for change in changes:
         if change.weaker:
-            at, where = _caution(spec, change), ".".join(map(str, change.at)) or "spec"
+            at, where = _caution(spec, change), ".".join(map(str, change.key_path)) or "spec"
             place = (at.message, at.line, at.column)
             broken.append(Obligation(NOT_WEAKER, spec.path, where, Status.MISSED, *place))
     return replace(spec, obligations=(*spec.obligations, *broken))
@@ -255,7 +255,7 @@ def _with(spec: SpecOutcome, changes: Sequence[Change]) -> SpecOutcome:
 
 def _caution(spec: SpecOutcome, change: Change) -> Caution:
     try:
-        place = Places(read_spec(spec.path)).at(*change.at)
+        place = SourcePositions(read_spec(spec.path)).at(*change.key_path)
     except NrsDesignError:
         return Caution(spec.path, change.message, 1, 1)
     return Caution(spec.path, change.message, place.line, place.column)

@@ -24,7 +24,7 @@ from nrs_design.design.measures import GoalStanding
 from nrs_design.errors import DesignError
 from nrs_design.gating import rules
 from nrs_design.gating.obligations import Caution, Obligation, SpecOutcome, Status
-from nrs_design.gating.places import Places
+from nrs_design.gating.places import SourcePositions
 from nrs_design.proof.bounds import lower, upper
 from nrs_design.proof.evidence import AbstractEvidence, Shows
 from nrs_design.proof.evidence.fields import rate_text
@@ -55,12 +55,12 @@ class Examiner:
     """Makes obligations about one spec, each with its place."""
 
     loaded: LoadedSpec  # The spec
-    places: Places  # Its lines and columns
+    places: SourcePositions  # Its lines and columns
 
     @classmethod
     def of(cls, loaded: LoadedSpec) -> Examiner:
         """Return the examiner of a spec."""
-        return cls(loaded, Places(loaded))
+        return cls(loaded, SourcePositions(loaded))
 
     def obligation(
         self,

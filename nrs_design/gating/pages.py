@@ -31,7 +31,7 @@ LIBRARIES = ("numpy", "scipy", "clarabel", "control", "matplotlib", "jinja2", "p
 _PACKAGE = Path(__file__).parents[1]
 
 
-def made_of(result: Result, limits: Limits, origin: str) -> str:
+def page_fingerprint(result: Result, limits: Limits, origin: str) -> str:
     """Return the hash of everything that a page follows from, in hexadecimal.
 
     The limits of the searches are part of it, and how they went is not: what is found by one is

@@ -7,7 +7,7 @@ from nrs_design.spec.document import Mapping, Node, Position, Sequence
 from nrs_design.spec.edits import node_at
 
 
-class Places:
+class SourcePositions:
     """Lines and columns of a spec."""
 
     def __init__(self, loaded: LoadedSpec) -> None:

@@ -20,9 +20,9 @@ from nrs_design.controllers.gains import gains_of
 from nrs_design.errors import CertificateError, DesignError, OutputError, SpecError
 from nrs_design.gating.examine import Examiner
 from nrs_design.gating.obligations import GateOutcome, Obligation, SpecOutcome, failed
-from nrs_design.gating.pages import is_current, made_of, note_page
+from nrs_design.gating.pages import is_current, note_page, page_fingerprint
 from nrs_design.gating.paths import is_utf8
-from nrs_design.gating.places import Places
+from nrs_design.gating.places import SourcePositions
 from nrs_design.gating.recorded import hash_recorded
 from nrs_design.output import CERTIFICATE, PAGE, check_place, write_output
 from nrs_design.ownership import REMEDY, check_owner, origin_of
@@ -33,7 +33,7 @@ from nrs_design.pipeline.runs import Recorded, run_certification, run_kept
 from nrs_design.progress import Progress, silent
 from nrs_design.spec import LoadedSpec, RobotSpec, read_spec
 from nrs_design.spec.task_space import file_of
-from nrs_design.sweeps.spread import spread
+from nrs_design.sweeps.spread import map_in_processes
 
 if TYPE_CHECKING:
     from nrs_design.design.analysis import DesignAnalysis
@@ -128,7 +128,7 @@ class _Task:
 
 def _examined_in_processes(task: _Task, jobs: int, progress: Progress) -> dict[Path, SpecOutcome]:
     found: dict[Path, SpecOutcome] = {}
-    for _, outcome in spread(task.examine_next, range(len(task.specs)), jobs):
+    for _, outcome in map_in_processes(task.examine_next, range(len(task.specs)), jobs):
         found[outcome.path] = outcome
         progress(f"{len(found)} of {len(task.specs)} specs")
     return found
@@ -154,7 +154,7 @@ def _namesakes(specs: Iterable[LoadedSpec]) -> dict[Path, Path]:
 
 
 def _shared_name(loaded: LoadedSpec, namesake: Path) -> SpecError:
-    place = Places(loaded).at("name")
+    place = SourcePositions(loaded).at("name")
     return SpecError(
         f"{namesake} is named {loaded.spec.name!r} too, and their files would overwrite each other",
         path=loaded.path,
@@ -277,7 +277,7 @@ def _write_page(
 ) -> None:
     """Draw the page of a spec, unless the one that is there is just this."""
     origin = origin_of(result.loaded.path, page)
-    made = made_of(result, limits, origin)
+    made = page_fingerprint(result, limits, origin)
     if is_current(page, made):
         return
     # Drawing costs seconds to import; a run without reports must not pay for it.

@@ -138,18 +138,18 @@ def assemble(
     if points and (points not in POINTS or conditions.sampling is None or cuts):
         raise AssemblyError(f"there is no system at the points {points!r} of the ranges")
     scale = Fraction(0) if points == NOMINAL else scale
-    plant = plant.scaled(scale, conditions.touched)
+    plant = plant.scaled(scale, conditions.contacted)
     (drive,) = spec.drives
     constants = tuple(
         constants_of(
             plant,
-            conditions.touched,
+            conditions.contacted,
             drive,
             sampled=conditions.sampling is not None,
         )
     )
-    if conditions.sampling is not None and conditions.constant_late is not None:
-        said = conditions.constant_late, conditions.late, conditions.sampling.step
+    if conditions.sampling is not None and conditions.constant_delay_key is not None:
+        said = conditions.constant_delay_key, conditions.command_delay, conditions.sampling.step
         constants = (*constants, constant_lateness(*said))
     unit = spec.axis.unit
     constants = tuple(replace(c, said=replace(c.said, unit=unit(c.said.unit))) for c in constants)
@@ -189,8 +189,8 @@ def closed_part(
 
     `drive` is the part of the spec that the motor is.
     """
-    late = part.get(conditions.constant_late or "", conditions.late)
-    system, _ = _closed(replace(conditions, late=late), within(plant, drive, part), design)
+    late = part.get(conditions.constant_delay_key or "", conditions.command_delay)
+    system, _ = _closed(replace(conditions, command_delay=late), within(plant, drive, part), design)
     return system
 
 

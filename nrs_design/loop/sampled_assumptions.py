@@ -56,7 +56,7 @@ def assume_sampled_loop(
     if (misses := sampling.misses) is not None:
         most, of = misses.window
         yield assume(f"deadlines.{misses.command}", at_most=most, of=of)
-    yield from _assume_commands(timing, constant=conditions.constant_late is not None)
+    yield from _assume_commands(timing, constant=conditions.constant_delay_key is not None)
     if plant.drive is not None and plant.drive.speed is not None:
         # The velocity jumps when a command takes effect.
         yield assume("command-age.before")

@@ -139,7 +139,7 @@ def _wired(
     laws: tuple[DiscreteLaw, ...],
 ) -> SampledLoop:
     """Return program, drive and calendar of a loop; force samples are kept if a law takes them."""
-    calendar = Calendar(timing_of(sampling, conditions.late), turns=turns_of(sampling))
+    calendar = Calendar(timing_of(sampling, conditions.command_delay), turns=turns_of(sampling))
     program = _program(conditions.idle, sampling, design, laws)
     loop = SampledLoop(program, design.takes, drive.states, drive.memory, calendar)
     if not loop.takes_force:

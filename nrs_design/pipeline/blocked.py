@@ -23,19 +23,19 @@ from nrs_design.proof.system import SwitchedSystem
 from nrs_design.proof.text import counted
 from nrs_design.search.certification import Certification, Limits
 from nrs_design.spec import LoadedSpec
-from nrs_design.spec.concessions import (
-    CALMER,
-    GIVEN_GAINS,
-    WITHOUT,
-    Concession,
-    Way,
-    calmer,
-    concessions,
-)
 from nrs_design.spec.document import Position, to_data
 from nrs_design.spec.edits import Edit, Keys, identified_above, in_one_line, node_at, with_edits
 from nrs_design.spec.load import respecified
 from nrs_design.spec.places import dotted
+from nrs_design.spec.relaxations import (
+    CALMER,
+    GIVEN_GAINS,
+    WITHOUT,
+    RelaxationSteps,
+    SpecRelaxation,
+    calmer,
+    iterate_relaxations,
+)
 
 # Of the budget of the search, what may be spent here: a step that is begun goes beyond it a little.
 SHARE = 0.4
@@ -61,7 +61,7 @@ class Blocking:
     proved: str  # What of that is proved, in the same words; empty if it is left out
     word: str  # Before it: up to, down to, within, with, without
     write: str  # What to write there instead; empty if it is left out
-    other_loop: bool  # Whether that changes what the robot does, or what is taken for granted
+    changes_model: bool  # Whether that changes what the robot does, or what is taken for granted
     left_out: tuple[str, ...] = ()  # Keys about the values as they were, which go as well
 
 
@@ -121,10 +121,12 @@ class _Search:
         self._gains = gains_text(result.designed)
 
     def run(self) -> Blocked:
-        found = tuple(concessions(self._result.loaded, self._result.certification.rate_limit))
+        found = tuple(
+            iterate_relaxations(self._result.loaded, self._result.certification.rate_limit)
+        )
         lines = found[:MOST_LINES]
-        mild = [line for line in lines if line.least.word != WITHOUT]
-        drastic = [line for line in lines if line.least.word == WITHOUT]
+        mild = [line for line in lines if line.weakest.word != WITHOUT]
+        drastic = [line for line in lines if line.weakest.word == WITHOUT]
         gains = self._calmer(GAINS * self._budget)
         start, rest = self._spent, self._budget - self._spent
         proved = gains + self._single(mild, start + FIND * rest, start + STRETCH * rest)
@@ -147,7 +149,7 @@ class _Search:
         return (self._least_proved(lines),)
 
     def _single(
-        self, lines: Sequence[Concession], find: float, stretch: float
+        self, lines: Sequence[SpecRelaxation], find: float, stretch: float
     ) -> tuple[Proved, ...]:
         """Return what is proved when one line asks for less, the least given up first.
 
@@ -155,25 +157,25 @@ class _Search:
         """
         blocking = []
         for left, line in zip(range(len(lines), 0, -1), lines, strict=True):
-            if self._decide([line.edit(line.least, 0)], (find - self._spent) / left):
+            if self._decide([line.edit(line.weakest, 0)], (find - self._spent) / left):
                 blocking.append(line)
         found = []
         for left, line in zip(range(len(blocking), 0, -1), blocking, strict=True):
             way, step = self._furthest(line, (stretch - self._spent) / left)
             share = step / way.size if way.size else 0.0
-            found.append(((line.other_loop, -share), self._proved(((line, way, step),))))
+            found.append(((line.changes_model, -share), self._proved(((line, way, step),))))
         return tuple(item for _, item in sorted(found, key=lambda pair: pair[0]))
 
-    def _furthest(self, line: Concession, budget: float) -> tuple[Way, int]:
+    def _furthest(self, line: SpecRelaxation, budget: float) -> tuple[RelaxationSteps, int]:
         """Return how much of what a line asks for is proved, by halving.
 
         The steps that matter most come first, and may take the most: of n that are left, each may
         take 2 / (n + 1) of the rest.
         """
         until = self._spent + budget
-        way = line.least
-        left = len(line.others) + max(way.size - 1, 0).bit_length()
-        for other in line.others:
+        way = line.weakest
+        left = len(line.alternatives) + max(way.size - 1, 0).bit_length()
+        for other in line.alternatives:
             if self._decide([line.edit(other, 0)], 2 * (until - self._spent) / (left + 1)):
                 way = other
                 break
@@ -188,14 +190,14 @@ class _Search:
                 high = middle
         return way, low
 
-    def _together(self, lines: Sequence[Concession], until: float) -> tuple[Proved, ...]:
+    def _together(self, lines: Sequence[SpecRelaxation], until: float) -> tuple[Proved, ...]:
         """Return what is proved when several lines ask for less, and as few of them as is found.
 
         All are changed at once; then one after the other is put back, the most drastic first, as
         long as the rest is proved.
         """
-        kept: list[Concession] = []
-        for line in (line for line in lines if line.in_all):
+        kept: list[SpecRelaxation] = []
+        for line in (line for line in lines if line.combinable):
             with suppress(SpecError):  # What makes no valid spec with the others is left out.
                 _edited(self._result.loaded, _least([*kept, line]))
                 kept.append(line)
@@ -241,10 +243,10 @@ class _Search:
             return None
         return _Decided(loaded, decided, gains_text(designed))
 
-    def _least_proved(self, lines: Sequence[Concession]) -> Proved:
-        return self._proved([(line, line.least, 0) for line in lines])
+    def _least_proved(self, lines: Sequence[SpecRelaxation]) -> Proved:
+        return self._proved([(line, line.weakest, 0) for line in lines])
 
-    def _proved(self, lines: Sequence[tuple[Concession, Way, int]]) -> Proved:
+    def _proved(self, lines: Sequence[tuple[SpecRelaxation, RelaxationSteps, int]]) -> Proved:
         edits = [line.edit(form, step) for line, form, step in lines]
         decided = self._found[_edited(self._result.loaded, edits).sha256]
         assert decided is not None
@@ -264,17 +266,17 @@ class _Search:
             ),
         )
 
-    def _blocking(self, line: Concession, form: Way, step: int) -> Blocking:
-        says = form.says(step)
+    def _blocking(self, line: SpecRelaxation, form: RelaxationSteps, step: int) -> Blocking:
+        says = form.value_at(step)
         key = line.at[-1]
         return Blocking(
             self._result.loaded.place(*line.at),
             dotted(line.at) + self._name(line.at),
-            form.asked,
-            form.reach(step),
+            form.requested,
+            form.label_at(step),
             form.word,
             "" if says is None else f"{key}: {in_one_line(says)}",
-            line.other_loop,
+            line.changes_model,
             tuple(map(dotted, identified_above(self._result.loaded.root, line.at))),
         )
 
@@ -290,8 +292,8 @@ def _edited(loaded: LoadedSpec, edits: Sequence[Edit]) -> LoadedSpec:
     return respecified(loaded, with_edits(loaded.root, edits))
 
 
-def _least(lines: Sequence[Concession]) -> list[Edit]:
-    return [line.edit(line.least, 0) for line in lines]
+def _least(lines: Sequence[SpecRelaxation]) -> list[Edit]:
+    return [line.edit(line.weakest, 0) for line in lines]
 
 
 def _same_search(one: SwitchedSystem, other: SwitchedSystem) -> bool:
@@ -325,7 +327,7 @@ def blocked_lines(blocked: Blocked, path: Path) -> tuple[str, ...]:
 def _said(item: Proved, path: Path) -> str:
     said = " together with ".join(_place(line, path) for line in item.lines)
     said += "; gains are designed anew then, and differ" if item.new_gains else ""
-    if item.needs and any(line.other_loop for line in item.lines):
+    if item.needs and any(line.changes_model for line in item.lines):
         said += f"; takes {counted(len(item.needs), 'thing')} more for granted (--json)"
     return said
 

@@ -32,7 +32,7 @@ BITS = 80
 
 
 @dataclass(frozen=True, slots=True)
-class Surroundings:
+class ControllerContext:
     """What the controller runs in."""
 
     period: Fraction  # Of the control loop, in s
@@ -60,7 +60,7 @@ class Surroundings:
             return Fraction(0), Fraction(0)
         return self.rotational if axis.rotates else self.stiffness
 
-    def up_to(self, stiffness: Fraction) -> Surroundings:
+    def up_to(self, stiffness: Fraction) -> ControllerContext:
         """Return the same with other upper ends of the ranges."""
         low, angular = self.stiffness, self.rotational
         return replace(
@@ -98,7 +98,7 @@ class _Frame:
     axis: Axis
     joint_damping: Fraction
     c: Fraction
-    around: Surroundings
+    around: ControllerContext
 
     @property
     def smooths(self) -> bool:
@@ -150,7 +150,7 @@ class _Frame:
         return [new, *left, *moved[:oldest], *smoothed, combine((ONE, delta), (ONE, moved[oldest]))]
 
 
-def close_axis(law: AdmittanceLaw, axis: Axis, around: Surroundings) -> SwitchedSystem:
+def close_axis(law: AdmittanceLaw, axis: Axis, around: ControllerContext) -> SwitchedSystem:
     """Assemble the modes of one axis: every age of the measurement, every end of the ranges."""
     low, high = around.of(axis) or (Fraction(0), Fraction(0))
     frame = _Frame(axis, law.joint_damping, law.filter_coefficient, around)
@@ -180,7 +180,7 @@ def _modes(frame: _Frame, box: Box, delays: tuple[int, int], name: str) -> Itera
             yield Mode("/".join((late, *labels)), RationalMatrix.from_rows(rows))
 
 
-def assumptions(around: Surroundings) -> tuple[str, ...]:
+def assumptions(around: ControllerContext) -> tuple[str, ...]:
     """Say what a verdict on an axis takes for granted."""
     first, last = around.delays
     age = f"{first} periods" if first == last else f"{first} to {last} periods, in any order,"

@@ -15,7 +15,7 @@ from nrs_design.progress import Progress
 from nrs_design.proof.bounds import lower, nearly
 from nrs_design.proof.evidence.fields import rate_text
 from nrs_design.proof.mode import Time
-from nrs_design.ros2.axis import Surroundings, assumptions, close_axis
+from nrs_design.ros2.axis import ControllerContext, assumptions, close_axis
 from nrs_design.ros2.law import LAW, AdmittanceLaw, Axis, is_admittance, read_law
 from nrs_design.ros2.managers import (
     MANAGER,
@@ -51,9 +51,9 @@ class Question:
     # Smallest and largest time constant of the robot in s.
     lag: Range = (Fraction(0), Fraction(0))
 
-    def around(self, period: Fraction) -> Surroundings:
+    def around(self, period: Fraction) -> ControllerContext:
         """Return what a controller of this period runs in."""
-        return Surroundings(period, self.delays, self.stiffness, self.rotational, self.lag)
+        return ControllerContext(period, self.delays, self.stiffness, self.rotational, self.lag)
 
 
 @dataclass(slots=True)
@@ -65,13 +65,15 @@ class _Asker:
     progress: Progress
     known: dict[tuple[object, ...], tuple[Status, str]] = field(default_factory=dict)
 
-    def obligation(self, law: AdmittanceLaw, axis: Axis, around: Surroundings) -> Obligation:
+    def obligation(self, law: AdmittanceLaw, axis: Axis, around: ControllerContext) -> Obligation:
         """Return what holds for one axis."""
         status, message = self._decide(law, axis, around)
         name = f"{law.node.name}: axis {axis.name}"
         return _owed(ROS_AXIS, self.path, name, status, message, axis.position)
 
-    def _decide(self, law: AdmittanceLaw, axis: Axis, around: Surroundings) -> tuple[Status, str]:
+    def _decide(
+        self, law: AdmittanceLaw, axis: Axis, around: ControllerContext
+    ) -> tuple[Status, str]:
         if axis.selected and law.force_from is not None:
             words = f"its force comes through {law.force_from}, another controller: not modelled"
             return Status.INCONCLUSIVE, words
@@ -93,7 +95,7 @@ class _Asker:
         self,
         law: AdmittanceLaw,
         axis: Axis,
-        around: Surroundings,
+        around: ControllerContext,
         met: Range,
     ) -> tuple[Status, str]:
         system = close_axis(law, axis, around)
@@ -122,7 +124,7 @@ class _Asker:
         self,
         law: AdmittanceLaw,
         axis: Axis,
-        around: Surroundings,
+        around: ControllerContext,
         met: Range,
         known: Certification,
         unit: str,
@@ -194,7 +196,7 @@ def check_file(path: Path, question: Question, limits: Limits, progress: Progres
         obligations += [asker.obligation(law, axis, around) for axis in law.axes]
         cautions += find_traps(law, path)
     for other in (other for other in beside if not other.silent):
-        why = f"passed over, so undecided: {other.why}"
+        why = f"passed over, so undecided: {other.reason}"
         owed = _owed(ROS_OTHERS, path, other.name, Status.INCONCLUSIVE, why, other.position)
         obligations.append(owed)
     outcome = SpecOutcome(

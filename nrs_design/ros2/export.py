@@ -23,7 +23,7 @@ from nrs_design.exporters.outside import OUTSIDE
 from nrs_design.pipeline.design import Designed
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.proof.text import exact_text
-from nrs_design.ros2.axis import Surroundings, close_axis
+from nrs_design.ros2.axis import ControllerContext, close_axis
 from nrs_design.ros2.law import AXES, AdmittanceLaw, read_law
 from nrs_design.ros2.parameters import parse_nodes
 from nrs_design.ros2.quantities import Range
@@ -78,7 +78,7 @@ def export_controllers(
         law = _law_in(body, name)
         verdicts, certificates = list[str](), dict[str, Certificate]()
         for axis, met in touched.items():
-            around = Surroundings(sampling.period.exact, sampling.delay, met, met, lag)
+            around = ControllerContext(sampling.period.exact, sampling.delay, met, met, lag)
             closed = close_axis(law, law.axes[AXES.index(axis)], around)
             system = _with_contact(designs[axis], closed)
             found = certify(system, limits=limits)

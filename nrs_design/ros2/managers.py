@@ -27,12 +27,12 @@ SILENT = frozenset(
 
 
 @dataclass(frozen=True, slots=True)
-class PassedOver:
+class UndecidedNode:
     """What a file names beside the controllers that are decided."""
 
     name: str  # Of the node, or of the controller that a manager runs
     position: Position  # Where it stands
-    why: str  # What it is, and what is missing
+    reason: str  # What it is, and what is missing
     silent: bool  # Whether it commands nothing
 
 
@@ -51,7 +51,7 @@ def kind_of(node: RosNode, nodes: Collection[RosNode]) -> str | None:
 
 def find_undecided(
     nodes: Collection[RosNode], decided: Collection[RosNode]
-) -> Iterator[PassedOver]:
+) -> Iterator[UndecidedNode]:
     """Yield whatever may be a controller, and is none of those that are decided."""
     for node in nodes:
         if node not in decided and node.base_name != MANAGER and "*" not in node.base_name:
@@ -59,14 +59,14 @@ def find_undecided(
             why = "nothing in this file says of which type it is"
             if kind is not None:
                 why = f"no model of a controller of type {kind} is here"
-            yield PassedOver(node.name, node.position, why, kind in SILENT)
+            yield UndecidedNode(node.name, node.position, why, kind in SILENT)
     here = {node.base_name for node in nodes}
     for manager in (node for node in nodes if node.base_name == MANAGER):
         for name, kind in _types([manager]).items():
             if name in here or (kind == TYPE and "**" in here):
                 continue
             why = f"{manager.name} runs it as {kind}, and no node of this name is here"
-            yield PassedOver(name, manager.place(f"{name}.type"), why, kind in SILENT)
+            yield UndecidedNode(name, manager.place(f"{name}.type"), why, kind in SILENT)
 
 
 def _types(managers: Iterable[RosNode]) -> dict[str, str]:

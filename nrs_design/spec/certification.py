@@ -8,7 +8,7 @@ from typing import Annotated, Any
 from nrs_design.proof.text import quoted
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import read_exact
-from nrs_design.spec.model import ReadBy, SpecModel, optional
+from nrs_design.spec.model import ParsedBy, SpecModel, optional
 
 HIGHEST_DEGREE = 64
 # A spec may come from anyone: who runs the command may allow more, the spec may not.
@@ -50,11 +50,11 @@ def _read_budget(value: object) -> Fraction:
 class CertificationSpec(SpecModel, stronger="beside"):
     """How far the search for a proof goes; options of the commands override it."""
 
-    max_degree: Annotated[int | None, ReadBy(_read_degree, _DEGREE_SCHEMA)] = optional(
+    max_degree: Annotated[int | None, ParsedBy(_read_degree, _DEGREE_SCHEMA)] = optional(
         "highest degree of a polynomial Lyapunov function, even, at most 64; default: "
         "as high as the budget allows"
     )
-    budget: Annotated[Fraction | None, ReadBy(_read_budget, _BUDGET_SCHEMA)] = optional(
+    budget: Annotated[Fraction | None, ParsedBy(_read_budget, _BUDGET_SCHEMA)] = optional(
         "work of the search, counted in units of about a second, the same on every "
         "machine; at most 600, default 60"
     )

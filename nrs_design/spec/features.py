@@ -19,14 +19,14 @@ from nrs_design.spec.sampling import SamplingSpec
 from nrs_design.spec.sensor import SensorSpec
 
 
-class Touched(NamedTuple):
+class ContactedEnvironment(NamedTuple):
     """An environment that a controller touches."""
 
     name: str
     law: AbstractEnvironmentSpec
 
 
-class TouchedPart(NamedTuple):
+class SimultaneousContact(NamedTuple):
     """One of several environments that a controller touches at once."""
 
     controller: str
@@ -34,14 +34,16 @@ class TouchedPart(NamedTuple):
     name: str
 
 
-def touched(spec: Spec) -> Iterator[Touched]:
+def contacted_environments(spec: Spec) -> Iterator[ContactedEnvironment]:
     """Yield what is touched, by name; a name that there is not is a fault of its own."""
     for name in sorted(spec.touched & spec.environments.keys()):
-        yield Touched(name, spec.environments[name])
+        yield ContactedEnvironment(name, spec.environments[name])
 
 
-def _tissue(holds: Callable[[AbstractEnvironmentSpec], bool]) -> Callable[[Spec], Touched | None]:
-    return lambda s: next((item for item in touched(s) if holds(item.law)), None)
+def _tissue(
+    holds: Callable[[AbstractEnvironmentSpec], bool],
+) -> Callable[[Spec], ContactedEnvironment | None]:
+    return lambda s: next((item for item in contacted_environments(s) if holds(item.law)), None)
 
 
 def _controller(holds: Callable[[ControllerSpec], object]) -> Callable[[Spec], str | None]:
@@ -50,13 +52,13 @@ def _controller(holds: Callable[[ControllerSpec], object]) -> Callable[[Spec], s
 
 def _part(
     holds: Callable[[AbstractEnvironmentSpec], bool],
-) -> Callable[[Spec], TouchedPart | None]:
-    def find(spec: Spec) -> TouchedPart | None:
+) -> Callable[[Spec], SimultaneousContact | None]:
+    def find(spec: Spec) -> SimultaneousContact | None:
         for name, controller in spec.controllers.items():
             for contact in controller.contacts:
                 for key in names_in(contact) if len(names_in(contact)) > 1 else ():
                     if key in spec.environments and holds(spec.environments[key]):
-                        return TouchedPart(name, contact_name(contact), key)
+                        return SimultaneousContact(name, contact_name(contact), key)
         return None
 
     return find

@@ -11,7 +11,7 @@ from nrs_design.files import is_device_name
 from nrs_design.proof.text import quoted
 from nrs_design.spec.exact import DECIMAL_PATTERN, RATIO_PATTERN, parse_exact
 from nrs_design.spec.faults import as_text, fault, reported
-from nrs_design.spec.model import ReadBy
+from nrs_design.spec.model import ParsedBy
 
 NAME_PATTERN = "^[a-z0-9][a-z0-9._-]{0,63}$"
 LABEL_PATTERN = "^[A-Za-z0-9][A-Za-z0-9._-]{0,63}$"
@@ -41,17 +41,17 @@ def read_exact(value: object) -> Fraction:
     return reported(lambda: parse_exact(text))
 
 
-def _number(accepts: Callable[[Fraction], bool], expected: str) -> ReadBy:
+def _number(accepts: Callable[[Fraction], bool], expected: str) -> ParsedBy:
     def read(value: object) -> Fraction:
         number = read_exact(value)
         if not accepts(number):
             raise fault(f"{value} is not {expected}", f"write a number that is {expected}")
         return number
 
-    return ReadBy(read, NUMBER_SCHEMA)
+    return ParsedBy(read, NUMBER_SCHEMA)
 
 
-def whole(low: int, high: int) -> ReadBy:
+def whole(low: int, high: int) -> ParsedBy:
     """Return the marker of a field that is a whole number within bounds."""
 
     def read(value: object) -> int:
@@ -61,7 +61,7 @@ def whole(low: int, high: int) -> ReadBy:
             raise fault(f"{value} is not {expected}", f"write {expected}")
         return int(number)
 
-    return ReadBy(read, {"type": "integer", "minimum": low, "maximum": high})
+    return ParsedBy(read, {"type": "integer", "minimum": low, "maximum": high})
 
 
 def _read_name(value: object, pattern: str) -> str:
@@ -84,8 +84,8 @@ def _read_label(value: object) -> str:
     return _read_name(value, LABEL_PATTERN)
 
 
-def _text(pattern: str, schema: dict[str, Any]) -> ReadBy:
-    return ReadBy(lambda value: _read_name(value, pattern), schema)
+def _text(pattern: str, schema: dict[str, Any]) -> ParsedBy:
+    return ParsedBy(lambda value: _read_name(value, pattern), schema)
 
 
 def read_title(value: object) -> str:
@@ -106,7 +106,7 @@ def read_hash(value: object) -> str:
     return text
 
 
-Exact = Annotated[Fraction, ReadBy(read_exact, NUMBER_SCHEMA)]
+Exact = Annotated[Fraction, ParsedBy(read_exact, NUMBER_SCHEMA)]
 UnitFraction = Annotated[Fraction, _number(lambda x: 0 < x < 1, "between 0 and 1")]
 Weight = Annotated[Fraction, _number(lambda x: x >= 0, "zero or positive")]
 Positive = Annotated[Fraction, _number(lambda x: x > 0, "positive")]
@@ -136,13 +136,13 @@ def read_contact(value: object) -> Contact:
 
 TouchedAtOnce = Annotated[
     Contact,
-    ReadBy(
+    ParsedBy(
         read_contact,
         {"anyOf": [*_LABEL["anyOf"], {"type": "array", "items": _LABEL, "minItems": 2}]},
     ),
 ]
-Title = Annotated[str, ReadBy(read_title, {"type": "string", "maxLength": MAX_TITLE})]
+Title = Annotated[str, ParsedBy(read_title, {"type": "string", "maxLength": MAX_TITLE})]
 Hash = Annotated[
     str,
-    ReadBy(read_hash, {"type": "string", "pattern": HASH_PATTERN}),
+    ParsedBy(read_hash, {"type": "string", "pattern": HASH_PATTERN}),
 ]

@@ -18,7 +18,7 @@ from nrs_design.spec import quantity_fields as field
 from nrs_design.spec.check import Row
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import AboveOne, BelowTwo, Label, UnitFraction
-from nrs_design.spec.model import ReadBy, SpecModel, at_most, optional, pair_schema, required
+from nrs_design.spec.model import ParsedBy, SpecModel, at_most, optional, pair_schema, required
 from nrs_design.spec.quantity import Quantity, is_less
 from nrs_design.spec.quantity_fields import quantity_schema, read_quantity
 
@@ -36,7 +36,7 @@ def _read_band(value: object) -> tuple[Quantity, Quantity]:
 
 
 Band = Annotated[
-    tuple[Quantity, Quantity], ReadBy(_read_band, pair_schema(quantity_schema(kinds.BANDWIDTH)))
+    tuple[Quantity, Quantity], ParsedBy(_read_band, pair_schema(quantity_schema(kinds.BANDWIDTH)))
 ]
 _BAND = "[lowest, highest] frequency, such as [0 Hz, 2 Hz]; sampled, below half the sampling rate"
 _ORDERED = Row[SpecModel](

@@ -17,7 +17,7 @@ from nrs_design.spec.features import (
     HAND,
     IDLE,
     SATURATED,
-    Touched,
+    ContactedEnvironment,
 )
 from nrs_design.spec.goals import (
     OF_THE_CERTIFICATE,
@@ -242,12 +242,12 @@ def _untimed(spec: Spec) -> Iterator[tuple[Location, str]]:
                 yield ("switching", *at), dwell.text
 
 
-def _weightless(spec: Spec) -> tuple[str, Touched] | None:
+def _weightless(spec: Spec) -> tuple[str, ContactedEnvironment] | None:
     """Return an admittance without inertia in the hand of someone."""
     hand = HAND.find(spec)
     for name, controller in spec.controllers.items():
         inertia = controller.gains().get("Mt")
-        if isinstance(hand, Touched) and inertia is not None and not inertia.min.value:
+        if isinstance(hand, ContactedEnvironment) and inertia is not None and not inertia.min.value:
             return name, hand
     return None
 

@@ -27,7 +27,7 @@ from nrs_design.spec.fields import Digits, Label, Name, Title
 from nrs_design.spec.free import FreeGainsSpec
 from nrs_design.spec.goals import GoalsSpec
 from nrs_design.spec.misses import MISS
-from nrs_design.spec.model import ReadBefore, SpecModel, optional, required
+from nrs_design.spec.model import ExpandedBy, SpecModel, optional, required
 from nrs_design.spec.monitoring import MonitoringSpec
 from nrs_design.spec.motion import (
     ActuatorSpec,
@@ -147,7 +147,7 @@ class AbstractInteractionSpec(SpecModel, stronger="unknown"):
         "state of the contact: the deflection, which stays continuous when the stiffness switches",
         "deflection",
     )
-    mode_logic: Annotated[ThresholdLogicSpec, ReadBefore(check_type)] | None = optional(
+    mode_logic: Annotated[ThresholdLogicSpec, ExpandedBy(check_type)] | None = optional(
         "what decides which controller is active; `switching: mode-logic` lets the "
         "proof be about the switching signals that it can give",
         unsaid="most",

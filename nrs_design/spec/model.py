@@ -102,7 +102,7 @@ def declared_in(model: type[SpecModel]) -> dict[str, Declared]:
     return found
 
 
-class ReadBy:
+class ParsedBy:
     """Marks a field whose value is what a function makes of the text, or of the data.
 
     Errors of the function are those of the field. Pydantic's own marker would also form the schema
@@ -124,7 +124,7 @@ class ReadBy:
         return handler(core) if self.schema is None else dict(self.schema)
 
 
-class ReadBefore(ReadBy):
+class ExpandedBy(ParsedBy):
     """Marks a field that is a model, whose short form a function writes out first."""
 
     def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> CoreSchema:

@@ -31,8 +31,10 @@ class OperatingConditions:
     idle: IdleStatesSpec | None  # What idle states do
     offset: Offset  # Where the offset of the force controllers is taken from
     sampling: SamplingSpec | None  # The processor; None in continuous time
-    late: tuple[Fraction, Fraction]  # Shortest and longest time from a sample to its command, in s
-    constant_late: str | None  # The key that says it, where it is unknown but constant
+    command_delay: tuple[
+        Fraction, Fraction
+    ]  # Shortest and longest time from a sample to its command, in s
+    constant_delay_key: str | None  # The key that says it, where it is unknown but constant
     disturbances: Bounds | None  # None where nothing is said to disturb
     largest_angle: Fraction | None  # Of the joint in rad, rounded up
     torque: Fraction  # Limit about the pivot in N m
@@ -40,7 +42,7 @@ class OperatingConditions:
     largest_command: Fraction | None  # Limit of the motor command in its unit, rounded down
     command: str  # Unit of the motor command
     largest_integral: Fraction | None  # Where the integral of the force error is cut off, in rad
-    touched: frozenset[str]  # The environments that some controller touches
+    contacted: frozenset[str]  # The environments that some controller touches
     initial_force: Fraction | Literal["largest"] | None  # Goal about saturation, in N m
     preloads: Mapping[str, Preload]  # Of the environments that are touched
     sensed: bool  # The spec describes a sensor

@@ -12,7 +12,7 @@ from nrs_design.spec.exact import parse_exact
 from nrs_design.spec.expression import EXPRESSION_PATTERN, parse_affine
 from nrs_design.spec.faults import as_text, fault, reported
 from nrs_design.spec.fields import NUMBER_SCHEMA, read_exact
-from nrs_design.spec.model import ReadBy, SpecModel, optional, pair_schema, required
+from nrs_design.spec.model import ParsedBy, SpecModel, optional, pair_schema, required
 from nrs_design.spec.range_checks import RANGE_CHECKS, range_around
 
 PARAMETER_PATTERN = "^[A-Za-z][A-Za-z0-9_]{0,31}$"
@@ -71,19 +71,19 @@ def _read_range(value: object) -> tuple[Fraction, Fraction]:
     return _read_value(value[0], 0), _read_value(value[1], 1)
 
 
-_Value = Annotated[Fraction, ReadBy(_read_value, NUMBER_SCHEMA)]
+_Value = Annotated[Fraction, ParsedBy(_read_value, NUMBER_SCHEMA)]
 _Range = Annotated[
     tuple[Fraction, Fraction],
-    ReadBy(_read_range, pair_schema(NUMBER_SCHEMA)),
+    ParsedBy(_read_range, pair_schema(NUMBER_SCHEMA)),
 ]
 ParameterName = Annotated[
     str,
-    ReadBy(read_parameter_name, {"type": "string", "pattern": PARAMETER_PATTERN}),
+    ParsedBy(read_parameter_name, {"type": "string", "pattern": PARAMETER_PATTERN}),
 ]
-Switch = Annotated[bool, ReadBy(_read_switch, {"type": "boolean"})]
+Switch = Annotated[bool, ParsedBy(_read_switch, {"type": "boolean"})]
 Entry = Annotated[
     Affine,
-    ReadBy(
+    ParsedBy(
         read_entry,
         {"anyOf": [*NUMBER_SCHEMA["anyOf"], {"type": "string", "pattern": EXPRESSION_PATTERN}]},
     ),

@@ -20,7 +20,14 @@ from typing import Annotated
 from nrs_design.models.interval import Interval
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import NUMBER_SCHEMA, read_exact
-from nrs_design.spec.model import ReadBefore, ReadBy, SpecModel, keys_schema, pair_schema, required
+from nrs_design.spec.model import (
+    ExpandedBy,
+    ParsedBy,
+    SpecModel,
+    keys_schema,
+    pair_schema,
+    required,
+)
 from nrs_design.spec.power import power_between
 from nrs_design.spec.range_checks import RANGE_CHECKS, range_around
 
@@ -51,7 +58,7 @@ _KEYS = {
     "range": pair_schema(NUMBER_SCHEMA) | {"description": _RANGE},
 }
 _SCHEMA = {"anyOf": [NUMBER_SCHEMA, keys_schema(_KEYS, "nominal")]}
-_Exponent = Annotated[Fraction, ReadBy(_read_exponent, NUMBER_SCHEMA)]
+_Exponent = Annotated[Fraction, ParsedBy(_read_exponent, NUMBER_SCHEMA)]
 
 
 class ExponentSpec(SpecModel):
@@ -65,7 +72,7 @@ class ExponentSpec(SpecModel):
 
 RangedExponent = Annotated[
     ExponentSpec,
-    ReadBefore(lambda v: v if isinstance(v, dict | ExponentSpec) else {"nominal": v}, _SCHEMA),
+    ExpandedBy(lambda v: v if isinstance(v, dict | ExponentSpec) else {"nominal": v}, _SCHEMA),
 ]
 
 

@@ -15,8 +15,8 @@ from nrs_design.spec import kinds
 from nrs_design.spec.check import Row
 from nrs_design.spec.faults import as_text, fault, reported
 from nrs_design.spec.model import (
-    ReadBefore,
-    ReadBy,
+    ExpandedBy,
+    ParsedBy,
     SpecModel,
     keys_schema,
     optional,
@@ -70,11 +70,11 @@ def quantity_schema(kind: QuantityKind) -> dict[str, Any]:
     return {"type": "string", "pattern": QUANTITY_PATTERN, "examples": [kind.example]}
 
 
-def _one(kind: QuantityKind, *, positive: bool = True, signed: bool = False) -> ReadBy:
+def _one(kind: QuantityKind, *, positive: bool = True, signed: bool = False) -> ParsedBy:
     def read(value: object) -> Quantity:
         return read_quantity(value, kind, positive=positive, signed=signed)
 
-    return ReadBy(read, quantity_schema(kind))
+    return ParsedBy(read, quantity_schema(kind))
 
 
 # In the place of a quantity: as large as is found.
@@ -94,9 +94,9 @@ def _read_or_largest(value: object, kind: QuantityKind) -> Quantity | Literal["l
     return read_quantity(value, kind, positive=True)
 
 
-def _or_largest(kind: QuantityKind) -> ReadBy:
+def _or_largest(kind: QuantityKind) -> ParsedBy:
     schema = {"anyOf": [quantity_schema(kind), {"const": LARGEST}]}
-    return ReadBy(lambda value: _read_or_largest(value, kind), schema)
+    return ParsedBy(lambda value: _read_or_largest(value, kind), schema)
 
 
 def _as_is(value: object) -> Quantity:
@@ -110,7 +110,7 @@ def _as_is(value: object) -> Quantity:
 # Inside bounds and ranges: the field around them knows the kind and reads the text.
 AnyQuantity = Annotated[
     Quantity,
-    ReadBy(_as_is, {"type": "string", "pattern": QUANTITY_PATTERN}),
+    ParsedBy(_as_is, {"type": "string", "pattern": QUANTITY_PATTERN}),
 ]
 
 
@@ -170,7 +170,7 @@ class RangedQuantity(SpecModel):
         return self.range[0].rational_part == self.range[1].rational_part
 
 
-def bounds_of(kind: QuantityKind, model: type[SpecModel], *, positive: bool = True) -> ReadBefore:
+def bounds_of(kind: QuantityKind, model: type[SpecModel], *, positive: bool = True) -> ExpandedBy:
     """Read the smallest and the largest of a quantity, the keys of a model; or one for both."""
     keys = {key: field.description for key, field in model.model_fields.items()}
 
@@ -184,12 +184,12 @@ def bounds_of(kind: QuantityKind, model: type[SpecModel], *, positive: bool = Tr
 
     single = quantity_schema(kind)
     described = {key: single | {"description": text} for key, text in keys.items()}
-    return ReadBefore(read, {"anyOf": [single, keys_schema(described, *keys)]})
+    return ExpandedBy(read, {"anyOf": [single, keys_schema(described, *keys)]})
 
 
 def _ranged(
     kind: QuantityKind, *, positive: bool = True, signed: bool = False, constant: bool = False
-) -> ReadBefore:
+) -> ExpandedBy:
     """Read a quantity with a range; in some places it may be said to be constant."""
 
     def reader(value: object) -> Quantity:
@@ -220,7 +220,7 @@ def _ranged(
             "type": "boolean",
             "description": "false: unknown in the range, but it does not change",
         }
-    return ReadBefore(read, {"anyOf": [single, keys_schema(keys, "nominal")]})
+    return ExpandedBy(read, {"anyOf": [single, keys_schema(keys, "nominal")]})
 
 
 Reader = Callable[[object], Quantity]
@@ -311,7 +311,7 @@ _RANGED_TIMES = keys_schema(
 # One time for both ends, or a range, in which it may be constant.
 TimeRange = Annotated[
     Times,
-    ReadBy(_read_times, {"anyOf": [quantity_schema(kinds.DURATION), _TIMES, _RANGED_TIMES]}),
+    ParsedBy(_read_times, {"anyOf": [quantity_schema(kinds.DURATION), _TIMES, _RANGED_TIMES]}),
 ]
 ActuatorGain = Annotated[Quantity, _one(kinds.ACTUATOR_GAIN)]
 RangedActuatorGain = Annotated[RangedQuantity, _ranged(kinds.ACTUATOR_GAIN, constant=True)]
@@ -368,5 +368,5 @@ DampingGain = Annotated[GainSpec, bounds_of(kinds.IMPEDANCE, GainSpec)]
 # No design chooses it.
 SpringGain = Annotated[
     GainSpec,
-    ReadBefore(bounds_of(kinds.SPRING, GainSpec).read, quantity_schema(kinds.SPRING)),
+    ExpandedBy(bounds_of(kinds.SPRING, GainSpec).read, quantity_schema(kinds.SPRING)),
 ]

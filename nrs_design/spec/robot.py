@@ -9,7 +9,7 @@ from nrs_design.spec import quantity_fields as field
 from nrs_design.spec.check import Row
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import Name, Positive, Title, read_exact, whole
-from nrs_design.spec.model import ReadBy, SpecModel, optional, required
+from nrs_design.spec.model import ParsedBy, SpecModel, optional, required
 from nrs_design.spec.motion import CommandUnit, MotionLoopSpec, commands_in
 
 MAX_COUNTS = 1 << 24
@@ -24,7 +24,7 @@ def _read_elbow_sign(value: object) -> int:
     return int(number)
 
 
-ElbowSign = Annotated[int, ReadBy(_read_elbow_sign, {"type": "integer", "enum": [-1, 1]})]
+ElbowSign = Annotated[int, ParsedBy(_read_elbow_sign, {"type": "integer", "enum": [-1, 1]})]
 Counts = Annotated[int, whole(2, MAX_COUNTS)]
 
 

@@ -12,7 +12,7 @@ from nrs_design.spec.check import Row
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import read_exact
 from nrs_design.spec.misses import DeadlinesSpec
-from nrs_design.spec.model import ReadBy, SpecModel, optional, pair_schema, required
+from nrs_design.spec.model import ParsedBy, SpecModel, optional, pair_schema, required
 from nrs_design.spec.provenance import IdentifiedSpec
 from nrs_design.spec.quantity_fields import ends_of
 from nrs_design.spec.units import command_unit
@@ -53,7 +53,7 @@ def _read_delay(value: object) -> tuple[int, int]:
 
 _SAMPLES = {"type": "integer", "minimum": 0, "maximum": LONGEST_DELAY}
 Delay = Annotated[
-    tuple[int, int], ReadBy(_read_delay, {"anyOf": [_SAMPLES, pair_schema(_SAMPLES)]})
+    tuple[int, int], ParsedBy(_read_delay, {"anyOf": [_SAMPLES, pair_schema(_SAMPLES)]})
 ]
 
 

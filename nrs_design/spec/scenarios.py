@@ -15,7 +15,7 @@ from nrs_design.spec import quantity_fields as field
 from nrs_design.spec.check import Row
 from nrs_design.spec.faults import all_of, as_text, fault
 from nrs_design.spec.fields import LABEL_PATTERN, Label, Title, UnitFraction, whole
-from nrs_design.spec.model import ReadBy, SpecModel, optional, pair_schema, required
+from nrs_design.spec.model import ParsedBy, SpecModel, optional, pair_schema, required
 from nrs_design.spec.quantity import Quantity, is_less
 from nrs_design.spec.quantity_fields import quantity_schema, read_quantity
 
@@ -84,13 +84,13 @@ def _pairs(first: dict[str, Any], second: dict[str, Any], least: int) -> dict[st
 _TIME = quantity_schema(kinds.DURATION)
 Breakpoints = Annotated[
     Points,
-    ReadBy(_read_points, _pairs(_TIME, quantity_schema(kinds.ANGULAR_VELOCITY), 2)),
+    ParsedBy(_read_points, _pairs(_TIME, quantity_schema(kinds.ANGULAR_VELOCITY), 2)),
 ]
 Schedule = Annotated[
     tuple[tuple[Quantity, str], ...],
-    ReadBy(_read_schedule, _pairs(_TIME, {"type": "string", "pattern": LABEL_PATTERN}, 1)),
+    ParsedBy(_read_schedule, _pairs(_TIME, {"type": "string", "pattern": LABEL_PATTERN}, 1)),
 ]
-File = Annotated[str, ReadBy(_read_file, {"type": "string"})]
+File = Annotated[str, ParsedBy(_read_file, {"type": "string"})]
 Seed = Annotated[int, whole(0, LARGEST_SEED)]
 
 

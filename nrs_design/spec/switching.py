@@ -17,7 +17,7 @@ from nrs_design.spec.check import NO_SUCH, Reference, Row, each, refuse
 from nrs_design.spec.exact import parse_exact
 from nrs_design.spec.faults import Location, as_text, fault, reported
 from nrs_design.spec.fields import Exact, Label
-from nrs_design.spec.model import ReadBefore, ReadBy, SpecModel, optional, pair_schema, required
+from nrs_design.spec.model import ExpandedBy, ParsedBy, SpecModel, optional, pair_schema, required
 from nrs_design.spec.quantity import QUANTITY_PATTERN, parse_quantity
 
 MAX_TRANSITIONS = 20_000
@@ -136,15 +136,15 @@ _TRANSITIONS_SCHEMA: dict[str, Any] = {
 class SwitchingSpec(SpecModel, unsaid="most"):
     """Rules for the switching signal; without any, it is arbitrary."""
 
-    dwell_time: Annotated[DwellTimes | None, ReadBy(read_dwell_times, DWELL_SCHEMA)] = optional(
+    dwell_time: Annotated[DwellTimes | None, ParsedBy(read_dwell_times, DWELL_SCHEMA)] = optional(
         _DWELL_TIME, stronger="smaller"
     )
-    longest_dwell_time: Annotated[DwellTimes | None, ReadBy(read_dwell_times, DWELL_SCHEMA)] = (
+    longest_dwell_time: Annotated[DwellTimes | None, ParsedBy(read_dwell_times, DWELL_SCHEMA)] = (
         optional(_LONGEST_DWELL_TIME, stronger="larger")
     )
     transitions: Annotated[
         tuple[Transition, ...] | None,
-        ReadBy(_read_transitions, _TRANSITIONS_SCHEMA),
+        ParsedBy(_read_transitions, _TRANSITIONS_SCHEMA),
     ] = optional(_TRANSITIONS, stronger="whole")
 
     @property
@@ -209,7 +209,7 @@ def _read_switching(value: object) -> object:
     return value
 
 
-def _rule(*words: str) -> ReadBefore:
+def _rule(*words: str) -> ExpandedBy:
     rules = {
         "dwell_time": DWELL_SCHEMA | {"description": _DWELL_TIME},
         "longest_dwell_time": DWELL_SCHEMA | {"description": _LONGEST_DWELL_TIME},
@@ -221,7 +221,7 @@ def _rule(*words: str) -> ReadBefore:
         "minProperties": 1,
         "additionalProperties": False,
     }
-    return ReadBefore(_read_switching, {"anyOf": [{"enum": list(words)}, mapping]})
+    return ExpandedBy(_read_switching, {"anyOf": [{"enum": list(words)}, mapping]})
 
 
 SwitchingRule = Annotated[SwitchingSpec, _rule(ARBITRARY)]

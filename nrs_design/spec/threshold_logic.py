@@ -21,7 +21,7 @@ from nrs_design.spec import quantity_fields as field
 from nrs_design.spec.check import Reference, Row, each, refuse
 from nrs_design.spec.faults import Location, as_text, did_you_mean, fault
 from nrs_design.spec.fields import Label
-from nrs_design.spec.model import ReadBy, SpecModel, at_most, optional, required
+from nrs_design.spec.model import ParsedBy, SpecModel, at_most, optional, required
 from nrs_design.spec.quantity import Quantity
 from nrs_design.spec.switching import (
     DWELL_SCHEMA,
@@ -132,7 +132,7 @@ class LogicSwitchSpec(SpecModel, stronger="unknown", unsaid="most"):
 
 
 @dataclass(frozen=True, slots=True)
-class Apart:
+class SwitchSeparation:
     """How far apart two switches lie that follow each other."""
 
     # entering, leaving: indices of the two switches.
@@ -162,7 +162,7 @@ class ThresholdLogicSpec(SpecModel, stronger="unknown"):
     switches: Annotated[
         tuple[LogicSwitchSpec, ...], Field(min_length=1, max_length=MAX_SWITCHES)
     ] = required("switches from one controller to another; the first that may be made is")
-    hold: Annotated[DwellTimes | None, ReadBy(read_dwell_times, DWELL_SCHEMA)] = at_most(
+    hold: Annotated[DwellTimes | None, ParsedBy(read_dwell_times, DWELL_SCHEMA)] = at_most(
         "shortest time in s for which a controller is held whatever the signals "
         "say; one for all, or by name. Default: what thresholds, noise and age give anyway",
         unsaid="most",
@@ -226,14 +226,14 @@ class ThresholdLogicSpec(SpecModel, stronger="unknown"):
         ends = (name for switch in self.switches for name in (switch.source, switch.target))
         return tuple(dict.fromkeys((self.start, *ends)))
 
-    def pairs(self, controller: str) -> Iterator[Apart]:
+    def pairs(self, controller: str) -> Iterator[SwitchSeparation]:
         """Yield how far apart every switch to a controller and every one from it lie."""
         for i, entering in enumerate(self.switches):
             for j, leaving in enumerate(self.switches):
                 if entering.target == controller == leaving.source:
                     yield self._apart(i, j)
 
-    def tightest(self, controller: str) -> Apart | None:
+    def tightest(self, controller: str) -> SwitchSeparation | None:
         """Return the two switches with the least time between; None if no such two are there."""
         return min(self.pairs(controller), key=lambda apart: apart.seconds, default=None)
 
@@ -261,16 +261,16 @@ class ThresholdLogicSpec(SpecModel, stronger="unknown"):
         pairs = dict.fromkeys((switch.source, switch.target) for switch in self.switches)
         return SwitchingSpec(dwell_time=stays or None, transitions=tuple(pairs))
 
-    def _apart(self, i: int, j: int) -> Apart:
+    def _apart(self, i: int, j: int) -> SwitchSeparation:
         entering, leaving = self.switches[i].conditions, self.switches[j].conditions
-        best = Apart(i, j, None, Fraction(0))
+        best = SwitchSeparation(i, j, None, Fraction(0))
         for name in entering.keys() & leaving.keys():
             ends = _opposed(entering[name], leaving[name])
             if ends is None:
                 continue
             seconds = _least_time(*ends, getattr(self.signals, name))
             if seconds > best.seconds:
-                best = Apart(i, j, name, seconds)
+                best = SwitchSeparation(i, j, name, seconds)
         return best
 
 

@@ -19,7 +19,7 @@ from nrs_design.spec.instead import Change, saying_instead
 from nrs_design.spec.load import read_axes
 from nrs_design.spec.task_space import file_of
 from nrs_design.spec.units import parse_unit
-from nrs_design.sweeps.values import EXAMPLE, Spaced, Values, parse_values
+from nrs_design.sweeps.values import EXAMPLE, EvenlySpaced, Values, parse_values
 
 MAX_FIELDS = 3
 # Beyond that nobody reads the result, and no store holds it.
@@ -37,7 +37,7 @@ class Field:
     @property
     def unit(self) -> str:
         """The unit of all values; empty if they have none, or several."""
-        units = {self.values.unit} if isinstance(self.values, Spaced) else _units(self.values)
+        units = {self.values.unit} if isinstance(self.values, EvenlySpaced) else _units(self.values)
         return units.pop() if len(units) == 1 else ""
 
 

@@ -28,7 +28,7 @@ WATCH = 1.0
 CHUNKS_PER_WORKER, LARGEST_CHUNK = 8, 200
 
 
-def spread(work: Work[T], points: Collection[int], jobs: int) -> Iterator[tuple[int, T]]:
+def map_in_processes(work: Work[T], points: Collection[int], jobs: int) -> Iterator[tuple[int, T]]:
     """Yield the number of each point with its result, as they come; one job is this process.
 
     The work can be pickled. A `NrsDesignError` if workers die again and again before any result.

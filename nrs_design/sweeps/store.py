@@ -25,7 +25,7 @@ MAX_BYTES = 64 * 2**20
 
 
 @dataclass(frozen=True, slots=True)
-class Kept:
+class CachedAnswer:
     """The answer of a command about one point."""
 
     code: int  # With which the command ends
@@ -58,19 +58,19 @@ class Store:
         """Return the file of the certificate beside it."""
         return self.folder / key[:2] / f"{key}.cert.json"
 
-    def read(self, key: str) -> Kept | None:
+    def read(self, key: str) -> CachedAnswer | None:
         """Return what is kept; None if nothing is, or it is not as it was written."""
         try:
             with open_regular(self.entry(key)) as file:
                 text = read_json_text(file.read(MAX_BYTES + 1))
             document = json.loads(text, object_pairs_hook=unique_keys)
-            kept = Kept(int(document["code"]), dict(document["result"]))
+            kept = CachedAnswer(int(document["code"]), dict(document["result"]))
             is_whole = document == {**kept.said(key), "id": kept.id(key)}
             return kept if is_whole else None
         except (OSError, ValueError, LookupError, TypeError, RecursionError):
             return None
 
-    def write(self, key: str, kept: Kept) -> None:
+    def write(self, key: str, kept: CachedAnswer) -> None:
         """Keep an answer, in the place of what is there."""
         write_output(self.entry(key), kept.text(key))
 

@@ -21,7 +21,7 @@ _WHOLE = "give a count, such as {low}..{high}/16: only whole numbers follow each
 
 
 @dataclass(frozen=True, slots=True)
-class Spaced:
+class EvenlySpaced:
     """Values at equal distances, both ends among them; written when one is asked for."""
 
     low: Fraction
@@ -39,7 +39,7 @@ class Spaced:
         return _with_unit(exact_text(value), self.unit)
 
 
-Values: TypeAlias = Spaced | tuple[str, ...]
+Values: TypeAlias = EvenlySpaced | tuple[str, ...]
 
 
 def parse_values(text: str) -> Values:
@@ -56,7 +56,9 @@ def parse_values(text: str) -> Values:
     return _listed(text)
 
 
-def _spaced(low_text: str, high_text: str, count_text: str | None, unit: str | None) -> Spaced:
+def _spaced(
+    low_text: str, high_text: str, count_text: str | None, unit: str | None
+) -> EvenlySpaced:
     low, high = parse_exact(low_text), parse_exact(high_text)
     said = quoted(f"{low_text}..{high_text}")
     if low > high:
@@ -81,7 +83,7 @@ def _spaced(low_text: str, high_text: str, count_text: str | None, unit: str | N
             f"{said} has more values than a sequence may have",
             remedy="give a smaller count, such as 1..250/16",
         )
-    return Spaced(low, high, count, unit or "")
+    return EvenlySpaced(low, high, count, unit or "")
 
 
 def _listed(text: str) -> tuple[str, ...]:

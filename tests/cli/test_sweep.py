@@ -108,10 +108,10 @@ def certified(tmp_path, spec, value="700"):
 
 
 def rewritten(entry, change):
-    from nrs_design.sweeps.store import Kept
+    from nrs_design.sweeps.store import CachedAnswer
 
     document = json.loads(entry.read_text(encoding="utf-8"))
-    forged = Kept(document["code"], change(document["result"]))
+    forged = CachedAnswer(document["code"], change(document["result"]))
     entry.write_text(forged.text(document["key"]), encoding="utf-8")
 
 

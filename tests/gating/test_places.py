@@ -1,6 +1,6 @@
 import pytest
 
-from nrs_design.gating.places import Places
+from nrs_design.gating.places import SourcePositions
 from nrs_design.spec import read_spec
 from tests.support import SOFT_TISSUE
 
@@ -9,7 +9,7 @@ from tests.support import SOFT_TISSUE
 def text_and_places(project):
     def read(name):
         loaded = read_spec(project / "specs" / name)
-        return loaded.text.split("\n"), Places(loaded)
+        return loaded.text.split("\n"), SourcePositions(loaded)
 
     return read
 
@@ -26,7 +26,7 @@ def test_a_goal_stands_at_its_controller_or_at_the_top(tmp_path):
     text = text.replace(own, f"{own}    goals: {{max_sensitivity_peak: 4}}\n")
     path = tmp_path / "goals.nrs.yaml"
     path.write_text(text)
-    lines, places = text.split("\n"), Places(read_spec(path))
+    lines, places = text.split("\n"), SourcePositions(read_spec(path))
     for controller, key in (
         ("withdrawal", "max_sensitivity_peak"),
         ("withdrawal", "min_gain_margin"),

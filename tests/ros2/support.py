@@ -2,7 +2,7 @@
 
 from fractions import Fraction
 
-from nrs_design.ros2.axis import Surroundings
+from nrs_design.ros2.axis import ControllerContext
 from nrs_design.ros2.law import AXES, AdmittanceLaw, Axis
 from nrs_design.ros2.parameters import RosNode
 from nrs_design.spec.document import Position
@@ -26,9 +26,9 @@ def law(one, damping, c):
 
 
 def around(period, ages, stiffness, lag=(0, 0)):
-    """Surroundings in which all axes meet the same."""
+    """ControllerContext in which all axes meet the same."""
     ends = F(stiffness[0]), F(stiffness[1])
-    return Surroundings(F(period), ages, ends, ends, (F(lag[0]), F(lag[1])))
+    return ControllerContext(F(period), ages, ends, ends, (F(lag[0]), F(lag[1])))
 
 
 def changed(tmp_path, *changes, more=""):

@@ -9,23 +9,23 @@ from types import SimpleNamespace
 import pytest
 
 from nrs_design.errors import NrsDesignError
-from nrs_design.sweeps.spread import chunked, spread, spread_by_dask
+from nrs_design.sweeps.spread import chunked, map_in_processes, spread_by_dask
 from tests.sweeps.work import always_killed, killed_once, square
 
 
 def test_points_of_one_process_come_in_order():
-    assert list(spread(square, range(3), 1)) == [(0, 0), (1, 1), (2, 4)]
+    assert list(map_in_processes(square, range(3), 1)) == [(0, 0), (1, 1), (2, 4)]
 
 
 def test_a_killed_worker_loses_nothing(tmp_path):
-    found = list(spread(partial(killed_once, tmp_path), range(8), 2))
+    found = list(map_in_processes(partial(killed_once, tmp_path), range(8), 2))
     assert (tmp_path / "killed").exists()
     assert sorted(found) == [(point, point * point) for point in range(8)]
 
 
 def test_workers_that_always_die_end_in_an_error():
     with pytest.raises(NrsDesignError, match="died 4 times in a row; 2 points are left"):
-        list(spread(partial(always_killed, os.getpid()), range(2), 2))
+        list(map_in_processes(partial(always_killed, os.getpid()), range(2), 2))
 
 
 @pytest.mark.parametrize(("count", "workers"), [(1, 4), (1000, 2), (100_000, 3)])

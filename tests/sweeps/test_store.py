@@ -4,10 +4,10 @@ import json
 
 import pytest
 
-from nrs_design.sweeps.store import Kept, Store, key_of
+from nrs_design.sweeps.store import CachedAnswer, Store, key_of
 
 KEY = key_of("meaning", ("check",), "1")
-KEPT = Kept(1, {"verdict": "refuted", "rate": 0.1, "modes": ["a", "b"], "none": None})
+KEPT = CachedAnswer(1, {"verdict": "refuted", "rate": 0.1, "modes": ["a", "b"], "none": None})
 
 
 @pytest.fixture

@@ -42,35 +42,35 @@ GIVEN_GAINS = ("Bt", "proportional_gain", "integral_gain")
 
 
 @dataclass(frozen=True, slots=True)
-class Way:
-    """One way in which a line asks for less: least at 0, all that it asks for at `size`."""
+class RelaxationSteps:
+    """Graded relaxation of a spec line: step 0 is weakest, step `size` is the declared value."""
 
     word: str  # Before what is proved: up to, down to, within, with, without
-    says: Callable[[int], Data | None]  # What stands there at a step; None if nothing
-    reach: Callable[[int], str]  # That value in words
-    asked: str  # The same of the spec as it stands
+    value_at: Callable[[int], Data | None]  # Value in the spec at a step; None: the key is removed
+    label_at: Callable[[int], str]  # That value in words
+    requested: str  # The declared value in words
     size: int = 0  # Where nothing lies between, 0
 
 
 @dataclass(frozen=True, slots=True)
-class Concession:
-    """A line of a spec, and how it could ask for less."""
+class SpecRelaxation:
+    """A line of a spec, and its possible relaxations."""
 
     at: Keys  # The place
-    least: Way  # At 0, it asks for the least
+    weakest: RelaxationSteps  # At step 0, the line asks for the least
     # Ask for more than that at 0 already; the first one that is proved there is looked at further.
-    others: tuple[Way, ...] = ()
+    alternatives: tuple[RelaxationSteps, ...] = ()
     # Whether what is proved then is about another loop, or takes more for granted, rather than
     # about less of what was asked for.
-    other_loop: bool = False
-    in_all: bool = True  # Whether it is changed where all lines are that make sense together
+    changes_model: bool = False
+    combinable: bool = True  # Whether it is changed where all lines are that make sense together
 
-    def edit(self, form: Way, step: int) -> Edit:
+    def edit(self, form: RelaxationSteps, step: int) -> Edit:
         """Return what is written at a step."""
-        return self.at, form.says(step)
+        return self.at, form.value_at(step)
 
 
-def concessions(loaded: LoadedSpec, slowest: float | None) -> Iterator[Concession]:
+def iterate_relaxations(loaded: LoadedSpec, slowest: float | None) -> Iterator[SpecRelaxation]:
     """Yield how single lines of a spec could ask for less, the mildest first.
 
     The gains are those that are designed, as decimals in SI. `slowest` is the decay rate of the
@@ -85,7 +85,7 @@ def concessions(loaded: LoadedSpec, slowest: float | None) -> Iterator[Concessio
 
 def _of_matrices(
     spec: SwitchedSystemSpec, root: Node, slowest: float | None
-) -> Iterator[Concession]:
+) -> Iterator[SpecRelaxation]:
     for name in spec.parameters:
         yield from _range(root, ("parameters", name))
     for name, parameter in spec.parameters.items():
@@ -93,12 +93,12 @@ def _of_matrices(
             yield _with(("parameters", name, "varies"), "false", "true")
     yield from _dwell(spec.switching.is_arbitrary, root, slowest, spec.time == "discrete")
     for index in range(len(spec.modes) if len(spec.modes) > 1 else 0):
-        yield _without(("modes", index), in_all=False)
+        yield _without(("modes", index), combinable=False)
 
 
 def _of_interaction(
     spec: InteractionDesignSpec, root: Node, slowest: float | None
-) -> Iterator[Concession]:
+) -> Iterator[SpecRelaxation]:
     for name in sorted(spec.touched):
         for key in ("exponent", *spec.environments[name].ranges):
             yield from _range(root, ("environments", name, key))
@@ -111,7 +111,7 @@ def _of_interaction(
         yield from _delay(*spec.sampling.delay)
         yield from _times(root, ("sampling", "latency"))
         if spec.sampling.jitter is not None:
-            yield _without(("sampling", "jitter"), other_loop=True)
+            yield _without(("sampling", "jitter"), changes_model=True)
     for drive in spec.drives:
         yield from _times(root, (drive, "dead_time"))
     if spec.contact == "losable":
@@ -121,7 +121,7 @@ def _of_interaction(
     yield from _left_out(spec)
 
 
-def calmer(loaded: LoadedSpec, more: int, less: int) -> tuple[Concession, ...]:
+def calmer(loaded: LoadedSpec, more: int, less: int) -> tuple[SpecRelaxation, ...]:
     """Return the gains that a spec gives, with so many times the damping, and a part of the others.
 
     They are changed together: one controller alone seldom keeps the others from being proved.
@@ -135,7 +135,7 @@ def calmer(loaded: LoadedSpec, more: int, less: int) -> tuple[Concession, ...]:
     places = (("controllers", name, key) for name in controllers for key in factors)
     given = {at: said for at in places if (said := _said(root, at)) is not None}
     return tuple(
-        _with(at, _scaled(said, factors[at[-1]]), in_one_line(said), other_loop=True)
+        _with(at, _scaled(said, factors[at[-1]]), in_one_line(said), changes_model=True)
         for at, said in given.items()
         if factors[at[-1]] != 1
     )
@@ -149,39 +149,39 @@ def _scaled(given: Data, factor: Fraction) -> Data:
     return " ".join((exact_text(_number(given) * factor), *given.split(" ", 1)[1:]))
 
 
-def _left_out(spec: InteractionDesignSpec) -> Iterator[Concession]:
+def _left_out(spec: InteractionDesignSpec) -> Iterator[SpecRelaxation]:
     """Yield what may be left out whole."""
     for name, controller in spec.controllers.items():
         for index in range(len(controller.contacts) if len(controller.contacts) > 1 else 0):
-            yield _without(("controllers", name, "contacts", index), in_all=False)
+            yield _without(("controllers", name, "contacts", index), combinable=False)
     if len(spec.controllers) > 1:
         for name in spec.controllers:
-            yield _without(("controllers", name), in_all=False)
+            yield _without(("controllers", name), combinable=False)
     if spec.disturbances is not None:
         yield _without(("disturbances",))
     if spec.idle_states is not None and spec.idle_states.reset:
-        yield _without(("idle_states", "reset"), other_loop=True)
+        yield _without(("idle_states", "reset"), changes_model=True)
     if spec.sensor is not None and spec.sensor.filter is not None:
         # A sensor of which nothing else is said goes whole.
         alone = spec.sensor.model_fields_set == {"filter"}
-        yield _without(("sensor",) if alone else ("sensor", "filter"), other_loop=True)
+        yield _without(("sensor",) if alone else ("sensor", "filter"), changes_model=True)
     if spec.sampling is not None and spec.sampling.outer_period is not None:
-        yield _without(("sampling", "outer_period"), other_loop=True)
+        yield _without(("sampling", "outer_period"), changes_model=True)
     if spec.sampling is not None and spec.sampling.misses is not None:
         yield _without(("sampling", "misses"))
 
 
-def _with(at: Keys, said: Data, asked: str, *, other_loop: bool = False) -> Concession:
-    way = Way(WITH, lambda _: said, lambda _: in_one_line(said), asked)
-    return Concession(at, way, other_loop=other_loop)
+def _with(at: Keys, said: Data, asked: str, *, changes_model: bool = False) -> SpecRelaxation:
+    way = RelaxationSteps(WITH, lambda _: said, lambda _: in_one_line(said), asked)
+    return SpecRelaxation(at, way, changes_model=changes_model)
 
 
-def _without(at: Keys, *, other_loop: bool = False, in_all: bool = True) -> Concession:
-    form = Way(WITHOUT, lambda _: None, lambda _: "", "")
-    return Concession(at, form, other_loop=other_loop, in_all=in_all)
+def _without(at: Keys, *, changes_model: bool = False, combinable: bool = True) -> SpecRelaxation:
+    form = RelaxationSteps(WITHOUT, lambda _: None, lambda _: "", "")
+    return SpecRelaxation(at, form, changes_model=changes_model, combinable=combinable)
 
 
-def _range(root: Node, at: Keys) -> Iterator[Concession]:
+def _range(root: Node, at: Keys) -> Iterator[SpecRelaxation]:
     """Yield the range of a quantity, if one is written; the center is its nominal value."""
     part = _said(root, at)
     if not isinstance(part, dict) or not isinstance(part.get("range"), tuple):
@@ -194,14 +194,16 @@ def _range(root: Node, at: Keys) -> Iterator[Concession]:
     up = partial(_ends, ends, (False, True))
     down = partial(_ends, ends, (True, False))
     both = partial(_ends, ends, (True, True))
-    others: tuple[Way, ...] = ()
+    others: tuple[RelaxationSteps, ...] = ()
     if _number(low, middle) < _number(middle) < _number(high, middle):
         others = (
-            Way(UP, up, lambda k: up(k)[1], high, PARTS),
-            Way(DOWN, down, lambda k: down(k)[0], low, PARTS),
+            RelaxationSteps(UP, up, lambda k: up(k)[1], high, PARTS),
+            RelaxationSteps(DOWN, down, lambda k: down(k)[0], low, PARTS),
         )
-    least = Way(WITHIN, both, lambda k: in_one_line(both(k)), in_one_line((low, high)), PARTS)
-    yield Concession((*at, "range"), least, others)
+    least = RelaxationSteps(
+        WITHIN, both, lambda k: in_one_line(both(k)), in_one_line((low, high)), PARTS
+    )
+    yield SpecRelaxation((*at, "range"), least, others)
 
 
 def _ends(ends: tuple[str, str, str], moved: tuple[bool, bool], step: int) -> tuple[str, str]:
@@ -246,7 +248,7 @@ def _number(text: str, unit_of: str = "") -> Fraction:
     return value * parse_unit(unit.strip()).factor / parse_unit(other.strip()).factor
 
 
-def _times(root: Node, at: Keys) -> Iterator[Concession]:
+def _times(root: Node, at: Keys) -> Iterator[SpecRelaxation]:
     """Yield a range of times, if one is written: what is asked for least is the shortest."""
     part = _said(root, at)
     if isinstance(part, dict):
@@ -256,10 +258,10 @@ def _times(root: Node, at: Keys) -> Iterator[Concession]:
     low, high = map(str, part)
     if _number(low, high) < _number(high):
         up = partial(_ends, (low, high, low), (False, True))
-        yield Concession(at, Way(UP, up, lambda k: up(k)[1], high, PARTS))
+        yield SpecRelaxation(at, RelaxationSteps(UP, up, lambda k: up(k)[1], high, PARTS))
 
 
-def _delay(least: int, most: int) -> Iterator[Concession]:
+def _delay(least: int, most: int) -> Iterator[SpecRelaxation]:
     at: Keys = ("sampling", "delay")
     if least < most:
 
@@ -268,14 +270,18 @@ def _delay(least: int, most: int) -> Iterator[Concession]:
 
         # Firmware cannot make a sample newer, but hold fresh ones back until they are as old.
         held = f"{_samples(most)} always, fresh ones held back"
-        yield Concession(
-            at, Way(WITH, lambda k: str(most), lambda k: held, _samples(most)), in_all=False
+        yield SpecRelaxation(
+            at,
+            RelaxationSteps(WITH, lambda k: str(most), lambda k: held, _samples(most)),
+            combinable=False,
         )
-        form = Way(UP, says, lambda k: _samples(least + k), _samples(most), most - least)
-        yield Concession(at, form)
+        form = RelaxationSteps(
+            UP, says, lambda k: _samples(least + k), _samples(most), most - least
+        )
+        yield SpecRelaxation(at, form)
     elif most:
-        form = Way(WITH, str, _samples, _samples(most), most)
-        yield Concession(at, form, other_loop=True)
+        form = RelaxationSteps(WITH, str, _samples, _samples(most), most)
+        yield SpecRelaxation(at, form, changes_model=True)
 
 
 def _samples(count: int) -> str:
@@ -284,31 +290,31 @@ def _samples(count: int) -> str:
 
 def _dwell(
     arbitrary: bool, root: Node, slowest: float | None, discrete: bool
-) -> Iterator[Concession]:
+) -> Iterator[SpecRelaxation]:
     """Yield a dwell time where there is none, or a longer one than the one for all modes."""
     at: Keys = ("switching",)
     given = _said(root, (*at, "dwell_time"))
     if arbitrary and _said(root, at) == "arbitrary":
         if discrete:
-            yield Concession(at, _dwell_form(MOST_STEPS - 2, _steps_at))
+            yield SpecRelaxation(at, _dwell_form(MOST_STEPS - 2, _steps_at))
         elif slowest is not None and slowest > 0:
             longest = min(Fraction(2) ** ceil(log2(TIMES / slowest)), Fraction(LONGEST_DWELL))
-            yield Concession(at, _dwell_form(DWELLS, partial(_seconds_at, longest)))
+            yield SpecRelaxation(at, _dwell_form(DWELLS, partial(_seconds_at, longest)))
     elif isinstance(given, str) and not discrete and _number(given, "1 s") * TIMES < LONGEST_DWELL:
         shortest = _number(given, "1 s")
 
         def longer(step: int) -> str:
             return given if step == LONGER else _seconds_at(shortest * TIMES, step)
 
-        form = Way(WITH, longer, longer, given, LONGER)
-        yield Concession((*at, "dwell_time"), form)
+        form = RelaxationSteps(WITH, longer, longer, given, LONGER)
+        yield SpecRelaxation((*at, "dwell_time"), form)
 
 
-def _dwell_form(size: int, text: Callable[[int], str]) -> Way:
+def _dwell_form(size: int, text: Callable[[int], str]) -> RelaxationSteps:
     def says(step: int) -> Data:
         return "arbitrary" if step > size else {"dwell_time": text(step)}
 
-    return Way(WITH, says, lambda k: f"dwell_time: {text(k)}", "arbitrary", size + 1)
+    return RelaxationSteps(WITH, says, lambda k: f"dwell_time: {text(k)}", "arbitrary", size + 1)
 
 
 def _steps_at(step: int) -> str:

@@ -8,11 +8,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from nrs_design.spec import LoadedSpec, parse_spec
-from nrs_design.spec.concessions import PARTS, Concession, calmer, concessions
 from nrs_design.spec.document import parse_document, to_data
 from nrs_design.spec.edits import changed, with_edits
 from nrs_design.spec.load import respecified
-from nrs_design.spec.weaker import find_changes
+from nrs_design.spec.relaxations import PARTS, SpecRelaxation, calmer, iterate_relaxations
+from nrs_design.spec.spec_weakening import find_changes
 from tests.support import FORCE_LIMIT, ROOT, SOFT_TISSUE
 from tests.tables import edited, table
 
@@ -31,12 +31,12 @@ def loaded(text: str) -> LoadedSpec:
     )
 
 
-def lines_of(spec: LoadedSpec, slowest: float | None = None) -> dict[str, Concession]:
-    return {".".join(map(str, line.at)): line for line in concessions(spec, slowest)}
+def lines_of(spec: LoadedSpec, slowest: float | None = None) -> dict[str, SpecRelaxation]:
+    return {".".join(map(str, line.at)): line for line in iterate_relaxations(spec, slowest)}
 
 
-def at_least(spec: LoadedSpec, line: Concession) -> LoadedSpec:
-    return respecified(spec, with_edits(spec.root, [line.edit(line.least, 0)]))
+def at_least(spec: LoadedSpec, line: SpecRelaxation) -> LoadedSpec:
+    return respecified(spec, with_edits(spec.root, [line.edit(line.weakest, 0)]))
 
 
 @pytest.mark.parametrize("name", PARTS_OF)
@@ -51,24 +51,24 @@ def test_less_is_asked_for_at_every_step_and_all_at_the_last():
     spec = loaded(TEXT)
     line = lines_of(spec)[STIFFNESS]
     said = to_data(spec.root)
-    for way in (line.least, *line.others):
+    for way in (line.weakest, *line.alternatives):
         for step in range(way.size):
-            less = respecified(spec, changed(spec.root, line.at, way.says(step)))
+            less = respecified(spec, changed(spec.root, line.at, way.value_at(step)))
             found = list(find_changes(spec.spec, less.spec))
             assert [change.weaker for change in found] == [True]
-        assert to_data(changed(spec.root, line.at, way.says(way.size))) == said
+        assert to_data(changed(spec.root, line.at, way.value_at(way.size))) == said
 
 
 def test_the_lengths_of_a_hand_are_decimals_of_its_unit():
     line = lines_of(loaded(TEXT))[STIFFNESS]
-    up, down = line.others
-    assert (line.least.says(0), up.says(0)) == (
+    up, down = line.alternatives
+    assert (line.weakest.value_at(0), up.value_at(0)) == (
         ("747.1461 N/m", "747.1461 N/m"),
         ("720.56 N/m", "747.1461 N/m"),
     )
     # Half of the way to 768.17, rounded towards the nominal value.
-    assert up.says(PARTS // 2) == ("720.56 N/m", "757.65 N/m")
-    assert down.says(PARTS // 2) == ("733.86 N/m", "768.17 N/m")
+    assert up.value_at(PARTS // 2) == ("720.56 N/m", "757.65 N/m")
+    assert down.value_at(PARTS // 2) == ("733.86 N/m", "768.17 N/m")
 
 
 @given(
@@ -82,32 +82,32 @@ def test_ends_are_rounded_towards_the_nominal_value_and_never_leave_the_range(ce
     text += f"{{nominal: {numbers[0]}, range: [{numbers[1]}, {numbers[2]}]}}\n"
     text += "modes: [{name: m, A: [[k]]}]\nswitching: arbitrary\n"
     line = lines_of(loaded(text))["parameters.k.range"]
-    both, up, down = line.least, *line.others
+    both, up, down = line.weakest, *line.alternatives
     last = (center, center)
     for step in (0, 1, 7, PARTS // 2, PARTS - 1, PARTS):
-        low, high = map(Fraction, both.says(step))
+        low, high = map(Fraction, both.value_at(step))
         assert center - below <= low <= last[0] <= center <= last[1] <= high <= center + above
         assert center - low <= below * step / PARTS
         assert high - center <= above * step / PARTS
         assert step == 0 or (high - center) > above * (step - Fraction(1, 2)) / PARTS
-        assert (Fraction(up.says(step)[1]), Fraction(down.says(step)[0])) == (high, low)
+        assert (Fraction(up.value_at(step)[1]), Fraction(down.value_at(step)[0])) == (high, low)
         last = low, high
 
 
 def test_a_constant_delay_may_be_shorter():
     line = lines_of(loaded(TEXT + "\nsampling: {period: 2 ms, delay: 2}\n"))["sampling.delay"]
-    assert [line.least.says(step) for step in range(3)] == ["0", "1", "2"]
-    assert line.least.reach(1) == "1 sample"
+    assert [line.weakest.value_at(step) for step in range(3)] == ["0", "1", "2"]
+    assert line.weakest.label_at(1) == "1 sample"
     # Another delay is another loop.
-    assert line.other_loop
+    assert line.changes_model
 
 
 def test_a_range_of_times_keeps_its_shortest():
     text = TEXT + "\nsampling: {period: 2 ms, delay: 0, latency: [0.3 ms, 1 ms]}\n"
-    form = lines_of(loaded(text))["sampling.latency"].least
-    assert form.says(0) == ("0.3 ms", "0.3 ms")
-    assert form.says(PARTS) == ("0.3 ms", "1 ms")
-    assert (form.reach(PARTS // 2), form.asked) == ("0.65 ms", "1 ms")
+    form = lines_of(loaded(text))["sampling.latency"].weakest
+    assert form.value_at(0) == ("0.3 ms", "0.3 ms")
+    assert form.value_at(PARTS) == ("0.3 ms", "1 ms")
+    assert (form.label_at(PARTS // 2), form.requested) == ("0.65 ms", "1 ms")
     one = TEXT + "\nsampling: {period: 2 ms, delay: 0, latency: 1 ms}\n"
     assert "sampling.latency" not in lines_of(loaded(one))
 
@@ -116,21 +116,21 @@ def test_a_dwell_time_begins_where_every_mode_has_decayed():
     text = (ROOT / "specs/examples/commuting.nrs.yaml").read_text(encoding="utf-8")
     line = lines_of(loaded(text), 0.5)["switching"]
     times = [
-        Fraction(line.least.says(step)["dwell_time"].removesuffix(" s"))
-        for step in range(line.least.size)
+        Fraction(line.weakest.value_at(step)["dwell_time"].removesuffix(" s"))
+        for step in range(line.weakest.size)
     ]
     assert times == sorted(times, reverse=True)
     assert times[0] == 128
     assert times[-1] < Fraction(1, 100)
-    assert line.least.says(line.least.size) == "arbitrary"
+    assert line.weakest.value_at(line.weakest.size) == "arbitrary"
     assert "switching" not in lines_of(loaded(text))
 
 
 def test_a_longer_dwell_time_than_the_one_declared():
     text = (ROOT / "specs/examples/geromel-colaneri.nrs.yaml").read_text(encoding="utf-8")
     line = lines_of(loaded(text))["switching.dwell_time"]
-    assert line.least.says(line.least.size) == "2.76 s"
-    assert Fraction("2.76") < Fraction(line.least.says(line.least.size - 1)[:-2]) < 3
+    assert line.weakest.value_at(line.weakest.size) == "2.76 s"
+    assert Fraction("2.76") < Fraction(line.weakest.value_at(line.weakest.size - 1)[:-2]) < 3
 
 
 def test_identified_ranges_lose_what_was_said_of_them():
@@ -148,9 +148,9 @@ def test_identified_ranges_lose_what_was_said_of_them():
 def test_given_gains_of_all_controllers_change_together():
     """Bounds move as one; a gain that is designed from something else is not given."""
     lines = calmer(loaded(TEXT.replace(BT, "Bt: {min: 0.1 N*m*s/rad, max: 1.5 N*m*s/rad")), 2, 4)
-    assert [line.edit(line.least, 0) for line in lines] == [
+    assert [line.edit(line.weakest, 0) for line in lines] == [
         (("controllers", name, "Bt"), {"min": "0.2 N*m*s/rad", "max": f"{top} N*m*s/rad"})
         for name, top in (("insertion", 3), ("withdrawal", 3))
     ]
     (force,) = calmer(loaded(FORCE_LIMIT.read_text(encoding="utf-8")), 2, 4)
-    assert force.least.says(0) == "0.005 rad/(N*m)"
+    assert force.weakest.value_at(0) == "0.005 rad/(N*m)"

@@ -35,7 +35,7 @@ _RANGES = ("wider", "farther", "holding")
 class Change:
     """One place where two specs differ."""
 
-    at: Place  # Keys that lead to it
+    key_path: Place  # Keys that lead to it
     message: str  # What has changed; one line
     # Whether less is asked for, or more taken for granted, than before. Otherwise, it is stronger,
     # or neither.

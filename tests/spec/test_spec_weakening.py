@@ -51,6 +51,7 @@ from nrs_design.spec.scenarios import (
     ThresholdControlSpec,
 )
 from nrs_design.spec.sensor import CenterSpec, PointSpec, SensorSpec, ToolSpec
+from nrs_design.spec.spec_weakening import find_changes
 from nrs_design.spec.switched_system import SwitchedSystemSpec
 from nrs_design.spec.threshold_logic import (
     CommandCondition,
@@ -58,7 +59,6 @@ from nrs_design.spec.threshold_logic import (
     TorqueCondition,
     TorqueSignalSpec,
 )
-from nrs_design.spec.weaker import find_changes
 from tests.support import ROOT
 from tests.tables import cases_of, edit_of, edited, spec_text
 
@@ -76,7 +76,7 @@ def changes(before, after):
 WAYS = {(True, False): "there", (False, True): "back", (True, True): "both"}
 
 
-@pytest.mark.parametrize("case", cases_of(Path(__file__).with_name("weaker.yaml"), "base"))
+@pytest.mark.parametrize("case", cases_of(Path(__file__).with_name("spec_weakening.yaml"), "base"))
 def test_what_an_edit_makes_weaker(case):
     before = edited(spec_text(case["base"]), case.get("given", []))
     after = edited(before, edit_of(case))

@@ -2,276 +2,196 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from itertools import product
+from typing import Any
 
+from nrs_design.spec import features as has
 from nrs_design.spec.check import Feature, Row, not_together
-from nrs_design.spec.features import (
-    ANGLE,
-    ANY_CONTACT,
-    AT_ONCE,
-    BLEEDING,
-    COMMAND,
-    CONSTANT_MOTOR,
-    CONSTANT_TISSUE,
-    CONTACT_RULES,
-    CONTINUOUS,
-    DAMPED,
-    DAMPED_FORCE,
-    DISTURBED,
-    DWELL,
-    FILTER,
-    GIVEN_LOOP,
-    HAND,
-    HEAVY_AT_ONCE,
-    IDLE,
-    IDLE_RESET,
-    LAGGING_AT_ONCE,
-    LIMITED,
-    LOADED,
-    LONGEST_STAY,
-    LOSABLE,
-    MEMORY,
-    MISSES,
-    MODE_LOGIC,
-    MOTOR_RANGE,
-    NOT_KEPT,
-    OFFSET,
-    OTHER_TISSUE,
-    OTHERS,
-    PLACED,
-    PRELOADED,
-    RELAXED,
-    RESTLESS,
-    RULES,
-    SAMPLED,
-    SAMPLED_DWELL,
-    SATURATED,
-    SEVERAL_CONTACTS,
-    SLIDING,
-    SPRUNG,
-    STREAMED,
-    TIMED,
-    TISSUE_RANGE,
-    TOOL,
-    TORQUES,
-    TWO_PERIODS,
-    UNFILTERED,
-    VELOCITIES,
-    ZEROED,
-)
 from nrs_design.spec.interaction_parts import AbstractInteractionSpec as Spec
 
-
-def _beside(first: Feature[Spec], *others: Feature[Spec], because: str = "") -> Iterator[Row[Spec]]:
-    """Yield a row for the first feature beside each of the others."""
-    return (not_together(first, other, because=because) for other in others)
-
-
 # Beside these it counts what is touched by a controller that takes no force.
-_FELT = FILTER, LOADED, MEMORY
+_FELT = (has.FILTER, has.LOADED, has.MEMORY)
 # What may change while one controller is active.
 CHANGING: tuple[tuple[Feature[Spec], ...], ...] = (
-    (LOSABLE, SPRUNG),
-    (MOTOR_RANGE,),
-    (SEVERAL_CONTACTS,),
-    (AT_ONCE,),
-    (TISSUE_RANGE,),
-    *((ANY_CONTACT, felt) for felt in _FELT),
+    (has.LOSABLE, has.SPRUNG),
+    (has.MOTOR_RANGE,),
+    (has.SEVERAL_CONTACTS,),
+    (has.AT_ONCE,),
+    (has.TISSUE_RANGE,),
+    *((has.ANY_CONTACT, felt) for felt in _FELT),
 )
 _DWELLS = "a dwell time holds for a mode that stays as it is"
 _CONSTANTS = "a proof about a constant lets every mode follow every other"
 _MISSES = "the rule for misses decides what may follow what"
 
-COMBINATIONS: tuple[Row[Spec], ...] = (
-    not_together(HAND, LOSABLE, because="let go, its mass moves on by itself"),
-    not_together(
-        HAND, SAMPLED, because="a force sample would show the acceleration that its command makes"
+# A reason, and the features that are not modelled together; of those in brackets, each by itself.
+_TABLE: tuple[tuple[Any, ...], ...] = (
+    ("let go, its mass moves on by itself", has.HAND, has.LOSABLE),
+    ("a force sample would show the acceleration that its command makes", has.HAND, has.SAMPLED),
+    (
+        "a command that jumps accelerates its mass without bound",
+        has.HAND,
+        (has.DISTURBED, has.IDLE),
     ),
-    *_beside(
-        HAND, DISTURBED, IDLE, because="a command that jumps accelerates its mass without bound"
+    ("its mass and the load would move as one", has.HAND, has.LOADED),
+    ("without a force it is not what the spec knows of it", has.PRELOADED, has.LOSABLE),
+    ("what disturbs may lead out of its preload", has.PRELOADED, has.DISTURBED),
+    (
+        "it would remember a contact that comes and goes within a period",
+        has.MEMORY,
+        (has.LOSABLE, has.OTHER_TISSUE, has.ANY_CONTACT),
+        has.SAMPLED,
     ),
-    not_together(HAND, LOADED, because="its mass and the load would move as one"),
-    not_together(PRELOADED, LOSABLE, because="without a force it is not what the spec knows of it"),
-    not_together(PRELOADED, DISTURBED, because="what disturbs may lead out of its preload"),
-    *(
-        not_together(
-            MEMORY,
-            comes,
-            SAMPLED,
-            because="it would remember a contact that comes and goes within a period",
-        )
-        for comes in (LOSABLE, OTHER_TISSUE, ANY_CONTACT)
+    (
+        "positions count from the place where it rests, and it has none",
+        has.RESTLESS,
+        (has.SAMPLED, has.OTHERS),
     ),
-    *_beside(
-        RESTLESS,
-        SAMPLED,
-        OTHERS,
-        because="positions count from the place where it rests, and it has none",
+    (
+        "without a place of rest it shares no deflection with another",
+        has.RESTLESS,
+        has.OTHER_TISSUE,
     ),
-    not_together(
-        RESTLESS,
-        OTHER_TISSUE,
-        because="without a place of rest it shares no deflection with another",
+    (
+        "its command would depend on itself at once",
+        has.DAMPED_FORCE,
+        has.CONTINUOUS,
+        has.UNFILTERED,
     ),
-    not_together(
-        DAMPED_FORCE,
-        CONTINUOUS,
-        UNFILTERED,
-        because="its command would depend on itself at once",
+    (
+        "what is touched at once has one deflection, and it has a motion of its own",
+        has.HEAVY_AT_ONCE,
     ),
-    not_together(
-        HEAVY_AT_ONCE,
-        because="what is touched at once has one deflection, and it has a motion of its own",
+    ("what lags is lost at another moment than the others", has.LOSABLE, has.LAGGING_AT_ONCE),
+    (
+        "an offset moves the place of rest, which only the motion loop does not feel",
+        has.OFFSET,
+        (has.IDLE, has.FILTER, has.LOADED, has.MEMORY),
     ),
-    not_together(
-        LOSABLE, LAGGING_AT_ONCE, because="what lags is lost at another moment than the others"
+    ("what bleeds is not zero after a switch", has.IDLE_RESET, has.BLEEDING),
+    ("its motor is not known", has.GIVEN_LOOP, (has.MOTOR_RANGE, has.LOADED)),
+    (
+        "a motor that carries a preload rests elsewhere for every gain",
+        has.LOADED,
+        has.MOTOR_RANGE,
+        has.PRELOADED,
     ),
-    *_beside(
-        OFFSET,
-        IDLE,
-        FILTER,
-        LOADED,
-        MEMORY,
-        because="an offset moves the place of rest, which only the motion loop does not feel",
+    (
+        "what slows the motor is lost within a period, too",
+        has.LOADED,
+        has.LOSABLE,
+        has.RELAXED,
+        has.SAMPLED,
     ),
-    not_together(IDLE_RESET, BLEEDING, because="what bleeds is not zero after a switch"),
-    *_beside(GIVEN_LOOP, MOTOR_RANGE, LOADED, because="its motor is not known"),
-    not_together(
-        LOADED,
-        MOTOR_RANGE,
-        PRELOADED,
-        because="a motor that carries a preload rests elsewhere for every gain",
+    (
+        "at a switch the reference jumps, and with it the speed, by numbers of the motor that are "
+        "not known",
+        has.MOTOR_RANGE,
+        has.OTHERS,
+        has.CONTINUOUS,
     ),
-    not_together(
-        LOADED,
-        LOSABLE,
-        RELAXED,
-        SAMPLED,
-        because="what slows the motor is lost within a period, too",
+    (_CONSTANTS, has.CONSTANT_MOTOR, (has.LOSABLE, has.TWO_PERIODS)),
+    (_CONSTANTS, has.CONSTANT_TISSUE, (has.LOSABLE, has.TWO_PERIODS)),
+    (
+        "sums or rates of its numbers take their place",
+        has.CONSTANT_TISSUE,
+        (has.AT_ONCE, has.MEMORY, has.PRELOADED),
     ),
-    not_together(
-        MOTOR_RANGE,
-        OTHERS,
-        CONTINUOUS,
-        because="at a switch the reference jumps, and with it the speed, by numbers of the motor "
-        "that are not known",
-    ),
-    *_beside(CONSTANT_MOTOR, LOSABLE, TWO_PERIODS, because=_CONSTANTS),
-    *_beside(CONSTANT_TISSUE, LOSABLE, TWO_PERIODS, because=_CONSTANTS),
-    *_beside(
-        CONSTANT_TISSUE,
-        AT_ONCE,
-        MEMORY,
-        PRELOADED,
-        because="sums or rates of its numbers take their place",
-    ),
-    *(
-        not_together(
-            CONSTANT_TISSUE,
-            carried,
-            OTHER_TISSUE,
-            SAMPLED,
-            because="within a period the load may go from one to another",
-        )
-        for carried in (LOADED, TORQUES)
+    (
+        "within a period the load may go from one to another",
+        has.CONSTANT_TISSUE,
+        (has.LOADED, has.TORQUES),
+        has.OTHER_TISSUE,
+        has.SAMPLED,
     ),
     # The sampled loop.
-    not_together(OFFSET, SAMPLED, because="the program that ships stores no offset"),
-    not_together(GIVEN_LOOP, SAMPLED, because="its program is not known"),
-    not_together(
-        LONGEST_STAY, SAMPLED, because="what must be left may grow, and parameters change in it"
+    ("the program that ships stores no offset", has.OFFSET, has.SAMPLED),
+    ("its program is not known", has.GIVEN_LOOP, has.SAMPLED),
+    ("what must be left may grow, and parameters change in it", has.LONGEST_STAY, has.SAMPLED),
+    (_CONSTANTS, has.SAMPLED_DWELL, (has.CONSTANT_MOTOR, has.CONSTANT_TISSUE)),
+    ("samples of a stay are counted instead", has.SAMPLED_DWELL, (has.IDLE_RESET, has.SATURATED)),
+    *((_DWELLS, has.DWELL, *features) for features in CHANGING),
+    ("it is not said in which of them a position is taken", has.TWO_PERIODS, has.OTHERS),
+    ("it is not said in which of them a rule counts", has.TWO_PERIODS, has.RULES),
+    (_MISSES, has.MISSES, (has.TWO_PERIODS, has.RULES)),
+    (_CONSTANTS, has.MISSES, (has.CONSTANT_MOTOR, has.CONSTANT_TISSUE)),
+    (
+        "zero is a place of the robot, and nothing says where the contact is from there",
+        has.ZEROED,
+        has.PLACED,
     ),
-    *_beside(SAMPLED_DWELL, CONSTANT_MOTOR, CONSTANT_TISSUE, because=_CONSTANTS),
-    *_beside(SAMPLED_DWELL, IDLE_RESET, SATURATED, because="samples of a stay are counted instead"),
-    *(not_together(DWELL, *features, because=_DWELLS) for features in CHANGING),
-    not_together(
-        TWO_PERIODS, OTHERS, because="it is not said in which of them a position is taken"
+    (
+        "a robot that takes velocities keeps no position reference",
+        has.VELOCITIES,
+        (has.OTHERS, has.IDLE),
     ),
-    not_together(TWO_PERIODS, RULES, because="it is not said in which of them a rule counts"),
-    *_beside(MISSES, TWO_PERIODS, RULES, because=_MISSES),
-    *_beside(MISSES, CONSTANT_MOTOR, CONSTANT_TISSUE, because=_CONSTANTS),
-    not_together(
-        ZEROED,
-        PLACED,
-        because="zero is a place of the robot, and nothing says where the contact is from there",
+    (
+        "there a spring draws to the commanded position, which no sample holds",
+        has.VELOCITIES,
+        has.SPRUNG,
+        has.CONTINUOUS,
     ),
-    *_beside(
-        VELOCITIES,
-        OTHERS,
-        IDLE,
-        because="a robot that takes velocities keeps no position reference",
+    ("its motion loop is not ours", has.STREAMED, (has.TWO_PERIODS, has.SATURATED)),
+    (
+        "a change of it would move the states of its transfer function",
+        has.STREAMED,
+        has.MOTOR_RANGE,
+        has.CONTINUOUS,
     ),
-    not_together(
-        VELOCITIES,
-        SPRUNG,
-        CONTINUOUS,
-        because="there a spring draws to the commanded position, which no sample holds",
+    ("nothing is known of the motor", has.LIMITED, has.STREAMED),
+    (
+        "its law makes the torque, and moves no reference",
+        has.TORQUES,
+        (has.TWO_PERIODS, has.COMMAND),
     ),
-    *_beside(STREAMED, TWO_PERIODS, SATURATED, because="its motion loop is not ours"),
-    not_together(
-        STREAMED,
-        MOTOR_RANGE,
-        CONTINUOUS,
-        because="a change of it would move the states of its transfer function",
+    ("its law counts the error from sample to sample", has.TORQUES, has.CONTINUOUS),
+    ("what is on its way for a time is no state there", has.TIMED, has.CONTINUOUS),
+    ("it is about a pivot", has.SLIDING, (has.MODE_LOGIC, has.TOOL)),
+    (
+        "the hand then commands a position, and nothing is said of its size",
+        has.COMMAND,
+        has.OTHERS,
+        has.SAMPLED,
     ),
-    not_together(LIMITED, STREAMED, because="nothing is known of the motor"),
-    *_beside(
-        TORQUES, TWO_PERIODS, COMMAND, because="its law makes the torque, and moves no reference"
+    ("it would move the position that the spring draws to", has.COMMAND, has.SPRUNG, has.SAMPLED),
+    ("an integral has to be balanced by a force", has.LOSABLE, has.BLEEDING, has.SAMPLED),
+    ("in the air its reference stays where it is", has.LOSABLE, has.IDLE, has.RELAXED, has.SAMPLED),
+    ("in the air one rests in its place, the other anywhere", has.LOSABLE, has.SPRUNG, has.RELAXED),
+    (
+        "the position is added to the reference at every sample, which rounds once more",
+        has.ANGLE,
+        has.IDLE,
+        has.SAMPLED,
     ),
-    not_together(TORQUES, CONTINUOUS, because="its law counts the error from sample to sample"),
-    not_together(TIMED, CONTINUOUS, because="what is on its way for a time is no state there"),
-    *_beside(SLIDING, MODE_LOGIC, TOOL, because="it is about a pivot"),
-    not_together(
-        COMMAND,
-        OTHERS,
-        SAMPLED,
-        because="the hand then commands a position, and nothing is said of its size",
+    ("what it touches counts, and obeys no rule", has.CONTACT_RULES, has.ANY_CONTACT, _FELT),
+    ("contact changes between samples, which no rule keeps", has.CONTACT_RULES, has.SAMPLED),
+    ("free motion is a mode that no rule names", has.CONTACT_RULES, has.LOSABLE, has.SPRUNG),
+    (
+        "a reference that jumps commands the motor without bound",
+        has.SATURATED,
+        has.OTHERS,
+        has.CONTINUOUS,
     ),
-    not_together(
-        COMMAND, SPRUNG, SAMPLED, because="it would move the position that the spring draws to"
-    ),
-    not_together(LOSABLE, BLEEDING, SAMPLED, because="an integral has to be balanced by a force"),
-    not_together(
-        LOSABLE, IDLE, RELAXED, SAMPLED, because="in the air its reference stays where it is"
-    ),
-    not_together(
-        LOSABLE, SPRUNG, RELAXED, because="in the air one rests in its place, the other anywhere"
-    ),
-    not_together(
-        ANGLE,
-        IDLE,
-        SAMPLED,
-        because="the position is added to the reference at every sample, which rounds once more",
-    ),
-    *(
-        not_together(
-            CONTACT_RULES, ANY_CONTACT, felt, because="what it touches counts, and obeys no rule"
-        )
-        for felt in _FELT
-    ),
-    not_together(
-        CONTACT_RULES, SAMPLED, because="contact changes between samples, which no rule keeps"
-    ),
-    not_together(
-        CONTACT_RULES, LOSABLE, SPRUNG, because="free motion is a mode that no rule names"
-    ),
-    not_together(
-        SATURATED,
-        OTHERS,
-        CONTINUOUS,
-        because="a reference that jumps commands the motor without bound",
-    ),
-    *_beside(SATURATED, TWO_PERIODS, MISSES, because="what is held was cut off in a period before"),
-    not_together(SATURATED, GIVEN_LOOP, because="what it commands its motor is not known"),
-    not_together(SATURATED, SPRUNG, because="where the spring draws to at first is not said"),
-    not_together(SATURATED, IDLE_RESET, because="a reset takes the state out of its region"),
-    not_together(SATURATED, AT_ONCE, because="which of them carries the first force is not said"),
-    not_together(SATURATED, TORQUES, because="the limit is that of a motor, and it takes torques"),
-    *_beside(
-        SATURATED, MEMORY, HAND, because="its first force depends on more than the deflection"
-    ),
-    not_together(SATURATED, PRELOADED, because="its motion ends outside of the preload"),
-    not_together(
-        SATURATED, DAMPED, NOT_KEPT, because="what is damped lets go while its spring still pushes"
+    ("what is held was cut off in a period before", has.SATURATED, (has.TWO_PERIODS, has.MISSES)),
+    ("what it commands its motor is not known", has.SATURATED, has.GIVEN_LOOP),
+    ("where the spring draws to at first is not said", has.SATURATED, has.SPRUNG),
+    ("a reset takes the state out of its region", has.SATURATED, has.IDLE_RESET),
+    ("which of them carries the first force is not said", has.SATURATED, has.AT_ONCE),
+    ("the limit is that of a motor, and it takes torques", has.SATURATED, has.TORQUES),
+    ("its first force depends on more than the deflection", has.SATURATED, (has.MEMORY, has.HAND)),
+    ("its motion ends outside of the preload", has.SATURATED, has.PRELOADED),
+    (
+        "what is damped lets go while its spring still pushes",
+        has.SATURATED,
+        has.DAMPED,
+        has.NOT_KEPT,
     ),
 )
+
+
+def _rows(because: str, *features: Any) -> tuple[Row[Spec], ...]:
+    each = (item if isinstance(item, tuple) else (item,) for item in features)
+    return tuple(not_together(*together, because=because) for together in product(*each))
+
+
+COMBINATIONS: tuple[Row[Spec], ...] = tuple(row for line in _TABLE for row in _rows(*line))

@@ -111,21 +111,6 @@ class AbstractEnvironmentSpec(IdentifiedRangesSpec, stronger="holding"):
         return all(quantity.fixed for quantity in self.ranges.values())
 
     @property
-    def remembers(self) -> bool:
-        """Whether the force depends on more than the deflection and the velocity of the moment."""
-        return self.law.remembers
-
-    @property
-    def has_rest(self) -> bool:
-        """Whether a constant deflection keeps a force."""
-        return self.law.has_rest
-
-    @property
-    def has_mass(self) -> bool:
-        """Whether a mass moves with the contact."""
-        return self.law.has_mass
-
-    @property
     def preloaded(self) -> bool:
         """Whether its ranges hold in a preload only."""
         return self.nonlinear is not None
@@ -134,7 +119,7 @@ class AbstractEnvironmentSpec(IdentifiedRangesSpec, stronger="holding"):
     def is_spring(self) -> bool:
         """Whether the force follows from the deflection of the moment, in the whole range."""
         damping = self.ranges.get("damping")
-        if self.remembers or self.has_mass:
+        if self.law.remembers or self.law.has_mass:
             return False
         return damping is None or not any(q.exact for q in (damping.nominal, *damping.range))
 

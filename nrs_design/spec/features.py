@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from nrs_design.axis import AxisType
 from nrs_design.spec.check import Feature
-from nrs_design.spec.controllers import ControllerSpec, contact_name, names_in
+from nrs_design.spec.controllers import ControllerSpec, contact_name, names_in, touched_in
 from nrs_design.spec.environment import AbstractEnvironmentSpec
 from nrs_design.spec.interaction_parts import AbstractInteractionSpec as Spec
 from nrs_design.spec.sampling import SamplingSpec
@@ -23,7 +23,7 @@ class ContactedEnvironment(NamedTuple):
     """An environment that a controller touches."""
 
     name: str
-    law: AbstractEnvironmentSpec
+    spec: AbstractEnvironmentSpec
 
 
 class SimultaneousContact(NamedTuple):
@@ -40,19 +40,39 @@ def contacted_environments(spec: Spec) -> Iterator[ContactedEnvironment]:
         yield ContactedEnvironment(name, spec.environments[name])
 
 
-def _tissue(
+def _given(
+    phrase: str, at: str, without: str, undo: Callable[[Spec], Spec] | None = None
+) -> Feature[Spec]:
+    """Return the feature that a field is given, by its keys; parts on the way may be missing."""
+    first, _, rest = at.partition(".")
+
+    def find(spec: Spec) -> bool:
+        part = getattr(spec, first)
+        return part is not None and (not rest or attrgetter(rest)(part) is not None)
+
+    return Feature(phrase, at, without, find, undo)
+
+
+def _contacted(
+    phrase: str,
+    without: str,
     holds: Callable[[AbstractEnvironmentSpec], bool],
-) -> Callable[[Spec], ContactedEnvironment | None]:
-    return lambda s: next((item for item in contacted_environments(s) if holds(item.law)), None)
+    at: str = "environments.{0.name}.model",
+) -> Feature[Spec]:
+    """Return the feature of the first such environment that a controller touches."""
+    return Feature(
+        phrase,
+        at,
+        without,
+        lambda s: next((item for item in contacted_environments(s) if holds(item.spec)), None),
+    )
 
 
-def _controller(holds: Callable[[ControllerSpec], object]) -> Callable[[Spec], str | None]:
-    return lambda s: next((name for name, c in s.controllers.items() if holds(c)), None)
+def _at_once(
+    phrase: str, without: str, holds: Callable[[AbstractEnvironmentSpec], bool]
+) -> Feature[Spec]:
+    """Return the feature of the first such environment that is touched at once with others."""
 
-
-def _part(
-    holds: Callable[[AbstractEnvironmentSpec], bool],
-) -> Callable[[Spec], SimultaneousContact | None]:
     def find(spec: Spec) -> SimultaneousContact | None:
         for name, controller in spec.controllers.items():
             for contact in controller.contacts:
@@ -61,31 +81,28 @@ def _part(
                         return SimultaneousContact(name, contact_name(contact), key)
         return None
 
-    return find
+    return Feature(phrase, "controllers.{0.controller}.contacts", without, find)
 
 
-def _given(at: str) -> Callable[[Spec], bool]:
-    """Ask for a field, by its keys with dots between; parts on the way may be missing."""
-    first, _, rest = at.partition(".")
-
-    def find(spec: Spec) -> bool:
-        part = getattr(spec, first)
-        return part is not None and (not rest or attrgetter(rest)(part) is not None)
-
-    return find
+def _controller(
+    phrase: str,
+    key: str,
+    without: str,
+    holds: Callable[[ControllerSpec], object],
+    undo: Callable[[Spec], Spec] | None = None,
+) -> Feature[Spec]:
+    """Return the feature of the first such controller, at one of its keys."""
+    return Feature(
+        phrase,
+        f"controllers.{{0}}{key}",
+        without,
+        lambda s: _first(name for name, c in s.controllers.items() if holds(c)),
+        undo,
+    )
 
 
 def _first(names: Iterable[str]) -> str | None:
     return next(iter(names), None)
-
-
-def _zeroed(spec: Spec) -> bool:
-    misses = None if spec.sampling is None else spec.sampling.misses
-    return misses is not None and misses.command == "zero"
-
-
-def _motor_range(spec: Spec) -> tuple[str, str] | None:
-    return next((at for at, item in spec.motor_ranges.items() if not item.fixed), None)
 
 
 def _bleeding(spec: Spec) -> str | None:
@@ -110,9 +127,8 @@ def _dwell(*, sampled: bool, key: str = "") -> Callable[[Spec], str | None]:
 def _damped_force(spec: Spec) -> tuple[str, str] | None:
     """Return a controller of a force that takes the velocity, and the first such environment."""
     for name, controller in spec.controllers.items():
-        contacts = [key for contact in controller.contacts for key in names_in(contact)]
-        laws = ((key, spec.environments.get(key)) for key in contacts)
-        damped = (key for key, law in laws if law and not (law.is_spring or law.remembers))
+        laws = ((key, spec.environments.get(key)) for key in touched_in(controller.contacts))
+        damped = (key for key, e in laws if e and not (e.is_spring or e.law.remembers))
         if controller.holds_force and (key := _first(damped)):
             return name, key
     return None
@@ -137,7 +153,7 @@ _FILTERED = SensorSpec.model_validate({"filter": {"cutoff": "30 Hz"}})
 _SAMPLES = SamplingSpec.model_validate({"period": "2 ms", "delay": 0})
 
 
-def _relaxed(spec: Spec) -> Spec:
+def _without_springs(spec: Spec) -> Spec:
     """Return a spec whose controllers have no springs."""
     controllers = {
         name: c.model_copy(update={"Kt": None}) if c.sprung else c
@@ -148,11 +164,10 @@ def _relaxed(spec: Spec) -> Spec:
 
 # Every one of them is asked of an interaction design.
 _F = Feature[Spec]
-SAMPLED = _F(
+SAMPLED = _given(
     "a sampled loop",
     "sampling",
     "leave sampling out",
-    _given("sampling"),
     lambda s: s.model_copy(update={"sampling": None}),
 )
 CONTINUOUS = _F(
@@ -178,7 +193,7 @@ ZEROED = _F(
     "a command of zero where a deadline is missed",
     "sampling.misses.command",
     "write `command: hold`",
-    _zeroed,
+    lambda s: MISSES.find(s) and s.sampling.misses.command == "zero",
 )
 TIMED = _F(
     "the {0[1]}",
@@ -190,11 +205,10 @@ LOSABLE = _F("loss of contact", "contact", "use `contact: kept`", lambda s: s.co
 NOT_KEPT = _F(
     "contact that may be lost", "contact", "write `contact: kept`", lambda s: s.contact != "kept"
 )
-GIVEN_LOOP = _F(
+GIVEN_LOOP = _given(
     "a closed motion loop that the spec states",
     "motion_loop.transfer_function",
     "leave transfer_function out",
-    _given("motion_loop.transfer_function"),
 )
 STREAMED = _F(
     "a {0}",
@@ -202,29 +216,22 @@ STREAMED = _F(
     "write actuator and motion_loop",
     lambda s: _first(k for k in s.drives if s.followed),
 )
-VELOCITIES = _F(
+VELOCITIES = _given(
     "a velocity_interface",
     "velocity_interface",
     "write position_interface, or actuator and motion_loop",
-    _given("velocity_interface"),
 )
-PLACED = _F(
-    "a position_interface",
-    "position_interface",
-    "write velocity_interface",
-    _given("position_interface"),
-)
-TORQUES = _F(
+PLACED = _given("a position_interface", "position_interface", "write velocity_interface")
+TORQUES = _given(
     "a torque_interface",
     "torque_interface",
     "write actuator and motion_loop, with controllers of type impedance",
-    _given("torque_interface"),
 )
 MOTOR_RANGE = _F(
     "a range of the {0[1]} of the {0[0]}",
     "{0[0]}.{0[1]}",
     "give the nominal {0[1]} only",
-    _motor_range,
+    lambda s: next((at for at, item in s.motor_ranges.items() if not item.fixed), None),
 )
 CONSTANT_TISSUE = _F(
     "the constant {0[2]} of {0[1]!r}",
@@ -238,36 +245,27 @@ CONSTANT_MOTOR = _F(
     "leave varies out of {0[1]}",
     _constant(lambda at: at[0] != "environments"),
 )
-LOADED = _F(
-    "a load of the motor",
-    "actuator.load_inertia",
-    "leave load_inertia out",
-    _given("actuator.load_inertia"),
-)
+LOADED = _given("a load of the motor", "actuator.load_inertia", "leave load_inertia out")
 
-HAND = _F(
+HAND = _contacted(
     "{0.name!r}, a hand with a mass,",
-    "environments.{0.name}.model",
     "use a kelvin-voigt environment, which has no mass",
-    _tissue(lambda law: law.has_mass),
+    lambda e: e.law.has_mass,
 )
-MEMORY = _F(
+MEMORY = _contacted(
     "{0.name!r}, which remembers,",
-    "environments.{0.name}.model",
     "use elastic or kelvin-voigt environments",
-    _tissue(lambda law: law.remembers),
+    lambda e: e.law.remembers,
 )
-RESTLESS = _F(
+RESTLESS = _contacted(
     "{0.name!r}, which has no rest position,",
-    "environments.{0.name}.model",
     "use another environment",
-    _tissue(lambda law: not law.has_rest),
+    lambda e: not e.law.has_rest,
 )
-PRELOADED = _F(
+PRELOADED = _contacted(
     "{0.name!r}, known within its preload only,",
-    "environments.{0.name}.model",
     "use elastic or kelvin-voigt environments",
-    _tissue(lambda law: law.preloaded),
+    lambda e: e.preloaded,
 )
 OTHER_TISSUE = _F(
     "several environments",
@@ -275,41 +273,33 @@ OTHER_TISSUE = _F(
     "write a spec for each environment",
     lambda s: len(s.touched) > 1,
 )
-ANY_CONTACT = _F(
-    "{0!r}, which takes contact as it comes,",
-    "controllers.{0}",
-    "leave {0} out",
-    _controller(lambda c: not c.contacts),
+ANY_CONTACT = _controller(
+    "{0!r}, which takes contact as it comes,", "", "leave {0} out", lambda c: not c.contacts
 )
-DAMPED = _F(
-    "{0.name!r}, which has damping,",
-    "environments.{0.name}.model",
-    "use an elastic environment",
-    _tissue(lambda law: not law.is_spring),
+DAMPED = _contacted(
+    "{0.name!r}, which has damping,", "use an elastic environment", lambda e: not e.is_spring
 )
-TISSUE_RANGE = _F(
+TISSUE_RANGE = _contacted(
     "the range of environment {0.name!r}",
-    "environments.{0.name}",
     "give the environment its nominal values only",
-    _tissue(lambda law: not law.fixed),
+    lambda e: not e.fixed,
+    at="environments.{0.name}",
 )
-AT_ONCE = _F(
+AT_ONCE = _controller(
     "several things that {0!r} touches at once",
-    "controllers.{0}.contacts",
+    ".contacts",
     "let every contact be one environment",
-    _controller(lambda c: any(not isinstance(contact, str) for contact in c.contacts)),
+    lambda c: any(not isinstance(contact, str) for contact in c.contacts),
 )
-HEAVY_AT_ONCE = _F(
+HEAVY_AT_ONCE = _at_once(
     "{0.name!r}, which remembers or has a mass, touched at once with others",
-    "controllers.{0.controller}.contacts",
     "use elastic or kelvin-voigt environments there",
-    _part(lambda law: law.remembers or law.has_mass),
+    lambda e: e.law.remembers or e.law.has_mass,
 )
-LAGGING_AT_ONCE = _F(
+LAGGING_AT_ONCE = _at_once(
     "{0.name!r} alone, which has damping or a preload, while {0.contact} are touched at once",
-    "controllers.{0.controller}.contacts",
     "use elastic environments there",
-    _part(lambda law: not law.is_losable),
+    lambda e: not e.is_losable,
 )
 SEVERAL_CONTACTS = _F(
     "several contacts of {0!r}",
@@ -322,11 +312,11 @@ SEVERAL_CONTACTS = _F(
     ),
 )
 
-OTHERS = _F(
+OTHERS = _controller(
     "{0!r}, which is not of type impedance,",
-    "controllers.{0}.type",
+    ".type",
     "use controllers of type impedance",
-    _controller(lambda c: c.commands != "velocity" and not c.makes_torques),
+    lambda c: c.commands != "velocity" and not c.makes_torques,
 )
 DAMPED_FORCE = _F(
     "force control by {0[0]!r} in contact with {0[1]!r}, which has damping,",
@@ -334,18 +324,14 @@ DAMPED_FORCE = _F(
     "use an elastic environment for force controllers",
     _damped_force,
 )
-SPRUNG = _F(
-    "the spring Kt of {0}",
-    "controllers.{0}.Kt",
-    "leave Kt out",
-    _controller(lambda c: c.sprung),
-    _relaxed,
+SPRUNG = _controller(
+    "the spring Kt of {0}", ".Kt", "leave Kt out", lambda c: c.sprung, _without_springs
 )
-RELAXED = _F(
+RELAXED = _controller(
     "{0!r}, an impedance controller without a spring,",
-    "controllers.{0}.Kt",
+    ".Kt",
     "give every impedance controller a spring Kt",
-    _controller(lambda c: c.commands == "velocity" and not c.sprung),
+    lambda c: c.commands == "velocity" and not c.sprung,
 )
 BLEEDING = _F(
     "{0!r}, whose integral bleeds,",
@@ -353,51 +339,31 @@ BLEEDING = _F(
     "use one kind of controller",
     _bleeding,
 )
-IDLE = _F(
-    "a mixture of controllers", "idle_states", "use one kind of controller", _given("idle_states")
-)
+IDLE = _given("a mixture of controllers", "idle_states", "use one kind of controller")
 IDLE_RESET = _F(
     "a reset of idle states",
     "idle_states.reset",
     "remove reset",
     lambda s: s.idle_states is not None and s.idle_states.reset,
 )
-OFFSET = _F(
+OFFSET = _controller(
     "the offset of {0!r}",
-    "controllers.{0}.offset",
+    ".offset",
     "use `offset: none`",
-    _controller(lambda c: c.own_offset not in (None, "none")),
+    lambda c: c.own_offset not in (None, "none"),
 )
-FILTER = _F(
-    "a filter of the force",
-    "sensor.filter",
-    "leave filter out",
-    _given("sensor.filter"),
-)
-
+FILTER = _given("a filter of the force", "sensor.filter", "leave filter out")
 UNFILTERED = _F(
     "a force without a filter",
     "sensor.filter",
     "add `sensor: {{filter: {{cutoff: 30 Hz}}}}`",
-    lambda s: s.sensor is None or s.sensor.filter is None,
+    lambda s: not FILTER.find(s),
     lambda s: s.model_copy(update={"sensor": _FILTERED}),
 )
 
-DISTURBED = _F(
-    "bounds under disturbances", "disturbances", "leave disturbances out", _given("disturbances")
-)
-COMMAND = _F(
-    "a velocity command",
-    "disturbances.command",
-    "leave command out",
-    _given("disturbances.command"),
-)
-ANGLE = _F(
-    "the rounding of angles",
-    "disturbances.largest_angle",
-    "leave largest_angle out",
-    _given("disturbances.largest_angle"),
-)
+DISTURBED = _given("bounds under disturbances", "disturbances", "leave disturbances out")
+COMMAND = _given("a velocity command", "disturbances.command", "leave command out")
+ANGLE = _given("the rounding of angles", "disturbances.largest_angle", "leave largest_angle out")
 RULES = _F(
     "rules of switching",
     "switching",
@@ -418,24 +384,13 @@ CONTACT_RULES = _F(
     "name controllers alone in the rules",
     lambda s: s.switching.names_contacts,
 )
-SATURATED = _F(
-    "decay although signals saturate",
-    "goals.initial_force",
-    "remove the goal",
-    _given("goals.initial_force"),
-)
+SATURATED = _given("decay although signals saturate", "goals.initial_force", "remove the goal")
 
 SLIDING = _F(
-    "a prismatic axis",
-    "axis",
-    "write `axis: rotary`",
-    lambda s: s.axis is AxisType.PRISMATIC,
+    "a prismatic axis", "axis", "write `axis: rotary`", lambda s: s.axis is AxisType.PRISMATIC
 )
-LIMITED = _F(
-    "a largest command of a motor",
-    "limits.command",
-    "leave command out of the limits",
-    _given("limits.command"),
+LIMITED = _given(
+    "a largest command of a motor", "limits.command", "leave command out of the limits"
 )
-MODE_LOGIC = _F("mode_logic", "mode_logic", "leave mode_logic out", _given("mode_logic"))
-TOOL = _F("a tool on the sensor", "sensor.tool", "leave tool out", _given("sensor.tool"))
+MODE_LOGIC = _given("mode_logic", "mode_logic", "leave mode_logic out")
+TOOL = _given("a tool on the sensor", "sensor.tool", "leave tool out")

@@ -8,17 +8,11 @@ from functools import partial
 
 from nrs_design.models.drive import Takes
 from nrs_design.proof.bounds import rounded_up
+from nrs_design.spec import features as has
 from nrs_design.spec.check import NO_SUCH, Reference, Row, each, refuse
 from nrs_design.spec.combinations import COMBINATIONS
 from nrs_design.spec.controllers import names_in, touched_in
 from nrs_design.spec.faults import Location
-from nrs_design.spec.features import (
-    BLEEDING,
-    HAND,
-    IDLE,
-    SATURATED,
-    ContactedEnvironment,
-)
 from nrs_design.spec.goals import (
     OF_THE_CERTIFICATE,
     ONLY_FOR,
@@ -91,7 +85,7 @@ def _contact_mix(spec: Spec) -> tuple[str, ...]:
     for name, controller in spec.controllers.items():
         if controller.commands != first.commands:
             return name, controller.type, first.type, first_name, "impedance"
-    if bleeding := BLEEDING.find(spec):
+    if bleeding := has.BLEEDING.find(spec):
         name = str(bleeding)
         return name, spec.controllers[name].type, first.type, first_name, "pi-force"
     return ()
@@ -242,12 +236,16 @@ def _untimed(spec: Spec) -> Iterator[tuple[Location, str]]:
                 yield ("switching", *at), dwell.text
 
 
-def _weightless(spec: Spec) -> tuple[str, ContactedEnvironment] | None:
+def _weightless(spec: Spec) -> tuple[str, object] | None:
     """Return an admittance without inertia in the hand of someone."""
-    hand = HAND.find(spec)
+    hand = has.HAND.find(spec)
     for name, controller in spec.controllers.items():
         inertia = controller.gains().get("Mt")
-        if isinstance(hand, ContactedEnvironment) and inertia is not None and not inertia.min.value:
+        if (
+            isinstance(hand, has.ContactedEnvironment)
+            and inertia is not None
+            and not inertia.min.value
+        ):
             return name, hand
     return None
 
@@ -344,7 +342,7 @@ INTERACTION_CHECKS: tuple[Row[Spec], ...] = (
     ),
     Row(
         "idle_states",
-        lambda s: IDLE.find(s) and not _contact_mix(s),
+        lambda s: has.IDLE.find(s) and not _contact_mix(s),
         "idle_states without impedance controllers beside position or force controllers, or "
         "pi-force controllers beside others",
         "remove idle_states",
@@ -436,7 +434,7 @@ INTERACTION_CHECKS: tuple[Row[Spec], ...] = (
     ),
     Row(
         "goals.initial_force",
-        lambda s: SATURATED.find(s) and not (s.followed or s.limits.command),
+        lambda s: has.SATURATED.find(s) and not (s.followed or s.limits.command),
         "nothing says where the command of the motor saturates",
         "add `command` to the limits, in {s.command}, for the error that the gains are for",
     ),

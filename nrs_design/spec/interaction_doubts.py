@@ -7,20 +7,9 @@ from functools import partial
 from math import isclose, sqrt
 
 from nrs_design.proof.bounds import rounded_up
+from nrs_design.spec import features as has
 from nrs_design.spec.check import Feature, Row, not_together, refuse
 from nrs_design.spec.faults import Location
-from nrs_design.spec.features import (
-    COMMAND,
-    CONTINUOUS,
-    DISTURBED,
-    LOSABLE,
-    MEMORY,
-    MISSES,
-    OTHERS,
-    RESTLESS,
-    SPRUNG,
-    TWO_PERIODS,
-)
 from nrs_design.spec.interaction_parts import AbstractInteractionSpec as Spec
 from nrs_design.spec.quantity import is_less
 
@@ -103,7 +92,7 @@ def _unbounded(part: Feature[Spec], what: str) -> Row[Spec]:
     """Return the row of what lets decay be proved, and no bound."""
     return Row(
         "disturbances",
-        lambda s: part.find(s) and DISTURBED.find(s),
+        lambda s: part.find(s) and has.DISTURBED.find(s),
         f"beside {what}, the decay of the undisturbed loop is proved, and no bound under "
         "disturbances",
         "remove disturbances, or expect no bound",
@@ -113,7 +102,7 @@ def _unbounded(part: Feature[Spec], what: str) -> Row[Spec]:
 def _unproved(*features: Feature[Spec]) -> Row[Spec]:
     """Return the row of what can be designed, but not proved, in continuous time."""
     form = "{}: not modelled, so certify-switching refuses this spec"
-    return not_together(*features, CONTINUOUS, form=form)
+    return not_together(*features, has.CONTINUOUS, form=form)
 
 
 INTERACTION_DOUBTS: tuple[Row[Spec], ...] = (
@@ -156,8 +145,8 @@ INTERACTION_DOUBTS: tuple[Row[Spec], ...] = (
         "what is shown is that motions from there decay, not that the torque is within its limit; "
         "write `largest` for as much as is found",
     ),
-    _unbounded(TWO_PERIODS, "an outer_period"),
-    _unbounded(MISSES, "missed deadlines"),
+    _unbounded(has.TWO_PERIODS, "an outer_period"),
+    _unbounded(has.MISSES, "missed deadlines"),
     Row(
         "motion_loop",
         _other_loop,
@@ -172,7 +161,7 @@ INTERACTION_DOUBTS: tuple[Row[Spec], ...] = (
         "the first, no bound holds",
         "raise the first, or lower limits.velocity",
     ),
-    *map(partial(_unproved, LOSABLE), (OTHERS, MEMORY)),
-    *map(partial(_unproved, COMMAND), (OTHERS, MEMORY, SPRUNG)),
-    _unproved(RESTLESS, SPRUNG),
+    *map(partial(_unproved, has.LOSABLE), (has.OTHERS, has.MEMORY)),
+    *map(partial(_unproved, has.COMMAND), (has.OTHERS, has.MEMORY, has.SPRUNG)),
+    _unproved(has.RESTLESS, has.SPRUNG),
 )

@@ -53,7 +53,8 @@ class Row(Generic[S]):
 
     # Keys with dots between, below the part; a key may be a place to be filled, such as ``{0}``.
     at: str
-    # False, None, "" or () where nothing is wrong. It may raise a fault of its own instead.
+    # False, None, "" or () where nothing is wrong; of an iterator, the first item is what is found.
+    # It may raise a fault of its own instead.
     find: Callable[[S], object]
     message: str
     remedy: str
@@ -65,9 +66,13 @@ class Row(Generic[S]):
     def holds(self, said: Any) -> bool:
         """Tell whether the condition holds in a part."""
         try:
-            return any(self.find(part) for _, part in self.parts(said))
+            return any(self._found(part) for _, part in self.parts(said))
         except PydanticCustomError:
             return True
+
+    def _found(self, part: S) -> object:
+        found = self.find(part)
+        return next(found, None) if isinstance(found, Iterator) else found
 
     def _remedies(self, said: Any, beside: Sequence[Row[Any]]) -> str:
         """Return the ways out, less those into what rows beside this one refuse."""
@@ -78,7 +83,7 @@ class Row(Generic[S]):
     def faults(self, said: Any, beside: Sequence[Row[Any]] = ()) -> Iterator[PydanticCustomError]:
         """Yield a fault for each part in which the condition holds."""
         for place, part in self.parts(said):
-            if found := self.find(part):
+            if found := self._found(part):
                 # A named tuple is one thing that is found.
                 values = found if type(found) is tuple else (found,)
                 at = (

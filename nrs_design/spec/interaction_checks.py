@@ -91,21 +91,20 @@ def _contact_mix(spec: Spec) -> tuple[str, ...]:
     return ()
 
 
-def _other_offset(spec: Spec) -> tuple[str, ...] | None:
-    """Return a controller whose offset is not that of the first one that has one."""
+def _other_offset(spec: Spec) -> Iterator[tuple[str, ...]]:
+    """Yield controllers whose offset is not that of the first one that has one."""
     offsets = [(name, c.own_offset) for name, c in spec.controllers.items() if c.own_offset]
-    return next(((*item, *offsets[0]) for item in offsets if item[1] != offsets[0][1]), None)
+    return ((*item, *offsets[0]) for item in offsets if item[1] != offsets[0][1])
 
 
-def _undriven(spec: Spec) -> str | None:
-    """Return a disturbance that acts on samples."""
-    given = spec.disturbances or ()
-    acting = (key for key, value in given if key != "command" and value is not None)
-    return next(acting, None) if spec.sampling is None else None
+def _undriven(spec: Spec) -> Iterator[str]:
+    """Yield disturbances that act on samples, where there are none."""
+    given = () if spec.sampling is not None else spec.disturbances or ()
+    return (key for key, value in given if key != "command" and value is not None)
 
 
-def _understated(spec: Spec) -> tuple[str, str, str] | None:
-    """Return a noise of readings that is below an error that the spec names elsewhere."""
+def _understated(spec: Spec) -> Iterator[tuple[str, str, str]]:
+    """Yield a noise of readings that is below an error that the spec names elsewhere."""
     # The key of the noise, where the error stands, and into how many parts it goes.
     named = (
         ("angle_noise", "disturbances", "encoder_step", 2),
@@ -118,8 +117,7 @@ def _understated(spec: Spec) -> tuple[str, str, str] | None:
         noise: Quantity = getattr(spec.monitoring, key)
         error: Quantity | None = getattr(said[part], name, None)
         if error is not None and noise.not_below < error.not_above / parts:
-            return key, noise.text, f"{'half of ' * (parts > 1)}`{part}: {name}`, {error.text}"
-    return None
+            yield key, noise.text, f"{'half of ' * (parts > 1)}`{part}: {name}`, {error.text}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,24 +134,32 @@ class _Goals:
         """Those that are given."""
         return [key for key, _ in self.it.given()]
 
-    def shared(self) -> str | None:
-        """Return a goal of one controller that is for all."""
-        keys = sorted(OF_THE_CERTIFICATE.intersection(self.keys)) if self.own else ()
-        return next(iter(keys), None)
+    def shared(self) -> Iterator[str]:
+        """Yield goals of one controller that are for all."""
+        return iter(sorted(OF_THE_CERTIFICATE.intersection(self.keys)) if self.own else ())
 
-    def misplaced(self) -> tuple[str, str] | None:
-        """Return a goal for another law, and that law."""
+    def misplaced(self) -> Iterator[tuple[str, str]]:
+        """Yield goals for another law, and that law."""
         laws = ((key, ONLY_FOR[key]) for key in self.keys if key in ONLY_FOR)
-        return next(((key, law) for key, law in laws if law not in self.types), None)
+        return ((key, law) for key, law in laws if self.types and law not in self.types)
+
+
+def _goals(spec: Spec) -> Iterator[tuple[Location, _Goals]]:
+    """Yield the goals of all controllers, and of each."""
+    creeps = spec.sensor is not None and spec.sensor.has_errors
+    if spec.goals is not None:
+        types = {c.type for c in spec.controllers.values() if "goals" in type(c).model_fields}
+        yield ("goals",), _Goals(spec.goals, types, False, creeps)
+    for name, c in spec.controllers.items():
+        if c.goals is not None:
+            yield ("controllers", name, "goals"), _Goals(c.goals, {c.type}, True, creeps)
 
 
 def _responses(spec: Spec) -> Iterator[tuple[Location, ResponseGoal]]:
     """Yield the goals for a frequency response, of all controllers and of each."""
-    goals: dict[Location, GoalsSpec | None] = {("goals",): spec.goals}
-    goals |= {("controllers", name, "goals"): c.goals for name, c in spec.controllers.items()}
-    for at, given in goals.items():
-        for key in () if given is None else ("transparency", "accuracy"):
-            if (goal := getattr(given, key)) is not None:
+    for at, goals in _goals(spec):
+        for key in ("transparency", "accuracy"):
+            if (goal := getattr(goals.it, key)) is not None:
                 yield (*at, key), goal
 
 
@@ -176,22 +182,6 @@ def _accurate_in(spec: Spec) -> Iterator[tuple[Location, Reference]]:
             yield (*at, "environment"), named
 
 
-def _common_goals(spec: Spec) -> Iterator[tuple[Location, _Goals]]:
-    laws = {c.type for c in spec.controllers.values() if "goals" in type(c).model_fields}
-    if spec.goals is not None:
-        yield ("goals",), _Goals(spec.goals, laws, False, _creeps(spec))
-
-
-def _own_goals(spec: Spec) -> Iterator[tuple[Location, _Goals]]:
-    for name, c in spec.controllers.items():
-        if c.goals is not None:
-            yield ("controllers", name, "goals"), _Goals(c.goals, {c.type}, True, _creeps(spec))
-
-
-def _creeps(spec: Spec) -> bool:
-    return spec.sensor is not None and spec.sensor.has_errors
-
-
 _GOALS = (
     Row[_Goals](
         "{0}",
@@ -205,9 +195,7 @@ _GOALS = (
         "there is no controller that a goal applies to: they are for impedance and force control",
         "remove goals",
     ),
-    Row[_Goals](
-        "{0}", lambda g: g.types and g.misplaced(), "{0} is for {1} controllers", "remove it"
-    ),
+    Row[_Goals]("{0}", _Goals.misplaced, "{0} is for {1} controllers", "remove it"),
     Row[_Goals](
         "",
         lambda g: not g.creeps and (g.it.max_creep or g.it.max_creep_angle),
@@ -265,33 +253,26 @@ INTERACTION_CHECKS: tuple[Row[Spec], ...] = (
     # The drive.
     Row(
         "{0}",
-        lambda s: next(
-            (
-                (k, other)
-                for other in s.drives
-                for k in ("actuator", "motion_loop", *s.drives)
-                if other in INTERFACES and k != other and getattr(s, k)
-            ),
-            None,
+        lambda s: (
+            (k, other)
+            for other in s.drives
+            for k in ("actuator", "motion_loop", *s.drives)
+            if other in INTERFACES and k != other and getattr(s, k)
         ),
         "{0} stands beside {1}, which says all of how the robot moves",
         "remove {0}, or {1}",
     ),
     Row(
         "",
-        lambda s: next(
-            (k for k in ("actuator", "motion_loop") if not s.takes and not getattr(s, k)),
-            None,
-        ),
+        lambda s: (k for k in ("actuator", "motion_loop") if not s.takes and not getattr(s, k)),
         "the key `{0}` is missing",
         "say how the robot moves: actuator and motion_loop, or velocity_interface, "
         "position_interface or torque_interface for a robot that takes those",
     ),
     Row(
         "controllers.{0}.type",
-        lambda s: next(
-            (n for n, c in s.controllers.items() if (s.takes is Takes.TORQUE) != c.makes_torques),
-            None,
+        lambda s: (
+            n for n, c in s.controllers.items() if (s.takes is Takes.TORQUE) != c.makes_torques
         ),
         "{0!r} does not fit the drive: controllers of type torque-impedance are for a "
         "torque_interface, and it takes no others",
@@ -308,16 +289,14 @@ INTERACTION_CHECKS: tuple[Row[Spec], ...] = (
     ),
     Row(
         "environments.{0}",
-        lambda s: next((n for n in s.environments if n == FREE or OF_CORNERS.fullmatch(n)), None),
+        lambda s: (n for n in s.environments if n == FREE or OF_CORNERS.fullmatch(n)),
         "an environment cannot be called {0!r}: so are the modes without contact, or at the end of "
         "a range",
         "call it by what it is, such as `tissue`",
     ),
     Row(
         "controllers.{0}",
-        lambda s: next(
-            ((n, NOT_CONTROLLERS[n]) for n in s.controllers if n in NOT_CONTROLLERS), None
-        ),
+        lambda s: ((n, NOT_CONTROLLERS[n]) for n in s.controllers if n in NOT_CONTROLLERS),
         "a controller cannot be called {0!r}: so are {1}",
         "call it by what it does, such as `insertion`",
     ),
@@ -373,8 +352,7 @@ INTERACTION_CHECKS: tuple[Row[Spec], ...] = (
         "give Mt a smallest value above zero",
     ),
     # Goals.
-    *each(_common_goals, *_GOALS),
-    *each(_own_goals, *_GOALS),
+    *each(_goals, *_GOALS),
     refuse(
         _high_bands,
         "the band reaches {0}, and half the sampling rate is {1} Hz",
@@ -413,14 +391,10 @@ INTERACTION_CHECKS: tuple[Row[Spec], ...] = (
     ),
     Row(
         "{0}.{1}.varies",
-        lambda s: next(
-            (
-                at
-                for at, times in s.late_times.items()
-                if times.is_constant
-                and (s.constant_late is None or (s.sampling and s.sampling.jitter))
-            ),
-            None,
+        lambda s: (
+            at
+            for at, times in s.late_times.items()
+            if times.is_constant and (s.constant_late is None or (s.sampling and s.sampling.jitter))
         ),
         "{0}.{1} is constant beside what varies: dead time and latency add up, and a jitter moves "
         "both",

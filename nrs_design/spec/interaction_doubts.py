@@ -31,15 +31,14 @@ def _untouched(spec: Spec) -> Iterator[tuple[Location, str]]:
     return ((("environments", name), name) for name in spec.environments if name not in touched)
 
 
-def _late_threshold(spec: Spec) -> tuple[object, ...]:
-    """Return a threshold that the torque reaches only where it is too large already."""
+def _late_threshold(spec: Spec) -> Iterator[tuple[object, ...]]:
+    """Yield thresholds that the torque reaches only where it is too large already."""
     logic = spec.mode_logic
     limit = spec.limits.torque
     for index, switch in enumerate(() if logic is None else logic.switches, 1):
         above = None if switch.torque is None else switch.torque.above
         if above is not None and above.not_below > limit.not_above:
-            return index, switch.source, switch.target, above.text, limit.text
-    return ()
+            yield index, switch.source, switch.target, above.text, limit.text
 
 
 def _slow(spec: Spec) -> str | None:

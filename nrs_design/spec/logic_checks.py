@@ -53,12 +53,11 @@ def _too_long(spec: Spec) -> Iterator[tuple[Location, tuple[str, str]]]:
             yield ("switching", "longest_dwell_time"), (name, longest.text)
 
 
-def _forbidden(spec: Spec) -> Transition | None:
-    """Return a switch that the logic may make, and the rules do not allow."""
-    allowed, pairs = spec.switching.transitions, _kept(spec).transitions or ()
-    if allowed is None or _about_others(spec):
-        return None
-    return next((pair for pair in pairs if pair not in allowed), None)
+def _forbidden(spec: Spec) -> Iterator[Transition]:
+    """Yield switches that the logic may make, and the rules do not allow."""
+    allowed = None if _about_others(spec) else spec.switching.transitions
+    pairs = _kept(spec).transitions or ()
+    return (pair for pair in pairs if allowed is not None and pair not in allowed)
 
 
 LOGIC_CHECKS: tuple[Row[Spec], ...] = (

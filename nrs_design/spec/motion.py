@@ -135,7 +135,7 @@ class TransferFunctionSpec(SpecModel, stronger="neither"):
     checks = (
         Row(
             "{0}.0",
-            lambda s: next((k for k in ("numerator", "denominator") if not getattr(s, k)[0]), None),
+            lambda s: (k for k in ("numerator", "denominator") if not getattr(s, k)[0]),
             "the highest coefficient is zero",
             "leave it out",
         ),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from fractions import Fraction
 from typing import Annotated
 
@@ -106,11 +107,10 @@ class SensorSpec(SpecModel, stronger="larger"):
     )
     pivot: PointSpec | None = optional("the pivot, from the origin of the sensor; default: there")
 
-    def _alone(self) -> tuple[str, str, str] | None:
-        """Return a key that counts with another one only, that one, and how to write it."""
+    def _alone(self) -> Iterator[tuple[str, str, str]]:
+        """Yield keys that count with another one only, that one, and how to write it."""
         given = self.model_fields_set
-        rows = (row for row in _WITH if row[0] in given and row[1] not in given)
-        return next(rows, None)
+        return (row for row in _WITH if row[0] in given and row[1] not in given)
 
     checks = (
         Row(

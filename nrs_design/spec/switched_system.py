@@ -207,9 +207,9 @@ def _undeclared(spec: SwitchedSystemSpec) -> Iterator[tuple[Location, tuple[str,
                     yield ("modes", index, "A", i, j), (name, meant)
 
 
-def _unused(spec: SwitchedSystemSpec) -> str | None:
+def _unused(spec: SwitchedSystemSpec) -> Iterator[str]:
     used = frozenset[str]().union(*(mode.parameters for mode in spec.modes))
-    return next((name for name in spec.parameters if name not in used), None)
+    return (name for name in spec.parameters if name not in used)
 
 
 def _corners(spec: SwitchedSystemSpec) -> int:

@@ -54,7 +54,7 @@ class TaskSpaceSpec(SpecModel):
     checks = (
         Row(
             "{0}",
-            lambda keys: next((key for key in _NAMING if key in keys), None),
+            lambda keys: (key for key in _NAMING if key in keys),
             "{0} is said once for the file",
             "remove {0}: the kind is interaction-design, and the name is that of the file and the "
             "axis",
@@ -62,7 +62,7 @@ class TaskSpaceSpec(SpecModel):
         ),
         Row(
             "{0}",
-            lambda item: next((key for key in item[1] if key in item[0].common), None),
+            lambda item: (key for key in item[1] if key in item[0].common),
             "{0} is said of this axis, and of all in common",
             "move {0} from common to the axes, or remove it here",
             parts=_of_each_axis,

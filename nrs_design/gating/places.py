@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from nrs_design.spec import LoadedSpec, SwitchedSystemSpec
-from nrs_design.spec.document import Mapping, Node, Position, Sequence
+from nrs_design.spec.document import Position, steps_to
 from nrs_design.spec.edits import node_at
 
 
@@ -31,14 +31,5 @@ class SourcePositions:
 
     def at(self, *keys: str | int) -> Position:
         """Return the place of a key or item, or of what would hold it if it is not there."""
-        node: Node = self._root
-        place = node.position
-        for key in keys:
-            if isinstance(node, Mapping) and isinstance(key, str) and key in node.entries:
-                place, node = node.keys[key], node.entries[key]
-            elif isinstance(node, Sequence) and isinstance(key, int) and key < len(node.items):
-                node = node.items[key]
-                place = node.position
-            else:
-                break
-        return place
+        places = [place for place, _ in steps_to(self._root, keys)]
+        return places[-1] if places else self._root.position

@@ -14,6 +14,7 @@ from nrs_design.spec.environment import AbstractEnvironmentSpec, EnvironmentSpec
 from nrs_design.spec.interaction import InteractionDesignSpec
 from nrs_design.spec.interaction_parts import DriveSpec
 from nrs_design.spec.load import LoadedSpec, parse_spec
+from nrs_design.spec.misses import DeadlinesSpec
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.motion import ActuatorIntervals, LimitsSpec
 from nrs_design.spec.provenance import (
@@ -142,32 +143,19 @@ def _drive(name: str, drive: DriveSpec) -> Iterator[Line]:
         elif isinstance(value, ActuatorIntervals):
             for measured, (low, high) in value:
                 yield Line(f"{name}.{key}.{measured}", f"[{low.text}, {high.text}]", "", "")
-        elif isinstance(value, Times):
-            yield from _times(f"{name}.{key}", value)
         elif key not in IdentifiedRangesSpec.model_fields and value != THESIS_COMMAND:
             yield from describe_model(value, f"{name}.{key}")
     yield from _identified(name, drive, MOTOR_COVERS)
 
 
-def _times(key: str, times: Times | None) -> Iterator[Line]:
-    if times is not None:
-        first, last = times.shortest.text, times.longest.text
-        how = "unknown, but constant" if times.is_constant else ""
-        yield Line(key, first if first == last else f"[{first}, {last}]", how, "")
-
-
 def _sampling(sampling: SamplingSpec) -> Iterator[Line]:
-    yield from describe_model(sampling.period, "sampling.period")
-    yield from describe_model(sampling.outer_period, "sampling.outer_period")
+    for key in ("period", "outer_period"):
+        yield from describe_model(getattr(sampling, key), f"sampling.{key}")
     least, most = sampling.delay
     delay = str(least) if least == most else f"[{least}, {most}]"
     yield Line("sampling.delay", delay, "", "samples")
-    yield from _times("sampling.latency", sampling.latency)
-    yield from describe_model(sampling.jitter, "sampling.jitter")
-    if (misses := sampling.misses) is not None:
-        how = f"command: {misses.command}, job: {misses.job}"
-        yield Line("sampling.misses", f"at most {misses}", how, "")
-    yield Line("sampling.admittance", sampling.admittance, "", "")
+    for key in ("latency", "jitter", "misses", "admittance"):
+        yield from describe_model(getattr(sampling, key), f"sampling.{key}")
     yield from _provenance("sampling", sampling)
 
 
@@ -275,6 +263,12 @@ def describe_model(value: object, name: str = "") -> Iterator[Line]:
             yield Line(name, value.min.text, _text(value.min.si), unit)
         else:
             yield _interval(name, bounds, bounds, unit)
+    elif isinstance(value, Times):
+        first, last = value.shortest.text, value.longest.text
+        how = "unknown, but constant" if value.is_constant else ""
+        yield Line(name, first if first == last else f"[{first}, {last}]", how, "")
+    elif isinstance(value, DeadlinesSpec):
+        yield Line(name, f"at most {value}", f"command: {value.command}, job: {value.job}", "")
     elif isinstance(value, SpecModel):
         for field in type(value).model_fields:
             if name or field not in ("kind", "name", "title"):

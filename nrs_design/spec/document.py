@@ -10,7 +10,7 @@ import bisect
 import hashlib
 import json
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import NoReturn
@@ -177,6 +177,20 @@ def parse_with_faults(text: str, path: Path | None = None) -> tuple[Node, tuple[
     """
     builder = _Builder(text, path)
     return builder.build(), tuple(builder.faults)
+
+
+def steps_to(root: Node, at: Iterable[str | int]) -> Iterator[tuple[Position, Node]]:
+    """Yield where each key or item on the way to a place stands, and its value, as far as there."""
+    node = root
+    for part in at:
+        if isinstance(node, Mapping) and part in node.entries:
+            place, node = node.keys[str(part)], node.entries[str(part)]
+        elif isinstance(node, Sequence) and isinstance(part, int) and part < len(node.items):
+            node = node.items[part]
+            place = node.position
+        else:
+            return
+        yield place, node
 
 
 def to_data(node: Node) -> Data:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from nrs_design.spec.document import Data, Mapping, Node, Position, Scalar, Sequence
+from nrs_design.spec.document import Data, Mapping, Node, Position, Scalar, Sequence, steps_to
 
 Keys = tuple[str | int, ...]
 # A place, and what is written there; None leaves it out.
@@ -16,15 +16,8 @@ NOT_IDENTIFIED = frozenset({"provenance", "accept_doubt", "range_id", "load_iner
 
 def node_at(root: Node, at: Keys) -> Node | None:
     """Return what stands at a place, or None if the document does not have it."""
-    node: Node | None = root
-    for part in at:
-        if isinstance(node, Mapping) and isinstance(part, str):
-            node = node.entries.get(part)
-        elif isinstance(node, Sequence) and isinstance(part, int) and part < len(node.items):
-            node = node.items[part]
-        else:
-            return None
-    return node
+    nodes = [root, *(node for _, node in steps_to(root, at))]
+    return nodes[-1] if len(nodes) > len(at) else None
 
 
 def identified_above(root: Node, at: Keys) -> tuple[Keys, ...]:

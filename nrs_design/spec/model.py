@@ -132,6 +132,16 @@ class ExpandedBy(ParsedBy):
         return core_schema.no_info_before_validator_function(self.read, handler(source))
 
 
+def fields_schema(model: type[SpecModel]) -> dict[str, Any]:
+    """Return the JSON Schema of the fields of a model that functions read, by their keys."""
+    return {
+        key: {**mark.schema, "description": field.description}
+        for key, field in model.model_fields.items()
+        for mark in field.metadata
+        if isinstance(mark, ParsedBy) and mark.schema is not None
+    }
+
+
 def pair_schema(item: Any) -> dict[str, Any]:
     """Return the JSON Schema of a list of two such items, or of one of each."""
     return {"type": "array", "items": item, "minItems": 2, "maxItems": 2}

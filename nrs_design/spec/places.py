@@ -12,7 +12,7 @@ from pydantic_core import ErrorDetails
 from nrs_design.errors import Fault
 from nrs_design.proof.text import quoted
 from nrs_design.spec.check import find_faults
-from nrs_design.spec.document import Mapping, Node, Position, Sequence
+from nrs_design.spec.document import Node, Position, steps_to
 from nrs_design.spec.faults import FAULT, Location, did_you_mean
 from nrs_design.spec.model import SpecModel
 
@@ -147,20 +147,11 @@ def place_of(root: Node, location: Location, at_key: bool) -> Position:
 
     `at_key`: that of the key, not of its value.
     """
-    node, place = root, root.position
-    for depth, part in enumerate(location):
-        if isinstance(node, Mapping) and part in node.entries:
-            key = node.keys[str(part)]
-            node = node.entries[str(part)]
-            # What starts below its key, a block mapping or list, is best shown by the key.
-            below = node.position.line > key.line
-            place = key if below or (at_key and depth == len(location) - 1) else node.position
-        elif isinstance(node, Sequence) and isinstance(part, int) and part < len(node.items):
-            node = node.items[part]
-            place = node.position
-        else:
-            break
-    return place
+    steps = [*steps_to(root, location)]
+    key, node = steps[-1] if steps else (root.position, root)
+    # What starts below its key, a block mapping or list, is best shown by the key.
+    below = node.position.line > key.line
+    return key if below or (at_key and len(steps) == len(location)) else node.position
 
 
 def _words(details: ErrorDetails, location: Location, model: type[BaseModel]) -> tuple[str, str]:

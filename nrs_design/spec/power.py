@@ -1,9 +1,11 @@
-"""Powers with rational exponents, between two decimals, in Python integers alone."""
+"""Powers with rational exponents, between two decimals, in integers alone."""
 
 from __future__ import annotations
 
 from fractions import Fraction
 from math import floor, log10
+
+from flint import fmpz
 
 # Digits of the bounds, at least.
 DIGITS = 10
@@ -23,17 +25,6 @@ def power_between(base: Fraction, exponent: Fraction) -> tuple[Fraction, Fractio
     size = float(exponent) * (log10(base.numerator) - log10(base.denominator))
     unit = Fraction(10) ** (floor(size) - DIGITS)
     scaled = power / unit**q
-    lower = _root(floor(scaled), q)
+    lower = int(fmpz(floor(scaled)).root(q))
     upper = lower if lower**q == scaled else lower + 1
     return lower * unit, upper * unit
-
-
-def _root(value: int, q: int) -> int:
-    """Return the largest integer whose q-th power is at most an integer that is not negative."""
-    low, high = 0, 1
-    while high**q <= value:
-        low, high = high, 2 * high
-    while high - low > 1:
-        middle = (low + high) // 2
-        low, high = (middle, high) if middle**q <= value else (low, middle)
-    return low

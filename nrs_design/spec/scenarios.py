@@ -34,13 +34,9 @@ def _read_points(value: object) -> Points:
         )
     points = tuple(all_of(*(partial(_read_point, i, item) for i, item in enumerate(value))))
     for i, (time, _) in enumerate(points):
-        if (i == 0 and time.value) or (i and is_less(time, points[i - 1][0])):
-            raise fault(
-                f"the time {quoted(time.text)} is not in order",
-                "begin at 0 s, and let times never fall; the same time twice is a jump",
-                i,
-                0,
-            )
+        if is_less(time, points[i - 1][0]) if i else time.value:
+            remedy = "begin at 0 s, and let times never fall; the same time twice is a jump"
+            raise fault(f"the time {quoted(time.text)} is not in order", remedy, i, 0)
     return points
 
 
@@ -61,7 +57,7 @@ def _read_schedule(value: object) -> tuple[tuple[Quantity, str], ...]:
         if not isinstance(item, list | tuple) or len(item) != 2:
             raise fault("a switch is a time and a controller", wanted, i)
         time = read_quantity(item[0], kinds.DURATION, i, 0, positive=False)
-        if (not steps and time.value) or (steps and not is_less(steps[-1][0], time)):
+        if not is_less(steps[-1][0], time) if steps else time.value:
             raise fault(f"the time {quoted(time.text)} is not in order", wanted, i, 0)
         steps.append((time, as_text(item[1], i, 1)))
     return tuple(steps)

@@ -17,7 +17,15 @@ from nrs_design.spec.check import NO_SUCH, Reference, Row, each, refuse
 from nrs_design.spec.exact import parse_exact
 from nrs_design.spec.faults import Location, as_text, fault, reported
 from nrs_design.spec.fields import Exact, Label
-from nrs_design.spec.model import ExpandedBy, ParsedBy, SpecModel, optional, pair_schema, required
+from nrs_design.spec.model import (
+    ExpandedBy,
+    ParsedBy,
+    SpecModel,
+    fields_schema,
+    optional,
+    pair_schema,
+    required,
+)
 from nrs_design.spec.quantity import QUANTITY_PATTERN, parse_quantity
 
 MAX_TRANSITIONS = 20_000
@@ -31,14 +39,6 @@ ARBITRARY = "arbitrary"
 # The rules are those that the mode logic of the spec keeps.
 MODE_LOGIC = "mode-logic"
 _FORM = "write 'arbitrary', or {dwell_time: ..., transitions: [[from, to], ...]}"
-_DWELL_TIME = (
-    "shortest time in a mode before the next switch, in s; a number of steps in discrete time; one "
-    "for all modes, or by name: {a: 1 s, b: 2 s}"
-)
-_LONGEST_DWELL_TIME = (
-    "longest time in a mode, by which it must be left; one for all modes, or by name: {a: 5 s}"
-)
-_TRANSITIONS = "allowed switches as [from, to]; default: all"
 
 _Row = Annotated[tuple[Exact, ...], Field(min_length=1, max_length=MAX_DIMENSION)]
 _Matrix = Annotated[tuple[_Row, ...], Field(min_length=1, max_length=MAX_DIMENSION)]
@@ -137,15 +137,21 @@ class SwitchingSpec(SpecModel, unsaid="most"):
     """Rules for the switching signal; without any, it is arbitrary."""
 
     dwell_time: Annotated[DwellTimes | None, ParsedBy(read_dwell_times, DWELL_SCHEMA)] = optional(
-        _DWELL_TIME, stronger="smaller"
+        "shortest time in a mode before the next switch, in s; a number of steps in discrete time; "
+        "one for all modes, or by name: {a: 1 s, b: 2 s}",
+        stronger="smaller",
     )
     longest_dwell_time: Annotated[DwellTimes | None, ParsedBy(read_dwell_times, DWELL_SCHEMA)] = (
-        optional(_LONGEST_DWELL_TIME, stronger="larger")
+        optional(
+            "longest time in a mode, by which it must be left; one for all modes, or by name: "
+            "{a: 5 s}",
+            stronger="larger",
+        )
     )
     transitions: Annotated[
         tuple[Transition, ...] | None,
         ParsedBy(_read_transitions, _TRANSITIONS_SCHEMA),
-    ] = optional(_TRANSITIONS, stronger="whole")
+    ] = optional("allowed switches as [from, to]; default: all", stronger="whole")
 
     @property
     def is_arbitrary(self) -> bool:
@@ -210,14 +216,9 @@ def _read_switching(value: object) -> object:
 
 
 def _rule(*words: str) -> ExpandedBy:
-    rules = {
-        "dwell_time": DWELL_SCHEMA | {"description": _DWELL_TIME},
-        "longest_dwell_time": DWELL_SCHEMA | {"description": _LONGEST_DWELL_TIME},
-        "transitions": _TRANSITIONS_SCHEMA | {"description": _TRANSITIONS},
-    }
     mapping = {
         "type": "object",
-        "properties": rules,
+        "properties": fields_schema(SwitchingSpec),
         "minProperties": 1,
         "additionalProperties": False,
     }

@@ -52,7 +52,6 @@ def _axes_at(path: Path) -> tuple[Path, ...]:
 
 
 def _understood(path: Path) -> dict[str, Any]:
-    from nrs_design.gating.places import SourcePositions
     from nrs_design.spec import doubt_spec
     from nrs_design.spec.describe import describe
 
@@ -61,7 +60,6 @@ def _understood(path: Path) -> dict[str, Any]:
         from nrs_design.simulation.build_scenario import check_recordings
 
         check_recordings(loaded.spec, path.parent)
-    places = SourcePositions(loaded)
     return {
         "path": str(path),
         "valid": True,
@@ -75,7 +73,7 @@ def _understood(path: Path) -> dict[str, Any]:
         "warnings": [
             f"{path}:{place.line}:{place.column}: {doubt}"
             for doubt in doubt_spec(loaded.spec)
-            for place in [places.at(*doubt.at)]
+            for place in [loaded.place(*doubt.at)]
         ],
     }
 

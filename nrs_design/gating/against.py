@@ -34,7 +34,6 @@ from nrs_design.gating.obligations import (
     SpecOutcome,
     Status,
 )
-from nrs_design.gating.places import SourcePositions
 from nrs_design.gating.recorded import hash_recorded
 from nrs_design.gating.rules import NOT_WEAKER
 from nrs_design.proof.bounds import lower, upper
@@ -255,7 +254,7 @@ def _with(spec: SpecOutcome, changes: Sequence[Change]) -> SpecOutcome:
 
 def _caution(spec: SpecOutcome, change: Change) -> Caution:
     try:
-        place = SourcePositions(read_spec(spec.path)).at(*change.key_path)
+        place = read_spec(spec.path).place(*change.key_path)
     except NrsDesignError:
         return Caution(spec.path, change.message, 1, 1)
     return Caution(spec.path, change.message, place.line, place.column)

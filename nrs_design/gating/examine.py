@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import cached_property
 from math import isnan
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -24,7 +25,6 @@ from nrs_design.design.measures import GoalStanding
 from nrs_design.errors import DesignError
 from nrs_design.gating import rules
 from nrs_design.gating.obligations import Caution, Obligation, SpecOutcome, Status
-from nrs_design.gating.places import SourcePositions
 from nrs_design.proof.bounds import lower, upper
 from nrs_design.proof.evidence import AbstractEvidence, Shows
 from nrs_design.proof.evidence.fields import rate_text
@@ -34,7 +34,7 @@ from nrs_design.proof.spectrum import affordable, is_stable, worst_eigenvalue
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.simulation.peak_metrics import PEAKS, UNITS
 from nrs_design.spec import LoadedSpec, doubt_spec
-from nrs_design.spec.document import Position
+from nrs_design.spec.edits import Keys, node_at
 
 if TYPE_CHECKING:
     from nrs_design.design.analysis import DesignAnalysis
@@ -55,31 +55,35 @@ class Examiner:
     """Makes obligations about one spec, each with its place."""
 
     loaded: LoadedSpec  # The spec
-    places: SourcePositions  # Its lines and columns
-
-    @classmethod
-    def of(cls, loaded: LoadedSpec) -> Examiner:
-        """Return the examiner of a spec."""
-        return cls(loaded, SourcePositions(loaded))
 
     def obligation(
-        self,
-        rule: rules.Rule,
-        subject: str,
-        status: Status,
-        message: str,
-        place: Position | tuple[str | int, ...],
+        self, rule: rules.Rule, subject: str, status: Status, message: str, keys: Keys
     ) -> Obligation:
-        """Return an obligation about something in this spec; its message is one line.
-
-        A place is a line and column, or the keys that lead there.
-        """
-        at = self.places.at(*place) if isinstance(place, tuple) else place
+        """Return an obligation about what stands in this spec at some keys; one line."""
+        at = self.loaded.place(*keys)
         return Obligation(rule, self.loaded.path, subject, status, message, at.line, at.column)
+
+    def keys_of_mode(self, name: str) -> Keys:
+        """Return the keys of a given mode, or of the controller of an assembled mode."""
+        # Labels have no slash: what follows it names the contact or the corner of a box.
+        label = name.partition("/")[0]
+        index = self._modes.get(label)
+        return ("controllers", label) if index is None else ("modes", index)
+
+    @cached_property
+    def _modes(self) -> Mapping[str, int]:
+        spec = self.loaded.spec
+        modes = spec.modes if spec.kind == "switched-system" else ()
+        return {mode.name: index for index, mode in enumerate(modes)}
+
+    def keys_of_goal(self, controller: str, key: str) -> Keys:
+        """Return the keys of a goal of a controller: its own, or that of the whole spec."""
+        own: Keys = ("controllers", controller, "goals", key)
+        return ("goals", key) if node_at(self.loaded.root, own) is None else own
 
     def caution(self, message: str, *keys: str | int) -> Caution:
         """Return a caution about something in this spec, by the keys that lead there."""
-        at = self.places.at(*keys)
+        at = self.loaded.place(*keys)
         return Caution(self.loaded.path, message, at.line, at.column, at=keys)
 
     def outcome(
@@ -166,9 +170,8 @@ class Examiner:
             if not decides(system, mode.name):
                 status = Status.INCONCLUSIVE
                 message += f", which is growth {_open_growth(system, mode.name)}"
-        return self.obligation(
-            rules.MODE_STABLE, mode.name, status, message, self.places.mode(mode.name)
-        )
+        keys = self.keys_of_mode(mode.name)
+        return self.obligation(rules.MODE_STABLE, mode.name, status, message, keys)
 
     def nothing_to_certify(self) -> SpecOutcome:
         """Return the outcome of a valid spec that makes no claim about switching."""
@@ -234,7 +237,7 @@ class Examiner:
                     f"{measure.goal_text(found.goal)} is wanted ({found.basis})"
                 )
                 subject = f"{item.name}: {measure.goal}"
-                place, status = self.places.goal(item.name, measure.goal), _ENDS[found.standing]
+                place, status = self.keys_of_goal(item.name, measure.goal), _ENDS[found.standing]
                 yield self.obligation(rules.GOAL, subject, status, message, place)
 
     def responses(self, analysis: DesignAnalysis) -> Iterator[Obligation]:
@@ -244,8 +247,9 @@ class Examiner:
                 status = Status.PROVED if found.proved else Status.INCONCLUSIVE
                 status = Status.REFUTED if found.refuted else status
                 message = f"controller {item.name}: {found.said}; {found.wanted} is wanted"
-                subject, place = f"{item.name}: {found.key}", self.places.goal(item.name, found.key)
-                yield self.obligation(rules.RESPONSE_GOAL, subject, status, message, place)
+                keys = self.keys_of_goal(item.name, found.key)
+                subject = f"{item.name}: {found.key}"
+                yield self.obligation(rules.RESPONSE_GOAL, subject, status, message, keys)
 
     def certified_goals(self, certificate: Certificate | None) -> Iterator[Obligation]:
         """Yield NRS108 for every goal to be proved."""

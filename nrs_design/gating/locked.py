@@ -84,7 +84,7 @@ def _examine_safely(path: Path, entry: LockedSpec | None, file: Path) -> SpecOut
 
 
 def _examine(loaded: LoadedSpec, entry: LockedSpec | None, file: Path) -> SpecOutcome:
-    examiner = Examiner.of(loaded)
+    examiner = Examiner(loaded)
     if isinstance(loaded.spec, RobotSpec) and entry is None:
         return examiner.nothing_to_certify()
     if entry is None:

@@ -22,7 +22,6 @@ from nrs_design.gating.examine import Examiner
 from nrs_design.gating.obligations import GateOutcome, Obligation, SpecOutcome, failed
 from nrs_design.gating.pages import is_current, note_page, page_fingerprint
 from nrs_design.gating.paths import is_utf8
-from nrs_design.gating.places import SourcePositions
 from nrs_design.gating.recorded import hash_recorded
 from nrs_design.output import CERTIFICATE, PAGE, check_place, write_output
 from nrs_design.ownership import REMEDY, check_owner, origin_of
@@ -154,7 +153,7 @@ def _namesakes(specs: Iterable[LoadedSpec]) -> dict[Path, Path]:
 
 
 def _shared_name(loaded: LoadedSpec, namesake: Path) -> SpecError:
-    place = SourcePositions(loaded).at("name")
+    place = loaded.place("name")
     return SpecError(
         f"{namesake} is named {loaded.spec.name!r} too, and their files would overwrite each other",
         path=loaded.path,
@@ -168,7 +167,7 @@ def _examine(
     loaded: LoadedSpec, files: Files, progress: Progress, overrides: Overrides | None
 ) -> SpecOutcome:
     if isinstance(loaded.spec, RobotSpec):
-        return Examiner.of(loaded).nothing_to_certify()
+        return Examiner(loaded).nothing_to_certify()
     files.check_owner(loaded.path, loaded.spec.name)
     # Refuse what cannot be written before minutes of search.
     place = files.certificate(loaded.spec.name)
@@ -181,7 +180,7 @@ def _examine(
     kept = None if wanted else run_kept(loaded, files.recorded_for(loaded), progress)
     result = kept or run_certification(loaded, limits=limits, progress=progress)
     certification, certificate = result.certification, result.certificate
-    examiner = Examiner.of(loaded)
+    examiner = Examiner(loaded)
     blocked = find_blocked(result, limits, progress)
     tried = [f"{a.step}: {a.outcome}" for a in certification.attempts]
     searched = "; ".join((*tried, *(blocked_lines(blocked, loaded.path) if blocked else ())))

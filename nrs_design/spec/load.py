@@ -24,12 +24,13 @@ from nrs_design.spec.document import (
     parse_document,
     parse_with_faults,
     read_source,
+    steps_to,
     to_data,
 )
 from nrs_design.spec.faults import MAX_LISTED, did_you_mean
 from nrs_design.spec.instead import as_read
 from nrs_design.spec.model import SpecModel
-from nrs_design.spec.places import faults_between, file_faults, place_of
+from nrs_design.spec.places import faults_between, file_faults
 from nrs_design.spec.task_space import (
     KIND,
     TaskSpaceSpec,
@@ -74,7 +75,8 @@ class LoadedSpec:
 
     def place(self, *at: str | int) -> Position:
         """Line and column of a key or an item, or of what holds it if it is not written out."""
-        return place_of(self.root, at, at_key=True)
+        places = [place for place, _ in steps_to(self.root, at)]
+        return places[-1] if places else self.root.position
 
 
 def read_spec(path: str | os.PathLike[str]) -> LoadedSpec:

@@ -79,5 +79,5 @@ def test_optimize_and_gate_end_alike(tmp_path, text, goals, code):
     path = written(tmp_path, text, goals)
     run("optimize", path, cwd=tmp_path, code=code)
     loaded = read_spec(path)
-    found = Examiner.of(loaded).goals(run_analysis(run_interaction(loaded, "")))
+    found = Examiner(loaded).goals(run_analysis(run_interaction(loaded, "")))
     assert exit_codes.OF_SEVERITY[max(item.severity for item in found)] == code

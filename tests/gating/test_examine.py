@@ -24,7 +24,7 @@ from tests.proof.evidence.test_invariant_ellipsoid import BOUNCE
 from tests.proof.evidence.test_saturated_ellipsoid import HELD
 from tests.proof.graphs import common_quadratic
 from tests.proof.systems import bouncing, bouncing_in_steps, genuine, pushed, pushed_away
-from tests.support import ROOT, SOFT_TISSUE, family
+from tests.support import ROOT, SOFT_TISSUE, family, replaced
 
 from .conftest import STABLE
 
@@ -109,7 +109,7 @@ def test_a_certificate_holds_or_is_rejected(examiner):
 
 
 def ranges(highest, limit):
-    examiner = Examiner.of(read_spec(SOFT_TISSUE))
+    examiner = Examiner(read_spec(SOFT_TISSUE))
     loop = SimpleNamespace(contact=SimpleNamespace(remembers=False))
     item = SimpleNamespace(
         name="insertion",
@@ -171,7 +171,7 @@ def certificate_of(system, *statements):
 def written(path, more, text=TISSUE):
     """Return the examiner of a spec with more lines."""
     (path / "wanting.nrs.yaml").write_text(text + more, encoding="utf-8")
-    return Examiner.of(read_spec(path / "wanting.nrs.yaml"))
+    return Examiner(read_spec(path / "wanting.nrs.yaml"))
 
 
 def wanting(path, goals):
@@ -290,3 +290,24 @@ def test_a_limit_that_no_proof_keeps_is_warned_of(tmp_path):
         found = [item.message for item in asked.limits(certificate)]
         assert bool(found) == warned
         assert not warned or found[0].startswith("the limit of 0.3 N*m is not shown to be kept")
+
+
+def test_modes_and_goals_stand_where_their_spec_says_them(tmp_path):
+    """Assembled modes at their controller; goals at it, or at the top if it has none of its own."""
+    goals = "goals: {min_gain_margin: 2}\nswitching:"
+    own = "    desired_impedance_ratio: 0.5\n"
+    text = replaced(
+        TISSUE, ("switching:", goals), (own, f"{own}    goals: {{min_gain_margin: 3}}\n")
+    )
+    tissue, given = written(tmp_path, "", text), written(tmp_path, "", STABLE)
+    assert tissue.keys_of_mode("withdrawal/soft/k-min") == ("controllers", "withdrawal")
+    assert given.keys_of_mode(given.loaded.spec.modes[1].name) == ("modes", 1)
+    assert tissue.keys_of_goal("insertion", "min_gain_margin") == ("goals", "min_gain_margin")
+    assert tissue.keys_of_goal("withdrawal", "min_gain_margin")[0] == "controllers"
+
+
+def test_what_is_not_written_out_stands_where_its_holder_does(examiner):
+    place = examiner.loaded.place
+    assert place("modes", 99) == place("modes")
+    assert place("design") == place()
+    assert examiner.loaded.text.split("\n")[place("switching").line - 1].startswith("switching")

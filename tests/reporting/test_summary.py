@@ -143,7 +143,7 @@ def test_the_light_of_goals_follows_from_all_of_them(soft_tissue, tmp_path, goal
     assert (str(light.state), light.text) == (state, said)
     tables = {b.title: b for b in goals_section(result, analysis).blocks if hasattr(b, "rows")}
     (row,) = tables["Goals that the certificate must show"].rows
-    gated = next(Examiner.of(result.loaded).certified_goals(result.certificate))
+    gated = next(Examiner(result.loaded).certified_goals(result.certificate))
     assert f"{row[2]}; {row[1]} is wanted" == gated.message
     assert row[3] == ("proved" if gated.fulfilled else "NOT PROVED")
 

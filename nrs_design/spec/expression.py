@@ -62,7 +62,12 @@ def parse_affine(text: str) -> Affine:
     function = _sum(tokens, text, 0)
     if tokens:
         raise _unexpected(tokens[-1], text)
-    return _checked_size(function, text)
+    # No float holds more: each literal is capped, but products of them grow.
+    if any(abs(number) > LARGEST for number in function.numbers):
+        raise SpecError(
+            f"{quoted(text)} holds a factor beyond 1e100", remedy="choose another scale"
+        )
+    return function
 
 
 def _tokens(text: str) -> list[_Token]:
@@ -145,15 +150,6 @@ def _factor(tokens: list[_Token], text: str, depth: int) -> Affine:
     if token.kind == "name":
         return Affine.of_parameter(token.text)
     raise _unexpected(token, text)
-
-
-def _checked_size(function: Affine, text: str) -> Affine:
-    """Refuse what no float can hold: each literal is capped, but products of them grow."""
-    if any(abs(c) > LARGEST for c in (function.constant, *(s for _, s in function.slopes))):
-        raise SpecError(
-            f"{quoted(text)} holds a factor beyond 1e100", remedy="choose another scale"
-        )
-    return function
 
 
 def _not_affine(text: str, reason: str) -> SpecError:

@@ -185,13 +185,10 @@ class AbstractInteractionSpec(SpecModel, stronger="unknown"):
     @property
     def identified(self) -> dict[tuple[str, ...], IdentifiedSpec]:
         """What may have been identified from records, by the keys that lead to it."""
-        parts: dict[tuple[str, ...], IdentifiedSpec] = {
-            (key,): drive for key, drive in self.drives.items()
-        }
-        parts.update((("environments", name), item) for name, item in self.environments.items())
-        if self.sampling is not None:
-            parts["sampling",] = self.sampling
-        return parts
+        drives = {(key,): drive for key, drive in self.drives.items()}
+        environments = {("environments", name): item for name, item in self.environments.items()}
+        sampling = {} if self.sampling is None else {("sampling",): self.sampling}
+        return {**drives, **environments, **sampling}
 
     @property
     def contact_names(self) -> tuple[str, ...]:
@@ -248,22 +245,18 @@ class AbstractInteractionSpec(SpecModel, stronger="unknown"):
     @property
     def ranges(self) -> dict[tuple[str, ...], RangedQuantity]:
         """The numbers of what is touched and of the drive, by the keys that lead to them."""
-        found: dict[tuple[str, ...], RangedQuantity] = {
+        touched = {
             ("environments", name, key): quantity
             for name in sorted(self.touched & self.environments.keys())
             for key, quantity in self.environments[name].ranges.items()
         }
-        for at, quantity in self.motor_ranges.items():
-            found[at] = quantity
-        return found
+        return {**touched, **self.motor_ranges}
 
     @property
     def late_at(self) -> tuple[str, str] | None:
         """The key that says that commands take effect later than at their sample, or None."""
-        drives = ((name, "dead_time") for name in self.drives)
-        keys = (*drives, ("sampling", "latency"), ("sampling", "jitter"))
-        said = (at for at in keys if getattr(getattr(self, at[0]), at[1], None) is not None)
-        return next(said, None)
+        jitter = ("sampling", "jitter") if self.sampling and self.sampling.jitter else None
+        return next(iter(self.late_times), jitter)
 
     @property
     def takes_dead_time(self) -> bool:
@@ -296,6 +289,5 @@ class AbstractInteractionSpec(SpecModel, stronger="unknown"):
     @property
     def has_ranges(self) -> bool:
         """Whether the actuator or a touched environment has a range."""
-        if any(not item.fixed for item in self.motor_ranges.values()):
-            return True
-        return any(not self.environments[name].fixed for name in self.touched)
+        parts = (*self.motor_ranges.values(), *(self.environments[name] for name in self.touched))
+        return not all(part.fixed for part in parts)

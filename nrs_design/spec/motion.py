@@ -186,7 +186,7 @@ class PositionInterfaceSpec(FollowingSpec):
         *FollowingSpec.checks,
         Row(
             "transfer_function",
-            lambda s: s._restless(),
+            _restless,
             "the robot does not come to rest where it is commanded: its transfer function is not 1 "
             "at s = 0",
             "let the last coefficients of numerator and denominator be equal, and not zero",

@@ -93,12 +93,12 @@ def doubt_sizes(spec: SpecModel) -> Iterator[_Asked]:
     A field is asked about once, by its first size that is not plausible. Where a part of the spec
     has `accept_doubt`, and no doubts of an identification that this is about, nothing is asked.
     """
-    yield from _walk(spec, (), "")
+    yield from _once(_walk(spec, (), ""))
 
 
 def unusual(part: SpecModel) -> tuple[str, ...]:
     """Return what is asked about a part of a spec, accepted or not."""
-    return tuple(text for _, text in _parts(part, (), ""))
+    return tuple(text for _, text in _once(_parts(part, (), "")))
 
 
 def _walk(value: object, at: tuple[str, ...], field: str) -> Iterator[_Asked]:
@@ -116,7 +116,7 @@ def _walk(value: object, at: tuple[str, ...], field: str) -> Iterator[_Asked]:
             yield from _walk(item, (*at, str(key)), str(key))
     elif isinstance(value, tuple):
         for item in value:
-            yield from _once(_walk(item, at, field))
+            yield from _walk(item, at, field)
 
 
 def _parts(model: SpecModel, at: tuple[str, ...], field: str) -> Iterator[_Asked]:
@@ -124,17 +124,14 @@ def _parts(model: SpecModel, at: tuple[str, ...], field: str) -> Iterator[_Asked
     ends = isinstance(model, RangedQuantity | GainSpec | Bounds)
     for key in type(model).model_fields:
         value = getattr(model, key)
-        yield from _once(_walk(value, at if ends else (*at, key), field if ends else key))
+        yield from _walk(value, at if ends else (*at, key), field if ends else key)
 
 
-def _once(
-    found: Iterator[_Asked],
-) -> Iterator[_Asked]:
-    seen = set()
+def _once(found: Iterator[_Asked]) -> Iterator[_Asked]:
+    first: dict[tuple[str, ...], str] = {}
     for at, text in found:
-        if at not in seen:
-            seen.add(at)
-            yield at, text
+        first.setdefault(at, text)
+    return iter(first.items())
 
 
 @dataclass(frozen=True, slots=True)

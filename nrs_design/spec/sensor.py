@@ -125,9 +125,9 @@ class SensorSpec(SpecModel, stronger="larger"):
     @property
     def has_errors(self) -> bool:
         """Whether it says of an error how large it is."""
-        named = (self.bias, self.force_bias, self.drift, self.resolution)
-        if any(error is not None for error in (*named, self.pose_error, self.imu_error)):
-            return True
         tool = self.tool
         numbers = () if tool is None else (tool.mass, *(end for _, end in tool.center_of_mass))
-        return not all(number.fixed for number in numbers)
+        told = ("bias", "force_bias", "drift", "resolution", "pose_error", "imu_error")
+        return any(getattr(self, key) is not None for key in told) or not all(
+            number.fixed for number in numbers
+        )

@@ -16,19 +16,11 @@ PRISMATIC = {
 }
 # Several axes in one file.
 TASK_SPACE = "task-space"
-_NAMES = (
-    "interaction-design",
-    *INTERFACES,
-    *PRISMATIC.values(),
-    "hybrid-force",
-    TASK_SPACE,
-    "switched-system",
-    "robot",
+_SUFFIX = ".nrs.yaml"
+TEMPLATES: Mapping[str, str] = MappingProxyType(
+    {
+        file.name.removesuffix(_SUFFIX): file.read_text(encoding="utf-8")
+        for file in sorted(files(__name__).iterdir(), key=lambda file: file.name)
+        if file.name.endswith(_SUFFIX)
+    }
 )
-
-
-def _read(name: str) -> str:
-    return (files(__name__) / f"{name}.nrs.yaml").read_text(encoding="utf-8")
-
-
-TEMPLATES: Mapping[str, str] = MappingProxyType({name: _read(name) for name in _NAMES})

@@ -128,8 +128,7 @@ def recorded_in(lock: Lock, file: Path) -> Mapping[Path, Recorded]:
     """Return the certificate of every locked spec, by the absolute path of it."""
     return {
         Path(os.path.abspath(file.parent / entry.path)): Recorded(
-            Path(os.path.normpath(file.parent / entry.certificate.file)),
-            entry.certificate.id,
+            Path(os.path.normpath(file.parent / entry.certificate.file)), entry.certificate.id
         )
         for entry in lock.specs
         if entry.certificate is not None

@@ -17,12 +17,7 @@ from nrs_design.proof.evidence.fields import rate_text
 from nrs_design.proof.mode import Time
 from nrs_design.ros2.axis import ControllerContext, assumptions, close_axis
 from nrs_design.ros2.law import LAW, AdmittanceLaw, Axis, is_admittance, read_law
-from nrs_design.ros2.managers import (
-    MANAGER,
-    find_undecided,
-    kind_of,
-    managers_of,
-)
+from nrs_design.ros2.managers import MANAGER, find_undecided, kind_of, managers_of
 from nrs_design.ros2.parameters import RosNode, read_integer, read_nodes, texts
 from nrs_design.ros2.quantities import RATE, ROTATIONAL, STIFFNESS, Range
 from nrs_design.ros2.traps import find_traps
@@ -92,11 +87,7 @@ class _Asker:
         return self.known[key]
 
     def _certify(
-        self,
-        law: AdmittanceLaw,
-        axis: Axis,
-        around: ControllerContext,
-        met: Range,
+        self, law: AdmittanceLaw, axis: Axis, around: ControllerContext, met: Range
     ) -> tuple[Status, str]:
         system = close_axis(law, axis, around)
         found = certify(system, limits=self.limits)

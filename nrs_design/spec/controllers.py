@@ -8,12 +8,7 @@ from itertools import product
 from types import MappingProxyType
 from typing import Annotated, ClassVar, Literal, get_args
 
-from pydantic import (
-    AfterValidator,
-    ConfigDict,
-    Discriminator,
-    Field,
-)
+from pydantic import AfterValidator, ConfigDict, Discriminator, Field
 
 from nrs_design.spec import quantity_fields as field
 from nrs_design.spec.check import Row, exactly_one, exclusive

@@ -134,9 +134,7 @@ def _damped_force(spec: Spec) -> tuple[str, str] | None:
     return None
 
 
-def _constant(
-    holds: Callable[[tuple[str, ...]], bool],
-) -> Callable[[Spec], tuple[str, ...] | None]:
+def _constant(holds: Callable[[tuple[str, ...]], bool]) -> Callable[[Spec], tuple[str, ...] | None]:
     """Ask for a range that is constant, by the keys that lead to it."""
 
     def find(spec: Spec) -> tuple[str, ...] | None:
@@ -334,10 +332,7 @@ RELAXED = _controller(
     lambda c: c.commands == "velocity" and not c.sprung,
 )
 BLEEDING = _F(
-    "{0!r}, whose integral bleeds,",
-    "controllers.{0}.type",
-    "use one kind of controller",
-    _bleeding,
+    "{0!r}, whose integral bleeds,", "controllers.{0}.type", "use one kind of controller", _bleeding
 )
 IDLE = _given("a mixture of controllers", "idle_states", "use one kind of controller")
 IDLE_RESET = _F(

@@ -142,7 +142,4 @@ TouchedAtOnce = Annotated[
     ),
 ]
 Title = Annotated[str, ParsedBy(read_title, {"type": "string", "maxLength": MAX_TITLE})]
-Hash = Annotated[
-    str,
-    ParsedBy(read_hash, {"type": "string", "pattern": HASH_PATTERN}),
-]
+Hash = Annotated[str, ParsedBy(read_hash, {"type": "string", "pattern": HASH_PATTERN})]

@@ -62,12 +62,7 @@ def _forbidden(spec: Spec) -> Iterator[Transition]:
 
 LOGIC_CHECKS: tuple[Row[Spec], ...] = (
     *each(_names, NO_SUCH),
-    Row(
-        "switching",
-        _about_others,
-        "the rules are not about what the mode logic decides",
-        _REMEDY,
-    ),
+    Row("switching", _about_others, "the rules are not about what the mode logic decides", _REMEDY),
     refuse(
         _too_short,
         "the mode logic keeps {0} for {1}, the rules say {2}",

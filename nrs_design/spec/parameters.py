@@ -72,13 +72,9 @@ def _read_range(value: object) -> tuple[Fraction, Fraction]:
 
 
 _Value = Annotated[Fraction, ParsedBy(_read_value, NUMBER_SCHEMA)]
-_Range = Annotated[
-    tuple[Fraction, Fraction],
-    ParsedBy(_read_range, pair_schema(NUMBER_SCHEMA)),
-]
+_Range = Annotated[tuple[Fraction, Fraction], ParsedBy(_read_range, pair_schema(NUMBER_SCHEMA))]
 ParameterName = Annotated[
-    str,
-    ParsedBy(read_parameter_name, {"type": "string", "pattern": PARAMETER_PATTERN}),
+    str, ParsedBy(read_parameter_name, {"type": "string", "pattern": PARAMETER_PATTERN})
 ]
 Switch = Annotated[bool, ParsedBy(_read_switch, {"type": "boolean"})]
 Entry = Annotated[

@@ -77,10 +77,7 @@ RangedExponent = Annotated[
 
 
 def power_box(
-    stiffness: Interval,
-    damping: Interval,
-    exponent: ExponentSpec,
-    reach: tuple[Fraction, Fraction],
+    stiffness: Interval, damping: Interval, exponent: ExponentSpec, reach: tuple[Fraction, Fraction]
 ) -> tuple[Interval, Interval]:
     """Return where stiffness and damping stay while the deflection stays in its preload.
 

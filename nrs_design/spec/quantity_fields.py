@@ -108,10 +108,7 @@ def _as_is(value: object) -> Quantity:
 
 
 # Inside bounds and ranges: the field around them knows the kind and reads the text.
-AnyQuantity = Annotated[
-    Quantity,
-    ParsedBy(_as_is, {"type": "string", "pattern": QUANTITY_PATTERN}),
-]
+AnyQuantity = Annotated[Quantity, ParsedBy(_as_is, {"type": "string", "pattern": QUANTITY_PATTERN})]
 
 
 class Bounds(SpecModel, stronger="unknown"):
@@ -367,6 +364,5 @@ InertiaGain = Annotated[GainSpec, bounds_of(kinds.INERTIA, GainSpec, positive=Fa
 DampingGain = Annotated[GainSpec, bounds_of(kinds.IMPEDANCE, GainSpec)]
 # No design chooses it.
 SpringGain = Annotated[
-    GainSpec,
-    ExpandedBy(bounds_of(kinds.SPRING, GainSpec).read, quantity_schema(kinds.SPRING)),
+    GainSpec, ExpandedBy(bounds_of(kinds.SPRING, GainSpec).read, quantity_schema(kinds.SPRING))
 ]

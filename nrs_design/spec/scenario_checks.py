@@ -98,9 +98,5 @@ SCENARIO_CHECKS: tuple[Row[Spec], ...] = (
         "a velocity of {0:.6g} rad/s is beyond the limit of {1}",
         "command less, or raise limits.velocity",
     ),
-    refuse(
-        _without_logic,
-        "the spec has no mode_logic",
-        "add one, or control in another way",
-    ),
+    refuse(_without_logic, "the spec has no mode_logic", "add one, or control in another way"),
 )

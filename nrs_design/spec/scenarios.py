@@ -79,8 +79,7 @@ def _pairs(first: dict[str, Any], second: dict[str, Any], least: int) -> dict[st
 
 _TIME = quantity_schema(kinds.DURATION)
 Breakpoints = Annotated[
-    Points,
-    ParsedBy(_read_points, _pairs(_TIME, quantity_schema(kinds.ANGULAR_VELOCITY), 2)),
+    Points, ParsedBy(_read_points, _pairs(_TIME, quantity_schema(kinds.ANGULAR_VELOCITY), 2))
 ]
 Schedule = Annotated[
     tuple[tuple[Quantity, str], ...],
@@ -238,8 +237,7 @@ class ScenarioSpec(SpecModel, stronger="unknown", unsaid="other"):
     title: Title = optional("one line for people, at most 200 characters", "", stronger="beside")
     command: CommandProfileSpec = required("velocity that the surgeon commands")
     duration: field.Duration | None = optional(
-        "length of the run in s, at most an hour; default: that of points or csv",
-        stronger="larger",
+        "length of the run in s, at most an hour; default: that of points or csv", stronger="larger"
     )
     start: field.SignedAngle | None = optional(
         "angle at which the axis rests at first, in rad; default: 0"

@@ -70,10 +70,7 @@ class ModeSpec(SpecModel, stronger="neither"):
             lambda s: (number for row in s.A for e in row for number in e.numbers),
         ),
         Row(
-            "A",
-            _not_square,
-            "the matrix is {0} x {1}, not square",
-            "write as many rows as columns",
+            "A", _not_square, "the matrix is {0} x {1}, not square", "write as many rows as columns"
         ),
     )
 

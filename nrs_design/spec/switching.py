@@ -149,8 +149,7 @@ class SwitchingSpec(SpecModel, unsaid="most"):
         )
     )
     transitions: Annotated[
-        tuple[Transition, ...] | None,
-        ParsedBy(_read_transitions, _TRANSITIONS_SCHEMA),
+        tuple[Transition, ...] | None, ParsedBy(_read_transitions, _TRANSITIONS_SCHEMA)
     ] = optional("allowed switches as [from, to]; default: all", stronger="whole")
 
     @property

@@ -206,8 +206,7 @@ class ThresholdLogicSpec(SpecModel, stronger="unknown"):
             "add `{0}: {{noise: ..., age: ..., largest_rate: ...}}` to signals",
         ),
         *each(
-            _held,
-            Row[Reference]("", Reference.is_lost, "no switch leads to or from {0}", "{1}"),
+            _held, Row[Reference]("", Reference.is_lost, "no switch leads to or from {0}", "{1}")
         ),
         refuse(_untimed, "{0!r} is not a time", "write seconds, as in '50 ms'"),
         refuse(

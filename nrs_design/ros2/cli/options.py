@@ -37,7 +37,6 @@ def range_of(option: str, text: str | None, kind: QuantityKind) -> Range | None:
         raise NrsDesignError(f"{option}: {error.message}", remedy=remedy) from None
     if not 0 <= ends[0] <= ends[1]:
         raise NrsDesignError(
-            f"{option}: {text!r} is not a rising range from zero or above",
-            remedy=remedy,
+            f"{option}: {text!r} is not a rising range from zero or above", remedy=remedy
         )
     return ends[0], ends[1]

@@ -6,8 +6,9 @@ import errno
 import os
 import re
 import stat
+from io import BufferedReader
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any
 
 # More values than any honest file holds; each takes some 100 bytes when it is parsed.
 MAX_JSON_VALUES = 1_000_000
@@ -30,7 +31,7 @@ def is_device_name(name: str) -> bool:
     return name.partition(".")[0].strip(" ").lower() in DEVICES
 
 
-def open_regular(path: Path) -> BinaryIO:
+def open_regular(path: Path) -> BufferedReader:
     """Open a regular file to read it; never wait for a pipe, nor read from a device.
 
     Any other is an `OSError`.

@@ -191,7 +191,7 @@ ZEROED = _F(
     "a command of zero where a deadline is missed",
     "sampling.misses.command",
     "write `command: hold`",
-    lambda s: MISSES.find(s) and s.sampling.misses.command == "zero",
+    lambda s: (misses := s.sampling and s.sampling.misses) and misses.command == "zero",
 )
 TIMED = _F(
     "the {0[1]}",

@@ -185,10 +185,13 @@ class AbstractInteractionSpec(SpecModel, stronger="unknown"):
     @property
     def identified(self) -> dict[tuple[str, ...], IdentifiedSpec]:
         """What may have been identified from records, by the keys that lead to it."""
-        drives = {(key,): drive for key, drive in self.drives.items()}
-        environments = {("environments", name): item for name, item in self.environments.items()}
-        sampling = {} if self.sampling is None else {("sampling",): self.sampling}
-        return {**drives, **environments, **sampling}
+        parts: dict[tuple[str, ...], IdentifiedSpec] = {
+            (key,): drive for key, drive in self.drives.items()
+        }
+        parts.update((("environments", name), item) for name, item in self.environments.items())
+        if self.sampling is not None:
+            parts["sampling",] = self.sampling
+        return parts
 
     @property
     def contact_names(self) -> tuple[str, ...]:
@@ -245,12 +248,13 @@ class AbstractInteractionSpec(SpecModel, stronger="unknown"):
     @property
     def ranges(self) -> dict[tuple[str, ...], RangedQuantity]:
         """The numbers of what is touched and of the drive, by the keys that lead to them."""
-        touched = {
+        found: dict[tuple[str, ...], RangedQuantity] = {
             ("environments", name, key): quantity
             for name in sorted(self.touched & self.environments.keys())
             for key, quantity in self.environments[name].ranges.items()
         }
-        return {**touched, **self.motor_ranges}
+        found.update(self.motor_ranges.items())
+        return found
 
     @property
     def late_at(self) -> tuple[str, str] | None:

@@ -34,9 +34,11 @@ from nrs_design.spec.quantity import (
 )
 from nrs_design.spec.range_checks import BOUND_CHECKS, RANGE_CHECKS, range_around
 
+Reader = Callable[[object], Quantity]
+
 
 def read_quantity(
-    value: object, kind: QuantityKind, *at: int | str, positive: bool, signed: bool = False
+    value: object, kind: QuantityKind, *at: int | str, positive: bool = True, signed: bool = False
 ) -> Quantity:
     """Read a quantity of a kind from text, and check its sign unless it is ``signed``.
 
@@ -70,33 +72,33 @@ def quantity_schema(kind: QuantityKind) -> dict[str, Any]:
     return {"type": "string", "pattern": QUANTITY_PATTERN, "examples": [kind.example]}
 
 
-def _one(kind: QuantityKind, *, positive: bool = True, signed: bool = False) -> ParsedBy:
-    def read(value: object) -> Quantity:
-        return read_quantity(value, kind, positive=positive, signed=signed)
+def _reader(kind: QuantityKind, **signs: bool) -> Reader:
+    return lambda value: read_quantity(value, kind, **signs)
 
-    return ParsedBy(read, quantity_schema(kind))
+
+def _one(kind: QuantityKind, **signs: bool) -> ParsedBy:
+    return ParsedBy(_reader(kind, **signs), quantity_schema(kind))
 
 
 # In the place of a quantity: as large as is found.
 LARGEST: Literal["largest"] = "largest"
 
 
-def _read_or_largest(value: object, kind: QuantityKind) -> Quantity | Literal["largest"]:
-    """Read both in one place, so that what is neither is one fault."""
-    if value == LARGEST:
-        return LARGEST
-    kind = kind.on(current())
-    if isinstance(value, str) and not any(map(str.isdigit, value)):
-        raise fault(
-            f"{quoted(value)} is neither {kind.name} nor {LARGEST!r}",
-            f"write {kind.example!r}, or {LARGEST!r}",
-        )
-    return read_quantity(value, kind, positive=True)
-
-
 def _or_largest(kind: QuantityKind) -> ParsedBy:
-    schema = {"anyOf": [quantity_schema(kind), {"const": LARGEST}]}
-    return ParsedBy(lambda value: _read_or_largest(value, kind), schema)
+    """Read both in one place, so that what is neither is one fault."""
+
+    def read(value: object) -> Quantity | Literal["largest"]:
+        if value == LARGEST:
+            return LARGEST
+        if isinstance(value, str) and not any(map(str.isdigit, value)):
+            meant = kind.on(current())
+            raise fault(
+                f"{quoted(value)} is neither {meant.name} nor {LARGEST!r}",
+                f"write {meant.example!r}, or {LARGEST!r}",
+            )
+        return read_quantity(value, kind)
+
+    return ParsedBy(read, {"anyOf": [quantity_schema(kind), {"const": LARGEST}]})
 
 
 def _as_is(value: object) -> Quantity:
@@ -170,9 +172,7 @@ class RangedQuantity(SpecModel):
 def bounds_of(kind: QuantityKind, model: type[SpecModel], *, positive: bool = True) -> ExpandedBy:
     """Read the smallest and the largest of a quantity, the keys of a model; or one for both."""
     keys = {key: field.description for key, field in model.model_fields.items()}
-
-    def reader(value: object) -> Quantity:
-        return read_quantity(value, kind, positive=positive)
+    reader = _reader(kind, positive=positive)
 
     def read(value: object) -> object:
         if isinstance(value, str | Quantity):
@@ -184,13 +184,9 @@ def bounds_of(kind: QuantityKind, model: type[SpecModel], *, positive: bool = Tr
     return ExpandedBy(read, {"anyOf": [single, keys_schema(described, *keys)]})
 
 
-def _ranged(
-    kind: QuantityKind, *, positive: bool = True, signed: bool = False, constant: bool = False
-) -> ExpandedBy:
+def _ranged(kind: QuantityKind, *, constant: bool = False, **signs: bool) -> ExpandedBy:
     """Read a quantity with a range; in some places it may be said to be constant."""
-
-    def reader(value: object) -> Quantity:
-        return read_quantity(value, kind, positive=positive, signed=signed)
+    reader = _reader(kind, **signs)
 
     def read(value: object) -> object:
         if isinstance(value, str | Quantity):
@@ -220,7 +216,6 @@ def _ranged(
     return ExpandedBy(read, {"anyOf": [single, keys_schema(keys, "nominal")]})
 
 
-Reader = Callable[[object], Quantity]
 # A fault stands in for its quantity until the model reports it together with the others.
 QuantityOrFault = Quantity | PydanticCustomError
 

@@ -17,7 +17,7 @@ from nrs_design.axis import about
 from nrs_design.certificates.certificate import dump
 from nrs_design.certificates.prove import find_altered, read_document
 from nrs_design.controllers.gains import gains_of
-from nrs_design.errors import CertificateError, DesignError, OutputError, SpecError
+from nrs_design.errors import CertificateError, DesignError, Fault, OutputError, SpecError
 from nrs_design.gating.examine import Examiner
 from nrs_design.gating.obligations import GateOutcome, Obligation, SpecOutcome, failed
 from nrs_design.gating.pages import is_current, note_page, page_fingerprint
@@ -153,14 +153,10 @@ def _namesakes(specs: Iterable[LoadedSpec]) -> dict[Path, Path]:
 
 
 def _shared_name(loaded: LoadedSpec, namesake: Path) -> SpecError:
-    place = loaded.place("name")
-    return SpecError(
-        f"{namesake} is named {loaded.spec.name!r} too, and their files would overwrite each other",
-        path=loaded.path,
-        line=place.line,
-        column=place.column,
-        remedy="give every spec a name of its own",
-    )
+    place, remedy = loaded.place("name"), "give every spec a name of its own"
+    named = f"{namesake} is named {loaded.spec.name!r} too"
+    message = f"{named}, and their files would overwrite each other"
+    return SpecError.of((Fault(message, place.line, place.column, remedy),), loaded.path)
 
 
 def _examine(

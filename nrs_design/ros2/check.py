@@ -74,9 +74,9 @@ class _Asker:
             return Status.INCONCLUSIVE, words
         met = around.of(axis)
         if met is None:
-            option, kind = ("--stiffness", STIFFNESS)
+            option, kind = "--stiffness", STIFFNESS
             if axis.rotates:
-                option, kind = ("--rotational-stiffness", ROTATIONAL)
+                option, kind = "--rotational-stiffness", ROTATIONAL
             words = f"nothing is said of what it touches: give {option} '{kind.example}'"
             return Status.INCONCLUSIVE, words
         numbers = (axis.mass, axis.damping_ratio, axis.stiffness, axis.selected, axis.rotates, met)
@@ -234,25 +234,23 @@ def _rate(
         found = _written_rate(manager, path)
     own = law.values["update_rate"][0]
     if found is None or found <= 0:
-        raise SpecError(
-            "the rate of the control loop is not in this file",
-            path=path,
-            line=law.node.position.line,
-            column=law.node.position.column,
-            remedy=f"give {RATE}, or add update_rate of controller_manager",
-        )
+        remedy = f"give {RATE}, or add update_rate of controller_manager"
+        message = "the rate of the control loop is not in this file"
+        raise _refusal(path, law.node.position, message, remedy)
     if 0 < own < found and found % own:
-        place = law.node.place("update_rate")
-        raise SpecError(
+        raise _refusal(
+            path,
+            law.node.place("update_rate"),
             f"update_rate: {own} does not divide {found}, the rate of the control loop: the "
             "controller runs at uneven periods, or at another rate",
-            path=path,
-            line=place.line,
-            column=place.column,
-            remedy="write a rate that divides it, or give the rate at which it runs, such as "
+            "write a rate that divides it, or give the rate at which it runs, such as "
             f"--rate '{own} 1/s'",
         )
     return min(found, own) if own else found
+
+
+def _refusal(path: Path, place: Position, message: str, remedy: str) -> SpecError:
+    return SpecError.of((Fault(message, place.line, place.column, remedy),), path)
 
 
 def _rate_note(
@@ -272,20 +270,14 @@ def _rate_note(
 
 
 def _written_rate(manager: RosNode, path: Path) -> Fraction:
-    place = manager.place("update_rate")
     listed = texts(manager.values["update_rate"])
     try:
         if not listed:
             raise SpecError("update_rate is no number", remedy="write `update_rate: 500`")
         return read_integer(listed[0].text)
     except SpecError as error:
-        raise SpecError(
-            f"update_rate: {error.message}",
-            path=path,
-            line=place.line,
-            column=place.column,
-            remedy=error.remedy,
-        ) from None
+        place, remedy = manager.place("update_rate"), error.remedy or ""
+        raise _refusal(path, place, f"update_rate: {error.message}", remedy) from None
 
 
 def _unreadable(path: Path, node: RosNode, fault: Fault) -> Obligation:

@@ -101,10 +101,8 @@ def export_controllers(
                 for axis, met in touched.items()
                 for line in _about(axis, designs[axis], met, certificates[axis])
             ]
-            text = (
-                _header(name, next(iter(designs.values())).spec.name, sampling, about, len(touched))
-                + body
-            )
+            spec = next(iter(designs.values())).spec.name
+            text = _header(name, spec, sampling, about, len(touched)) + body
         yield RosExport(name, worst, text, certificates)
 
 

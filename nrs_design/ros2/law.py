@@ -113,38 +113,19 @@ def is_admittance(node: RosNode, kind: str | None) -> bool:
 
 def read_law(node: RosNode, others: Collection[str] = ()) -> AdmittanceLaw:
     """Read the law of an admittance controller; a `SpecError` says why the node would not start."""
-    values: dict[str, tuple[Fraction, ...]] = {}
-    faults: list[Fault] = []
-    for name, parameter in LAW.items():
-        found, wrong = _read(node, name, parameter)
-        values[name] = found
-        faults += wrong
-    faults += _too_few_joints(node)
-    if faults:
+    read = {name: _read(node, name, parameter) for name, parameter in LAW.items()}
+    faults = [fault for _, wrong in read.values() for fault in wrong]
+    if faults := [*faults, *_too_few_joints(node)]:
         raise SpecError.of(faults, None)
-    mass, ratio, stiffness, selected = (
-        values[f"admittance.{key}"]
-        for key in ("mass", "damping_ratio", "stiffness", "selected_axes")
-    )
+    values = {name: numbers for name, (numbers, _) in read.items()}
+    keys = ("selected_axes", "mass", "damping_ratio", "stiffness")
+    each = zip(AXES, *(values[f"admittance.{key}"] for key in keys), strict=True)
     axes = tuple(
-        Axis(
-            name,
-            node.place("admittance.mass", i),
-            bool(selected[i]),
-            mass[i],
-            ratio[i],
-            stiffness[i],
-        )
-        for i, name in enumerate(AXES)
+        Axis(name, node.place("admittance.mass", i), bool(selected), *numbers)
+        for i, (name, selected, *numbers) in enumerate(each)
     )
-    return AdmittanceLaw(
-        node,
-        axes,
-        values["admittance.joint_damping"][0],
-        values[FILTER][0],
-        values,
-        _force_from(node, others),
-    )
+    damping, share = values["admittance.joint_damping"][0], values[FILTER][0]
+    return AdmittanceLaw(node, axes, damping, share, values, _force_from(node, others))
 
 
 def _too_few_joints(node: RosNode) -> Iterator[Fault]:

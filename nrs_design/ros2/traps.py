@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from difflib import get_close_matches
 from pathlib import Path
+from typing import NamedTuple
 
 from nrs_design.gating.obligations import Caution
 from nrs_design.ros2.law import FILTER, LAW, OTHERS, AdmittanceLaw, unknown_names
@@ -13,12 +14,19 @@ from nrs_design.ros2.parameters import RosNode, texts
 # Of the broadcaster, which publishes what it filters.
 CHAIN = "sensor_filter_chain"
 RETUNING = "enable_parameter_update_without_reactivation"
-Trap = tuple[str, int | None, str]
+
+
+class Trap(NamedTuple):
+    """What is doubtful about a parameter, or about one item of its list."""
+
+    name: str
+    message: str
+    index: int | None = None
 
 
 def find_traps(law: AdmittanceLaw, path: Path) -> Iterator[Caution]:
     """Yield what is doubtful about the parameters, each at its place."""
-    for name, index, message in _traps(law):
+    for name, message, index in _traps(law):
         place = law.node.place(name, index)
         yield Caution(path, f"{law.node.name}: {name}: {message}", place.line, place.column)
 
@@ -28,18 +36,16 @@ def _traps(law: AdmittanceLaw) -> Iterator[Trap]:
     yield from _filter(law)
     masses = {axis.mass for axis in law.axes[:3]}, {axis.mass for axis in law.axes[3:]}
     if any(len(values) > 1 for values in masses) and not _same_frame(law.node):
-        yield (
+        yield Trap(
             "admittance.mass",
-            None,
             "masses differ: since ros2_controllers 6.4.0 they act along the axes of the control "
             "frame, as stiffness and damping do; before, along those of the base, so axes are "
             "coupled wherever the two frames are turned, which no verdict here covers",
         )
     if law.values[RETUNING][0]:
         said = "is on" if RETUNING in law.node.values else "is on by default"
-        yield (
+        yield Trap(
             RETUNING,
-            None,
             f"{said}: parameters change while the controller runs, and no verdict covers that; set "
             "it to false",
         )
@@ -61,48 +67,41 @@ def _unknown(law: AdmittanceLaw) -> Iterator[Trap]:
     known, others = sorted({*LAW, *OTHERS}), []
     unknown = unknown_names(law.node)
     if chain := [name for name in unknown if name.startswith(f"{CHAIN}.")]:
-        yield (
+        yield Trap(
             chain[0],
-            None,
             "is for force_torque_sensor_broadcaster: this controller passes over it, and filters "
             f"by {FILTER} alone",
         )
     for name in (name for name in unknown if name not in chain):
         if near := get_close_matches(name, known, n=1, cutoff=0.85):
-            yield name, None, f"is not known to the controller; did you mean {near[0]}?"
+            yield Trap(name, f"is not known to the controller; did you mean {near[0]}?")
         else:
             others.append(name)
     if others:
-        yield (
-            others[0],
-            None,
-            f"the controller passes over what it does not know: {', '.join(others)}",
-        )
+        listed = ", ".join(others)
+        yield Trap(others[0], f"the controller passes over what it does not know: {listed}")
 
 
 def _damping(law: AdmittanceLaw) -> Iterator[Trap]:
     for index, axis in enumerate(law.axes):
         if axis.damping_ratio < 0:
-            yield (
-                "admittance.damping_ratio",
-                index,
-                f"is negative for axis {axis.name}: it drives the motion",
-            )
+            message = f"is negative for axis {axis.name}: it drives the motion"
+            yield Trap("admittance.damping_ratio", message, index)
         elif axis.selected and axis.stiffness == 0 < axis.damping_ratio:
             left = float(law.joint_damping * axis.mass)
             unit = "N*m*s/rad" if axis.rotates else "N*s/m"
-            yield (
+            yield Trap(
                 "admittance.stiffness",
-                index,
                 f"0 takes away the damping of axis {axis.name}, 2 damping_ratio sqrt(mass "
                 f"stiffness); joint_damping is left, {float(law.joint_damping):g} 1/s, which acts "
                 f"like {left:.3g} {unit}",
+                index,
             )
 
 
 def _filter(law: AdmittanceLaw) -> Iterator[Trap]:
     c = law.filter_coefficient
     if FILTER not in law.node.values:
-        yield FILTER, None, "is not given; the default 0.05 smooths the force over 20 periods"
+        yield Trap(FILTER, "is not given; the default 0.05 smooths the force over 20 periods")
     elif not 0 < c <= 1:
-        yield FILTER, None, f"{float(c):g} is no share of the new sample: write 0 < c <= 1"
+        yield Trap(FILTER, f"{float(c):g} is no share of the new sample: write 0 < c <= 1")

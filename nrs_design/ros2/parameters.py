@@ -80,8 +80,7 @@ def _means(pattern: str, name: str) -> bool:
 
 def read_nodes(path: Path) -> tuple[RosNode, ...]:
     """Read a parameter file: YAML with nodes that hold ``ros__parameters``."""
-    _, text = read_source(path)
-    return parse_nodes(text, path)
+    return parse_nodes(read_source(path), path)
 
 
 def parse_nodes(text: str, path: Path) -> tuple[RosNode, ...]:

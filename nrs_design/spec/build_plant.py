@@ -22,7 +22,6 @@ from nrs_design.spec.interaction import InteractionDesignSpec
 from nrs_design.spec.motion import FollowingSpec, TorqueInterfaceSpec
 from nrs_design.spec.operating import OperatingConditions, Preload
 from nrs_design.spec.quantity import Quantity
-from nrs_design.spec.quantity_fields import RangedQuantity
 
 
 def build_plant(spec: InteractionDesignSpec) -> Plant:
@@ -37,7 +36,7 @@ def build_plant(spec: InteractionDesignSpec) -> Plant:
         drive = _drive(spec, loop)
     else:
         assert motor is not None, "a spec has one of them"
-        gain, time_constant = map(_interval, (motor.gain, motor.time_constant))
+        gain, time_constant = motor.gain.interval, motor.time_constant.interval
         ranges = ActuatorRanges(gain, time_constant, spec.command)
         load = None if motor.load_inertia is None else motor.load_inertia.exact
         stated = None if spec.motion_loop is None else spec.motion_loop.transfer_function
@@ -50,7 +49,7 @@ def _followed(robot: FollowingSpec, command: str) -> tuple[ActuatorRanges, Motio
     """Return the motion loop of a robot, and a lag about as slow where it is another."""
     one, G = Fraction(1), robot.transfer_function
     if robot.time_constant is not None:
-        lag = _interval(robot.time_constant)
+        lag = robot.time_constant.interval
         loop = MotionLoop((one,), (lag.nominal, one), given=True)
         return ActuatorRanges(Interval.point(one), lag, command), loop
     assert G is not None, "a robot has one of them"
@@ -62,14 +61,14 @@ def _followed(robot: FollowingSpec, command: str) -> tuple[ActuatorRanges, Motio
 def _drive(spec: InteractionDesignSpec, loop: MotionLoop) -> Drive | None:
     if spec.position_interface is not None:
         lag = spec.position_interface.time_constant
-        return position_drive(loop) if lag is None else lagging_drive(_interval(lag))
+        return position_drive(loop) if lag is None else lagging_drive(lag.interval)
     assert spec.velocity_interface is not None
     return velocity_drive(loop) if spec.velocity_interface.time_constant is None else None
 
 
 def _torque(robot: TorqueInterfaceSpec, command: str) -> tuple[ActuatorRanges, Fraction, Drive]:
     """Return the joint, and what it is as a motor: of speed u/B, with the time constant J/B."""
-    J, B = _interval(robot.inertia), _interval(robot.friction)
+    J, B = robot.inertia.interval, robot.friction.interval
     gain = Interval(1 / B.nominal, 1 / B.high, 1 / B.low)
     lag = Interval(J.nominal / B.nominal, J.low / B.high, J.high / B.low)
     return ActuatorRanges(gain, lag, command), J.nominal, torque_drive(J, B)
@@ -123,11 +122,6 @@ def _preloads(spec: InteractionDesignSpec) -> Iterator[tuple[str, Preload]]:
         law, ends = environment.nonlinear, environment.preload_range
         if law is not None and ends is not None and name in spec.touched:
             yield name, (law, ends[0].text, ends[1].text)
-
-
-def _interval(written: RangedQuantity) -> Interval:
-    low, high = (end.exact for end in written.range)
-    return Interval(written.nominal.exact, low, high, written.varies)
 
 
 def _environment(name: str, spec: AbstractEnvironmentSpec) -> Environment:

@@ -7,6 +7,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, NamedTuple
 
 from nrs_design.axis import current
+from nrs_design.models.interval import Interval
 from nrs_design.proof.text import exact_text
 from nrs_design.spec import kinds
 from nrs_design.spec.controllers import ControllerSpec, contact_names
@@ -36,7 +37,6 @@ if TYPE_CHECKING:
     from nrs_design.spec.load import Spec
 
 MAX_LISTED = 20
-Ends = tuple[Quantity, Quantity]
 # Keys of a controller that are listed in a way of their own, and the kinds of gains.
 _TARGETS = frozenset({"desired_impedance", "desired_impedance_ratio"})
 _LISTED = _TARGETS | {"type", "environment", "contacts", "goals"}
@@ -139,7 +139,8 @@ def _drive(name: str, drive: DriveSpec) -> Iterator[Line]:
     for key in type(drive).model_fields:
         value = getattr(drive, key)
         if isinstance(value, RangedQuantity):
-            yield from _ranged(f"{name}.{key}", value, value, _shown_unit(value.nominal))
+            unit = _shown_unit(value.nominal)
+            yield from _ranged(f"{name}.{key}", value, value.interval, unit)
         elif isinstance(value, ActuatorIntervals):
             for measured, (low, high) in value:
                 yield Line(f"{name}.{key}.{measured}", f"[{low.text}, {high.text}]", "", "")
@@ -161,7 +162,7 @@ def _sampling(sampling: SamplingSpec) -> Iterator[Line]:
 
 def _environment(name: str, environment: EnvironmentSpec) -> Iterator[Line]:
     yield Line(f"{name}.model", environment.model, "", "")
-    turned = environment.at_pivot()
+    turned = environment.exact_at_pivot()
     parameters = environment.ranges
     for key, written in parameters.items():
         unit = unit_at_pivot(written.nominal)
@@ -171,8 +172,8 @@ def _environment(name: str, environment: EnvironmentSpec) -> Iterator[Line]:
             yield from describe_model(getattr(environment, key), f"{name}.{key}")
     # Where stiffness and damping of a power law are over its preload, at the pivot.
     for key, interval in environment.linear_at_pivot().items() if environment.preloaded else ():
-        value = f"[{_text(float(interval.low))}, {_text(float(interval.high))}]"
         unit = unit_at_pivot(parameters[key].nominal)
+        value = _ends(float(interval.low), float(interval.high))
         yield Line(f"{name}.{key} over the preload", "", value, unit)
     yield from describe_model(environment.lever_arm, f"{name}.lever_arm")
     yield from _identified(name, environment, COVERS)
@@ -198,18 +199,18 @@ def _provenance(name: str, identified: IdentifiedSpec) -> Iterator[Line]:
         yield Line(f"{name}.accept_doubt", identified.accept_doubt, "", "")
 
 
-def _ranged(name: str, written: RangedQuantity, si: RangedQuantity, unit: str) -> Iterator[Line]:
-    yield Line(name, written.nominal.text, _text(si.nominal.si), unit)
+def _ranged(name: str, written: RangedQuantity, si: Interval, unit: str) -> Iterator[Line]:
+    yield Line(name, written.nominal.text, _text(float(si.nominal)), unit)
     if not written.fixed:
-        yield _interval(f"{name}.range", written.range, si.range, unit)
+        low, high = written.range
+        value = _ends(float(si.low), float(si.high))
+        yield Line(f"{name}.range", f"[{low.text}, {high.text}]", value, unit)
     if not written.varies:
         yield Line(f"{name}.varies", "false", "unknown, but constant", "")
 
 
-def _interval(name: str, written: Ends, si: Ends, unit: str) -> Line:
-    (low, high), (si_low, si_high) = written, si
-    value = f"[{_text(si_low.si)}, {_text(si_high.si)}]"
-    return Line(name, f"[{low.text}, {high.text}]", value, unit)
+def _ends(low: float, high: float) -> str:
+    return f"[{_text(low)}, {_text(high)}]"
 
 
 def _controller(name: str, controller: ControllerSpec, limits: LimitsSpec) -> Iterator[Line]:
@@ -258,11 +259,11 @@ def _coefficients(name: str, numbers: tuple[Fraction, ...]) -> Line:
 def describe_model(value: object, name: str = "") -> Iterator[Line]:
     """List every value of a part whose quantities need no conversion but that to SI."""
     if isinstance(value, GainSpec):
-        unit, bounds = _shown_unit(value.min), (value.min, value.max)
+        low, high, unit = value.min, value.max, _shown_unit(value.min)
         if value.fixed:
-            yield Line(name, value.min.text, _text(value.min.si), unit)
+            yield Line(name, low.text, _text(low.si), unit)
         else:
-            yield _interval(name, bounds, bounds, unit)
+            yield Line(name, f"[{low.text}, {high.text}]", _ends(low.si, high.si), unit)
     elif isinstance(value, Times):
         first, last = value.shortest.text, value.longest.text
         how = "unknown, but constant" if value.is_constant else ""

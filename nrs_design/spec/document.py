@@ -93,8 +93,8 @@ Node = Scalar | Sequence | Mapping
 Data = str | tuple["Data", ...] | dict[str, "Data"]
 
 
-def read_source(path: Path) -> tuple[bytes, str]:
-    """Read a spec file: its bytes, and the text that they encode.
+def read_source(path: Path) -> str:
+    """Read the text of a spec file.
 
     A `SpecError` if it is missing, unreadable, no regular file, empty, a page, larger than 1 MiB or
     not UTF-8.
@@ -134,7 +134,7 @@ def read_source(path: Path) -> tuple[bytes, str]:
         ) from None
     if not text.strip():
         raise SpecError("the file is empty", path=path, remedy="start from `nrs-design init`")
-    return content, text
+    return text
 
 
 def _read_bytes(path: Path) -> bytes:

@@ -30,7 +30,6 @@ from nrs_design.spec.model import optional, required
 from nrs_design.spec.preload import RangedExponent, power_box
 from nrs_design.spec.provenance import Coverage, IdentifiedRangesSpec
 from nrs_design.spec.quantity import Quantity
-from nrs_design.spec.quantity_fields import RangedQuantity
 
 _LEVER_ARM = (
     "distance from the pivot to the contact point, a length in m; required if the parameters are "
@@ -144,14 +143,10 @@ class AbstractEnvironmentSpec(IdentifiedRangesSpec, stronger="holding"):
         747.1461 N/m at 0.24 m is 43.0356 N*m/rad).
         """
         radius = Fraction(1) if self.lever_arm is None else self.lever_arm.exact
+        each = {name: value.interval for name, value in self.ranges.items()}
         return {
-            name: Interval(
-                turn(value.nominal.exact, radius),
-                turn(value.range[0].exact, radius),
-                turn(value.range[1].exact, radius),
-                value.varies,
-            )
-            for name, value in self.ranges.items()
+            name: Interval(*(turn(x, radius) for x in (i.nominal, i.low, i.high)), i.varies)
+            for name, i in each.items()
         }
 
     def drawn_at_pivot(self, pick: Callable[[Interval], float]) -> dict[str, float]:
@@ -161,16 +156,6 @@ class AbstractEnvironmentSpec(IdentifiedRangesSpec, stronger="holding"):
         parameters.
         """
         return {name: pick(interval) for name, interval in self.exact_at_pivot().items()}
-
-    def at_pivot(self) -> dict[str, RangedQuantity]:
-        """Return the parameters for a rotation as quantities, for people to read."""
-        if self.lever_arm is None:
-            return self.ranges
-        turned = self.exact_at_pivot()
-        return {
-            name: _quantities(turned[name], unit_at_pivot(value.nominal))
-            for name, value in self.ranges.items()
-        }
 
 
 class ElasticSpec(AbstractEnvironmentSpec):
@@ -335,12 +320,6 @@ ENVIRONMENT_LAWS: tuple[type[AbstractContactLaw], ...] = tuple(
     for law in (model.law, model.nonlinear)
     if law is not None
 )
-
-
-def _quantities(turned: Interval, unit: str) -> RangedQuantity:
-    values = (turned.nominal, turned.low, turned.high)
-    nominal, low, high = (Quantity(f"{float(v):.6g} {unit}", v, unit) for v in values)
-    return RangedQuantity(nominal=nominal, range=(low, high))
 
 
 def unit_at_pivot(quantity: Quantity) -> str:

@@ -86,7 +86,7 @@ def read_spec(path: str | os.PathLike[str]) -> LoadedSpec:
     """
     named = Path(path)
     file = file_of(named)
-    _, text = read_source(file)
+    text = read_source(file)
     root, syntax, axes = _document(text, file)
     if axes is not None:
         return _loaded(named, text, axis_document(root, axes, named), ())
@@ -104,7 +104,7 @@ def axes_at(path: Path) -> tuple[Path, ...]:
     """Return the addresses of all axes of a file that holds several; else the path itself."""
     if file_of(path) != path:
         return (path,)
-    _, text = read_source(path)
+    text = read_source(path)
     if KIND not in text:
         return (path,)
     axes = _document(text, path)[2]

@@ -10,6 +10,7 @@ from pydantic_core import PydanticCustomError
 
 from nrs_design.axis import current
 from nrs_design.errors import SpecError
+from nrs_design.models.interval import Interval
 from nrs_design.proof.text import quoted
 from nrs_design.spec import kinds
 from nrs_design.spec.check import Row
@@ -167,6 +168,11 @@ class RangedQuantity(SpecModel):
     def fixed(self) -> bool:
         """Whether the range is a single value."""
         return self.range[0].rational_part == self.range[1].rational_part
+
+    @property
+    def interval(self) -> Interval:
+        """The same in SI, exactly; a ValueError where a unit holds a pi."""
+        return Interval(self.nominal.exact, *(end.exact for end in self.range), self.varies)
 
 
 def bounds_of(kind: QuantityKind, model: type[SpecModel], *, positive: bool = True) -> ExpandedBy:

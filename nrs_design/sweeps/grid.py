@@ -75,7 +75,7 @@ def read_grid(spec: Path, said: Sequence[str]) -> Grid:
         )
     read_axes(spec)
     file = file_of(spec)
-    root = parse_document(read_source(file)[1], file)
+    root = parse_document(read_source(file), file)
     grid = Grid(tuple(_field(text, root, file) for text in said))
     _refuse_overlaps(grid)
     if grid.count > MAX_POINTS:

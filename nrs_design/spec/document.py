@@ -12,6 +12,7 @@ import json
 import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import NoReturn
 
@@ -99,61 +100,46 @@ def read_source(path: Path) -> str:
     A `SpecError` if it is missing, unreadable, no regular file, empty, a page, larger than 1 MiB or
     not UTF-8.
     """
-    content = _read_bytes(path)
+    content, refused = _read_bytes(path), partial(SpecError, path=path)
     if is_page(content):
-        raise SpecError(
-            "this is a page, not a spec", path=path, remedy="name the *.nrs.yaml file it is about"
-        )
+        remedy = "name the *.nrs.yaml file it is about"
+        raise refused("this is a page, not a spec", remedy=remedy)
     if path.suffix.lower() in _TABLES:
-        raise SpecError(
-            "this is a table, not a spec",
-            path=path,
-            remedy="name a *.nrs.yaml file; where a command takes both, the record comes first",
-        )
+        remedy = "name a *.nrs.yaml file; where a command takes both, the record comes first"
+        raise refused("this is a table, not a spec", remedy=remedy)
     if len(content) > MAX_BYTES:
-        raise SpecError(
-            f"the file is larger than {MAX_BYTES} bytes",
-            path=path,
-            remedy="split it into several specs",
-        )
+        remedy = "split it into several specs"
+        raise refused(f"the file is larger than {MAX_BYTES} bytes", remedy=remedy)
     try:
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         if b"\0" in content:
-            raise SpecError(
-                "the file is not UTF-8 text", path=path, remedy="name a *.nrs.yaml file"
-            ) from None
+            remedy = "name a *.nrs.yaml file"
+            raise refused("the file is not UTF-8 text", remedy=remedy) from None
         before = content[: error.start].decode("utf-8-sig")
-        place = _Places(before).at(len(before))
-        raise SpecError(
-            f"byte 0x{content[error.start]:02x} is not UTF-8 text",
-            path=path,
-            line=place.line,
-            column=place.column,
-            remedy="save the file in the UTF-8 encoding",
-        ) from None
+        place, remedy = _Places(before).at(len(before)), "save the file in the UTF-8 encoding"
+        message = f"byte 0x{content[error.start]:02x} is not UTF-8 text"
+        raise refused(message, line=place.line, column=place.column, remedy=remedy) from None
     if not text.strip():
-        raise SpecError("the file is empty", path=path, remedy="start from `nrs-design init`")
+        raise refused("the file is empty", remedy="start from `nrs-design init`")
     return text
 
 
 def _read_bytes(path: Path) -> bytes:
+    refused = partial(SpecError, path=path)
     try:
         if path.is_dir():
-            raise SpecError("this is a directory", path=path, remedy="name a *.nrs.yaml file in it")
+            raise refused("this is a directory", remedy="name a *.nrs.yaml file in it")
         if path.exists() and not path.is_file():
-            raise SpecError(
-                "this is not a regular file", path=path, remedy="name a *.nrs.yaml file"
-            )
+            raise refused("this is not a regular file", remedy="name a *.nrs.yaml file")
         with open_regular(path) as file:
             return file.read(MAX_BYTES + 1)
     except FileNotFoundError:
-        raise SpecError("there is no such file", path=path, remedy="check the path") from None
+        raise refused("there is no such file", remedy="check the path") from None
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
-        raise SpecError(
-            f"the file cannot be read: {reason}", path=path, remedy="check path and permissions"
-        ) from None
+        remedy = "check path and permissions"
+        raise refused(f"the file cannot be read: {reason}", remedy=remedy) from None
 
 
 def parse_document(text: str, path: Path | None = None) -> Node:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from operator import attrgetter
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 from nrs_design.axis import AxisType
 from nrs_design.spec.check import Feature
@@ -17,6 +17,8 @@ from nrs_design.spec.environment import AbstractEnvironmentSpec
 from nrs_design.spec.interaction_parts import AbstractInteractionSpec as Spec
 from nrs_design.spec.sampling import SamplingSpec
 from nrs_design.spec.sensor import SensorSpec
+
+T = TypeVar("T")
 
 
 class ContactedEnvironment(NamedTuple):
@@ -64,7 +66,7 @@ def _contacted(
         phrase,
         at,
         without,
-        lambda s: next((item for item in contacted_environments(s) if holds(item.spec)), None),
+        lambda s: _first(item for item in contacted_environments(s) if holds(item.spec)),
     )
 
 
@@ -101,8 +103,8 @@ def _controller(
     )
 
 
-def _first(names: Iterable[str]) -> str | None:
-    return next(iter(names), None)
+def _first(found: Iterable[T]) -> T | None:
+    return next(iter(found), None)
 
 
 def _bleeding(spec: Spec) -> str | None:
@@ -111,17 +113,15 @@ def _bleeding(spec: Spec) -> str | None:
     return None if all_alike else _first(n for n, c in spec.controllers.items() if c.bleeds)
 
 
-def _dwell(*, sampled: bool, key: str = "") -> Callable[[Spec], str | None]:
-    """Ask for the key of a dwell time; rules about single contacts are refused beside samples."""
+def _dwell(spec: Spec) -> str | None:
+    """Return the key of a dwell time."""
+    return _first(at[0] for at, _ in spec.switching.dwell_times())
 
-    def find(spec: Spec) -> str | None:
-        if (spec.sampling is not None) is not sampled or (
-            sampled and spec.switching.names_contacts
-        ):
-            return None
-        return _first(at[0] for at, _ in spec.switching.dwell_times() if at[0].startswith(key))
 
-    return find
+def _sampled_dwell(spec: Spec) -> str | None:
+    """Return it beside samples; rules about single contacts are refused there, whatever they are."""
+    counted = spec.sampling is not None and not spec.switching.names_contacts
+    return _dwell(spec) if counted else None
 
 
 def _damped_force(spec: Spec) -> tuple[str, str] | None:
@@ -134,15 +134,10 @@ def _damped_force(spec: Spec) -> tuple[str, str] | None:
     return None
 
 
-def _constant(holds: Callable[[tuple[str, ...]], bool]) -> Callable[[Spec], tuple[str, ...] | None]:
-    """Ask for a range that is constant, by the keys that lead to it."""
-
-    def find(spec: Spec) -> tuple[str, ...] | None:
-        constant = [at for at, q in spec.ranges.items() if not (q.varies or q.fixed)]
-        constant += [at for at, times in spec.late_times.items() if times.is_constant]
-        return next(filter(holds, constant), None)
-
-    return find
+def _constants(spec: Spec) -> Iterator[tuple[str, ...]]:
+    """Yield the ranges that are constant, by the keys that lead to them."""
+    yield from (at for at, q in spec.ranges.items() if not (q.varies or q.fixed))
+    yield from (at for at, times in spec.late_times.items() if times.is_constant)
 
 
 # What is advised where a force is not filtered.
@@ -229,19 +224,19 @@ MOTOR_RANGE = _F(
     "a range of the {0[1]} of the {0[0]}",
     "{0[0]}.{0[1]}",
     "give the nominal {0[1]} only",
-    lambda s: next((at for at, item in s.motor_ranges.items() if not item.fixed), None),
+    lambda s: _first(at for at, item in s.motor_ranges.items() if not item.fixed),
 )
 CONSTANT_TISSUE = _F(
     "the constant {0[2]} of {0[1]!r}",
     "environments.{0[1]}.{0[2]}.varies",
     "leave varies out of the {0[2]} of {0[1]}",
-    _constant(lambda at: at[0] == "environments"),
+    lambda s: _first(at for at in _constants(s) if at[0] == "environments"),
 )
 CONSTANT_MOTOR = _F(
     "the constant {0[1]} of the {0[0]}",
     "{0[0]}.{0[1]}.varies",
     "leave varies out of {0[1]}",
-    _constant(lambda at: at[0] != "environments"),
+    lambda s: _first(at for at in _constants(s) if at[0] != "environments"),
 )
 LOADED = _given("a load of the motor", "actuator.load_inertia", "leave load_inertia out")
 
@@ -304,9 +299,8 @@ SEVERAL_CONTACTS = _F(
     "controllers.{0}.contacts",
     "write a spec for each environment",
     lambda s: (
-        None
-        if s.switching.names_contacts
-        else _first(name for name, c in s.controllers.items() if len(c.contacts) > 1)
+        not s.switching.names_contacts
+        and _first(name for name, c in s.controllers.items() if len(c.contacts) > 1)
     ),
 )
 
@@ -365,13 +359,15 @@ RULES = _F(
     "use `switching: arbitrary`, which allows for more",
     lambda s: not s.switching.is_arbitrary,
 )
-DWELL = _F("a dwell time", "switching.{0}", "leave {0} out", _dwell(sampled=False))
-SAMPLED_DWELL = _F("a dwell time", "switching.{0}", "leave {0} out", _dwell(sampled=True))
+DWELL = _F(
+    "a dwell time", "switching.{0}", "leave {0} out", lambda s: s.sampling is None and _dwell(s)
+)
+SAMPLED_DWELL = _F("a dwell time", "switching.{0}", "leave {0} out", _sampled_dwell)
 LONGEST_STAY = _F(
     "a longest dwell time",
-    "switching.{0}",
-    "leave {0} out",
-    _dwell(sampled=True, key="longest_dwell_time"),
+    "switching.longest_dwell_time",
+    "leave longest_dwell_time out",
+    lambda s: bool(_sampled_dwell(s)) and s.switching.longest_dwell_time is not None,
 )
 CONTACT_RULES = _F(
     "rules of switching about controllers in one contact each",

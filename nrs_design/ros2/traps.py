@@ -21,7 +21,7 @@ class Trap(NamedTuple):
 
     name: str
     message: str
-    index: int | None = None
+    item: int | None = None
 
 
 def find_traps(law: AdmittanceLaw, path: Path) -> Iterator[Caution]:

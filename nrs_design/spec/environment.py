@@ -145,7 +145,9 @@ class AbstractEnvironmentSpec(IdentifiedRangesSpec, stronger="holding"):
         radius = Fraction(1) if self.lever_arm is None else self.lever_arm.exact
         each = {name: value.interval for name, value in self.ranges.items()}
         return {
-            name: Interval(*(turn(x, radius) for x in (i.nominal, i.low, i.high)), i.varies)
+            name: Interval(
+                turn(i.nominal, radius), turn(i.low, radius), turn(i.high, radius), i.varies
+            )
             for name, i in each.items()
         }
 

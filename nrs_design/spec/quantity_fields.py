@@ -172,7 +172,8 @@ class RangedQuantity(SpecModel):
     @property
     def interval(self) -> Interval:
         """The same in SI, exactly; a ValueError where a unit holds a pi."""
-        return Interval(self.nominal.exact, *(end.exact for end in self.range), self.varies)
+        low, high = (end.exact for end in self.range)
+        return Interval(self.nominal.exact, low, high, self.varies)
 
 
 def bounds_of(kind: QuantityKind, model: type[SpecModel], *, positive: bool = True) -> ExpandedBy:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import Annotated, Any
+from typing import Annotated
 
 from nrs_design.proof.text import quoted
 from nrs_design.spec.faults import fault
@@ -13,12 +13,8 @@ from nrs_design.spec.model import ParsedBy, SpecModel, optional
 HIGHEST_DEGREE = 64
 # A spec may come from anyone: who runs the command may allow more, the spec may not.
 LARGEST_BUDGET = 600
-_BUDGET_SCHEMA: dict[str, Any] = {
-    "type": "number",
-    "exclusiveMinimum": 0,
-    "maximum": LARGEST_BUDGET,
-}
-_DEGREE_SCHEMA: dict[str, Any] = {"type": "integer", "minimum": 2, "maximum": HIGHEST_DEGREE}
+_BUDGET_SCHEMA = {"type": "number", "exclusiveMinimum": 0, "maximum": LARGEST_BUDGET}
+_DEGREE_SCHEMA = {"type": "integer", "minimum": 2, "maximum": HIGHEST_DEGREE}
 
 
 def _read_degree(value: object) -> int:

@@ -51,7 +51,7 @@ def _slow(spec: Spec) -> str | None:
 
 def _hard(spec: Spec) -> tuple[str, str] | None:
     """Return a wanted force that is out of proportion: some more than the limit is the very use."""
-    force, limit = None if spec.goals is None else spec.goals.initial_force, spec.limits.torque
+    force, limit = getattr(spec.goals, "initial_force", None), spec.limits.torque
     if force is None or isinstance(force, str) or force.exact <= _HARDEST * limit.exact:
         return None
     return force.text, limit.text
@@ -59,7 +59,7 @@ def _hard(spec: Spec) -> tuple[str, str] | None:
 
 def _older(spec: Spec) -> tuple[str, str] | None:
     """Return a wanted delay that no force sample has, so that no proof is about it."""
-    delay, sampling = None if spec.goals is None else spec.goals.delay, spec.sampling
+    delay, sampling = getattr(spec.goals, "delay", None), spec.sampling
     if delay is None or sampling is None or sampling.oldest >= delay.exact:
         return None
     return delay.text, rounded_up(sampling.oldest, "s")
@@ -67,7 +67,7 @@ def _older(spec: Spec) -> tuple[str, str] | None:
 
 def _left(spec: Spec) -> tuple[str, str] | None:
     """Return a disturbance that commands may leave, and their limit."""
-    command = None if spec.disturbances is None else spec.disturbances.command
+    command = getattr(spec.disturbances, "command", None)
     if command is None or not is_less(command, spec.limits.velocity):
         return None
     return command.text, spec.limits.velocity.text

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable
 from typing import Any, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
@@ -63,23 +63,27 @@ _MAPPINGS = ("model_type", "model_attributes_type", "dict_type")
 
 def file_faults(error: ValidationError, model: type[BaseModel], root: Node) -> tuple[Fault, ...]:
     """Return what validation reports as faults of the file, each with its place, in file order."""
-    found = (resolved for e in _genuine(error) for resolved in _resolve(e, model, root))
-    return _in_file_order(found)
+    each = (
+        details | {"ctx": context}
+        for details in _genuine(error)
+        for context in details.get("ctx", {}).get("all", [details.get("ctx", {})])
+    )
+    return _in_file_order(each, model, root)
 
 
 def faults_between(spec: SpecModel, model: type[BaseModel], root: Node) -> tuple[Fault, ...]:
     """Return the faults between parts of a spec; checks of parts that it lacks are left out."""
     contexts = find_faults(spec.checks, spec, spec.warnings, partial=True)
     details: ErrorDetails = {"type": FAULT, "loc": (), "msg": "", "input": None}
-    return _in_file_order(_resolve_one(details | {"ctx": c}, model, root) for c in contexts)
+    return _in_file_order((details | {"ctx": c} for c in contexts), model, root)
 
 
-def _in_file_order(resolved: Iterable[tuple[int, int, str, str]]) -> tuple[Fault, ...]:
+def _in_file_order(
+    each: Iterable[ErrorDetails], model: type[BaseModel], root: Node
+) -> tuple[Fault, ...]:
     """Return faults, each once, by line, column and message."""
-    return tuple(
-        Fault(message, line, column, remedy)
-        for line, column, message, remedy in sorted(set(resolved))
-    )
+    resolved = sorted({_resolve(details, model, root) for details in each})
+    return tuple(Fault(message, line, column, remedy) for line, column, message, remedy in resolved)
 
 
 def _genuine(error: ValidationError) -> list[ErrorDetails]:
@@ -118,22 +122,13 @@ def _of_keys(word: str, fields: Collection[str]) -> str:
 
 def _resolve(
     details: ErrorDetails, model: type[BaseModel], root: Node
-) -> Iterator[tuple[int, int, str, str]]:
-    for context in details.get("ctx", {}).get("all", [details.get("ctx", {})]):
-        yield _resolve_one(details | {"ctx": context}, model, root)
-
-
-def _resolve_one(
-    details: ErrorDetails, model: type[BaseModel], root: Node
 ) -> tuple[int, int, str, str]:
     kind, context = details["type"], details.get("ctx", {})
     location = _without_tag(details["loc"])
     at_key = kind == "extra_forbidden" or (bool(location) and location[-1] == "[key]")
     location += tuple(context.get("at", ()))
-    if kind == "union_tag_invalid":
-        place = place_of(root, (*location, _CHOICES[str(location[0])]), at_key=False)
-        return place.line, place.column, *_words(details, location, model)
-    place = place_of(root, tuple(p for p in location if p != "[key]"), at_key)
+    tag = (_CHOICES[str(location[0])],) if kind == "union_tag_invalid" else ()
+    place = place_of(root, (*(p for p in location if p != "[key]"), *tag), at_key)
     return place.line, place.column, *_words(details, location, model)
 
 

@@ -165,10 +165,9 @@ def _left_out(spec: InteractionDesignSpec) -> Iterator[SpecRelaxation]:
         # A sensor of which nothing else is said goes whole.
         alone = spec.sensor.model_fields_set == {"filter"}
         yield _without(("sensor",) if alone else ("sensor", "filter"), changes_model=True)
-    if spec.sampling is not None and spec.sampling.outer_period is not None:
-        yield _without(("sampling", "outer_period"), changes_model=True)
-    if spec.sampling is not None and spec.sampling.misses is not None:
-        yield _without(("sampling", "misses"))
+    for key in ("outer_period", "misses"):
+        if getattr(spec.sampling, key, None) is not None:
+            yield _without(("sampling", key), changes_model=key == "outer_period")
 
 
 def _with(at: Keys, said: Data, asked: str, *, changes_model: bool = False) -> SpecRelaxation:

@@ -29,7 +29,7 @@ def examples_of(
     """
     found: dict[tuple[str, str], Example] = {}
     for link, path in specs:
-        said: Any = to_data(parse_document(read_source(path)[1]))
+        said: Any = to_data(parse_document(read_source(path)))
         root = next(name for name, kind in roots.items() if kind == said["kind"])
         for name, key, value in _walk(said, {"$ref": root}, "", definitions):
             text = _written(value)

@@ -1,11 +1,16 @@
 """A project with two small specs that has passed the gate once."""
 
+import json
 import shutil
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 
+from nrs_design.certificates.certificate import content_id
 from nrs_design.gating.find_specs import find_specs
+from nrs_design.gating.obligations import GateOutcome
 from nrs_design.gating.renew import make_lock, write_lock
 from nrs_design.gating.run import Files, run_gate
 from tests.support import SOFT_TISSUE, replaced
@@ -28,7 +33,7 @@ def gated(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder.mkdir()
     (folder / "stable.nrs.yaml").write_text(STABLE)
     shutil.copy(SOFT_TISSUE, folder)
-    outcome = run_gate(find_specs([folder]), Files(folder=root / "reports", html=False))
+    outcome = gate_of(root, *find_specs([folder]))
     write_lock(outcome, root / "nrs.lock")
     assert make_lock(outcome.specs, root / "nrs.lock").specs
     return root
@@ -41,6 +46,20 @@ def project(gated: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Pat
     shutil.copytree(gated, root)
     monkeypatch.chdir(root)
     return root
+
+
+def restated(file: Path, change: Callable[[dict[str, Any]], object]) -> str:
+    """Change a certificate, and return the id that follows, which it has then."""
+    document = json.loads(file.read_text())
+    change(document)
+    document["id"] = content_id(document)
+    file.write_text(json.dumps(document, indent=2) + "\n")
+    return document["id"]
+
+
+def gate_of(folder: Path, *specs: Path, reports: str = "reports") -> GateOutcome:
+    """Run the gate on specs, without pages."""
+    return run_gate(specs, Files(folder=folder / reports, html=False))
 
 
 def edit(path: Path, old: str, new: str) -> None:

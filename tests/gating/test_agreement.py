@@ -16,7 +16,6 @@ from nrs_design.certificates.prove import read_document
 from nrs_design.certificates.verify import verify_document
 from nrs_design.controllers.gains import STEERING, steering_goals
 from nrs_design.errors import DesignError
-from nrs_design.gating.run import Files, run_gate
 from nrs_design.pipeline.analysis import run_analysis
 from nrs_design.pipeline.certified_optimum import run_certified_optimum
 from nrs_design.pipeline.design import design_at_least_cost
@@ -24,6 +23,8 @@ from nrs_design.pipeline.runs import run_certification, run_recorded
 from nrs_design.spec import read_spec
 from tests.support import ROOT
 from tests.tables import spec_text
+
+from .conftest import gate_of
 
 pytestmark = pytest.mark.slow
 # The loop of soft-tissue-sampled, for which gains of the least cost decay at 0.977 1/s.
@@ -64,7 +65,7 @@ def agreed(path, folder):
     loaded = read_spec(path)
     assert steering_goals(loaded.spec)
     designed = design_at_least_cost(loaded)
-    (gate,) = run_gate([path], Files(folder=folder, html=False)).specs
+    (gate,) = gate_of(folder, path).specs
     recorded = run_recorded(loaded, gate.certificate)
     shown = goals_of(recorded)
     obligations = {

@@ -1,17 +1,14 @@
 """A gate keeps what is recorded and still holds; it searches for what is not, or may be more."""
 
-import json
-
 import pytest
 
-from nrs_design.certificates.certificate import content_id
 from nrs_design.gating.find_specs import find_specs
 from nrs_design.gating.lock import read_lock_if_any
 from nrs_design.gating.renew import certificates_of, recorded_in, write_lock
 from nrs_design.gating.run import Files, run_gate
 from nrs_design.pipeline.certification import Overrides
 
-from .conftest import HARD, STABLE, UNSTABLE
+from .conftest import HARD, STABLE, UNSTABLE, restated
 
 
 @pytest.fixture
@@ -48,14 +45,6 @@ def gate(project, monkeypatch):
 def contents(project):
     files = sorted(path for path in project.rglob("*") if path.is_file())
     return {file.relative_to(project): file.read_bytes() for file in files}
-
-
-def restate(file, change):
-    """Change a certificate, and give it the id that follows."""
-    document = json.loads(file.read_text())
-    change(document)
-    document["id"] = content_id(document)
-    file.write_text(json.dumps(document, indent=2) + "\n")
 
 
 @pytest.mark.parametrize("name", ["stable", "soft-tissue", "unstable"])
@@ -113,7 +102,7 @@ def test_what_does_not_hold_or_is_not_the_locked_one_is_searched_for(project, ga
     text = (project / "reports/stable.cert.json").read_text()
     if not locked:
         (project / "nrs.lock").unlink()
-    restate(project / "reports/stable.cert.json", change)
+    restated(project / "reports/stable.cert.json", change)
     assert gate()
     assert (project / "reports/stable.cert.json").read_text() == text
 

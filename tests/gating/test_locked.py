@@ -5,13 +5,16 @@ import sys
 
 import pytest
 
-from nrs_design.certificates.certificate import content_id
 from nrs_design.gating.find_specs import find_specs
 from nrs_design.gating.lock import read_lock
 from nrs_design.gating.locked import run_locked
 from nrs_design.gating.obligations import Status
 from nrs_design.gating.renew import write_lock
-from nrs_design.gating.run import Files, run_gate
+
+from .conftest import gate_of, restated
+
+# Of the pair of modes.
+CERTIFICATE = "reports/stable.cert.json"
 
 
 @pytest.fixture
@@ -32,7 +35,7 @@ def broken(outcome):
 def gate_twice(project, spec):
     """Gate a spec and lock it; return what was found, and what is found again."""
     lock = project / "nrs.lock"
-    first = run_gate([spec], Files(folder=project / "reports", html=False))
+    first = gate_of(project, spec)
     write_lock(first, lock)
     return first, run_locked([spec], read_lock(lock), lock)
 
@@ -43,21 +46,11 @@ def edit_lock(project, edit):
     (project / "nrs.lock").write_text(json.dumps(document))
 
 
-def edit_certificate(project, edit):
-    """Change the certificate of the pair of modes, and sign it again."""
-    file = project / "reports/stable.cert.json"
-    document = json.loads(file.read_text())
-    edit(document)
-    document["id"] = content_id(document)
-    file.write_text(json.dumps(document))
-    return document["id"]
-
-
 def test_valid_certificate_other_than_the_locked_one(check, project):
     def scale(document):
         document["statements"][0]["denominator_log2"] += 1
 
-    new = edit_certificate(project, scale)
+    new = restated(project / CERTIFICATE, scale)
     outcome = check()
     assert broken(outcome) == [("NRS105", "missed")]
     assert "not the certificate that was locked" in outcome.broken[0].message
@@ -71,7 +64,7 @@ def test_false_certificate_with_a_lock_to_match(check, project):
         numerators = document["statements"][0]["nodes"][0]["form"]
         numerators[0][0] = -numerators[0][0]
 
-    new = edit_certificate(project, flip)
+    new = restated(project / CERTIFICATE, flip)
     edit_lock(project, lambda specs: specs[1]["certificate"].update(id=new))
     assert broken(check()) == [("NRS104", "missed")]
 

@@ -10,19 +10,16 @@ from nrs_design.gating.find_specs import find_specs
 from nrs_design.gating.lock import LockedRemark, dump_lock, read_lock
 from nrs_design.gating.obligations import Caution
 from nrs_design.gating.renew import certificates_of, check_folder, make_lock, write_lock
-from nrs_design.gating.run import Files, run_gate
 from nrs_design.output import alone_in
+
+from .conftest import gate_of
 
 STABLE_SPEC = "specs/stable.nrs.yaml"
 
 
-def outcome_of(project, *names, folder="reports"):
+def outcome_of(project, *names, reports="reports"):
     specs = find_specs([project / name for name in names])
-    return run_gate(specs, Files(folder=project / folder, html=False))
-
-
-def gate(project, *names, prune=False):
-    return write_lock(outcome_of(project, *names), project / "nrs.lock", prune=prune)
+    return gate_of(project, *specs, reports=reports)
 
 
 def test_lock_elsewhere_names_the_same_files(project):
@@ -50,7 +47,7 @@ def test_missed_goals_and_gains_are_locked(project):
 
 
 def test_unwritable_lock(project):
-    outcome = outcome_of(project, STABLE_SPEC, folder="ci")
+    outcome = outcome_of(project, STABLE_SPEC, reports="ci")
     with pytest.raises(OutputError, match="below the folder of the lock"):
         write_lock(outcome, project / "reports/nrs.lock")
     with pytest.raises(CertificateError, match="not a regular file"):
@@ -111,6 +108,6 @@ def test_the_lock_does_not_change_with_comments_and_line_ends(project):
     before = (project / "nrs.lock").read_bytes()
     for spec in (project / "specs").iterdir():
         spec.write_bytes(b"# new\r\n" + spec.read_bytes().replace(b"\n", b"\r\n"))
-    gate(project, "specs")
+    write_lock(outcome_of(project, "specs"), project / "nrs.lock")
     assert (project / "nrs.lock").read_bytes() == before
     assert json.loads(before)["schema"] == "nrs-design/lock/2"

@@ -5,7 +5,7 @@ from nrs_design.gating.obligations import Status
 from nrs_design.gating.run import Files, run_gate
 from tests.pipeline.test_blocked import PAIR
 
-from .conftest import BROKEN, SOFT_TISSUE, STABLE, UNSTABLE
+from .conftest import BROKEN, SOFT_TISSUE, STABLE, UNSTABLE, gate_of
 
 
 @pytest.fixture
@@ -16,7 +16,7 @@ def examine(tmp_path):
         paths = [tmp_path / f"s{i}.nrs.yaml" for i in range(len(texts))]
         for path, text in zip(paths, texts, strict=True):
             path.write_text(text)
-        return run_gate(paths, Files(folder=tmp_path / "reports", html=False))
+        return gate_of(tmp_path, *paths)
 
     return run
 
@@ -44,9 +44,7 @@ def test_inconclusive_fails(examine, inconclusive):
 
 
 def test_missing_and_misnamed_files_are_errors(tmp_path):
-    missing = tmp_path / "missing.nrs.yaml"
-    not_utf8 = tmp_path / "\udcff.nrs.yaml"
-    outcome = run_gate([missing, not_utf8], Files(folder=tmp_path, html=False))
+    outcome = gate_of(tmp_path, tmp_path / "missing.nrs.yaml", tmp_path / "\udcff.nrs.yaml")
     assert [spec.obligations[0].rule.id for spec in outcome.specs] == ["NRS001", "NRS001"]
     assert "not UTF-8" in outcome.specs[1].obligations[0].message
 
@@ -95,7 +93,7 @@ def test_a_certificate_that_does_not_hold_when_read_back_is_reported(examine, mo
 def test_unwritable_folder_is_an_error_of_every_spec(tmp_path):
     spec = tmp_path / "s.nrs.yaml"
     spec.write_text(STABLE)
-    outcome = run_gate([spec], Files(folder=spec / "reports", html=False))
+    outcome = gate_of(spec, spec)
     assert outcome.broken[0].rule.id == "NRS005"
     assert outcome.broken[0].line is None
     assert outcome.severity == 3

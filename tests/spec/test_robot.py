@@ -3,7 +3,7 @@
 import pytest
 
 from nrs_design.robot.models import build_robot
-from nrs_design.spec import RobotSpec, parse_spec
+from nrs_design.spec import parse_spec
 from nrs_design.spec.templates import TEMPLATES
 
 from .samples import spoiled
@@ -16,14 +16,8 @@ TENSOR = (
 )
 
 
-def robot_spec(text: str = TEXT) -> RobotSpec:
-    spec = parse_spec(text)
-    assert isinstance(spec, RobotSpec)
-    return spec
-
-
 def test_tensor_instead_of_rod() -> None:
-    robot = build_robot(robot_spec(spoiled(TEXT, ROD, TENSOR)))
+    robot = build_robot(parse_spec(spoiled(TEXT, ROD, TENSOR)))
     crank = robot.legs[0].crank
     assert crank.center_of_mass == pytest.approx([0.0756, 0.001, -0.002])
     assert crank.inertia[1, 1] == pytest.approx(0.0733 * 0.135**2 / 12)
@@ -33,5 +27,5 @@ def test_tensor_instead_of_rod() -> None:
 
 def test_balance_and_control_may_be_left_out() -> None:
     text = TEXT[: TEXT.index("# Thesis 4.2 and 4.3")]
-    spec = robot_spec(text)
+    spec = parse_spec(text)
     assert (spec.control, spec.balance) == (None, None)

@@ -39,8 +39,6 @@ def read_parameter_name(value: object) -> str:
 
 def read_entry(value: object) -> Affine:
     """Read a matrix entry: an exact number, or an expression that is affine in the parameters."""
-    if isinstance(value, Affine):
-        return value
     if isinstance(value, str):
         return reported(lambda: parse_affine(value))
     return Affine(read_exact(value))

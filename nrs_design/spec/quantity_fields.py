@@ -29,7 +29,6 @@ from nrs_design.spec.quantity import (
     QUANTITY_PATTERN,
     Quantity,
     QuantityKind,
-    checked_kind,
     is_less,
     parse_quantity,
 )
@@ -48,10 +47,7 @@ def read_quantity(
     kind = kind.on(current())
 
     def read() -> Quantity:
-        if isinstance(value, Quantity):
-            quantity = checked_kind(value, kind)
-        else:
-            quantity = parse_quantity(as_text(value, *at), kind)
+        quantity = parse_quantity(as_text(value, *at), kind)
         if not signed and (quantity.value < 0 or (positive and quantity.value == 0)):
             bound = "positive" if positive else "zero or positive"
             raise SpecError(
@@ -182,7 +178,7 @@ def bounds_of(kind: QuantityKind, model: type[SpecModel], *, positive: bool = Tr
     reader = _reader(kind, positive=positive)
 
     def read(value: object) -> object:
-        if isinstance(value, str | Quantity):
+        if isinstance(value, str):
             return dict.fromkeys(keys, reader(value))
         return read_entries(value, tuple(keys), reader)
 
@@ -196,7 +192,7 @@ def _ranged(kind: QuantityKind, *, constant: bool = False, **signs: bool) -> Exp
     reader = _reader(kind, **signs)
 
     def read(value: object) -> object:
-        if isinstance(value, str | Quantity):
+        if isinstance(value, str):
             return {"nominal": reader(value)}
         entries = read_entries(value, ("nominal",), reader)
         if isinstance(entries, dict) and "varies" in entries and not constant:
@@ -266,8 +262,6 @@ _CONSTANT_TIMES = "write `{range: [0.3 ms, 0.8 ms], varies: false}`"
 
 def _read_times(value: object) -> Times:
     """Read one time, or the shortest and the longest, which may be those of a constant one."""
-    if isinstance(value, Times):
-        return value
     if not isinstance(value, dict):
         return _between(value)
     if not {"range"} <= value.keys() <= {"range", "varies"}:

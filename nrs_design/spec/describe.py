@@ -193,10 +193,8 @@ def _identified(
 def _provenance(name: str, identified: IdentifiedSpec) -> Iterator[Line]:
     for index, source in enumerate(identified.provenance):
         yield Line(f"{name}.provenance[{index}]", source.file, source.data, "")
-    for index, doubt in enumerate(identified.doubts):
-        yield Line(f"{name}.doubts[{index}]", doubt, "", "")
-    if identified.accept_doubt is not None:
-        yield Line(f"{name}.accept_doubt", identified.accept_doubt, "", "")
+    for key in ("doubts", "accept_doubt"):
+        yield from describe_model(getattr(identified, key), f"{name}.{key}")
 
 
 def _ranged(name: str, written: RangedQuantity, si: Interval, unit: str) -> Iterator[Line]:

@@ -16,7 +16,7 @@ import pytest
 from nrs_design.errors import SpecError
 from nrs_design.spec import kinds
 from nrs_design.spec.quantity import parse_quantity
-from tests.spec.samples import assert_inside, refusal
+from tests.spec.samples import assert_inside, place_of, refusal
 from tests.support import run
 from tests.tables import (
     cases_of,
@@ -40,12 +40,6 @@ def changed_line(base, text):
     lines = zip_longest(base.splitlines(), text.splitlines())
     same = [before for before, _ in takewhile(lambda pair: pair[0] == pair[1], lines)]
     return len("\n".join([*same, ""]))
-
-
-def place_of(text, piece, start):
-    where = text.find(piece, start)
-    before = text[: where if where >= 0 else text.index(piece)]
-    return before.count("\n") + 1, len(before) - before.rfind("\n")
 
 
 @pytest.mark.parametrize("case", cases("base"))

@@ -56,10 +56,11 @@ def assert_inside(error: SpecError, text: str) -> None:
     assert error.remedy
 
 
-def place_of(text: str, piece: str) -> tuple[int, int]:
-    """Line and column at which a piece of text first stands."""
-    before = text[: text.index(piece)]
-    return before.count("\n") + 1, len(before) - (before.rfind("\n") + 1) + 1
+def place_of(text: str, piece: str, start: int = 0) -> tuple[int, int]:
+    """Line and column at which a piece of text first stands from a place on, or else before."""
+    where = text.find(piece, start)
+    before = text[: where if where >= 0 else text.index(piece)]
+    return before.count("\n") + 1, len(before) - before.rfind("\n")
 
 
 def message_of(read: Callable[[], object]) -> str:

@@ -5,8 +5,6 @@ from __future__ import annotations
 from fractions import Fraction
 from math import floor, log10
 
-from flint import fmpz
-
 # Digits of the bounds, at least.
 DIGITS = 10
 
@@ -18,6 +16,9 @@ def power_between(base: Fraction, exponent: Fraction) -> tuple[Fraction, Fractio
     ``(r u)^q <= base^p``, and ``(r + 1) u`` the upper one, unless the lower one is the power. The
     base is positive, else a ValueError; numbers have as many digits as q is large.
     """
+    # To load it takes longer than to read a spec, and few have such powers.
+    from flint import fmpz
+
     if base <= 0:
         raise ValueError(f"{base} has no power with a rational exponent")
     q, power = exponent.denominator, base**exponent.numerator

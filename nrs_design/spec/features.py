@@ -176,12 +176,7 @@ TWO_PERIODS = _F(
     "leave outer_period out",
     lambda s: s.sampling is not None and s.sampling.round > 1,
 )
-MISSES = _F(
-    "missed deadlines",
-    "sampling.misses",
-    "leave misses out",
-    lambda s: s.sampling is not None and s.sampling.misses is not None,
-)
+MISSES = _given("missed deadlines", "sampling.misses", "leave misses out")
 ZEROED = _F(
     "a command of zero where a deadline is missed",
     "sampling.misses.command",

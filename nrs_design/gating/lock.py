@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import posixpath
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -166,23 +167,20 @@ def read_lock_if_any(file: Path) -> Lock:
 def read_lock(file: Path) -> Lock:
     """Read a lock file; a missing, foreign or oversized one is a `CertificateError`."""
     remedy = "make it with nrs-design gate, without --locked"
+    refused = partial(CertificateError, path=file, remedy=remedy)
     try:
         document = json.loads(read_json_text(_read_bytes(file)), object_pairs_hook=unique_keys)
         _check_format(document, file)
         return Lock.model_validate(document)
     except OSError as error:
-        raise CertificateError(
-            f"cannot be read ({error.strerror})", path=file, remedy=remedy
-        ) from error
+        raise refused(f"cannot be read ({error.strerror})") from error
     except ValidationError as error:
         first = error.errors()[0]
         where = ".".join(map(str, first["loc"])) or "the file"
         message = first["msg"].removeprefix("Value error, ")
-        raise CertificateError(
-            f"not a lock file: {where}: {message}", path=file, remedy=remedy
-        ) from error
+        raise refused(f"not a lock file: {where}: {message}") from error
     except (ValueError, RecursionError) as error:
-        raise CertificateError(f"not a lock file: {error}", path=file, remedy=remedy) from error
+        raise refused(f"not a lock file: {error}") from error
 
 
 def _check_format(document: object, file: Path) -> None:

@@ -87,10 +87,13 @@ def run_gate(
     read = [_read(path) for path in specs]
     valid = [item for item in read if isinstance(item, LoadedSpec)]
     task = _Task(files, overrides, _namesakes(valid), tuple(one.path for one in valid))
+    found: dict[Path, SpecOutcome] = {}
     if jobs == 1:
         found = {one.path: task.examine(one, progress) for one in valid}
     else:
-        found = _examined_in_processes(task, jobs, progress)
+        for _, outcome in map_in_processes(task.examine_next, range(len(valid)), jobs):
+            found[outcome.path] = outcome
+            progress(f"{len(found)} of {len(valid)} specs")
     return GateOutcome(
         tuple(item if isinstance(item, SpecOutcome) else found[item.path] for item in read)
     )
@@ -123,14 +126,6 @@ class _Task:
         """Return what is found about a spec, which is read here."""
         read = _read(self.specs[index])
         return read if isinstance(read, SpecOutcome) else self.examine(read, silent)
-
-
-def _examined_in_processes(task: _Task, jobs: int, progress: Progress) -> dict[Path, SpecOutcome]:
-    found: dict[Path, SpecOutcome] = {}
-    for _, outcome in map_in_processes(task.examine_next, range(len(task.specs)), jobs):
-        found[outcome.path] = outcome
-        progress(f"{len(found)} of {len(task.specs)} specs")
-    return found
 
 
 def _read(path: Path) -> LoadedSpec | SpecOutcome:

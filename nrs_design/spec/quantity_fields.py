@@ -206,16 +206,12 @@ def _ranged(kind: QuantityKind, *, constant: bool = False, **signs: bool) -> Exp
         return entries
 
     single = quantity_schema(kind)
-    keys: dict[str, Any] = {
-        "nominal": single | {"description": "value that the design uses"},
-        "range": pair_schema(single)
-        | {"description": "[lowest, highest] value that the proof covers"},
+    each = {"nominal": single, "range": pair_schema(single), "varies": {"type": "boolean"}}
+    keys = {
+        key: {**each[key], "description": field.description}
+        for key, field in RangedQuantity.model_fields.items()
+        if constant or key != "varies"
     }
-    if constant:
-        keys["varies"] = {
-            "type": "boolean",
-            "description": "false: unknown in the range, but it does not change",
-        }
     return ExpandedBy(read, {"anyOf": [single, keys_schema(keys, "nominal")]})
 
 

@@ -6,7 +6,7 @@ import pytest
 from nrs_design.spec import RobotSpec, load_spec, parse_spec
 from nrs_design.spec.load import read_axes
 from nrs_design.spec.switching import parse_dwell_time
-from nrs_design.spec.templates import INTERFACES, PRISMATIC, TASK_SPACE, TEMPLATES
+from nrs_design.spec.templates import TEMPLATES
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -55,23 +55,15 @@ def test_parameters_rules_and_resets_of_the_template_are_right() -> None:
     assert [(reset.source, reset.target) for reset in spec.resets] == [("a", "b")]
 
 
-@pytest.mark.parametrize("name", ["interaction-design", "hybrid-force"])
-def test_rules_between_controllers_are_right(name: str) -> None:
+@pytest.mark.parametrize(("name", "goals"), [("interaction-design", 7), ("hybrid-force", 3)])
+def test_rules_between_controllers_and_goals_are_right(name: str, goals: int) -> None:
     spec = parse_spec(uncommented(name))
     a, b = spec.controllers
     assert spec.switching.transitions == ((a, b), (b, a))
+    assert len(dict(spec.goals.given())) == goals
 
 
-def test_goals_of_the_templates_are_right() -> None:
-    for name, count in (("interaction-design", 7), ("hybrid-force", 3)):
-        spec = parse_spec(uncommented(name))
-        assert len(dict(spec.goals.given())) == count
-
-
-WITHOUT_DWELL = {"robot", *INTERFACES, *PRISMATIC.values(), TASK_SPACE}
-
-
-@pytest.mark.parametrize("name", sorted({*TEMPLATES} - WITHOUT_DWELL))
+@pytest.mark.parametrize("name", ["hybrid-force", "interaction-design", "switched-system"])
 def test_dwell_time_of_the_template_is_right(name: str) -> None:
     shown = re.search("^# +dwell_time: (.*?) +#", TEMPLATES[name], re.MULTILINE)
     assert shown

@@ -6,16 +6,12 @@ from collections.abc import Mapping
 from importlib.resources import files
 from types import MappingProxyType
 
-# Interaction designs of robots that take velocities, positions and torques.
-INTERFACES = tuple(f"{taken}-interface" for taken in ("velocity", "position", "torque"))
-# Those of an axis that slides, by what they are of an axis that turns.
+# Interaction designs of an axis that slides, by what they are of an axis that turns.
 PRISMATIC = {
     "interaction-design": "prismatic-axis",
     "velocity-interface": "prismatic-velocity-interface",
     "position-interface": "prismatic-position-interface",
 }
-# Several axes in one file.
-TASK_SPACE = "task-space"
 _SUFFIX = ".nrs.yaml"
 TEMPLATES: Mapping[str, str] = MappingProxyType(
     {

@@ -53,15 +53,7 @@ WORDS: Mapping[str, Word] = MappingProxyType(
 # Ids of rules that there were; none of them is ever given to another rule.
 RETIRED = frozenset({"NRS111"})
 
-COMMAND = RULES["NRS000"]
 SPEC = RULES["NRS001"]
-DESIGN = RULES["NRS002"]
-ASSEMBLY = RULES["NRS003"]
-CERTIFICATE = RULES["NRS004"]
-OUTPUT = RULES["NRS005"]
-DATA = RULES["NRS006"]
-POSE = RULES["NRS007"]
-CLOCK = RULES["NRS008"]
 MODE_STABLE = RULES["NRS101"]
 SWITCHING_STABLE = RULES["NRS102"]
 STIFFNESS_RANGE = RULES["NRS103"]

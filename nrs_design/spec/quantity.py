@@ -158,7 +158,7 @@ def parse_quantity(text: str, kind: QuantityKind) -> Quantity:
         if (written := respelt(unit)) is None:
             raise
         raise SpecError(error.message, remedy=_meant(written, kind)) from None
-    return checked_kind(quantity, kind)
+    return _checked_kind(quantity, kind)
 
 
 def _meant(written: str, kind: QuantityKind) -> str:
@@ -177,7 +177,7 @@ def _meant(written: str, kind: QuantityKind) -> str:
     return f"{meant}{kind.name} is written in {' or '.join(kind.units)}{such}"
 
 
-def checked_kind(quantity: Quantity, kind: QuantityKind) -> Quantity:
+def _checked_kind(quantity: Quantity, kind: QuantityKind) -> Quantity:
     """Return the quantity if it is of this kind and of a physical magnitude, else a `SpecError`."""
     if not kind.accepts(quantity.dimension):
         raise SpecError(

@@ -119,7 +119,7 @@ def _dwell(spec: Spec) -> str | None:
 
 
 def _sampled_dwell(spec: Spec) -> str | None:
-    """Return it beside samples; rules about single contacts are refused there, whatever they are."""
+    """Return it beside samples, where rules about single contacts are refused as such."""
     counted = spec.sampling is not None and not spec.switching.names_contacts
     return _dwell(spec) if counted else None
 

@@ -18,7 +18,7 @@ from nrs_design.files import open_regular
 SCHEMA = "nrs.schema.json"
 
 
-class TemplateOption(StrEnum):
+class Template(StrEnum):
     """Templates by name."""
 
     INTERACTION_DESIGN = "interaction-design"
@@ -47,14 +47,19 @@ class DriveOption(StrEnum):
 @command("init", has_json=False)
 def init(
     template: Annotated[
-        TemplateOption,
-        typer.Argument(metavar="TEMPLATE", show_choices=True, help="What to start from."),
+        Template,
+        typer.Argument(
+            metavar="TEMPLATE",
+            show_choices=False,
+            help=f"What to start from: {', '.join(Template)}.",
+        ),
     ],
     drive: Annotated[
         DriveOption,
         typer.Option(
-            help="Of an interaction-design: a motor with a loop around it, or a robot that takes "
-            "velocities, positions or torques."
+            metavar="DRIVE",
+            help="Of an interaction-design: motor, with a loop around it; or velocity, position or "
+            "torque, which a robot takes.",
         ),
     ] = DriveOption.MOTOR,
     axis: Annotated[
@@ -78,7 +83,7 @@ def init(
 
     chosen = str(template)
     if drive is not DriveOption.MOTOR:
-        if template is not TemplateOption.INTERACTION_DESIGN:
+        if template is not Template.INTERACTION_DESIGN:
             raise typer.BadParameter("it is for interaction-design", param_hint="--drive")
         chosen = f"{drive}-interface"
     if axis is AxisOption.PRISMATIC:

@@ -11,17 +11,22 @@ if TYPE_CHECKING:
     from nrs_design.pipeline.certification import Result
 
 
+# Modes of which -v gives the names; --json has them all.
+NAMED = 10
+
+
 def print_granted(result: Result) -> None:
     """Print what is taken for granted: all of it, or how much and what is not modelled."""
     from nrs_design.certificates.catalogue import sentences
 
     certification = result.certification
     granted, names = certification.granted, [mode.name for mode in certification.system.modes]
-    detail(f"  common quadratic function: {certification.common_quadratic}")
-    detail(f"  modes: {', '.join(names)}")
     detail("  taken for granted (nrs-design report says how to test each):")
     for text in sentences(granted):
         detail(f"    - {text}")
+    detail(f"  common quadratic function: {certification.common_quadratic}")
+    more = f" and {len(names) - NAMED} more" if len(names) > NAMED else ""
+    detail(f"  {counted(len(names), 'mode')}: {', '.join(names[:NAMED])}{more}")
     if granted and not wants_details():
         without = "; ".join(result.omits)
         besides = f"; not modelled: {without}" if without else ""

@@ -202,7 +202,7 @@ def _show(outcome: GateOutcome) -> None:
         print_table("", text.COLUMNS, text.rows_of(outcome))
         for line in (*text.gain_lines(outcome), ""):
             say(line)
-    for item in outcome.broken:
+    for item in outcome.findings:
         say_failure(text.line_of(item), str(item.status))
     for line in (*text.change_lines(outcome), text.summary_line(outcome)):
         say(line)

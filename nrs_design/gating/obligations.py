@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from pathlib import Path
 from typing import Any
 
 from nrs_design.errors import ClockError, NrsDesignError
-from nrs_design.gating.rules import INTERNAL, RULES, Rule
+from nrs_design.gating.rules import INTERNAL, MODE_STABLE, RULES, Rule
+from nrs_design.proof.text import counted
 
 
 class Status(StrEnum):
@@ -140,6 +141,19 @@ class GateOutcome:
         )
 
     @property
+    def findings(self) -> tuple[Obligation, ...]:
+        """The same for people: of the modes of one controller, one stands for all that fail alike.
+
+        Modes of one controller have one place in the spec.
+        """
+        alike: dict[Hashable, list[Obligation]] = {}
+        for item in self.broken:
+            of_a_mode = item.rule is MODE_STABLE and item.line is not None
+            key = (item.path, item.line, item.status) if of_a_mode else id(item)
+            alike.setdefault(key, []).append(item)
+        return tuple(_counted(first, len(others)) for first, *others in alike.values())
+
+    @property
     def severity(self) -> int:
         """That of the worst obligation."""
         return max((item.severity for item in self.broken), default=0)
@@ -175,6 +189,14 @@ def count_by_verdict(specs: Iterable[SpecOutcome]) -> dict[str, int]:
     """Count specs by verdict, or by why they have none."""
     none = {True: "without verdict", False: "with nothing to certify"}
     return Counter(spec.verdict or none[spec.certifiable] for spec in specs)
+
+
+def _counted(first: Obligation, others: int) -> Obligation:
+    """Return an obligation that stands for others, too."""
+    if not others:
+        return first
+    modes = counted(others, "more mode")
+    return replace(first, message=f"{first.message}; likewise {modes} of its controller (--json)")
 
 
 def _one_line(text: str) -> str:

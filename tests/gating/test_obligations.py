@@ -13,7 +13,7 @@ from nrs_design.gating.obligations import (
     count_by_verdict,
     failed,
 )
-from nrs_design.gating.rules import INTERNAL, SPEC
+from nrs_design.gating.rules import INTERNAL, MODE_STABLE, SPEC
 
 PATH = Path("a.nrs.yaml")
 
@@ -39,6 +39,24 @@ def test_the_worst_comes_first_and_decides():
     ]
     assert outcome.severity == 3
     assert GateOutcome(()).severity == 0
+
+
+def test_modes_of_one_controller_that_fail_alike_are_one_finding():
+    def of_mode(name, line, status=Status.REFUTED):
+        return Obligation(MODE_STABLE, PATH, name, status, f"{name} fails", line, 3)
+
+    others = [obligation(Status.MISSED), obligation(Status.MISSED, INTERNAL)]
+    modes = [of_mode("a/1", 5), of_mode("b/1", 9), of_mode("a/2", 5), of_mode("a/3", 5)]
+    modes += [of_mode("a/4", 5, Status.PROVED), of_mode("a/5", 5, Status.INCONCLUSIVE)]
+    outcome = GateOutcome((SpecOutcome(PATH, (*modes, *others)),))
+    assert [item.message for item in outcome.findings] == [
+        "m",
+        "a/1 fails; likewise 2 more modes of its controller (--json)",
+        "b/1 fails",
+        "m",
+        "a/5 fails",
+    ]
+    assert len(outcome.broken) == 7
 
 
 def test_a_defect_of_the_program_is_worse_than_anything():

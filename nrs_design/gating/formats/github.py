@@ -15,7 +15,7 @@ def to_github(outcome: GateOutcome) -> str:
     """Return one ``::error`` command per failure, worst first, and a notice if there are more."""
     errors = [
         _annotation("error", i, i.rule.id, f"{i.rule.title}: {i.status}. {i.message}")
-        for i in outcome.broken
+        for i in outcome.findings
     ]
     changed = () if outcome.changes is None else outcome.changes.others
     cautions = (*outcome.cautions, *changed)

@@ -15,7 +15,7 @@ def to_markdown(outcome: GateOutcome) -> str:
     sign = "❌" if outcome.broken else "✅"
     parts = [f"### {sign} nrs-design: {_plain(summary_line(outcome))}", ""]
     if outcome.broken:
-        parts += [*(f"- {_plain(line_of(item))}" for item in outcome.broken), ""]
+        parts += [*(f"- {_plain(line_of(item))}" for item in outcome.findings), ""]
     if outcome.changes is not None:
         others = len(outcome.changes.others)
         parts += [f"Against the base: {outcome.changes.weaker} weaker, {others} other changes.", ""]

@@ -31,7 +31,7 @@ def to_sarif(outcome: GateOutcome) -> str:
                     }
                 },
                 "columnKind": "unicodeCodePoints",
-                "results": [_result(item) for item in outcome.broken],
+                "results": [_result(item) for item in outcome.findings],
             }
         ],
     }

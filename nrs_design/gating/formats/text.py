@@ -20,7 +20,7 @@ def to_text(outcome: GateOutcome) -> str:
     """Return the table, the failures worst first, and a line that sums up."""
     parts = [*_table([COLUMNS, *rows_of(outcome)]), *gain_lines(outcome)]
     if outcome.broken:
-        parts += ["", *map(line_of, outcome.broken)]
+        parts += ["", *map(line_of, outcome.findings)]
     return "\n".join([*parts, *change_lines(outcome), "", summary_line(outcome)]) + "\n"
 
 

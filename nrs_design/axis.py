@@ -20,19 +20,24 @@ COMMAND_UNITS = ("rpm", "V", "A", "counts")
 # Units of an axis that turns, and of one that slides. Frequencies are in rad/s on both, and none of
 # these.
 _SLIDING: Mapping[str, str] = {
-    "": "",
-    "1": "1",
-    "s": "s",
-    "1/s": "1/s",
-    "J": "J",
-    "Hz": "Hz",
-    "%": "%",
-    "N": "N",
-    "N/m": "N/m",
-    "ms": "ms",
-    "samples": "samples",
-    "decades": "decades",
-    "W": "W",
+    **{
+        same: same
+        for same in (
+            "",
+            "1",
+            "s",
+            "1/s",
+            "J",
+            "Hz",
+            "%",
+            "N",
+            "N/m",
+            "ms",
+            "samples",
+            "decades",
+            "W",
+        )
+    },
     "rad": "m",
     "rad/s": "m/s",
     "rad/s^2": "m/s^2",

@@ -131,27 +131,11 @@ class LyapunovCheck(AbstractResult):
 def check_quadratic(
     modes: Sequence[Mode], P: RationalMatrix, time: Time, rate: Fraction | None = None
 ) -> LyapunovCheck:
-    """Decide whether ``x' P x`` is a common Lyapunov function of all modes.
+    """Decide whether ``x' P x``, with a symmetric P, is a common Lyapunov function of all modes.
 
-    Parameters
-    ----------
-    modes : sequence of Mode
-        With n states each.
-    P : RationalMatrix, shape (n, n)
-        Symmetric.
-    time : Time
-        Continuous or discrete.
-    rate : Fraction, optional
-        Decide at this rate: alpha in 1/s, or rho per step. Without it, at any rate of decay, and
-        the best rate is looked for.
-
-    Raises
-    ------
-    ValueError
-        If there is no mode, P is not symmetric or a mode is of another size, or the rate is not one
-        of decay.
-    TooLargeError
-        If it would take more than some seconds.
+    It is decided at a rate, alpha in 1/s or rho per step; without one, at any rate of decay, and
+    the best one is looked for. A ValueError without a mode, for other sizes, or a rate that is not
+    one of decay; a `TooLargeError` if it would take more than some seconds.
     """
     n = len(P.numerators)
     if not modes:
@@ -320,12 +304,8 @@ def indefinite_vector(M: IntegerMatrix) -> tuple[Fraction, ...]:
 
     Elimination goes on until a pivot is not positive. With the block above and left of it called
     B, and c the column beside that block, ``x = (-B^-1 c, 1, 0)`` gives that pivot as ``x' M x``
-    (here after fraction-free elimination, times the last positive minor).
-
-    Raises
-    ------
-    ValueError
-        If M is positive definite.
+    (here after fraction-free elimination, times the last positive minor). A ValueError if M is
+    positive definite.
     """
     rows, minor = [list(row) for row in M], 1
     for k in range(len(rows)):

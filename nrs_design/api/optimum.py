@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 from nrs_design.api.paper import latex_of_gains
 from nrs_design.api.result import AbstractResult, Figures, drawn
 from nrs_design.facts.design import finite, optimum_facts
-from nrs_design.facts.spec import spec_facts
 from nrs_design.pipeline.analysis import run_analysis
 from nrs_design.pipeline.design import Designed
 
@@ -97,7 +96,7 @@ class Optimum(AbstractResult):
     def _facts(self) -> dict[str, Any]:
         analysis = self._analysis
         return {
-            **spec_facts(self.designed.loaded),
+            **self.designed.loaded.facts,
             **optimum_facts(self.designed, analysis),
             "warnings": [str(doubt) for doubt in analysis.warnings],
             "gains": self.gains,

@@ -37,18 +37,9 @@ def form_of(evidence: AbstractEvidence | None) -> NDArray[np.float64] | None:
 def latex_of(
     name: str, verdict: str, rate: Fraction | None, time: Time, P: NDArray[np.float64] | None
 ) -> str:
-    """Return verdict, rate and P of a decision in TeX; P is rounded for reading.
+    """Return verdict, rate and P of a decision in TeX; P, shape (n, n), is rounded for reading.
 
-    Parameters
-    ----------
-    name, verdict : str
-        Of the system.
-    rate : Fraction or None
-        What is proved: alpha in 1/s, in discrete time rho per step.
-    time : Time
-        Continuous or discrete.
-    P : ndarray, shape (n, n), or None
-        Of one quadratic function.
+    The rate is what is proved: alpha in 1/s, in discrete time rho per step.
     """
     lines = [f"% {name}: {verdict}"]
     if rate is not None and time is Time.CONTINUOUS:
@@ -68,10 +59,7 @@ def latex_of_gains(
 ) -> str:
     """Return a line for each controller; a gain that is rounded for reading is said to be.
 
-    Parameters
-    ----------
-    gains, units : mapping
-        Numbers as they ship, exactly, and their units, by controller and name.
+    Gains, as they ship, and their units are by controller and name.
     """
     lines = []
     for controller, own in gains.items():
@@ -85,13 +73,7 @@ def latex_of_gains(
 
 
 def latex_of_ranges(ranges: Iterable[tuple[str, float, float, str]]) -> str:
-    """Return a line for each range, its ends rounded outwards.
-
-    Parameters
-    ----------
-    ranges : iterable of (str, float, float, str)
-        Name, low and high end, and unit of each.
-    """
+    """Return a line for each range (name, low, high, unit), its ends rounded outwards."""
     return "\n".join(
         rf"${_symbol(name)} \in [{_end(low, lower)},\, {_end(high, upper)}]"
         rf"{_unit(unit)}$"

@@ -115,15 +115,7 @@ class AbstractResult(ABC):
 
 
 def drawn(sections: Iterable[Section], first: str = "") -> Figures:
-    """Return the figures of sections, which are drawn already, one of them first.
-
-    Parameters
-    ----------
-    sections : iterable of Section
-        In order.
-    first : str
-        Name of the figure to come first.
-    """
+    """Return the figures of sections, which are drawn already, the one of a name first."""
     found = [item for section in sections for item in section.illustrations]
     found.sort(key=lambda item: item.name != first)
     return [(item.name, partial(attrgetter("figure"), item)) for item in found]

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any, overload
 from nrs_design.api.result import AbstractResult, Figures
 from nrs_design.axis import unit
 from nrs_design.errors import DesignError
-from nrs_design.facts.spec import spec_facts
 from nrs_design.pipeline.design import Designed
 
 if TYPE_CHECKING:
@@ -260,7 +259,7 @@ class Simulation(AbstractResult):
 
     def _facts(self) -> dict[str, Any]:
         runs = [one.to_dict() for one in self.runs]
-        return spec_facts(self.designed.loaded) | {"runs": runs, "files": []}
+        return self.designed.loaded.facts | {"runs": runs, "files": []}
 
     def _drawings(self) -> Figures:
         return [(one.name, one.plot) for one in self.runs]

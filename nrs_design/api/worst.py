@@ -8,7 +8,6 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from nrs_design.api.result import AbstractResult, Figures
-from nrs_design.facts.spec import spec_facts
 from nrs_design.pipeline.design import Designed
 
 if TYPE_CHECKING:
@@ -85,7 +84,7 @@ class WorstFound(AbstractResult):
             "found": found,
             "not_modelled": [LEFT_OUT],
         }
-        return spec_facts(self.designed.loaded) | {"worst_case": facts, "files": []}
+        return self.designed.loaded.facts | {"worst_case": facts, "files": []}
 
     def _drawings(self) -> Figures:
         from nrs_design.reporting.worst_case import draw_worst

@@ -13,7 +13,6 @@ from nrs_design.cli.command import Answer, command, take_spec
 from nrs_design.cli.options import Budget, Memory, SpecFile
 from nrs_design.cli.printing import note, progress, say
 from nrs_design.cli.tables import print_table
-from nrs_design.facts.spec import spec_facts
 from nrs_design.search.gradient_settings import Gradient
 
 if TYPE_CHECKING:
@@ -93,7 +92,7 @@ def _summary(
     from nrs_design.facts.certification import rate_facts
 
     return {
-        **spec_facts(loaded),
+        **loaded.facts,
         "time": str(system.time),
         "states": list(system.states),
         "modes": [mode.name for mode in system.modes],

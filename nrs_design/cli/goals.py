@@ -9,7 +9,6 @@ from nrs_design.cli import exit_codes
 from nrs_design.cli.command import Answer
 from nrs_design.cli.printing import detail, note, say
 from nrs_design.cli.tables import print_table
-from nrs_design.facts.spec import spec_facts
 
 if TYPE_CHECKING:
     from nrs_design.design.analysis import (
@@ -83,7 +82,7 @@ def design_answer(
             note(f"warning: {doubt}")
 
     return Answer(
-        lambda: spec_facts(loaded) | facts() | {"warnings": [str(doubt) for doubt in doubts]},
+        lambda: loaded.facts | facts() | {"warnings": [str(doubt) for doubt in doubts]},
         show_all,
         _exit_code(items, proved=proved),
     )

@@ -8,7 +8,6 @@ from nrs_design.cli.command import Answer, command, take_spec
 from nrs_design.cli.options import SpecFile
 from nrs_design.cli.printing import say
 from nrs_design.cli.tables import print_blocks
-from nrs_design.facts.spec import spec_facts
 
 if TYPE_CHECKING:
     from nrs_design.spec import InteractionDesignSpec, LoadedSpec
@@ -27,7 +26,7 @@ def mode_logic(spec: SpecFile) -> Answer:
 
     loaded = take_spec(spec)
     declared = _with_logic(loaded)
-    return Answer(lambda: spec_facts(loaded) | logic_summary(declared), lambda: _show(declared))
+    return Answer(lambda: loaded.facts | logic_summary(declared), lambda: _show(declared))
 
 
 def _show(declared: InteractionDesignSpec) -> None:

@@ -9,10 +9,7 @@ import typer
 
 from nrs_design.axis import unit
 from nrs_design.cli.command import Answer, command, take_spec
-from nrs_design.cli.goals import (
-    design_answer,
-    print_responses,
-)
+from nrs_design.cli.goals import design_answer, print_responses
 from nrs_design.cli.options import SpecFile
 from nrs_design.cli.printing import detail, note, progress, say, wants_details
 from nrs_design.cli.tables import print_table
@@ -76,14 +73,9 @@ def optimize(
 
     proved = all(found.proved for item in analysis.impedance for found in item.responses)
     proved = proved and (certified is None or certified.proved)
+    judged = certified is not None
     return design_answer(
-        designed,
-        analysis,
-        analysis.impedance,
-        facts,
-        show,
-        proved=proved,
-        judged=certified is not None,
+        designed, analysis, analysis.impedance, facts, show, proved=proved, judged=judged
     )
 
 

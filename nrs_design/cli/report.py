@@ -12,7 +12,6 @@ from nrs_design.cli.command import Answer, command, take_spec
 from nrs_design.cli.options import Budget, Date, MaxDegree, Memory, SpecFile
 from nrs_design.cli.printing import note, progress, say
 from nrs_design.errors import DesignError
-from nrs_design.facts.spec import spec_facts
 
 if TYPE_CHECKING:
     from datetime import date as Day
@@ -101,7 +100,7 @@ def _answer(
 ) -> Answer:
     def facts() -> dict[str, Any]:
         return {
-            **spec_facts(loaded),
+            **loaded.facts,
             "verdict": verdict,
             "certificate_id": certificate.id if certificate else None,
             "files": [str(place)],

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 
 from nrs_design.axis import unit
 from nrs_design.certificates.catalogue import sentences
-from nrs_design.facts.spec import spec_facts
 from nrs_design.proof.bounds import lower_float, upper_float
 
 if TYPE_CHECKING:
@@ -29,7 +28,7 @@ def certification_facts(result: Result, path: Path | None) -> dict[str, Any]:
     found, certificate = result.certification, result.certificate
     system = found.system
     return {
-        **spec_facts(result.loaded),
+        **result.loaded.facts,
         **_stated(found, certificate, result.loaded.spec),
         "method": found.method,
         **rate_facts(found),

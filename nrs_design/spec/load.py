@@ -69,6 +69,11 @@ class LoadedSpec:
     parsed: Node | None = field(default=None, repr=False, compare=False)
 
     @property
+    def facts(self) -> dict[str, Any]:
+        """Which spec a result is about, as its JSON document begins."""
+        return {"spec": self.spec.name, "spec_sha256": self.sha256}
+
+    @property
     def root(self) -> Node:
         """The text as a tree, in which everything has its line and column."""
         return self.parsed or parse_document(self.text, self.path)

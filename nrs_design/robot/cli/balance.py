@@ -8,7 +8,6 @@ from typing import Any
 from nrs_design.cli.command import Answer, command
 from nrs_design.cli.options import SpecFile
 from nrs_design.cli.tables import print_table
-from nrs_design.facts.spec import spec_facts
 from nrs_design.robot.cli.options import Figures, write_figures
 
 _COLUMNS = {
@@ -50,7 +49,7 @@ def balance(
         "units": {"mass": "kg", "distance": "m", "stiffness": "N/m", "torque": "N*m"},
         "files": files,
     }
-    return Answer(lambda: spec_facts(loaded) | content, lambda: _print(content))
+    return Answer(lambda: loaded.facts | content, lambda: _print(content))
 
 
 def _print(content: dict[str, Any]) -> None:

@@ -10,7 +10,6 @@ from nrs_design.cli.command import Answer, command
 from nrs_design.cli.options import SpecFile
 from nrs_design.cli.printing import insist, say
 from nrs_design.cli.tables import print_table
-from nrs_design.facts.spec import spec_facts
 
 
 @command("robot-check")
@@ -53,7 +52,7 @@ def check(spec: SpecFile) -> Answer:
         _print(content)
 
     return Answer(
-        lambda: {**spec_facts(loaded), "valid": True, **content},
+        lambda: {**loaded.facts, "valid": True, **content},
         show,
         exit_codes.unless(survey.obstacle is not None),
     )

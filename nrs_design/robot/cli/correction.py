@@ -11,7 +11,6 @@ from nrs_design.cli.command import Answer, command
 from nrs_design.cli.options import SpecFile
 from nrs_design.cli.printing import note
 from nrs_design.cli.tables import print_table
-from nrs_design.facts.spec import spec_facts
 from nrs_design.robot.cli.options import Figures, write_figures
 from nrs_design.robot.cli.printing import lists
 
@@ -71,7 +70,7 @@ def correction(
         _print(rows, tilts)
         _print_apart(apart)
 
-    facts = spec_facts(loaded)
+    facts = loaded.facts
     return Answer(lambda: facts | _document(rows, tilts, apart) | {"files": files}, show)
 
 

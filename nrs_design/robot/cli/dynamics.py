@@ -9,7 +9,6 @@ import typer
 
 from nrs_design.cli.command import Answer, command
 from nrs_design.cli.options import SpecFile
-from nrs_design.facts.spec import spec_facts
 from nrs_design.robot.cli.options import (
     Acceleration,
     Figures,
@@ -78,7 +77,7 @@ def dynamics(
         from nrs_design.robot.reporting.figures.robot import draw_torque_shares
 
         content["files"] = write_figures(figures, {"torque-shares": draw_torque_shares(robot)})
-    facts = spec_facts(loaded) | content
+    facts = loaded.facts | content
     return Answer(lambda: facts, lambda: print_quantities(content, TABLES))
 
 

@@ -8,7 +8,6 @@ import typer
 
 from nrs_design.cli.command import Answer, command
 from nrs_design.cli.options import SpecFile
-from nrs_design.facts.spec import spec_facts
 from nrs_design.robot.cli.options import Figures, Pose, read_pose, three_numbers, write_figures
 from nrs_design.robot.cli.printing import JOINTS, LEGS, ONE, POSE, Tables, lists, print_quantities
 
@@ -68,7 +67,7 @@ def kinematics(
         from nrs_design.robot.reporting.figures.robot import draw_workspace
 
         content["files"] = write_figures(figures, {"workspace": draw_workspace(robot)})
-    facts = spec_facts(loaded) | content
+    facts = loaded.facts | content
     return Answer(lambda: facts, lambda: print_quantities(content, TABLES))
 
 

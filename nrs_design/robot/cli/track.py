@@ -12,7 +12,6 @@ from nrs_design.cli.command import Answer, command
 from nrs_design.cli.options import SpecFile
 from nrs_design.cli.printing import progress, say
 from nrs_design.cli.tables import print_table
-from nrs_design.facts.spec import spec_facts
 from nrs_design.progress import Progress
 from nrs_design.robot.cli.options import Figures, Tilt, write_figures
 
@@ -104,7 +103,7 @@ def track(
         for line in LEFT_OUT:
             say(f"  - {line}")
 
-    facts = spec_facts(loaded)
+    facts = loaded.facts
     return Answer(lambda: facts | _document(robot, runs, changes) | {"files": files}, show)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
+from typing import get_args
 
 from typer.testing import CliRunner
 
@@ -20,7 +21,7 @@ each of them.
 
 def schema_names() -> tuple[str, ...]:
     """Return what ``schema --of`` knows."""
-    return tuple(str(name) for name in Described)
+    return get_args(Described)
 
 
 def schema_text(name: str) -> str:

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import sys
 from dataclasses import replace
-from enum import StrEnum
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING, Annotated, NoReturn
+from typing import TYPE_CHECKING, Annotated, Literal, NoReturn
 
 import typer
 
@@ -24,20 +23,9 @@ if TYPE_CHECKING:
     from nrs_design.gating.run import Files
     from nrs_design.pipeline.certification import Overrides
 
+GateFormat = Literal["text", "github", "sarif", "junit", "json", "markdown", "badge"]
 # Folders that a note lists by name.
 SHOWN = 5
-
-
-class GateFormat(StrEnum):
-    """Formats by name."""
-
-    TEXT = "text"
-    GITHUB = "github"
-    SARIF = "sarif"
-    JUNIT = "junit"
-    JSON = "json"
-    MARKDOWN = "markdown"
-    BADGE = "badge"
 
 
 @command("gate")
@@ -45,9 +33,7 @@ def gate(
     paths: Annotated[
         list[Path], typer.Argument(metavar="PATH...", help="Spec files, or folders of them.")
     ],
-    format_: Annotated[
-        GateFormat, typer.Option("--format", help="What to print.")
-    ] = GateFormat.TEXT,
+    format_: Annotated[GateFormat, typer.Option("--format", help="What to print.")] = "text",
     out: Annotated[Path | None, typer.Option(help="Write it to this file, not to stdout.")] = None,
     locked: Annotated[
         bool,
@@ -148,11 +134,11 @@ def _warn(item: Caution) -> None:
 def format_of(format_: GateFormat) -> GateFormat:
     """Return the format that is asked for; --json is short for one of them."""
     as_json = wants_json()
-    if as_json and format_ not in (GateFormat.TEXT, GateFormat.JSON):
+    if as_json and format_ not in ("text", "json"):
         raise NrsDesignError(
             f"--json and --format {format_} exclude each other", remedy="keep one of them"
         )
-    return GateFormat.JSON if as_json else format_
+    return "json" if as_json else format_
 
 
 def _check_options(out: Path | None, jobs: int, *, locked: bool, prune: bool) -> None:
@@ -184,11 +170,11 @@ def _deliver(outcome: GateOutcome, chosen: GateFormat, out: Path | None) -> None
     document = FORMATS[chosen](outcome)
     if out is not None:
         write_output(out, document, replaces=GATE)
-    elif chosen is GateFormat.TEXT:
+    elif chosen == "text":
         _show(outcome)
     else:
         sys.stdout.write(document)
-    if out is not None or chosen is not GateFormat.TEXT:
+    if out is not None or chosen != "text":
         from nrs_design.gating.formats.text import summary_line
 
         note(summary_line(outcome))

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import re
-from enum import StrEnum
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal, get_args
 
 import typer
 
@@ -16,32 +15,7 @@ from nrs_design.files import open_regular
 
 # As the first line of every template says.
 SCHEMA = "nrs.schema.json"
-
-
-class Template(StrEnum):
-    """Templates by name."""
-
-    INTERACTION_DESIGN = "interaction-design"
-    HYBRID_FORCE = "hybrid-force"
-    TASK_SPACE = "task-space"
-    SWITCHED_SYSTEM = "switched-system"
-    ROBOT = "robot"
-
-
-class AxisOption(StrEnum):
-    """What the axis of an interaction design does."""
-
-    ROTARY = "rotary"
-    PRISMATIC = "prismatic"
-
-
-class DriveOption(StrEnum):
-    """What the robot of an interaction design takes."""
-
-    MOTOR = "motor"
-    VELOCITY = "velocity"
-    POSITION = "position"
-    TORQUE = "torque"
+Template = Literal["interaction-design", "hybrid-force", "task-space", "switched-system", "robot"]
 
 
 @command("init", has_json=False)
@@ -51,21 +25,21 @@ def init(
         typer.Argument(
             metavar="TEMPLATE",
             show_choices=False,
-            help=f"What to start from: {', '.join(Template)}.",
+            help=f"What to start from: {', '.join(get_args(Template))}.",
         ),
     ],
     drive: Annotated[
-        DriveOption,
+        Literal["motor", "velocity", "position", "torque"],
         typer.Option(
             metavar="DRIVE",
             help="Of an interaction-design: motor, with a loop around it; or velocity, position or "
             "torque, which a robot takes.",
         ),
-    ] = DriveOption.MOTOR,
+    ] = "motor",
     axis: Annotated[
-        AxisOption,
+        Literal["rotary", "prismatic"],
         typer.Option(help="Of an interaction-design: it turns, or it slides; not with torques."),
-    ] = AxisOption.ROTARY,
+    ] = "rotary",
     out: Annotated[
         Path | None, typer.Option(help="File to write; default TEMPLATE.nrs.yaml.")
     ] = None,
@@ -81,12 +55,12 @@ def init(
     from nrs_design.output import write_output
     from nrs_design.spec.templates import PRISMATIC, TEMPLATES
 
-    chosen = str(template)
-    if drive is not DriveOption.MOTOR:
-        if template is not Template.INTERACTION_DESIGN:
+    chosen: str = template
+    if drive != "motor":
+        if template != "interaction-design":
             raise typer.BadParameter("it is for interaction-design", param_hint="--drive")
         chosen = f"{drive}-interface"
-    if axis is AxisOption.PRISMATIC:
+    if axis == "prismatic":
         if chosen not in PRISMATIC:
             raise typer.BadParameter(
                 "it is for an interaction-design with a motor, or over velocities or positions; in "

@@ -3,28 +3,23 @@
 from __future__ import annotations
 
 import sys
-from enum import StrEnum
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 import typer
 
 from nrs_design.cli.command import Answer, command
 from nrs_design.cli.printing import note
 
-
-class Described(StrEnum):
-    """What a schema is of."""
-
-    SPEC = "spec"
-    EXPORT = "export"
+# What a schema is of.
+Described = Literal["spec", "export"]
 
 
 @command("schema", has_json=False)
 def schema(
     of: Annotated[
         Described, typer.Option(help="Of spec files (draft-07), or of export records (2020-12).")
-    ] = Described.SPEC,
+    ] = "spec",
     out: Annotated[Path | None, typer.Option(help="Write to a file instead of stdout.")] = None,
 ) -> Answer:
     """Print the JSON Schema of spec files, or of what `export` writes.
@@ -45,7 +40,7 @@ def schema(
 
 
 def _text(of: Described) -> str:
-    if of is Described.EXPORT:
+    if of == "export":
         from nrs_design.exporters.record import record_schema_text
 
         return record_schema_text()

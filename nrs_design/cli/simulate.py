@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from enum import StrEnum
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
@@ -19,13 +18,6 @@ if TYPE_CHECKING:
     from nrs_design.pipeline.design import Designed
 
 
-class EngineOption(StrEnum):
-    """What simulates."""
-
-    EXACT = "exact"
-    SAMPLED = "sampled"
-
-
 @command("simulate")
 def simulate(
     spec: SpecFile,
@@ -34,7 +26,7 @@ def simulate(
         typer.Option("--scenario", metavar="NAME", help="One scenario, or several; default: all."),
     ] = None,
     engine: Annotated[
-        EngineOption | None,
+        Literal["exact", "sampled"] | None,
         typer.Option(
             help="exact: continuous time, from event to event; sampled: the law that ships, in "
             "single precision. Default: sampled where the spec has sampling or tissue is not "
@@ -101,16 +93,16 @@ def simulate(
     from nrs_design.pipeline.scenarios import Runs
 
     timed = any(value is not None for value in (period, delay, outer_period))
-    if engine is EngineOption.EXACT and timed:
+    if engine == "exact" and timed:
         raise typer.BadParameter("the exact engine has no samples", param_hint="--engine")
     if worst and any((scenario, engine, period, delay is not None, outer_period, max_steps)):
         message = "the adversary plays against the loop of the spec, not within a scenario"
         raise typer.BadParameter(message, param_hint="--worst-case")
     loaded = take_spec(spec)
     if engine is None and timed:
-        engine = EngineOption.SAMPLED
-    how = None if engine is None else str(engine)
-    wanted = Runs(tuple(dict.fromkeys(scenario or ())), how, period, delay, max_steps, outer_period)
+        engine = "sampled"
+    names = tuple(dict.fromkeys(scenario or ()))
+    wanted = Runs(names, engine, period, delay, max_steps, outer_period)
     with progress(f"simulating {loaded.spec.name}") as step:
         designed, kept = run_interaction_of(loaded, certificate, "describes no interaction", step)
         prove = partial(_proof, designed, kept, step, bound=bound)

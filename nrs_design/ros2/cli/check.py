@@ -57,9 +57,7 @@ def check(
             help="Work of the search of each axis, in units of about a second.",
         ),
     ] = 20.0,
-    format_: Annotated[
-        GateFormat, typer.Option("--format", help="What to print.")
-    ] = GateFormat.TEXT,
+    format_: Annotated[GateFormat, typer.Option("--format", help="What to print.")] = "text",
 ) -> NoReturn:
     """Prove or refute every axis of the admittance controllers in a parameter file.
 
@@ -89,7 +87,7 @@ def check(
     )
     with progress("checking") as step:
         outcome = check_file(file, question, Limits(budget=budget), step)
-    if chosen is not GateFormat.TEXT:
+    if chosen != "text":
         sys.stdout.write(FORMATS[chosen](outcome))
     elif wants_text():
         _show(outcome)

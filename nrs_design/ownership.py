@@ -10,10 +10,14 @@ from __future__ import annotations
 import os
 import re
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from nrs_design.errors import CertificateError, OutputError
-from nrs_design.output import PAGE
+from nrs_design.output import CERTIFICATE, PAGE, write_output
 from nrs_design.spec.task_space import file_of
+
+if TYPE_CHECKING:
+    from nrs_design.certificates.certificate import Certificate
 
 REMEDY = "give this spec a `name` of its own, choose another place, or remove that file"
 # As exports of designs write it: in the lines of their header, as JSON, as a MAT-file.
@@ -31,6 +35,13 @@ def origin_of(spec: Path, file: Path) -> str:
     relative = os.path.relpath(os.path.realpath(spec), os.path.realpath(file.parent))
     text = Path(relative).as_posix()
     return text.encode(errors="surrogateescape").decode(errors="backslashreplace")
+
+
+def write_certificate(certificate: Certificate, spec: Path, file: Path) -> None:
+    """Write a certificate, which says where its spec is."""
+    from nrs_design.certificates.certificate import dump
+
+    write_output(file, dump(certificate, origin_of(spec, file)), replaces=CERTIFICATE)
 
 
 def check_owner(spec: Path, name: str, folder: Path) -> None:

@@ -12,11 +12,10 @@ from typing import TYPE_CHECKING, Any
 from nrs_design.api.paper import form_of, latex_of, latex_of_gains
 from nrs_design.api.result import AbstractResult, Figures, drawn, evidence_drawings
 from nrs_design.certificates.catalogue import sentences
-from nrs_design.certificates.certificate import dump
 from nrs_design.errors import OutputError, SpecError
 from nrs_design.facts.certification import certification_facts
-from nrs_design.output import CERTIFICATE, PAGE, check_html, write_output
-from nrs_design.ownership import check_certificate, origin_of
+from nrs_design.output import PAGE, check_html, write_output
+from nrs_design.ownership import check_certificate, write_certificate
 from nrs_design.pipeline.analysis import judged_if_stable
 from nrs_design.pipeline.certification import Result
 from nrs_design.proof.text import counted
@@ -209,8 +208,7 @@ class Decision(AbstractResult):
                 path=spec,
                 remedy="choose another folder or another name",
             )
-        origin = origin_of(spec, file)
-        write_output(file, dump(self.result.certificate, origin), replaces=CERTIFICATE)
+        write_certificate(self.result.certificate, spec, file)
         return file
 
     def _page(self) -> Report:

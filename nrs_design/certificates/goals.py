@@ -28,8 +28,8 @@ class CertifiedGoal:
     """One goal of a spec that a certificate must show."""
 
     key: str  # Of the goal in the spec, such as ``decay_rate``
-    said: str  # What is proved; numbers are rounded to their safe side
     wanted: str  # As the spec writes it; ``largest`` wants no number
+    said: str  # What is proved; numbers are rounded to their safe side
     # Whether what is proved is enough. Where it is not, nothing is known: more may be true.
     met: bool
 
@@ -56,22 +56,23 @@ def _goals(spec: Spec, certificate: Certificate | None) -> Iterator[CertifiedGoa
     # To name the class would load it, and all its parts, for specs that have no goals.
     if spec.kind != "interaction-design" or (goals := spec.goals) is None:
         return
-    if goals.peak_torque is not None:
-        yield _peak_torque(goals.peak_torque, certificate)
-    if goals.decay_rate is not None:
-        yield _decay_rate(goals.decay_rate, certificate)
-    if goals.delay is not None and spec.sampling is not None:
-        yield _delay(spec.sampling, goals.delay, certificate)
-    if goals.initial_force is not None:
-        yield _initial_force(goals.initial_force, certificate)
+    if (wanted := goals.peak_torque) is not None:
+        yield CertifiedGoal("peak_torque", wanted.text, *_peak_torque(wanted, certificate))
+    if (wanted := goals.decay_rate) is not None:
+        yield CertifiedGoal("decay_rate", wanted.text, *_decay_rate(wanted, certificate))
+    if (wanted := goals.delay) is not None and spec.sampling is not None:
+        yield CertifiedGoal("delay", wanted.text, *_delay(spec.sampling, wanted, certificate))
+    if (force := goals.initial_force) is not None:
+        least, text = (None, force) if isinstance(force, str) else (force.exact, force.text)
+        yield CertifiedGoal("initial_force", text, *_initial_force(least, certificate))
 
 
-def _peak_torque(wanted: Quantity, certificate: Certificate | None) -> CertifiedGoal:
+def _peak_torque(wanted: Quantity, certificate: Certificate | None) -> tuple[str, bool]:
     found = None
     if certificate is not None:
         found = bound_on(certificate.system, certificate.statements, "force")
     if certificate is None or found is None:
-        return CertifiedGoal("peak_torque", "no bound on the force was proved", wanted.text, False)
+        return "no bound on the force was proved", False
     acting = (f"|{c.name}| <= {rounded_down(c.bound, c.unit)}" for c in found.channels)
     said = (
         f"while {', '.join(acting)} and nothing else disturbs, the force is proved to stay below "
@@ -79,7 +80,7 @@ def _peak_torque(wanted: Quantity, certificate: Certificate | None) -> Certified
     )
     if certificate.system.contact is None:
         said += ", while contact is kept"
-    return CertifiedGoal("peak_torque", said, wanted.text, found.level <= wanted.exact)
+    return said, found.level <= wanted.exact
 
 
 def _effort(certificate: Certificate) -> str:
@@ -87,14 +88,14 @@ def _effort(certificate: Certificate) -> str:
     return axis_with(certificate.system.states).unit("N*m")
 
 
-def _decay_rate(wanted: Quantity, certificate: Certificate | None) -> CertifiedGoal:
+def _decay_rate(wanted: Quantity, certificate: Certificate | None) -> tuple[str, bool]:
     rate = decay_rate(certificate)
     if certificate is None or rate is None:
-        return CertifiedGoal("decay_rate", "no decay rate in 1/s was proved", wanted.text, False)
+        return "no decay rate in 1/s was proved", False
     said = f"the proved decay rate is {rounded_down(rate, '1/s')}"
     if certificate.system.saturation is not None:
         said += " while no signal saturates"
-    return CertifiedGoal("decay_rate", said, wanted.text, rate >= wanted.exact)
+    return said, rate >= wanted.exact
 
 
 def decay_rate(certificate: Certificate | None) -> Fraction | None:
@@ -117,24 +118,21 @@ def rate_per_second(rate: N | None, system: SwitchedSystem) -> N | None:
 
 def _delay(
     sampling: SamplingSpec, wanted: Quantity, certificate: Certificate | None
-) -> CertifiedGoal:
+) -> tuple[str, bool]:
     if certificate is None or certificate.verdict != Verdict.PROVED:
-        return CertifiedGoal("delay", "nothing was proved", wanted.text, False)
+        return "nothing was proved", False
     least, oldest = (n * sampling.outer for n in certificate.ages or sampling.delay)
     ages = f"{rounded_up(least, 's')} to {rounded_down(oldest, 's')} old"
-    said = f"the loop is proved for force samples {ages}"
-    return CertifiedGoal("delay", said, wanted.text, oldest >= wanted.exact)
+    return f"the loop is proved for force samples {ages}", oldest >= wanted.exact
 
 
-def _initial_force(wanted: Quantity | str, certificate: Certificate | None) -> CertifiedGoal:
-    least, text = (None, wanted) if isinstance(wanted, str) else (wanted.exact, wanted.text)
+def _initial_force(least: Fraction | None, certificate: Certificate | None) -> tuple[str, bool]:
     statements = () if certificate is None else certificate.statements
     level = next((size for s in statements if (size := s.start_size) is not None), None)
     if certificate is None or level is None:
-        said = "no force was proved from which motions decay although signals saturate"
-        return CertifiedGoal("initial_force", said, text, False)
+        return "no force was proved from which motions decay although signals saturate", False
     said = (
         f"from rest with a contact force up to {rounded_down(level, _effort(certificate))} "
         "motions are proved to decay although signals saturate"
     )
-    return CertifiedGoal("initial_force", said, text, least is None or level >= least)
+    return said, least is None or level >= least

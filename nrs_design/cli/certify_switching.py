@@ -12,14 +12,7 @@ from nrs_design.cli import exit_codes
 from nrs_design.cli.command import Answer, command, take_spec
 from nrs_design.cli.granted import print_granted
 from nrs_design.cli.options import Budget, MaxDegree, Memory, SpecFile
-from nrs_design.cli.printing import (
-    note,
-    progress,
-    say,
-    wants_details,
-    wants_json,
-    wants_text,
-)
+from nrs_design.cli.printing import note, progress, say, wants_details, wants_json, wants_text
 from nrs_design.facts.certification import (
     blocked_facts,
     certification_facts,
@@ -173,14 +166,11 @@ def _growth_words(radius: RadiusBounds) -> str:
 
 def _write(result: Result, path: Path | None) -> Path | None:
     """Write the certificate, if there is one and it is asked for; return where it is."""
-    from nrs_design.certificates.certificate import dump
-    from nrs_design.output import CERTIFICATE, write_output
-    from nrs_design.ownership import origin_of
+    from nrs_design.ownership import write_certificate
 
     if result.certificate is None or path is None:
         return None
-    origin = origin_of(result.loaded.path, path)
-    write_output(path, dump(result.certificate, origin), replaces=CERTIFICATE)
+    write_certificate(result.certificate, result.loaded.path, path)
     note(f"certificate written to {path}")
     return path
 

@@ -7,11 +7,10 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from nrs_design.certificates.certificate import dump
 from nrs_design.errors import OutputError
 from nrs_design.exporters import Format, format_of, remarks_on, rendered
-from nrs_design.output import CERTIFICATE, check_place, write_output, write_outputs
-from nrs_design.ownership import check_name, origin_of
+from nrs_design.output import check_place, write_outputs
+from nrs_design.ownership import check_name, write_certificate
 
 if TYPE_CHECKING:
     from nrs_design.exporters.export import Export
@@ -75,7 +74,6 @@ def write_export(
     """
     contents = rendered(format_, result)
     if proof is not None and result.certificate is not None:
-        text = dump(result.certificate, origin_of(spec, proof))
-        write_output(proof, text, replaces=CERTIFICATE)
+        write_certificate(result.certificate, spec, proof)
     write_files(format_of(format_), files, contents)
     return remarks_on(format_, contents)

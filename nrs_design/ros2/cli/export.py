@@ -141,15 +141,12 @@ def _check_folder(spec: Path, out: Path, name: str, designs: Mapping[str, Design
 
 def _write(axes: Mapping[str, LoadedSpec], file: Path, item: RosExport) -> None:
     """Write the certificates first: there is never an export without its proofs."""
-    from nrs_design.certificates.certificate import dump
-    from nrs_design.output import CERTIFICATE, write_output
-    from nrs_design.ownership import origin_of
+    from nrs_design.output import write_output
+    from nrs_design.ownership import write_certificate
     from nrs_design.ros2.export import BEGINNING
 
     for axis, certificate in item.certificates.items():
-        proof = _proof(file, axis, len(axes))
-        origin = origin_of(axes[axis].path, proof)
-        write_output(proof, dump(certificate, origin), replaces=CERTIFICATE)
+        write_certificate(certificate, axes[axis].path, _proof(file, axis, len(axes)))
     write_output(file, item.text, replaces=BEGINNING)
 
 

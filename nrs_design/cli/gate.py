@@ -12,7 +12,7 @@ import typer
 
 from nrs_design.cli import exit_codes
 from nrs_design.cli.command import command
-from nrs_design.cli.options import Budget, Memory
+from nrs_design.cli.options import Budget, Memory, refuse_both
 from nrs_design.cli.printing import note, progress, say, say_failure, wants_details, wants_json
 from nrs_design.cli.tables import print_table
 from nrs_design.errors import NrsDesignError, OutputError
@@ -87,9 +87,8 @@ def gate(
     """
     chosen = format_of(format_)
     _check_options(out, jobs, locked=locked, prune=prune)
-    if pages and (no_reports or locked):
-        given = "--no-reports" if no_reports else "--locked"
-        raise NrsDesignError(f"--pages and {given} exclude each other", remedy="keep one of them")
+    refuse_both(("--pages", "--no-reports", pages and no_reports))
+    refuse_both(("--pages", "--locked", pages and locked))
     start = perf_counter()
     if against is not None:
         from nrs_design.gating.against import base_paths
@@ -134,10 +133,7 @@ def _warn(item: Caution) -> None:
 def format_of(format_: GateFormat) -> GateFormat:
     """Return the format that is asked for; --json is short for one of them."""
     as_json = wants_json()
-    if as_json and format_ not in ("text", "json"):
-        raise NrsDesignError(
-            f"--json and --format {format_} exclude each other", remedy="keep one of them"
-        )
+    refuse_both(("--json", f"--format {format_}", as_json and format_ not in ("text", "json")))
     return "json" if as_json else format_
 
 
@@ -146,11 +142,7 @@ def _check_options(out: Path | None, jobs: int, *, locked: bool, prune: bool) ->
     from nrs_design.gating.find_specs import SUFFIXES
     from nrs_design.output import GATE, check_place
 
-    if prune and locked:
-        raise NrsDesignError(
-            "--prune and --locked exclude each other: --locked writes nothing",
-            remedy="keep one of them",
-        )
+    refuse_both(("--prune", "--locked", prune and locked), why=": --locked writes nothing")
     if jobs > 1 and locked:
         raise NrsDesignError(
             "--jobs and --locked exclude each other: re-checking takes no search",

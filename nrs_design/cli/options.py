@@ -56,6 +56,16 @@ def _number(text: str) -> float:
         ) from error
 
 
+def refuse_both(*pairs: tuple[str, str, object], why: str = "") -> None:
+    """Refuse the first two options of which both are given, as the third of their row says."""
+    from nrs_design.errors import NrsDesignError
+
+    for one, other, both in pairs:
+        if both:
+            said = f"{one} and {other} exclude each other"
+            raise NrsDesignError(said + why, remedy="keep one of them")
+
+
 SpecFile = Annotated[Path, typer.Argument(metavar="SPEC", help="Spec file (*.nrs.yaml).")]
 
 

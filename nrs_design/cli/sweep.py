@@ -14,7 +14,7 @@ import typer
 
 from nrs_design.cli.command import Answer, command
 from nrs_design.cli.exit_codes import worst
-from nrs_design.cli.options import SpecFile
+from nrs_design.cli.options import SpecFile, refuse_both
 from nrs_design.cli.printing import note, progress, wants_json
 from nrs_design.errors import NrsDesignError
 
@@ -104,7 +104,11 @@ def sweep(
     from nrs_design.cli.sweep_answer import facts_of, table_text, view_of
     from nrs_design.output import SWEEP, check_place, write_output
 
-    _check_options(jobs, dask, store, no_store=no_store)
+    refuse_both(
+        ("--store", "--no-store", store is not None and no_store),
+        ("--jobs", "--dask", jobs > 1 and dask is not None),
+        ("--no-store", "--dask", no_store and dask is not None),
+    )
     if table is not None:
         check_place(table, SWEEP)
     with ExitStack() as stack:
@@ -120,19 +124,6 @@ def sweep(
         facts = facts_of(job, points) if wants_json() else {}
         show = view_of(job, points, shown or ())
     return Answer(lambda: facts, show, worst({point.code for point in points}))
-
-
-def _check_options(jobs: int, dask: str | None, store: Path | None, *, no_store: bool) -> None:
-    """Refuse what excludes each other."""
-    for first, second, both in (
-        ("--store", "--no-store", store is not None and no_store),
-        ("--jobs", "--dask", jobs > 1 and dask is not None),
-        ("--no-store", "--dask", no_store and dask is not None),
-    ):
-        if both:
-            raise NrsDesignError(
-                f"{first} and {second} exclude each other", remedy="keep one of them"
-            )
 
 
 def _beside(spec: Path) -> Path:

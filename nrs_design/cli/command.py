@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable
+from contextvars import copy_context
 from dataclasses import dataclass
 from functools import wraps
 from pathlib import Path
@@ -13,13 +14,7 @@ import typer
 
 from nrs_design.cli import exit_codes
 from nrs_design.cli.exit_codes import worst
-from nrs_design.cli.printing import (
-    output,
-    print_json,
-    wants_details,
-    wants_json,
-    wants_text,
-)
+from nrs_design.cli.printing import output, print_json, wants_details, wants_json, wants_text
 from nrs_design.errors import NrsDesignError
 
 if TYPE_CHECKING:
@@ -80,14 +75,15 @@ def command(
         def run(
             *, as_json: bool = False, quiet: bool = False, verbose: bool = False, **arguments: Any
         ) -> None:
-            from nrs_design.axis import AxisType, about
+            def answer() -> None:
+                with output(as_json=as_json, quiet=quiet, verbose=verbose):
+                    found = (
+                        _for_each_axis(function, arguments) if each_axis else function(**arguments)
+                    )
+                    found.deliver(name)
 
-            shown = output(as_json=as_json, quiet=quiet, verbose=verbose)
-            with shown, about(AxisType.ROTARY):
-                answered = (
-                    _for_each_axis(function, arguments) if each_axis else function(**arguments)
-                )
-                answered.deliver(name)
+            # The axis that it takes is that of no other command.
+            copy_context().run(answer)
 
         signature = inspect.signature(function, eval_str=True)
         keyword = inspect.Parameter.KEYWORD_ONLY

@@ -26,16 +26,12 @@ if TYPE_CHECKING:
 def certification_facts(result: Result, path: Path | None) -> dict[str, Any]:
     """Return the facts of a decision on stability under switching."""
     found, certificate = result.certification, result.certificate
-    system = found.system
     return {
         **result.loaded.facts,
         **_stated(found, certificate, result.loaded.spec),
         "method": found.method,
         **rate_facts(found),
-        "time": str(system.time),
-        "coordinates": None if result.designed is None else result.designed.spec.coordinates,
-        "states": list(system.states),
-        "modes": [mode.name for mode in system.modes],
+        **_described(found, None if result.designed is None else result.designed.spec.coordinates),
         "gains": dict(certificate.gains) if certificate else None,
         "attempts": [
             {
@@ -54,17 +50,23 @@ def certification_facts(result: Result, path: Path | None) -> dict[str, Any]:
 
 def shown_facts(certificate: Certificate, spec: Spec) -> dict[str, Any]:
     """Return those facts of a decision that its certificate shows by itself."""
-    system = certificate.system
     return {
         **_stated(certificate, certificate, spec),
         **_proved_rate(certificate),
-        "time": str(system.time),
-        "coordinates": certificate.coordinates,
-        "states": list(system.states),
-        "modes": [mode.name for mode in system.modes],
+        **_described(certificate, certificate.coordinates),
         "gains": dict(certificate.gains),
         "assumptions": list(sentences(certificate.granted)),
         "certificate_id": certificate.id,
+    }
+
+
+def _described(found: Certification | Certificate, coordinates: str | None) -> dict[str, Any]:
+    system = found.system
+    return {
+        "time": str(system.time),
+        "coordinates": coordinates,
+        "states": list(system.states),
+        "modes": [mode.name for mode in system.modes],
     }
 
 

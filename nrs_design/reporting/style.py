@@ -84,15 +84,9 @@ _SETTINGS = {
 
 # Letters of a paper, in points, and the settings that go with them.
 _PAPER_LETTERS = 8.0
-_PAPER = {
-    "font.size": _PAPER_LETTERS,
-    "axes.labelsize": _PAPER_LETTERS,
-    "axes.titlesize": _PAPER_LETTERS,
-    "legend.fontsize": _PAPER_LETTERS,
-    "xtick.labelsize": _PAPER_LETTERS,
-    "ytick.labelsize": _PAPER_LETTERS,
-    "lines.linewidth": 1.2,
-}
+_SIZES = ("font.size", *(f"{of}.labelsize" for of in ("axes", "xtick", "ytick")))
+_PAPER = dict.fromkeys((*_SIZES, "axes.titlesize", "legend.fontsize"), _PAPER_LETTERS)
+_PAPER["lines.linewidth"] = 1.2
 
 P = ParamSpec("P")
 

@@ -96,21 +96,6 @@ def pair(request):
     return signed(request.param)
 
 
-@pytest.fixture(scope="module")
-def given():
-    return signed("given")
-
-
-@pytest.fixture(scope="module")
-def impedance():
-    return signed("impedance")
-
-
-@pytest.fixture(scope="module")
-def unstable():
-    return signed("unstable")
-
-
 @cache
 def signed(name: str) -> tuple[dict, LoadedSpec]:
     path = SPECS[name]
@@ -269,27 +254,27 @@ class TestLegitimate:
         self.accept(changed(document, ("package", "version"), "99.0"), spec)
 
     @pytest.mark.parametrize("exponent", [0, 7, 14_000])
-    def test_scale_in_the_exponent(self, given, exponent):
-        document, spec = given
+    def test_scale_in_the_exponent(self, exponent):
+        document, spec = signed("given")
         self.accept(changed(document, (*FIRST, "denominator_log2"), exponent), spec)
 
     @pytest.mark.parametrize("factor", [3, 10**100])
-    def test_scale_in_the_numerators(self, impedance, factor):
-        document, spec = impedance
+    def test_scale_in_the_numerators(self, factor):
+        document, spec = signed("impedance")
         for k in range(len(at(document, (*FIRST, "nodes")))):
             place = (*FIRST, "nodes", k, "form")
             scaled = [[factor * q for q in row] for row in at(document, place)]
             document = changed(document, place, scaled)
         self.accept(document, spec)
 
-    def test_slower_rate(self, impedance):
-        document, spec = impedance
+    def test_slower_rate(self):
+        document, spec = signed("impedance")
         slower = Fraction(at(document, FIRST)["rate"]) / 2
         restated = restate(document, rate=str(slower))
         assert self.accept(restated, spec).evidence.rate == slower
 
-    def test_other_gain_within_the_bounds(self, impedance):
-        document, spec = impedance
+    def test_other_gain_within_the_bounds(self):
+        document, spec = signed("impedance")
         # One unit in the last place of the single-precision 2.15.
         other = Fraction(document["gains"]["insertion"]["Bt"]) + Fraction(1, 2**22)
         tampered = changed(document, ("gains", "insertion", "Bt"), exact_decimal(other))
@@ -297,12 +282,12 @@ class TestLegitimate:
         own = with_modes(tampered, spec)
         assert self.accept(own, spec).gains["insertion"]["Bt"] == exact_decimal(other)
 
-    def test_same_gain_written_otherwise(self, impedance):
-        document, spec = impedance
+    def test_same_gain_written_otherwise(self):
+        document, spec = signed("impedance")
         self.accept(changed(document, ("gains", "motion", "Kd"), "2.06e3"), spec)
 
-    def test_other_unstable_mode(self, unstable):
-        document, spec = unstable
+    def test_other_unstable_mode(self):
+        document, spec = signed("unstable")
         other = run_certification(spec).certificate.system.modes[1]
         restated = restate(document, **staying(other.name).to_fields())
         assert at(document, FIRST)["steps"] == [["insertion", "1"]]
@@ -331,8 +316,8 @@ class TestForgery:
         assert outcome.fault is not None
         assert reason in outcome.fault
 
-    def test_faster_rate(self, given):
-        document, spec = given
+    def test_faster_rate(self):
+        document, spec = signed("given")
         for rate in (Fraction(1), Fraction(2), Fraction(10**6)):
             self.reject(restate(document, rate=str(rate)), spec, "does not decrease")
 
@@ -340,29 +325,29 @@ class TestForgery:
         "rate",
         ["0", "-1", "1/0", "2/4", "1e-3", "nan", "", " 1", "1\n", "1_0", "\uff11", "1" * 2001, 1],
     )
-    def test_malformed_rate(self, given, rate):
-        document, spec = given
+    def test_malformed_rate(self, rate):
+        document, spec = signed("given")
         self.reject(restate(document, rate=rate), spec, "")
 
-    def test_a_sentence_is_no_part_of_a_statement(self, given):
-        document, spec = given
+    def test_a_sentence_is_no_part_of_a_statement(self):
+        document, spec = signed("given")
         self.reject(restate(document, claim="Every solution decays at once."), spec, "'claim'")
 
-    def test_other_words_of_what_is_taken_for_granted(self, given):
-        document, spec = given
+    def test_other_words_of_what_is_taken_for_granted(self):
+        document, spec = signed("given")
         first, *others = document["assumptions"]
         for other in ({**first, "id": "matrices.guessed"}, {**first, "fields": [["scale", ["2"]]]}):
             spoiled = {**document, "assumptions": [other, *others]}
             self.reject(spoiled, spec, "'assumptions'")
         self.reject({**document, "assumptions": ["anything"]}, spec, "malformed")
 
-    def test_dropped_and_swapped_modes(self, impedance):
-        document, spec = impedance
+    def test_dropped_and_swapped_modes(self):
+        document, spec = signed("impedance")
         self.reject({**document, "modes": document["modes"][1:]}, spec, "'modes'")
         self.reject({**document, "modes": document["modes"][::-1]}, spec, "'modes'")
 
-    def test_a_proof_for_a_narrow_range_is_none_for_a_wide_one(self, impedance, tmp_path):
-        document, _ = impedance
+    def test_a_proof_for_a_narrow_range_is_none_for_a_wide_one(self, tmp_path):
+        document, _ = signed("impedance")
         path = tmp_path / "wide.nrs.yaml"
         path.write_text(SOFT_TISSUE.read_text().replace("768.17 N/m", "2000 N/m"))
         wide = read_spec(path)
@@ -393,29 +378,29 @@ class TestForgery:
         assert "another spec" in verify_document(document, read_spec(path)).fault
 
     @pytest.mark.parametrize("origin", ["a.yaml", "../../nowhere", 7, None, ["a"]])
-    def test_where_the_spec_was_says_nothing(self, given, origin):
-        document, spec = given
+    def test_where_the_spec_was_says_nothing(self, origin):
+        document, spec = signed("given")
         assert verify_document({**document, "origin": origin}, spec).fault is None
 
-    def test_refutation_of_a_stable_system(self, given):
-        document, spec = given
+    def test_refutation_of_a_stable_system(self):
+        document, spec = signed("given")
         for name in ("a", "b", "c", "\ud800"):
             forged = {"kind": "growing-sequence", **staying(name).to_fields()}
             refuted = {**document, "verdict": "refuted", "statements": [forged]}
             reason = f"mode {name} is stable" if name in "ab" else "modes that do not exist"
             self.reject(refuted, spec, reason)
 
-    def test_proof_of_an_unstable_system(self, unstable):
-        document, spec = unstable
+    def test_proof_of_an_unstable_system(self):
+        document, spec = signed("unstable")
         identity = tuple(tuple(int(i == j) for j in range(4)) for i in range(4))
         evidence = common_quadratic(identity, 0, Fraction(1, 1000))
         forged = {"kind": "graph", **evidence.to_fields()}
         proved = {**document, "verdict": "proved", "statements": [forged]}
         self.reject(proved, spec, "does not decrease")
 
-    def test_evidence_of_another_system(self, given):
+    def test_evidence_of_another_system(self):
         """Every statement of every other certificate, restated for this spec."""
-        document, spec = given
+        document, spec = signed("given")
         for name in SPECS:
             for statement in signed(name)[0]["statements"]:
                 if name != "given":
@@ -454,8 +439,8 @@ class TestForgery:
         assert outcome.fault is None
         assert outcome.certificate.verdict == "inconclusive"
 
-    def test_a_false_remark_beside_a_true_proof(self, given):
-        document, spec = given
+    def test_a_false_remark_beside_a_true_proof(self):
+        document, spec = signed("given")
         remark = signed("polynomial")[0]["statements"][1]
         renamed = {**remark, "factors": [["a", [[1], [0]]], ["b", [[0], [1]]]]}
         both = {**document, "statements": [*document["statements"], renamed]}
@@ -488,12 +473,12 @@ class TestForgery:
             ("motion", "Kd", "2061"),  # the spec fixes it
         ],
     )
-    def test_gains_outside_the_spec(self, impedance, controller, gain, value):
-        document, spec = impedance
+    def test_gains_outside_the_spec(self, controller, gain, value):
+        document, spec = signed("impedance")
         self.reject(changed(document, ("gains", controller, gain), value), spec, "gain")
 
-    def test_gain_for_which_the_evidence_does_not_hold(self, impedance):
-        document, spec = impedance
+    def test_gain_for_which_the_evidence_does_not_hold(self):
+        document, spec = signed("impedance")
         tampered = changed(document, ("gains", "withdrawal", "Bt"), "0.125")
         self.reject(tampered, spec, NOT_ITS_MODES)
         self.reject(with_modes(tampered, spec), spec, "does not decrease")
@@ -509,12 +494,12 @@ class TestForgery:
         self.reject(tampered, spec, "single precision")
 
     @pytest.mark.parametrize("coordinates", ["deflection", "force", ""])
-    def test_coordinates_of_given_matrices(self, given, coordinates):
-        document, spec = given
+    def test_coordinates_of_given_matrices(self, coordinates):
+        document, spec = signed("given")
         self.reject({**document, "coordinates": coordinates}, spec, "")
 
-    def test_nesting_too_deep_for_the_canonical_form(self, given):
-        document, spec = given
+    def test_nesting_too_deep_for_the_canonical_form(self):
+        document, spec = signed("given")
         node: list = []
         for _ in range(100_000):
             node = [node]
@@ -524,8 +509,8 @@ class TestForgery:
         while node:
             node = node.pop()
 
-    def test_integer_too_long_for_text(self, given):
-        document, spec = given
+    def test_integer_too_long_for_text(self):
+        document, spec = signed("given")
         long = changed(document, (*FIRST, "denominator_log2"), 10**5000)
         assert "malformed" in verify_document(long, spec).fault
 
@@ -557,45 +542,45 @@ class TestFiles:
             (b"kind: switched-system\n", "not a certificate"),
         ],
     )
-    def test_not_a_certificate(self, tmp_path, given, content, reason):
+    def test_not_a_certificate(self, tmp_path, content, reason):
         path = tmp_path / "c.json"
         path.write_bytes(content)
         with pytest.raises(CertificateError, match=reason) as caught:
-            verify(path, given[1])
+            verify(path, signed("given")[1])
         assert caught.value.path == path
         assert len(str(caught.value)) < 500
 
     @pytest.mark.parametrize("depth", range(900, 1000, 3))
-    def test_no_depth_slips_between_reading_and_hashing(self, tmp_path, given, depth):
+    def test_no_depth_slips_between_reading_and_hashing(self, tmp_path, depth):
         path = tmp_path / "c.json"
         path.write_text('{"a": ' + "[" * depth + "]" * depth + "}")
         with suppress(CertificateError):
-            assert verify(path, given[1]).fault
+            assert verify(path, signed("given")[1]).fault
 
     @pytest.mark.parametrize("content", ["{}", '{"id": null}', '{"id": 1}', '{"id": {}}'])
-    def test_objects_without_content(self, tmp_path, given, content):
+    def test_objects_without_content(self, tmp_path, content):
         path = tmp_path / "c.json"
         path.write_text(content)
-        assert "id" in verify(path, given[1]).fault
+        assert "id" in verify(path, signed("given")[1]).fault
 
-    def test_missing_file(self, tmp_path, given):
+    def test_missing_file(self, tmp_path):
         with pytest.raises(CertificateError, match="No such file"):
-            verify(tmp_path / "none.json", given[1])
+            verify(tmp_path / "none.json", signed("given")[1])
 
-    def test_directory(self, tmp_path, given):
+    def test_directory(self, tmp_path):
         with pytest.raises(CertificateError, match="directory"):
-            verify(tmp_path, given[1])
+            verify(tmp_path, signed("given")[1])
 
-    def test_device(self, given):
+    def test_device(self):
         with pytest.raises(CertificateError, match="not a regular file"):
-            verify(Path("/dev/zero"), given[1])
+            verify(Path("/dev/zero"), signed("given")[1])
 
-    def test_too_large(self, tmp_path, given, monkeypatch):
+    def test_too_large(self, tmp_path, monkeypatch):
         monkeypatch.setattr("nrs_design.certificates.prove.MAX_BYTES", 100)
         path = tmp_path / "c.json"
-        path.write_text(json.dumps(given[0]))
+        path.write_text(json.dumps(signed("given")[0]))
         with pytest.raises(CertificateError, match="larger"):
-            verify(path, given[1])
+            verify(path, signed("given")[1])
 
     def test_round_trip(self, tmp_path, pair):
         document, spec = pair

@@ -66,7 +66,7 @@ CHECKING = (
     "printable",
     "wings",
 )
-MOST_MODULES = 43
+MOST_MODULES = 42
 
 
 SHIPPED = sorted(path.name for path in (ROOT / "reports").glob("*.cert.json"))

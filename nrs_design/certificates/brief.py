@@ -6,12 +6,7 @@ from fractions import Fraction
 
 from nrs_design.proof.bounds import at_least, at_most, lower, upper
 from nrs_design.proof.evidence import AbstractEvidence
-from nrs_design.proof.evidence.abstract import (
-    AT_ANY_DEFLECTION,
-    IN_KEPT_CONTACT,
-    Bound,
-    Shows,
-)
+from nrs_design.proof.evidence.abstract import AT_ANY_DEFLECTION, IN_KEPT_CONTACT, Bound, Shows
 from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Clock
 from nrs_design.proof.system import SwitchedSystem

@@ -11,10 +11,7 @@ from nrs_design.cli.printing import detail, note, say
 from nrs_design.cli.tables import print_table
 
 if TYPE_CHECKING:
-    from nrs_design.design.analysis import (
-        AbstractControllerAnalysis,
-        DesignAnalysis,
-    )
+    from nrs_design.design.analysis import AbstractControllerAnalysis, DesignAnalysis
     from nrs_design.pipeline.design import Designed
     from nrs_design.spec import InteractionDesignSpec
 

@@ -42,12 +42,7 @@ def motion_summary(analysis: DesignAnalysis) -> dict[str, Any]:
 
 def meanings(items: Sequence[ImpedanceAnalysis]) -> Iterator[str]:
     """Yield what the values of the table are about."""
-    from nrs_design.design.measures import (
-        COST_MEANING,
-        LIMIT_MEANING,
-        MEANING,
-        computed,
-    )
+    from nrs_design.design.measures import COST_MEANING, LIMIT_MEANING, MEANING, computed
 
     yield MEANING[0]
     yield LIMIT_MEANING

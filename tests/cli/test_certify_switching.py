@@ -11,14 +11,7 @@ import pytest
 
 from nrs_design.proof.bounds import rounded_down, rounded_up
 from nrs_design.spec import read_spec
-from tests.support import (
-    COMMUTING,
-    ROOT,
-    SOFT_TISSUE,
-    document_of,
-    run,
-    typed,
-)
+from tests.support import COMMUTING, ROOT, SOFT_TISSUE, document_of, run, typed
 
 EXAMPLES = ROOT / "specs" / "examples"
 RANGES = EXAMPLES / "oscillator-range.nrs.yaml"

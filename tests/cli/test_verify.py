@@ -8,13 +8,7 @@ import sys
 import pytest
 
 from nrs_design.certificates.certificate import content_id
-from tests.support import (
-    COMMUTING,
-    PRINT_ERROR,
-    SOFT_TISSUE,
-    document_of,
-    run,
-)
+from tests.support import COMMUTING, PRINT_ERROR, SOFT_TISSUE, document_of, run
 
 
 @pytest.fixture(scope="module")

@@ -15,11 +15,7 @@ from nrs_design.proof.switching import Clock
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.reporting.document import Block, Paragraph, Section, Table
 from nrs_design.reporting.evidence import words
-from nrs_design.reporting.evidence.norms import (
-    largest_norm,
-    matrix_tables,
-    step_norms,
-)
+from nrs_design.reporting.evidence.norms import largest_norm, matrix_tables, step_norms
 from nrs_design.reporting.evidence.offers import Form, Offer
 from nrs_design.reporting.evidence.page import Page
 from nrs_design.reporting.evidence.runs import (

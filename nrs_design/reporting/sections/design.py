@@ -12,11 +12,7 @@ from nrs_design.design.transfer import TransferFunction, poles
 from nrs_design.reporting.document import Block, Illustration, Linked, Paragraph, Section, Table
 from nrs_design.reporting.figures.complex_plane import draw_root_locus
 from nrs_design.reporting.formatting import number, polynomial_text, root, roots
-from nrs_design.reporting.sections.impedance import (
-    CURVES,
-    by_controller,
-    impedance_section,
-)
+from nrs_design.reporting.sections.impedance import CURVES, by_controller, impedance_section
 from nrs_design.reporting.sections.landscape import landscape_section
 from nrs_design.reporting.sections.places import At, linked
 from nrs_design.reporting.sections.titles import MOTION

@@ -8,15 +8,7 @@ from typing import TYPE_CHECKING
 from nrs_design.certificates.goals import certified_goals
 from nrs_design.design.goals import Achieved
 from nrs_design.design.measures import MEANING, RESPONSE_MEANING, GoalStanding
-from nrs_design.reporting.document import (
-    Block,
-    Bullets,
-    Linked,
-    Paragraph,
-    Section,
-    State,
-    Table,
-)
+from nrs_design.reporting.document import Block, Bullets, Linked, Paragraph, Section, State, Table
 from nrs_design.reporting.sections.places import contact_at, linked, with_line
 from nrs_design.reporting.sections.titles import GOALS
 from nrs_design.spec import InteractionDesignSpec

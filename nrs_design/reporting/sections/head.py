@@ -16,14 +16,7 @@ from nrs_design.proof.text import counted
 from nrs_design.reporting.document import Derived
 from nrs_design.reporting.formatting import shortened
 from nrs_design.reporting.sections.places import linked
-from nrs_design.reporting.sections.titles import (
-    EVIDENCE,
-    MEANT,
-    MODES,
-    RECHECK,
-    RUNGS,
-    SPEC,
-)
+from nrs_design.reporting.sections.titles import EVIDENCE, MEANT, MODES, RECHECK, RUNGS, SPEC
 from nrs_design.search.certification import Certification
 from nrs_design.spec import InteractionDesignSpec, RobotSpec
 from nrs_design.spec.provenance import COVERS, MOTOR_COVERS

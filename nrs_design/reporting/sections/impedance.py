@@ -23,16 +23,7 @@ from nrs_design.proof.bounds import lower, upper
 from nrs_design.reporting.document import Illustration, Paragraph, Section, Table
 from nrs_design.reporting.formatting import number
 from nrs_design.reporting.sections.places import At, linked
-from nrs_design.reporting.style import (
-    INK,
-    MUTED,
-    color,
-    curve,
-    legend,
-    marker,
-    new_axes,
-    styled,
-)
+from nrs_design.reporting.style import INK, MUTED, color, curve, legend, marker, new_axes, styled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

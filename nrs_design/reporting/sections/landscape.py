@@ -7,24 +7,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from nrs_design.axis import labelled
-from nrs_design.design.landscape import (
-    CostMap,
-    alternatives,
-    map_cost,
-)
+from nrs_design.design.landscape import CostMap, alternatives, map_cost
 from nrs_design.reporting.document import Block, Illustration, Paragraph, Section, Table
 from nrs_design.reporting.formatting import number
 from nrs_design.reporting.sections.places import linked
-from nrs_design.reporting.style import (
-    BLUE,
-    GREEN,
-    INK,
-    MUTED,
-    VERMILLION,
-    legend,
-    new_axes,
-    styled,
-)
+from nrs_design.reporting.style import BLUE, GREEN, INK, MUTED, VERMILLION, legend, new_axes, styled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

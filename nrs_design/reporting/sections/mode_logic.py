@@ -7,11 +7,7 @@ from fractions import Fraction
 from nrs_design.proof.bounds import lower, upper
 from nrs_design.reporting.document import Paragraph, Section, Table
 from nrs_design.spec import InteractionDesignSpec, Quantity
-from nrs_design.spec.threshold_logic import (
-    LogicSwitchSpec,
-    ThresholdLogicSpec,
-    values_at_switch,
-)
+from nrs_design.spec.threshold_logic import LogicSwitchSpec, ThresholdLogicSpec, values_at_switch
 
 _CHATTER_FREE = (
     "No chatter: between two switches a signal that is known up to a noise N, as old as an age D "

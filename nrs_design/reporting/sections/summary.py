@@ -11,11 +11,7 @@ from nrs_design.proof.text import counted
 from nrs_design.reporting.document import Light, State
 from nrs_design.reporting.register import register_of
 from nrs_design.reporting.sections.goals import judged_goals
-from nrs_design.reporting.sections.titles import (
-    ASSUMPTIONS,
-    GOALS,
-    MEANT,
-)
+from nrs_design.reporting.sections.titles import ASSUMPTIONS, GOALS, MEANT
 from nrs_design.spec import InteractionDesignSpec
 
 if TYPE_CHECKING:

@@ -11,15 +11,7 @@ from nrs_design.axis import labelled
 from nrs_design.reporting.document import Block, Illustration, Paragraph, Section, Table
 from nrs_design.reporting.formatting import number
 from nrs_design.reporting.sections.places import linked
-from nrs_design.reporting.style import (
-    BLUE,
-    INK,
-    PURPLE,
-    VERMILLION,
-    legend,
-    new_axes,
-    styled,
-)
+from nrs_design.reporting.style import BLUE, INK, PURPLE, VERMILLION, legend, new_axes, styled
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

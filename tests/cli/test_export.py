@@ -1,18 +1,17 @@
 import json
 import subprocess
-import sys
+from functools import partial
 from pathlib import Path
 
 import pytest
 
 from nrs_design.certificates.certificate import content_id, dump
 from nrs_design.certificates.verify import verify
-from nrs_design.cli import main
 from nrs_design.exporters.record import ExportRecord
 from nrs_design.gating.lock import SCHEMA
 from nrs_design.pipeline.runs import run_certification
 from nrs_design.spec import read_spec
-from tests.support import program_named
+from tests.support import program_named, run
 
 SPECS = Path(__file__).parents[2] / "specs"
 SPEC = SPECS / "neuroboscope/soft-tissue.nrs.yaml"
@@ -21,14 +20,7 @@ SPEC = SPECS / "neuroboscope/soft-tissue.nrs.yaml"
 @pytest.fixture
 def export(monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)
-
-    def run(*arguments):
-        monkeypatch.setattr(sys, "argv", ["nrs-design", "export", *map(str, arguments)])
-        with pytest.raises(SystemExit) as caught:
-            main()
-        return int(caught.value.code or 0)
-
-    return run
+    return partial(run, "export", cwd=tmp_path)
 
 
 @pytest.fixture(scope="module")
@@ -52,22 +44,21 @@ def contents():
         (("--out", "a/b.json"), "a/b.json", "a/soft-tissue.cert.json"),
     ],
 )
-def test_export_writes_the_record_and_its_certificate(export, capsys, out, where, proof):
-    assert export(SPEC, *out, "--json") == 0
+def test_export_writes_the_record_and_its_certificate(export, out, where, proof):
+    document = json.loads(export(SPEC, *out, "--json", code=0).stdout)
     assert files() == sorted([where, proof])
     record = ExportRecord.model_validate_json(Path(where).read_text())
     checked = verify(Path(proof), read_spec(SPEC))
     assert checked.fault is None
     assert record.proof.certificate_id == checked.certificate.id
     assert record.spec.sha256 == read_spec(SPEC).sha256
-    document = json.loads(capsys.readouterr().out)
     assert (document["schema"], document["verdict"]) == ("nrs-design/export/1", "proved")
     assert document["record"] == json.loads(Path(where).read_text())
 
 
 def test_given_certificate_is_used_and_not_written_again(export, certificate):
     Path("mine.json").write_text(certificate)
-    assert export(SPEC, "--certificate", "mine.json") == 0
+    export(SPEC, "--certificate", "mine.json", code=0)
     assert files() == ["mine.json", "reports/soft-tissue.export.json"]
 
 
@@ -99,7 +90,7 @@ def test_what_is_recorded_and_holds_is_exported(export, certificate, where, lock
         entry |= {"sha256": read_spec(SPEC).sha256, "version": "1", "verdict": "proved"}
         document = {"schema": SCHEMA, "specs": [entry | {"gains": {}, "goals": []}]}
         Path("nrs.lock").write_text(json.dumps(document))
-    assert export("a.nrs.yaml", "--out", out) == 0
+    export("a.nrs.yaml", "--out", out, code=0)
     shipped = json.loads(Path(out, "soft-tissue.export.json").read_text())
     written = json.loads(Path(out, "soft-tissue.cert.json").read_text())
     assert shipped["proof"]["certificate_id"] == written["id"]
@@ -116,17 +107,16 @@ def raised_rate(document):
 
 
 @pytest.mark.parametrize("edit", [other_gain, raised_rate])
-def test_certificate_that_does_not_cover_the_design(export, certificate, capsys, edit):
+def test_certificate_that_does_not_cover_the_design(export, certificate, edit):
     Path("mine.json").write_text(signed(certificate, edit))
-    assert export(SPEC, "--certificate", "mine.json") == 1
+    assert "not exported" in export(SPEC, "--certificate", "mine.json", code=1).stderr
     assert files() == ["mine.json"]
-    assert "not exported" in capsys.readouterr().err
 
 
 def test_certificate_that_is_none(export):
-    assert export(SPEC, "--certificate", "missing.json") == 2
+    export(SPEC, "--certificate", "missing.json", code=2)
     Path("mine.json").write_text("[]")
-    assert export(SPEC, "--certificate", "mine.json") == 2
+    export(SPEC, "--certificate", "mine.json", code=2)
     assert files() == ["mine.json"]
 
 
@@ -155,34 +145,33 @@ def sampled(export, sampled_certificate):
 
 
 @pytest.mark.slow
-def test_programs_with_a_proof_of_the_sampled_loop(export, capsys):
+def test_programs_with_a_proof_of_the_sampled_loop(export):
     spec = sampled_spec()
-    assert export(spec, "--out", "out", "--format", "c") == 0
-    assert "every-2-ms: PROVED" in capsys.readouterr().out
+    done = export(spec, "--out", "out", "--format", "c", code=0)
+    assert "every-2-ms: PROVED" in done.stdout
     proved = (spec, "--out", "out", "--certificate", "out/every-2-ms.cert.json")
-    assert export(*proved, "--format", "vectors", "--quiet") == 0
+    export(*proved, "--format", "vectors", "--quiet", code=0)
     before = contents()
-    assert export(*proved, "--format", "c") == 0
-    assert export(*proved, "--format", "vectors") == 0
+    export(*proved, "--format", "c", code=0)
+    export(*proved, "--format", "vectors", code=0)
     assert contents() == before
     Path("out/every-2-ms.c").write_text("int main(void) { return 0; }")
     before = contents()
-    assert export(*proved, "--format", "c") == 2
+    export(*proved, "--format", "c", code=2)
     assert contents() == before
 
 
 @pytest.mark.parametrize("name", ["c", "json", "mat", "vectors", "fmu"])
-def test_the_export_of_another_spec_is_not_overwritten(export, capsys, sampled, name):
+def test_the_export_of_another_spec_is_not_overwritten(export, sampled, name):
     spec, certificate = sampled
     options = ("--certificate", certificate, "--format", name, "--out", "out")
-    assert export(spec, *options) == 0
+    export(spec, *options, code=0)
     for path in [*Path("out").iterdir()]:
         # An older text of the same spec is replaced, one of another spec stays.
         path.write_bytes(path.read_bytes().replace(b"every-2-ms", b"each-2-ms-"))
     before = contents()
-    capsys.readouterr()
-    assert export(spec, *options) == 2
-    assert "was exported for the spec each-2-ms-" in capsys.readouterr().err
+    done = export(spec, *options, code=2)
+    assert "was exported for the spec each-2-ms-" in done.stderr
     assert contents() == before
 
 
@@ -194,7 +183,7 @@ def test_two_laws_make_one_program(export, sampled):
     Path("other.nrs.yaml").write_text(Path(spec).read_text().replace("every-2-ms", "other"))
     for options in ((spec, "--certificate", certificate), ("other.nrs.yaml",)):
         for name in ("c", "vectors"):
-            assert export(*options, "--format", name, "--out", "out", "-q") == 0
+            export(*options, "--format", name, "--out", "out", "-q", code=0)
     Path("main.c").write_text(
         """#include "other_test.h"
 #include "every-2-ms_test.h"

@@ -1,14 +1,13 @@
 import json
 import re
-import sys
 import xml.etree.ElementTree as ET
+from functools import partial
 from pathlib import Path
 
 import pytest
 
-from nrs_design.cli import main
 from tests.gating.conftest import STABLE
-from tests.support import PRINT_ERROR, typed
+from tests.support import PRINT_ERROR, run, typed
 from tests.terminal import run_on_terminal
 
 
@@ -17,14 +16,7 @@ def gate(monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)
     Path("specs").mkdir()
     Path("specs/stable.nrs.yaml").write_text(STABLE)
-
-    def run(*arguments):
-        monkeypatch.setattr(sys, "argv", ["nrs-design", "gate", *map(str, arguments)])
-        with pytest.raises(SystemExit) as caught:
-            main()
-        return int(caught.value.code or 0)
-
-    return run
+    return partial(run, "gate", cwd=tmp_path)
 
 
 def test_as_typed(gate, tmp_path):
@@ -54,21 +46,17 @@ def test_a_narrow_terminal(tmp_path):
         ("json", lambda out: out.count('"status": "refuted"')),
     ],
 )
-def test_documents_go_to_stdout_and_the_sum_to_stderr(gate, capsys, format_, failures):
+def test_documents_go_to_stdout_and_the_sum_to_stderr(gate, format_, failures):
     # What is written into the lock is noted once.
     gate(PRINT_ERROR, "specs", "--no-reports", "--quiet")
-    capsys.readouterr()
-    texts = []
-    for _ in range(2):
-        assert gate(PRINT_ERROR, "--no-reports", "--format", format_) == 1
-        texts.append(capsys.readouterr().out)
-    assert texts[0] == texts[1]
-    assert failures(texts[0]) == 3
-    assert gate("specs", "--no-reports", "--format", format_) == 0
-    out, err = capsys.readouterr()
-    assert "1 spec: 1 proved; 4 obligations, all fulfilled\n" in err
-    assert "all fulfilled" not in out
-    assert out == "" or out.endswith("\n")
-    assert gate("specs", "--no-reports", "--format", format_, "--out", "ci/gate.out", "-q") == 0
-    assert capsys.readouterr() == ("", "")
-    assert Path("ci/gate.out").read_text() == out
+    asked = ("--no-reports", "--format", format_)
+    first, again = (gate(PRINT_ERROR, *asked, code=1).stdout for _ in range(2))
+    assert first == again
+    assert failures(first) == 3
+    done = gate("specs", *asked, code=0)
+    assert "1 spec: 1 proved; 4 obligations, all fulfilled\n" in done.stderr
+    assert "all fulfilled" not in done.stdout
+    assert done.stdout == "" or done.stdout.endswith("\n")
+    silent = gate("specs", *asked, "--out", "ci/gate.out", "-q", code=0)
+    assert (silent.stdout, silent.stderr) == ("", "")
+    assert Path("ci/gate.out").read_text() == done.stdout

@@ -7,14 +7,16 @@ import json
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from nrs_design.models.cut import RangeCut
 from nrs_design.proof.assumption import Assumption
 from nrs_design.proof.evidence import AbstractEvidence, Shows
 from nrs_design.proof.evidence.abstract import AT_ANY_DEFLECTION, IN_KEPT_CONTACT
 from nrs_design.proof.evidence.fields import system_fields, written
 from nrs_design.proof.system import SwitchedSystem
+
+if TYPE_CHECKING:
+    from nrs_design.models.cut import RangeCut
 
 SCHEMA = "nrs-design/certificate/9"
 # What says nothing about the claim, so that the id does not cover it.

@@ -54,7 +54,7 @@ def test_only_the_command_asked_for_is_imported(tmp_path):
 
 
 # What checks a certificate by itself: the program, the file format, the proof.
-# Of the models, where constant ranges are cut.
+# Of the models, where constant ranges are cut, if they are.
 CHECKING = (
     "cli",
     "certificates",

@@ -147,9 +147,9 @@ class GateOutcome:
         Modes of one controller have one place in the spec.
         """
         alike: dict[Hashable, list[Obligation]] = {}
-        for item in self.broken:
+        for number, item in enumerate(self.broken):
             of_a_mode = item.rule is MODE_STABLE and item.line is not None
-            key = (item.path, item.line, item.status) if of_a_mode else id(item)
+            key = (item.path, item.line, item.status) if of_a_mode else number
             alike.setdefault(key, []).append(item)
         return tuple(_counted(first, len(others)) for first, *others in alike.values())
 

@@ -17,11 +17,11 @@ from nrs_design.errors import InternalError
 
 # What the driver of a motor takes.
 COMMAND_UNITS = ("rpm", "V", "A", "counts")
-_ON_BOTH = ("", "1", "s", "1/s", "J", "Hz", "%", "N", "N/m", "ms", "samples", "decades", "W")
+COMMON_UNITS = ("", "1", "s", "1/s", "J", "Hz", "%", "N", "N/m", "ms", "samples", "decades", "W")
 # Units of an axis that turns, and of one that slides. Frequencies are in rad/s on both, and none of
 # these.
 _SLIDING: Mapping[str, str] = {
-    **{same: same for same in _ON_BOTH},
+    **{same: same for same in COMMON_UNITS},
     "rad": "m",
     "rad/s": "m/s",
     "rad/s^2": "m/s^2",

@@ -56,15 +56,15 @@ def _goals(spec: Spec, certificate: Certificate | None) -> Iterator[CertifiedGoa
     # To name the class would load it, and all its parts, for specs that have no goals.
     if spec.kind != "interaction-design" or (goals := spec.goals) is None:
         return
-    if (wanted := goals.peak_torque) is not None:
-        yield CertifiedGoal("peak_torque", wanted.text, *_peak_torque(wanted, certificate))
-    if (wanted := goals.decay_rate) is not None:
-        yield CertifiedGoal("decay_rate", wanted.text, *_decay_rate(wanted, certificate))
-    if (wanted := goals.delay) is not None and spec.sampling is not None:
-        yield CertifiedGoal("delay", wanted.text, *_delay(spec.sampling, wanted, certificate))
+    if (torque := goals.peak_torque) is not None:
+        yield CertifiedGoal("peak_torque", torque.text, *_peak_torque(torque, certificate))
+    if (rate := goals.decay_rate) is not None:
+        yield CertifiedGoal("decay_rate", rate.text, *_decay_rate(rate, certificate))
+    if (delay := goals.delay) is not None and spec.sampling is not None:
+        yield CertifiedGoal("delay", delay.text, *_delay(spec.sampling, delay, certificate))
     if (force := goals.initial_force) is not None:
-        least, text = (None, force) if isinstance(force, str) else (force.exact, force.text)
-        yield CertifiedGoal("initial_force", text, *_initial_force(least, certificate))
+        required, text = (None, force) if isinstance(force, str) else (force.exact, force.text)
+        yield CertifiedGoal("initial_force", text, *_initial_force(required, certificate))
 
 
 def _peak_torque(wanted: Quantity, certificate: Certificate | None) -> tuple[str, bool]:
@@ -126,7 +126,7 @@ def _delay(
     return f"the loop is proved for force samples {ages}", oldest >= wanted.exact
 
 
-def _initial_force(least: Fraction | None, certificate: Certificate | None) -> tuple[str, bool]:
+def _initial_force(required: Fraction | None, certificate: Certificate | None) -> tuple[str, bool]:
     statements = () if certificate is None else certificate.statements
     level = next((size for s in statements if (size := s.start_size) is not None), None)
     if certificate is None or level is None:
@@ -135,4 +135,4 @@ def _initial_force(least: Fraction | None, certificate: Certificate | None) -> t
         f"from rest with a contact force up to {rounded_down(level, _effort(certificate))} "
         "motions are proved to decay although signals saturate"
     )
-    return said, least is None or level >= least
+    return said, required is None or level >= required

@@ -82,7 +82,7 @@ def command(
                     )
                     found.deliver(name)
 
-            # The axis that it takes is that of no other command.
+            # A command must not change the axis of the next command.
             copy_context().run(answer)
 
         signature = inspect.signature(function, eval_str=True)

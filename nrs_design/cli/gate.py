@@ -142,7 +142,7 @@ def _check_options(out: Path | None, jobs: int, *, locked: bool, prune: bool) ->
     from nrs_design.gating.find_specs import SUFFIXES
     from nrs_design.output import GATE, check_place
 
-    refuse_both(("--prune", "--locked", prune and locked), why=": --locked writes nothing")
+    refuse_both(("--prune", "--locked", prune and locked), reason=": --locked writes nothing")
     if jobs > 1 and locked:
         raise NrsDesignError(
             "--jobs and --locked exclude each other: re-checking takes no search",

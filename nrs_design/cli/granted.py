@@ -11,8 +11,8 @@ if TYPE_CHECKING:
     from nrs_design.pipeline.certification import Result
 
 
-# Modes of which -v gives the names; --json has them all.
-NAMED = 10
+# The option -v prints as many names of modes; --json prints all names.
+MODE_NAMES = 10
 
 
 def print_granted(result: Result) -> None:
@@ -25,8 +25,8 @@ def print_granted(result: Result) -> None:
     for text in sentences(granted):
         detail(f"    - {text}")
     detail(f"  common quadratic function: {certification.common_quadratic}")
-    more = f" and {len(names) - NAMED} more" if len(names) > NAMED else ""
-    detail(f"  {counted(len(names), 'mode')}: {', '.join(names[:NAMED])}{more}")
+    remainder = f" and {len(names) - MODE_NAMES} more" if len(names) > MODE_NAMES else ""
+    detail(f"  {counted(len(names), 'mode')}: {', '.join(names[:MODE_NAMES])}{remainder}")
     if granted and not wants_details():
         without = "; ".join(result.omits)
         besides = f"; not modelled: {without}" if without else ""

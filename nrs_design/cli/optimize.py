@@ -73,9 +73,9 @@ def optimize(
 
     proved = all(found.proved for item in analysis.impedance for found in item.responses)
     proved = proved and (certified is None or certified.proved)
-    judged = certified is not None
+    has_proof = certified is not None
     return design_answer(
-        designed, analysis, analysis.impedance, facts, show, proved=proved, judged=judged
+        designed, analysis, analysis.impedance, facts, show, proved=proved, judged=has_proof
     )
 
 

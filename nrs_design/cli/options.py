@@ -56,14 +56,14 @@ def _number(text: str) -> float:
         ) from error
 
 
-def refuse_both(*pairs: tuple[str, str, object], why: str = "") -> None:
-    """Refuse the first two options of which both are given, as the third of their row says."""
+def refuse_both(*pairs: tuple[str, str, object], reason: str = "") -> None:
+    """Refuse the first pair of options whose third entry is true."""
     from nrs_design.errors import NrsDesignError
 
-    for one, other, both in pairs:
-        if both:
-            said = f"{one} and {other} exclude each other"
-            raise NrsDesignError(said + why, remedy="keep one of them")
+    for first, second, are_used in pairs:
+        if are_used:
+            message = f"{first} and {second} exclude each other{reason}"
+            raise NrsDesignError(message, remedy="keep one of them")
 
 
 SpecFile = Annotated[Path, typer.Argument(metavar="SPEC", help="Spec file (*.nrs.yaml).")]

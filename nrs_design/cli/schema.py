@@ -11,7 +11,7 @@ import typer
 from nrs_design.cli.command import Answer, command
 from nrs_design.cli.printing import note
 
-# What a schema is of.
+# Schemas that the command prints.
 Described = Literal["spec", "export"]
 
 

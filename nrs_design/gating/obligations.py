@@ -142,16 +142,16 @@ class GateOutcome:
 
     @property
     def findings(self) -> tuple[Obligation, ...]:
-        """The same for people: of the modes of one controller, one stands for all that fail alike.
+        """Broken obligations; equal failures of the modes of one controller are merged.
 
-        Modes of one controller have one place in the spec.
+        The modes of one controller have the same line of the spec.
         """
         alike: dict[Hashable, list[Obligation]] = {}
         for number, item in enumerate(self.broken):
-            of_a_mode = item.rule is MODE_STABLE and item.line is not None
-            key = (item.path, item.line, item.status) if of_a_mode else number
+            is_mode = item.rule is MODE_STABLE and item.line is not None
+            key = (item.path, item.line, item.status) if is_mode else number
             alike.setdefault(key, []).append(item)
-        return tuple(_counted(first, len(others)) for first, *others in alike.values())
+        return tuple(_add_count(first, len(others)) for first, *others in alike.values())
 
     @property
     def severity(self) -> int:
@@ -191,8 +191,8 @@ def count_by_verdict(specs: Iterable[SpecOutcome]) -> dict[str, int]:
     return Counter(spec.verdict or none[spec.certifiable] for spec in specs)
 
 
-def _counted(first: Obligation, others: int) -> Obligation:
-    """Return an obligation that stands for others, too."""
+def _add_count(first: Obligation, others: int) -> Obligation:
+    """Return an obligation whose message counts equal failures of other modes."""
     if not others:
         return first
     modes = counted(others, "more mode")

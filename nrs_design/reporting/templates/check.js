@@ -137,9 +137,9 @@ const check = (() => {
     const { length, first, more = [], ahead = range(length).map((k) => (k ? [-1n, BigInt(k + 1) % length] : [1n, -1n])) } = clock, groups = [S.names.slice(0, S.count), S.names.slice(S.count)];
     const named = [first, ...more], kind = (name) => named.concat([[name]]).findIndex((own) => own.includes(name)), kinds = named.length + 1;
     need(!flow && length > 1n && S.o.switching === "arbitrary" && ahead.length === Number(length), "modes take turns without steps");
-    need(named.flat().every((name) => S.names.includes(name)) && new Set(named.flat()).size === named.flat().length, "a mode of a turn is none, or of two kinds");
-    need(groups.every((names) => !names.length || new Set(names.map(kind)).size === kinds), "a turn has no mode");
-    need(("ahead" in clock || !more.length) && (S.o.enclosures ?? []).every((names) => new Set(names.map(kind)).size === 1), "a round, or an enclosure, has too many kinds");
+    const count = (names) => new Set(names.map(kind)).size;
+    distinct(named.flat(), S.names);
+    need(groups.every((names) => !names.length || count(names) === kinds) && (S.o.enclosures ?? []).every((names) => count(names) === 1), "a turn has no mode");
     need(ahead.every((leads) => leads.length === kinds && leads.some((to) => to >= 0n) && leads.every((to) => to >= -1n && to < length)), "an automaton is odd");
     return inCases(S, ahead.flatMap((leads, k) => leads.flatMap((to, own) => (to < 0n ? [] : steps.filter((s) => kind(s.mode) === own)
       .map((s) => ({ ...s, source: `${s.source} ${k}`, target: `${s.target} ${to}` }))))));

@@ -95,24 +95,49 @@ class SaidOfUnequalModes(Said):
     allows_unequal_modes = True
 
 
+@dataclass(frozen=True)
+class SaidWithRounding(Said):
+    covers_rounding = True
+
+
 KEPT = " This holds as long as contact is kept, the environment pulling as it pushes."
 GROWN = " This growth is that in kept contact, the environment pulling as it pushes."
 
 
-@pytest.mark.parametrize(
-    ("what", "words"),
-    [
-        (Shows.STABILITY, KEPT),
-        (Shows.BOUND, KEPT),
-        (Shows.INSTABILITY, GROWN),
-        (Shows.NO_COMMON_QUADRATIC, ""),
-    ],
+NOT_ROUNDED = " This holds for the law computed without rounding."
+# Of what is shown: what is said where contact is kept, and of a law that rounds; and whether the
+# loss of contact must be covered.
+TAKEN = (
+    (Shows.STABILITY, KEPT, NOT_ROUNDED, True),
+    (Shows.BOUND, KEPT, NOT_ROUNDED, True),
+    (Shows.INSTABILITY, GROWN, f" {GROWN_WITHOUT_ROUNDING}", False),
+    (Shows.NO_COMMON_QUADRATIC, "", "", False),
 )
-def test_what_is_taken_for_granted_of_contact_is_said(what, words):
+
+
+@pytest.mark.parametrize(("what", "kept", "rounded", "is_refused"), TAKEN)
+def test_what_is_taken_for_granted_is_said(what, kept, rounded, is_refused):
+    one, said = matrix([[1]]), Said(what=what)
+    exact = family([["1/2"]], time=Time.DISCRETE)
+    rounding = replace(exact, roundings=(Rounding("x", (one,), (one,)),))
+    included = " What single-precision arithmetic rounds in the law is included."
+    assert said.claim(rounding) == f"It is so.{rounded}"
+    assert SaidWithRounding(what=what).claim(rounding) == f"It is so.{included}"
+    for evidence in (said, SaidWithRounding(what=what)):
+        assert evidence.claim(exact) == "It is so."
+    assert not said.covers_rounding
     for system in (bouncing(), bouncing_in_steps()):
-        assert Said(what=what).claim(system) == f"It is so.{words}"
-        assert Said(what=what).claim(replace(system, contact=None)) == "It is so."
+        assert said.claim(system) == f"It is so.{kept}"
+        assert said.claim(replace(system, contact=None)) == "It is so."
         assert SaidOfAllContact(what=what).claim(system) == "It is so."
+    system = bouncing()
+    losable = replace(system, contact=replace(system.contact, required=True))
+    assert said.find_fault(losable) == (
+        "evidence of kind claimed does not cover the loss of contact" if is_refused else None
+    )
+    assert said.find_fault(system) is None
+    assert said.find_fault(replace(system, contact=None)) is None
+    assert SaidOfAllContact(what=what).find_fault(losable) is None
 
 
 @dataclass(frozen=True)
@@ -150,35 +175,6 @@ def test_where_the_environment_does_not_act_nothing_pulls():
     assert grown(mode="m1").claim(among).endswith(f"at any deflection{pulling}.")
 
 
-@dataclass(frozen=True)
-class SaidWithRounding(Said):
-    covers_rounding = True
-
-
-NOT_ROUNDED = " This holds for the law computed without rounding."
-
-
-@pytest.mark.parametrize(
-    ("what", "words"),
-    [
-        (Shows.STABILITY, NOT_ROUNDED),
-        (Shows.BOUND, NOT_ROUNDED),
-        (Shows.INSTABILITY, f" {GROWN_WITHOUT_ROUNDING}"),
-        (Shows.NO_COMMON_QUADRATIC, ""),
-    ],
-)
-def test_what_is_taken_for_granted_of_rounding_is_said(what, words):
-    one = matrix([[1]])
-    exact = family([["1/2"]], time=Time.DISCRETE)
-    system = replace(exact, roundings=(Rounding("x", (one,), (one,)),))
-    included = " What single-precision arithmetic rounds in the law is included."
-    assert Said(what=what).claim(system) == f"It is so.{words}"
-    assert SaidWithRounding(what=what).claim(system) == f"It is so.{included}"
-    for evidence in (Said(what=what), SaidWithRounding(what=what)):
-        assert evidence.claim(exact) == "It is so."
-    assert not Said(what=what).covers_rounding
-
-
 def test_a_rate_by_the_step_is_said_in_seconds_too():
     system = replace(bouncing_in_steps(), contact=None)
     words = "A step takes 0.1 s, so that is exp(-alpha t) with alpha"
@@ -186,27 +182,6 @@ def test_a_rate_by_the_step_is_said_in_seconds_too():
     assert Said(rate=Fraction(2, 3)).claim(system) == f"It is so. {words} >= 3.33333 1/s."
     assert Said().claim(system) == "It is so."
     assert Said(rate=Fraction(3, 4)).claim(replace(system, sample_time=None)) == "It is so."
-
-
-@pytest.mark.parametrize(
-    ("what", "is_refused"),
-    [
-        (Shows.STABILITY, True),
-        (Shows.BOUND, True),
-        (Shows.INSTABILITY, False),
-        (Shows.NO_COMMON_QUADRATIC, False),
-    ],
-)
-def test_where_contact_may_be_lost_its_loss_must_be_covered(what, is_refused):
-    kept = bouncing()
-    losable = replace(kept, contact=replace(kept.contact, required=True))
-    fault = Said(what=what).find_fault(losable)
-    assert fault == (
-        "evidence of kind claimed does not cover the loss of contact" if is_refused else None
-    )
-    assert Said(what=what).find_fault(kept) is None
-    assert Said(what=what).find_fault(replace(kept, contact=None)) is None
-    assert SaidOfAllContact(what=what).find_fault(losable) is None
 
 
 def test_who_does_not_know_of_turns_shows_nothing_where_modes_take_them():

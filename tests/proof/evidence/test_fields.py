@@ -42,6 +42,7 @@ from tests.proof.systems import (
     sheared_in_stays,
 )
 from tests.support import number_in
+from tests.tables import rows
 
 
 @pytest.mark.parametrize("value", [True, 1.0, "1", None, [1], Decimal(1), Fraction(1)])
@@ -160,7 +161,6 @@ ROUNDED = replace(
     bouncing_in_steps(),
     roundings=(Rounding("F", (matrix([[1], ["1/2"]]),) * 3, (matrix([["1/9", 0]]),) * 3),),
 )
-NAMELESS = {"numerators": [[1, 0], [0, 1]], "denominator": 1}
 
 
 def stored(system):
@@ -207,32 +207,20 @@ def test_the_longest_numbers_that_python_reads_back_are_written():
     assert system_fields(system)["modes"][0]["denominator"] == longest
 
 
-@pytest.mark.parametrize(
-    ("field", "value", "reason"),
-    [
-        ("modes", [], "largest mode"),
-        ("modes", [{"name": "m0"} | NAMELESS, {"name": "m0"} | NAMELESS], "the same name"),
-        ("modes", [{"name": "m0", "numerators": [], "denominator": 1}], "lengths"),
-        ("modes", [{"name": "m0", "numerators": [[]], "denominator": 1}], "lengths"),
-        ("modes", [{"name": "m0", "numerators": [[1]], "denominator": -1}], "positive denominator"),
-        ("modes", [{"name": "m0", "numerators": [[1], [1]], "denominator": 1}], "not square"),
-        ("modes", [{"name": "m", **NAMELESS}, {"name": "m0"}], "numerators"),
-        ("modes", {}, "expected a list"),
-        ("modes", [{"name": "m0", "numerators": [[1, 2]], "denominator": 1}], "not square"),
-        ("modes", [{"name": "m0", "numerators": [[1], [1, 2]], "denominator": 1}], "lengths"),
-        ("modes", [{"name": "m0", "numerators": [[1]], "denominator": 0}], "positive denominator"),
-        ("modes", [{"name": 3, "numerators": [[1]], "denominator": 1}], "expected a text"),
-        ("states", ["x"], "largest mode"),
-        ("states", ["x", "y", "z"], "largest mode"),
-        ("states", [1, 2], "expected a text"),
-        ("time", "never", "not a valid Time"),
-        ("switching", {**stored(RULED)["switching"], "dwell_time": "-1"}, "not a ratio"),
-        ("switching", {**stored(RULED)["switching"], "fixed_ends": "ab"}, "expected a list"),
-    ],
-)
+@pytest.mark.parametrize(("field", "value", "reason"), rows(__file__, "test_malformed_systems"))
 def test_malformed_systems(field, value, reason):
+    fields = stored(RULED)
+    if isinstance(value, dict) and field == "switching":
+        value = fields["switching"] | value
     with pytest.raises((KeyError, ValueError, TypeError), match=reason):
-        read_system("x", {**stored(RULED), field: value})
+        read_system("x", {**fields, field: value})
+
+
+def test_a_field_that_is_missing_is_named():
+    fields = stored(RULED)
+    del fields["states"]
+    with pytest.raises(KeyError, match="states"):
+        read_system("x", fields)
 
 
 def tens(count):
@@ -272,26 +260,19 @@ def test_a_rule_for_misses_is_read_as_it_was_written():
     assert read_system(stays.name, fields).clock == stays.clock
 
 
-@pytest.mark.parametrize(
-    ("clock", "reason"),
-    [
-        ({"length": 1, "first": ["m0"]}, "has from 2 to 100 steps"),
-        ({"length": 101, "first": ["m0"]}, "has from 2 to 100 steps"),
-        ({"length": "3", "first": ["m0"]}, "expected an integer"),
-        ({"length": 3, "first": "m0"}, "expected a list"),
-        ({"length": 3, "first": [0]}, "expected a text"),
-        ({"length": 1001, "first": ["m0"], "ahead": [[0, 1]]}, "from 2 to 1000 steps or states"),
-        ({"length": 2, "first": ["m0"], "ahead": [[0, 1]] * 1001}, "from 2 to 1000 steps or"),
-        ({"length": 2, "first": ["m0"], "ahead": [[0, None]]}, "expected an integer"),
-        ({"length": 2, "first": ["m0"], "ahead": [0]}, "expected a list"),
-        ({"length": 2, "first": ["m0"], "ahead": [[0, 1]] * 2, "more": ["m1"]}, "expected a list"),
-    ],
-)
+@pytest.mark.parametrize(("clock", "reason"), rows(__file__, "test_malformed_turns"))
 def test_malformed_turns(clock, reason):
     fields = system_fields(doubled_in_turns(3))
     assert fields["clock"] == {"length": 3, "first": ["m0"]}
     with pytest.raises((TypeError, ValueError), match=reason):
         read_system("x", {**fields, "clock": clock})
+
+
+def test_the_longest_rule_for_misses_is_read_and_no_longer_one():
+    fields = system_fields(doubled_in_turns(3))
+    rule = {"length": 2, "first": ["m0"], "ahead": [[0, 1]] * 1001}
+    with pytest.raises(ValueError, match="from 2 to 1000 steps or"):
+        read_system("x", {**fields, "clock": rule})
 
 
 def test_that_loss_must_be_covered_is_true_or_false():

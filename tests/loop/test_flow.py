@@ -8,7 +8,6 @@ from itertools import pairwise
 import mpmath as mp
 import numpy as np
 import pytest
-from scipy.linalg import expm
 from scipy.optimize import linprog
 
 from nrs_design.controllers.laws import Admittance
@@ -408,59 +407,6 @@ def test_a_contact_is_constant_where_nothing_else_is_touched(contacts, lost, con
     interval = Interval(F(40), F(20), F(60), varies=False)
     each = [Environment(str(i), Elastic, (interval,)) for i in range(contacts)]
     assert anything_of(each, lost=lost)["k"].is_constant is constant
-
-
-def floats_of(frame, law, delay=0, **values):
-    n = len(frame.states)
-    rows = frame.rows(law, delay, values)[:n]
-    return np.array([[float(v) for v in row[:n]] for row in rows])
-
-
-@pytest.mark.parametrize("inert", [True, False])
-@pytest.mark.parametrize("late", [F(0), T / 3, F(3, 2) * T])
-@pytest.mark.parametrize("loop", [SECOND, ZEROED])
-def test_a_streamed_position_moves_as_by_hand(inert, late, loop):
-    """The reference is sent once it has moved on; what is felt is the contact of the sample."""
-    a, b, k, step = 0.65, 0.16, 43.0, float(T)
-    law = Admittance.discrete(F(a) if inert else None, F(b), F(step))
-    timing = CommandTiming(T, late, late)
-    drive = position_drive(loop)
-    frame = Frame(timing, drive, StepFrame(F(0), F(0), takes=Takes.POSITION), (law,), 0)
-    n = drive.order
-    (rates,) = drive.rates.terms.values()
-    G = np.zeros((n + 1, n + 1))
-    G[:n] = np.array(rates, float)
-    rng = np.random.default_rng(3)
-    own, theta, reference, vm = rng.normal(size=n - 1), *rng.normal(size=3)
-    sent = rng.normal(size=3)
-    jumps = drive.speed is not None
-    names = [*drive.states[jumps:]]
-    x = dict.fromkeys(frame.states, 0.0) | dict(zip(names, own, strict=True))
-    x |= {"delta [rad]": theta, "e [rad]": reference - theta, "vm [rad/s]": vm}
-    x |= {f"u {i} before": u - theta for i, u in enumerate(sent, 1)}
-    force = k * theta
-    velocity = a * vm + b * force if inert else b * force
-    moved = reference - step * (vm if inert else velocity)
-    every = [moved, *sent]
-    whole = int(late // T)
-    part = float(late - whole * T)
-    z = np.array([*own, theta, every[whole + (part > 0)]])
-    z = expm(G * part) @ z
-    z[-1] = every[whole]
-    z = expm(G * (step - part)) @ z
-    after = dict(
-        zip(
-            frame.states,
-            floats_of(frame, law, k=F(43)) @ [x[name] for name in frame.states],
-            strict=True,
-        )
-    )
-    assert after["delta [rad]"] == pytest.approx(z[-2], rel=1e-6, abs=1e-9)
-    assert after["e [rad]"] == pytest.approx(moved - z[-2], rel=1e-6, abs=1e-9)
-    assert [after[name] for name in names] == pytest.approx(z[: n - 1], rel=1e-6, abs=1e-7)
-    if jumps:
-        (speed,) = drive.speed.terms.values()
-        assert after["omega [rad/s]"] == pytest.approx(np.array(speed[0], float) @ z, rel=1e-6)
 
 
 def test_free_motion_is_the_same_wherever_it_is():

@@ -115,19 +115,23 @@ def _motion(loop, drawn, commands, state):
         u = commands[next(j for j, t in enumerate(drawn["effects"]) if t <= start)]
         k, b, r1, r2 = [numbers for t, numbers in drawn["loads"] if t <= start][-1]
         A, B = np.zeros((3, 3)), np.zeros((3, 2))
-        A[:2, :2], B[:2, :1] = _matrices(drive, drawn, (k, b), loop["load"])
+        A[:2, :2], B[:2, :1] = _matrices(loop, drawn, (k, b))
         # The spring has the length of what is left of the deflection by the damper.
         A[0, 2] = -A[0, 1] if drive != "position" else 0
         A[2], B[2, 1] = [0, r2, -r1 - r2], r2 * (drive == "position")
         E = expm(np.block([[A, B], [np.zeros((2, 5))]]) * (end - start))
         z = E[:3, :3] @ z + E[:3, 3:] @ np.array([u, delta])
-        if drive == "position":
+        if drive == "position" and not loop["second"]:
             z[0] = (u - z[1]) / drawn["tau"]
     return z[1] - begin, z[0], z[2]
 
 
-def _matrices(drive, drawn, load, against):
+def _matrices(loop, drawn, load):
     """Return A and B of (velocity, position)."""
+    drive, against = loop["drive"], loop["load"]
+    if loop["second"]:
+        a1, a0 = loop["second"]
+        return np.array([[-a1, -a0], [1, 0]]), np.array([[a0], [0]])
     if drive == "torque":
         J, (k, b) = drawn["inertia"], load
         return np.array([[-(drawn["friction"] + b) / J, -k / J], [1, 0]]), np.array([[1 / J], [0]])

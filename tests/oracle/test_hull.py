@@ -41,6 +41,10 @@ def drives(loop):
         J, b = written(loop["inertia"], "kg*m^2"), written(loop["friction"], "N*m*s/rad")
         return f"torque_interface: {{inertia: {J}, friction: {b}}}"
     if loop["drive"] != "actuator":
+        if loop["second"]:
+            a1, a0 = loop["second"]
+            made = f"numerator: [{a0}], denominator: [1, {a1}, {a0}]"
+            return f"position_interface: {{transfer_function: {{{made}}}}}"
         dead = f", dead_time: {loop['dead']!r} s" * bool(loop["dead"])
         return f"{loop['drive']}_interface: {{time_constant: {tau}{dead}}}"
     motion = f"derivative_gain: {law['Kd']!r} rpm*s/rad, zero: {law['zero']!r} 1/s"
@@ -154,7 +158,7 @@ def some_loop(rng):
         "k": around("k", 10, 200, 3), "b": around("b", 0.1, 2, 3) if damped else (0.0, 0.0),
         "losable": losable, "creep": creep,
         "load": load, "force": force, "decay": decay, "integral": integral,
-        "spring": spring, "dead": dead,
+        "spring": spring, "dead": dead, "second": (),
         "turns": turns, "round": int(rng.integers(2, 4)),
     }  # fmt: skip
 
@@ -227,6 +231,7 @@ def plain(drive):
         "creep": ((30.0, 30.0), (3.0, 3.0)) if "creeping" in drive else (),
         "force": 0.02 * mixed, "decay": 20.0 * mixed, "integral": 0.5 * ("integral" in drive),
         "spring": 30.0 * (drive == "actuator" or "sprung" in drive), "dead": 0.0,
+        "second": (60.0, 900.0) if "second" in drive else (),
         "turns": "", "round": 1,
     }  # fmt: skip
 
@@ -283,10 +288,13 @@ def test_maps_of_what_stands_together_lie_between_the_modes(name):
 
 @pytest.mark.parametrize("Mt", [0.01, 0.0])
 @pytest.mark.parametrize("late", [0.0003, 0.001, 0.002, 0.0027, 0.005])
-@pytest.mark.parametrize("drive", ["actuator", "velocity", "position"])
+@pytest.mark.parametrize("drive", ["actuator", "velocity", "position", "position, second"])
 def test_maps_of_commands_that_are_late_lie_between_the_modes(drive, late, Mt):
     """Within a period, by whole periods, and by more; of a robot, its dead time is a part of it."""
-    loop = plain(drive) | {"wait": (late, late), "dead": 0.0 if drive == "actuator" else late / 2}
+    loop = plain(drive) | {
+        "wait": (late, late),
+        "dead": late / 2 * (drive in ("velocity", "position")),
+    }
     loop["law"] = loop["law"] | {"Mt": Mt}
     assert_between(loop, assembled(spec_of(loop)), np.random.default_rng(0))
 
@@ -294,6 +302,7 @@ def test_maps_of_commands_that_are_late_lie_between_the_modes(drive, late, Mt):
 OF_DRIVE = {"actuator": ["Mt", "Bt", "Kd", "zero", "tau", "gain", "spring"]}
 OF_DRIVE["loaded"] = [*OF_DRIVE["actuator"][:-1], "load", "loads"]
 OF_DRIVE["position, sprung"] = OF_DRIVE["velocity, sprung"] = ["Mt", "Bt", "tau", "spring"]
+OF_DRIVE["position, second"] = ["Mt", "Bt", "second"]
 OF_DRIVE["position, mixed"] = ["force", "decay", "tau"]
 OF_DRIVE["mixed"] = ["force", "decay", "Kd", "zero"]
 OF_DRIVE["mixed, integral"] = ["force", "integral"]
@@ -319,6 +328,9 @@ def test_an_error_of_two_percent_is_seen(drive):
     for name in OF_DRIVE.get(drive, ["Mt", "Bt", "tau"]):
         wrong = {name: 1.02 * law[name]} if name in law else {}
         load = name in LOADS
+        if name == "second":
+            assert far(second=(61.2, 900.0)) > SEEN < far(second=(60.0, 918.0))
+            continue
         other = (
             {"loads": [(0.0, LOADS[name])]} if load else {name: 1.02 * (loop | right).get(name, 0)}
         )

@@ -23,37 +23,23 @@ from tests.proof.systems import (
     pushed,
     sheared_in_stays,
 )
+from tests.tables import rows
 
 ROUND = Clock(3, ("a", "b"))
+# At most one of any three missed: what may follow after none, after one, and after a step more.
+ONE_OF_THREE = Clock(3, ("m0",), ((0, 1), (2, -1), (0, -1)))
+# Modes a for at least two steps, b for one, and others; what is not a follows no b.
+STAYS = Clock(4, ("a",), ((1, -1, -1), (1, 2, -1), (0, 2, 3), (0, -1, 3)), (("b",),))
 
 
 def signal(text: str) -> list[tuple[str, Fraction]]:
     return [(name, Fraction(count)) for name, count in (item.split(":") for item in text.split())]
 
 
-@pytest.mark.parametrize(
-    ("text", "keeps"),
-    [
-        ("a:1 x:2", True),
-        ("b:1 x:1 y:1", True),
-        ("x:1 a:1 y:1", True),
-        ("x:2 a:1", True),
-        ("a:1 x:2 b:1 y:2", True),
-        ("x:1 a:1 y:2 b:1 z:1", True),
-        ("a:1 x:1", False),
-        ("a:1 x:3", False),
-        ("a:2 x:1", False),
-        ("a:1 x:5", False),
-        ("a:1 x:1 b:1 x:3", False),
-        ("a:1 b:1 x:2", False),
-        ("x:3", False),
-        ("a:3", False),
-        ("a:1", False),
-        ("x:1 a:1 x:2", False),
-    ],
-)
-def test_signals(text, keeps):
-    assert keeps_turns(ROUND, signal(text)) is keeps
+@pytest.mark.parametrize(("clock", "text", "keeps"), rows(__file__, "test_signals"))
+def test_signals(clock, text, keeps):
+    known = {"round": ROUND, "misses": ONE_OF_THREE, "stays": STAYS}[clock]
+    assert keeps_turns(known, signal(text)) is keeps
 
 
 @settings(deadline=None, max_examples=200)
@@ -121,49 +107,6 @@ def test_a_signal_out_of_turn_refutes_nothing():
     assert "not its turn" in alone.find_fault(doubled_in_turns(3))
     late = GrowingSequence((("m0", Fraction(1)), ("m1", Fraction(3))), 6)
     assert "growth" in late.find_fault(doubled_in_turns(4))
-
-
-# At most one of any three missed: what may follow after none, after one, and after a step more.
-ONE_OF_THREE = Clock(3, ("m0",), ((0, 1), (2, -1), (0, -1)))
-
-
-# Modes a for at least two steps, b for one, and others; what is not a follows no b.
-STAYS = Clock(4, ("a",), ((1, -1, -1), (1, 2, -1), (0, 2, 3), (0, -1, 3)), (("b",),))
-
-
-@pytest.mark.parametrize(
-    ("text", "keeps"),
-    [
-        ("a:1", True),
-        ("a:2 b:1", True),
-        ("a:1 b:1", False),
-        ("a:2 c:1", False),
-        ("a:2 b:1 c:1", True),
-        ("a:2 b:1 c:1 b:1", False),
-        ("a:1 b:1 c:1 a:1", True),
-    ],
-)
-def test_signals_that_keep_dwell_times(text, keeps):
-    assert keeps_turns(STAYS, signal(text)) is keeps
-
-
-@pytest.mark.parametrize(
-    ("text", "keeps"),
-    [
-        ("m0:1", True),
-        ("m0:2 m1:1", True),
-        ("m1:1 m0:2", True),
-        ("m0:1 m1:1 m0:1", True),
-        ("m0:5 m1:1 m0:2 m1:1", True),
-        ("m1:1", False),
-        ("m0:1 m1:1", False),
-        ("m1:2 m0:9", False),
-        # It cannot be repeated, although it can be made once.
-        ("m1:1 m0:2 m1:1", False),
-    ],
-)
-def test_signals_that_miss_deadlines(text, keeps):
-    assert keeps_turns(ONE_OF_THREE, signal(text)) is keeps
 
 
 def test_what_an_automaton_allows():

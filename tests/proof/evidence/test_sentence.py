@@ -11,19 +11,17 @@ from nrs_design.proof.evidence.sentence import free_sentence, ruled_sentence
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.switching import Switching
 from tests.proof.graphs import common_polynomial, common_quadratic, one_form
+from tests.proof.rows import made
 from tests.proof.systems import (
     bouncing,
     bouncing_in_steps,
     bouncing_in_turns,
     family,
-    left_within,
     matrix,
-    resets_between,
 )
+from tests.tables import rows
 
 HALF = Fraction(1, 2)
-RESETS = resets_between(("m0", "m1", [[1]]), ("m1", "m0", [[1]]))
-EIGHT = ", ".join(f"at least 1 s in m{k}" for k in range(8))
 
 
 def test_one_form_for_all_modes():
@@ -84,36 +82,10 @@ def test_a_constant_in_front_is_said():
     assert said.endswith("and with some constant c that is the same for all signals.")
 
 
-@pytest.mark.parametrize(
-    ("switching", "time", "words"),
-    [
-        (Switching(), Time.CONTINUOUS, "arbitrary"),
-        (Switching(HALF), Time.CONTINUOUS, "at least 0.5 s in each mode"),
-        (Switching(Fraction(1)), Time.DISCRETE, "at least 1 step in each mode"),
-        (Switching(Fraction(2)), Time.DISCRETE, "at least 2 steps in each mode"),
-        (left_within((0, 1)), Time.CONTINUOUS, "at most 1 s in m0"),
-        (left_within((1, 3)), Time.DISCRETE, "1 to 3 steps in m0"),
-        (
-            left_within((1, None), dwell_time=HALF),
-            Time.CONTINUOUS,
-            "at least 0.5 s in each other mode, at least 1 s in m0",
-        ),
-        (left_within(*[(1, None)] * 8), Time.CONTINUOUS, EIGHT),
-        (
-            left_within(*[(1, None)] * 9),
-            Time.CONTINUOUS,
-            f"{EIGHT}, 9 modes with dwell times of their own",
-        ),
-        (Switching(transitions=()), Time.CONTINUOUS, "0 allowed transitions"),
-        (
-            Switching(transitions=(("m0", "m1"),), resets=RESETS),
-            Time.CONTINUOUS,
-            "1 allowed transition, 2 resets",
-        ),
-    ],
-)
-def test_words_for_the_signals(switching, time, words):
-    system = family([[-1]], [[-1]], time=time, switching=switching)
+@pytest.mark.parametrize(("rules", "name", "words"), rows(__file__, "test_words_for_the_signals"))
+def test_words_for_the_signals(rules, name, words):
+    time = Time(name)
+    system = family([[-1]], [[-1]], time=time, switching=made(Switching, rules))
     law = "x' = A x" if time is Time.CONTINUOUS else "x+ = A x"
     bound = "exp(-alpha t)" if time is Time.CONTINUOUS else "rho^t"
     said = ruled_sentence(system, HALF)

@@ -11,20 +11,15 @@ from nrs_design.controllers.laws import Admittance
 from nrs_design.loop.assemble import GIVEN_MATRICES, assemble_from_text
 from nrs_design.loop.modes import to_force_coordinates, velocity_mode
 from nrs_design.models.contact import KelvinVoigt
-from nrs_design.models.motion_loop import MotionLoop, realize
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.certify import Certification, Verdict, certify
 from nrs_design.spec import parse_exact, parse_spec
+from tests.loop.support import MOTION
 from tests.support import holds
 
 DATA = Path(__file__).parents[1] / "data" / "known_answers.yaml"
-# Thesis 6.3.2.2: Ap = [[0, 1], [-1618.80, -56.89]], Cp = [1618.80, 28.4160].
-MOTION = MotionLoop(
-    numerator=(parse_exact("28.4160"), parse_exact("1618.80")),
-    denominator=(parse_exact("1"), parse_exact("56.89"), parse_exact("1618.80")),
-)
 
 
 @dataclass(frozen=True)
@@ -72,13 +67,13 @@ def given(name, matrices, time="continuous") -> SwitchedSystem:
 
 
 def robot(name, Mt, contacts, coordinates="deflection") -> SwitchedSystem:
-    motion, zero = realize(MOTION), parse_exact("0")
+    zero = parse_exact("0")
     modes = []
     for k, Bt in contacts:
         contact = KelvinVoigt(parse_exact(k), zero)
-        rows = velocity_mode(motion, Admittance(parse_exact(Mt), parse_exact(Bt)), contact)
+        rows = velocity_mode(MOTION, Admittance(parse_exact(Mt), parse_exact(Bt)), contact)
         if coordinates == "force":
-            rows = to_force_coordinates(rows, motion, contact)
+            rows = to_force_coordinates(rows, MOTION, contact)
         modes.append(Mode(f"k={k} Bt={Bt}", RationalMatrix.from_rows(rows)))
     states = tuple(f"x{i}" for i in range(len(modes[0].A.numerators)))
     return SwitchedSystem(

@@ -200,14 +200,20 @@ def growth(system: SwitchedSystem, Q: Rows, start: int) -> Fraction:
     touching, flying = system.modes[0].A.fractions(), system.contact.free[0].A.fractions()
     for _ in range(200):
         A = touching if x[-1] > 0 else flying
-        x = [sum(a * b for a, b in zip(row, x, strict=True)) for row in A]
-        x = [entry.limit_denominator(10**12) for entry in x]
+        x = [entry.limit_denominator(10**12) for entry in image(A, x)]
     return _value(Q, x) / before if before else Fraction(0)
 
 
+def image(A: Rows, x: list[Fraction]) -> list[Fraction]:
+    return [sum(a * b for a, b in zip(row, x, strict=True)) for row in A]
+
+
+def quadratic(Q: Rows, x: list[Fraction]) -> Fraction:
+    return sum(a * b for a, b in zip(x, image(Q, x), strict=True))
+
+
 def _value(Q: Rows, x: list[Fraction]) -> Fraction:
-    w = [*x[:-1], max(x[-1], Fraction(0))]
-    return sum(a * q * b for a, row in zip(w, Q, strict=True) for q, b in zip(row, w, strict=True))
+    return quadratic(Q, [*x[:-1], max(x[-1], Fraction(0))])
 
 
 class TestLostContact:
@@ -291,8 +297,8 @@ class TestLostContact:
         assert broken(in_two_turns(system), turns) == places
         x = [Fraction(entry) for entry in x]
         (pull,), (free,) = (q.fractions()[0] for q in system.contact.pulls), system.contact.free
-        after = [sum(a * b for a, b in zip(row, x, strict=True)) for row in free.A.fractions()]
-        assert sum(a * b for a, b in zip(pull, x, strict=True)) < 0 < x[-1]
+        after = image(free.A.fractions(), x)
+        assert image([pull], x)[0] < 0 < x[-1]
         assert (after[-1] > 0) is stays
         assert _value(Q, after) > _value(Q, x)
 
@@ -316,14 +322,7 @@ class TestLostContact:
         (flying,) = [form for place, form in evidence.nodes if place == "free"]
 
         def V(x, forms):
-            return max(
-                sum(
-                    a * b * y
-                    for a, row in zip(x, Q, strict=True)
-                    for b, y in zip(row, x, strict=True)
-                )
-                for Q in forms
-            )
+            return max(quadratic(Q, x) for Q in forms)
 
         shares = [Fraction(k, 4) for k in range(5)]
         for share, depth, v in product(shares, shares, (-3, -1, 0, 2)):
@@ -332,7 +331,7 @@ class TestLostContact:
                 [(1 - share) * a + share * b for a, b in zip(*rows, strict=True)]
                 for rows in zip(*ends, strict=True)
             ]
-            moved = [sum(a * b for a, b in zip(row, x, strict=True)) for row in A]
+            moved = image(A, x)
             value = V(moved, touching) if moved[1] > 0 else V(moved[:1], [flying])
             assert value < evidence.rate**2 * V(x, touching)
             flown = [free[0][0] * v, max(free[1][0] * v, Fraction(0)) * depth]

@@ -133,20 +133,23 @@ def _put(hint: Any, thing: Any, path: str, value: Any) -> Any:
     if get_origin(hint) is UnionType:
         (hint,) = (part for part in get_args(hint) if part is not NoneType)
     name, _, rest = path.partition(".")
-    if isinstance(thing, tuple) and not hasattr(thing, "_fields"):
+    if type(thing) is tuple:
         k = int(name) % len(thing)
         inner = get_args(hint)[0 if get_args(hint)[-1] is ... else k]
         return (*thing[:k], _put(inner, thing[k], rest, value), *thing[k + 1 :])
     changed = {name: _put(get_type_hints(type(thing))[name], getattr(thing, name), rest, value)}
-    return thing._replace(**changed) if hasattr(thing, "_fields") else replace(thing, **changed)
+    return thing._replace(**changed) if isinstance(thing, tuple) else replace(thing, **changed)
 
 
 def _has_fields(hint: Any) -> bool:
-    return is_dataclass(hint) or hasattr(hint, "_fields")
+    named = isinstance(hint, type) and hint is not tuple and issubclass(hint, tuple)
+    return named or is_dataclass(hint)
 
 
 def _names(hint: Any) -> tuple[str, ...]:
-    return tuple(f.name for f in fields(hint)) if is_dataclass(hint) else hint._fields
+    if is_dataclass(hint):
+        return tuple(field.name for field in fields(hint))
+    return tuple(get_type_hints(hint))
 
 
 def _parts(hint: Any, named: dict[str, Any]) -> list[tuple[str, Any]]:

@@ -13,6 +13,7 @@ from scipy.linalg import expm
 from nrs_design.proof.enclosure import (
     ball_around,
     balls,
+    characteristic_sign,
     eigenvalues,
     exponential,
     fraction_of,
@@ -183,6 +184,16 @@ def test_eigenvalues_add_up_to_the_trace_as_often_as_they_occur(entries, denomin
 
 def test_multiple_eigenvalues():
     assert len(eigenvalues(RationalMatrix(((1, 0), (0, 1)), 2))) == 2
+
+
+@pytest.mark.parametrize(
+    ("radius", "number", "sign"),
+    [(0, 3, 1), (0, 1, -1), (0, 2, 0), (0.5, 2.25, 0), (0.5, 1.75, 0), (0.5, 2.75, 1)],
+)
+def test_a_sign_of_the_characteristic_polynomial_is_certain(radius, number, sign):
+    """Of ``z - 2``, with 2 off by no more than the radius."""
+    M = arb_mat([[arb(2, radius)]])
+    assert characteristic_sign(M, Fraction(number)) == sign
 
 
 def test_coordinates_in_which_a_form_is_round():

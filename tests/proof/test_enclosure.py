@@ -15,6 +15,7 @@ from nrs_design.proof.enclosure import (
     balls,
     characteristic_sign,
     eigenvalues,
+    eigenvector,
     exponential,
     fraction_of,
     lower_integers,
@@ -194,6 +195,15 @@ def test_a_sign_of_the_characteristic_polynomial_is_certain(radius, number, sign
     """Of ``z - 2``, with 2 off by no more than the radius."""
     M = arb_mat([[arb(2, radius)]])
     assert characteristic_sign(M, Fraction(number)) == sign
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "is_between"),
+    [(1, 3, True), (2.25, 3, False), (1, 1.75, False), (3, 4, False), (0, 1, False)],
+)
+def test_an_eigenvalue_is_between_two_signs_that_are_certain(low, high, is_between):
+    M = arb_mat([[arb(2, 0.5)]])
+    assert (eigenvector(M, Fraction(low), Fraction(high)) is not None) is is_between
 
 
 def test_coordinates_in_which_a_form_is_round():

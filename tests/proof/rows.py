@@ -5,7 +5,7 @@ function of that file, in a list with its arguments, or fields with the `modes`;
 kind and its fields. A matrix stands as its rows, or as `rows` `over` a denominator, and what else
 has fields as their list. `with` changes fields of the system, `but` fields of the evidence, by
 their dotted paths. `says` has words of the fault, or null if there is none; of the misfit, if the
-case `asks` for that. `true` tells whether it is so by the definition, `fits` whether it covers the
+case `asks` for that. `holds` tells whether it is so by the definition, `fits` whether it covers the
 switching, and `claim` or `claims` what it says, or words of it; `contradiction` is what is odd of a
 system alone.
 """
@@ -28,6 +28,8 @@ from tests.proof.truth import holds
 from tests.tables import table
 
 CHANGES = ("with", "but")
+ASKED = {"says", "holds", "fits", "claim", "claims", "contradiction"}
+KNOWN = {"example", "system", "evidence", "cases", "asks", *CHANGES, *ASKED}
 
 
 def cases(file: str) -> list[Any]:
@@ -44,6 +46,9 @@ def cases(file: str) -> list[Any]:
 
 
 def check(case: dict[str, Any]) -> None:
+    # A word that nobody reads would ask for nothing.
+    assert case.keys() <= KNOWN
+    assert case.keys() & ASKED
     system = system_in(case)
     if "contradiction" in case:
         found, words = find_contradiction(system), case["contradiction"]
@@ -55,8 +60,8 @@ def check(case: dict[str, Any]) -> None:
         found = getattr(evidence, f"find_{case.get('asks', 'fault')}")(system)
         assert (found is None) is (case["says"] is None), found
         assert found is None or case["says"] in found, found
-    if "true" in case:
-        assert holds(system, evidence) is case["true"]
+    if "holds" in case:
+        assert holds(system, evidence) is case["holds"]
     if "fits" in case:
         assert evidence.fits(system.switching) is case["fits"]
     if "claim" in case:

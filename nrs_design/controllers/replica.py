@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from operator import add, mul, sub
 from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.controllers.operations import Coefficient, Kind, StepLaw
+from nrs_design.controllers.operations import Kind, StepLaw
 
 Single = NDArray[np.float32]
 
@@ -25,44 +26,68 @@ class StepResult:
     valid: NDArray[np.bool_]
 
 
-def step(law: StepLaw, mode: NDArray[np.uint32], given: Mapping[str, Single]) -> StepResult:
-    """Compute one step for a batch, shape (n,), with one rounding for each operation.
-
-    A mode that there is not makes the step invalid.
-    """
-    valid = mode < len(law.modes)
-    for value in law.values:
-        most = np.float32(float(value.limit))
-        valid = valid & (given[value.name] >= -most) & (given[value.name] <= most)
-    known: dict[str, Single] = {
-        value.name: np.where(valid, given[value.name], np.float32(0)) for value in law.values
-    }
-    known |= {c.name: _numbers(law, c, np.where(valid, mode, 0)) for c in law.coefficients}
-    known = law.read(known, _COMPUTED)
-    outputs = {
-        name: np.where(valid, known[value], np.float32(0)) for name, value in law.outputs.items()
-    }
-    states = {
-        name: np.where(valid, known[value], given[name]) for name, value in law.following.items()
-    }
-    return StepResult(outputs, states, valid)
+def _saturated(limit: np.float32, value: np.float32) -> np.float32:
+    if value > limit:
+        return limit
+    return -limit if value < -limit else value
 
 
-def _numbers(law: StepLaw, coefficient: Coefficient, mode: NDArray[np.uint32]) -> Single:
-    """Return the number of each step."""
-    numbers = np.array([float(coefficient.of(k)) for k in range(len(law.modes))], np.float32)
-    return numbers[mode]
-
-
-def _saturated(limit: Single, value: Single) -> Single:
-    return np.where(value > limit, limit, np.where(value < -limit, -limit, value))
-
-
-_COMPUTED: Mapping[Kind, Callable[[Single, Single], Single]] = MappingProxyType(
-    {
-        "add": np.add,
-        "subtract": np.subtract,
-        "multiply": np.multiply,
-        "saturate": _saturated,
-    }
+_COMPUTED: Mapping[Kind, Callable[[np.float32, np.float32], np.float32]] = MappingProxyType(
+    {"add": add, "subtract": sub, "multiply": mul, "saturate": _saturated}
 )
+
+
+class StepProgram:
+    """The operations of a law, for one sample at a time: arrays of one number are slow."""
+
+    def __init__(self, law: StepLaw) -> None:
+        self.law = law
+        limits = [np.float32(float(value.limit)) for value in law.values]
+        self._limits = [(-limit, limit) for limit in limits]
+        self._numbers = [
+            [np.float32(float(c.of(mode))) for c in law.coefficients]
+            for mode in range(len(law.modes))
+        ]
+        # All values of a step are in one list, in this order.
+        names = [*(value.name for value in law.values), *(c.name for c in law.coefficients)]
+        places = {name: i for i, name in enumerate(names)}
+        self._operations = []
+        for operation in law.operations:
+            operands = places[operation.left], places[operation.right]
+            self._operations.append((_COMPUTED[operation.kind], *operands))
+            places[operation.name] = len(places)
+        self._outputs = [places[name] for name in law.outputs.values()]
+        self._states = [places[law.following[state.name]] for state in law.states]
+
+    def step(
+        self, mode: int, given: Sequence[np.float32]
+    ) -> tuple[list[np.float32], list[np.float32], bool]:
+        """Compute one step; return outputs, states after it, and whether it is valid.
+
+        Inputs and states are given as `StepLaw.values` lists them. A step in a mode that does not
+        exist, or from a value beyond its limit, is not valid: outputs are zero and states stay as
+        they were.
+        """
+        each = zip(given, self._limits, strict=True)
+        if mode >= len(self._numbers) or not all(
+            low <= value <= high for value, (low, high) in each
+        ):
+            return [np.float32(0)] * len(self._outputs), [*given[len(self.law.inputs) :]], False
+        found = [*given, *self._numbers[mode]]
+        for compute, left, right in self._operations:
+            found.append(compute(found[left], found[right]))
+        return [found[i] for i in self._outputs], [found[i] for i in self._states], True
+
+
+def step(law: StepLaw, mode: NDArray[np.uint32], given: Mapping[str, Single]) -> StepResult:
+    """Compute one step for a batch, shape (n,), with one rounding for each operation."""
+    program = StepProgram(law)
+    rows = zip(*(given[value.name] for value in law.values), strict=True)
+    steps = [program.step(k, row) for k, row in zip(mode.tolist(), rows, strict=True)]
+    outputs, states, valid = zip(*steps, strict=True)
+
+    def columns(names: Sequence[str], table: Sequence[Sequence[np.float32]]) -> dict[str, Single]:
+        return {n: np.array(c) for n, c in zip(names, zip(*table, strict=True), strict=True)}
+
+    after = columns([state.name for state in law.states], states)
+    return StepResult(columns(list(law.outputs), outputs), after, np.array(valid))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from nrs_design.controllers.controller_design import ControllerDesign
+from nrs_design.controllers.replica import StepProgram
 from nrs_design.controllers.shipped import shipped_law
 from nrs_design.errors import DesignError
 from nrs_design.models.plant import Plant
@@ -12,7 +13,6 @@ from nrs_design.progress import Progress, silent
 from nrs_design.simulation.run import MAX_STEPS, Run
 from nrs_design.simulation.sampled_axis import SampledAxis, SampleInputs
 from nrs_design.simulation.scenario import Scenario
-from nrs_design.simulation.step_program import StepProgram
 from nrs_design.spec import InteractionDesignSpec
 
 # Samples after which it is told how far the run is.

@@ -17,11 +17,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.controllers.controller_design import ControllerDesign
+from nrs_design.controllers.replica import StepProgram
 from nrs_design.models.plant import Plant
 from nrs_design.simulation.motor import DrivenJoint, Motor
 from nrs_design.simulation.run import INPUTS, OUTPUTS, Run
 from nrs_design.simulation.scenario import COMMAND, DEPTH, TORQUE, Array, Scenario
-from nrs_design.simulation.step_program import StepProgram
 from nrs_design.simulation.time_response import Signal, TimeResponse, on_axis
 from nrs_design.simulation.tissue import Tissue
 from nrs_design.spec.misses import automaton_of

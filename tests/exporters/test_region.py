@@ -7,6 +7,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
+from nrs_design.controllers.replica import StepProgram
 from nrs_design.exporters.export import Execution, export_design
 from nrs_design.exporters.formats.c import render as render_c
 from nrs_design.exporters.formats.monitor import render, told_kinds
@@ -14,7 +15,6 @@ from nrs_design.exporters.monitor_limits import monitor_limits
 from nrs_design.exporters.program import program_of
 from nrs_design.exporters.region import ROOM, MonitoredRegion, region_of
 from nrs_design.proof.evidence import SaturatedEllipsoid
-from nrs_design.simulation.step_program import StepProgram
 from nrs_design.spec import read_spec
 from nrs_design.spec.sampling import SamplingSpec
 from tests.exporters.monitored import Input, Monitor

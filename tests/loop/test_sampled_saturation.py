@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
+from nrs_design.controllers.replica import StepProgram
 from nrs_design.controllers.shipped import shipped_law
 from nrs_design.pipeline.certification import assemble_spec
 from nrs_design.pipeline.runs import run_design
@@ -14,7 +15,6 @@ from nrs_design.search.certify import first_accepted
 from nrs_design.search.saturated_steps import search_saturated_steps
 from nrs_design.simulation.norms import clipped, quadratic_norm
 from nrs_design.simulation.saturation import saturated_rates
-from nrs_design.simulation.step_program import StepProgram
 from nrs_design.work import Allowance
 from tests.loop.support import loaded
 from tests.proof.systems import pushed_away_in_steps

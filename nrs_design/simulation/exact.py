@@ -16,8 +16,8 @@ from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.models.plant import Plant
 from nrs_design.progress import Progress, silent
 from nrs_design.simulation.flow import CHUNK
-from nrs_design.simulation.location import TOLERANCE, Location, make_location
-from nrs_design.simulation.loop import Loop
+from nrs_design.simulation.location import TOLERANCE, Location
+from nrs_design.simulation.loop import Loop, state_names
 from nrs_design.simulation.run import (
     ERRORS_LEFT_OUT,
     EVENT_STEPS,
@@ -75,8 +75,6 @@ class _Engine:
         self.direction = signs[0] if signs else 1
         self.inside = [False] * len(signs)
         self.pushing = [True] * len(signs)
-        self.offset = self.loop.spec.offset
-        self.places = {signal.name: i for i, signal in enumerate(self.loop.states)}
         self.laws = {c.name: c.law for c in self.loop.design.controllers}
         self.damped = any(map(self.loop.is_damped, range(len(signs))))
         self.met: dict[tuple[int, int, int], bool] = {}
@@ -110,15 +108,11 @@ class _Engine:
             self._check(still)
         self._record(self.z[None])
         errors = [ERRORS_LEFT_OUT] if self.loop.scenario.errors != Errors() else []
+        events = tuple(self.switches), tuple(self.contacts)
+        left_out = (*LEFT_OUT, *LEFT_OUT_EXACTLY, *errors)
+        name, response = self.loop.scenario.name, self._response()
         return Run(
-            self.loop.scenario.name,
-            "exact",
-            self._response(),
-            tuple(self.switches),
-            tuple(self.contacts),
-            self.steps,
-            stopped=self.stopped,
-            left_out=(*LEFT_OUT, *LEFT_OUT_EXACTLY, *errors),
+            name, "exact", response, *events, self.steps, stopped=self.stopped, left_out=left_out
         )
 
     def _check(self, still: int) -> None:
@@ -161,13 +155,9 @@ class _Engine:
         """Return the location that the loop is in now."""
         key = (self.controller, *self.inside, *self.pushing, self.direction)
         if key not in self.locations:
-            self.locations[key] = make_location(
-                self.loop,
-                self.controller,
-                self.inside,
-                self._in_contact(),
-                self.direction,
-                len(self.locations),
+            touched, count = self._in_contact(), len(self.locations)
+            self.locations[key] = Location.enter(
+                self.loop, self.controller, self.inside, touched, self.direction, count
             )
         return self.locations[key]
 
@@ -274,18 +264,15 @@ class _Engine:
         """Let another controller take over, and set what the spec says is set then."""
         if target == self.controller:
             return
-        mode, idle = self.location.mode, self.loop.spec.idle_states
-        places, laws = self.places, self.laws
-        if self.offset != "none":
-            taken = mode.reference if self.offset == "reference" else mode.angle
-            self.z = self.z.copy()
+        mode, spec, places, laws = self.location.mode, self.loop.spec, self.loop.index, self.laws
+        self.z = self.z.copy()
+        if spec.offset != "none":
+            taken = mode.reference if spec.offset == "reference" else mode.angle
             self.z[places["commanded position"]] = float(taken @ self.z)
         leaves = laws[self.controller].commands == "velocity" != laws[target].commands
-        if leaves and idle is not None and idle.reset:
-            self.z = self.z.copy()
-            for text in laws[self.controller].states:
-                self.z[places[text.split(" [")[0]]] = 0.0
-            self.z[places["offset"]] = 0.0
+        if leaves and spec.idle_states is not None and spec.idle_states.reset:
+            for name in (*state_names(laws[self.controller].states), "offset"):
+                self.z[places[name]] = 0.0
         self.controller, self.since, self.met = target, self.t, {}
         self.switches.append((self.t, target))
         self.location = self._enter()
@@ -295,14 +282,13 @@ class _Engine:
         self.kept.append((self.t, step, self.location.index, states))
 
     def _response(self) -> TimeResponse:
-        loop = self.loop
         starts, steps, entered, parts = zip(*self.kept, strict=True)
         counts = np.array([len(part) for part in parts])
         number = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts)
         times = np.repeat(starts, counts) + np.repeat(steps, counts) * number
         which, states = np.repeat(entered, counts), np.concatenate(parts)
         rows, mode = np.empty((len(times), 4)), np.empty(len(times), np.int64)
-        names = [c.name for c in loop.design.controllers]
+        names = [c.name for c in self.loop.design.controllers]
         for location in self.locations.values():
             own, m = np.flatnonzero(which == location.index), location.mode
             outputs = np.stack([m.angle, m.velocity, m.torque, m.reference], axis=1)
@@ -310,7 +296,7 @@ class _Engine:
             mode[own] = names.index(location.controller)
         angle, velocity, torque, reference = rows.T
         states = states.T.copy()
-        surfaces = loop.scenario.surfaces
+        surfaces = self.loop.scenario.surfaces
         # What tissue seems to pull before its loss is noticed: see TOLERANCE.
         stiffest = max((s.element.k for s in surfaces if s.element is not None), default=0.0)
         torque = np.where(np.abs(torque) <= 4 * TOLERANCE * (1 + stiffest), 0.0, torque)
@@ -322,7 +308,7 @@ class _Engine:
             states[:-3],
             states[-3:-2],
             (*OUTPUTS, Signal("reference", "rad")),
-            loop.states[:-3],
+            self.loop.states[:-3],
             INPUTS,
             mode,
             tuple(names),

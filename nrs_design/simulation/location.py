@@ -33,41 +33,38 @@ class Location:
     # Of which switch and condition it is the lower (0) or the upper (1) bound.
     bounds: tuple[tuple[int, int, int], ...]
 
+    @classmethod
+    def enter(
+        cls,
+        loop: Loop,
+        controller: str,
+        inside: Sequence[bool],
+        touched: tuple[int, ...],
+        direction: int,
+        index: int,
+    ) -> Location:
+        """Return the loop under a controller in contact, with the signals that may end it.
 
-def make_location(
-    loop: Loop,
-    controller: str,
-    inside: Sequence[bool],
-    touched: tuple[int, ...],
-    direction: int,
-    index: int,
-) -> Location:
-    """Return the loop under a controller in contact, with the signals that may end it.
-
-    `inside`: whether the robot is below each surface; `touched`: indices of those that push;
-    `direction`: sign of the one that was touched last; `index`: locations are counted as they are
-    entered.
-    """
-    scenario = loop.scenario
-    mode, one = loop.mode(controller, touched), loop.row("one")
-    each = range(len(scenario.surfaces))
-    pushes = np.array([loop.push(j, mode) for j in each]).reshape(-1, len(one))
-    damped = tuple(j for j in each if inside[j] and loop.is_damped(j))
-    rows = [*(loop.depth(j, mode) for j in each), *(pushes[j] for j in damped)]
-    bounds = []
-    for i, switch in enumerate(scenario.control.switches):
-        for k, condition in enumerate(switch.conditions):
-            if switch.source != controller:
-                continue
-            signal = loop.signal(condition.signal, mode, direction)
-            if np.isfinite(condition.low):
-                rows.append(signal - condition.low * one)
-                bounds.append((i, k, 0))
-            if np.isfinite(condition.high):
-                rows.append(condition.high * one - signal)
-                bounds.append((i, k, 1))
-    # A flow ends where a signal is clearly across, so that it counts so then.
-    across = np.full(len(rows), 2 * TOLERANCE)
-    step = scenario.duration / POINTS
-    flow = Flow(mode.A, np.array(rows).reshape(-1, len(one)), across, step)
-    return Location(index, controller, mode, flow, damped, pushes, tuple(bounds))
+        `inside`: whether the robot is below each surface; `touched`: indices of those that push;
+        `direction`: sign of the one that was touched last.
+        """
+        scenario, mode, one = loop.scenario, loop.mode(controller, touched), loop.row("one")
+        each = range(len(scenario.surfaces))
+        pushes = np.array([loop.push(j, mode) for j in each]).reshape(-1, len(one))
+        damped = tuple(j for j in each if inside[j] and loop.is_damped(j))
+        rows = [*(loop.depth(j, mode) for j in each), *(pushes[j] for j in damped)]
+        bounds = []
+        for i, switch in enumerate(scenario.control.switches):
+            for k, condition in enumerate(switch.conditions):
+                if switch.source != controller:
+                    continue
+                signal = loop.signal(condition.signal, mode, direction)
+                for end, bound, sign in ((0, condition.low, 1), (1, condition.high, -1)):
+                    if np.isfinite(bound):
+                        rows.append(sign * (signal - bound * one))
+                        bounds.append((i, k, end))
+        # A flow ends where a signal is clearly across, so that it counts so then.
+        across = np.full(len(rows), 2 * TOLERANCE)
+        step = scenario.duration / POINTS
+        flow = Flow(mode.A, np.array(rows).reshape(-1, len(one)), across, step)
+        return cls(index, controller, mode, flow, damped, pushes, tuple(bounds))

@@ -28,13 +28,49 @@ from nrs_design.spec import InteractionDesignSpec
 class LoopMode:
     """The loop under one controller, in one set of contacts."""
 
-    A: Array  # Shape (n, n). Of ``z' = A z``.
+    A: Array  # Shape (n, n), of ``z' = A z``
     # angle, velocity, torque, reference: shape (n,). Rows that give these signals; the torque is
     # that of the contacts on the robot.
     angle: Array
     velocity: Array
     torque: Array
     reference: Array
+
+
+@dataclass(frozen=True, slots=True)
+class MotionStates:
+    """The motion loop ``x' = A x + B ref + E F``, with the angle ``C x``; F loads the motor."""
+
+    # A, B, E, C: shapes (n, n), (n,), (n,) and (n,).
+    A: Array
+    B: Array
+    E: Array
+    C: Array
+    signals: tuple[Signal, ...]  # Names and units of x
+
+    @classmethod
+    def build(cls, plant: Plant, design: ControllerDesign) -> MotionStates:
+        """Return the loop that the spec states, or the PD controller around the motor."""
+        if plant.given_loop is not None:
+            found = realize(plant.given_loop)
+            A, C = np.array(found.A, float), np.array(found.C, float)
+            n = len(C)
+            names = tuple(Signal(f"motion {i + 1}", "") for i in range(n))
+            return cls(A, np.eye(n)[-1], np.zeros(n), C, names)
+        Km, tau = float(plant.actuator.gain), float(plant.actuator.time_constant)
+        Kp, Kd, load = float(design.motion.Kp), float(design.motion.Kd), plant.load_inertia
+        jump = Km * Kd / tau  # Of the velocity with the reference, 1/s
+        damping = (Km * Kd + 1) / tau
+        A = np.array([[0.0, 1.0], [-Km * Kp / tau, -damping]])
+        B = np.array([jump, Km * Kp / tau - damping * jump])
+        E = np.array([0.0, 0.0 if load is None else -1 / float(load)])
+        names = Signal("theta", "rad"), Signal("motion w", "rad/s")
+        return cls(A, B, E, np.array([1.0, 0.0]), names)
+
+    def at_rest(self, angle: float) -> Array:
+        """Return the state at rest at an angle in rad: 0 = A x + B ref, and C x = ref."""
+        rest = np.linalg.solve(self.A, -self.B)
+        return np.asarray(rest * angle / float(self.C @ rest))
 
 
 @dataclass(frozen=True)
@@ -47,18 +83,19 @@ class Loop:
     scenario: Scenario  # Surfaces, command and wanted torque
 
     @cached_property
+    def motion(self) -> MotionStates:
+        """The motion loop, whose states come first."""
+        return MotionStates.build(self.plant, self.design)
+
+    @cached_property
     def states(self) -> tuple[Signal, ...]:
         """Names and units of all states."""
-        if self._given is not None:
-            motion = [Signal(f"motion {i + 1}", "") for i in range(self._given[0].shape[0])]
-        else:
-            motion = [Signal("theta", "rad"), Signal("motion w", "rad/s")]
         order = 0 if self.design.sensor.filter is None else self.design.sensor.filter.order
         return (
-            *motion,
+            *self.motion.signals,
             Signal("commanded position", "rad"),
             Signal("offset", "rad"),
-            *(Signal(name, unit) for name, unit in self._own),
+            *(Signal(name, unit) for name, unit in self._law_states),
             *(Signal(f"filtered {i + 1}", "N*m") for i in range(order)),
             *(Signal(f"damper {j + 1}", "rad") for j in self._memories),
             Signal("hand", "rad/s"),
@@ -67,12 +104,13 @@ class Loop:
         )
 
     @cached_property
-    def _index(self) -> dict[str, int]:
+    def index(self) -> dict[str, int]:
+        """Places of the states by their names."""
         return {signal.name: i for i, signal in enumerate(self.states)}
 
     @cached_property
-    def _own(self) -> tuple[tuple[str, str], ...]:
-        """States of all laws; laws that name a state alike share it."""
+    def _law_states(self) -> tuple[tuple[str, str], ...]:
+        """Names and units of the states of all laws; laws that name a state alike share it."""
         texts = (text for c in self.design.controllers for text in c.law.states)
         parted = (text.removesuffix("]").split(" [") for text in texts)
         return tuple(dict.fromkeys((name, unit) for name, unit in parted))
@@ -80,8 +118,8 @@ class Loop:
     @cached_property
     def bleeding(self) -> tuple[str, ...]:
         """States of laws that stay in the reference while other controllers are active."""
-        texts = (text for c in self.design.controllers if c.law.bleeds for text in c.law.states)
-        return tuple(dict.fromkeys(text.split(" [")[0] for text in texts))
+        laws = [c.law for c in self.design.controllers if c.law.bleeds]
+        return tuple(dict.fromkeys(name for law in laws for name in state_names(law.states)))
 
     @cached_property
     def _memories(self) -> tuple[int, ...]:
@@ -89,39 +127,21 @@ class Loop:
         each = enumerate(self.scenario.surfaces)
         return tuple(j for j, s in each if s.element is not None and np.isfinite(s.element.b))
 
-    @cached_property
-    def _given(self) -> tuple[Array, Array] | None:
-        """A and C of a motion loop that the spec states itself."""
-        if self.plant.given_loop is None:
-            return None
-        realization = realize(self.plant.given_loop)
-        return np.array(realization.A, float), np.array(realization.C, float)
-
     def row(self, name: str) -> Array:
         """Return the row that gives a state."""
-        row: Array = np.eye(len(self.states))[self._index[name]]
+        row: Array = np.eye(len(self.states))[self.index[name]]
         return row
+
+    def motion_row(self, row: Array) -> Array:
+        """Return a row of the motion loop as one of the whole state."""
+        return np.concatenate([row, np.zeros(len(self.states) - len(row))])
 
     def start(self) -> Array:
         """Return the state at rest at the start, before the first command."""
-        z = np.zeros(len(self.states))
-        angle = self.scenario.start
-        if self._given is None:
-            z[0], z[1] = angle, -self._direct * angle
-        else:
-            A, C = self._given
-            # At rest the input is the angle: 0 = A x + B r, and C x = r.
-            rest = np.linalg.solve(A, -np.eye(len(C))[-1])
-            z[: len(C)] = rest * angle / float(C @ rest)
-        z[self._index["commanded position"]] = angle
-        z[self._index["one"]] = 1.0
+        z = self.motion_row(self.motion.at_rest(self.scenario.start))
+        z[self.index["commanded position"]] = self.scenario.start
+        z[self.index["one"]] = 1.0
         return z
-
-    @cached_property
-    def _direct(self) -> float:
-        """By how much the velocity jumps with the reference, 1/s."""
-        actuator, motion = self.plant.actuator, self.design.motion
-        return float(actuator.gain * motion.Kd / actuator.time_constant)
 
     def depth(self, j: int, mode: LoopMode) -> Array:
         """Return the row of the depth below a surface, less what its damper keeps, in rad."""
@@ -164,6 +184,11 @@ class Loop:
         return self.depth(int(name.removeprefix(DEPTH)), mode)
 
 
+def state_names(states: Sequence[str]) -> list[str]:
+    """Return the names of states of a law, which writes them with their units."""
+    return [text.split(" [")[0] for text in states]
+
+
 @dataclass(frozen=True)
 class _Closing:
     """A loop that is being closed around one controller."""
@@ -173,34 +198,31 @@ class _Closing:
     touched: tuple[int, ...]
 
     def mode(self) -> LoopMode:
-        loop, law = self.loop, self.controller.law
-        row, n = loop.row, len(loop.states)
-        moves = law.commands == "velocity"
-        A = np.zeros((n, n))
+        loop, law, motion = self.loop, self.controller.law, self.loop.motion
+        n, nothing = len(loop.states), np.zeros(len(loop.states))
         # The angle does not depend on the reference of the moment, the velocity does.
-        angle = row("theta") if loop._given is None else _padded(loop._given[1], n)
-        still = LoopMode(A, angle, np.zeros(n), np.zeros(n), np.zeros(n))
+        still = LoopMode(np.zeros((n, n)), loop.motion_row(motion.C), nothing, nothing, nothing)
         springs = self._torque(still)
-        if not moves and self._takes_at_once() and any(map(loop.is_damped, self.touched)):
-            raise DesignError(
-                f"{self.controller.name} corrects the position by a force that depends on the "
-                "velocity: that is not modelled",
-                remedy="let it touch elastic environments only, filter the force, or use --engine "
-                "sampled",
-                at=("controllers", self.controller.name),
-            )
-        reference = row("commanded position")
-        if moves:
-            reference = reference + row("offset")
+        reference = loop.row("commanded position")
+        if law.commands == "velocity":
+            reference = reference + loop.row("offset")
         else:
-            correction, _ = self._respond(self._felt(springs))
-            reference = reference + correction
+            if self._takes_at_once() and any(map(loop.is_damped, self.touched)):
+                raise DesignError(
+                    f"{self.controller.name} corrects the position by a force that depends on the "
+                    "velocity: that is not modelled",
+                    remedy="let it touch elastic environments only, filter the force, or use "
+                    "--engine sampled",
+                    at=("controllers", self.controller.name),
+                )
+            reference = reference + self._respond(self._law_input(springs))[0]
         if not law.bleeds:
-            reference = sum((row(name) for name in loop.bleeding), reference)
-        found = LoopMode(A, angle, self._velocity(reference), np.zeros(n), reference)
-        torque = self._torque(found)
-        self._fill(A, found, torque)
-        return replace(found, torque=torque)
+            reference = sum((loop.row(name) for name in loop.bleeding), reference)
+        velocity = loop.motion_row(motion.C @ motion.A) + float(motion.C @ motion.B) * reference
+        moving = replace(still, velocity=velocity, reference=reference)
+        closed = replace(moving, torque=self._torque(moving))
+        self._fill(closed)
+        return closed
 
     def _takes_at_once(self) -> bool:
         """Tell whether the command depends on the force of the moment."""
@@ -213,83 +235,49 @@ class _Closing:
         rows = (loop.scenario.surfaces[j].sign * loop.push(j, mode) for j in self.touched)
         return np.asarray(sum(rows, np.zeros(len(loop.states))))
 
-    def _velocity(self, reference: Array) -> Array:
-        loop, n = self.loop, len(self.loop.states)
-        if loop._given is None:
-            return np.asarray(loop.row("motion w") + loop._direct * reference)
-        A, C = loop._given
-        return np.asarray(_padded(C @ A, n) + C[-1] * reference)
-
-    def _felt(self, torque: Array) -> Array:
+    def _law_input(self, torque: Array) -> Array:
         """Return the row of the force that the law gets."""
         loop, law = self.loop, self.controller.law
         low_pass = loop.design.sensor.filter
-        felt = torque if low_pass is None else loop.row(f"filtered {low_pass.order}")
+        force = torque if low_pass is None else loop.row(f"filtered {low_pass.order}")
         if law.commands == "velocity":
-            return felt + float(law.spring) * loop.row("offset")
-        return felt - loop.scenario.wanted_torque * loop.row("one")
+            return force + float(law.spring) * loop.row("offset")
+        return force - loop.scenario.wanted_torque * loop.row("one")
 
-    def _respond(self, felt: Array) -> tuple[Array, list[Array]]:
+    def _respond(self, force: Array) -> tuple[Array, list[Array]]:
         law = self.controller.law
-        states = [self.loop.row(text.split(" [")[0]).tolist() for text in law.states]
-        command, rates = law.respond(felt.tolist(), states)
+        states = [self.loop.row(name).tolist() for name in state_names(law.states)]
+        command, rates = law.respond(force.tolist(), states)
         return np.array(command, float), [np.array(rate, float) for rate in rates]
 
-    def _fill(self, A: Array, mode: LoopMode, torque: Array) -> None:
+    def _fill(self, mode: LoopMode) -> None:
         """Write the rates of all states into the rows of A."""
-        loop, law, index = self.loop, self.controller.law, self.loop._index
-        self._fill_motion(A, mode, torque)
-        low_pass = loop.design.sensor.filter
+        loop, law, index, A = self.loop, self.controller.law, self.loop.index, mode.A
+        motion, m = loop.motion, len(loop.motion.C)
+        A[:m, :m] = motion.A
+        A[:m] += np.outer(motion.B, mode.reference) + np.outer(motion.E, mode.torque)
+        low_pass, before = loop.design.sensor.filter, mode.torque
         if low_pass is not None:
-            before = torque
-            for i in range(1, low_pass.order + 1):
-                own = loop.row(f"filtered {i}")
-                A[index[f"filtered {i}"]] = float(low_pass.pole) * (before - own)
-                before = own
-        command, rates = self._respond(self._felt(torque))
+            for name in (f"filtered {i + 1}" for i in range(low_pass.order)):
+                A[index[name]] = float(low_pass.pole) * (before - loop.row(name))
+                before = loop.row(name)
+        command, rates = self._respond(self._law_input(mode.torque))
         idle = loop.spec.idle_states
         decay = 0.0 if idle is None else idle.decay.si
-        for name, _ in loop._own:
+        for name in ("offset", *(name for name, _ in loop._law_states)):
             A[index[name]] = -decay * loop.row(name)
-        for text, rate in zip(law.states, rates, strict=True):
-            A[index[text.split(" [")[0]]] = rate
+        for name, rate in zip(state_names(law.states), rates, strict=True):
+            A[index[name]] = rate
         if law.commands == "velocity":
             A[index["offset"]] = command
-        else:
-            A[index["offset"]] = -decay * loop.row("offset")
         if not law.holds_hand:
             A[index["commanded position"]] = loop.row("hand")
-        self._fill_tissue(A, mode)
+        for j in loop._memories:
+            element, own = loop.scenario.surfaces[j].element, loop.row(f"damper {j + 1}")
+            assert element is not None
+            pushed = element.k * loop.depth(j, mode) if j in self.touched else 0.0
+            A[index[f"damper {j + 1}"]] = (pushed - element.h * own) / element.b
         profile = loop.scenario.profile
         A[index["hand"]] = loop.row("slope")
         swing = loop.row("hand") - profile.mean * loop.row("one")
         A[index["slope"]] = -(profile.omega**2) * swing
-
-    def _fill_motion(self, A: Array, mode: LoopMode, torque: Array) -> None:
-        loop = self.loop
-        if loop._given is not None:
-            own, _ = loop._given
-            m = len(own)
-            A[:m, :m] = own
-            A[m - 1] += mode.reference
-            return
-        actuator, motion = loop.plant.actuator, loop.design.motion
-        Km, tau = float(actuator.gain), float(actuator.time_constant)
-        error = mode.reference - mode.angle
-        pull = Km * float(motion.Kp) * error - (Km * float(motion.Kd) + 1) * mode.velocity
-        A[0], A[1] = mode.velocity, pull / tau
-        if loop.plant.load_inertia is not None:
-            A[1] -= torque / float(loop.plant.load_inertia)
-
-    def _fill_tissue(self, A: Array, mode: LoopMode) -> None:
-        loop = self.loop
-        for j in loop._memories:
-            element = loop.scenario.surfaces[j].element
-            assert element is not None
-            pushed = element.k * loop.depth(j, mode) if j in self.touched else 0.0
-            own = loop.row(f"damper {j + 1}")
-            A[loop._index[f"damper {j + 1}"]] = (pushed - element.h * own) / element.b
-
-
-def _padded(row: Array, size: int) -> Array:
-    return np.concatenate([row, np.zeros(size - len(row))])

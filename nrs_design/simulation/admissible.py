@@ -14,7 +14,7 @@ from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Stay
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.simulation.norms import Array
-from nrs_design.simulation.switched import SwitchedRun
+from nrs_design.simulation.switched import SwitchedRun, expm, mode_matrices
 
 # Fewest dwell times that a run of so many steps should hold.
 _LEGS = 8
@@ -37,8 +37,6 @@ class _Pace:
         if time is Time.DISCRETE:
             most = math.inf if stay.longest is None else int(stay.longest)
             return cls(1.0, A, int(stay.shortest), most)
-        from scipy.linalg import expm
-
         fewest, length = 1, Fraction(step)
         if stay.shortest > 0:
             fewest = max(1, min(math.ceil(stay.shortest / length), steps // _LEGS))
@@ -77,8 +75,8 @@ def admissible_run(
     """
     stays = system.stays()
     paces = [
-        _Pace.of(np.array(mode.A.floats()), stays[mode.name], system.time, step, steps)
-        for mode in system.modes
+        _Pace.of(A, stays[mode.name], system.time, step, steps)
+        for mode, A in zip(system.modes, mode_matrices(system), strict=True)
     ]
     roots = [np.asarray(np.linalg.cholesky(functions[m.name]).T) for m in system.modes]
     adversary = _Adversary(paces, roots, _successors(system, paces))

@@ -13,6 +13,7 @@ from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.simulation.norms import Array, Indices
 from nrs_design.simulation.rules import Rules
+from nrs_design.simulation.switched import expm
 
 
 @dataclass(frozen=True, eq=False)
@@ -171,8 +172,6 @@ def free_counterparts(system: SwitchedSystem) -> Indices:
 
 def _held(maps: Array, step: float) -> Array:
     """Return the maps over a step of continuous time; shape (k, n, n + c)."""
-    from scipy.linalg import expm
-
     count, n, width = maps.shape
     square = np.concatenate([maps, np.zeros((count, width - n, width))], axis=1)
     return np.asarray(expm(square * step))[:, :n]

@@ -13,7 +13,7 @@ import numpy as np
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.simulation.norms import Array
-from nrs_design.simulation.switched import SwitchedRun, fine_step
+from nrs_design.simulation.switched import SwitchedRun, expm, fine_step, mode_matrices
 
 # Mode index and time spent in it, in s or steps.
 Steps = Sequence[tuple[int, float]]
@@ -65,7 +65,8 @@ def periodic_run(
 
 def mixture_matrix(system: SwitchedSystem, weights: Sequence[tuple[str, Fraction]]) -> Array:
     """Return the weighted sum of modes in floating point."""
-    modes = {mode.name: np.array(mode.A.floats()) for mode in system.modes}
+    names = (mode.name for mode in system.modes)
+    modes = dict(zip(names, mode_matrices(system), strict=True))
     return np.asarray(sum(float(w) * modes[name] for name, w in weights))
 
 
@@ -103,16 +104,13 @@ class _Leg:
 
 
 def _legs(system: SwitchedSystem, steps: Steps, edges: Sequence[int]) -> list[_Leg]:
-    from scipy.linalg import expm
-
-    fine, maps = fine_step(system), system.switching.maps()
+    fine, maps, matrices = fine_step(system), system.switching.maps(), mode_matrices(system)
     # Many steps in a period leave fewer samples for each.
     most = max(1, _SAMPLES // (_FEWEST * len(steps)))
     successors = [mode for mode, _ in (*steps[1:], *steps[:1])]
     legs = []
     for k, ((mode, time), successor) in enumerate(zip(steps, successors, strict=True)):
-        A = np.array(system.modes[mode].A.floats())
-        discrete = system.time is Time.DISCRETE
+        A, discrete = matrices[mode], system.time is Time.DISCRETE
         pieces = int(time) if discrete else min(max(_SMOOTH, math.ceil(time / fine)), most)
         piece = A if discrete else expm(A * (time / pieces))
         resets = maps.get((system.modes[mode].name, system.modes[successor].name))
@@ -144,12 +142,10 @@ def _periods(radius: float, samples: int) -> int:
 
 
 def _growth_rate(system: SwitchedSystem, steps: Steps) -> float:
-    from scipy.linalg import expm
-
-    product = np.eye(system.order)
+    product, matrices = np.eye(system.order), mode_matrices(system)
     with np.errstate(over="ignore", invalid="ignore"):
         for mode, time in steps:
-            product = expm(np.array(system.modes[mode].A.floats()) * time) @ product
+            product = expm(matrices[mode] * time) @ product
     if not np.isfinite(product).all():
         return -math.inf
     radius = float(np.abs(np.linalg.eigvals(product)).max())

@@ -8,10 +8,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from nrs_design.late import late_function
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.simulation.norms import Array, Norm
-from nrs_design.simulation.rates import drift
+from nrs_design.simulation.norms import Array, Indices, Norm
+
+# SciPy takes longer to load than most runs take.
+expm = late_function("scipy.linalg", "expm")
 
 # By which a state has grown enough to be seen.
 _GROWTH = 100.0
@@ -30,41 +33,50 @@ class SwitchedRun:
     # Shape (N + 1, n). The state at these times, after the switch if there is one; where modes
     # differ in size, a smaller state is filled up with zeros.
     state: Array
-    mode: NDArray[np.int64]  # Shape (N,). Index of the mode that was active in each interval.
+    mode: Indices  # Shape (N,). Index of the mode that was active in each interval.
     # Shape (N + 1,). Where modes take turns or miss deadlines, the state of that clock.
-    turn: NDArray[np.int64] | None = None
+    turn: Indices | None = None
+
+
+def mode_matrices(system: SwitchedSystem) -> list[Array]:
+    """Return A of every mode in floating point."""
+    return [np.array(mode.A.floats()) for mode in system.modes]
 
 
 def transition_matrices(system: SwitchedSystem, step: float) -> Array:
     """Return ``exp(A step)`` (or A, in discrete time) of every mode; shape (m, n, n)."""
-    matrices = np.array([mode.A.floats() for mode in system.modes])
-    if system.time is Time.DISCRETE:
-        return matrices
-    from scipy.linalg import expm
-
-    return np.asarray(expm(matrices * step))
+    matrices = np.array(mode_matrices(system))
+    return matrices if system.time is Time.DISCRETE else np.asarray(expm(matrices * step))
 
 
-def simulate_switching(
-    system: SwitchedSystem, signal: NDArray[np.int64], initial: Array, step: float
-) -> SwitchedRun:
-    """Simulate a switching signal that is constant over each step, exactly at the steps.
+def mode_rates(system: SwitchedSystem, Q: Array) -> Array:
+    """Return how fast ``sqrt(x' Q x)`` decays at least in every mode by itself, shape (m,).
 
-    The modes are of one size, without resets. The signal holds the index of the mode in each step
-    of a time in s, one in discrete time.
+    Continuous time: the largest alpha with ``A'Q + QA + 2 alpha Q <= 0``, in 1/s; negative where
+    the norm can grow. Discrete time: the smallest rho with ``A'QA <= rho^2 Q``. For figures only.
     """
-    transitions = transition_matrices(system, step)
-    states = [initial]
-    for mode in signal:
-        states.append(transitions[mode] @ states[-1])
-    return SwitchedRun(sampling_instants(step, len(signal)), np.array(states), signal)
+    largest = _relative_spectra(system, Q)[0][:, -1]
+    if system.time is Time.DISCRETE:
+        return np.asarray(np.sqrt(np.maximum(largest, 0.0)))
+    return np.asarray(-largest / 2)
 
 
 def worst_direction(system: SwitchedSystem, Q: Array) -> Array:
     """Return the unit state (in the norm of Q) from which ``x' Q x`` decreases the slowest."""
-    inverse = np.linalg.inv(np.linalg.cholesky(Q))
-    worst = max((_slowest(inverse, form) for form in drift(system, Q)), key=lambda pair: pair[0])
-    return inverse.T @ worst[1]
+    values, vectors = _relative_spectra(system, Q)
+    return np.asarray(vectors[values[:, -1].argmax(), :, -1])
+
+
+def _relative_spectra(system: SwitchedSystem, Q: Array) -> tuple[Array, Array]:
+    """Return eigenvalues and eigenvectors of ``A'Q + QA`` (discrete: ``A'QA``) relative to Q.
+
+    Of every mode, shapes (m, n) and (m, n, n); the eigenvalues ascend.
+    """
+    inverse, A = np.linalg.inv(np.linalg.cholesky(Q)), np.array(mode_matrices(system))
+    transposed = A.transpose(0, 2, 1)
+    forms = transposed @ Q @ A if system.time is Time.DISCRETE else transposed @ Q + Q @ A
+    values, vectors = np.linalg.eigh(inverse @ forms @ inverse.T)
+    return values, inverse.T @ vectors
 
 
 def sampled_direction(system: SwitchedSystem, norm: Norm, step: float) -> Array:
@@ -87,10 +99,7 @@ def fine_step(system: SwitchedSystem) -> float:
 
 def mode_eigenvalues(system: SwitchedSystem) -> list[NDArray[np.complex128]]:
     """Return the eigenvalues of every mode, in 1/s in continuous time."""
-    return [
-        np.asarray(np.linalg.eigvals(np.array(mode.A.floats())), dtype=np.complex128)
-        for mode in system.modes
-    ]
+    return [np.asarray(np.linalg.eigvals(A), np.complex128) for A in mode_matrices(system)]
 
 
 def alone(system: SwitchedSystem, mode: int) -> SwitchedSystem:
@@ -99,16 +108,16 @@ def alone(system: SwitchedSystem, mode: int) -> SwitchedSystem:
     return replace(system, modes=(kept,), states=system.states[: kept.A.shape[0]])
 
 
-def unstable_run(system: SwitchedSystem, mode: int) -> SwitchedRun:
-    """Stay in one mode, from the real part of the eigenvector that is worst for stability.
+def unstable_run(system: SwitchedSystem) -> SwitchedRun:
+    """Stay in the first mode, from the real part of the eigenvector that is worst for stability.
 
     The run ends when the eigenvalue has let the state grow a hundredfold; where it lies on the
     stability limit, after ten periods or time constants.
     """
-    values, vectors = np.linalg.eig(np.array(system.modes[mode].A.floats()))
+    values, vectors = np.linalg.eig(mode_matrices(system)[0])
     continuous = system.time is Time.CONTINUOUS
     worst = int(np.argmax(values.real if continuous else np.abs(values)))
-    initial = vectors[:, worst].real / np.linalg.norm(vectors[:, worst].real)
+    states = [vectors[:, worst].real / np.linalg.norm(vectors[:, worst].real)]
     step = fine_step(system)
     if continuous:
         exponent = float(values[worst].real) * step
@@ -116,15 +125,14 @@ def unstable_run(system: SwitchedSystem, mode: int) -> SwitchedRun:
         exponent = math.log(max(float(abs(values[worst])), 1.0))
     marginal = _MARGINAL_STEPS if continuous else _FEWEST
     steps = math.log(_GROWTH) / exponent if exponent > _MARGINAL else marginal
-    signal = np.full(min(max(math.ceil(steps), _FEWEST), _MOST), mode, dtype=np.int64)
-    return simulate_switching(system, signal, initial, step)
+    count = min(max(math.ceil(steps), _FEWEST), _MOST)
+    transition = transition_matrices(system, step)[0]
+    for _ in range(count):
+        states.append(transition @ states[-1])
+    instants = sampling_instants(step, count)
+    return SwitchedRun(instants, np.array(states), np.zeros(count, dtype=np.int64))
 
 
 def sampling_instants(step: float, steps: int) -> Array:
     """Return sampling instants from zero; shape (steps + 1,)."""
     return np.asarray(step * np.arange(steps + 1), dtype=float)
-
-
-def _slowest(inverse: Array, form: Array) -> tuple[float, Array]:
-    values, vectors = np.linalg.eigh(inverse @ form @ inverse.T)
-    return float(values[-1]), vectors[:, -1]

@@ -16,8 +16,7 @@ from nrs_design.reporting.evidence.runs import Greedy, bounded_run, trials_per_s
 from nrs_design.reporting.sections.modes import hardest_modes
 from nrs_design.reporting.sections.titles import EVIDENCE
 from nrs_design.simulation.norms import modes_at_corner, quadratic_norm, scaled_matrices
-from nrs_design.simulation.rates import mode_rates
-from nrs_design.simulation.switched import worst_direction
+from nrs_design.simulation.switched import mode_rates, worst_direction
 
 _CONSTANT = (
     "These parameters must be constant: one value each in all modes and at all times. Which "

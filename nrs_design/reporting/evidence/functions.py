@@ -30,8 +30,7 @@ from nrs_design.reporting.sections.modes import hardest_modes
 from nrs_design.reporting.sections.titles import EVIDENCE
 from nrs_design.simulation.admissible import norm_ratio
 from nrs_design.simulation.norms import clipped, scaled_matrices
-from nrs_design.simulation.rates import mode_rates
-from nrs_design.simulation.switched import fine_step, sampled_direction, worst_direction
+from nrs_design.simulation.switched import fine_step, mode_rates, sampled_direction, worst_direction
 
 # A page lists no more modes; those with the least slack are shown.
 _LISTED = 24

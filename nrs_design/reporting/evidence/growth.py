@@ -142,7 +142,7 @@ class _Witness:
         modes = (*self.system.modes, *self.system.free_motions())
         index = next(i for i, mode in enumerate(modes) if mode.name == name)
         single = alone(replace(self.system, modes=modes), index)
-        response, (values,) = unstable_run(single, 0), mode_eigenvalues(single)
+        response, (values,) = unstable_run(single), mode_eigenvalues(single)
         rate, factor = float(values.real.max()), float(np.abs(values).max())
         line = (f"the eigenvalue alone, exp({rate:.4g} t)", np.exp(rate * response.time))
         if self.is_discrete:

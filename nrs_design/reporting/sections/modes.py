@@ -17,8 +17,7 @@ from nrs_design.reporting.formatting import number, roots, shortened
 from nrs_design.reporting.sections.places import contact_at, linked, mode_at
 from nrs_design.reporting.sections.titles import MODES
 from nrs_design.simulation.norms import Array
-from nrs_design.simulation.rates import mode_rates
-from nrs_design.simulation.switched import mode_eigenvalues
+from nrs_design.simulation.switched import mode_eigenvalues, mode_rates
 from nrs_design.spec import LoadedSpec
 
 Spectra = Sequence[NDArray[np.complex128]]

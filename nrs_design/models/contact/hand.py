@@ -15,14 +15,14 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from types import MappingProxyType
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 from nrs_design.errors import AssemblyError, DesignError
 from nrs_design.models.contact.law import (
     DAMPING,
     MASS,
     STIFFNESS,
-    AbstractLinearLaw,
+    AbstractMemorylessLaw,
     Element,
     Number,
     Reaction,
@@ -30,12 +30,9 @@ from nrs_design.models.contact.law import (
 from nrs_design.models.linear_form import LinearForm, combine
 from nrs_design.proof.assumption import Assumption
 
-if TYPE_CHECKING:
-    from nrs_design.models.contact.motion import Array, Motion
-
 
 @dataclass(frozen=True)
-class Hand(AbstractLinearLaw):
+class Hand(AbstractMemorylessLaw):
     """A spring, a damper and a mass that moves with the contact."""
 
     name: ClassVar[str] = "hand"
@@ -58,20 +55,6 @@ class Hand(AbstractLinearLaw):
     k: Number  # Stiffness in N/m (N m/rad)
     b: Number  # Damping in N s/m (N m s/rad); may be zero
     m: Number  # Mass in kg (kg m^2); may be zero
-
-    def sensitivities(self, motion: Motion) -> Array:
-        """Return its derivatives by log k, log b and log m, shape (n, 3)."""
-        import numpy as np
-
-        acceleration = np.gradient(motion.velocity, motion.time)
-        moved = (motion.deflection, motion.velocity, acceleration)
-        return np.column_stack([v * part for v, part in zip(self.values, moved, strict=True)])
-
-    @property
-    def impedance(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """``(m s^2 + b s + k) / s``."""
-        k, b, m = self.values
-        return (m, b, k), (0.0, 1.0, 0.0)
 
     def at_stiffness(self, value: Fraction) -> Hand:
         """Return it with the same damping and mass."""

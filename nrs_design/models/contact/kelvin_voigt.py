@@ -2,27 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
-from nrs_design.models.contact.law import (
-    DAMPING,
-    STIFFNESS,
-    AbstractLinearLaw,
-    Element,
-    Number,
-    Reaction,
-)
-from nrs_design.models.linear_form import LinearForm, combine
-
-if TYPE_CHECKING:
-    from nrs_design.models.contact.motion import Array, Motion
+from nrs_design.models.contact.law import DAMPING, STIFFNESS, AbstractMemorylessLaw, Element, Number
 
 
 @dataclass(frozen=True)
-class KelvinVoigt(AbstractLinearLaw):
+class KelvinVoigt(AbstractMemorylessLaw):
     """A spring beside a damper."""
 
     name: ClassVar[str] = "kelvin-voigt"
@@ -35,17 +23,6 @@ class KelvinVoigt(AbstractLinearLaw):
 
     k: Number  # Stiffness in N/m (N m/rad)
     b: Number  # Damping in N s/m (N m s/rad); may be zero
-
-    def sensitivities(self, motion: Motion) -> Array:
-        """Return its derivatives by log k and log b, shape (n, 2)."""
-        import numpy as np
-
-        return np.column_stack([float(self.k) * motion.deflection, float(self.b) * motion.velocity])
-
-    @property
-    def impedance(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """``(b s + k) / s``."""
-        return (float(self.b), float(self.k)), (1.0, 0.0)
 
     def at_stiffness(self, value: Fraction) -> KelvinVoigt:
         """Return it with the same damping."""
@@ -60,8 +37,3 @@ class KelvinVoigt(AbstractLinearLaw):
     def element(self) -> Element:
         """The spring and the damper beside it."""
         return Element(float(self.k), float(self.b))
-
-    def react(self, velocity: LinearForm, states: Sequence[LinearForm]) -> Reaction:
-        """Return ``F = k delta + b v`` and ``delta' = v``."""
-        (k, b), (delta,) = self.exact, states
-        return combine((k, delta), (b, velocity)), [velocity]

@@ -14,7 +14,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, ClassVar, Self
 
 from nrs_design.models.interval import turn
-from nrs_design.models.linear_form import LinearForm
+from nrs_design.models.linear_form import LinearForm, combine
 from nrs_design.proof.assumption import Assumption
 
 if TYPE_CHECKING:
@@ -253,3 +253,26 @@ class AbstractLinearLaw(AbstractContactLaw):
         """Return the parameters at the pivot, such as ``k = 43 N*m/rad``, without what is zero."""
         parts = zip(self.parameters(), self.values, self.units(rotational=True), strict=True)
         return tuple(f"{name} = {float(v):.6g} {unit(said)}" for name, v, said in parts if v)
+
+
+@dataclass(frozen=True)
+class AbstractMemorylessLaw(AbstractLinearLaw):
+    """A sum of stiffness, damping and mass, in this order, each times what it acts on."""
+
+    def sensitivities(self, motion: Motion) -> Array:
+        """Return the derivatives by the logarithms of the parameters, shape (n, p)."""
+        import numpy as np
+
+        each = zip(self.values, motion.derivatives, strict=False)
+        return np.column_stack([value * part for value, part in each])
+
+    @property
+    def impedance(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """``(m s^2 + b s + k) / s``, without the powers that are absent."""
+        numerator = (0.0,) * (2 - len(self.values)) + self.values[::-1]
+        return numerator, (0.0,) * (len(numerator) - 2) + (1.0, 0.0)
+
+    def react(self, velocity: LinearForm, states: Sequence[LinearForm]) -> Reaction:
+        """Return ``F = k delta + b v`` and ``delta' = v``."""
+        (delta,) = states
+        return combine(*zip(self.exact, (delta, velocity), strict=False)), [velocity]

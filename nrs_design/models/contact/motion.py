@@ -50,6 +50,13 @@ class Motion:
         order: Literal[1, 2] = 2 if len(self) > 2 else 1
         return np.asarray(np.gradient(self.deflection, self.time, edge_order=order), float)
 
+    @cached_property
+    def derivatives(self) -> tuple[Array, Array, Array]:
+        """Deflection, velocity and acceleration at the samples, each of shape (n,)."""
+        import numpy as np
+
+        return self.deflection, self.velocity, np.gradient(self.velocity, self.time)
+
     @property
     def time_constants(self) -> Array:
         """Time constants in s that a record may tell, from short to long."""

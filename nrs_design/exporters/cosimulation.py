@@ -87,10 +87,10 @@ def _rows(law: StepLaw) -> Iterator[tuple[str, str, str, str, str]]:
 
 def contents(program: Program, compile_with: str | None) -> dict[str, bytes]:
     """Return every entry by its path; without a compiler, for sources alone."""
-    record, law, names = program.record, program.law, program.names
+    names = program.names
     code = {
-        f"{names.spec}.h": header_text(record, law, names),
-        f"{names.spec}.c": source_text(record, law, names),
+        f"{names.spec}.h": header_text(program),
+        f"{names.spec}.c": source_text(program),
         _WRAPPER: wrapper_text(program),
     }
     entries = {_FIRST: _MARK, "documentation/index.html": b""}

@@ -39,12 +39,11 @@ def monitored(
 
 
 def sources(export, spec):
-    names = CNames("x")
-    program = Program(export.record, LAW, names)
+    program = Program(export.record, LAW, CNames("x"))
     limits = monitor_limits(replace(export, spec=spec), LAW)
     return {
-        "x.h": law_header(export.record, LAW, names),
-        "x.c": law_source(export.record, LAW, names),
+        "x.h": law_header(program),
+        "x.c": law_source(program),
         "x_monitor.h": header_text(program, limits),
         "x_monitor.c": source_text(program, limits),
     }

@@ -12,6 +12,7 @@ from nrs_design.exporters.c_names import CNames, literal
 from nrs_design.exporters.formats.c import header_text
 from nrs_design.exporters.formats.vectors import make_vectors, vectors_text
 from nrs_design.exporters.logic_cases import COUNT, logic_document
+from nrs_design.exporters.program import Program
 from nrs_design.pipeline.runs import run_design
 from nrs_design.spec import read_spec
 from tests.exporters.programs import (
@@ -73,7 +74,7 @@ def test_every_number_of_the_logic_is_in_the_header(shipped):
     record, law, names = shipped
     exported = json.loads(vectors_text(law, make_vectors(law, 3), ()))
     assert exported["logic"] == logic_document(law.logic)
-    text = header_text(record, law, names)
+    text = header_text(Program(record, law, names))
     macros = re.findall(rf"#define {names.upper}_LOGIC_\w+ (\S+)", text)
     bounds = [literal(b.threshold) for s in law.logic.switches for b in s.bounds]
     stays = [f"{number}U" for number in (law.logic.start, *law.logic.stays)]

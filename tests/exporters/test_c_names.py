@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 
 from nrs_design.controllers.float32 import to_float32
 from nrs_design.exporters.c_names import CNames, block_comment, literal
-from nrs_design.exporters.c_step import declarations
+from nrs_design.exporters.formats.c import header_text
+from nrs_design.exporters.program import Program
 from tests.exporters.programs import LAWS
 
 NAMES = st.from_regex("[a-z0-9][a-z0-9._-]{0,63}", fullmatch=True)
@@ -24,9 +25,10 @@ def test_every_name_of_a_spec_gives_identifiers(name):
     assert re.fullmatch("NRS_[A-Z0-9_]+_MODE_A_B", names.mode("a.b"))
 
 
-def test_every_number_of_a_law_has_a_macro_of_its_own():
+def test_every_number_of_a_law_has_a_macro_of_its_own(sampled_export):
     law = LAWS["static, filter, spring"]
-    lines = re.findall(r"#define (\w+) (\S+)", declarations(law, CNames("x")))
+    text = header_text(Program(sampled_export.record, law, CNames("x")))
+    lines = re.findall(r"#define (\w+) (\S+)", text)
     numbers = dict(lines)
     assert len(numbers) == len(lines)
     coefficients = [value for c in law.coefficients for value in c.values]

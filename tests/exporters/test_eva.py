@@ -8,6 +8,7 @@ import pytest
 
 from nrs_design.exporters.c_names import CNames
 from nrs_design.exporters.formats.c import header_text, source_text
+from nrs_design.exporters.program import Program
 from nrs_design.spec.monitoring import MonitoringSpec
 from tests.exporters.programs import LAWS, run, source_file, write_formats
 
@@ -29,18 +30,18 @@ def frama_c():
 def analyzed(folder, law, export, number, special):
     """Return how many alarms there are, and everything that is said."""
     frama = frama_c()
-    names = CNames("x")
     limit = law.coefficient.get("command_limit")
     bound = ""
     if limit is not None and number == FINITE:
         most = float(limit.values[0])
         bound = f"        /*@ assert -{most} <= out.command <= {most}; */\n"
     inputs = "".join(f"        in.{v.name} = {number};\n" for v in law.inputs)
-    source = source_text(export.record, law, names)
+    program = Program(export.record, law, CNames("x"))
+    source = source_text(program)
     source = re.sub('#include "[^"]+"', '#include "x.h"', source)
     if number == FINITE:
         source = written_out(source)
-    (folder / "x.h").write_text(header_text(export.record, law, names))
+    (folder / "x.h").write_text(header_text(program))
     (folder / "x.c").write_text(source)
     (folder / "loop.c").write_text(LOOP.format(number=number, inputs=inputs, bound=bound))
     files = (folder / "x.c", folder / "loop.c")

@@ -8,6 +8,7 @@ import pytest
 from nrs_design.controllers.replica import StepProgram, step
 from nrs_design.exporters.c_names import CNames
 from nrs_design.exporters.formats.c import header_text
+from nrs_design.exporters.program import Program
 from nrs_design.exporters.start import PLACED, SPRUNG, STREAMED, TWICE, sign_lines, start_lines
 from tests.exporters.programs import LAWS, law
 
@@ -72,7 +73,7 @@ def test_a_position_away_from_the_joint_is_differentiated_at_the_first_sample():
 )
 def test_the_header_says_where_to_start(sampled_export, shape, said):
     assert tuple(start_lines(LAWS[shape])) == said
-    text = header_text(sampled_export.record, LAWS[shape], CNames("x"))
+    text = header_text(Program(sampled_export.record, LAWS[shape], CNames("x")))
     plain = " ".join(text.replace("\n *", " ").split())
     assert all(line in plain for line in said)
     assert ("PD differentiates all" in plain) == (PLACED in said)
@@ -100,7 +101,7 @@ def test_a_joint_yields_to_what_pushes_it():
 
 
 def test_the_header_has_them(sampled_export):
-    text = header_text(sampled_export.record, LAWS["mixed"], CNames("x"))
+    text = header_text(Program(sampled_export.record, LAWS["mixed"], CNames("x")))
     words = " ".join(text.replace("\n *", " ").split())
     for line in sign_lines(LAWS["mixed"]):
         assert line in words

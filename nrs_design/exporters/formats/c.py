@@ -7,16 +7,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from nrs_design.controllers.operations import StepLaw
+from nrs_design.controllers.operations import Operation, StepLaw
+from nrs_design.controllers.parts import BEYOND
 from nrs_design.controllers.step_law import INTEGRAL_LIMIT
 from nrs_design.controllers.step_logic import UNITS
 from nrs_design.exporters import SAMPLED, Format
 from nrs_design.exporters.c_names import CNames, block_comment
-from nrs_design.exporters.c_step import FLAGS, declarations, definitions, guards
 from nrs_design.exporters.export import Export
-from nrs_design.exporters.header import header_lines
-from nrs_design.exporters.program import program_of
-from nrs_design.exporters.record import ExportRecord
+from nrs_design.exporters.program import Program, program_of
 from nrs_design.exporters.start import sign_lines, start_lines
 from nrs_design.exporters.template import fill_template
 from nrs_design.output import C_HEADER, C_SOURCE
@@ -28,6 +26,10 @@ FORMAT = Format(
     executable=True,
 )
 
+SIGN = {"add": "+", "subtract": "-", "multiply": "*"}
+FLAGS = (
+    "-std=c99 -Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Werror -ffp-contract=off"
+)
 # What the mode logic sees, in words.
 _SEEN = {"command": "velocity command", "torque": "torque"}
 
@@ -35,38 +37,63 @@ _SEEN = {"command": "velocity command", "torque": "torque"}
 def render(export: Export) -> dict[str, bytes]:
     """Return header and source, by their endings."""
     program = program_of(export)
-    parts = program.record, program.law, program.names
-    return {".h": header_text(*parts).encode(), ".c": source_text(*parts).encode()}
+    return {".h": header_text(program).encode(), ".c": source_text(program).encode()}
 
 
-def header_text(record: ExportRecord, law: StepLaw, names: CNames) -> str:
+def header_text(program: Program) -> str:
     """Return the header."""
     return fill_template(
         "law.h.j2",
-        comment=block_comment(_header_lines(record, law, names), C_HEADER),
-        names=names,
-        law=law,
-        declarations=declarations(law, names),
+        comment=block_comment(_header_lines(program), C_HEADER),
+        names=program.names,
+        law=program.law,
+        beyond=(BEYOND, 2 * BEYOND),
         units=UNITS,
         seen=_SEEN,
     )
 
 
-def source_text(record: ExportRecord, law: StepLaw, names: CNames) -> str:
-    """Return the source."""
-    about = (*header_lines(record), f"More is in {record.spec.name}.h.")
+def source_text(program: Program) -> str:
+    """Return the source: one line for each operation, one rounding for each line.
+
+    What is beyond the list of operations is guards: they refuse wrong input, and no proof covers
+    them.
+    """
+    law, names = program.law, program.names
+    about = (*program.about, f"More is in {names.spec}.h.")
+    results = {f"out->{name}": value for name, value in law.outputs.items()}
+    results |= {f"state->{name}": value for name, value in law.following.items()}
+    within = [f"is_within({_operand(law, names, v.name)}, {names.limit(v)})" for v in law.values]
     return fill_template(
         "law.c.j2",
         comment=block_comment(about, C_SOURCE),
         names=names,
         law=law,
-        guards=guards(law),
-        definitions=definitions(law, names),
+        guards=[f"(in->mode < {names.modes})", *within],
+        operations=[(one.name, _expression(law, names, one)) for one in law.operations],
+        results=[(place, _operand(law, names, value)) for place, value in results.items()],
     )
 
 
-def _header_lines(record: ExportRecord, law: StepLaw, names: CNames) -> Iterator[str]:
-    yield from header_lines(record)
+def _expression(law: StepLaw, names: CNames, operation: Operation) -> str:
+    left, right = (_operand(law, names, name) for name in (operation.left, operation.right))
+    if operation.kind == "saturate":
+        return f"saturated({right}, {left})"
+    return f"{left} {SIGN[operation.kind]} {right}"
+
+
+def _operand(law: StepLaw, names: CNames, name: str) -> str:
+    if name in law.coefficient:
+        coefficient = law.coefficient[name]
+        return f"{name}_of[in->mode]" if coefficient.by_mode else names.coefficient(coefficient)
+    if any(value.name == name for value in law.inputs):
+        return f"in->{name}"
+    return f"state->{name}" if any(value.name == name for value in law.states) else name
+
+
+def _header_lines(program: Program) -> Iterator[str]:
+    record, law, names = program.record, program.law, program.names
+    yield from program.about
     yield ""
     init = f"{names.lower}_init once, then " if law.states else ""
     yield f"Call {init}{names.lower}_step at every sample. Compile with"

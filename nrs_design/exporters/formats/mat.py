@@ -18,7 +18,7 @@ import scipy.io
 from nrs_design.certificates.certificate import Certificate, dump
 from nrs_design.exporters.export import Export
 from nrs_design.exporters.header import header_lines
-from nrs_design.exporters.record import ExportRecord, Gain
+from nrs_design.exporters.record import ExportRecord
 from nrs_design.output import MAT
 from nrs_design.pipeline.design import run_linear_parts, run_open_loops
 from nrs_design.proof.bounds import lower_float, upper_float
@@ -62,7 +62,7 @@ def render(export: Export) -> dict[str, bytes]:
         "states": _cells(certificate.system.states),
         "modes": _modes(certificate.system.modes),
         "free_modes": _modes(certificate.system.contact.free if certificate.system.contact else ()),
-        "gains": _structs(_gains(record), ("controller", "name", "unit", "value")),
+        "gains": _gains(record),
         "statements": _cells(
             {
                 "kind": item.kind,
@@ -137,14 +137,15 @@ def _modes(modes: Iterable[Mode]) -> Any:
     return _structs(rows, ("name", "A"))
 
 
-def _gains(record: ExportRecord) -> list[dict[str, Any]]:
-    rows = [_gain("motion", gain) for gain in record.motion.gains]
-    return rows + [_gain(item.name, gain) for item in record.controllers for gain in item.gains]
-
-
-def _gain(controller: str, gain: Gain) -> dict[str, Any]:
-    # Every single-precision number is a double, too.
-    return {"controller": controller, "name": gain.name, "unit": gain.unit, "value": gain.float32}
+def _gains(record: ExportRecord) -> Any:
+    """Return every gain: a single-precision number is a double, too."""
+    each = [("motion", gain) for gain in record.motion.gains]
+    each += [(item.name, gain) for item in record.controllers for gain in item.gains]
+    rows = [
+        {"controller": name, "name": gain.name, "unit": gain.unit, "value": gain.float32}
+        for name, gain in each
+    ]
+    return _structs(rows, ("controller", "name", "unit", "value"))
 
 
 def _structs(rows: list[dict[str, Any]], fields: tuple[str, ...]) -> Any:
@@ -176,9 +177,9 @@ def _value(value: Any, log2: int = 0) -> Any:
             }
         case list() | tuple():
             return _cells(_value(item, log2) for item in value)
-        case str() if _RATIO.fullmatch(value):
-            return _double(Fraction(value))
-        case int():
+        case str() if not _RATIO.fullmatch(value):
+            return value
+        case str() | int():
             return _double(Fraction(value))
         case _:
             return value

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from fractions import Fraction
+from typing import Any
 
 from nrs_design.axis import unit
 from nrs_design.exporters import SAMPLED, Format
@@ -55,46 +56,46 @@ def render(export: Export) -> dict[str, bytes]:
 
 def header_text(program: Program, limits: MonitorLimits) -> str:
     """Return the header: limits, types and functions."""
-    names = program.names
     return fill_template(
         "monitor.h.j2",
         comment=block_comment((*program.about, *_words(program, limits)), C_MONITOR_HEADER),
-        spec=names.spec,
-        own=names.lower,
-        up=names.upper,
         kinds=told_kinds(limits),
-        macros=[*_limits(names, limits)],
-        limits=limits,
-        remembered=_remembered(limits),
-        region=limits.region,
+        macros=[*_limits(program.names, limits)],
+        **_values(program, limits),
     )
 
 
 def source_text(program: Program, limits: MonitorLimits) -> str:
     """Return the source."""
-    names = program.names
     follows = [
         f"{{{', '.join('true' if may else 'false' for may in row)}}}" for row in limits.follows
     ]
     tables = [
         ("uint32_t", "shortest", "", [f"{least}U" for least, _ in limits.stays]),
         ("uint32_t", "longest", "", [f"{most}U" for _, most in limits.stays]),
-        ("bool", "follows", f"[{names.modes}]", follows),
+        ("bool", "follows", f"[{program.names.modes}]", follows),
     ]
-    about = (*program.about, f"More is in {names.spec}_monitor.h.")
+    about = (*program.about, f"More is in {program.names.spec}_monitor.h.")
     return fill_template(
         "monitor.c.j2",
         comment=block_comment(about, C_MONITOR),
-        spec=names.spec,
-        own=names.lower,
-        up=names.upper,
         modes=program.law.modes,
         tables=tables,
-        limits=limits,
         oldest=limits.age[1] if limits.age else 0,
-        remembered=_remembered(limits),
-        region=limits.region,
+        **_values(program, limits),
     )
+
+
+def _values(program: Program, limits: MonitorLimits) -> dict[str, Any]:
+    """Return what both templates take."""
+    names, sector = program.names, limits.sector
+    remembered = 0  # Angles before the present one that are needed
+    if sector is not None:
+        remembered = max(limits.age[1] if limits.age else 0, int(sector.speed is not None))
+    return {
+        **{"spec": names.spec, "own": names.lower, "up": names.upper},
+        **{"limits": limits, "region": limits.region, "remembered": remembered},
+    }
 
 
 def _words(program: Program, limits: MonitorLimits) -> Iterator[str]:
@@ -133,13 +134,6 @@ def told_kinds(limits: MonitorLimits) -> dict[str, str]:
         "FAST": sector is not None and sector.speed is not None,
     }
     return {kind: text for kind, text in KINDS.items() if kind not in told or told[kind]}
-
-
-def _remembered(limits: MonitorLimits) -> int:
-    """Return how many angles before the present one are needed."""
-    if limits.sector is None:
-        return 0
-    return max(limits.age[1] if limits.age else 0, int(limits.sector.speed is not None))
 
 
 def _limits(names: CNames, limits: MonitorLimits) -> Iterator[tuple[str, int | Fraction, str]]:

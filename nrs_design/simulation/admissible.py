@@ -83,7 +83,9 @@ def admissible_run(
     runs = [adversary.follow(mode, initial, steps) for mode, initial in adversary.starts()]
     states, modes = max(runs, key=lambda run: adversary.kept(*run))
     instants = np.concatenate([[0.0], np.cumsum([paces[mode].step for mode in modes])])
-    return SwitchedRun(instants, _filled(states), np.array(modes))
+    size = max(map(len, states))
+    filled = np.array([np.pad(x, (0, size - len(x))) for x in states])
+    return SwitchedRun(instants, filled, np.array(modes))
 
 
 def active_norms(
@@ -128,19 +130,13 @@ class _Adversary:
         """Return some modes, each with the state that keeps most over a dwell time and a move."""
         found = []
         for mode, moves in enumerate(self.successors):
-            flow = np.linalg.matrix_power(self.paces[mode].flow, self.paces[mode].fewest)
-            best = max(
-                (self._largest(mode, move, flow) for move in moves), key=lambda item: item[0]
-            )
-            found.append((best[0], mode, best[1]))
+            inverse = np.linalg.inv(self.roots[mode])
+            flow = np.linalg.matrix_power(self.paces[mode].flow, self.paces[mode].fewest) @ inverse
+            maps = (self.roots[move.mode] @ move.reset @ flow for move in moves)
+            _, values, right = max(map(np.linalg.svd, maps), key=lambda item: item[1][0])
+            found.append((values[0], mode, inverse @ right[0]))
         found.sort(key=lambda item: -item[0])
         return [(mode, initial) for _, mode, initial in found[:_STARTS]]
-
-    def _largest(self, mode: int, move: _Move, flow: Array) -> tuple[float, Array]:
-        """Return how much the function can keep over a switch, and the state that keeps it."""
-        inverse = np.linalg.inv(self.roots[mode])
-        _, values, right = np.linalg.svd(self.roots[move.mode] @ move.reset @ flow @ inverse)
-        return float(values[0]), inverse @ right[0]
 
     def follow(self, mode: int, initial: Array, steps: int) -> tuple[list[Array], list[int]]:
         """Move on greedily until there are enough steps."""
@@ -164,20 +160,13 @@ class _Adversary:
             stayed = stayed if move.mode == mode else 0
 
     def _gain(self, mode: int, x: Array, move: _Move) -> float:
-        now, after = self._norm(mode, x), self._norm(move.mode, move.whole @ x)
-        return math.log(after / now) / move.time if after > 0 and now > 0 else -math.inf
+        return self._growth((mode, x), (move.mode, move.whole @ x), time=move.time)
 
     def kept(self, states: list[Array], modes: list[int]) -> float:
         """Return the mean growth of the active function per time, as a logarithm."""
-        first, last = self._norm(modes[0], states[0]), self._norm(modes[-1], states[-1])
         time = sum(self.paces[mode].step for mode in modes)
-        return math.log(last / first) / time if last > 0 else -math.inf
+        return self._growth((modes[0], states[0]), (modes[-1], states[-1]), time=time)
 
-    def _norm(self, mode: int, x: Array) -> float:
-        return float(np.linalg.norm(self.roots[mode] @ x))
-
-
-def _filled(states: list[Array]) -> Array:
-    """Fill smaller states up with zeros."""
-    n = max(map(len, states))
-    return np.array([np.pad(x, (0, n - len(x))) for x in states])
+    def _growth(self, *ends: tuple[int, Array], time: float) -> float:
+        now, after = (float(np.linalg.norm(self.roots[mode] @ x)) for mode, x in ends)
+        return math.log(after / now) / time if after > 0 and now > 0 else -math.inf

@@ -29,17 +29,10 @@ HALVINGS = 40
 _ROUNDS = 60
 
 
-def _bernstein(degree: int) -> Array:
-    """Return the matrix from coefficients in powers on [0, 1] to those of Bernstein."""
-    M = np.zeros((degree + 1, degree + 1))
-    for i in range(degree + 1):
-        for k in range(i + 1):
-            M[i, k] = math.comb(i, k) / math.comb(degree, k)
-    return M
-
-
-BERNSTEIN = _bernstein(DEGREE)
-_POWERS = np.arange(DEGREE + 1, dtype=float)
+_EACH = range(DEGREE + 1)
+_POWERS = np.array(_EACH, dtype=float)
+# From coefficients in powers on [0, 1] to those of Bernstein.
+BERNSTEIN = np.array([[math.comb(i, k) / math.comb(DEGREE, k) for k in _EACH] for i in _EACH])
 
 
 @dataclass(frozen=True)
@@ -115,8 +108,6 @@ class Flow:
         States at the beginnings of the steps, shape (N, n); sides 1 or -1, shape (e,).
         """
         e = len(sides)
-        if e == 0:
-            return len(states)
         coefficients = (states @ self._bernstein_rows).reshape(len(states), e, DEGREE + 1)
         coefficients *= sides[:, None]
         # How far the signals stay on their sides, at least.
@@ -130,19 +121,11 @@ class Flow:
 
         From the state z, shape (n,), within `width` s; sides 1 or -1, shape (e,).
         """
-        if not len(sides):
-            return None
-        powers = (width / self.h) ** _POWERS
-        taylor = (self._rows @ z) * powers * sides[:, None]
-        taylor[:, 0] += self.tolerances
-        rest = (self._remainder @ np.abs(z)) * (powers[-1] * width / self.h)
         found: float | None = None
-        for e in np.flatnonzero((taylor @ BERNSTEIN.T).min(axis=1) <= rest).tolist():
-            time = self._crossing(e, float(sides[e]), z, width)
+        for e, side in enumerate(sides.tolist()):
+            time = self._crossing(e, side, z, width)
             if time is not None:
                 found, width = time, time
-            if not width:
-                break
         return found
 
     def _crossing(self, e: int, side: float, z: Array, width: float) -> float | None:

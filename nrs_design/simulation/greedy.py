@@ -80,15 +80,12 @@ def _possible(system: SwitchedSystem) -> Callable[[int, Array], tuple[Indices, I
     kinds = np.array([0] if clock is None else clock.kind_of(mode.name for mode in modes))
 
     def possible(turn: int, x: Array) -> tuple[Indices, Indices]:
-        lost = bool(free.any()) and x[-1] <= 0
-        felt = free == lost
-        if clock is None:
-            kept = np.flatnonzero(felt)
-            return kept, np.zeros_like(kept)
-        ahead = np.full(len(modes), NOWHERE)
-        for kind in clock.kinds:
-            if (target := clock.after(turn, kind)) is not None:
-                ahead[kinds == kind] = target
+        ahead = np.zeros(len(modes), dtype=np.int64)
+        if clock is not None:
+            for kind in clock.kinds:
+                target = clock.after(turn, kind)
+                ahead[kinds == kind] = NOWHERE if target is None else target
+        felt = free == (free.any() and x[-1] <= 0)
         kept = np.flatnonzero(felt & (ahead != NOWHERE))
         return kept, ahead[kept]
 

@@ -137,12 +137,12 @@ class _Policy:
         signs = np.zeros((steps, nodes, runs, game.disturbances), dtype=np.int8)
         # What a run is worth at a node is p x + c.
         p, c = _final(game, aim, states[-1], runs), np.zeros((nodes, runs))
-        pull, reset = _Pull(game), len(rules.jumps) > 1
+        reset = len(rules.jumps) > 1
         taken = rules.jumps[rules.jump]
         column, row = np.arange(runs), np.arange(nodes)[:, None]
         for k in range(steps - 1, -1, -1):
             x = (taken @ states[k].T).transpose(0, 2, 1) if reset else states[k]
-            pulled = pull(p, x)
+            pulled = game.gradients(p, x)
             added = np.abs(pulled[:, :, n:]).sum(axis=2) + c[rules.target]
             worth = (pulled[:, :, :n] * x).sum(axis=2) + added
             action = rules.choices[row, worth[rules.choices].argmax(axis=1)]
@@ -167,28 +167,6 @@ class _Policy:
             shares[k] = np.where(new[:, None], self.signs[k, node, column], shares[k])
             node = rules.target[actions[k]]
         return fresh
-
-
-class _Pull:
-    """Gradients before a step from those after it, for every action; shape (U, S, n + c)."""
-
-    def __init__(self, game: Game) -> None:
-        self._game, self._target = game, game.rules.target
-        self._maps, self._flights = (
-            maps[game.rules.mode] if len(maps) else maps for maps in (game.maps, game.flights)
-        )
-
-    def __call__(self, p: Array, x: Array) -> Array:
-        """Pull back p, shape (N, S, n), along states x, shape (S, n) or (U, S, n)."""
-        lost = self._game.flies(x)
-        if not lost.any():
-            return self._back(p, self._maps)
-        free = self._back(p, self._flights)
-        return free if lost.all() else np.where(lost[..., None], free, self._back(p, self._maps))
-
-    def _back(self, p: Array, maps: Array) -> Array:
-        # With one node all actions share their gradients.
-        return np.asarray((p if len(p) == 1 else p[self._target]) @ maps)
 
 
 def _final(game: Game, aim: Aim, ends: Array, runs: int) -> Array:

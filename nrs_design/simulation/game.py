@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -75,6 +76,30 @@ class Game:
         if len(self.pulls):
             lost |= (states @ self.pulls.T <= 0).all(axis=-1)
         return np.asarray(lost)
+
+    def gradients(self, p: Array, x: Array) -> Array:
+        """Return gradients before a step from those after it, for every action.
+
+        From p at every node, shape (N, S, n), along states x, shape (S, n) or (U, S, n), to shape
+        (U, S, n + c).
+        """
+        lost = self.flies(x)
+        # With one node all actions share their gradients.
+        p = p if len(p) == 1 else p[self.rules.target]
+        if not lost.any():
+            return np.asarray(p @ self._touching)
+        free = np.asarray(p @ self._flying)
+        return free if lost.all() else np.where(lost[..., None], free, p @ self._touching)
+
+    @cached_property
+    def _touching(self) -> Array:
+        """`maps` of every action."""
+        return self.maps[self.rules.mode]
+
+    @cached_property
+    def _flying(self) -> Array:
+        """`flights` of every action."""
+        return self.flights[self.rules.mode]
 
 
 @dataclass(frozen=True, eq=False)

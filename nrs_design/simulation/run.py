@@ -63,14 +63,16 @@ class Run:
     @property
     def chatter(self) -> int:
         """How many times a controller was left within `CHATTER` of its switch."""
-        times = [time for time, _ in self.switches]
-        return sum(b - a < CHATTER for a, b in pairwise(times))
+        return sum(stay < CHATTER for stay in self._stays)
 
     @property
     def shortest_stay(self) -> float | None:
         """Least time between two switches in s; None if there are no two."""
-        times = [time for time, _ in self.switches]
-        return min((b - a for a, b in pairwise(times)), default=None)
+        return min(self._stays, default=None)
+
+    @property
+    def _stays(self) -> list[float]:
+        return [b - a for (a, _), (b, _) in pairwise(self.switches)]
 
 
 def common_lever_arm(spec: InteractionDesignSpec, touched: Iterable[str]) -> float | None:

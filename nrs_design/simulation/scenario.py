@@ -94,6 +94,11 @@ class Surface:
     beside: tuple[str, ...] = ()  # The environments of these, in their order
 
     @property
+    def elements(self) -> tuple[Element, ...]:
+        """Springs and dampers of the body; none of one that is not linear."""
+        return () if self.element is None else (self.element, *self.arms)
+
+    @property
     def is_linear(self) -> bool:
         """Whether the exact engine knows it."""
         return self.element is not None and not self.arms

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from nrs_design.models.contact import AbstractNonlinearLaw
-from nrs_design.models.contact.law import Element
 from nrs_design.simulation.scenario import Surface
 
 
@@ -20,8 +20,7 @@ class Tissue:
 
     def __post_init__(self) -> None:
         """Begin free of contact, with all dampers at rest."""
-        self.dampers = [0.0] * len(self.surfaces)
-        self.arms = [[0.0] * (1 + len(surface.arms)) for surface in self.surfaces]
+        self.dampers = [[0.0] * len(surface.elements) for surface in self.surfaces]
         self.touched = [False] * len(self.surfaces)
         self.noted = list(self.touched)
         self.direction = self.surfaces[0].sign if self.surfaces else 1
@@ -29,8 +28,7 @@ class Tissue:
     @property
     def creeps(self) -> bool:
         """Whether something in it moves by itself."""
-        each = (element for s in self.surfaces for element in (s.element, *s.arms))
-        return any(element is not None and math.isfinite(element.b) for element in each)
+        return any(math.isfinite(e.b) for surface in self.surfaces for e in surface.elements)
 
     def depths(self, theta: float) -> list[float]:
         """Return the depth of an angle in rad below every surface."""
@@ -42,22 +40,15 @@ class Tissue:
         At an angle in rad and a velocity in rad/s.
         """
         total = 0.0
-        for j, surface in enumerate(self.surfaces):
-            depth = surface.sign * (theta - surface.at) - self.dampers[j]
-            push = 0.0
-            if depth > 0 and surface.arms:
-                push = _pull(surface, self.arms[j], depth, surface.sign * omega)
-            elif depth > 0:
-                push = _push(surface, depth, surface.sign * omega)
-            self.touched[j] = push > 0
-            if push > 0:
+        for j, (surface, depth) in enumerate(zip(self.surfaces, self.depths(theta), strict=True)):
+            push = _push(surface, self.dampers[j], depth, surface.sign * omega)
+            self.touched[j] = depth > 0 and push > 0
+            if self.touched[j]:
                 total += surface.sign * push
         return total
 
     def note(self, time: float) -> None:
         """Write down which surfaces have been met and lost since the last time."""
-        if self.touched == self.noted:
-            return
         for j, surface in enumerate(self.surfaces):
             if self.touched[j] != self.noted[j]:
                 self.contacts.append((time, surface.environment, self.touched[j]))
@@ -66,48 +57,28 @@ class Tissue:
         self.noted = list(self.touched)
 
     def creep(self, before: list[float], after: list[float], time: float) -> None:
-        """Move the dampers while the depths, in rad, change evenly within a time in s."""
-        for j, (begin, end) in enumerate(zip(before, after, strict=True)):
-            element = self.surfaces[j].element
-            middle = (begin + end) / 2
-            if self.surfaces[j].arms:
-                self._creep_together(j, middle, time)
-                continue
-            if element is None or not math.isfinite(element.b):
-                continue
-            pushed = element.k if middle > self.dampers[j] else 0.0
-            rate = (pushed + element.h) / element.b
-            if rate:
-                rest = pushed * middle / (pushed + element.h)
-                self.dampers[j] = rest + (self.dampers[j] - rest) * math.exp(-rate * time)
+        """Move the dampers while the depths, in rad, change evenly within a time in s.
 
-    def _creep_together(self, j: int, depth: float, time: float) -> None:
-        """Move the dampers of one body, whose surface returns by itself where nothing pushes it."""
-        surface, dampers = self.surfaces[j], self.arms[j]
-        elements = _elements(surface)
-        if _pull(surface, dampers, depth, 0.0) <= 0:
-            springs = sum(element.k for element in elements)
-            depth = sum(e.k * d for e, d in zip(elements, dampers, strict=True)) / springs
-        for i, element in enumerate(elements):
-            if math.isfinite(element.b):
-                rest = element.k * depth / (element.k + element.h)
-                gone = math.exp(-(element.k + element.h) / element.b * time)
-                dampers[i] = rest + (dampers[i] - rest) * gone
+        The surface of one body with several arms returns by itself where nothing pushes it.
+        """
+        for j, surface in enumerate(self.surfaces):
+            dampers, depth = self.dampers[j], (before[j] + after[j]) / 2
+            pushed = bool(dampers) and _push(surface, dampers, depth, 0.0) > 0
+            if surface.arms and not pushed:
+                springs = sum(e.k for e in surface.elements)
+                each = zip(surface.elements, dampers, strict=True)
+                pushed, depth = True, sum(e.k * damper for e, damper in each) / springs
+            for i, element in enumerate(surface.elements):
+                k = element.k if pushed else 0.0
+                rate = (k + element.h) / element.b
+                if rate:
+                    rest = k * depth / (k + element.h)
+                    dampers[i] = rest + (dampers[i] - rest) * math.exp(-rate * time)
 
 
-def _elements(surface: Surface) -> tuple[Element, ...]:
-    assert surface.element is not None
-    return (surface.element, *surface.arms)
-
-
-def _pull(surface: Surface, dampers: list[float], depth: float, speed: float) -> float:
-    """Return the sum of all arms, below zero where it would pull: they are held together."""
-    each = zip(_elements(surface), dampers, strict=True)
-    return sum(element.k * (depth - damper) + element.c * speed for element, damper in each)
-
-
-def _push(surface: Surface, depth: float, speed: float) -> float:
-    if surface.element is not None:
-        return surface.element.k * depth + surface.element.c * speed
-    assert isinstance(surface.law, AbstractNonlinearLaw)
-    return surface.law.push(depth, speed)
+def _push(surface: Surface, dampers: Sequence[float], depth: float, speed: float) -> float:
+    """Return the force at a depth, below zero where it would pull: arms are held together."""
+    if isinstance(surface.law, AbstractNonlinearLaw):
+        return surface.law.push(depth, speed)
+    each = zip(surface.elements, dampers, strict=True)
+    return sum(e.k * (depth - damper) + e.c * speed for e, damper in each)

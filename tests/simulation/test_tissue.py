@@ -44,7 +44,7 @@ def test_arms_pull_each_other_back_and_never_the_robot():
     tissue, depth = body(FAST), 0.01
     for _ in range(200):
         tissue.creep([depth], [depth], 0.001)
-    kept = tissue.arms[0][1]
+    kept = tissue.dampers[0][1]
     assert 0.009 < kept < depth
     at = 20 * kept / 50
     assert tissue.torque(at * 0.999, 0.0) == 0.0
@@ -52,7 +52,7 @@ def test_arms_pull_each_other_back_and_never_the_robot():
     # Free: d' = k (s - d)/b with s = 20 d/50.
     for _ in range(100):
         tissue.creep([0.0], [0.0], 1e-4)
-    assert tissue.arms[0][1] == pytest.approx(kept * math.exp(-0.01 * 20 * 0.6 / 0.4), rel=1e-3)
+    assert tissue.dampers[0][1] == pytest.approx(kept * math.exp(-0.01 * 20 * 0.6 / 0.4), rel=1e-3)
 
 
 def test_one_arm_beside_a_spring_is_the_standard_linear_solid():

@@ -9,7 +9,7 @@ from __future__ import annotations
 from fractions import Fraction
 from math import ceil, floor
 
-from nrs_design.proof.exact import IntegerMatrix, multiply
+from nrs_design.proof.exact import IntegerMatrix, add, multiply
 from nrs_design.proof.matrix import RationalMatrix
 
 # Numbers are integers over two to this power.
@@ -36,9 +36,10 @@ def exponential_nearly(A: RationalMatrix, time: Fraction) -> tuple[RationalMatri
     halvings = ceil(size * 2**SMALL).bit_length()
     scale = time * UNIT / A.denominator / 2**halvings
     X = [[round(entry * scale) for entry in row] for row in A.numerators]
-    E = _identity(n)
+    identity = [[UNIT * (i == j) for j in range(n)] for i in range(n)]
+    E: IntegerMatrix = identity
     for k in range(TERMS, 0, -1):
-        E = _plus_identity(_divided(multiply(X, E), k * UNIT))
+        E = add(identity, _divided(multiply(X, E), k * UNIT))
     error = Fraction(4 * n + 1)
     for _ in range(halvings):
         norm = Fraction(max(sum(map(abs, row)) for row in E), UNIT)
@@ -57,16 +58,6 @@ def exponential_between(x: Fraction) -> tuple[Fraction, Fraction]:
     )
 
 
-def _identity(n: int) -> IntegerMatrix:
-    return [[UNIT * (i == j) for j in range(n)] for i in range(n)]
-
-
-def _plus_identity(M: list[list[int]]) -> IntegerMatrix:
-    for i, row in enumerate(M):
-        row[i] += UNIT
-    return M
-
-
-def _divided(M: IntegerMatrix, divisor: int) -> list[list[int]]:
+def _divided(M: IntegerMatrix, divisor: int) -> IntegerMatrix:
     """Return a quotient, each entry of which is less than one below."""
     return [[entry // divisor for entry in row] for row in M]

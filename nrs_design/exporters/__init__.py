@@ -66,8 +66,7 @@ def rendered(name: str, export: object) -> dict[str, bytes]:
 
 def remarks_on(name: str, files: Mapping[str, bytes]) -> tuple[str, ...]:
     """Return what rendered files lack."""
-    module = _module(name)
-    return tuple(module.remarks(files)) if hasattr(module, "remarks") else ()
+    return tuple(getattr(_module(name), "remarks", lambda _: ())(files))
 
 
 def _module(name: str) -> Any:

@@ -53,12 +53,6 @@ class Realization:
         rows = [[*row, *zero(len(command) - self.order)] for row in self.A]
         return [*rows[:-1], combine((Fraction(1), rows[-1]), (Fraction(1), command))]
 
-    @property
-    def pressed(self) -> tuple[LinearForm, Fraction]:
-        """The state at rest with an output of one, and the command that lasts then."""
-        first = 1 / self.C[0]
-        return [first, *zero(self.order - 1)], -self.A[-1][0] * first
-
     def velocity(self, nothing: LinearForm, command: Callable[[], LinearForm]) -> LinearForm:
         """Return y'; `nothing` is the form zero, and `command` asks for u where that acts on it."""
         needed = command() if self.C[-1] else nothing
@@ -159,11 +153,6 @@ class LoadedMotionLoop:
     def output(self, size: int) -> LinearForm:
         """Return theta as a linear form of a state of that size."""
         return coordinates(size)[0]
-
-    @property
-    def pressed(self) -> tuple[LinearForm, Fraction]:
-        """The state at rest with an angle of one, and the command that lasts then."""
-        return [Fraction(1), -self._direct], Fraction(1)
 
     @property
     def _direct(self) -> Fraction:

@@ -67,11 +67,10 @@ class Profile:
 
     def at(self, time: Array) -> Array:
         """Return the velocity at times in s, after a jump where there is one."""
-        starts = np.array([piece.start for piece in self.pieces])
-        index = np.clip(np.searchsorted(starts, time, side="right") - 1, 0, None)
-        value = np.array([piece.value for piece in self.pieces])[index]
-        slope = np.array([piece.slope for piece in self.pieces])[index]
-        elapsed = time - starts[index]
+        columns = np.array([(piece.start, piece.value, piece.slope) for piece in self.pieces]).T
+        index = np.clip(np.searchsorted(columns[0], time, side="right") - 1, 0, None)
+        start, value, slope = columns[:, index]
+        elapsed = time - start
         if self.omega == 0:
             return np.asarray(value + slope * elapsed)
         phase = self.omega * elapsed

@@ -13,17 +13,6 @@ from nrs_design.axis import AxisType
 
 Array = NDArray[np.float64]
 
-# How names of columns write units, as records are read.
-_IN_COLUMNS = {
-    "N*m": "Nm",
-    "rad/s": "rad_s",
-    "N*m/rad": "Nm_rad",
-    "N*m*s/rad": "Nms_rad",
-    "m/s": "m_s",
-    "N/m": "N_m",
-    "N*s/m": "Ns_m",
-}
-
 
 @dataclass(frozen=True, slots=True)
 class Signal:
@@ -35,8 +24,8 @@ class Signal:
     @property
     def column(self) -> str:
         """Name of its column in a file, such as ``torque_Nm``."""
-        words = self.name.replace(" ", "-")
-        return f"{words}_{_IN_COLUMNS.get(self.unit, self.unit)}" if self.unit else words
+        words, unit = self.name.replace(" ", "-"), self.unit.replace("*", "").replace("/", "_")
+        return f"{words}_{unit}" if unit else words
 
     def __str__(self) -> str:
         """Name and unit, such as ``torque [N*m]``."""

@@ -16,7 +16,7 @@ from nrs_design.proof.system import SwitchedSystem
 from nrs_design.simulation.norms import Array
 from nrs_design.simulation.switched import SwitchedRun, expm, mode_matrices
 
-# Fewest dwell times that a run of so many steps should hold.
+# Fewest dwell times in a run.
 _LEGS = 8
 # Modes to start in; the worst run of them is kept.
 _STARTS = 6
@@ -24,7 +24,7 @@ _STARTS = 6
 
 @dataclass(frozen=True)
 class _Pace:
-    """How a mode moves: its step in s, the flow of one step, the fewest steps and the most."""
+    """Step in s of a mode, its flow, and the fewest and most steps of a stay."""
 
     step: float
     flow: Array
@@ -33,7 +33,7 @@ class _Pace:
 
     @classmethod
     def of(cls, A: Array, stay: Stay, time: Time, step: float, steps: int) -> _Pace:
-        """Choose a step that divides the dwell time, or at least ends before the mode is left."""
+        """Choose a step that divides the dwell time, or ends before the mode is left."""
         if time is Time.DISCRETE:
             most = math.inf if stay.longest is None else int(stay.longest)
             return cls(1.0, A, int(stay.shortest), most)
@@ -49,7 +49,7 @@ class _Pace:
 
 @dataclass(frozen=True)
 class _Move:
-    """What may happen next: the mode, the reset on entering it, how long it lasts, all in one."""
+    """Next mode, its reset, its number of steps, their time in s, and the map of all."""
 
     mode: int
     reset: Array
@@ -120,14 +120,14 @@ def _successors(system: SwitchedSystem, paces: list[_Pace]) -> list[list[_Move]]
 
 @dataclass(frozen=True)
 class _Adversary:
-    """He knows of every mode its pace, the root of its function, and what may follow."""
+    """Pace, root of the function and successors of every mode."""
 
     paces: list[_Pace]
     roots: list[Array]
     successors: list[list[_Move]]
 
     def starts(self) -> list[tuple[int, Array]]:
-        """Return some modes, each with the state that keeps most over a dwell time and a move."""
+        """Return modes, each with the state that keeps most over a dwell time and a move."""
         found = []
         for mode, moves in enumerate(self.successors):
             inverse = np.linalg.inv(self.roots[mode])
@@ -154,7 +154,7 @@ class _Adversary:
             must_leave = stayed + 1 > self.paces[mode].most
             moves = self.successors[mode][int(must_leave) :]
             if not moves:
-                # What may follow is none of these modes.
+                # No mode may follow.
                 return states, modes
             move = max(moves, key=partial(self._gain, mode, states[-1]))
             stayed = stayed if move.mode == mode else 0

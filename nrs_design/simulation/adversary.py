@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from nrs_design.simulation.game import Aim, Game, Signals, play
 from nrs_design.simulation.norms import Array
 
-# Where a run is continued by the new choices: from these shares of its length on.
+# Fractions of a run after which the new choices continue it.
 _CUTS = (0.0, 0.3, 0.5, 0.7, 0.8, 0.9, 0.95)
 _NO_GAIN = 1e-5
 # A mode settles if no motion of it keeps more than this share of itself in a step.
@@ -46,9 +46,9 @@ def held_signals(game: Game, rest: int, steps: int) -> Signals:
 
 
 def settled_signals(game: Game, approach: int, steps: int) -> Signals:
-    """Return what `held_signals` does from where it leads if it is held for long before.
+    """Return the signals of `held_signals` from the states that they settle at.
 
-    Pressed into what is touched, or in steady motion towards a surface that was lost.
+    Pressed into the environment, or in steady motion towards a surface.
     """
     found = [
         (mode, sign, state)
@@ -96,7 +96,7 @@ def improve(game: Game, aim: Aim, signals: Signals, sweeps: int) -> Signals:
     value = _at_end(game, aim, signals, states)
     actions, shares = signals.actions.copy(), signals.shares.copy()
     best = replace(signals, actions=actions, shares=shares)
-    # Runs that the last sweep has improved; the others have come to where they stay.
+    # Runs that the last sweep has improved; the others have converged.
     moving = np.arange(len(value))
     for _ in range(sweeps):
         if not len(moving):
@@ -135,7 +135,7 @@ class _Policy:
         nodes = len(rules.choices)
         actions = np.zeros((steps, nodes, runs), dtype=np.int32)
         signs = np.zeros((steps, nodes, runs, game.disturbances), dtype=np.int8)
-        # What a run is worth at a node is p x + c.
+        # The value of a run at a node is p x + c.
         p, c = _final(game, aim, states[-1], runs), np.zeros((nodes, runs))
         reset = len(rules.jumps) > 1
         taken = rules.jumps[rules.jump]
@@ -154,7 +154,7 @@ class _Policy:
         return cls(actions, signs)
 
     def follow(self, game: Game, signals: Signals) -> Signals:
-        """Return what is chosen by runs that are the old ones at first, for every cut."""
+        """Return the choices of runs that follow the policy from each cut on."""
         rules = game.rules
         steps, runs = signals.actions.shape
         first = np.repeat((np.array(_CUTS) * steps).astype(int), runs)
@@ -170,10 +170,10 @@ class _Policy:
 
 
 def _final(game: Game, aim: Aim, ends: Array, runs: int) -> Array:
-    """Return what is wanted at the end as a row, at every node; shape (N, S, n)."""
+    """Return the row of the aim at the end, at every node; shape (N, S, n)."""
     rules = game.rules
     p = np.zeros((len(rules.choices), runs, game.order))
-    # The mode of a node is that of any action that leads to it; of one node, any mode's.
+    # Every action into a node has the mode of the node; a single node has every mode.
     if len(rules.choices) == 1:
         free = replace(aim, allowed=np.ones_like(aim.allowed))
         p[0] = free.values(game, ends, np.zeros(runs, dtype=np.int64))[1]

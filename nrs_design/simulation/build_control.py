@@ -1,4 +1,4 @@
-"""From what a spec says of who is in control during a run to conditions on signals."""
+"""Conditions on signals from the control section of a scenario."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from nrs_design.spec import InteractionDesignSpec
 from nrs_design.spec.scenarios import ControlSpec
 from nrs_design.spec.threshold_logic import CommandCondition, TorqueCondition
 
-# The sign of a signal is told beyond this, in rad/s and N m: not from rounding.
+# Signals below this magnitude have no sign, in rad/s and N m.
 _TINY = 1e-9
 
 
@@ -47,7 +47,7 @@ def build_control(
 
 
 def _usual(spec: InteractionDesignSpec) -> Control:
-    """Return what fits names and kinds: signs, the threshold of the torque, or one controller."""
+    """Return the control by names and kinds: signs, a torque threshold, or one controller."""
     controllers = spec.controllers.items()
     if {"insertion", "withdrawal"} <= spec.controllers.keys():
         return by_sign("insertion", "withdrawal")
@@ -103,8 +103,7 @@ def _by_contact(contacts: Mapping[str, str], surfaces: Sequence[Surface]) -> Ite
 def by_logic(spec: InteractionDesignSpec) -> Control:
     """Return the thresholds and timers of the mode logic of a spec.
 
-    Thresholds are rounded away from each other, and timers up: what is shown for those of the spec
-    holds for these.
+    Thresholds are rounded away from each other, and timers up: a proof for the spec covers them.
     """
     logic = spec.mode_logic
     assert logic is not None

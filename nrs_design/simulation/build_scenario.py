@@ -1,4 +1,4 @@
-"""From what a spec says of a scenario to SI numbers; and the scenario of a spec that has none."""
+"""Scenarios of a spec in SI units, and the default scenario."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ DEFAULT = "insertion-and-withdrawal"
 # Thesis fig. 6.7 and 6.11: in free space to the largest command, down, again in contact, and out.
 _SHAPE = ((0.0, 0.0), (1.0, 1.0), (2.0, 0.25), (3.0, 1.0), (4.0, 0.0), (5.0, -1.0), (6.0, -1.0),
           (7.0, 0.0), (7.5, 0.0))  # fmt: skip
-# Where the surface of the default scenario lies: so many seconds of the largest command away.
+# Time in s to the surface of the default scenario under the largest command.
 _AWAY = 1.0
 
 
@@ -85,7 +85,7 @@ def default_scenario(spec: InteractionDesignSpec, plant: Plant) -> Scenario:
 
 
 def _profile(command: CommandProfileSpec, folder: Path, largest: float) -> tuple[Profile, float]:
-    """Return the profile, and how long it is where that follows from it."""
+    """Return the profile, and its length in s; zero where it has none."""
     if command.constant is not None:
         return Profile.constant(command.constant.si), 0.0
     if command.sinusoid is not None:
@@ -112,7 +112,7 @@ def _check_inside(path: Path, folder: Path) -> None:
 
 
 def _recorded(path: Path, largest: float) -> tuple[Profile, float]:
-    # Whoever measures a hand names and scales columns as records of measurements do.
+    # Columns are named and scaled as in records of measurements.
     read_table = load_wing("identification", "tables.table").read_table
     table = read_table(path, (("time", "velocity"),), {})
     columns = table.values

@@ -1,4 +1,4 @@
-"""Whether a certified bound covers a run: what happens in the run that the proof leaves out."""
+"""Events of a run that a certified bound does not cover."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _SAME = 1 + 1e-12
 
 @dataclass(frozen=True, slots=True)
 class Coverage:
-    """A checked statement about a system of a spec, beside a run of a scenario."""
+    """A checked statement about the system of a spec, and a run of a scenario."""
 
     spec: InteractionDesignSpec
     system: SwitchedSystem
@@ -27,7 +27,7 @@ class Coverage:
     run: Run
 
     def uncovered(self) -> Iterator[str]:
-        """Yield what happens in the run that a bound does not cover; nothing if it holds."""
+        """Yield the events of the run that a bound does not cover."""
         scenario, run = self.scenario, self.run
         bound = self.statement.bound(self.system)
         assert bound is not None
@@ -83,7 +83,7 @@ class Coverage:
             yield "contact is lost or made, and the proof takes it for kept"
         yield from self._surroundings()
         control = self.scenario.control
-        # Who stays keeps all rules but one: that a controller has to be left.
+        # A run without switches breaks one rule only: a longest dwell time.
         left = spec.switching.longest_dwell_time is not None
         changes = bool(control.switches or control.schedule)
         ruled = not spec.switching.is_arbitrary and (changes or left)
@@ -91,7 +91,7 @@ class Coverage:
             yield "nothing makes the run keep the rules of switching"
 
     def _sampling(self) -> Iterator[str]:
-        """Yield it if period or delay differ from those of the proof."""
+        """Yield a reason if period or delay differ from the proof."""
         sampling, run = self.spec.sampling, self.run
         if sampling is None or run.sampling is None:
             if run.sampling is not None or sampling is not None:
@@ -118,7 +118,7 @@ class Coverage:
 
 
 def end_of_command(scenario: Scenario) -> float | None:
-    """Return the time in s from which on nothing is commanded, None if the run is over by then."""
+    """Return the time in s after which the command is zero; None if the run ends before."""
     profile, start = scenario.profile, None
     for piece in reversed(profile.pieces):
         if piece.value or piece.slope or profile.mean:
@@ -128,7 +128,7 @@ def end_of_command(scenario: Scenario) -> float | None:
 
 
 def _largest_command(scenario: Scenario, run: Run) -> float:
-    """Return what is commanded at most: a sinusoid has its peak between two instants."""
+    """Return the largest command; a sinusoid may have its peak between two instants."""
     profile = scenario.profile
     seen = float(abs(run.response["hand"]).max())
     if not profile.omega:

@@ -33,9 +33,9 @@ from nrs_design.simulation.scenario import Array, Errors, Scenario
 from nrs_design.simulation.time_response import Signal, TimeResponse
 from nrs_design.spec import InteractionDesignSpec
 
-# Steps after which it is told how far the run is.
+# Steps between two progress reports.
 _OFTEN = 20_000
-# Events at one instant, one after the other, after which a run does not come on.
+# Largest number of events at one instant.
 _STILL = 100
 
 
@@ -79,7 +79,7 @@ class _Engine:
         self.damped = any(map(self.loop.is_damped, range(len(signs))))
         self.met: dict[tuple[int, int, int], bool] = {}
         self.location = self._enter()
-        # States so far, with the time of the first, the step between them, and the location.
+        # Time of the first state, step, location, and states of each part of the run.
         self.kept: list[tuple[float, float, int, Array]] = []
 
     def _in_contact(self) -> tuple[int, ...]:
@@ -129,7 +129,7 @@ class _Engine:
             )
 
     def _agenda(self) -> Iterator[tuple[float, int, str | int]]:
-        """Yield what happens at given times: breakpoints of the command and scheduled switches."""
+        """Yield breakpoints of the command and scheduled switches, with their times."""
         scenario = self.loop.scenario
         for i, piece in enumerate(scenario.profile.pieces):
             yield piece.start, 0, i
@@ -141,7 +141,7 @@ class _Engine:
             self._record(self.z[None])
             self._switch(str(what))
             if not self.loop.scenario.control.switches and not self.damped:
-                # What is touched depends on the angle alone, which does not jump.
+                # Contact depends on the angle alone, which is continuous.
                 return
         else:
             piece = self.loop.scenario.profile.pieces[int(what)]
@@ -177,11 +177,11 @@ class _Engine:
         while self.t < limit and self.stopped is None:
             whole = min(CHUNK, int((limit - self.t) / flow.h))
             states = flow.chunk(self.z, whole)
-            # The step after the last whole one is looked at too: it may be cut short.
+            # The last step may be shorter than the others.
             count = flow.first_doubtful(states, sides)
             done = min(count, whole)
             full = done and count > whole and self.t + (done + 1) * flow.h <= limit
-            # Where a step that may be cut short follows, the state that it begins in is kept, too.
+            # The first state of a shorter step is recorded here.
             kept = done if full else done + 1
             self._record(states[:kept], flow.h)
             if done:
@@ -203,7 +203,7 @@ class _Engine:
         return False
 
     def _tell(self, done: int) -> None:
-        """Say how far the run is, and stop it where it takes too many steps."""
+        """Report progress, and stop a run with too many steps."""
         if self.steps > self.max_steps:
             self.stopped = f"{self.max_steps} steps by {self.t:.6g} s: the budget is used up"
         if self.steps // _OFTEN != (self.steps - done) // _OFTEN:
@@ -227,7 +227,7 @@ class _Engine:
         pushes = (location.pushes @ self.z).tolist() if location.pushes.size else []
         for j in range(len(self.inside)):
             self.inside[j] = _side(depths[j], self.inside[j])
-            # Outside, a push is not asked for: contact begins with it.
+            # Contact begins with a push: outside, none is required.
             self.pushing[j] = not (self.inside[j] and self.loop.is_damped(j)) or _side(
                 pushes[j], self.pushing[j]
             )
@@ -297,7 +297,7 @@ class _Engine:
         angle, velocity, torque, reference = rows.T
         states = states.T.copy()
         surfaces = self.loop.scenario.surfaces
-        # What tissue seems to pull before its loss is noticed: see TOLERANCE.
+        # Torques below the tolerance of contact are zero.
         stiffest = max((s.element.k for s in surfaces if s.element is not None), default=0.0)
         torque = np.where(np.abs(torque) <= 4 * TOLERANCE * (1 + stiffest), 0.0, torque)
         depths = [s.sign * (angle - s.at) for s in surfaces]

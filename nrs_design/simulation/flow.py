@@ -24,7 +24,7 @@ from nrs_design.simulation.scenario import Array
 DEGREE = 14
 # Steps that are computed at once.
 CHUNK = 64
-# Halvings of a step after which a signal that cannot be told from its threshold is across.
+# Largest number of halvings of a step; a signal still at its threshold then counts as across.
 HALVINGS = 40
 _ROUNDS = 60
 
@@ -40,15 +40,14 @@ class Flow:
     """``z' = A z`` with signals that are watched."""
 
     A: Array  # Shape (n, n). The system.
-    # Shape (e, n). Rows; the signals count as on their side until they are beyond zero by the
-    # tolerance.
+    # Shape (e, n). Rows of the signals; a signal changes its side beyond its tolerance.
     signals: Array
     tolerances: Array  # Shape (e,). In the units of the signals.
     step: float  # At most so long a step, in s
 
     @cached_property
     def h(self) -> float:
-        """The step: none of the rates makes it longer than one time constant."""
+        """Step in s, at most one time constant of the fastest rate."""
         rate = float(np.abs(np.linalg.eigvals(np.abs(self.A))).max())
         return min(self.step, 1.0 / rate) if rate > 0 else self.step
 
@@ -110,7 +109,7 @@ class Flow:
         e = len(sides)
         coefficients = (states @ self._bernstein_rows).reshape(len(states), e, DEGREE + 1)
         coefficients *= sides[:, None]
-        # How far the signals stay on their sides, at least.
+        # Lower bounds on the distances of the signals from zero.
         lowest = coefficients.min(axis=2) + self.tolerances
         doubtful = (lowest <= np.abs(states) @ self._remainder.T).any(axis=1)
         first = int(doubtful.argmax())

@@ -21,15 +21,13 @@ from nrs_design.simulation.switched import expm
 class Game:
     """A loop on a grid of time."""
 
-    # Shape (m, n, n + c). Step of each mode in contact: of the state, and of shares of the largest
-    # disturbances.
+    # Shape (m, n, n + c). Step of each mode in contact, from state and fractions of disturbances.
     maps: Array
-    # Shape (m, n, n + c). What takes its place without contact; empty, shape (0, n, n + c), where
-    # contact is kept.
+    # Shape (m, n, n + c). The same without contact; shape (0, n, n + c) where contact is kept.
     flights: Array
-    # Shape (q, n). Forces of tissue that could pull: while none is positive, contact is lost, too.
+    # Shape (q, n). Forces of tissue that could pull; without a positive force, contact is lost.
     pulls: Array
-    rules: Rules  # Which mode may follow which
+    rules: Rules  # Admissible mode sequences
 
     @classmethod
     def of(cls, system: SwitchedSystem, channels: Sequence[Channel], step: float) -> Game:
@@ -126,7 +124,7 @@ class Aim:
 
 @dataclass(frozen=True, eq=False)
 class Signals:
-    """What was chosen in S runs, and where they begin."""
+    """Choices of S runs, and their initial states."""
 
     actions: Indices  # Shape (K, S). Of `Rules`, one for each step.
     shares: Array  # Shape (K, S, c). Of the largest disturbances, from -1 to 1.
@@ -180,10 +178,9 @@ def _step(game: Game, x: Array, action: Indices, shares: Array) -> Array:
 
 
 def free_counterparts(system: SwitchedSystem) -> Indices:
-    """Return which free mode takes the place of each mode where contact is lost; shape (m,).
+    """Return the free mode of each mode after a loss of contact; shape (m,).
 
-    It is of the same controller, with the same gains, motor and delay: of all free modes the one
-    whose name has the most in common.
+    It has the same controller, gains, motor and delay: the name with most parts in common.
     """
     assert system.contact is not None
     free = [mode.name.split("/") for mode in system.contact.free]

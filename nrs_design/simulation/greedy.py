@@ -16,7 +16,7 @@ from nrs_design.simulation.switched import SwitchedRun, sampling_instants, trans
 
 
 def all_modes(system: SwitchedSystem) -> SwitchedSystem:
-    """Return the modes in contact and those of free motion, if any, as one family."""
+    """Return a system of all modes, in contact and in free motion."""
     if system.contact is None:
         return system
     return replace(system, modes=(*system.modes, *system.contact.free), contact=None)

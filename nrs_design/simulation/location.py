@@ -11,8 +11,7 @@ from nrs_design.simulation.flow import Flow
 from nrs_design.simulation.loop import Loop, LoopMode
 from nrs_design.simulation.scenario import Array
 
-# A depth, a torque and a velocity are on the other side of a threshold when they are so far beyond
-# it, in rad, N m and rad/s: contact neither chatters from rounding, nor does the logic.
+# Tolerance of guards in rad, N m and rad/s: rounding lets neither contact nor logic chatter.
 TOLERANCE = 1e-12
 # Points of a run, at least.
 POINTS = 2000
@@ -20,17 +19,16 @@ POINTS = 2000
 
 @dataclass(frozen=True)
 class Location:
-    """A controller in force and what is touched: the loop, and the signals that may end it."""
+    """The loop under one controller in one contact, with the guards that end it."""
 
     index: int  # In the order in which locations are entered
     controller: str  # In force
     mode: LoopMode  # The loop
-    # Watches the depths below all surfaces, the pushes of those that it is in and that have
-    # damping, and then the bounds of conditions.
+    # Guards: depths below all surfaces, pushes of `damped` surfaces, `bounds` of conditions.
     flow: Flow
     damped: tuple[int, ...]  # Indices of the surfaces whose pushes are watched
     pushes: Array  # Shape (surfaces, n). Rows of all pushes.
-    # Of which switch and condition it is the lower (0) or the upper (1) bound.
+    # Switch, condition, and side (0 lower, 1 upper) of each bound.
     bounds: tuple[tuple[int, int, int], ...]
 
     @classmethod
@@ -63,7 +61,7 @@ class Location:
                     if np.isfinite(bound):
                         rows.append(sign * (signal - bound * one))
                         bounds.append((i, k, end))
-        # A flow ends where a signal is clearly across, so that it counts so then.
+        # At the end of a flow, its signal is beyond the tolerance.
         across = np.full(len(rows), 2 * TOLERANCE)
         step = scenario.duration / POINTS
         flow = Flow(mode.A, np.array(rows).reshape(-1, len(one)), across, step)

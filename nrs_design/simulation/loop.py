@@ -59,7 +59,7 @@ class MotionStates:
             return cls(A, np.eye(n)[-1], np.zeros(n), C, names)
         Km, tau = float(plant.actuator.gain), float(plant.actuator.time_constant)
         Kp, Kd, load = float(design.motion.Kp), float(design.motion.Kd), plant.load_inertia
-        jump = Km * Kd / tau  # Of the velocity with the reference, 1/s
+        jump = Km * Kd / tau  # Velocity over reference, 1/s
         damping = (Km * Kd + 1) / tau
         A = np.array([[0.0, 1.0], [-Km * Kp / tau, -damping]])
         B = np.array([jump, Km * Kp / tau - damping * jump])
@@ -75,7 +75,7 @@ class MotionStates:
 
 @dataclass(frozen=True)
 class Loop:
-    """One axis with its controllers and surfaces; `mode` refuses what is not modelled here."""
+    """One axis with its controllers and surfaces."""
 
     spec: InteractionDesignSpec  # With idle states and offsets
     plant: Plant  # The motor and its load
@@ -133,7 +133,7 @@ class Loop:
         return row
 
     def motion_row(self, row: Array) -> Array:
-        """Return a row of the motion loop as one of the whole state."""
+        """Return a row over all states from a row over those of the motion loop."""
         return np.concatenate([row, np.zeros(len(self.states) - len(row))])
 
     def start(self) -> Array:

@@ -15,10 +15,9 @@ from numpy.typing import NDArray
 
 from nrs_design.simulation.scenario import Array
 
-# A displayed impedance is a quotient: it is taken where the command is so large a share of its own
-# largest value.
+# Smallest command in a displayed impedance, as a fraction of the largest one.
 SMALLEST_SHARE = 0.1
-# What is left of a run when it counts as settled.
+# Last part of a run, which counts as settled.
 LAST_SHARE = 0.1
 
 Mask = NDArray[np.bool_]
@@ -123,7 +122,7 @@ def gain_in_time(before: float, after: float) -> float:
 
 @dataclass(frozen=True, slots=True)
 class Effort:
-    """Human effort: what a hand applies to the robot, or the robot to what it touches."""
+    """Human effort, or effort of the robot against its environment."""
 
     total: float  # ``int |F| dt`` in N m s: the total applied torque of thesis 5.1.4
     rms: float  # ``sqrt(1/T int F^2 dt)`` in N m

@@ -1,4 +1,4 @@
-"""What moves the joint while its command is held: a motor with friction, or a drive of its own."""
+"""Motor with friction, or drive of a robot, under a command that is held."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Motor:
                 return theta, 0.0
             sign = math.copysign(1.0, omega if omega else command)
             final = self.Km * (command - sign * friction)
-            # When it comes to rest, if the velocity that it tends to is on the other side.
+            # Time to rest, if the final velocity has the other sign.
             stop = math.inf
             if omega and final * sign < 0:
                 stop = self.tau * math.log1p(-omega / final)
@@ -49,7 +49,7 @@ class Motor:
 
 @dataclass
 class DrivenJoint:
-    """A drive at its nominal numbers, with those of its states that nobody else knows."""
+    """A drive at its nominal numbers, with its internal states."""
 
     generator: Array  # [[A, B], [0, 0]], shape (n + 1, n + 1)
     speed: Array | None  # The velocity by the same, where it jumps
@@ -57,7 +57,7 @@ class DrivenJoint:
 
     @classmethod
     def of(cls, drive: Drive) -> DrivenJoint:
-        """Return a drive at rest; what is touched does not act on it."""
+        """Return a drive at rest; the environment does not act on it."""
         n = drive.order
         known = {s: float(interval.nominal) for s, interval in drive.ranges.items()}
         values = {s: 1 / v if s in drive.inverse else v for s, v in known.items()}

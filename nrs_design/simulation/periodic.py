@@ -20,12 +20,12 @@ Steps = Sequence[tuple[int, float]]
 
 _SAMPLES = 4000
 _FEWEST, _MOST = 3, 30
-# Samples in one step of the period, where it can be afforded: a smooth curve.
+# Samples in one step of the period, for a smooth curve.
 _SMOOTH = 24
 _HALVINGS = 40
-# By which a state has grown enough to be seen.
+# Visible growth of a state.
 _GROWTH = 100.0
-# Of the average's own growth, what fast switching has to reach.
+# Fraction of the growth rate of the average that fast switching has to reach.
 _SHARE = 0.6
 
 

@@ -1,4 +1,4 @@
-"""The rules of switching on a grid of time: what may follow each step of a run."""
+"""The rules of switching on a grid of time, as a graph."""
 
 from __future__ import annotations
 
@@ -29,9 +29,8 @@ class Rules:
     mode: Indices
     jump: Indices
     target: Indices
-    jumps: Array  # Shape (J, n, n). What a switch makes of the state; the first leaves it as it is.
-    # Shape (N, K). Actions that may be taken at each node; the first is there again where there are
-    # fewer.
+    jumps: Array  # Shape (J, n, n). Resets of the state; the first is the identity.
+    # Shape (N, K). Admissible actions at each node; the first fills up the row.
     choices: Indices
 
     @classmethod
@@ -69,7 +68,7 @@ def fitting_step(system: SwitchedSystem, step: float) -> float:
 
 def _counts(stay: Stay, step: Fraction) -> tuple[int, int | None] | None:
     """Return the fewest steps of a stay and the most; None if there is no number between."""
-    # A dwell time that is a whole number of steps but for a rounding is that number.
+    # A dwell time next to a whole number of steps is that number.
     fewest = max(1, math.ceil(stay.shortest / step - Fraction(1, 10**9)))
     if stay.longest is None:
         return fewest, None
@@ -102,7 +101,7 @@ def _stays_counted(system: SwitchedSystem, step: float) -> Rules:
         if count is None:
             raise ValueError(f"mode {mode.name} must be left before it may be")
         counts.append(count)
-    # Node 0 is the beginning; then each mode, after one step in it, after two, ...
+    # Node 0 is the start; then come the nodes of each mode after 1, 2, ... steps.
     spans = [fewest if most is None else most for fewest, most in counts]
     base = np.concatenate([[1], 1 + np.cumsum(spans)]).tolist()
     if base[-1] > _NODES:

@@ -12,7 +12,7 @@ from nrs_design.simulation.time_response import Signal, TimeResponse
 if TYPE_CHECKING:
     from nrs_design.spec import InteractionDesignSpec
 
-# What every engine shows first, and what acts on it.
+# First outputs, and inputs, of both engines.
 OUTPUTS = (
     Signal("angle", "rad"),
     Signal("velocity", "rad/s"),
@@ -25,10 +25,10 @@ INPUTS = (Signal("hand", "rad/s"),)
 CHATTER = 0.01
 # Steps of an engine, and events, after which a run is stopped.
 MAX_STEPS, MAX_EVENTS = 5_000_000, 200_000
-# An event of the exact engine takes as long as so many of its steps, or longer.
+# Steps of the exact engine that one event costs.
 EVENT_STEPS = 250
 
-# What no run has in it, and what the exact engine leaves out besides.
+# Effects that no run models, and effects that the exact engine leaves out.
 LEFT_OUT = (
     "other axes, gravity, and play and elasticity of the gearhead",
     "gain and time constant of the motor other than the nominal ones",
@@ -58,11 +58,11 @@ class Run:
     stopped: str | None = None  # Why the run ended before its time
     left_out: tuple[str, ...] = LEFT_OUT  # What is not in it
     outer: float | None = None  # Period of filter and admittance in s, which may be another
-    missed: int | None = None  # Samples whose deadline was missed; None where the spec has none
+    missed: int | None = None  # Samples with a missed deadline; None without a rule of misses
 
     @property
     def chatter(self) -> int:
-        """How many times a controller was left within `CHATTER` of its switch."""
+        """Number of stays shorter than `CHATTER`."""
         return sum(stay < CHATTER for stay in self._stays)
 
     @property

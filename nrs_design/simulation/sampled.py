@@ -15,7 +15,7 @@ from nrs_design.simulation.sampled_axis import SampledAxis, SampleInputs
 from nrs_design.simulation.scenario import Scenario
 from nrs_design.spec import InteractionDesignSpec
 
-# Samples after which it is told how far the run is.
+# Samples between two progress reports.
 _OFTEN = 20_000
 
 
@@ -28,7 +28,7 @@ def simulate_sampled(
     max_steps: int = MAX_STEPS,
     tell: Progress = silent,
 ) -> Run:
-    """Simulate a scenario with the law that ships, at most so many of its samples."""
+    """Simulate a scenario with the exported law, for at most `max_steps` samples."""
     axis = _axis(spec, plant, design, scenario)
     wanted = math.floor(scenario.duration / axis.T + 1e-9) + 1
     count = min(wanted, max_steps)

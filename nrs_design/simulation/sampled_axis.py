@@ -27,11 +27,11 @@ from nrs_design.simulation.tissue import Tissue
 from nrs_design.spec.misses import automaton_of
 from nrs_design.spec.sampling import SamplingSpec
 
-# Parts of a step, where tissue moves by itself or loads the motor.
+# Parts of a step with tissue that creeps or loads the motor.
 PARTS = 8
-# Of the samples whose deadline may be missed, the share that is.
+# Probability of a miss where the rule allows one.
 MISSED = 0.5
-# What the motion loop keeps from one of its samples to the next; all else is of the outer loop.
+# States of the motion loop; all others belong to the outer loop.
 _OF_MOTION = frozenset({"error_before"})
 
 
@@ -56,7 +56,7 @@ class SampleInputs:
         late: tuple[float, float],
         count: int,
     ) -> SampleInputs:
-        """Draw what N samples are given from the seed of the scenario.
+        """Draw the inputs of N samples from the seed of the scenario.
 
         `late` holds the times from a sample to its command, in s. Where a rule allows misses, every
         second sample or so is missed.
@@ -81,13 +81,13 @@ class SampleInputs:
 
 @dataclass
 class SampledAxis:
-    """One axis during a run: the law, what it senses, and the tissue that it touches."""
+    """One axis during a run: law, sensors, motor and tissue."""
 
     plant: Plant  # Its motor
     design: ControllerDesign  # Gains that ship
     scenario: Scenario  # What happens to it
     program: StepProgram  # Its law
-    sampling: SamplingSpec  # When the law runs, and how old its force sample is
+    sampling: SamplingSpec  # Period and delay of the law
     # Shortest and longest time from a sample to where its command takes effect, in s.
     late: tuple[float, float]
 
@@ -100,7 +100,7 @@ class SampledAxis:
         if drive is not None and not drive.loaded:
             self.motor = DrivenJoint.of(drive)
         load = self.plant.load_inertia
-        # By how much a torque weighs as a command, per N m.
+        # Command per torque, in units of the command per N m.
         self.load = 0.0 if load is None else tau / (float(load) * gain)
         self.tissue = Tissue(scenario.surfaces)
         self.parts = PARTS if self.load or self.tissue.creeps else 1
@@ -109,14 +109,14 @@ class SampledAxis:
         self.inputs = [value.name for value in law.inputs]
         sampling, oldest = self.sampling, self.sampling.delay[1]
         self.T = float(sampling.step)
-        # Periods of motion loop and outer loop in samples; one of them is 1.
+        # Periods of motion loop and outer loop in samples.
         self.motion_turn = int(sampling.period.exact / sampling.step)
         self.outer_turn = int(sampling.outer / sampling.step)
         self.buffer = deque([0.0] * (oldest + 1), oldest + 1)
         self.modes = {name: i for i, name in enumerate(law.modes)}
         self.holds = {c.name: c.law.holds_hand for c in self.design.controllers}
         self.controller, self.held = scenario.control.start, 0
-        # What ships compares in single precision, and counts samples.
+        # The exported logic compares in single precision, and counts samples.
         self.logic = law.logic if scenario.control.ships else None
         self.schedule = deque(scenario.control.schedule)
         self.switches: list[tuple[float, str]] = []
@@ -176,12 +176,12 @@ class SampledAxis:
         self.sent.append((late, self.command))
 
     def _compute(self, hand: float, felt: float, *, outer: bool) -> None:
-        """Run the law once; the loop whose turn it is not keeps what it has."""
+        """Run the law once; states of a loop without a sample now stay."""
         errors, before = self.scenario.errors, self.states
         seen = {
             "angle": _coarse(self.theta, errors.encoder_step),
             "torque": felt,
-            # Where there is a position, it moves with the hand: it goes in once.
+            # With a position input, the hand moves the position only.
             "velocity_command": 0.0 if "position" in self.inputs else hand,
             "position": self.commanded,
             "wanted_torque": self.scenario.wanted_torque,
@@ -201,7 +201,7 @@ class SampledAxis:
             self.states = [new if of_motion == motion else old for of_motion, old, new in each]
 
     def _decide(self, t: float, hand: float, felt: float, depths: list[float]) -> None:
-        """Let schedule and mode logic choose, by what they see at this sample."""
+        """Let schedule and mode logic choose the controller."""
         while self.schedule and self.schedule[0][0] <= t:
             self._switch(t, self.schedule.popleft()[1])
         signs = {COMMAND: self.tissue.direction * hand, TORQUE: self.tissue.direction * felt}

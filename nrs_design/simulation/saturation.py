@@ -55,7 +55,7 @@ def _rows(saturation: Saturation) -> list[Array]:
 def _signals(
     saturation: Saturation, rows: Sequence[Array], states: Array
 ) -> list[tuple[Array, Array, Array]]:
-    """Return each signal at some states: its argument, that cut off, and as it were if none was."""
+    """Return argument, saturated value and linear value of each signal at some states."""
     n, found = states.shape[1], list[tuple[Array, Array, Array]]()
     for signal, row in zip(saturation.signals, rows, strict=True):
         argument = np.einsum("kj,kj->k", row[:, :n], states)

@@ -66,7 +66,7 @@ class Profile:
         return cls(tuple(pieces))
 
     def at(self, time: Array) -> Array:
-        """Return the velocity at times in s, after a jump where there is one."""
+        """Return the velocity at times in s, after jumps."""
         columns = np.array([(piece.start, piece.value, piece.slope) for piece in self.pieces]).T
         index = np.clip(np.searchsorted(columns[0], time, side="right") - 1, 0, None)
         start, value, slope = columns[:, index]
@@ -84,17 +84,17 @@ class Surface:
 
     environment: str  # Its name
     law: AbstractContactLaw  # At the pivot, at fixed parameters
-    # The springs and dampers that it consists of; None if it is not linear.
+    # Springs and dampers of the law; None for a nonlinear law.
     element: Element | None
     at: float  # Angle in rad
-    sign: int  # 1 if it is met by rising angles, -1 if by falling ones
-    # What is one body with it: forces add up before the sum is held to pushing.
+    sign: int  # 1 if rising angles lead into it, else -1
+    # Further parts of the same body: the sum of all forces pushes.
     arms: tuple[Element, ...] = ()
     beside: tuple[str, ...] = ()  # The environments of these, in their order
 
     @property
     def elements(self) -> tuple[Element, ...]:
-        """Springs and dampers of the body; none of one that is not linear."""
+        """Springs and dampers of the body; none for a nonlinear law."""
         return () if self.element is None else (self.element, *self.arms)
 
     @property
@@ -134,7 +134,7 @@ class Control:
     stays: Mapping[str, float] = field(default_factory=dict)
     # Times in s at which a controller takes over, whatever signals say.
     schedule: tuple[tuple[float, str], ...] = ()
-    # Whether it is the mode logic of the spec, which a program of the law has, too.
+    # Whether it is the mode logic of the spec, which exported programs contain.
     ships: bool = False
 
 
@@ -147,7 +147,7 @@ class Errors:
     encoder_step: float = 0.0
     force_step: float = 0.0
     force_noise: float = 0.0  # Standard deviation in N m
-    jitter: float = 0.0  # How far a sample may be late, as a share of the period
+    jitter: float = 0.0  # Largest delay of a sample, as a fraction of the period
 
 
 @dataclass(frozen=True, slots=True)
@@ -157,11 +157,11 @@ class Scenario:
     name: str  # As in the spec
     profile: Profile  # Commanded velocity
     duration: float  # In s
-    surfaces: tuple[Surface, ...]  # What is touched where; forces add up
+    surfaces: tuple[Surface, ...]  # Environments and their positions; forces add up
     control: Control  # Who is in control when
     start: float = 0.0  # Angle at which the axis rests at first, in rad
     wanted_torque: float = 0.0  # Fd of force controllers in N m, towards rising angles
     errors: Errors = Errors()  # For the sampled engine
     seed: int = 0  # Of noise, jitter and varying delay
-    # What its run must keep: ``torque`` in N m, ``deflection`` in rad, ``velocity`` in rad/s.
+    # Limits of the run: ``torque`` in N m, ``deflection`` in rad, ``velocity`` in rad/s.
     limits: Mapping[str, float] = field(default_factory=dict)

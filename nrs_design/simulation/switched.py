@@ -16,7 +16,7 @@ from nrs_design.simulation.norms import Array, Indices, Norm
 # SciPy takes longer to load than most runs take.
 expm = late_function("scipy.linalg", "expm")
 
-# By which a state has grown enough to be seen.
+# Visible growth of a state.
 _GROWTH = 100.0
 # Growth per step below which a run of an unstable mode is shown as one on the stability limit.
 _MARGINAL = 1e-5
@@ -30,11 +30,10 @@ class SwitchedRun:
     """A sampled solution."""
 
     time: Array  # Shape (N + 1,). In s, or step numbers in discrete time.
-    # Shape (N + 1, n). The state at these times, after the switch if there is one; where modes
-    # differ in size, a smaller state is filled up with zeros.
+    # Shape (N + 1, n). States after switches; zeros fill up smaller states.
     state: Array
     mode: Indices  # Shape (N,). Index of the mode that was active in each interval.
-    # Shape (N + 1,). Where modes take turns or miss deadlines, the state of that clock.
+    # Shape (N + 1,). State of the clock, where the system has one.
     turn: Indices | None = None
 
 

@@ -16,7 +16,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class Signal:
-    """What a row of a response is."""
+    """Name and unit of a row of a response."""
 
     name: str  # Such as ``torque``
     unit: str  # In SI, such as ``N*m``; empty for a number
@@ -33,7 +33,7 @@ class Signal:
 
 
 def on_axis(signals: Iterable[Signal], axis: AxisType) -> tuple[Signal, ...]:
-    """Return signals with the units of an axis, which are given as those of one that turns."""
+    """Return signals with the units of an axis, from those of a rotary axis."""
     return tuple(replace(signal, unit=axis.unit(signal.unit)) for signal in signals)
 
 
@@ -89,7 +89,7 @@ class TimeResponse:
         Numbers are written so that they are read back as the same. `nrs-design audit` and
         `identify` read these columns.
         """
-        # Of instants that are there twice, the last stays: a table has one row for each.
+        # A table has one row for each instant: the last one of a jump.
         kept = np.append(np.diff(self.t) > 0, True)
         rows = [("time_s", self.t), *((signal.column, row) for signal, row in self._rows())]
         text = io.StringIO()

@@ -1,4 +1,4 @@
-"""All surfaces of a scenario: their torque on the robot, and what moves by itself in them."""
+"""Surfaces of a scenario: their torque on the robot, and their dampers."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Tissue:
 
     @property
     def creeps(self) -> bool:
-        """Whether something in it moves by itself."""
+        """Whether a surface has a damper with memory."""
         return any(math.isfinite(e.b) for surface in self.surfaces for e in surface.elements)
 
     def depths(self, theta: float) -> list[float]:

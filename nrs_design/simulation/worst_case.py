@@ -40,7 +40,7 @@ class WorstRun:
     time: Array  # Shape (K + 1,). In s.
     # Shape (K + 1, n). From rest, or settled under disturbances that were held for long.
     states: Array
-    mode: Indices  # Shape (K,). In force over each step; the free ones after those in contact.
+    mode: Indices  # Shape (K,). Mode of each step; free modes come after those in contact.
     disturbances: Array  # Shape (K, c). Held over each step, in the units of the channels.
 
 
@@ -82,7 +82,7 @@ class _Search:
     step: float
     game: Game
     begins: tuple[tuple[Signals, Array], ...]
-    steps: int  # That are improved; as many come before what is held
+    steps: int  # Steps that are improved, before the held ones
 
     @classmethod
     def of(cls, system: SwitchedSystem, step: float, *, settled: bool) -> _Search:
@@ -103,7 +103,7 @@ class _Search:
         found = improve(game, aim, begin.spans(game, states[:, kept], first, steps), _SWEEPS)
         sizes = _sizes(game, aim, found, play(game, found))
         run = int(sizes.max(axis=0).argmax())
-        # Where it stays at its largest, the run shows that.
+        # The run ends with the last of equal maxima.
         last = int(np.flatnonzero(sizes[:, run] >= (1 - _ALIKE) * sizes[:, run].max())[-1])
         before, after = slice(first[run]), slice(last + 1)
         worst = Signals(

@@ -51,7 +51,7 @@ def deflection_of(system: SwitchedSystem) -> Output | None:
 
 
 def forces_by_mode(system: SwitchedSystem, touched: Sequence[Environment]) -> NDArray[np.bool_]:
-    """Tell which rows of the force belong to the contact and its corner in each mode; shape (m, r).
+    """Return the rows of the force that apply to contact and corner of each mode; shape (m, r).
 
     Modes are named after controller, contact and corner; one that names no contact may have any.
     """
@@ -70,7 +70,7 @@ def forces_by_mode(system: SwitchedSystem, touched: Sequence[Environment]) -> ND
 def certified_bounds(
     system: SwitchedSystem, statements: Iterable[AbstractEvidence]
 ) -> dict[str, float]:
-    """Return what is certified about every output, not below it, and about the deflection.
+    """Return certified bounds on every output and on the deflection, rounded up.
 
     Of checked statements, bounds under all disturbances at once count. Where the force is a
     stiffness times the deflection, the bound holds for every stiffness in its range, so also for

@@ -15,7 +15,7 @@ from nrs_design.files import open_regular, read_json_text, unique_keys
 from nrs_design.proof.text import quoted
 
 MAX_BYTES = 16 * 2**20
-# Of all matrices together.
+# Entries of all matrices.
 MAX_ENTRIES = 200_000
 _NUMBERED = re.compile("A[0-9]{1,6}")
 _KNOWN = ("P", "A", "rate", "time")
@@ -28,7 +28,7 @@ class Proposal:
 
     modes: Mapping[str, object]  # Name to matrix
     P: object  # The matrix of ``x' P x``
-    rate: object  # At which rate it is said to decrease; None if nothing is said
+    rate: object  # Stated rate of decrease, or None
     time: str | None  # ``continuous``, ``discrete``, or None if nothing is said
 
 

@@ -119,7 +119,7 @@ def _resets(resets: Mapping[tuple[str, str], object]) -> Iterator[Document]:
 
 
 def _several(maps: object) -> list[object]:
-    """Return the matrices of several resets between two modes; mostly, it is one."""
+    """Return the matrices of all resets between two modes."""
     if isinstance(maps, list | tuple) and maps and _depth(maps[0]) == 2:
         return list(maps)
     return [maps]
@@ -140,7 +140,7 @@ def _switching(
         key: _dwell_times(value, key, unit) for key, value in times.items() if value is not None
     }
     if transitions is not None:
-        # A text is no pair, though it has letters to unpack: what is wrong with it is said later.
+        # A text is no pair: the validation refuses it.
         rules["transitions"] = [
             pair if isinstance(pair, str) else [*map(str, pair)] for pair in transitions
         ]
@@ -156,7 +156,7 @@ def _dwell_times(value: object, key: str, unit: str) -> object:
 
 
 def _parameter(value: object) -> Document:
-    """Return what a spec says of a parameter that is given as such, or by its two ends."""
+    """Return the section of a spec on a parameter, from its fields or its two ends."""
     if isinstance(value, Mapping):
         return {
             key: [exact_text(read_number(end)) for end in entry]

@@ -34,8 +34,7 @@ class Controller:
     environment: str | None  # The environment that it was designed for
     # The environments that it may touch while it is active; empty for position control.
     contacts: tuple[str, ...]
-    # What the gains were rounded from, if a search found them. It does not run on the robot, so
-    # controllers that differ in it alone are equal.
+    # Gains of the search before rounding. Equality of controllers ignores them.
     optimum: ImpedanceOptimum | None = field(default=None, compare=False)
 
 
@@ -88,7 +87,7 @@ class ControllerDesign:
         return moving or [law for law in laws if law.bleeds]
 
     def find_odd_states(self, *, mixed: bool) -> str | None:
-        """Say which states of laws no common state has, or None.
+        """Return the states that laws do not share, as a text, or None.
 
         `mixed`: the states of some controllers are idle while others are active.
         """

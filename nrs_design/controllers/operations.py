@@ -19,9 +19,8 @@ from nrs_design.controllers.float32 import is_float32
 from nrs_design.controllers.step_logic import StepLogic
 
 V = TypeVar("V")
-# How the result of an operation, or the reading of an input, counts as rounded: with the terms that
-# it is made of; as a number of its own, of which the next operations take the rounded value; in
-# proportion to the largest angle, apart from all terms.
+# Rounding of a result or an input: with its terms (`term`); as a number of its own, whose rounded
+# value the next operations take (`own`); in proportion to the largest angle (`angle`).
 Rounding = Literal["term", "own", "angle", "none"]
 Kind = Literal["add", "subtract", "multiply", "saturate"]
 # Of these, the left operand is a coefficient.
@@ -37,7 +36,7 @@ class Value:
     unit: str  # Its unit
     limit: Fraction  # A single-precision number; beyond it, or not a number, the value is refused
     meaning: str  # In words
-    rounding: Rounding = "none"  # Whether it is rounded when it is read, and how that counts
+    rounding: Rounding = "none"  # Rounding of the reading
     # Whether a state is the measured angle at first; others are zero.
     starts_at_angle: bool = False
     stored: str = ""  # As modes call a state that matters to stability, with its unit
@@ -51,7 +50,7 @@ class Coefficient:
     symbol: str  # As terms and formulas call it
     unit: str  # Its unit
     values: tuple[Fraction, ...]  # Single-precision numbers: one, or one for each mode
-    symbols: tuple[str, ...] = ()  # As terms call it in each mode, where that is not `symbol`
+    symbols: tuple[str, ...] = ()  # Symbols by mode, if not `symbol`
 
     @property
     def by_mode(self) -> bool:

@@ -17,7 +17,7 @@ from nrs_design.controllers.operations import Operation, Value
 BEYOND = Fraction(1_000_000)
 # The operand that stands for the force: the sample, or the last lag of its filter.
 FORCE = "force"
-# What a law takes of it off the torque that it commands.
+# Gain from the force to the torque that a law subtracts.
 FORCE_GAIN = "Kf_torque"
 # What the hand commands, the position that is commanded, and the wanted force.
 HAND = Value("velocity_command", "v", "rad/s", BEYOND, "velocity that the hand commands")
@@ -33,7 +33,7 @@ class StepGain:
     name: str
     symbol: str
     unit: str
-    # What all laws with the part hold; None where each has a number of its own.
+    # Number of all laws with the part; None for a number of each law.
     fixed: Fraction | None = None
     # Symbol of what a sample leaves of a state while laws without the part are active; empty where
     # these have zero.

@@ -18,13 +18,13 @@ from nrs_design.spec.controllers import contact_names
 from nrs_design.spec.monitoring import Surface
 from nrs_design.spec.quantity import Quantity
 
-# Of the range: a sample counts as judged if it would have told so much, by those before it.
+# A sample counts as judged if a stiffness beyond the range by this factor had been reported.
 JUDGED = Fraction(3, 2)
 
 
 @dataclass(frozen=True, slots=True)
 class Sector:
-    """What is known of the readings, in exact numbers on the safe side."""
+    """Bounds on the readings, in exact conservative numbers."""
 
     low: Fraction  # Least stiffness in N m/rad
     high: Fraction  # Largest one

@@ -28,9 +28,8 @@ def shipped_law(
 ) -> StepLaw:
     """Write the law of a design out for a sample time in s.
 
-    `outer` is that of force, filter and admittance, where it is another: whoever runs the
-    operations of either loop takes them at its own samples. A `DesignError` if a controller has no
-    step yet, or a step could leave single precision.
+    `outer` is that of force, filter and admittance. A `DesignError` if a controller has no step, or
+    a step could leave single precision.
     """
     method = "exact" if spec.sampling is None else spec.sampling.admittance
     laws = {c.name: c.law.discretize(outer or period, method) for c in design.controllers}
@@ -63,8 +62,7 @@ def _step_law(
         raise DesignError(odd, remedy=SHARED_STATES, at=("controllers",))
     if spec.idle_states is None:
         return build_law(frame, laws)
-    # A reset sets idle states to zero at the switch, and what decays from zero stays there: to
-    # leave nothing of them from the first sample on is the same.
+    # A reset sets idle states to zero at the switch: a decay factor of zero does the same.
     idle = spec.idle_states
     return build_law(frame, laws, Fraction(0) if idle.reset else idle_share(idle, period))
 

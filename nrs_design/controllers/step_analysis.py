@@ -1,4 +1,4 @@
-"""What follows from the operations of a law: its map, its roundings, and how large it gets."""
+"""Map, roundings and range of a law, from its operations."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class Term:
     """A term of a sum that the processor forms."""
 
     name: str  # Such as ``b F``
-    form: LinearForm  # What it is without rounding, of the state
+    form: LinearForm  # Value without rounding, over the state
     roundings: int  # In how many it takes part
 
     def times(self, factor: Fraction, prefix: str, more: int) -> Term:
@@ -107,7 +107,7 @@ def _terms(
     add, left = operation.kind == "add", terms[operation.left]
     sign = ONE if add else -ONE
     if not left or not right:
-        # What nothing is added to stays as it is.
+        # A sum with zero is exact.
         return left or tuple(term.times(sign, "", 0) for term in right)
     both = (*left, *(term.times(sign, "", 0) for term in right))
     apart = operation.rounding == "angle"

@@ -45,7 +45,7 @@ class StepLimits:
     integral: Fraction | None = None
 
     def within(self, value: Value) -> Value:
-        """Return a value that is refused beyond the largest angle, if it is one."""
+        """Return a value, limited by the largest angle if its unit is rad."""
         return replace(value, limit=self.angle) if value.unit == "rad" else value
 
 
@@ -60,8 +60,7 @@ class StepFrame:
     low_pass: DiscreteLowPass | None = None
     # By default nothing saturates, and inputs are refused where no robot gets.
     limits: StepLimits = StepLimits()
-    # What the robot takes, if there is no motion controller of ours; a torque is what its laws make
-    # of the error of motion.
+    # Command interface of a robot with its own motion controller, or with torques.
     takes: Takes | None = None
 
     @property
@@ -192,7 +191,7 @@ def build_law(
 
 
 def _command(frame: StepFrame, placed: str, *, takes_force: bool) -> str:
-    """Return what is sent; `placed` is the position where laws are given one, else empty."""
+    """Return the name of the output; `placed`: the position input of laws, or empty."""
     if frame.streams:
         return "relative" if frame.takes is Takes.VELOCITY else placed or "next_reference"
     if frame.limits.command is not None:
@@ -203,7 +202,7 @@ def _command(frame: StepFrame, placed: str, *, takes_force: bool) -> str:
 def _streamed(part: StepPart) -> StepPart:
     """Return the part of an admittance that moves no reference: its velocity is the command.
 
-    It is that of after the sample, where it is a state. A spring draws the measured position.
+    A velocity that is a state is taken after the sample. A spring draws the measured position.
     """
     newest = part.following.get("velocity", "velocity")
     sprung = "commanded" in part.following

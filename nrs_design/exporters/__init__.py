@@ -18,18 +18,18 @@ SAMPLED = "a proof of the sampled loop, or --unproved"
 
 @dataclass(frozen=True, slots=True)
 class Format:
-    """What a format is for, and which files it has."""
+    """Purpose and files of a format."""
 
     purpose: str  # What the files are for, in a few words
     needs: str  # What there must be before they are written
-    # What follows the name of the spec in the name of each file, and how that file begins: one that
-    # begins otherwise is another's, and is not overwritten.
+    # Ending of each file, after the name of the spec, and the first bytes of the file. A file that
+    # begins otherwise is not overwritten.
     files: Mapping[str, bytes]
     # Whether a processor runs it, so that the proof must be about the sampled loop.
     executable: bool = False
     # Whether the name of a file must be one of a program, such as `soft_tissue` for `soft-tissue`.
     identifier: bool = False
-    # Whether a certificate is enough, so that matrices have one, too.
+    # Whether a certificate is enough, without a design.
     alone: bool = False
 
 

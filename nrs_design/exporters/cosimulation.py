@@ -25,11 +25,11 @@ from nrs_design.output import C_SOURCE
 # The first entry is always the same, and so are the first bytes of the file.
 _FIRST = "documentation/nrs-design.txt"
 _MARK = b"nrs-design fmu\n"
-# Where the library for 64-bit Linux on x86 is, if there is one.
+# Folder of the library for 64-bit Linux on x86.
 _LIBRARIES = "binaries/linux64"
 _WRAPPER = "fmu.c"
 _DATE = (1980, 1, 1, 0, 0, 0)
-# By base units of SI; those of motors that are none have a name only.
+# Units in base units of SI; other units of motors have a name only.
 _BASE = {
     "rad": 'rad="1"',
     "m": 'm="1"',
@@ -114,7 +114,7 @@ def _period(record: ExportRecord) -> str:
 
 
 def guid_of(record: ExportRecord) -> str:
-    """Return a name that follows from the spec, the proof and the sample time, and nothing else."""
+    """Return the identifier of spec, proof and sample time."""
     certificate = "none" if record.proof is None else record.proof.certificate_id
     period = "none" if record.sample_time is None else record.sample_time.exact
     text = f"nrs-design {record.spec.sha256} {certificate} {period}"

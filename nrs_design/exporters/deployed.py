@@ -17,7 +17,7 @@ from nrs_design.files import open_regular
 from nrs_design.spec import InteractionDesignSpec
 
 LARGEST_BYTES = 2**22
-# What every exported file says first of itself; in a model for co-simulation its sources say it.
+# First line of every exported file, and of the sources in a model for co-simulation.
 _RELEASE = re.compile(rb"nrs-design (\d[\w.+]{0,40}), nrs-design/export/")
 # How much of a line is shown, around the first byte that differs.
 _BEFORE, _AFTER = 48, 32
@@ -25,15 +25,15 @@ _BEFORE, _AFTER = 48, 32
 
 @dataclass(frozen=True, slots=True)
 class DeployedFiles:
-    """What of a deployed file or folder was compared, and what was found."""
+    """Compared files of a deployment, and their differences."""
 
     compared: tuple[Path, ...]
     differences: tuple[str, ...]  # Each begins with the name of its file
-    others: tuple[Path, ...]  # Files beside them that nothing was compared with
+    others: tuple[Path, ...]  # Other files of the folder
 
     @property
     def left_out(self) -> str:
-        """What was not compared, in words."""
+        """Text on what was not compared."""
         return ", ".join(["how it is compiled", *(file.name for file in self.others)])
 
 

@@ -30,12 +30,12 @@ from nrs_design.spec import InteractionDesignSpec, LoadedSpec
 class Export:
     """What may be exported, or why nothing may."""
 
-    # Of what the files are for. Rejected: the given certificate does not hold, or does not cover
-    # the design.
+    # Verdict on the purpose of the files. Rejected: the given certificate does not hold, or does
+    # not cover the design.
     verdict: str
-    record: ExportRecord | None  # With the verdict proved, or where an unproved one was asked for
+    record: ExportRecord | None  # Of a proved design, or of an unproved one on request
     certificate: Certificate | None  # The proof of the record, or what refutes it
-    reason: str = ""  # Why it is not proved; empty if it is
+    reason: str = ""  # Reason without a proof; else empty
     design: ControllerDesign | None = None  # The gains of the record
     spec: InteractionDesignSpec | None = None  # What the record is of
     designed: Designed | None = None  # The plant and the gains of a proved design
@@ -93,7 +93,7 @@ def export_proof(
     progress: Progress = silent,
     recorded: Recorded | None = None,
 ) -> Export:
-    """Return what formats take for which a certificate is enough; of a design, with its record.
+    """Return the export of formats that need a certificate only; of a design, with its record.
 
     A `CertificateError` if the given file is no certificate of this spec, or does not hold.
     """

@@ -6,7 +6,7 @@ from nrs_design.exporters.record import ExportRecord
 
 
 def header_lines(record: ExportRecord) -> tuple[str, ...]:
-    """Return what a file says of itself: origin, verdict, sample time, units, and what is left out.
+    """Return the head of a file: origin, verdict, sample time, units, effects outside the proof.
 
     Every line is one sentence or one ``key: value``; none holds a line break.
     """

@@ -1,4 +1,4 @@
-"""Conformance cases of a mode logic: states, signals, and exactly what a step makes of them."""
+"""Conformance cases of a mode logic: states, signals, and the exact results of a step."""
 
 from __future__ import annotations
 

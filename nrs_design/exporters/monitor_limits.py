@@ -1,4 +1,4 @@
-"""What a running loop is held against, in single precision: as `audit` holds a log against it."""
+"""Limits of a running loop in single precision, as `audit` has them for a log."""
 
 from __future__ import annotations
 
@@ -28,8 +28,8 @@ class MonitorLimits:
     age: tuple[int, int] | None  # Smallest and largest age of the force sample, in samples
     stays: tuple[tuple[int, int], ...]  # Shortest and longest time in each mode, in samples
     follows: tuple[tuple[bool, ...], ...]  # For each mode, which may follow it
-    sector: Sector | None  # What torque and angle keep; None where the spec does not tell
-    # Where motions decay although the command saturates; None where nothing is proved of it.
+    sector: Sector | None  # Bounds on torque and angle; None without them in the spec
+    # Region of decay with a saturating command; None without a proof of one.
     region: MonitoredRegion | None
     # How far the joint moves, at the limit of its velocity, between two torques that are read.
     travel: Fraction

@@ -21,7 +21,7 @@ OUTSIDE = (
 
 
 def outside_of(*, sampled: bool, rounded: bool) -> tuple[str, ...]:
-    """Return what is outside a proof: of the sampled loop or not, with what is rounded or not."""
+    """Return the effects outside a proof."""
     if not sampled:
         return (CONTINUOUS, *OUTSIDE)
     return OUTSIDE if rounded else (NOT_ROUNDED, *OUTSIDE)

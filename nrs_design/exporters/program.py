@@ -1,4 +1,4 @@
-"""What every format of a program is made from: a record, its law and their names in C."""
+"""Record, law and C names of an export: the source of all formats of a program."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from nrs_design.exporters.record import ExportRecord
 class Program:
     """A law that a processor runs."""
 
-    record: ExportRecord  # What the law is, and what is proved of it
+    record: ExportRecord  # Gains and proof
     law: StepLaw  # Its operations
     names: CNames  # Of its spec
 
@@ -30,8 +30,7 @@ class Program:
 def program_of(export: Export) -> Program:
     """Return the program of an export.
 
-    A `DesignError` if nothing may be exported, or there is no program of a controller yet, or a
-    name is none in C.
+    A `DesignError` if nothing may be exported, a controller has no program, or names coincide in C.
     """
     record = export.shipped()
     assert export.spec is not None

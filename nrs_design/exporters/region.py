@@ -27,7 +27,7 @@ from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.spec.build_plant import build_environments
 from nrs_design.spec.controllers import contact_names
 
-# What is kept for roundings, over V. Entries and rows lose some 2^-24 of themselves.
+# Margin for roundings, over V. Entries and rows lose some 2^-24 of themselves.
 ROOM = Fraction(1, 64)
 _NONE = (
     "the certificate has no `initial_force`, from which motions decay although commands saturate"

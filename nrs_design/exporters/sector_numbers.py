@@ -1,4 +1,4 @@
-"""The test of the stiffness in single precision, and what it finds for certain, in words.
+"""The test of the stiffness in single precision, and its certain detections in words.
 
 No rounding may tell a violation that there is not. With ``u = 2^-24``, a reading that is turned
 into a float is off by ``u`` of itself, and so is the sum with an angle: ``ROUNDING`` times the
@@ -29,7 +29,7 @@ Macro = tuple[str, Fraction, str]
 
 
 def sector_macros(sector: Sector) -> Iterator[Macro]:
-    """Yield what each number of the test is called, the number, and what stands beside it."""
+    """Yield name, number and comment of each number of the test."""
     yield (
         "TORQUE_NOISE",
         _more(sector.torque_noise),
@@ -61,7 +61,7 @@ def _less(value: Fraction, slacks: int = 1) -> Fraction:
 
 
 def sector_words(sector: Sector, travel: Fraction) -> Iterator[str]:
-    """Yield what the test tells, and what it finds for certain.
+    """Yield the reports of the test, and its certain detections.
 
     `travel` is how far the joint moves between two torques that are read, in rad.
     """

@@ -1,4 +1,4 @@
-"""What a program asks of who calls it: start-up, and the sign and frame of inputs and outputs.
+"""Requirements on the caller of a program: start-up, signs and frames of inputs and outputs.
 
 With the start-up requirements, the first samples of a program are those of the proof.
 """

@@ -1,4 +1,4 @@
-"""Where exported files go: all of them or none, in one folder, and over nothing foreign."""
+"""Writing of exported files: all or none, in one folder, over no foreign file."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def places(format_: Format, name: str, out: Path) -> dict[str, Path]:
 
 
 def check_places(format_: Format, files: Mapping[str, Path], name: str | None = None) -> None:
-    """Refuse to go on where something else stands in the place of a file.
+    """Refuse to overwrite a link, a file of another format, or a file of another spec.
 
     So do a link, a file of another format, and one that says that it is another spec's.
     """

@@ -45,7 +45,7 @@ SLIDING: Mapping[Takes, str] = MappingProxyType(
 
 
 def taken_in(command: str) -> Takes | None:
-    """Return what a robot takes whose commands have a unit; None for the commands of a motor."""
+    """Return the command interface with a unit; None for commands of a motor."""
     each = ((takes, unit) for commands in (COMMANDS, SLIDING) for takes, unit in commands.items())
     return next((takes for takes, unit in each if unit == command), None)
 
@@ -78,15 +78,14 @@ class Drive:
 
     takes: Takes | None  # None for the commands of a motor
     states: tuple[str, ...]  # Names and units; the velocity first, the deflection left out
-    # A and B in a row, of the states and the deflection: of as many columns and one more. Where the
-    # velocity jumps with the command, it is not among them.
+    # [A, B] over the states and the deflection; a velocity that jumps with the command is no state.
     rates: MultiAffine
-    ranges: Mapping[str, Interval]  # Where numbers of `rates` lie, other than those of the load
+    ranges: Mapping[str, Interval]  # Ranges of the numbers in `rates`, but for the load
     inverse: frozenset[str] = frozenset()  # Those that `rates` takes one over
-    loaded: bool = False  # Whether what is touched acts on the joint, by the symbols of `LOAD`
+    loaded: bool = False  # Whether the environment acts on the joint, by the symbols of `LOAD`
     # The velocity by the same states and the command, where it jumps.
     speed: MultiAffine | None = None
-    # The last of the states, where it is what is touched that remembers.
+    # Last state, where it is a memory of the environment.
     memory: str | None = None
 
     @property

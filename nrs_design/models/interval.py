@@ -19,7 +19,7 @@ class Interval:
     nominal: Fraction
     low: Fraction
     high: Fraction
-    varies: bool = True  # Whether it moves there; otherwise its value is unknown, but constant
+    varies: bool = True  # Whether the value moves; else it is an unknown constant
 
     @classmethod
     def point(cls, value: Fraction) -> Interval:
@@ -64,7 +64,7 @@ class Interval:
 
     @property
     def is_constant(self) -> bool:
-        """Whether it has a range, and one value there that does not change."""
+        """Whether the value is an unknown constant of a range."""
         return not self.varies and self.low != self.high
 
 

@@ -22,7 +22,7 @@ class MotionLoop:
 
     @property
     def delay(self) -> Fraction:
-        """By how much it is late for what is slow, in s: minus the slope of its phase at 0."""
+        """Delay of slow signals in s: minus the slope of the phase at 0."""
         (*_, b1, b0), (*_, a1, a0) = (Fraction(0), *self.numerator), self.denominator
         return Fraction(0) if not a0 or not b0 else a1 / a0 - b1 / b0
 
@@ -54,7 +54,7 @@ class Realization:
         return [*rows[:-1], combine((Fraction(1), rows[-1]), (Fraction(1), command))]
 
     def velocity(self, nothing: LinearForm, command: Callable[[], LinearForm]) -> LinearForm:
-        """Return y'; `nothing` is the form zero, and `command` asks for u where that acts on it."""
+        """Return y'; `nothing` is the form zero, `command` returns u."""
         needed = command() if self.C[-1] else nothing
         return combine(*zip(self.C, self.rates(needed), strict=True))
 
@@ -156,11 +156,11 @@ class LoadedMotionLoop:
 
     @property
     def _direct(self) -> Fraction:
-        """By how much the velocity jumps with the command, in 1/s."""
+        """Velocity over command at once, in 1/s."""
         return self.joint.Km * self.joint.Kd / self.joint.tau
 
     def velocity(self, nothing: LinearForm, command: Callable[[], LinearForm]) -> LinearForm:
-        """Return theta'; `nothing` is the form zero, `command` asks for u."""
+        """Return theta'; `nothing` is the form zero, `command` returns u."""
         return combine((Fraction(1), coordinates(len(nothing))[1]), (self._direct, command()))
 
     def rates(self, command: LinearForm, load: LinearForm) -> list[LinearForm]:

@@ -24,7 +24,7 @@ class Plant:
     # Inertia at the joint in kg m^2 against which the torque of an environment works; None where
     # that torque is left out.
     load_inertia: Fraction | None = None
-    # What moves the joint, where that is no first-order motor whose velocity is commanded.
+    # Drive of the joint, if not a first-order motor with velocity commands.
     drive: Drive | None = None
 
     @property
@@ -39,7 +39,7 @@ class Plant:
         return self.drive or motor_drive(motor.gain, motor.time_constant, self.load_inertia)
 
     def held_at(self, touched: Sequence[Environment]) -> Drive:
-        """Return what moves the joint between samples, and with it what remembers, if any does."""
+        """Return the drive between samples, with the memory of an environment."""
         for environment in touched:
             if (rates := environment.memory_rates) is not None:
                 memory = f"{environment.name}: {environment.law.states[-1]}"

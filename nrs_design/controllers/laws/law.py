@@ -58,11 +58,11 @@ class AbstractCompliantLaw(AbstractLaw, Generic[S]):
     holds_hand: ClassVar[bool] = False
     # Gains that a spec may fix, and the fields of the controller that do.
     fixed: ClassVar[Mapping[str, str]] = MappingProxyType({})
-    # What a processor computes of it, beyond its part in what is said of all laws: an assumption.
+    # Id of an assumption on its own computation by a processor.
     sampled: ClassVar[str | None] = None
     # What is said of no other law, by the id of its assumption.
     sentences: ClassVar[Mapping[str, str]] = MappingProxyType({})
-    # Whether its one state stays in the position command of other controllers, and decays there.
+    # Whether its state decays in the position command of other controllers.
     bleeds: ClassVar[bool] = False
 
     @property
@@ -108,10 +108,9 @@ class AbstractCompliantLaw(AbstractLaw, Generic[S]):
         return tuple(cls.units)
 
     def find_fault(self, given: S) -> str | None:
-        """Say which gain is not one that the spec allows, beyond bounds and ranges; or None.
+        """Return the fault of a gain that the spec does not allow, beyond bounds and ranges.
 
-        A gain of `fixed` is the one that the spec fixes, if it does; any other is one that the spec
-        bounds or ranges.
+        The spec may give the gains of `fixed`, and bounds all others.
         """
         for gain, value in self.gains.items():
             if gain in self.fixed:
@@ -124,10 +123,9 @@ class AbstractCompliantLaw(AbstractLaw, Generic[S]):
 
     @classmethod
     def contact_kept(cls, *, alone: bool) -> str | None:
-        """Return what is taken for granted about contact while it is active; None for nothing.
+        """Return the name of the assumption on contact while the law is active, or None.
 
-        It is the name of a sentence about contact that is kept: by default that it is never lost,
-        which no law forgets. `alone`: all controllers give the motion loop the same kind of
+        By default contact is never lost. `alone`: all laws give the motion loop one kind of
         command.
         """
         return "never"

@@ -30,7 +30,7 @@ SIGN = {"add": "+", "subtract": "-", "multiply": "*"}
 FLAGS = (
     "-std=c99 -Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Werror -ffp-contract=off"
 )
-# What the mode logic sees, in words.
+# Signals of the mode logic, in words.
 _SEEN = {"command": "velocity command", "torque": "torque"}
 
 
@@ -56,8 +56,7 @@ def header_text(program: Program) -> str:
 def source_text(program: Program) -> str:
     """Return the source: one line for each operation, one rounding for each line.
 
-    What is beyond the list of operations is guards: they refuse wrong input, and no proof covers
-    them.
+    Guards refuse wrong input; no proof covers them.
     """
     law, names = program.law, program.names
     about = (*program.about, f"More is in {names.spec}.h.")

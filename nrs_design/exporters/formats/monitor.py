@@ -1,4 +1,4 @@
-"""A monitor in C: it tells when a running loop first leaves what its proof is about.
+"""A monitor in C: it reports when a running loop first leaves the assumptions of its proof.
 
 The checks are those of `nrs_design.identification.running`, which holds a log against a spec, as
 far as a processor can make them while it runs.
@@ -137,7 +137,7 @@ def told_kinds(limits: MonitorLimits) -> dict[str, str]:
 
 
 def _limits(names: CNames, limits: MonitorLimits) -> Iterator[tuple[str, int | Fraction, str]]:
-    """Yield the macro of each limit, its number, and what stands beside it."""
+    """Yield macro, number and comment of each limit."""
     up = f"{names.upper}_MONITOR"
     yield f"{up}_PERIOD", limits.period, "s"
     yield f"{up}_TORQUE", limits.torque, f"{unit('N*m')}, from the spec"

@@ -1,4 +1,4 @@
-"""Conformance vectors: states and inputs, and exactly what a step of the law makes of them.
+"""Conformance vectors: states and inputs, and the exact results of a step of the law.
 
 As JSON and as CSV, with a test in C and one for pytest. All numbers are bits of single precision in
 hexadecimal. A part of the inputs is what no sensor should give: not a number, infinities, subnormal

@@ -24,8 +24,7 @@ from nrs_design.proof.system import SwitchedSystem
 
 STAYS = ("forms", "jumps", "stays")
 SWITCHES = ("forms", "jumps", "polynomials", "continuous", "bridges", "switches")
-# How a form is followed through a stay: terms of a series in each piece, what is added for its rest
-# and for rounding, and the scale of both.
+# Terms of the series in each piece of a stay, margin for remainder and rounding, and the scale.
 TERMS, MORE, SCALE = 16, 2**40, 2**60
 INSIDE = "what happens within a stay of a mode that must be left, between its switches"
 MIXED = "averages of modes, such as values between the corners of ranges"

@@ -1,4 +1,4 @@
-"""A theorem for Coq: what it is about, what is computed and stated, and why it follows."""
+"""A theorem for Coq: definitions, computation, statement and proof."""
 
 from __future__ import annotations
 

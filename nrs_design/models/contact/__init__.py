@@ -16,7 +16,7 @@ from nrs_design.models.contact.law import (
 from nrs_design.models.contact.maxwell import Maxwell
 from nrs_design.models.contact.motion import Motion
 
-# Of tissue, which records tell apart, by name, the simplest first.
+# Laws of tissue by name, the simplest first.
 LAWS: Mapping[str, type[AbstractContactLaw]] = MappingProxyType(
     {law.name: law for law in (Elastic, KelvinVoigt, Maxwell, KelvinBoltzmann, HuntCrossley)}
 )

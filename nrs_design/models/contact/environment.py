@@ -19,13 +19,13 @@ class Environment:
     """A linear environment, seen as a rotation about the pivot (thesis 2.5)."""
 
     name: str  # As in the spec
-    law: type[AbstractLinearLaw]  # What relates its force to its deflection
-    # Of the parameters, in the order of the law: N m/rad and N m s/rad.
+    law: type[AbstractLinearLaw]  # Law of force and deflection
+    # Ranges of the parameters in the order of the law: N m/rad and N m s/rad.
     ranges: tuple[Interval, ...]
-    # What it consists of, where several environments are touched at once.
+    # Environments that are touched at once.
     parts: tuple[Environment, ...] = ()
-    each_losable: bool = False  # Whether each of these parts may be lost on its own
-    # Its own law, where the linear one stands for it within a preload.
+    each_losable: bool = False  # Whether each part may separate on its own
+    # Nonlinear law, which the linear one replaces within a preload.
     nonlinear: type[AbstractNonlinearLaw] | None = None
 
     @property
@@ -94,7 +94,7 @@ class Environment:
 
 
 def touch_at_once(parts: tuple[Environment, ...], *, losable: bool) -> Environment:
-    """Return what several springs and dampers are that are touched at once: forces add up.
+    """Return the sum of several springs and dampers that are touched at once.
 
     Where each may be lost on its own, they are touched from one side, each from where its own
     surface is. With a_j the depth at which part j is met, 0 for the first, the force at the depth

@@ -166,8 +166,8 @@ class AbstractLinearLaw(AbstractContactLaw):
     def at_stiffness(self, value: Fraction) -> Self:
         """Return the law with another stiffness, in N/m (N m/rad), that a sudden motion meets.
 
-        Which parameters grow with it is for the law to say; by default all do, in proportion. In
-        either way the characteristic polynomial of a loop is affine in the stiffness.
+        By default all parameters grow in proportion. In every law the characteristic polynomial of
+        a loop is affine in the stiffness.
         """
         share = value / Fraction(getattr(self, self.front))
         return type(self)(*(share * parameter for parameter in self.exact))
@@ -206,7 +206,7 @@ class AbstractLinearLaw(AbstractContactLaw):
 
     @classmethod
     def assumptions(cls, environment: str, *, alone: bool) -> Iterator[Assumption]:
-        """Yield what holds for an environment that remembers, or has a mass.
+        """Yield the assumptions on an environment with memory or mass.
 
         `alone`: no other environment is touched.
         """

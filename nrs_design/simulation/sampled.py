@@ -15,9 +15,6 @@ from nrs_design.simulation.sampled_axis import SampledAxis, SampleInputs
 from nrs_design.simulation.scenario import Scenario
 from nrs_design.spec import InteractionDesignSpec
 
-# Samples between two progress reports.
-_OFTEN = 20_000
-
 
 def simulate_sampled(
     spec: InteractionDesignSpec,
@@ -33,19 +30,11 @@ def simulate_sampled(
     wanted = math.floor(scenario.duration / axis.T + 1e-9) + 1
     count = min(wanted, max_steps)
     inputs = SampleInputs.of(scenario, axis.sampling, axis.late, count)
-    instants = [*inputs.times.tolist(), float(inputs.times[-1]) + axis.T]
-    drawn = (inputs.hand, inputs.noise, inputs.ages, inputs.lates, inputs.missed)
-    rows = list(zip(*(column.tolist() for column in drawn), strict=True))
     stopped = None
     if count < wanted:
-        stopped = f"{max_steps} samples by {instants[count - 1]:.6g} s: the budget is used up"
-    for k in range(count):
-        t = instants[k]
-        axis.sample(t, *rows[k])
-        axis.move(instants[k + 1] - t)
-        if k % _OFTEN == 0:
-            tell(f"{t:.3g} s")
-    return axis.finish(inputs, stopped)
+        last = float(inputs.times[-1])
+        stopped = f"{max_steps} samples by {last:.6g} s: the budget is used up"
+    return axis.run(inputs, stopped, tell)
 
 
 def _axis(

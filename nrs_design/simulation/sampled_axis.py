@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.controllers.replica import StepProgram
 from nrs_design.models.plant import Plant
+from nrs_design.progress import Progress
 from nrs_design.simulation.motor import DrivenJoint, Motor
 from nrs_design.simulation.run import INPUTS, OUTPUTS, Run
 from nrs_design.simulation.scenario import COMMAND, DEPTH, TORQUE, Array, Scenario
@@ -31,6 +32,8 @@ from nrs_design.spec.sampling import SamplingSpec
 PARTS = 8
 # Probability of a miss where the rule allows one.
 MISSED = 0.5
+# Samples between two progress reports.
+_OFTEN = 20_000
 # States of the motion loop; all others belong to the outer loop.
 _OF_MOTION = frozenset({"error_before"})
 
@@ -128,8 +131,17 @@ class SampledAxis:
         limit = law.coefficient.get("command_limit")
         self.largest = math.inf if limit is None else float(limit.of(0))
 
-    def finish(self, inputs: SampleInputs, stopped: str | None) -> Run:
-        """Return the run up to now; `stopped` says why it ends before its time."""
+    def run(self, inputs: SampleInputs, stopped: str | None, tell: Progress) -> Run:
+        """Run all samples; `stopped` says why the run ends before its time."""
+        times = inputs.times.tolist()
+        drawn = (inputs.hand, inputs.noise, inputs.ages, inputs.lates, inputs.missed)
+        columns = (column.tolist() for column in drawn)
+        rows = zip(times, [*times[1:], times[-1] + self.T], *columns, strict=True)
+        for k, (t, following, *sample) in enumerate(rows):
+            self.sample(t, *sample)
+            self.move(following - t)
+            if k % _OFTEN == 0:
+                tell(f"{t:.3g} s")
         return Run(
             self.scenario.name,
             "sampled",
@@ -142,7 +154,7 @@ class SampledAxis:
             self.saturated,
             stopped,
             outer=float(self.sampling.outer),
-            missed=int(inputs.missed[: len(self.rows)].sum()) if self.sampling.misses else None,
+            missed=int(inputs.missed.sum()) if self.sampling.misses else None,
         )
 
     def sample(
@@ -262,12 +274,11 @@ class SampledAxis:
     def _response(self, inputs: SampleInputs) -> TimeResponse:
         law, last = self.program.law, len(OUTPUTS) + 2
         rows = np.array(self.rows, dtype=float).T
-        count = len(self.rows)
         return TimeResponse(
-            inputs.times[:count],
+            inputs.times,
             rows[1:last],
             rows[last:],
-            inputs.hand[None, :count],
+            inputs.hand[None],
             (*on_axis(OUTPUTS, self.design.axis), Signal("command", self.design.command)),
             tuple(Signal(_named(value.name), value.unit) for value in law.states),
             on_axis(INPUTS, self.design.axis),

@@ -40,27 +40,21 @@ def places_theorem(system: SwitchedSystem, evidence: FormsOnGraph) -> Theorem:
     places = listed(names[mode.name] for mode in system.modes)
     definitions.define("switches", f"{_switches(system, flows=flows)} : list switch")
     factor = max(factor_of(node.form) for node in evidence.nodes)
-    rate = f"{evidence.rate.numerator} {evidence.rate.denominator}"
-    if flows:
-        return Theorem(
-            SWITCHES,
-            definitions.texts,
-            f"switches_fall {rate} {factor}\n    {places}\n    switches",
-            f"decays_by_mode {rate} {factor}\n    {places}\n    switches",
-            "switches_sound _ _ _ _ _ checked",
-            system.states,
-            (MIXED,),
-        )
-    stays = evidence.stays
+    rate, around = evidence.rate, f"{factor}\n    {places}\n    switches"
+    known = f"{rate.numerator} {rate.denominator} {around}"
+    library, sound, statement = SWITCHES, "switches", f"decays_by_mode {known}"
+    if not flows:
+        share = f"({rate.numerator} / {rate.denominator})%R"
+        library, sound, statement = STAYS, "stays", f"decays_by_mode {around}\n    {share}"
+    leaving = (evidence.stays or Stays()).leaving
     return Theorem(
-        STAYS,
+        library,
         definitions.texts,
-        f"stays_fall {rate} {factor}\n    {places}\n    switches",
-        f"decays_by_mode {factor}\n    {places}\n    switches\n"
-        f"    ({evidence.rate.numerator} / {evidence.rate.denominator})%R",
-        "stays_sound _ _ _ _ _ checked",
+        f"{sound}_fall {known}",
+        statement,
+        f"{sound}_sound _ _ _ _ _ checked",
         system.states,
-        (MIXED, INSIDE) if stays is not None and stays.leaving else (MIXED,),
+        (MIXED, INSIDE) if leaving else (MIXED,),
     )
 
 

@@ -149,7 +149,9 @@ def assume_kept_contact(design: ControllerDesign, *, alone: bool) -> Iterator[As
     from nrs_design.controllers.laws import LAWS
 
     used = {controller.law.name for controller in design.controllers}
-    ids = (law.contact_kept(alone=alone) for name, law in LAWS.items() if name in used)
+    laws = [law for name, law in LAWS.items() if name in used]
+    # Among velocity commands alone there is no mode of free motion.
+    ids = ("never" if alone and a.commands == "velocity" else a.contact_kept for a in laws)
     yield from (assume(f"contact-kept.{id}") for id in ids if id is not None)
 
 

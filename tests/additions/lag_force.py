@@ -43,6 +43,7 @@ class LagForce(AbstractCompliantLaw[Any]):
     commands: ClassVar[Command] = "position"
     fixed: ClassVar[Mapping[str, str]] = MappingProxyType({"Kp": "gain", "tau": "lag"})
     sampled: ClassVar[str | None] = "idle.sampled-lag-force"
+    contact_kept: ClassVar[str | None] = "lag-force"
     sentences: ClassVar[Mapping[str, str]] = MappingProxyType(
         {
             "contact-kept.lag-force": "Contact is not lost while force is controlled by the lag.",
@@ -74,11 +75,6 @@ class LagForce(AbstractCompliantLaw[Any]):
     def parts(cls, used: Collection[str], *, beside: bool) -> tuple[StepPart, ...]:
         """Return the force error of all force controllers, and the lag."""
         return PROPORTIONAL, LAG
-
-    @classmethod
-    def contact_kept(cls, *, alone: bool) -> str:
-        """Return that contact is not lost."""
-        return "lag-force"
 
 
 LAW = LagForce

@@ -70,10 +70,6 @@ class Lagged(AbstractCompliantLaw):
     def discretize(self, period, method):
         raise NotImplementedError
 
-    @classmethod
-    def contact_kept(cls, *, alone):
-        return None
-
 
 POSITION = Controller("p", PositionControl(), None, ())
 PUSHING = Controller("f", ProportionalForce(F("0.02")), "soft", ("soft",))

@@ -30,6 +30,7 @@ class ProportionalForce(AbstractCompliantLaw[ForceControllerSpec]):
     commands: ClassVar[Command] = ForceControllerSpec.commands
     fixed: ClassVar[Mapping[str, str]] = MappingProxyType({"Kp": "proportional_gain"})
     holds_hand: ClassVar[bool] = True
+    contact_kept: ClassVar[str | None] = "force"
 
     Kp: Fraction  # In rad/(N m)
 
@@ -45,11 +46,6 @@ class ProportionalForce(AbstractCompliantLaw[ForceControllerSpec]):
         """Say if the gain is negative, or another one than the spec fixes."""
         negative = "gain Kp is negative" if self.Kp < 0 else None
         return AbstractCompliantLaw.find_fault(self, given) or negative
-
-    @classmethod
-    def contact_kept(cls, *, alone: bool) -> str:
-        """Return that contact is not lost while force is controlled."""
-        return "force"
 
 
 LAW = ProportionalForce

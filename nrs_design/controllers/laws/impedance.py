@@ -40,6 +40,7 @@ class Admittance(AbstractCompliantLaw[ImpedanceControllerSpec]):
         {"Mt": "kg*m^2", "Bt": "N*m*s/rad", "Kt": "N*m/rad"}
     )
     commands: ClassVar[Command] = ImpedanceControllerSpec.commands
+    contact_kept: ClassVar[str | None] = "impedance"
 
     Mt: Fraction  # Virtual inertia in kg m^2; zero makes the law static
     Bt: Fraction  # Virtual damping in N m s/rad; positive
@@ -117,11 +118,6 @@ class Admittance(AbstractCompliantLaw[ImpedanceControllerSpec]):
         while one of those is active, it and the velocity of the admittances decay.
         """
         return (_admittance(sprung="Kt" in used, inert="a" in used, beside=beside),)
-
-    @classmethod
-    def contact_kept(cls, *, alone: bool) -> str:
-        """Return that contact is not lost, beside others only while it is active."""
-        return "never" if alone else "impedance"
 
 
 LAW = Admittance

@@ -64,6 +64,9 @@ class AbstractCompliantLaw(AbstractLaw, Generic[S]):
     sentences: ClassVar[Mapping[str, str]] = MappingProxyType({})
     # Whether its state decays in the position command of other controllers.
     bleeds: ClassVar[bool] = False
+    # Assumption on contact while the law is active, beside laws with another kind of command: by
+    # default contact is never lost. None for no assumption.
+    contact_kept: ClassVar[str | None] = "never"
 
     @property
     def states(self) -> tuple[str, ...]:
@@ -120,15 +123,6 @@ class AbstractCompliantLaw(AbstractLaw, Generic[S]):
             elif gain not in given.gains():
                 return f"gain {gain} has no bounds in the spec"
         return None
-
-    @classmethod
-    def contact_kept(cls, *, alone: bool) -> str | None:
-        """Return the name of the assumption on contact while the law is active, or None.
-
-        By default contact is never lost. `alone`: all laws give the motion loop one kind of
-        command.
-        """
-        return "never"
 
 
 # A law that fits its spec: who takes both from one controller need not ask which.

@@ -73,6 +73,7 @@ class IntegralForce(AbstractCompliantLaw[IntegralControllerSpec]):
         }
     )
     bleeds: ClassVar[bool] = IntegralControllerSpec.bleeds
+    contact_kept: ClassVar[str | None] = "pi-force"
 
     Kp: Fraction  # In rad/(N m)
     Ki: Fraction  # In rad/(N m s)
@@ -102,11 +103,6 @@ class IntegralForce(AbstractCompliantLaw[IntegralControllerSpec]):
         if self.Kp <= 0 or self.Ki <= 0:
             return "gains Kp and Ki are not positive"
         return AbstractCompliantLaw.find_fault(self, given)
-
-    @classmethod
-    def contact_kept(cls, *, alone: bool) -> str:
-        """Return that contact is not lost while the integral is driven."""
-        return "pi-force"
 
 
 LAW = IntegralForce

@@ -20,6 +20,8 @@ class PositionControl(AbstractCompliantLaw[PositionControllerSpec]):
     name: ClassVar[str] = "position"
     units: ClassVar[Mapping[str, str]] = MappingProxyType({})
     commands: ClassVar[Command] = PositionControllerSpec.commands
+    # Free motion is this very mode.
+    contact_kept: ClassVar[str | None] = None
 
     def respond(self, force: LinearForm, states: Sequence[LinearForm]) -> Response:
         """Return no correction."""
@@ -28,10 +30,6 @@ class PositionControl(AbstractCompliantLaw[PositionControllerSpec]):
     def discretize(self, period: Fraction, method: str) -> DiscreteLaw:
         """Return the law without numbers: it takes no force."""
         return DiscreteLaw(type(self), {})
-
-    @classmethod
-    def contact_kept(cls, *, alone: bool) -> None:
-        """Take nothing for granted: free motion is this very mode."""
 
 
 LAW = PositionControl

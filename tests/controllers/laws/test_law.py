@@ -21,10 +21,6 @@ class Unbounded(AbstractCompliantLaw):
     def discretize(self, period, method):
         raise NotImplementedError
 
-    @classmethod
-    def contact_kept(cls, *, alone):
-        return None
-
 
 def test_a_gain_that_neither_spec_nor_law_limits_is_not_allowed():
     """A certificate may quote any gain: one that nothing is held against must not pass."""

@@ -68,10 +68,11 @@ class StepProgram:
         exist, or from a value beyond its limit, is not valid: outputs are zero and states stay as
         they were.
         """
-        each = zip(given, self._limits, strict=True)
-        if mode >= len(self._numbers) or not all(
-            low <= value <= high for value, (low, high) in each
-        ):
+        valid = mode < len(self._numbers)
+        for value, (low, high) in zip(given, self._limits, strict=True):
+            if not low <= value <= high:
+                valid = False
+        if not valid:
             return [np.float32(0)] * len(self._outputs), [*given[len(self.law.inputs) :]], False
         found = [*given, *self._numbers[mode]]
         for compute, left, right in self._operations:

@@ -40,15 +40,18 @@ class Tissue:
         At an angle in rad and a velocity in rad/s.
         """
         total = 0.0
-        for j, (surface, depth) in enumerate(zip(self.surfaces, self.depths(theta), strict=True)):
-            push = _push(surface, self.dampers[j], depth, surface.sign * omega)
-            self.touched[j] = depth > 0 and push > 0
-            if self.touched[j]:
+        for j, surface in enumerate(self.surfaces):
+            depth, speed = surface.sign * (theta - surface.at), surface.sign * omega
+            push = _push(surface, self.dampers[j], depth, speed) if depth > 0 else 0.0
+            self.touched[j] = push > 0
+            if push > 0:
                 total += surface.sign * push
         return total
 
     def note(self, time: float) -> None:
         """Write down which surfaces have been met and lost since the last time."""
+        if self.touched == self.noted:
+            return
         for j, surface in enumerate(self.surfaces):
             if self.touched[j] != self.noted[j]:
                 self.contacts.append((time, surface.environment, self.touched[j]))
@@ -78,7 +81,8 @@ class Tissue:
 
 def _push(surface: Surface, dampers: Sequence[float], depth: float, speed: float) -> float:
     """Return the force at a depth, below zero where it would pull: arms are held together."""
-    if isinstance(surface.law, AbstractNonlinearLaw):
+    if surface.element is None:
+        assert isinstance(surface.law, AbstractNonlinearLaw)
         return surface.law.push(depth, speed)
     each = zip(surface.elements, dampers, strict=True)
     return sum(e.k * (depth - damper) + e.c * speed for e, damper in each)

@@ -47,17 +47,6 @@ class Admittance(AbstractCompliantLaw[ImpedanceControllerSpec]):
     # Virtual stiffness in N m/rad; zero is no spring, and then no gain of the law.
     Kt: Fraction = Fraction(0)
 
-    @property
-    def gains(self) -> Mapping[str, Fraction]:
-        """The gains by name; the spring only where there is one."""
-        found = {"Mt": self.Mt, "Bt": self.Bt}
-        return found | {"Kt": self.Kt} if self.Kt else found
-
-    @classmethod
-    def of(cls, gains: Mapping[str, Fraction]) -> Admittance:
-        """Return the law with these gains; without Kt it has no spring."""
-        return cls(gains["Mt"], gains["Bt"], gains.get("Kt", Fraction(0)))
-
     @classmethod
     def gains_in(cls, given: ImpedanceControllerSpec) -> tuple[str, ...]:
         """Return the names of its gains; Kt is one where the spec gives it."""

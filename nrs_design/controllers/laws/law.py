@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import MISSING, dataclass, fields
 from fractions import Fraction
 from types import MappingProxyType
 from typing import Any, ClassVar, Generic, Self, TypeVar
@@ -28,7 +28,10 @@ Response = tuple[LinearForm, list[LinearForm]]
 
 @dataclass(frozen=True, slots=True)
 class AbstractLaw(ABC):
-    """A control law; its fields are its gains, exact single-precision numbers."""
+    """A control law; its fields are its gains, exact single-precision numbers.
+
+    A field with a default is a gain only where it has another value.
+    """
 
     # As certificates and exports call it, and the unit of every gain.
     name: ClassVar[str]
@@ -37,12 +40,14 @@ class AbstractLaw(ABC):
     @property
     def gains(self) -> Mapping[str, Fraction]:
         """The gains by name."""
-        return {field.name: getattr(self, field.name) for field in fields(self)}
+        numbers = ((field, getattr(self, field.name)) for field in fields(self))
+        return {field.name: number for field, number in numbers if number != field.default}
 
     @classmethod
     def of(cls, gains: Mapping[str, Fraction]) -> Self:
         """Return the law with the gains of these names; others are left alone."""
-        return cls(*(gains[field.name] for field in fields(cls)))
+        needed = (f.name for f in fields(cls) if f.name in gains or f.default is MISSING)
+        return cls(**{name: gains[name] for name in needed})
 
 
 @dataclass(frozen=True, slots=True)

@@ -37,17 +37,6 @@ class TorqueImpedance(AbstractCompliantLaw[TorqueImpedanceSpec]):
     D: Fraction  # In N m s/rad
     R: Fraction = Fraction(1)  # Wanted inertia over that of the joint; 1 is no gain of the law
 
-    @property
-    def gains(self) -> Mapping[str, Fraction]:
-        """The gains by name; the ratio of inertias only where it is not 1."""
-        found = {"K": self.K, "D": self.D}
-        return found if self.R == 1 else found | {"R": self.R}
-
-    @classmethod
-    def of(cls, gains: Mapping[str, Fraction]) -> TorqueImpedance:
-        """Return the law with these gains."""
-        return cls(gains["K"], gains["D"], gains.get("R", Fraction(1)))
-
     @classmethod
     def gains_in(cls, given: TorqueImpedanceSpec) -> tuple[str, ...]:
         """Return the names of its gains; R is one where the spec gives another than 1."""

@@ -42,16 +42,14 @@ def places_theorem(system: SwitchedSystem, evidence: FormsOnGraph) -> Theorem:
     factor = max(factor_of(node.form) for node in evidence.nodes)
     rate, around = evidence.rate, f"{factor}\n    {places}\n    switches"
     known = f"{rate.numerator} {rate.denominator} {around}"
-    library, sound, statement = SWITCHES, "switches", f"decays_by_mode {known}"
-    if not flows:
-        share = f"({rate.numerator} / {rate.denominator})%R"
-        library, sound, statement = STAYS, "stays", f"decays_by_mode {around}\n    {share}"
+    share = f"({rate.numerator} / {rate.denominator})%R"
+    sound = "switches" if flows else "stays"
     leaving = (evidence.stays or Stays()).leaving
     return Theorem(
-        library,
+        SWITCHES if flows else STAYS,
         definitions.texts,
         f"{sound}_fall {known}",
-        statement,
+        f"decays_by_mode {known}" if flows else f"decays_by_mode {around}\n    {share}",
         f"{sound}_sound _ _ _ _ _ checked",
         system.states,
         (MIXED, INSIDE) if leaving else (MIXED,),

@@ -71,10 +71,11 @@ def _relative_spectra(system: SwitchedSystem, Q: Array) -> tuple[Array, Array]:
 
     Of every mode, shapes (m, n) and (m, n, n); the eigenvalues ascend.
     """
-    inverse, A = np.linalg.inv(np.linalg.cholesky(Q)), np.array(mode_matrices(system))
-    transposed = A.transpose(0, 2, 1)
-    forms = transposed @ Q @ A if system.time is Time.DISCRETE else transposed @ Q + Q @ A
-    values, vectors = np.linalg.eigh(inverse @ forms @ inverse.T)
+    inverse, discrete = np.linalg.inv(np.linalg.cholesky(Q)), system.time is Time.DISCRETE
+    matrices = mode_matrices(system)
+    forms = (A.T @ Q @ A if discrete else A.T @ Q + Q @ A for A in matrices)
+    spectra = [np.linalg.eigh(inverse @ form @ inverse.T) for form in forms]
+    values, vectors = (np.array(part) for part in zip(*spectra, strict=True))
     return values, inverse.T @ vectors
 
 

@@ -131,8 +131,8 @@ class _Adversary:
         found = []
         for mode, moves in enumerate(self.successors):
             inverse = np.linalg.inv(self.roots[mode])
-            flow = np.linalg.matrix_power(self.paces[mode].flow, self.paces[mode].fewest) @ inverse
-            maps = (self.roots[move.mode] @ move.reset @ flow for move in moves)
+            flow = np.linalg.matrix_power(self.paces[mode].flow, self.paces[mode].fewest)
+            maps = (self.roots[move.mode] @ move.reset @ flow @ inverse for move in moves)
             _, values, right = max(map(np.linalg.svd, maps), key=lambda item: item[1][0])
             found.append((values[0], mode, inverse @ right[0]))
         found.sort(key=lambda item: -item[0])

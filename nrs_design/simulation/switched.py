@@ -54,7 +54,7 @@ def mode_rates(system: SwitchedSystem, Q: Array) -> Array:
     Continuous time: the largest alpha with ``A'Q + QA + 2 alpha Q <= 0``, in 1/s; negative where
     the norm can grow. Discrete time: the smallest rho with ``A'QA <= rho^2 Q``. For figures only.
     """
-    largest = _relative_spectra(system, Q)[0][:, -1]
+    largest = np.linalg.eigvalsh(np.array(_relative_forms(system, Q)))[:, -1]
     if system.time is Time.DISCRETE:
         return np.asarray(np.sqrt(np.maximum(largest, 0.0)))
     return np.asarray(-largest / 2)
@@ -62,21 +62,16 @@ def mode_rates(system: SwitchedSystem, Q: Array) -> Array:
 
 def worst_direction(system: SwitchedSystem, Q: Array) -> Array:
     """Return the unit state (in the norm of Q) from which ``x' Q x`` decreases the slowest."""
-    values, vectors = _relative_spectra(system, Q)
-    return np.asarray(vectors[values[:, -1].argmax(), :, -1])
+    spectra = map(np.linalg.eigh, _relative_forms(system, Q))
+    _, vectors = max(spectra, key=lambda spectrum: float(spectrum[0][-1]))
+    return np.asarray(np.linalg.inv(np.linalg.cholesky(Q)).T @ vectors[:, -1])
 
 
-def _relative_spectra(system: SwitchedSystem, Q: Array) -> tuple[Array, Array]:
-    """Return eigenvalues and eigenvectors of ``A'Q + QA`` (discrete: ``A'QA``) relative to Q.
-
-    Of every mode, shapes (m, n) and (m, n, n); the eigenvalues ascend.
-    """
+def _relative_forms(system: SwitchedSystem, Q: Array) -> list[Array]:
+    """Return ``A'Q + QA`` (discrete time: ``A'QA``) of every mode, relative to Q."""
     inverse, discrete = np.linalg.inv(np.linalg.cholesky(Q)), system.time is Time.DISCRETE
-    matrices = mode_matrices(system)
-    forms = (A.T @ Q @ A if discrete else A.T @ Q + Q @ A for A in matrices)
-    spectra = [np.linalg.eigh(inverse @ form @ inverse.T) for form in forms]
-    values, vectors = (np.array(part) for part in zip(*spectra, strict=True))
-    return values, inverse.T @ vectors
+    forms = (A.T @ Q @ A if discrete else A.T @ Q + Q @ A for A in mode_matrices(system))
+    return [inverse @ form @ inverse.T for form in forms]
 
 
 def sampled_direction(system: SwitchedSystem, norm: Norm, step: float) -> Array:

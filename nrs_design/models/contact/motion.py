@@ -10,8 +10,6 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from nrs_design.models.contact.relaxation import Relaxation
-
     Array = NDArray[np.float64]
 
 
@@ -58,12 +56,6 @@ class Motion:
         import numpy as np
 
         return self.deflection, self.velocity, np.gradient(self.velocity, self.time)
-
-    def relaxed(self, time_constant: float) -> Relaxation:
-        """Return the response of a spring and a damper in a row, with a time constant in s."""
-        from nrs_design.models.contact.relaxation import Relaxation
-
-        return Relaxation(self, time_constant)
 
     @property
     def time_constants(self) -> Array:

@@ -9,11 +9,12 @@ from numpy.typing import NDArray
 from scipy.optimize import Bounds, differential_evolution
 
 from benchmarks.measure import Comparison, Size, time_side_by_side
-from nrs_design.design.impedance import ImpedanceLoop, stabilizes
 from nrs_design.design.impedance_optimum import (
+    ImpedanceLoop,
     ImpedanceProblem,
     impedance_cost,
     optimize_impedance,
+    stabilizes,
 )
 from nrs_design.design.transfer import TransferFunction
 from nrs_design.models.contact import Elastic

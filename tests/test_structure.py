@@ -50,8 +50,7 @@ PRINTED = {
     "nrs_design.design.analysis",
     "nrs_design.design.goals",
     "nrs_design.design.linear_parts",
-    "nrs_design.design.open_loops",
-    "nrs_design.design.sampled_passivity",
+    "nrs_design.design.passivity",
     "nrs_design.search.loop_margin",
     "nrs_design.search.method_run",
 }
@@ -261,7 +260,7 @@ def test_a_report_assembles_and_searches_nothing():
 
 VERBS = {
     ("nrs_design.spec.build_plant", "build_plant"),
-    ("nrs_design.design.design", "design_controllers"),
+    ("nrs_design.design.analysis", "design_controllers"),
     ("nrs_design.design.analysis", "analyze_design"),
     ("nrs_design.loop.assemble", "assemble"),
     ("nrs_design.loop.assemble", "assemble_matrices"),

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from nrs_design.design.impedance import stabilizes
 from nrs_design.design.impedance_optimum import (
     ImpedanceProblem,
     impedance_cost,
     optimize_impedance,
+    stabilizes,
 )
 from nrs_design.pipeline.analysis import run_analysis
 from nrs_design.pipeline.runs import run_design

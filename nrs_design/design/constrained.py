@@ -21,8 +21,7 @@ from nrs_design.design.impedance_optimum import (
     optimize_impedance,
 )
 from nrs_design.design.measures import CREEP_MEASURES, Measure
-from nrs_design.design.nested_search import search_square
-from nrs_design.design.pattern_search import Objective
+from nrs_design.design.pattern_search import Objective, search_square
 from nrs_design.design.transfer import FloatArray
 from nrs_design.errors import DesignError
 

@@ -25,10 +25,9 @@ import numpy as np
 
 from nrs_design.axis import unit
 from nrs_design.controllers.laws import CompliantLaw
-from nrs_design.design.force_limit import Approach, steady_force_error
-from nrs_design.design.hands_on import hand_effort, transparency
+from nrs_design.design.force_loop import Approach, steady_force_error
 from nrs_design.design.loop_family import LoopFamily
-from nrs_design.design.loops import Loops, gain_extremes
+from nrs_design.design.loops import Loops, gain_extremes, hand_effort, transparency
 from nrs_design.design.measures import (
     AT_HOME,
     CREEP,
@@ -45,8 +44,13 @@ from nrs_design.design.measures import (
     GoalStanding,
     Measure,
 )
-from nrs_design.design.polynomials import multiply
-from nrs_design.design.transfer import BoolArray, ComplexArray, FloatArray, TransferFunction
+from nrs_design.design.transfer import (
+    BoolArray,
+    ComplexArray,
+    FloatArray,
+    TransferFunction,
+    multiply,
+)
 from nrs_design.errors import DesignError
 from nrs_design.loop.cut_loop import AbstractAxis, Place
 from nrs_design.models.contact import AbstractLinearLaw

@@ -18,8 +18,7 @@ from nrs_design.design.impedance_optimum import (
     impedance_cost,
     optimize_impedance,
 )
-from nrs_design.design.polynomials import all_roots
-from nrs_design.design.transfer import FloatArray
+from nrs_design.design.transfer import FloatArray, all_roots
 from nrs_design.errors import DesignError
 
 _POINTS = 100

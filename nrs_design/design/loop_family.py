@@ -16,8 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.design.loops import Loops
-from nrs_design.design.polynomials import frequencies, product_parts, ratio
-from nrs_design.design.transfer import FloatArray, hurwitz
+from nrs_design.design.transfer import FloatArray, frequencies, hurwitz, product_parts, ratio
 from nrs_design.loop.cut_loop import AbstractAxis, Place, ProcessorAxis
 from nrs_design.models.contact import AbstractLinearLaw
 

@@ -13,15 +13,20 @@ from functools import cached_property
 
 import numpy as np
 
-from nrs_design.design.polynomials import (
+from nrs_design.design.transfer import (
+    BoolArray,
+    ComplexArray,
+    FloatArray,
     frequencies,
+    hurwitz,
+    multiply,
     product_parts,
     ratio,
     squared,
     stationary,
 )
-from nrs_design.design.transfer import BoolArray, ComplexArray, FloatArray, hurwitz
 from nrs_design.loop.cut_loop import CutLoop
+from nrs_design.models.contact import AbstractLinearLaw
 
 
 @dataclass(frozen=True, eq=False)
@@ -156,3 +161,35 @@ def _peak(numerator: FloatArray, denominator: FloatArray) -> FloatArray:
 
 def _smallest(values: FloatArray) -> FloatArray:
     return np.asarray(np.fmin.reduce(values, axis=1, initial=np.inf))
+
+
+def transparency(loops: Loops, bandwidth: float) -> FloatArray:
+    """Return the smallest ``|L/(1 + L)|`` from 0 to a frequency in rad/s; 0 if unstable.
+
+    A hand that holds the robot (thesis 7.2) is the environment: with its impedance Ze it pulls the
+    robot along. Of the velocity that it means to have, the robot makes ``L/(1 + L)``.
+    """
+    low, _ = gain_extremes(*_cancelled(loops.numerator, loops.closed), bandwidth)
+    return np.where(loops.stable, low, 0.0)
+
+
+def hand_effort(loops: Loops, hand: AbstractLinearLaw, bandwidth: float) -> FloatArray:
+    """Return the largest ``|Ze/(1 + L)|`` from 0 to a frequency in rad/s, in N m s/rad.
+
+    That is the force of the hand over the velocity that it means to have. Infinite where the loop is unstable, or where the hand has to hold against a spring.
+    """
+    above, below = (np.tile(part, (len(loops.numerator), 1)) for part in hand.impedance)
+    numerator, denominator = _cancelled(
+        multiply(above, loops.denominator), multiply(below, loops.closed)
+    )
+    if not np.all(denominator[:, -1]):
+        return np.full(len(numerator), np.inf)
+    _, high = gain_extremes(numerator, denominator, bandwidth)
+    return np.where(loops.stable, high, np.inf)
+
+
+def _cancelled(above: FloatArray, below: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Leave out powers of s that are in both polynomials of every row."""
+    while not (above[:, -1].any() or below[:, -1].any()):
+        above, below = above[:, :-1], below[:, :-1]
+    return above, below

@@ -17,22 +17,28 @@ unknown but constant; that is what a frequency is about.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import partial
 from itertools import product
-from math import lcm
+from math import floor, lcm
 from typing import Any
 
 from nrs_design.controllers.laws import CompliantLaw
 from nrs_design.design.affine_family import (
+    ONE,
+    ZERO,
+    Quotient,
     corners_in,
+    is_stable_over,
     lowest_first,
     real_product,
     squared_over,
 )
 from nrs_design.design.displayed_response import impedance_at, root_below
-from nrs_design.loop.cut_loop import ContinuousAxis
+from nrs_design.design.sampled_response import SampledAdmittance
+from nrs_design.loop.cut_loop import ContinuousAxis, multiply
 from nrs_design.models.interval import Interval
 from nrs_design.proof.enclosure import fraction_of
 from nrs_design.proof.matrix import RationalMatrix
@@ -143,3 +149,116 @@ def _negative_beyond(P: Sequence[Fraction], x: Fraction) -> Fraction | None:
             return omega
         step *= 2
     return None
+
+
+# Convergents of the continued fraction of the arctangent: the last one, and the one before.
+DEPTH = 6
+# How often the point beyond the first root is moved on, at first by this share.
+STEPS, SHARE = 30, Fraction(1, 10**5)
+
+Enclosed = tuple[Fraction, Fraction]
+
+
+@dataclass(frozen=True)
+class SampledBand:
+    """Where the admittance that a processor displays is passive."""
+
+    age: int  # Of the force sample, always the same, in samples
+    # It is passive at every frequency up to this one, in rad/s; zero where that is not shown.
+    passive: Fraction
+    # Between these frequencies in rad/s is one at which it is not; None where none was found.
+    broken: Enclosed | None = None
+    tangent: Fraction | None = None  # The ``tan(omega T/2)`` of that frequency omega, exactly
+
+
+def sampled_bands(shown: SampledAdmittance, ages: Iterable[int]) -> tuple[SampledBand, ...]:
+    """Find where the displayed admittance is passive, for every age of the force in samples.
+
+    The motor has no ranges. Empty where the law that nobody holds is not shown to be stable: a
+    displayed admittance then says nothing.
+    """
+    if not is_stable_over(shown.quotient, shown.box):
+        return ()
+    return tuple(_band(shown, age) for age in ages)
+
+
+def _band(shown: SampledAdmittance, age: int) -> SampledBand:
+    """Bracket the first frequency at which the real part may be negative."""
+    signs, period = [*_signs(shown, age)], shown.period
+    if min(P[-1] for P in signs) <= 0:
+        return SampledBand(age, ZERO)
+    brackets = [bracket for P in signs if (bracket := first_root(without_zeros(P))) is not None]
+    if not brackets:
+        # Up to half the sampling rate; pi is more than 3.14159.
+        return SampledBand(age, Fraction(314159, 100_000) / period)
+    low, high = min(brackets)
+    passive, _ = _frequency(root_below(low, 18), period)
+    step = SHARE * high
+    for _ in range(STEPS):
+        t = root_below(high + step, 12) + Fraction(1, 10**12)
+        if all(evaluate(P, t**2) < 0 for P in signs):
+            return SampledBand(age, passive, _frequency(t, period), t)
+        step *= 2
+    return SampledBand(age, passive)
+
+
+def _signs(shown: SampledAdmittance, age: int) -> Iterable[list[Fraction]]:
+    """Yield polynomials in x, highest power first, of which what has the sign of Re V is a mean.
+
+    Where all are positive, so is Re V; where all are negative, it is negative.
+    """
+    late, early = [ONE], [ONE]
+    for _ in range(age):
+        late, early = multiply(late, [-ONE, ONE]), multiply(early, [ONE, ONE])
+
+    def older(values: Any) -> Quotient:
+        command, poles = shown.command(values)
+        return Quotient(multiply(late, command), multiply(early, poles), ())
+
+    corners = corners_in(older, shown.box)
+    both = [[*lowest_first(found.above), *lowest_first(found.below)] for found in corners]
+    lag = 2 * shown.motor.time_constant.nominal / shown.period
+    for depth in (DEPTH, DEPTH + 1):
+        yield from map(highest_first, squared_over(both, partial(_sign, lag=lag, depth=depth)))
+
+
+def _sign(both: Sequence[Any], lag: Fraction, depth: int) -> list[Any]:
+    """Return the sign polynomial of N and D, one after the other; the lag is ``2 tau/T``."""
+    from flint import fmpq, fmpq_poly
+
+    n = len(both) // 2
+    N, mirrored = fmpq_poly(both[:n]), fmpq_poly([c * (-1) ** k for k, c in enumerate(both[n:])])
+    W = (fmpq_poly([1, -1]) * N * mirrored).coeffs()
+    real, imaginary = (
+        fmpq_poly([c * (-1) ** k for k, c in enumerate(W[first::2])]) for first in (0, 1)
+    )
+    p, q = _arctangent(depth)
+    late = fmpq_poly([0, fmpq(lag.numerator, lag.denominator)]) * imaginary
+    found: list[Any] = (q * real + p * late).coeffs()
+    # Of one length, whichever powers cancel.
+    return [*found, *[fmpq(0)] * (2 * n + depth - len(found))]
+
+
+def _arctangent(depth: int) -> tuple[Any, Any]:
+    """Return a convergent p/q of ``atan(t)/t`` as polynomials in x, q positive for positive x.
+
+    ``atan(t)/t = 1/(1 + x/(3 + 4x/(5 + 9x/(7 + ...))))``. All terms are positive, so the
+    convergents are in turn above and below.
+    """
+    from flint import fmpq_poly
+
+    p, q = fmpq_poly([1]), fmpq_poly([2 * depth + 1])
+    for k in range(depth, 0, -1):
+        # 2k - 1 + k^2 x/(q/p)
+        p, q = q, (2 * k - 1) * q + fmpq_poly([0, k * k]) * p
+    return p, q
+
+
+def _frequency(t: Fraction, period: Fraction) -> Enclosed:
+    """Enclose ``2 atan(t)/T`` between decimals."""
+    found = []
+    for depth in (DEPTH, DEPTH + 1):
+        p, q = (evaluate(highest_first(P.coeffs()), t**2) for P in _arctangent(depth))
+        found.append(2 * t * p / q / period)
+    unit = 10**9
+    return Fraction(floor(min(found) * unit), unit), Fraction(-floor(-max(found) * unit), unit)

@@ -61,7 +61,7 @@ from nrs_design.design.measures import (
     GoalStanding,
     Measure,
 )
-from nrs_design.design.polynomials import frequencies, squared
+from nrs_design.design.transfer import frequencies, squared
 from nrs_design.loop.cut_loop import ContinuousAxis, multiply
 from nrs_design.models.contact import Elastic, KelvinVoigt
 from nrs_design.models.contact.environment import Environment

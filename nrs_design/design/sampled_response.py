@@ -1,7 +1,7 @@
 """What the surgeon feels of a law that a processor runs, bounded over a band and all ranges.
 
 Of a force with the frequency omega, below half the sampling rate, the velocity of the tool has a
-part of the same frequency, as in `nrs_design.design.sampled_passivity`:
+part of the same frequency, as in `nrs_design.design.passivity`:
 
     V = Km/(tau j omega + 1)  (1 - 1/z)/(j omega T)  U(z),    z = exp(j omega T).
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     )
     from nrs_design.design.goals import Achieved
     from nrs_design.design.measures import Measure
-    from nrs_design.design.sampled_passivity import SampledBand
+    from nrs_design.design.passivity import SampledBand
     from nrs_design.pipeline.design import Designed
     from nrs_design.spec import InteractionDesignSpec
 

@@ -13,8 +13,7 @@ from nrs_design.spec import LoadedSpec
 
 if TYPE_CHECKING:
     from nrs_design.controllers.controller_design import ControllerDesign
-    from nrs_design.design.linear_parts import LinearParts
-    from nrs_design.design.open_loops import OpenLoop
+    from nrs_design.design.linear_parts import LinearParts, OpenLoop
     from nrs_design.models.plant import Plant
     from nrs_design.spec import InteractionDesignSpec
 
@@ -102,7 +101,7 @@ def design_at_least_cost(loaded: LoadedSpec) -> Designed | None:
     spec = loaded.spec
     if spec.kind != "interaction-design":
         return None
-    from nrs_design.design.design import design_controllers
+    from nrs_design.design.analysis import design_controllers
     from nrs_design.spec.build_plant import build_plant
 
     with placed(loaded):
@@ -119,6 +118,6 @@ def run_linear_parts(designed: Designed) -> LinearParts:
 
 def run_open_loops(designed: Designed) -> tuple[OpenLoop, ...]:
     """Return the loops whose margins a design has, at every corner."""
-    from nrs_design.design.open_loops import open_loops
+    from nrs_design.design.linear_parts import open_loops
 
     return open_loops(designed.spec, designed.plant, designed.design)

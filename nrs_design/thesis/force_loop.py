@@ -5,8 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
-from nrs_design.design.force_limit import Approach, peak_force, steady_force_error
-from nrs_design.design.force_loop import force_loop_response
+from nrs_design.design.force_loop import (
+    Approach,
+    force_loop_response,
+    peak_force,
+    steady_force_error,
+)
 from nrs_design.spec.controllers import Offset
 from nrs_design.thesis import thesis
 from nrs_design.thesis.comparison import Found, Recomputed

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import log, pi
 
-from nrs_design.design.impedance import ImpedanceLoop
-from nrs_design.design.impedance_optimum import ImpedanceProblem, optimize_impedance
+from nrs_design.design.impedance_optimum import ImpedanceLoop, ImpedanceProblem, optimize_impedance
 from nrs_design.design.transfer import TransferFunction
 from nrs_design.models.contact import Elastic
 from nrs_design.thesis import thesis

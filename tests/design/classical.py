@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import control
 import numpy as np
 
-from nrs_design.design.impedance import (
+from nrs_design.design.impedance_optimum import (
     characteristic_basis,
     characteristic_polynomials,
     check_admittance,

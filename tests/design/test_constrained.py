@@ -9,8 +9,13 @@ import pytest
 
 from nrs_design.design.constrained import best_rounding, meets, optimize_with_goals
 from nrs_design.design.goals import Requirement, corners_of
-from nrs_design.design.impedance import ImpedanceLoop, stabilizes
-from nrs_design.design.impedance_optimum import ImpedanceProblem, impedance_cost, optimize_impedance
+from nrs_design.design.impedance_optimum import (
+    ImpedanceLoop,
+    ImpedanceProblem,
+    impedance_cost,
+    optimize_impedance,
+    stabilizes,
+)
 from nrs_design.design.measures import (
     DELAY_MARGIN,
     DISK_MARGIN,

@@ -5,7 +5,7 @@ from fractions import Fraction
 import pytest
 
 from nrs_design.controllers.float32 import is_float32, to_float32
-from nrs_design.design.design import design_controllers, root_locus_design
+from nrs_design.design.analysis import design_controllers, root_locus_design
 from nrs_design.design.laws.impedance import desired_impedance
 from nrs_design.errors import DesignError
 from nrs_design.spec import load_spec, parse_spec

@@ -8,9 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
-from nrs_design.design.analysis import analyze_design
-from nrs_design.design.design import design_controllers
-from nrs_design.design.force_limit import Approach, peak_force, steady_force_error
+from nrs_design.design.analysis import analyze_design, design_controllers
+from nrs_design.design.force_loop import Approach, peak_force, steady_force_error
 from nrs_design.design.transfer import TransferFunction
 from nrs_design.errors import DesignError
 from nrs_design.spec import parse_spec

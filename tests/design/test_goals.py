@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from nrs_design.controllers.laws import ProportionalForce
-from nrs_design.design.force_limit import Approach
+from nrs_design.design.force_loop import Approach
 from nrs_design.design.goals import ForceRequirement, Requirement, corners_of
-from nrs_design.design.impedance import ImpedanceLoop
+from nrs_design.design.impedance_optimum import ImpedanceLoop
 from nrs_design.design.measures import (
     DELAY_MARGIN,
     FORCE_ERROR,

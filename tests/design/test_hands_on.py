@@ -6,8 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from nrs_design.design.goals import ContactCorner, Requirement
-from nrs_design.design.hands_on import hand_effort, transparency
-from nrs_design.design.loops import Loops
+from nrs_design.design.loops import Loops, hand_effort, transparency
 from nrs_design.design.measures import HAND_EFFORT, TRANSPARENCY
 from nrs_design.design.transfer import TransferFunction
 from nrs_design.models.contact import Elastic, Hand, KelvinVoigt

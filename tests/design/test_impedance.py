@@ -6,7 +6,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from nrs_design.design.impedance import ImpedanceLoop, stabilizes
+from nrs_design.design.impedance_optimum import ImpedanceLoop, stabilizes
 from nrs_design.design.transfer import frequency_response
 from nrs_design.errors import DesignError
 from nrs_design.models.contact import Elastic, KelvinBoltzmann, KelvinVoigt, Maxwell

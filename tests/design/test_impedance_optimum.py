@@ -8,8 +8,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from nrs_design.design.impedance import ImpedanceLoop, stabilizes
-from nrs_design.design.impedance_optimum import ImpedanceProblem, impedance_cost, optimize_impedance
+from nrs_design.design.impedance_optimum import (
+    ImpedanceLoop,
+    ImpedanceProblem,
+    impedance_cost,
+    optimize_impedance,
+    stabilizes,
+)
 from nrs_design.errors import DesignError
 from nrs_design.models.contact import Elastic, KelvinBoltzmann, KelvinVoigt
 from tests.design.classical import displayed_impedance_at, sensitivity

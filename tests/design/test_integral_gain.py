@@ -6,9 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.linalg import expm
 
-from nrs_design.design.analysis import analyze_design
-from nrs_design.design.design import design_controllers
-from nrs_design.design.force_limit import Approach, peak_force
+from nrs_design.design.analysis import analyze_design, design_controllers
+from nrs_design.design.force_loop import Approach, peak_force
 from nrs_design.design.laws.pi_force import integral_gain, with_integral
 from nrs_design.errors import DesignError
 from nrs_design.spec import parse_spec

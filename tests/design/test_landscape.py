@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 from matplotlib.contour import QuadContourSet
 
-from nrs_design.design.impedance import characteristic_basis, stabilizes
-from nrs_design.design.impedance_optimum import impedance_cost
+from nrs_design.design.impedance_optimum import characteristic_basis, impedance_cost, stabilizes
 from nrs_design.design.landscape import alternatives, map_cost
 from nrs_design.pipeline.analysis import run_analysis
 from nrs_design.pipeline.runs import run_design

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from nrs_design.design.impedance import ImpedanceLoop
+from nrs_design.design.impedance_optimum import ImpedanceLoop
 from nrs_design.design.loop_family import LoopFamily
 from nrs_design.design.loops import Loops
 from nrs_design.design.transfer import TransferFunction, frequency_response, to_control

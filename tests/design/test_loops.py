@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from nrs_design.design.impedance import ImpedanceLoop
+from nrs_design.design.impedance_optimum import ImpedanceLoop
 from nrs_design.design.loops import Loops, gain_extremes
-from nrs_design.design.polynomials import multiply
+from nrs_design.design.transfer import multiply
 from nrs_design.models.contact import Elastic, KelvinVoigt
 from tests.design.classical import displayed_impedance_at, loop_margins, open_loop
 from tests.design.motion_loops import EXACT

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from nrs_design.design.nested_search import search_square
+from nrs_design.design.pattern_search import search_square
 
 BOTH = (True, True)
 

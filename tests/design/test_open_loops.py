@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from nrs_design.design.laws.law import Task
-from nrs_design.design.open_loops import open_loops
+from nrs_design.design.linear_parts import open_loops
 from nrs_design.loop.cut_loop import characteristic
 from nrs_design.pipeline.analysis import run_analysis
 from nrs_design.pipeline.design import run_open_loops

@@ -13,10 +13,9 @@ from hypothesis import strategies as st
 from nrs_design.controllers.laws import Admittance
 from nrs_design.controllers.sensor import LowPass
 from nrs_design.design.goals import Achieved
-from nrs_design.design.hands_on import hand_effort, transparency
-from nrs_design.design.impedance import ImpedanceLoop
+from nrs_design.design.impedance_optimum import ImpedanceLoop
 from nrs_design.design.loop_family import LoopFamily
-from nrs_design.design.loops import Loops
+from nrs_design.design.loops import Loops, hand_effort, transparency
 from nrs_design.design.measures import (
     DELAY_MARGIN,
     DISK_MARGIN,

@@ -9,7 +9,7 @@ import pytest
 from nrs_design.controllers.float32 import to_float32
 from nrs_design.controllers.laws import Admittance, DiscreteLaw, ProportionalDerivative
 from nrs_design.controllers.step_law import StepFrame
-from nrs_design.design.sampled_passivity import sampled_bands
+from nrs_design.design.passivity import sampled_bands
 from nrs_design.design.sampled_response import SampledAdmittance
 from nrs_design.loop.program import INPUTS
 from nrs_design.models.actuator import Actuator, ActuatorRanges

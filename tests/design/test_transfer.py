@@ -7,9 +7,9 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from nrs_design.design.polynomials import frequencies
 from nrs_design.design.transfer import (
     TransferFunction,
+    frequencies,
     frequency_response,
     hurwitz,
     poles,

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from nrs_design.controllers.laws import LAWS
 from nrs_design.controllers.step_law import StepFrame
-from nrs_design.design.virtual_wall import Wall, passivity_margin
+from nrs_design.design.laws.torque_impedance import Wall, passivity_margin
 from nrs_design.loop.command_timing import CommandTiming
 from nrs_design.models.drive import Takes, torque_drive
 from nrs_design.models.interval import Interval

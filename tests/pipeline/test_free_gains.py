@@ -9,7 +9,7 @@ import pytest
 
 from nrs_design.controllers.float32 import exact_decimal, to_float32
 from nrs_design.controllers.gains import design_from_gains, gains_of, with_chosen
-from nrs_design.design.design import design_controllers
+from nrs_design.design.analysis import design_controllers
 from nrs_design.design.impedance_optimum import optimize_impedance
 from nrs_design.design.laws.impedance import impedance_problem, requirement_of
 from nrs_design.design.laws.law import Task

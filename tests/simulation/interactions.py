@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from nrs_design.design.design import design_controllers
+from nrs_design.design.analysis import design_controllers
 from nrs_design.simulation.build_scenario import build_scenario, default_scenario
 from nrs_design.simulation.exact import simulate_exactly
 from nrs_design.simulation.sampled import simulate_sampled

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
-from nrs_design.design.design import design_controllers
+from nrs_design.design.analysis import design_controllers
 from nrs_design.errors import DesignError
 from nrs_design.loop.assemble import assemble
 from nrs_design.simulation.build_scenario import build_scenario, default_scenario

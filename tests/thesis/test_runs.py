@@ -35,7 +35,7 @@ def test_a_constant_torque_by_hand():
 
 def test_the_spec_of_the_runs_is_the_robot_of_the_thesis():
     """The peak under a proportional gain is that of the closed form of 6.41."""
-    from nrs_design.design.force_limit import Approach, peak_force
+    from nrs_design.design.force_loop import Approach, peak_force
 
     approach = Approach("reference", math.radians(5), 0.3)
     peak = peak_force(thesis.EXACT_LOOP, float(thesis.SOFT), 0.02, approach)

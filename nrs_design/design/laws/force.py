@@ -8,8 +8,13 @@ from fractions import Fraction
 from nrs_design.controllers.controller_design import Controller
 from nrs_design.controllers.float32 import round_significant, to_float32
 from nrs_design.controllers.laws import ProportionalForce
-from nrs_design.design.force_limit import Approach, peak_force
-from nrs_design.design.force_loop import ForceLoop, design_force_gain, force_loop_response
+from nrs_design.design.force_loop import (
+    Approach,
+    ForceLoop,
+    design_force_gain,
+    force_loop_response,
+    peak_force,
+)
 from nrs_design.design.goals import ForceRequirement
 from nrs_design.design.laws.law import (
     AbstractControllerAnalysis,

@@ -15,8 +15,8 @@ from nrs_design.controllers.laws import Admittance, CompliantLaw
 from nrs_design.design.constrained import best_rounding, meets, optimize_with_goals
 from nrs_design.design.doubts import doubt_bounds, doubt_stiffness
 from nrs_design.design.goals import NOT_COMPUTED, Achieved, Requirement
-from nrs_design.design.impedance import ImpedanceLoop
 from nrs_design.design.impedance_optimum import (
+    ImpedanceLoop,
     ImpedanceProblem,
     impedance_cost,
 )
@@ -34,10 +34,9 @@ from nrs_design.design.measures import (
     IMPEDANCE_MEASURES,
     Measure,
 )
-from nrs_design.design.passivity import PassiveBand, passive_band
+from nrs_design.design.passivity import PassiveBand, SampledBand, passive_band, sampled_bands
 from nrs_design.design.proved_margins import ranged_loops, with_proofs
 from nrs_design.design.response_goals import JudgedResponse, judged_responses, response_goals
-from nrs_design.design.sampled_passivity import SampledBand, sampled_bands
 from nrs_design.design.sampled_response import sampled_admittance
 from nrs_design.errors import DesignError
 from nrs_design.loop.cut_loop import ContinuousAxis, ProcessorAxis

@@ -11,8 +11,7 @@ import numpy as np
 from nrs_design.controllers.controller_design import Controller
 from nrs_design.controllers.float32 import round_significant, to_float32
 from nrs_design.controllers.laws.pi_force import IntegralForce
-from nrs_design.design.force_limit import Approach
-from nrs_design.design.force_loop import force_loop_response
+from nrs_design.design.force_loop import Approach, force_loop_response
 from nrs_design.design.laws.force import ForceAnalysis, analyze_approach, proportional_gain
 from nrs_design.design.laws.law import Choice, LawDesign, Task
 from nrs_design.design.measures import MARGINS

@@ -25,8 +25,7 @@ from nrs_design.proof.bounds import lower_float, upper_float
 from nrs_design.proof.mode import Mode, Time
 
 if TYPE_CHECKING:
-    from nrs_design.design.linear_parts import LinearPart
-    from nrs_design.design.open_loops import OpenLoop
+    from nrs_design.design.linear_parts import LinearPart, OpenLoop
 from nrs_design.exporters import DESIGN, Format
 
 FORMAT = Format(

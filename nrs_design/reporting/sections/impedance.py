@@ -31,8 +31,7 @@ if TYPE_CHECKING:
 
     from nrs_design.design.analysis import ImpedanceAnalysis
     from nrs_design.design.loops import Loops
-    from nrs_design.design.passivity import PassiveBand
-    from nrs_design.design.sampled_passivity import SampledBand
+    from nrs_design.design.passivity import PassiveBand, SampledBand
     from nrs_design.design.transfer import FloatArray
     from nrs_design.pipeline.design import Designed
     from nrs_design.spec import LoadedSpec

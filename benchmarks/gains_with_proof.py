@@ -21,7 +21,7 @@ from nrs_design.design.trust_region import (
     Evaluation,
     minimize_in_trust_region,
 )
-from nrs_design.pipeline.analysis import run_analysis
+from nrs_design.pipeline.design import run_analysis
 from nrs_design.pipeline.free_gains import gain_branches
 from nrs_design.pipeline.proof_constraints import DesignEvaluator, rate_constraint
 from nrs_design.pipeline.runs import run_interaction

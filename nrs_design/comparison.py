@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from nrs_design.certificates.catalogue import sentence_with_bound
 from nrs_design.certificates.units import gain_units
 from nrs_design.errors import DesignError
-from nrs_design.pipeline.analysis import run_analysis
+from nrs_design.pipeline.design import run_analysis
 from nrs_design.pipeline.runs import run_certification
 from nrs_design.progress import Progress, silent
 from nrs_design.proof.evidence.fields import rate_text

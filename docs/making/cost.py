@@ -15,7 +15,7 @@ from nrs_design.design.impedance_optimum import (
     optimize_impedance,
     stabilizes,
 )
-from nrs_design.pipeline.analysis import run_analysis
+from nrs_design.pipeline.design import run_analysis
 from nrs_design.pipeline.runs import run_design
 from nrs_design.spec import read_spec
 

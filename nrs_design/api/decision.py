@@ -16,8 +16,8 @@ from nrs_design.errors import OutputError, SpecError
 from nrs_design.facts.certification import certification_facts
 from nrs_design.output import PAGE, check_html, write_output
 from nrs_design.ownership import check_certificate, write_certificate
-from nrs_design.pipeline.analysis import judged_if_stable
 from nrs_design.pipeline.certification import Result
+from nrs_design.pipeline.scenarios import judged_if_stable
 from nrs_design.proof.text import counted
 from nrs_design.search.certification import Attempt
 from nrs_design.spec import LoadedSpec, read_spec

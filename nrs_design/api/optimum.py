@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING, Any
 from nrs_design.api.paper import latex_of_gains
 from nrs_design.api.result import AbstractResult, Figures, drawn
 from nrs_design.facts.design import finite, optimum_facts
-from nrs_design.pipeline.analysis import run_analysis
-from nrs_design.pipeline.design import Designed
+from nrs_design.pipeline.design import Designed, run_analysis
 
 if TYPE_CHECKING:
     from nrs_design.design.analysis import DesignAnalysis

@@ -17,8 +17,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from nrs_design.certificates.certificate import Certificate
-    from nrs_design.pipeline.certified_runs import CertifiedBound, CertifiedRate
-    from nrs_design.pipeline.scenarios import Simulated
+    from nrs_design.pipeline.scenarios import CertifiedBound, CertifiedRate, Simulated
     from nrs_design.simulation.run import Run
     from nrs_design.simulation.scenario import Scenario
     from nrs_design.simulation.time_response import Signal, TimeResponse
@@ -212,7 +211,7 @@ class Simulation(AbstractResult):
         proof : Certificate or None
             Checked against the spec.
         """
-        from nrs_design.pipeline.certified_runs import hold_bounds, hold_rate
+        from nrs_design.pipeline.scenarios import hold_bounds, hold_rate
 
         runs = (
             ScenarioRun(designed, one)

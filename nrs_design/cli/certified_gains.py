@@ -57,8 +57,8 @@ class CertifiedGains:
             return None
 
         from nrs_design.certificates.goals import certified_goals
-        from nrs_design.pipeline.analysis import run_analysis
         from nrs_design.pipeline.certified_optimum import run_certified_optimum
+        from nrs_design.pipeline.design import run_analysis
 
         name = None if out is None else name_for(designed.loaded, out)
         with progress(f"gains with their proof for {designed.spec.name}") as step:
@@ -180,8 +180,8 @@ def name_for(loaded: LoadedSpec, out: Path) -> str:
 def certified_spec(found: CertifiedOptimum, name: str, step: Progress) -> Result:
     """Return the spec that gives these gains, and declares what is proved of it, certified."""
     from nrs_design.pipeline.certification import certify_design
+    from nrs_design.pipeline.gain_coordinate import with_gains
     from nrs_design.pipeline.runs import run_design
-    from nrs_design.pipeline.written_gains import with_gains
 
     designed, certificate = found.result.designed, found.result.certificate
     assert designed is not None, "as it was designed before"

@@ -42,8 +42,7 @@ def optimize(
     Example: nrs-design optimize specs/neuroboscope/soft-tissue.nrs.yaml
     """
     from nrs_design.cli.certified_gains import CertifiedGains
-    from nrs_design.pipeline.analysis import run_analysis
-    from nrs_design.pipeline.design import design_at_least_cost, interaction_of
+    from nrs_design.pipeline.design import design_at_least_cost, interaction_of, run_analysis
 
     loaded = take_spec(spec)
     with progress(f"designing {loaded.spec.name}") as step:

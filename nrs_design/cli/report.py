@@ -55,11 +55,11 @@ def report(
 
     Example: nrs-design report specs/neuroboscope/soft-tissue.nrs.yaml
     """
-    from nrs_design.pipeline.analysis import judged_if_stable
     from nrs_design.pipeline.blocked import find_blocked
     from nrs_design.pipeline.certification import Overrides, search_limits
     from nrs_design.pipeline.margins import run_proof_margins
     from nrs_design.pipeline.runs import run_certification, run_recorded
+    from nrs_design.pipeline.scenarios import judged_if_stable
     from nrs_design.reporting import build_report
     from nrs_design.reporting.next_steps import next_steps
 

@@ -32,9 +32,8 @@ if TYPE_CHECKING:
     from nrs_design.api.simulation import ScenarioRun, Simulation
     from nrs_design.api.worst import WorstFound
     from nrs_design.certificates.certificate import Certificate
-    from nrs_design.pipeline.certified_runs import CertifiedRate
     from nrs_design.pipeline.design import Designed
-    from nrs_design.pipeline.scenarios import Runs
+    from nrs_design.pipeline.scenarios import CertifiedRate, Runs
     from nrs_design.simulation.run import Run
 
 

@@ -28,7 +28,7 @@ def tune(spec: SpecFile) -> Answer:
     Example: nrs-design tune specs/neuroboscope/force-limit.nrs.yaml
     """
     from nrs_design.errors import DesignError
-    from nrs_design.pipeline.analysis import run_analysis
+    from nrs_design.pipeline.design import run_analysis
     from nrs_design.pipeline.runs import run_interaction
 
     loaded = take_spec(spec)

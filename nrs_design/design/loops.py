@@ -176,7 +176,8 @@ def transparency(loops: Loops, bandwidth: float) -> FloatArray:
 def hand_effort(loops: Loops, hand: AbstractLinearLaw, bandwidth: float) -> FloatArray:
     """Return the largest ``|Ze/(1 + L)|`` from 0 to a frequency in rad/s, in N m s/rad.
 
-    That is the force of the hand over the velocity that it means to have. Infinite where the loop is unstable, or where the hand has to hold against a spring.
+    That is the force of the hand over the velocity that it means to have. Infinite where the loop
+    is unstable, or where the hand has to hold against a spring.
     """
     above, below = (np.tile(part, (len(loops.numerator), 1)) for part in hand.impedance)
     numerator, denominator = _cancelled(

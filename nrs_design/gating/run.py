@@ -25,10 +25,10 @@ from nrs_design.gating.paths import is_utf8
 from nrs_design.gating.recorded import hash_recorded
 from nrs_design.output import CERTIFICATE, PAGE, check_place, write_output
 from nrs_design.ownership import REMEDY, check_owner, origin_of
-from nrs_design.pipeline.analysis import run_judgement
 from nrs_design.pipeline.blocked import Blocked, blocked_lines, find_blocked
 from nrs_design.pipeline.certification import Overrides, Result, run_verification, search_limits
 from nrs_design.pipeline.runs import Recorded, run_certification, run_kept
+from nrs_design.pipeline.scenarios import run_judgement
 from nrs_design.progress import Progress, silent
 from nrs_design.spec import LoadedSpec, RobotSpec, read_spec
 from nrs_design.spec.task_space import file_of

@@ -12,8 +12,7 @@ from nrs_design import __version__
 from nrs_design.certificates.certificate import Certificate, Gains, Verdict, common_quadratic_of
 from nrs_design.errors import AssemblyError, DesignError
 from nrs_design.models.cut import RangeCut
-from nrs_design.pipeline.design import Designed, placed
-from nrs_design.pipeline.goal_ranges import for_goal
+from nrs_design.pipeline.design import Designed, for_goal, placed
 from nrs_design.progress import Progress, silent
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.certification import Attempt, Certification, Limits

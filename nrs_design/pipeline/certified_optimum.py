@@ -26,7 +26,7 @@ from nrs_design.pipeline.certification import (
     meets_goals,
     search_limits,
 )
-from nrs_design.pipeline.design import Designed, placed
+from nrs_design.pipeline.design import Designed, for_goal, placed, wanted_age, wanting
 from nrs_design.pipeline.free_gains import (
     Array,
     FreeGains,
@@ -34,9 +34,8 @@ from nrs_design.pipeline.free_gains import (
     gain_branches,
     with_problems,
 )
-from nrs_design.pipeline.goal_ranges import for_goal, wanted_age, wanting
+from nrs_design.pipeline.gain_coordinate import Written
 from nrs_design.pipeline.proof_constraints import NOTHING, ROOM, DesignEvaluator, constraints_of
-from nrs_design.pipeline.written_gains import Written
 from nrs_design.progress import Progress, silent
 from nrs_design.proof.bounds import rounded_down
 

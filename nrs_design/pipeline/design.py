@@ -1,21 +1,27 @@
-"""From a spec to its plant, its gains, and what they achieve."""
+"""From a spec to its plant, its gains, and what they achieve, also for an older force."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from math import ceil
 from typing import TYPE_CHECKING
 
 from nrs_design.axis import about
 from nrs_design.errors import DesignError, NrsDesignError
+from nrs_design.proof.text import exact_text
 from nrs_design.spec import LoadedSpec
+from nrs_design.spec.quantity import Quantity
+from nrs_design.spec.sampling import LONGEST_DELAY
 
 if TYPE_CHECKING:
     from nrs_design.controllers.controller_design import ControllerDesign
+    from nrs_design.design.analysis import DesignAnalysis
     from nrs_design.design.linear_parts import LinearParts, OpenLoop
     from nrs_design.models.plant import Plant
     from nrs_design.spec import InteractionDesignSpec
+
 
 # What other kinds of specs are for.
 _FOR_KIND = {
@@ -121,3 +127,61 @@ def run_open_loops(designed: Designed) -> tuple[OpenLoop, ...]:
     from nrs_design.design.linear_parts import open_loops
 
     return open_loops(designed.spec, designed.plant, designed.design)
+
+
+def run_analysis(designed: Designed) -> DesignAnalysis:
+    """Compute what a design achieves; an unstable nominal loop is a `DesignError`."""
+    from nrs_design.design.analysis import analyze_design
+
+    with placed(designed.loaded):
+        return analyze_design(designed.spec, designed.plant, designed.design)
+
+
+def wanted_age(designed: Designed) -> int | None:
+    """Return the age of the force, in samples, that the goal `delay` asks for beyond the declared.
+
+    None where the declared ages reach the goal.
+    """
+    goals, sampling = designed.spec.goals, designed.spec.sampling
+    delay = None if goals is None else goals.delay
+    if delay is None or sampling is None or sampling.oldest >= delay.exact:
+        return None
+    age = ceil(delay.exact / sampling.outer)
+    if age > LONGEST_DELAY:
+        raise DesignError(
+            f"the goal delay, {delay.text}, is {age} samples, and at most {LONGEST_DELAY} are "
+            "modelled",
+            remedy="ask for a shorter delay, or sample less often",
+            at=("goals", "delay"),
+        )
+    return age
+
+
+def for_goal(designed: Designed) -> Designed | None:
+    """Return a design whose spec declares what its goal `delay` asks for; None if it does."""
+    age = wanted_age(designed)
+    return None if age is None else declaring(designed, age)
+
+
+def declaring(designed: Designed, age: int) -> Designed:
+    """Return a design whose spec declares ages of the force up to this one, in samples."""
+    from nrs_design.certificates.ages import declaring_ages
+
+    assert designed.spec.sampling is not None, "a delay is of samples"
+    least = designed.spec.sampling.delay[0]
+    return _with_spec(designed, declaring_ages(designed.spec, (min(least, age), age)))
+
+
+def wanting(designed: Designed, age: int) -> Designed:
+    """Return a design whose goal `delay` is so many samples."""
+    goals, sampling = designed.spec.goals, designed.spec.sampling
+    assert goals is not None, "as one is the delay"
+    assert sampling is not None, "a delay is of samples"
+    text = exact_text(age * sampling.outer)
+    delay = Quantity(f"{text} s", age * sampling.outer, "s")
+    goals = goals.model_copy(update={"delay": delay})
+    return _with_spec(designed, designed.spec.model_copy(update={"goals": goals}))
+
+
+def _with_spec(designed: Designed, spec: InteractionDesignSpec) -> Designed:
+    return replace(designed, loaded=replace(designed.loaded, spec=spec), spec=spec)

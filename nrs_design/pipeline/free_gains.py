@@ -25,10 +25,10 @@ from nrs_design.pipeline.design import Designed
 from nrs_design.pipeline.gain_coordinate import (
     BOUNDED,
     GainCoordinate,
+    Written,
     bounded_gain,
     freed_gains,
 )
-from nrs_design.pipeline.written_gains import Written
 from nrs_design.proof.text import exact_text
 from nrs_design.spec.interaction_parts import MOTION
 

@@ -1,17 +1,22 @@
-"""From a design to runs of its scenarios."""
+"""From a design to runs of its scenarios, and the certified bounds and rates beside them."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from nrs_design.errors import DesignError
-from nrs_design.pipeline.design import Designed, placed
+from nrs_design.errors import DesignError, NrsDesignError
+from nrs_design.pipeline.design import Designed, placed, run_analysis
 from nrs_design.progress import Progress, silent
+from nrs_design.proof.bounds import upper
+from nrs_design.spec import Doubt
 
 if TYPE_CHECKING:
+    from nrs_design.certificates.certificate import Certificate
+    from nrs_design.design.analysis import DesignAnalysis
     from nrs_design.simulation.run import Run
     from nrs_design.simulation.scenario import Scenario
     from nrs_design.spec import InteractionDesignSpec
@@ -49,6 +54,39 @@ def run_scenarios(
     with placed(designed.loaded):
         for scenario in scenarios_of(designed, wanted):
             yield _simulate(designed, scenario, wanted, progress)
+
+
+def run_judgement(designed: Designed) -> DesignAnalysis:
+    """Compute what a design achieves, with what its runs break of the limit of the torque."""
+    found = run_analysis(designed)
+    return replace(found, doubts=(*found.doubts, *_doubt_runs(designed)))
+
+
+def judged_if_stable(
+    designed: Designed | None, tell: Callable[[str], object] = lambda _: None
+) -> DesignAnalysis | None:
+    """Compute the same; None of no design, and where a nominal loop has no margins, as is told."""
+    try:
+        return None if designed is None else run_judgement(designed)
+    except DesignError as error:
+        tell(error.message)
+        return None
+
+
+def _doubt_runs(designed: Designed) -> Iterator[Doubt]:
+    """Yield the runs whose torque is beyond the limit of the spec; what cannot be run has none."""
+    try:
+        runs = tuple(run_scenarios(designed))
+    except NrsDesignError:
+        return
+    limit, of = designed.spec.limits.torque, designed.spec.axis.unit("N*m")
+    for one in runs:
+        peak = one.metrics["peak_torque"]
+        # A limit of the scenario itself is judged by the gate.
+        if "torque" not in one.scenario.limits and peak > limit.si:
+            text = f"simulated, {one.scenario.name}: a torque of {upper(Fraction(peak), 4)} {of}, "
+            text += f"beyond limits.torque of {limit.text}"
+            yield Doubt(("limits", "torque"), text, beyond=peak / limit.si)
 
 
 def _simulate(
@@ -120,3 +158,70 @@ def names_of(spec: InteractionDesignSpec, wanted: Runs) -> Sequence[str]:
             remedy = did_you_mean(name, known)
             raise DesignError(f"the spec has no scenario {name!r}", remedy=remedy)
     return wanted.names or known
+
+
+@dataclass(frozen=True, slots=True)
+class CertifiedBound:
+    """A certified bound beside a run."""
+
+    # output, unit: what is bounded.
+    output: str
+    unit: str
+    level: float  # Not below what is proved
+    # What happens in the run that the proof says nothing about; empty if the bound holds for it.
+    uncovered: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class CertifiedRate:
+    """A certified rate of decay beside a run."""
+
+    rate: float  # Not better than what is proved: in 1/s, or the factor per sample
+    unit: str  # ``1/s``, or empty for a factor
+    attained: bool  # Whether it is proved itself, not only what is slower
+    start: float | None  # From when on nothing is commanded, in s; None where the run ends before
+    uncovered: tuple[str, ...]  # Why it is not about the run from then on; empty if it is
+
+
+def hold_bounds(
+    designed: Designed, certificate: Certificate, simulated: Simulated
+) -> tuple[CertifiedBound, ...]:
+    """Return the certified bounds with the reasons why they do not apply to a run."""
+    from nrs_design.proof.bounds import upper_float
+    from nrs_design.simulation.coverage import Coverage
+
+    system, found = certificate.system, []
+    for statement in certificate.statements:
+        bound = statement.bound(system)
+        # One bound for each output is about all disturbances at once.
+        if bound is None or set(bound.channels) != set(system.channels):
+            continue
+        beside = Coverage(designed.spec, system, statement, simulated.scenario, simulated.run)
+        reasons, level = tuple(beside.uncovered()), upper_float(bound.level)
+        found.append(CertifiedBound(bound.output.name, bound.output.unit, level, reasons))
+    return tuple(found)
+
+
+def hold_rate(
+    designed: Designed, certificate: Certificate, simulated: Simulated
+) -> CertifiedRate | None:
+    """Return the certified rate, if any, with the reasons why it does not apply to a run."""
+    from nrs_design.proof.bounds import lower_float, upper_float
+    from nrs_design.proof.evidence.abstract import Shows
+    from nrs_design.proof.mode import Time
+    from nrs_design.simulation.coverage import Coverage, end_of_command
+
+    system, one = certificate.system, simulated
+    evidence = certificate.evidence
+    proved = None if evidence is None else evidence.proved_rate(system)
+    if evidence is None or evidence.shows is not Shows.STABILITY or proved is None:
+        return None
+    continuous = system.time is Time.CONTINUOUS
+    beside = Coverage(designed.spec, system, evidence, one.scenario, one.run)
+    return CertifiedRate(
+        (lower_float if continuous else upper_float)(proved),
+        "1/s" if continuous else "",
+        evidence.attains_rate,
+        end_of_command(one.scenario),
+        tuple(beside.undecayed()),
+    )

@@ -9,7 +9,7 @@ from nrs_design.controllers.step_law import StepFrame
 from nrs_design.design.measures import CREEP, CREEP_ANGLE, GoalStanding
 from nrs_design.errors import DesignError
 from nrs_design.loop.program import INPUTS
-from nrs_design.pipeline.analysis import run_analysis
+from nrs_design.pipeline.design import run_analysis
 from nrs_design.pipeline.runs import run_design
 from nrs_design.spec import read_spec
 from tests.loop.frames import frame_of

@@ -2,8 +2,8 @@
 
 import pytest
 
-from nrs_design.pipeline.analysis import run_judgement
 from nrs_design.pipeline.runs import run_design
+from nrs_design.pipeline.scenarios import run_judgement
 from nrs_design.spec import read_spec
 from tests.design.holder import USELESS
 from tests.support import FORCE_LIMIT, SOFT_TISSUE, replaced

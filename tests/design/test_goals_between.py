@@ -4,7 +4,7 @@ import pytest
 
 from nrs_design.cli import exit_codes
 from nrs_design.gating.examine import Examiner
-from nrs_design.pipeline.analysis import run_analysis
+from nrs_design.pipeline.design import run_analysis
 from nrs_design.pipeline.runs import run_interaction
 from nrs_design.spec import read_spec
 from tests.support import run

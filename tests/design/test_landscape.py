@@ -8,7 +8,7 @@ from matplotlib.contour import QuadContourSet
 
 from nrs_design.design.impedance_optimum import characteristic_basis, impedance_cost, stabilizes
 from nrs_design.design.landscape import alternatives, map_cost
-from nrs_design.pipeline.analysis import run_analysis
+from nrs_design.pipeline.design import run_analysis
 from nrs_design.pipeline.runs import run_design
 from nrs_design.reporting.sections.landscape import draw_cost
 from nrs_design.spec import read_spec

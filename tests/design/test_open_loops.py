@@ -8,8 +8,7 @@ import pytest
 from nrs_design.design.laws.law import Task
 from nrs_design.design.linear_parts import open_loops
 from nrs_design.loop.cut_loop import characteristic
-from nrs_design.pipeline.analysis import run_analysis
-from nrs_design.pipeline.design import run_open_loops
+from nrs_design.pipeline.design import run_analysis, run_open_loops
 from nrs_design.pipeline.runs import run_design
 from nrs_design.spec import read_spec
 from tests.support import ROBOT, ROOT, SOFT_TISSUE

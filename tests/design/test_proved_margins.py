@@ -30,7 +30,7 @@ from nrs_design.design.measures import (
 from nrs_design.design.proved_margins import RangedLoop, ranged_loops, with_proofs
 from nrs_design.models.contact import Elastic, Hand, KelvinBoltzmann, KelvinVoigt, Maxwell
 from nrs_design.models.contact.environment import Environment
-from nrs_design.pipeline.analysis import run_analysis
+from nrs_design.pipeline.design import run_analysis
 from nrs_design.pipeline.runs import run_design
 from nrs_design.spec import read_spec
 from nrs_design.thesis import thesis

@@ -3,7 +3,7 @@
 import pytest
 
 from nrs_design.errors import SpecError
-from nrs_design.pipeline.analysis import run_analysis
+from nrs_design.pipeline.design import run_analysis
 from nrs_design.pipeline.runs import run_design
 from nrs_design.spec import parse_spec, read_spec
 from nrs_design.spec.templates import TEMPLATES

@@ -16,9 +16,8 @@ from nrs_design.certificates.prove import read_document
 from nrs_design.certificates.verify import verify_document
 from nrs_design.controllers.gains import STEERING, steering_goals
 from nrs_design.errors import DesignError
-from nrs_design.pipeline.analysis import run_analysis
 from nrs_design.pipeline.certified_optimum import run_certified_optimum
-from nrs_design.pipeline.design import design_at_least_cost
+from nrs_design.pipeline.design import design_at_least_cost, run_analysis
 from nrs_design.pipeline.runs import run_certification, run_recorded
 from nrs_design.spec import read_spec
 from tests.support import ROOT

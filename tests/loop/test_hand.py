@@ -10,7 +10,7 @@ import pytest
 
 from nrs_design.certificates.certificate import Verdict
 from nrs_design.errors import SpecError
-from nrs_design.pipeline.analysis import run_analysis
+from nrs_design.pipeline.design import run_analysis
 from nrs_design.pipeline.runs import run_design
 from nrs_design.proof.evidence import GrowingSequence
 from nrs_design.search.certify import Limits, certify

@@ -8,7 +8,7 @@ import pytest
 from nrs_design import __version__
 from nrs_design.errors import CertificateError
 from nrs_design.gating.run import Files, run_gate
-from nrs_design.pipeline.analysis import run_analysis
+from nrs_design.pipeline.design import run_analysis
 from nrs_design.pipeline.runs import run_certification, run_design, run_recorded
 from nrs_design.search.certify import Limits, Verdict
 from nrs_design.search.method import Method

@@ -14,10 +14,9 @@ from nrs_design.certificates.certificate import Verdict
 from nrs_design.certificates.goals import decay_rate
 from nrs_design.controllers.gains import steering_goals
 from nrs_design.errors import DesignError
-from nrs_design.pipeline.analysis import run_analysis
 from nrs_design.pipeline.certification import gains_text
 from nrs_design.pipeline.certified_optimum import run_certified_optimum
-from nrs_design.pipeline.design import design_at_least_cost
+from nrs_design.pipeline.design import design_at_least_cost, run_analysis
 from nrs_design.pipeline.runs import run_design
 from nrs_design.spec import read_spec
 

@@ -14,10 +14,10 @@ from nrs_design.design.impedance_optimum import optimize_impedance
 from nrs_design.design.laws.impedance import impedance_problem, requirement_of
 from nrs_design.design.laws.law import Task
 from nrs_design.errors import CertificateError
-from nrs_design.pipeline.analysis import run_analysis
+from nrs_design.pipeline.design import run_analysis
 from nrs_design.pipeline.free_gains import gain_branches
+from nrs_design.pipeline.gain_coordinate import with_gains
 from nrs_design.pipeline.runs import run_design
-from nrs_design.pipeline.written_gains import with_gains
 from nrs_design.spec import parse_spec
 from nrs_design.spec.build_plant import build_plant
 from tests.support import SOFT_TISSUE

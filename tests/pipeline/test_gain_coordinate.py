@@ -7,9 +7,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nrs_design.pipeline.gain_coordinate import GainCoordinate, bounded_gain, freed_gains
+from nrs_design.pipeline.gain_coordinate import (
+    GainCoordinate,
+    bounded_gain,
+    freed_gains,
+    with_gains,
+)
 from nrs_design.pipeline.runs import run_design, run_interaction
-from nrs_design.pipeline.written_gains import with_gains
 from nrs_design.spec import read_spec
 from tests.support import ROOT
 

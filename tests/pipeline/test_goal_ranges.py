@@ -3,9 +3,8 @@
 import pytest
 
 from nrs_design.errors import DesignError
-from nrs_design.pipeline.analysis import run_analysis
+from nrs_design.pipeline.design import declaring, run_analysis, wanted_age
 from nrs_design.pipeline.free_gains import with_problems
-from nrs_design.pipeline.goal_ranges import declaring, wanted_age
 
 from .free import freed
 

@@ -5,8 +5,8 @@ import re
 import pytest
 
 from nrs_design.errors import NrsDesignError
-from nrs_design.pipeline.analysis import run_analysis
 from nrs_design.pipeline.certification import assemble_spec
+from nrs_design.pipeline.design import run_analysis
 from nrs_design.pipeline.runs import run_design
 from nrs_design.spec import LoadedSpec, doubt_spec, parse_spec
 from nrs_design.spec.document import Mapping, Scalar, Sequence, parse_document, to_data

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from nrs_design.pipeline.analysis import run_analysis
+from nrs_design.pipeline.design import run_analysis
 from nrs_design.pipeline.runs import run_certification
 from nrs_design.reporting import Report, build_report, render_html
 from nrs_design.search.certification import Limits

@@ -1,6 +1,6 @@
 """What the report says of the passivity of impedance controllers."""
 
-from nrs_design.pipeline.analysis import run_analysis
+from nrs_design.pipeline.design import run_analysis
 from nrs_design.pipeline.runs import run_design
 from nrs_design.reporting.document import Paragraph, Table
 from nrs_design.reporting.sections.impedance import impedance_section

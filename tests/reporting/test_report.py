@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from nrs_design.errors import DesignError
-from nrs_design.pipeline.analysis import run_analysis
+from nrs_design.pipeline.design import run_analysis
 from nrs_design.pipeline.runs import run_certification
 from nrs_design.reporting import build_report
 from nrs_design.reporting.document import Bullets, Listing, Paragraph, Table

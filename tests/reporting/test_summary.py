@@ -7,7 +7,7 @@ from fractions import Fraction
 import pytest
 
 from nrs_design.gating.examine import Examiner
-from nrs_design.pipeline.analysis import run_analysis
+from nrs_design.pipeline.design import run_analysis
 from nrs_design.pipeline.runs import run_certification
 from nrs_design.proof.evidence import Shows
 from nrs_design.proof.mode import Time

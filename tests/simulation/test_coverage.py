@@ -7,9 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from nrs_design.pipeline.certified_runs import hold_bounds, hold_rate
 from nrs_design.pipeline.runs import run_certification
-from nrs_design.pipeline.scenarios import Runs, run_scenarios
+from nrs_design.pipeline.scenarios import Runs, hold_bounds, hold_rate, run_scenarios
 from nrs_design.search.certification import Limits
 from nrs_design.simulation.coverage import Coverage
 from nrs_design.simulation.exact import simulate_exactly

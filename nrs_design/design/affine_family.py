@@ -2,7 +2,7 @@
 
 Squares of their magnitudes on the imaginary axis have Bernstein forms over a box of parameters and
 a range of ``omega^2``, which `nrs_design.design.largest_ratio` bounds. In a box they are given by
-those at its corners, the last parameter turning fastest.
+those at its corners, the last parameter turning fastest. Polynomials are those of flint, exactly.
 """
 
 from __future__ import annotations
@@ -22,9 +22,8 @@ from nrs_design.proof.spectrum import is_stable
 
 ZERO, ONE = Fraction(0), Fraction(1)
 
-Polynomial = Sequence[Fraction]  # Highest power first
-# Of what is of second degree in polynomials, lowest power first: a polynomial again.
-Square = Callable[[Sequence[Any]], list[Any]]
+Polynomial = Any  # A `flint.fmpq_poly`
+Square = Callable[..., Polynomial]  # Of polynomials: another one, of second degree in them
 
 
 class FrequencyPiece(NamedTuple):
@@ -45,7 +44,7 @@ class Quotient(NamedTuple):
 
     above: Polynomial
     below: Polynomial
-    poles: Polynomial  # Whose roots are the poles of what is closed
+    poles: Polynomial = 0  # Whose roots are the poles of what is closed, if that is asked
 
 
 Response = Callable[[Mapping[str, Fraction]], Quotient]
@@ -63,11 +62,12 @@ def corners_in(at: Response, ranges: Mapping[str, Interval]) -> list[Quotient]:
     inside = at(
         {n: r.low + u * (r.high - r.low) for u, (n, r) in zip(shares, ranges.items(), strict=True)}
     )
-    weights = [prod(u if k else 1 - u for k, u in zip(end, shares, strict=True)) for end in ends]
-    for i, found in enumerate(inside):
-        for k, c in enumerate(found):
-            if c != sum(w * corner[i][k] for w, corner in zip(weights, corners, strict=True)):
-                raise InternalError("a response is not affine in the parameters of its loop")
+    weights = [
+        as_fmpq(prod(u if k else 1 - u for k, u in zip(end, shares, strict=True))) for end in ends
+    ]
+    for found, *at_corners in zip(inside, *corners, strict=True):
+        if found != sum(w * p for w, p in zip(weights, at_corners, strict=True)):
+            raise InternalError("a response is not affine in the parameters of its loop")
     return corners
 
 
@@ -77,15 +77,15 @@ def is_stable_over(at: Response, ranges: Mapping[str, Interval], most: int = MOS
     At most so many Bernstein coefficients are looked at. Where none of the polynomials has a root
     on the imaginary axis, nor at infinity, all have as many on the left as those at the corners.
     """
-    poles = [lowest_first(corner.poles) for corner in corners_in(at, ranges)]
-    return all(map(_is_hurwitz, poles)) and Squares(poles).vanish_nowhere(everywhere(), most)
-
-
-def _is_hurwitz(P: Sequence[Fraction]) -> bool:
-    """Tell whether the roots of a polynomial, lowest power first, are on the left."""
-    *rest, leading = P
-    if not leading:
+    poles = [corner.poles for corner in corners_in(at, ranges)]
+    if len({p.degree() for p in poles}) > 1 or not all(map(_is_hurwitz, poles)):
         return False
+    return Squares([(p,) for p in poles]).vanish_nowhere(everywhere(), most)
+
+
+def _is_hurwitz(P: Polynomial) -> bool:
+    """Tell whether the roots of a polynomial are on the left."""
+    *rest, leading = (Fraction(int(c.p), int(c.q)) for c in P.coeffs())
     n = len(rest)
     rows = [[ONE * (j == i + 1) for j in range(n)] for i in range(n - 1)]
     rows += [[-c / leading for c in rest]] * (n > 0)
@@ -93,19 +93,17 @@ def _is_hurwitz(P: Sequence[Fraction]) -> bool:
 
 
 class Squares:
-    """Squares of polynomials over a box, alone or as a quotient."""
+    """Polynomials in ``omega^2`` that are nowhere negative, over a box, alone or as a quotient."""
 
     def __init__(
         self,
-        below: Sequence[Sequence[Fraction]],
-        above: Sequence[Sequence[Fraction]] | None = None,
+        below: Sequence[tuple[Polynomial, ...]],
+        above: Sequence[tuple[Polynomial, ...]] | None = None,
         square: Square | None = None,
     ) -> None:
-        """Take polynomials at the corners, lowest power first; one is above if nothing is given."""
+        """Take what is squared at the corners; one is above if nothing is given."""
         sides = [side for side in (below, above) if side is not None]
-        # In a quotient, powers of s that all of them have cancel.
-        rest = 0 if above is None else min(zeros_at_rest(p) for side in sides for p in side)
-        self._grids = [squared_over([p[rest:] for p in side], square) for side in sides]
+        self._grids = [squared_over(side, square) for side in sides]
         self._size = max(len(p) for grid in self._grids for p in grid)
         self._parameters = len(below).bit_length() - 1
 
@@ -113,7 +111,9 @@ class Squares:
     def of(cls, at: Response, ranges: Mapping[str, Interval]) -> Self:
         """Return the square of a response over a box."""
         corners = corners_in(at, ranges)
-        above, below = ([lowest_first(corner[i]) for corner in corners] for i in (0, 1))
+        # Powers of s that all polynomials have cancel.
+        rest = min(zeros_at_rest(p) for corner in corners for p in corner[:2])
+        above, below = ([(corner[i].right_shift(rest),) for corner in corners] for i in (0, 1))
         return cls(below, above)
 
     def largest(self, piece: FrequencyPiece, **search: Any) -> LargestRatio:
@@ -132,72 +132,69 @@ class Squares:
         found = (self.largest(piece, nearly=None, most=most) for piece in pieces)
         return all(one.above is not None for one in found)
 
-    def _between(self, grid: Sequence[Sequence[Any]], piece: FrequencyPiece) -> list[Any]:
+    def _between(self, grid: Sequence[Polynomial], piece: FrequencyPiece) -> list[Any]:
         """Return Bernstein coefficients in omega^2 too."""
-        ends = _fmpq(piece.low), _fmpq(piece.high)
-        full = ([*p, *[0] * (self._size - len(p))] for p in grid)
+        ends = as_fmpq(piece.low), as_fmpq(piece.high)
+        full = ([p[i] for i in range(self._size)] for p in grid)
         return [c for p in full for c in bernstein(p[::-1] if piece.inverse else p, *ends)]
 
 
-def lowest_first(P: Polynomial) -> list[Fraction]:
-    """Return a polynomial the other way round."""
-    return list(reversed(P))
-
-
-def minus(P: Polynomial, Q: Polynomial) -> list[Fraction]:
-    """Return a difference of polynomials, highest power first."""
-    size = max(len(P), len(Q))
-    first, second = ([ZERO] * (size - len(p)) + [*p] for p in (P, Q))
-    return [a - b for a, b in zip(first, second, strict=True)]
-
-
-def zeros_at_rest(P: Sequence[Fraction]) -> int:
-    """Return by which power of s a polynomial, lowest power first, can be divided."""
-    return next((i for i, c in enumerate(P) if c), len(P))
+def zeros_at_rest(P: Polynomial) -> int:
+    """Return by which power of its variable a polynomial can be divided."""
+    return next((i for i, c in enumerate(P.coeffs()) if c), len(P))
 
 
 def squared_over(
-    corners: Sequence[Sequence[Fraction]], square: Square | None = None
-) -> list[list[Any]]:
-    """Return ``|P(j omega)|^2`` in omega^2, in Bernstein form in every parameter, for Flint.
+    corners: Sequence[tuple[Polynomial, ...]], square: Square | None = None
+) -> list[Polynomial]:
+    """Return a square of polynomials in Bernstein form in every parameter.
 
-    P is affine in each parameter, lowest power first at the corners. `square` takes the place of
-    ``|P(j omega)|^2`` as what is of second degree in P.
+    They are affine in each parameter; by default it is ``|P(j omega)|^2`` in omega^2, of one.
     """
     count = len(corners).bit_length() - 1
-    exact = ([_fmpq(c) for c in p] for p in corners)
-    grid = dict(zip(product((0, 2), repeat=count), exact, strict=True))
+    grid = dict(zip(product((0, 2), repeat=count), corners, strict=True))
     for axis in range(count):
         for at in [at for at in grid if at[axis] == 0]:
-            ends = grid[at], grid[(*at[:axis], 2, *at[axis + 1 :])]
-            middle = [(a + b) / 2 for a, b in zip(*ends, strict=True)]
-            grid[(*at[:axis], 1, *at[axis + 1 :])] = middle
-    squares = {at: (square or squared_magnitude)(grid[at]) for at in sorted(grid)}
+            ends = zip(grid[at], grid[(*at[:axis], 2, *at[axis + 1 :])], strict=True)
+            grid[(*at[:axis], 1, *at[axis + 1 :])] = tuple((a + b) / 2 for a, b in ends)
+    squares = {at: (square or squared_magnitude)(*grid[at]) for at in sorted(grid)}
     for axis in range(count):
         for at in [at for at in squares if at[axis] == 1]:
             low, high = (squares[(*at[:axis], end, *at[axis + 1 :])] for end in (0, 2))
-            triples = zip(squares[at], low, high, strict=True)
-            squares[at] = [2 * m - (a + b) / 2 for m, a, b in triples]
+            squares[at] = 2 * squares[at] - (low + high) / 2
     return list(squares.values())
 
 
-def squared_magnitude(P: Sequence[Any]) -> list[Any]:
-    """Return ``|P(j omega)|^2`` in omega^2, lowest powers first."""
+def squared_magnitude(P: Polynomial) -> Polynomial:
+    """Return ``|P(j omega)|^2`` in omega^2."""
     return real_product(P, P)
 
 
-def real_product(P: Sequence[Any], Q: Sequence[Any]) -> list[Any]:
-    """Return ``Re P(j omega) conj(Q(j omega))`` in omega^2, lowest powers first."""
-    found = [_fmpq(ZERO)] * len(P)
-    for i, a in enumerate(P):
-        for k, b in enumerate(Q):
-            # Odd powers of j cancel: of i + k odd there is nothing.
-            if (i + k) % 2 == 0:
-                found[(i + k) // 2] += (-1) ** (abs(i - k) // 2) * a * b
-    return found
+def real_product(P: Polynomial, Q: Polynomial) -> Polynomial:
+    """Return ``Re P(j omega) conj(Q(j omega))`` in omega^2."""
+    (a, b), (c, d) = parts_on_axis(P), parts_on_axis(Q)
+    return a * c + (b * d).left_shift(1)
 
 
-def _fmpq(number: Fraction) -> Any:
+def parts_on_axis(P: Polynomial) -> tuple[Polynomial, Polynomial]:
+    """Return both parts of ``P(j omega) = R(omega^2) + j omega I(omega^2)``."""
+    from flint import fmpq_poly
+
+    real, imaginary = (
+        fmpq_poly([c * (-1) ** k for k, c in enumerate(P.coeffs()[first::2])]) for first in (0, 1)
+    )
+    return real, imaginary
+
+
+def polynomial(*coefficients: Fraction) -> Polynomial:
+    """Return the polynomial with some coefficients, the highest power first."""
+    from flint import fmpq_poly
+
+    return fmpq_poly([as_fmpq(c) for c in reversed(coefficients)])
+
+
+def as_fmpq(number: Fraction) -> Any:
+    """Return a rational number of flint."""
     from flint import fmpq
 
     return fmpq(number.numerator, number.denominator)

@@ -18,7 +18,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from math import comb, isqrt
+from math import isqrt
+from typing import Any
 
 from nrs_design.controllers.laws import Admittance, CompliantLaw
 from nrs_design.controllers.sensor import LowPass
@@ -30,11 +31,12 @@ from nrs_design.design.affine_family import (
     Quotient,
     Response,
     Squares,
+    as_fmpq,
     is_stable_over,
-    minus,
+    polynomial,
 )
 from nrs_design.errors import InternalError
-from nrs_design.loop.cut_loop import ContinuousAxis, Place, multiply
+from nrs_design.loop.cut_loop import ContinuousAxis, Place
 from nrs_design.models.contact import KelvinVoigt
 from nrs_design.models.interval import Interval
 
@@ -78,11 +80,10 @@ def impedance_at(axis: ContinuousAxis, law: CompliantLaw) -> Response:
     def at(values: Mapping[str, Fraction]) -> Quotient:
         held, place, factor = parameters_at(axis, law, values)
         free, damped = (
-            [factor * c for c in axis.cut(held, KelvinVoigt(ZERO, b), place).closed]
+            factor * polynomial(*axis.cut(held, KelvinVoigt(ZERO, b), place).closed)
             for b in (ZERO, ONE)
         )
-        felt = [b - a for a, b in zip(free, damped, strict=True)]
-        return Quotient(free, felt, _poles_in_the_air(held, free))
+        return Quotient(free, damped - free, _poles_in_the_air(held, free))
 
     return at
 
@@ -110,20 +111,19 @@ def largest_tracking_error(
         held, place, factor = parameters_at(axis, law, values)
         damped = axis.cut(held, KelvinVoigt(ZERO, ONE), place)
         touched = KelvinVoigt(values.get("k", ZERO), values.get("b", ZERO))
-        closed = [factor * c for c in axis.cut(held, touched, place).closed]
-        passed = [b - a for a, b in zip(damped.opened, damped.closed, strict=True)]
-        driven = multiply([factor * c for c in passed], over_admittance(held, axis.low_pass))
+        closed = factor * polynomial(*axis.cut(held, touched, place).closed)
+        passed = factor * (polynomial(*damped.closed) - polynomial(*damped.opened))
         # The spring of the law is one over s.
-        below = multiply(closed, [ONE, ZERO]) if held.gains.get("Kt") else closed
+        below = closed.left_shift(1) if held.gains.get("Kt") else closed
         poles = closed if in_contact else _poles_in_the_air(held, closed)
-        return Quotient(minus(below, driven), below, poles)
+        return Quotient(below - passed * over_admittance(held, axis.low_pass), below, poles)
 
     return largest_over(at, ranges, band, limit) if is_stable_over(at, ranges) else None
 
 
 def parameters_at(
     axis: ContinuousAxis, law: CompliantLaw, values: Mapping[str, Fraction]
-) -> tuple[CompliantLaw, Place, Fraction]:
+) -> tuple[CompliantLaw, Place, Any]:
     """Return law and motor at parameters, and what makes polynomials affine in all of them.
 
     Values are by name, ``Km``, ``tau`` or a gain; the others are as given.
@@ -133,27 +133,26 @@ def parameters_at(
     place = Place(replace(nominal, gain=gain, time_constant=tau))
     gains = {name: values.get(name, given) for name, given in law.gains.items()}
     own = gains.get("Mt") or gains.get("Bt") or ONE  # Only an admittance divides by one.
-    return law.of(gains), place, tau * own
+    return law.of(gains), place, as_fmpq(tau * own)
 
 
 def _poles_in_the_air(law: CompliantLaw, free: Polynomial) -> Polynomial:
     """Leave out the pole at zero that a deflection is where nothing, no spring either, draws it."""
-    *poles, last = free
     if law.gains.get("Kt"):
         return free
-    if last:
+    if free[0]:
         raise InternalError("the deflection in free motion has no pole at zero")
-    return poles
+    return free.right_shift(1)
 
 
 def over_admittance(law: CompliantLaw, low_pass: LowPass | None) -> Polynomial:
     """Return ``1/(H Y)``, times s with a spring."""
     gains = law.gains
-    rows = [gains["Mt"], gains["Bt"], *([gains["Kt"]] if gains.get("Kt") else [])]
+    spring = [gains["Kt"]] if gains.get("Kt") else []
+    law_alone = polynomial(gains["Mt"], gains["Bt"], *spring)
     if low_pass is None:
-        return rows
-    n, lag = low_pass.order, 1 / low_pass.pole
-    return multiply(rows, [lag**k * comb(n, k) for k in range(n, -1, -1)])
+        return law_alone
+    return law_alone * polynomial(1 / low_pass.pole, ONE) ** low_pass.order
 
 
 def largest_over(

@@ -13,44 +13,74 @@ Ranges: times Mt (or Bt without inertia) and the time constant, N and D are affi
 tau, Mt, Bt and Kt, so the polynomial is of second degree at most in each. Anywhere in the box it is
 a mean of its Bernstein coefficients: where all of these are positive, so is it. Each parameter is
 unknown but constant; that is what a frequency is about.
+
+Of the admittance that a processor displays, the same is found for each age of the force sample. A
+hand applies a force F(t). It is sampled, the law makes a command of it, the command is held, and
+the motor turns. Of a force with the frequency omega, below half the sampling rate, the velocity of
+the tool has a part of the same frequency, and others beyond half the rate which take no power from
+that force. With ``z = exp(j omega T)`` and the law's transfer function U from force to command, the
+part is
+
+    V = Km/(tau j omega + 1)  (1 - 1/z)/(j omega T)  U(z).
+
+Where ``Re V > 0`` for all frequencies up to one, no force of finite energy and none but these
+frequencies takes energy from the robot (Parseval). Where ``Re V < 0``, a sinusoid does. Nothing is
+claimed of other forces: one that is zero at the samples and acts in between may take any amount, so
+no law that samples a force is passive for all of them. Where a virtual wall is displayed instead,
+the position is sampled, and Colgate and Schenkel (1997) have the condition.
+
+With ``z = (1 + w)/(1 - w)`` and ``w = j t``, ``t = tan(omega T/2)``, the sign of Re V is that of
+
+    Re W(j t) + tau omega Im W(j t),    W(w) = (1 - w) N(w) D(-w),    U = N/D,
+
+which is a polynomial in ``x = t^2``, but for ``omega t = (2/T) x h`` with ``h = atan(t)/t``. It is
+affine in h, so its sign is shown for a number below h and one above: convergents of Gauss's
+continued fraction of atan. N and D are those of `nrs_design.design.sampled_response`, affine in
+each of two enclosed numbers of the motor: so the polynomial is a mean of its Bernstein coefficients
+over their box, whose roots are isolated rigorously.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
 from itertools import product
-from math import floor, lcm
+from math import floor
 from typing import Any
 
 from nrs_design.controllers.laws import CompliantLaw
 from nrs_design.design.affine_family import (
     ONE,
     ZERO,
+    Polynomial,
     Quotient,
+    as_fmpq,
     corners_in,
     is_stable_over,
-    lowest_first,
+    parts_on_axis,
+    polynomial,
     real_product,
     squared_over,
+    zeros_at_rest,
 )
 from nrs_design.design.displayed_response import impedance_at, root_below
 from nrs_design.design.sampled_response import SampledAdmittance
-from nrs_design.loop.cut_loop import ContinuousAxis, multiply
+from nrs_design.loop.cut_loop import ContinuousAxis
 from nrs_design.models.interval import Interval
 from nrs_design.proof.enclosure import fraction_of
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Time
 from nrs_design.proof.spectrum import is_stable
 
-# How far beyond a root it is looked for a negative value, at first, as a share of the root.
-RESOLUTION = Fraction(1, 10**5)
-# How often the point beyond the first root is halved towards it.
-HALVINGS = 40
+# How far beyond a root it is looked for a negative value, at first, as a share of the root, and how
+# often twice as far.
+SHARE, STEPS = Fraction(1, 10**5), 40
+# Convergents of the continued fraction of the arctangent: the last one, and the one before.
+DEPTH = 6
 
-Polynomial = list[Fraction]
+Enclosed = tuple[Fraction, Fraction]
 
 
 @dataclass(frozen=True)
@@ -73,90 +103,57 @@ def passive_band(
     The law has a positive Bt. Ranges are those of ``Mt``, ``Bt``, ``Kt``, ``Km``, ``tau``, if any.
     """
     if not is_stable(RationalMatrix.from_rows(axis.realization.A), Time.CONTINUOUS):
-        return PassiveBand(Fraction(0), None)
+        return PassiveBand(ZERO, None)
     places = product(range(3), repeat=len(ranges))
-    grid = dict(zip(places, real_parts(axis, law, ranges), strict=True))
     # None is zero at every frequency: passive, and on the border of it.
-    bounds = [P for Q in grid.values() if any(P := without_zeros(Q))]
-    if any(P[-1] <= 0 for P in bounds):
-        return PassiveBand(Fraction(0), None)
-    roots = [bracket for P in bounds if (bracket := first_root(P)) is not None]
-    corners = [P for at, Q in grid.items() if 1 not in at and any(P := without_zeros(Q))]
-    found = [(bracket[1], P) for P in corners if (bracket := first_root(P)) is not None]
-    broken = [omega for high, P in found if (omega := _negative_beyond(P, high)) is not None]
-    passive = root_below(min(low for low, _ in roots)) if roots else None
-    return PassiveBand(passive, min(broken, default=None))
+    grid = {at: P for at, P in zip(places, real_parts(axis, law, ranges), strict=True) if P}
+    if any(P[0] <= 0 for P in grid.values()):
+        return PassiveBand(ZERO, None)
+    roots = {at: bracket for at, P in grid.items() if (bracket := first_root(P)) is not None}
+    broken = (
+        _negative_beyond((grid[at],), high, 6) for at, (_, high) in roots.items() if 1 not in at
+    )
+    passive = root_below(min(low for low, _ in roots.values())) if roots else None
+    return PassiveBand(passive, min((omega for omega in broken if omega), default=None))
 
 
 def real_parts(
     axis: ContinuousAxis, law: CompliantLaw, ranges: Mapping[str, Interval]
 ) -> list[Polynomial]:
-    """Return ``Re N conj(D)`` in ``x = omega^2``, times what is positive, highest power first.
+    """Return ``Re N conj(D)`` in ``x = omega^2``, over what is positive.
 
     They are the Bernstein coefficients over the box: at its corners, the values there.
     """
-    corners = corners_in(impedance_at(axis, law), ranges)
-    both = [[*lowest_first(found.above), *lowest_first(found.below)] for found in corners]
-
-    def real(both: Sequence[Any]) -> list[Any]:
-        n = len(both) // 2
-        return real_product(both[:n], both[n:])
-
-    return [*map(highest_first, squared_over(both, real))]
-
-
-def highest_first(P: Sequence[Any]) -> Polynomial:
-    """Return a polynomial of Flint, lowest power first, the other way round."""
-    return [Fraction(int(c.p), int(c.q)) for c in reversed(P)]
+    corners = [corner[:2] for corner in corners_in(impedance_at(axis, law), ranges)]
+    return [without_zeros(P) for P in squared_over(corners, real_product)]
 
 
 def without_zeros(P: Polynomial) -> Polynomial:
-    """Leave out zeros of the highest powers, and powers of x that all terms have."""
-    kept = [i for i, c in enumerate(P) if c]
-    return P[kept[0] : kept[-1] + 1] if kept else []
+    """Leave out powers of x that all terms have."""
+    return P.right_shift(zeros_at_rest(P))
 
 
-def first_root(P: Sequence[Fraction]) -> tuple[Fraction, Fraction] | None:
+def first_root(P: Polynomial) -> Enclosed | None:
     """Return numbers between which the smallest positive root is, or None if there is none.
 
-    Ball arithmetic isolates all roots rigorously, multiple ones as well. Coefficients are given
-    with the highest power first; neither the first nor the last is zero.
+    Ball arithmetic isolates all roots rigorously, multiple ones as well. P is not zero at zero.
     """
-    from flint import fmpz_poly
-
-    common = lcm(*(c.denominator for c in P))
-    # The stubs of python-flint leave out the multiplicities.
-    roots: Any = fmpz_poly([int(c * common) for c in reversed(P)]).complex_roots()
-    real = (root.real for root, _ in roots if root.imag == 0)
+    real = (root.real for root, _ in P.complex_roots() if root.imag == 0)
     positive = [(fraction_of(root.lower()), fraction_of(root.upper())) for root in real if root > 0]
     return min(positive, default=None)
 
 
-def evaluate(P: Sequence[Fraction], x: Fraction) -> Fraction:
-    """Return the value of a polynomial, its coefficients with the highest power first."""
-    value = Fraction(0)
-    for c in P:
-        value = value * x + c
-    return value
-
-
-def _negative_beyond(P: Sequence[Fraction], x: Fraction) -> Fraction | None:
-    """Return a frequency a little beyond a root in x at which the real part is negative."""
-    step = RESOLUTION * x
-    for _ in range(HALVINGS):
-        omega = root_below(x + step) + Fraction(1, 10**6)
-        if evaluate(P, omega**2) < 0:
-            return omega
+def _negative_beyond(
+    polynomials: Iterable[Polynomial], x: Fraction, digits: int
+) -> Fraction | None:
+    """Return a number of so many digits, its square a little beyond x, where all are negative."""
+    step = SHARE * x
+    for _ in range(STEPS):
+        root = root_below(x + step, digits) + Fraction(1, 10**digits)
+        if all(P(as_fmpq(root**2)) < 0 for P in polynomials):
+            return root
         step *= 2
     return None
-
-
-# Convergents of the continued fraction of the arctangent: the last one, and the one before.
-DEPTH = 6
-# How often the point beyond the first root is moved on, at first by this share.
-STEPS, SHARE = 30, Fraction(1, 10**5)
-
-Enclosed = tuple[Fraction, Fraction]
 
 
 @dataclass(frozen=True)
@@ -185,7 +182,7 @@ def sampled_bands(shown: SampledAdmittance, ages: Iterable[int]) -> tuple[Sample
 def _band(shown: SampledAdmittance, age: int) -> SampledBand:
     """Bracket the first frequency at which the real part may be negative."""
     signs, period = [*_signs(shown, age)], shown.period
-    if min(P[-1] for P in signs) <= 0:
+    if min(P[0] for P in signs) <= 0:
         return SampledBand(age, ZERO)
     brackets = [bracket for P in signs if (bracket := first_root(without_zeros(P))) is not None]
     if not brackets:
@@ -193,64 +190,43 @@ def _band(shown: SampledAdmittance, age: int) -> SampledBand:
         return SampledBand(age, Fraction(314159, 100_000) / period)
     low, high = min(brackets)
     passive, _ = _frequency(root_below(low, 18), period)
-    step = SHARE * high
-    for _ in range(STEPS):
-        t = root_below(high + step, 12) + Fraction(1, 10**12)
-        if all(evaluate(P, t**2) < 0 for P in signs):
-            return SampledBand(age, passive, _frequency(t, period), t)
-        step *= 2
-    return SampledBand(age, passive)
+    t = _negative_beyond(signs, high, 12)
+    return SampledBand(age, passive, None if t is None else _frequency(t, period), t)
 
 
-def _signs(shown: SampledAdmittance, age: int) -> Iterable[list[Fraction]]:
-    """Yield polynomials in x, highest power first, of which what has the sign of Re V is a mean.
+def _signs(shown: SampledAdmittance, age: int) -> Iterator[Polynomial]:
+    """Yield polynomials in x of which what has the sign of Re V is a mean.
 
     Where all are positive, so is Re V; where all are negative, it is negative.
     """
-    late, early = [ONE], [ONE]
-    for _ in range(age):
-        late, early = multiply(late, [-ONE, ONE]), multiply(early, [ONE, ONE])
 
     def older(values: Any) -> Quotient:
         command, poles = shown.command(values)
-        return Quotient(multiply(late, command), multiply(early, poles), ())
+        return Quotient(polynomial(-ONE, ONE) ** age * command, polynomial(ONE, ONE) ** age * poles)
 
-    corners = corners_in(older, shown.box)
-    both = [[*lowest_first(found.above), *lowest_first(found.below)] for found in corners]
-    lag = 2 * shown.motor.time_constant.nominal / shown.period
+    corners = [corner[:2] for corner in corners_in(older, shown.box)]
+    lag = polynomial(2 * shown.motor.time_constant.nominal / shown.period, ZERO)
     for depth in (DEPTH, DEPTH + 1):
-        yield from map(highest_first, squared_over(both, partial(_sign, lag=lag, depth=depth)))
+        yield from squared_over(corners, partial(_sign, lag=lag, depth=depth))
 
 
-def _sign(both: Sequence[Any], lag: Fraction, depth: int) -> list[Any]:
-    """Return the sign polynomial of N and D, one after the other; the lag is ``2 tau/T``."""
-    from flint import fmpq, fmpq_poly
-
-    n = len(both) // 2
-    N, mirrored = fmpq_poly(both[:n]), fmpq_poly([c * (-1) ** k for k, c in enumerate(both[n:])])
-    W = (fmpq_poly([1, -1]) * N * mirrored).coeffs()
-    real, imaginary = (
-        fmpq_poly([c * (-1) ** k for k, c in enumerate(W[first::2])]) for first in (0, 1)
-    )
+def _sign(N: Polynomial, D: Polynomial, lag: Polynomial, depth: int) -> Polynomial:
+    """Return the sign polynomial; the lag is ``2 tau/T x``."""
+    real, imaginary = parts_on_axis(polynomial(-ONE, ONE) * N * D(polynomial(-ONE, ZERO)))
     p, q = _arctangent(depth)
-    late = fmpq_poly([0, fmpq(lag.numerator, lag.denominator)]) * imaginary
-    found: list[Any] = (q * real + p * late).coeffs()
-    # Of one length, whichever powers cancel.
-    return [*found, *[fmpq(0)] * (2 * n + depth - len(found))]
+    return q * real + p * lag * imaginary
 
 
-def _arctangent(depth: int) -> tuple[Any, Any]:
+def _arctangent(depth: int) -> tuple[Polynomial, Polynomial]:
     """Return a convergent p/q of ``atan(t)/t`` as polynomials in x, q positive for positive x.
 
     ``atan(t)/t = 1/(1 + x/(3 + 4x/(5 + 9x/(7 + ...))))``. All terms are positive, so the
     convergents are in turn above and below.
     """
-    from flint import fmpq_poly
-
-    p, q = fmpq_poly([1]), fmpq_poly([2 * depth + 1])
+    p, q = polynomial(ONE), polynomial(Fraction(2 * depth + 1))
     for k in range(depth, 0, -1):
         # 2k - 1 + k^2 x/(q/p)
-        p, q = q, (2 * k - 1) * q + fmpq_poly([0, k * k]) * p
+        p, q = q, (2 * k - 1) * q + (k * k * p).left_shift(1)
     return p, q
 
 
@@ -258,7 +234,8 @@ def _frequency(t: Fraction, period: Fraction) -> Enclosed:
     """Enclose ``2 atan(t)/T`` between decimals."""
     found = []
     for depth in (DEPTH, DEPTH + 1):
-        p, q = (evaluate(highest_first(P.coeffs()), t**2) for P in _arctangent(depth))
-        found.append(2 * t * p / q / period)
+        p, q = (P(as_fmpq(t**2)) for P in _arctangent(depth))
+        ratio = p / q
+        found.append(2 * t * Fraction(int(ratio.p), int(ratio.q)) / period)
     unit = 10**9
     return Fraction(floor(min(found) * unit), unit), Fraction(-floor(-max(found) * unit), unit)

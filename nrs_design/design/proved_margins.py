@@ -26,7 +26,6 @@ from fractions import Fraction
 from functools import cached_property
 from itertools import pairwise
 from math import isfinite, prod
-from typing import Any
 
 import numpy as np
 
@@ -35,15 +34,17 @@ from nrs_design.design.affine_family import (
     ONE,
     ZERO,
     FrequencyPiece,
+    Polynomial,
     Quotient,
     Response,
     Square,
     Squares,
+    as_fmpq,
     corners_in,
     everywhere,
     is_stable_over,
-    lowest_first,
-    minus,
+    parts_on_axis,
+    polynomial,
     squared_magnitude,
 )
 from nrs_design.design.displayed_response import over_admittance, parameters_at
@@ -61,8 +62,8 @@ from nrs_design.design.measures import (
     GoalStanding,
     Measure,
 )
-from nrs_design.design.transfer import frequencies, squared
-from nrs_design.loop.cut_loop import ContinuousAxis, multiply
+from nrs_design.design.transfer import frequencies
+from nrs_design.loop.cut_loop import ContinuousAxis
 from nrs_design.models.contact import Elastic, KelvinVoigt
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.interval import Interval
@@ -75,8 +76,6 @@ _SLACK = (ZERO, Fraction(1, 1000), Fraction(1, 100))
 _DIGITS = 4
 # Pieces of the frequencies of a delay, and how far beyond the last crossover they go.
 _PIECES, _BEYOND = 6, Fraction(1_000_001, 1_000_000)
-
-Polynomial = list[Fraction]  # Highest power first
 
 
 @dataclass(frozen=True)
@@ -122,19 +121,17 @@ class RangedLoop:
         """
         law, place, factor = parameters_at(self.axis, self.law, values)
         contact = {**{name: r.low for name, r in self.environment.parameters.items()}, **values}
-        factor *= prod(contact[name] for name in self.environment.law.inverse)
+        factor *= as_fmpq(prod(contact[name] for name in self.environment.law.inverse))
         loop = self.axis.cut(law, self.environment.at(contact), place)
         first = loop.free if held else loop.opened
-        opened, closed = ([factor * c for c in p] for p in (first, loop.closed))
-        return opened, closed
+        return factor * polynomial(*first), factor * polynomial(*loop.closed)
 
     def _stays_stable(self, gain: Fraction) -> bool:
         """Tell whether ``D + f N`` keeps its roots on the left for f from 1 to a gain."""
 
         def at(values: Mapping[str, Fraction]) -> Quotient:
             opened, closed = self._cut(values)
-            f = values.get("factor", ONE)
-            poles = [d + f * (c - d) for d, c in zip(opened, closed, strict=True)]
+            poles = opened + as_fmpq(values.get("factor", ONE)) * (closed - opened)
             return Quotient(poles, poles, poles)
 
         box = self.box | ({"factor": Interval(ONE, ONE, gain)} if gain > 1 else {})
@@ -144,7 +141,7 @@ class RangedLoop:
         return self._is_below(lambda d, c: (d, c), peak)
 
     def _has_disk(self, margin: Fraction) -> bool:
-        return self._is_below(lambda d, c: (minus(minus(d, c), [-x for x in d]), c), 2 / margin)
+        return self._is_below(lambda d, c: (2 * d - c, c), 2 / margin)
 
     def _has_impedance(self, error: Fraction) -> bool:
         """Tell whether ``N/(H Y C)`` is within a factor of the desired impedance in the band."""
@@ -154,7 +151,7 @@ class RangedLoop:
         below = over_admittance(self.law, self.axis.low_pass)
 
         def shown(d: Polynomial, c: Polynomial) -> tuple[Polynomial, Polynomial]:
-            return multiply(minus(c, d), below), c
+            return (c - d) * below, c
 
         return self._is_below(shown, error * self.desired, self.bandwidth) and self._is_below(
             lambda d, c: shown(d, c)[::-1], error / self.desired, self.bandwidth
@@ -165,7 +162,7 @@ class RangedLoop:
 
         def followed(values: Mapping[str, Fraction]) -> Quotient:
             opened, closed = self._cut(values, held=True)
-            return Quotient(closed, minus(closed, opened), ())
+            return Quotient(closed, closed - opened)
 
         return self._stays_below(followed, 1 / share, self.bandwidth)
 
@@ -178,8 +175,8 @@ class RangedLoop:
         def felt(values: Mapping[str, Fraction]) -> Quotient:
             opened, closed = self._cut(values, held=True)
             hand = {name: r.low for name, r in self.environment.parameters.items()} | {**values}
-            above = multiply(opened, [hand.get("b", ZERO), hand["k"]])
-            return Quotient(above, multiply(closed, [ONE, ZERO]), ())
+            above = opened * polynomial(hand.get("b", ZERO), hand["k"])
+            return Quotient(above, closed.left_shift(1))
 
         return self._stays_below(felt, effort, self.bandwidth)
 
@@ -192,7 +189,7 @@ class RangedLoop:
         """Tell whether a response is nowhere above a limit, up to a frequency if there is one."""
 
         def at(values: Mapping[str, Fraction]) -> Quotient:
-            return Quotient(*quotient(*self._cut(values)), ())
+            return Quotient(*quotient(*self._cut(values)))
 
         return self._stays_below(at, limit, band)
 
@@ -227,18 +224,17 @@ class RangedLoop:
 
         def at(values: Mapping[str, Fraction]) -> Quotient:
             opened, closed = self._cut(values)
-            beside = [values["share"] * (c - 2 * d) for d, c in zip(opened, closed, strict=True)]
-            return Quotient([*lowest_first(closed), *lowest_first(beside)], (), ())
+            return Quotient(closed, as_fmpq(values["share"]) * (closed - 2 * opened))
 
-        made = corners_in(at, {**self.box, "share": share})
-        return Squares([c.above for c in made], square=square).vanish_nowhere(pieces, _MOST)
+        made = [corner[:2] for corner in corners_in(at, {**self.box, "share": share})]
+        return Squares(made, square=square).vanish_nowhere(pieces, _MOST)
 
     def _beyond_crossovers(self) -> Fraction | None:
         """Return a frequency from which on ``|N| < |D|``; None if none is shown."""
 
         def at(values: Mapping[str, Fraction]) -> Quotient:
             opened, closed = self._cut(values)
-            return Quotient(minus(closed, opened), opened, ())
+            return Quotient(closed - opened, opened)
 
         made = corners_in(at, self.box)
         proposed = max(map(_last_crossover, made))
@@ -352,27 +348,18 @@ def _tangent(angle: Fraction) -> Fraction | None:
 
 
 def _last_crossover(loop: Quotient) -> float:
-    above, below = (np.array([p], dtype=np.float64) for p in loop[:2])
-    return float(np.nanmax(frequencies(squared(above) - squared(below)), initial=0.0))
+    excess = squared_magnitude(loop.above) - squared_magnitude(loop.below)
+    found = frequencies(np.array([[float(c) for c in reversed(excess.coeffs())]]))
+    return float(np.nanmax(found, initial=0.0))
 
 
-def _turned(both: Sequence[Any]) -> list[Any]:
-    """Return ``|C(j omega) + j E(j omega)|^2`` in omega, of C and E one after the other."""
-    n = len(both) // 2
-    parts: list[list[Any]] = [[0 * both[0]] * n, [0 * both[0]] * n]
-    for i in range(n):
-        for power, c in ((i, both[i]), (i + 1, both[n + i])):
-            parts[power % 2][i] += -c if power % 4 >= 2 else c
-    square = [0 * both[0]] * (2 * n - 1)
-    for part in parts:
-        for i, a in enumerate(part):
-            for k, b in enumerate(part):
-                square[i + k] += a * b
-    return square
+def _turned(C: Polynomial, E: Polynomial) -> Polynomial:
+    """Return ``|C(j omega) + j E(j omega)|^2`` in omega."""
+    omega = polynomial(ONE, ZERO)
+    (a, b), (c, d) = ([part(omega**2) for part in parts_on_axis(P)] for P in (C, E))
+    return (a - omega * d) ** 2 + (omega * b + c) ** 2
 
 
-def _delayed(both: Sequence[Any]) -> list[Any]:
+def _delayed(C: Polynomial, E: Polynomial) -> Polynomial:
     """Return ``|C(j omega) - j omega E(j omega)|^2`` in omega^2."""
-    n = len(both) // 2
-    closed, beside = [*both[:n], 0 * both[0]], [0 * both[0], *both[n:]]
-    return squared_magnitude([a - b for a, b in zip(closed, beside, strict=True)])
+    return squared_magnitude(C - E.left_shift(1))

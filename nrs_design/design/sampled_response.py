@@ -21,20 +21,26 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property, partial
 from itertools import product
-from math import atan
+from math import atan, prod
 from typing import Any
 
 from nrs_design.controllers.laws import Admittance, CompliantLaw, ProportionalDerivative
 from nrs_design.controllers.sensor import LowPass
 from nrs_design.controllers.taylor import exponential_between
-from nrs_design.design.affine_family import Polynomial, Quotient, is_stable_over
+from nrs_design.design.affine_family import (
+    Polynomial,
+    Quotient,
+    as_fmpq,
+    is_stable_over,
+    polynomial,
+)
 from nrs_design.design.displayed_response import (
     Band,
     LargestResponse,
     largest_over,
     root_below,
 )
-from nrs_design.loop.cut_loop import ProcessorAxis, multiply, on_the_axis
+from nrs_design.loop.cut_loop import ProcessorAxis
 from nrs_design.models.actuator import ActuatorRanges
 from nrs_design.models.interval import Interval
 from nrs_design.proof.enclosure import ball_around, fraction_of, precision
@@ -70,29 +76,26 @@ class SampledAdmittance:
         return moving | {"E": Interval(E[0], *E), "s": Interval(min(s), min(s), max(s))}
 
     def command(self, values: Mapping[str, Fraction]) -> tuple[Polynomial, Polynomial]:
-        """Return Km U/F as polynomials in w, at values of what is in the box, of one length."""
+        """Return Km U/F as polynomials in w, at values of what is in the box."""
         T, numbers = self.period, self._numbers
         Km, E, s = values.get("Km", self.motor.gain.nominal), values["E"], values["s"]
         D = self.motion.over(T)
-        C, lag = [self.motion.Kp + D, -D], [ONE, -E]
-        turned = multiply([ONE, -ONE, ZERO], lag)
-        driven = multiply(C, [Km * (T - s), Km * (s - T * E)])
-        closed = [a + b for a, b in zip(turned, [ZERO, *driven], strict=True)]
-        pole = [ONE, -numbers["a"]] if "a" in numbers else [ONE]
-        below, above = multiply(closed, pole), multiply(C, lag)
+        C, lag, one = _linear(self.motion.Kp + D, -D), _linear(ONE, -E), _linear(ZERO, ONE)
+        turned = _linear(ONE, ZERO) * _linear(ONE, -ONE) * lag
+        closed = turned + C * _linear(Km * (T - s), Km * (s - T * E)) * one
+        poles = [_linear(ONE, -numbers["a"])] if "a" in numbers else []
         scale = Km * numbers["T"] * numbers["b"]
         if self.low_pass is not None:
             held = self.low_pass.discretize(T)
-            for _ in range(held.order):
-                below, scale = multiply(below, [ONE, -held.p]), scale * held.q
-        above = [ZERO] * (len(below) - len(above)) + [scale * k for k in above]
-        return on_the_axis(above, Fraction(2)), on_the_axis(below, Fraction(2))
+            poles += held.order * [_linear(ONE, -held.p)]
+            scale *= held.q**held.order
+        return as_fmpq(scale) * C * lag * one ** (1 + len(poles)), prod(poles, start=closed)
 
     def quotient(self, values: Mapping[str, Fraction], c: Fraction = ONE) -> Quotient:
         """Return F/V as polynomials in w, at values of what is in the box; c is ``atan(t)/t``."""
         command, poles = self.command(values)
-        late = [2 * c * self.motor.time_constant.high / self.period * c, c]
-        return Quotient(multiply(poles, multiply(late, [ONE, ONE])), command, poles)
+        late = polynomial(2 * c * self.motor.time_constant.high / self.period * c, c)
+        return Quotient(poles * late * polynomial(ONE, ONE), command, poles)
 
     @property
     def _numbers(self) -> Mapping[str, Fraction]:
@@ -247,6 +250,11 @@ def _pieces(low: Fraction, high: Fraction) -> Iterator[Band]:
             return
         first = last
     yield first, high
+
+
+def _linear(a: Fraction, b: Fraction) -> Polynomial:
+    """Return ``a z + b`` times ``1 - w``, as a polynomial in w."""
+    return polynomial(a - b, a + b)
 
 
 def _share(t: Fraction) -> float:

@@ -398,12 +398,3 @@ def on_the_axis(polynomial: Sequence[Fraction], period: Fraction) -> Polynomial:
         total = total * rising + c * power
     found = [Fraction(int(c.p), int(c.q)) for c in total.coeffs()]
     return (*[ZERO] * (len(polynomial) - len(found)), *reversed(found))
-
-
-def multiply(a: Sequence[Fraction], b: Sequence[Fraction]) -> list[Fraction]:
-    """Multiply two polynomials."""
-    found = [ZERO] * (len(a) + len(b) - 1)
-    for i, x in enumerate(a):
-        for j, y in enumerate(b):
-            found[i + j] += x * y
-    return found

@@ -8,7 +8,7 @@ import pytest
 
 from nrs_design.controllers.laws import Admittance
 from nrs_design.controllers.sensor import LowPass
-from nrs_design.design.affine_family import Quotient
+from nrs_design.design.affine_family import Quotient, polynomial
 from nrs_design.design.displayed_response import (
     largest_impedance,
     largest_over,
@@ -76,7 +76,7 @@ def test_a_response_that_is_not_affine_is_a_defect():
     """A cube is odd about the middle of its range: there it is the mean of its ends."""
 
     def cubed(values):
-        return Quotient([values["k"] ** 3], [ONE], [ONE, ONE])
+        return Quotient(polynomial(values["k"] ** 3), polynomial(ONE), polynomial(ONE, ONE))
 
     with pytest.raises(InternalError, match="not affine"):
         largest_over(cubed, {"k": interval(-1, 1)}, BAND, None)

@@ -10,8 +10,9 @@ from fractions import Fraction
 
 import pytest
 
+from nrs_design.design.affine_family import polynomial, real_product
 from nrs_design.design.passivity import first_root
-from nrs_design.loop.cut_loop import multiply, on_the_axis
+from nrs_design.loop.cut_loop import on_the_axis
 
 NEAR = Fraction(1, 10**9)
 
@@ -22,13 +23,12 @@ def is_passive(b, K, B, T):
     With ``1 - cos = 2 x/(1 + x)`` and ``(1 - 1/z) H = N/(T z^2)``, it is that ``4 b T x (1 + x)``
     is above the real part of N times the conjugate of ``T z^2``; both have a factor x.
     """
-    above = multiply([Fraction(1), Fraction(-1)], [K * T + B, -B])
-    N, below = (on_the_axis(p, Fraction(2))[::-1] for p in (above, [T, Fraction(0), Fraction(0)]))
-    mirrored = [c * (-1) ** k for k, c in enumerate(below)]
-    real = [c * (-1) ** k for k, c in enumerate(multiply(N, mirrored)[::2])]
+    above, below = [K * T + B, -K * T - 2 * B, B], [T, Fraction(0), Fraction(0)]
+    N, D = (polynomial(*on_the_axis(p, Fraction(2))) for p in (above, below))
+    real = real_product(N, D)
     assert real[0] == 0
-    P = [4 * b * T - real[1], 4 * b * T - real[2]]
-    return P[0] > 0 and P[1] > 0 and first_root(P[::-1]) is None
+    P = polynomial(4 * b * T, 4 * b * T) - real.right_shift(1)
+    return P[0] > 0 and P[1] > 0 and first_root(P) is None
 
 
 @pytest.mark.parametrize("K", [Fraction(1000), Fraction(1)])

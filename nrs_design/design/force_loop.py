@@ -45,7 +45,6 @@ def force_loop_response(motion: TransferFunction, stiffness: float, gain: float)
     G leads from commanded to actual position, k is in N m/rad, Kp in rad/(N m). An unstable loop is
     a `DesignError`.
     """
-    _check(stiffness, gain)
     closed = _closed(motion, gain * stiffness)
     if not bool(hurwitz(closed.denominator)):
         raise DesignError(
@@ -71,9 +70,6 @@ def design_force_gain(motion: TransferFunction, stiffness: float, damping_ratio:
     ray, ``-D(s)/N(s)`` is real and positive, which is a polynomial equation in ``|s|``. If no gain
     reaches it, the `DesignError` names the interval that gains do reach.
     """
-    _check(stiffness, 0.0)
-    if not 0 < damping_ratio < 1:
-        raise DesignError(f"the damping ratio must lie between 0 and 1, not {damping_ratio}")
     for loop_gain in (0.0, *_crossings(motion, damping_ratio)):
         reached = _damping(motion, loop_gain)
         if reached is not None and abs(reached - damping_ratio) <= 1e-9:
@@ -121,13 +117,6 @@ def _reachable(motion: TransferFunction) -> str:
     if not reached:
         return "no stable loop"
     return f"{min(reached):.5g} to {min(1.0, max(reached)):.5g}"
-
-
-def _check(stiffness: float, gain: float) -> None:
-    if not (math.isfinite(stiffness) and stiffness > 0):
-        raise DesignError(f"the stiffness must be positive, not {stiffness}")
-    if not (math.isfinite(gain) and gain >= 0):
-        raise DesignError(f"the force gain must not be negative: {gain}")
 
 
 # How far G(0) may be from 1 by rounding.

@@ -54,9 +54,6 @@ def design_pd(
     The actuator is ``Km / (s (tau s + 1))``, the settling time ``4/(zeta wn)`` in s. If no positive
     zero and gain exist, a `DesignError`.
     """
-    _check_positive(gain=gain, time_constant=time_constant, settling_time=settling_time)
-    if not 0 < damping_ratio < 1:
-        raise DesignError(f"the damping ratio must lie between 0 and 1, not {damping_ratio}")
     wn = 4 / (damping_ratio * settling_time)
     pole = complex(-damping_ratio * wn, wn * math.sqrt(1 - damping_ratio**2))
     angle = (cmath.phase(pole) + cmath.phase(pole + 1 / time_constant) - math.pi) % (2 * math.pi)
@@ -79,7 +76,7 @@ def motion_loop_response(tf: TransferFunction) -> MotionLoopResponse:
     found = poles(tf)
     zeta, wn = dominant_pair(found)
     return MotionLoopResponse(
-        poles=tuple(complex(p) for p in poles(tf)),
+        poles=tuple(map(complex, found)),
         damping_ratio=zeta,
         natural_frequency=wn,
         overshoot=step_overshoot(tf),
@@ -93,8 +90,6 @@ def dominant_pair(roots: ComplexArray) -> tuple[float, float]:
     The dominant pair is the rightmost complex pair; without one, the two rightmost real poles,
     whose damping ratio is at least 1. A single pole counts twice.
     """
-    if not len(roots):
-        raise DesignError("a loop without poles has no damping ratio")
     roots = np.repeat(roots, 2) if len(roots) == 1 else roots
     ordered = sorted((complex(p) for p in roots), key=lambda p: -p.real)
     upper = next((p for p in ordered if p.imag > 1e-9 * abs(p)), None)
@@ -113,8 +108,6 @@ def step_overshoot(tf: TransferFunction) -> float:
         raise DesignError("an unstable loop has no overshoot", remedy="stabilize the loop first")
     if static_gain(tf) == 0:
         raise DesignError("a loop without static gain has no overshoot")
-    if tf.order == 0:
-        return 0.0
     # In units of time that make the poles of order 1.
     n, a, b = tf.order, np.array(tf.denominator), np.zeros(tf.order + 1)
     numerator = np.trim_zeros(np.array(tf.numerator), "f")
@@ -135,12 +128,6 @@ def _bandwidth(tf: TransferFunction) -> float:
     above, below = squared(rows)
     crossings = frequencies((above - 0.5 * static_gain(tf) ** 2 * below)[None])
     return float(np.fmin.reduce(crossings[0], initial=math.inf))
-
-
-def _check_positive(**values: float) -> None:
-    for name, value in values.items():
-        if not (math.isfinite(value) and value > 0):
-            raise DesignError(f"{name.replace('_', ' ')} must be positive, not {value}")
 
 
 # Time constants that a motion is followed for, and samples of each, or of each radian.

@@ -18,8 +18,6 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from nrs_design.errors import DesignError
-
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 BoolArray = NDArray[np.bool_]
@@ -33,20 +31,6 @@ class TransferFunction:
     # numerator, denominator: coefficients, highest power of s first.
     numerator: tuple[float, ...]
     denominator: tuple[float, ...]
-
-    def __post_init__(self) -> None:
-        """Refuse what is not a proper transfer function."""
-        if not all(map(math.isfinite, self.numerator + self.denominator)):
-            raise DesignError("a transfer function needs finite coefficients")
-        if not self.denominator or self.denominator[0] == 0:
-            raise DesignError("the leading coefficient of a denominator must not be zero")
-        if not any(self.numerator):
-            raise DesignError("the numerator of a transfer function is zero")
-        if len(trim(self.numerator)) > len(self.denominator):
-            raise DesignError(
-                f"the numerator's degree exceeds the denominator's, {len(self.denominator) - 1}",
-                remedy="give a proper transfer function",
-            )
 
     @property
     def order(self) -> int:

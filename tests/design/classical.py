@@ -6,11 +6,7 @@ from types import SimpleNamespace
 import control
 import numpy as np
 
-from nrs_design.design.impedance_optimum import (
-    characteristic_basis,
-    characteristic_polynomials,
-    check_admittance,
-)
+from nrs_design.design.impedance_optimum import characteristic_polynomials
 from nrs_design.design.transfer import TransferFunction, frequency_response, to_control, trim
 
 
@@ -38,7 +34,6 @@ def loop_margins(loop, Mt, Bt):
 
 def open_loop(loop, Mt, Bt):
     """``G Ze H Y``."""
-    check_admittance(Mt, Bt)
     numerator, _ = loop.forward
     return TransferFunction(tuple(numerator.tolist()), tuple(_free(loop, Mt, Bt).tolist()))
 
@@ -59,8 +54,7 @@ def sensitivity(loop, Mt, Bt, omega):
 
 def closed_loop_polynomial(loop, Mt, Bt):
     """The characteristic polynomial, highest power first."""
-    check_admittance(Mt, Bt)
-    rows = characteristic_polynomials(characteristic_basis(loop), np.array(Mt), np.array(Bt))
+    rows = characteristic_polynomials(loop, np.array(Mt), np.array(Bt))
     return np.asarray(trim(rows.tolist()))
 
 

@@ -79,20 +79,6 @@ def test_a_single_pole_counts_twice():
     assert found.natural_frequency == pytest.approx((1 + 0.02 * SOFT) / 0.1)
 
 
-@pytest.mark.parametrize(
-    ("motion", "stiffness", "gain", "message"),
-    [
-        (THIRD_ORDER, SOFT, 10.0, "unstable with Kp = 10"),
-        (EXACT, 0.0, 0.1, "must"),
-        (EXACT, SOFT, -0.1, "must"),
-    ],
-)
-def test_what_has_no_response_is_refused(motion, stiffness, gain, message):
-    with pytest.raises(DesignError, match=message):
-        force_loop_response(motion, stiffness, gain)
-
-
-@pytest.mark.parametrize("zeta", [0.0, 1.0, -0.5])
-def test_bad_damping_ratio(zeta):
-    with pytest.raises(DesignError, match="between 0 and 1"):
-        design_force_gain(EXACT, SOFT, zeta)
+def test_an_unstable_loop_is_refused():
+    with pytest.raises(DesignError, match="unstable with Kp = 10"):
+        force_loop_response(THIRD_ORDER, SOFT, 10.0)

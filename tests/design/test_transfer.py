@@ -16,7 +16,6 @@ from nrs_design.design.transfer import (
     static_gain,
     trim,
 )
-from nrs_design.errors import DesignError
 from tests.design.motion_loops import PRINTED
 
 coefficients = st.lists(st.floats(-5, 5).map(lambda x: round(x, 3)), min_size=1, max_size=5)
@@ -87,18 +86,3 @@ def test_frequencies_are_roots_of_positive_ones_also_of_double_ones():
     ):
         found = frequencies(polynomial[None])[0] ** 2
         assert sorted(found[~np.isnan(found)]) == pytest.approx(roots, rel=1e-6)
-
-
-@pytest.mark.parametrize(
-    ("numerator", "denominator", "message"),
-    [
-        ((1.0,), (0.0, 1.0), "leading coefficient"),
-        ((1.0,), (), "leading coefficient"),
-        ((0.0,), (1.0, 1.0), "zero"),
-        ((1.0, 0.0), (2.0,), "degree"),
-        ((math.nan,), (1.0,), "finite"),
-    ],
-)
-def test_refuses_what_is_no_proper_transfer_function(numerator, denominator, message):
-    with pytest.raises(DesignError, match=message):
-        TransferFunction(numerator, denominator)

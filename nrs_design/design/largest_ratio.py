@@ -19,6 +19,9 @@ from itertools import count, pairwise, product
 from math import comb, prod
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from nrs_design.proof.enclosure import ball_around, fraction_of, precision
 
 # Between the two bounds, as a share of the lower one.
@@ -51,14 +54,39 @@ def largest_ratio(
     """Bound the largest value of a quotient of polynomials over the unit box.
 
     Neither is negative in the box; Bernstein coefficients come in the order of indices, so many in
-    each direction. The bounds are drawn closer until it is decided whether the quotient stays below
-    a limit, or until they are as near as a share; what is not shown by `most` coefficients is not
-    shown.
+    each direction. The box with the highest bound is halved until it is decided whether the
+    quotient stays below a limit, or until the bounds are as near as a share; what is not shown by
+    `most` coefficients is not shown.
     """
+    order, spent, size = count(), 0, prod(shape)
+    least, at = ZERO, tuple(ZERO for _ in shape)
+    open_: list[tuple[bool, Fraction, int, _Box]] = []
+
+    def take(box: _Box) -> None:
+        nonlocal least, at
+        for value, vertex in box.vertices():
+            if value > least:
+                least, at = value, vertex
+        bound = box.bound()
+        # Those without a bound first, then the highest.
+        heappush(open_, (bound is not None, -(bound or ZERO), next(order), box))
+
     with precision():
-        return _search(
-            _as_balls(numerator), _as_balls(denominator), tuple(shape), limit, nearly, most
-        )
+        above, below = _as_balls(numerator, shape), _as_balls(denominator, shape)
+        take(_Box(above, below, tuple((ZERO, ONE) for _ in shape)))
+        while True:
+            bounded, negative, _, box = open_[0]
+            highest = -negative
+            met = bounded and (nearly is None or highest <= least * (1 + nearly))
+            exceeded = limit is not None and least > limit
+            decided = limit is None or exceeded or (bounded and highest <= limit)
+            # What exceeds its limit may have no bound at all.
+            if (met and decided) or (exceeded and not bounded) or spent > most:
+                return LargestRatio(highest if bounded else None, least, at)
+            heappop(open_)
+            for half in box.halves():
+                take(half)
+                spent += size
 
 
 def bernstein(powers: Tensor, low: Any, high: Any) -> list[Any]:
@@ -74,124 +102,58 @@ def bernstein(powers: Tensor, low: Any, high: Any) -> list[Any]:
 
 @dataclass(frozen=True, slots=True)
 class _Box:
-    above: Any
-    below: Any
-    shape: tuple[int, ...]
+    # above, below: coefficients, balls in an array with an axis for each direction.
+    above: NDArray[np.object_]
+    below: NDArray[np.object_]
     ends: tuple[tuple[Fraction, Fraction], ...]
 
     def bound(self) -> Fraction | None:
         """Return what the quotient is not above in the box; None if that is not shown."""
-        if not all(a > 0 for a in self.below):
+        if not all(a > 0 for a in self.below.flat):
             return None
-        ratios = ((a / b).upper() for a, b in zip(self.above, self.below, strict=True))
         # Ends of balls have no radius, so that one of two is surely the larger.
-        return max(ZERO, fraction_of(max(ratios)))
+        return max(
+            ZERO, fraction_of(max(ratio.upper() for ratio in (self.above / self.below).flat))
+        )
 
     def vertices(self) -> Iterator[tuple[Fraction, tuple[Fraction, ...]]]:
         """Yield what the quotient is not below at a vertex, and the vertex."""
-        for corner in product((0, 1), repeat=len(self.shape)):
-            place = 0
-            for at, n in zip(corner, self.shape, strict=True):
-                place = place * n + at * (n - 1)
-            if self.below[place] > 0:
-                value = _lower(self.above[place] / self.below[place])
+        for corner in product((0, -1), repeat=len(self.ends)):
+            if self.below[corner] > 0:
+                value = fraction_of((self.above[corner] / self.below[corner]).lower())
                 yield value, tuple(e[at] for e, at in zip(self.ends, corner, strict=True))
 
-    def halves(self, axis: int) -> tuple[_Box, _Box]:
-        """Halve the box in one direction."""
+    def halves(self) -> Iterator[_Box]:
+        """Yield the halves of the box in the direction in which both polynomials change most."""
+        changes = np.max([_changes(values) for values in (self.above, self.below)], axis=0)
+        axis = int(changes.argmax())
         low, high = self.ends[axis]
         middle = (low + high) / 2
-        above, below = (_halved(values, self.shape, axis) for values in (self.above, self.below))
-        first, last = (
-            (*self.ends[:axis], ends, *self.ends[axis + 1 :])
-            for ends in ((low, middle), (middle, high))
-        )
-        return (
-            _Box(above[0], below[0], self.shape, first),
-            _Box(above[1], below[1], self.shape, last),
-        )
-
-    def widest(self) -> int:
-        """Return the direction in which both polynomials change most."""
-        changes = [
-            max(_change(values, self.shape, axis) for values in (self.above, self.below))
-            for axis in range(len(self.shape))
-        ]
-        return changes.index(max(changes))
+        parts = zip(_halved(self.above, axis), _halved(self.below, axis), strict=True)
+        for (above, below), ends in zip(parts, ((low, middle), (middle, high)), strict=True):
+            yield _Box(above, below, (*self.ends[:axis], ends, *self.ends[axis + 1 :]))
 
 
-def _search(
-    above: Tensor,
-    below: Tensor,
-    shape: tuple[int, ...],
-    limit: Fraction | None,
-    nearly: Fraction | None,
-    most: int,
-) -> LargestRatio:
-    """Halve the box with the highest bound until the bounds meet."""
-    order, spent, size = count(), 0, prod(shape)
-    least, at = ZERO, tuple(ZERO for _ in shape)
-    open_: list[tuple[bool, Fraction, int, _Box]] = []
-
-    def take(box: _Box) -> None:
-        nonlocal least, at
-        for value, vertex in box.vertices():
-            if value > least:
-                least, at = value, vertex
-        bound = box.bound()
-        # Those without a bound first, then the highest.
-        heappush(open_, (bound is not None, -(bound or ZERO), next(order), box))
-
-    take(_Box(above, below, shape, tuple((ZERO, ONE) for _ in shape)))
-    while True:
-        bounded, negative, _, box = open_[0]
-        highest = -negative
-        met = bounded and (nearly is None or highest <= least * (1 + nearly))
-        exceeded = limit is not None and least > limit
-        decided = limit is None or exceeded or (bounded and highest <= limit)
-        # What exceeds its limit may have no bound at all.
-        if (met and decided) or (exceeded and not bounded) or spent > most:
-            return LargestRatio(highest if bounded else None, least, at)
-        heappop(open_)
-        for half in box.halves(box.widest()):
-            take(half)
-            spent += size
-
-
-def _halved(values: Tensor, shape: tuple[int, ...], axis: int) -> tuple[list[Any], list[Any]]:
+def _halved(values: NDArray[np.object_], axis: int) -> tuple[NDArray[np.object_], ...]:
     """Return the coefficients in both halves of a box."""
-    n, step = shape[axis], prod(shape[axis + 1 :])
-    low, high = list(values), list(values)
-    for start in _starts(shape, axis):
-        places = range(start, start + n * step, step)
-        line = [values[i] for i in places]
-        for k in range(n):
-            low[places[k]], high[places[n - 1 - k]] = line[0], line[-1]
-            line = [(a + b) / 2 for a, b in pairwise(line)]
-    return low, high
+    line, low, high = [*np.moveaxis(values, axis, 0)], [], []
+    while line:
+        low.append(line[0])
+        high.append(line[-1])
+        line = [(a + b) / 2 for a, b in pairwise(line)]
+    return np.stack(low, axis), np.stack(high[::-1], axis)
 
 
-def _change(values: Tensor, shape: tuple[int, ...], axis: int) -> float:
-    """Return how much coefficients differ along a direction, as a share of the largest."""
-    n, step = shape[axis], prod(shape[axis + 1 :])
-    numbers = [float(v.mid()) for v in values]
-    largest = max(map(abs, numbers)) or 1.0
-    lines = (numbers[i : i + n * step : step] for i in _starts(shape, axis))
-    return max(max(line) - min(line) for line in lines) / largest
+def _changes(values: NDArray[np.object_]) -> list[float]:
+    """Return how much coefficients differ along each direction, as a share of the largest."""
+    numbers = np.array([float(v.mid()) for v in values.flat]).reshape(values.shape)
+    largest = np.abs(numbers).max() or 1.0
+    return [np.ptp(numbers, axis).max() / largest for axis in range(values.ndim)]
 
 
-def _starts(shape: tuple[int, ...], axis: int) -> Iterator[int]:
-    n, step = shape[axis], prod(shape[axis + 1 :])
-    for before in range(prod(shape[:axis])):
-        yield from range(before * n * step, before * n * step + step)
-
-
-def _as_balls(values: Tensor) -> list[Any]:
+def _as_balls(values: Tensor, shape: Sequence[int]) -> NDArray[np.object_]:
     """Return balls around rational numbers, of Python or of flint, at the current precision."""
     from flint import arb
 
-    return [ball_around(v) if isinstance(v, Fraction) else arb(v) for v in values]
-
-
-def _lower(ball: Any) -> Fraction:
-    return fraction_of(ball.lower())
+    balls = [ball_around(v) if isinstance(v, Fraction) else arb(v) for v in values]
+    return np.array(balls, dtype=object).reshape(shape)

@@ -36,7 +36,6 @@ from nrs_design.design.affine_family import (
     FrequencyPiece,
     Polynomial,
     Quotient,
-    Response,
     Square,
     Squares,
     as_fmpq,
@@ -120,11 +119,14 @@ class RangedLoop:
         `held`: D is that of nothing touched, for a hand that holds the robot.
         """
         law, place, factor = parameters_at(self.axis, self.law, values)
-        contact = {**{name: r.low for name, r in self.environment.parameters.items()}, **values}
+        contact = self._contact(values)
         factor *= as_fmpq(prod(contact[name] for name in self.environment.law.inverse))
         loop = self.axis.cut(law, self.environment.at(contact), place)
         first = loop.free if held else loop.opened
         return factor * polynomial(*first), factor * polynomial(*loop.closed)
+
+    def _contact(self, values: Mapping[str, Fraction]) -> dict[str, Fraction]:
+        return {name: r.low for name, r in self.environment.parameters.items()} | {**values}
 
     def _stays_stable(self, gain: Fraction) -> bool:
         """Tell whether ``D + f N`` keeps its roots on the left for f from 1 to a gain."""
@@ -138,64 +140,52 @@ class RangedLoop:
         return gain >= 1 and is_stable_over(at, box, _MOST)
 
     def _has_sensitivity(self, peak: Fraction) -> bool:
-        return self._is_below(lambda d, c: (d, c), peak)
+        return self._stays_below(lambda d, c: (d, c), peak)
 
     def _has_disk(self, margin: Fraction) -> bool:
-        return self._is_below(lambda d, c: (2 * d - c, c), 2 / margin)
+        return self._stays_below(lambda d, c: (2 * d - c, c), 2 / margin)
 
     def _has_impedance(self, error: Fraction) -> bool:
         """Tell whether ``N/(H Y C)`` is within a factor of the desired impedance in the band."""
         # A spring is displayed without bound towards rest.
         if self.law.gains.get("Kt") or not self.ranges.keys().isdisjoint(self.law.gains):
             return False
-        below = over_admittance(self.law, self.axis.low_pass)
-
-        def shown(d: Polynomial, c: Polynomial) -> tuple[Polynomial, Polynomial]:
-            return (c - d) * below, c
-
-        return self._is_below(shown, error * self.desired, self.bandwidth) and self._is_below(
-            lambda d, c: shown(d, c)[::-1], error / self.desired, self.bandwidth
-        )
+        below, band = over_admittance(self.law, self.axis.low_pass), self.bandwidth
+        return self._stays_below(
+            lambda d, c: ((c - d) * below, c), error * self.desired, band
+        ) and self._stays_below(lambda d, c: (c, (c - d) * below), error / self.desired, band)
 
     def _has_transparency(self, share: Fraction) -> bool:
         """Tell whether ``N/C`` is nowhere below a share in the band."""
-
-        def followed(values: Mapping[str, Fraction]) -> Quotient:
-            opened, closed = self._cut(values, held=True)
-            return Quotient(closed, closed - opened)
-
-        return self._stays_below(followed, 1 / share, self.bandwidth)
+        return self._stays_below(lambda d, c: (c, c - d), 1 / share, self.bandwidth, held=True)
 
     def _has_effort(self, effort: Fraction) -> bool:
         """Tell whether ``Ze D/C`` is nowhere above an effort in the band."""
-        law = self.environment.law
-        if law not in (Elastic, KelvinVoigt):
+        if self.environment.law not in (Elastic, KelvinVoigt):
             return False
 
         def felt(values: Mapping[str, Fraction]) -> Quotient:
             opened, closed = self._cut(values, held=True)
-            hand = {name: r.low for name, r in self.environment.parameters.items()} | {**values}
+            hand = self._contact(values)
             above = opened * polynomial(hand.get("b", ZERO), hand["k"])
             return Quotient(above, closed.left_shift(1))
 
-        return self._stays_below(felt, effort, self.bandwidth)
+        return _is_below(Squares.of(felt, self.box), effort, self.bandwidth)
 
-    def _is_below(
+    def _stays_below(
         self,
-        quotient: Callable[[Polynomial, Polynomial], tuple[Polynomial, Polynomial]],
+        response: Callable[[Polynomial, Polynomial], tuple[Polynomial, Polynomial]],
         limit: Fraction,
         band: Fraction | None = None,
+        *,
+        held: bool = False,
     ) -> bool:
-        """Tell whether a response is nowhere above a limit, up to a frequency if there is one."""
+        """Tell whether a quotient of D and C is nowhere above a limit, up to a frequency if any."""
 
         def at(values: Mapping[str, Fraction]) -> Quotient:
-            return Quotient(*quotient(*self._cut(values)))
+            return Quotient(*response(*self._cut(values, held=held)))
 
-        return self._stays_below(at, limit, band)
-
-    def _stays_below(self, at: Response, limit: Fraction, band: Fraction | None) -> bool:
-        pieces = everywhere() if band is None else (FrequencyPiece(ZERO, band**2),)
-        return Squares.of(at, self.box).stay_below(limit**2, pieces, _MOST)
+        return _is_below(Squares.of(at, self.box), limit, band)
 
     def _has_phase(self, margin: Fraction) -> bool:
         t, pieces = _tangent(margin / 2), everywhere(Fraction(10))
@@ -337,6 +327,11 @@ def _proposed(found: Achieved) -> Iterator[Fraction]:
             yield Fraction(wanted)
     if wanted is not None:
         yield Fraction(wanted)
+
+
+def _is_below(squares: Squares, limit: Fraction, band: Fraction | None) -> bool:
+    pieces = everywhere() if band is None else (FrequencyPiece(ZERO, band**2),)
+    return squares.stay_below(limit**2, pieces, _MOST)
 
 
 def _tangent(angle: Fraction) -> Fraction | None:

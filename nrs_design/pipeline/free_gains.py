@@ -43,7 +43,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 # A virtual mass that may be zero is zero, or at least this share of the largest.
 LEAST_MASS = Fraction(1, 1000)
-# Of so many points it is kept what controllers are optimized for there.
+# Points at which it is remembered what controllers are optimized for.
 MOST_KNOWN = 64
 # What a goal may be missed by in floating point.
 MISSED = 1e-6
@@ -63,7 +63,7 @@ class RoundedGains:
         return {name: text for name, (_, text) in self.gains.items()}
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class FreeGains:
     """The free gains of a design: without virtual masses, or with them."""
 
@@ -106,13 +106,11 @@ class FreeGains:
             item.name: optimize_with_goals(self._bounded(item.problem), item.requirement)
             for item in self.analysis.impedance
         }
-        found = np.log(
-            [
-                float(one.given) if one.given else getattr(best[one.controller], one.gain)
-                for one in self.coordinates
-            ]
+        values = (
+            float(one.given) if one.given else getattr(best[one.controller], one.gain)
+            for one in self.coordinates
         )
-        found = np.clip(found, self.low, self.high)
+        found = np.clip(np.log([*values]), self.low, self.high)
         return self._cheapest_near(found) if self._moves_cost.any() else np.asarray(found)
 
     def gains(self, x: Array) -> dict[str, dict[str, float]]:
@@ -138,13 +136,13 @@ class FreeGains:
         """Return the cost of each impedance controller at a point."""
         from nrs_design.design.impedance_optimum import impedance_cost
 
-        gains = self.gains(x)
-        return {
-            item.name: float(
-                impedance_cost(problem, gains[item.name]["Mt"], gains[item.name]["Bt"])
-            )
-            for item, problem in zip(self.analysis.impedance, self._problems(x), strict=True)
-        }
+        # Most gains move no problem, and a search asks for the same few over and over.
+        problems = known_problems(self, tuple(np.where(self._moves_cost, x, self.low)))
+        gains, costs = self.gains(x), {}
+        for item, problem in zip(self.analysis.impedance, problems, strict=True):
+            own = gains[item.name]
+            costs[item.name] = float(impedance_cost(problem, own["Mt"], own["Bt"]))
+        return costs
 
     def spared(self, x: Array) -> Array:
         """Return for each controller with goals by how much they are met; negative if missed."""
@@ -161,12 +159,11 @@ class FreeGains:
         return self._design(x, to_float32)
 
     def _design(self, x: Array, rounded: Callable[[Fraction], Fraction]) -> ControllerDesign:
-        return self.designed.design.with_gains(
-            {
-                name: {gain: rounded(Fraction(value)) for gain, value in values.items()}
-                for name, values in self.gains(x).items()
-            }
-        )
+        gains = {
+            name: {gain: rounded(Fraction(value)) for gain, value in values.items()}
+            for name, values in self.gains(x).items()
+        }
+        return self.designed.design.with_gains(gains)
 
     def system(self, x: Array) -> SwitchedSystem:
         """Assemble the modes with the single-precision gains next to a point."""
@@ -227,52 +224,34 @@ class FreeGains:
         shown = {item.name: dict.fromkeys(BOUNDED) for item in self.analysis.impedance}
         for one in self.coordinates:
             shown.setdefault(one.controller, {})[one.gain] = None
-        return "; ".join(
-            name
-            + " "
-            + ", ".join(
-                f"{gain} = {gains[name][gain]:.4g} {units[name][gain].replace('*', ' ')}"
-                for gain in names
-            )
-            for name, names in shown.items()
-        )
+        texts = []
+        for name, names in shown.items():
+            pairs = ((gain, units[name][gain].replace("*", " ")) for gain in names)
+            of_one = ", ".join(f"{gain} = {gains[name][gain]:.4g} {unit}" for gain, unit in pairs)
+            texts.append(f"{name} {of_one}")
+        return "; ".join(texts)
 
     def at_bounds(self, x: Array) -> tuple[tuple[str, str], ...]:
         """Return the gains freed by factors that are on a bound, and on which."""
-        found = (
-            (" ".join(one.name), one.at_bound(float(value)))
-            for one, value in zip(self.coordinates, x, strict=True)
-        )
-        return tuple((name, bound) for name, bound in found if bound is not None)
+        pairs = zip(self.coordinates, x, strict=True)
+        found = {" ".join(one.name): one.at_bound(float(value)) for one, value in pairs}
+        return tuple((name, bound) for name, bound in found.items() if bound is not None)
 
     @cached_property
     def _moves_cost(self) -> NDArray[np.bool_]:
         """Which coordinates the cost depends on beside Mt and Bt."""
-        costing = (
-            {MOTION, *(item.name for item in self.analysis.impedance)}
-            if self.analysis.impedance
-            else set()
-        )
-        return np.array(
-            [one.given is not None and one.controller in costing for one in self.coordinates],
-            dtype=bool,
-        )
+        costing = {item.name for item in self.analysis.impedance}
+        costing |= {MOTION} if costing else set()
+        moves = [one.given is not None and one.controller in costing for one in self.coordinates]
+        return np.array(moves, dtype=bool)
 
     def _bounded(self, problem: ImpedanceProblem) -> ImpedanceProblem:
         low, high = problem.mass_bounds
         least = low or float(LEAST_MASS) * high
         return replace(problem, mass_bounds=(0.0, 0.0) if self.massless else (least, high))
 
-    def _problems(self, x: Array) -> tuple[ImpedanceProblem, ...]:
-        """Return what each impedance controller is optimized for at the other gains of a point."""
-        return self._problems_at(np.where(self._moves_cost, x, self.low).tobytes())
-
-    @cached_property
-    def _problems_at(self) -> Callable[[bytes], tuple[ImpedanceProblem, ...]]:
-        """Gives the same for the bytes of a point: a search asks for the same few over and over."""
-        return lru_cache(MOST_KNOWN)(lambda x: tuple(self._problems_with(np.frombuffer(x))))
-
-    def _problems_with(self, x: Array) -> Iterator[ImpedanceProblem]:
+    def problems(self, x: Array) -> Iterator[ImpedanceProblem]:
+        """Yield what each impedance controller is optimized for at the other gains of a point."""
         from nrs_design.design.laws.impedance import impedance_problem
 
         design = self._design(x, Fraction)
@@ -327,6 +306,12 @@ class FreeGains:
             missed = (a.measure.violation(a.value, a.goal) for a in found.achieved if a.goal)
             spared.append(-max(missed))
         return spared
+
+
+@lru_cache(MOST_KNOWN)
+def known_problems(gains: FreeGains, x: tuple[float, ...]) -> tuple[ImpedanceProblem, ...]:
+    """Return the problems at a point of gains."""
+    return tuple(gains.problems(np.array(x)))
 
 
 def gain_branches(designed: Designed, analysis: DesignAnalysis) -> Iterator[FreeGains]:

@@ -112,14 +112,17 @@ class ImpedanceAnalysis(AbstractControllerAnalysis):
 
 def choose(task: Task, given: ImpedanceControllerSpec) -> Choice:
     """Return the gains that the spec gives, or the best that its bounds and goals allow."""
-    optimum = None
     if given.Mt.fixed and given.Bt.fixed:
         # Nothing to choose; whether these gains are stable is for the certificate to say.
         Mt, Bt = (to_float32(gain.min.exact) for gain in (given.Mt, given.Bt))
-        law = Admittance(Mt, Bt, _spring(given))
-    else:
-        law, optimum = _optimize(task, given)
-    return law, optimum
+        return Admittance(Mt, Bt, _spring(given)), None
+    requirement = requirement_of(task, given)
+    problem = impedance_problem(task, given, requirement)
+    optimum = optimize_with_goals(problem, requirement)
+    Mt, Bt = (_shipped(getattr(optimum, g), getattr(given, g), task.digits) for g in ("Mt", "Bt"))
+    if not meets(requirement, float(Mt), float(Bt)):
+        Mt, Bt = _rounded_within(problem, requirement, optimum, given, task.digits)
+    return Admittance(Mt, Bt, _spring(given)), optimum
 
 
 def analyze(
@@ -138,6 +141,9 @@ def analyze(
         if name in _home_names(given)
     )
     axis = task.axis if isinstance(task.axis, ContinuousAxis) else None
+    # Gains that the spec gives are their own optimum.
+    ends = given.Mt.min.si, given.Bt.min.si
+    own = ImpedanceOptimum(*ends, float(impedance_cost(problem, *ends)), 1)
     law, contacts, moving = controller.law, task.contacts(given), _moving(task)
     asked, of_responses = dict(requirement.goals), response_goals(task.spec.goals, given.goals)
     measures = (*_measures(task), *(item for item in HAND_MEASURES if item in asked))
@@ -146,8 +152,7 @@ def analyze(
         achieved=requirement.achieved(measures, Mt, Bt),
         given=given,
         problem=problem,
-        # Gains that the spec gives are their own optimum.
-        optimum=controller.optimum or _given_optimum(problem, given),
+        optimum=controller.optimum or own,
         Mt=Mt,
         Bt=Bt,
         cost=float(impedance_cost(problem, Mt, Bt)),
@@ -169,18 +174,10 @@ def analyze(
     )
 
 
-def _given_optimum(problem: ImpedanceProblem, given: ImpedanceControllerSpec) -> ImpedanceOptimum:
-    Mt, Bt = given.Mt.min.si, given.Bt.min.si
-    return ImpedanceOptimum(Mt, Bt, float(impedance_cost(problem, Mt, Bt)), 1)
-
-
 def _lever_arm(task: Task, given: ImpedanceControllerSpec) -> float | None:
-    arms = {
-        None if arm is None else arm.si
-        for name in touched_in(given.contacts)
-        for arm in (task.spec.environments[name].lever_arm,)
-    }
-    return arms.pop() if len(arms) == 1 else None
+    arms = {task.spec.environments[name].lever_arm for name in touched_in(given.contacts)}
+    lengths = {None if arm is None else arm.si for arm in arms}
+    return lengths.pop() if len(lengths) == 1 else None
 
 
 def _check_stable(requirement: Requirement, Mt: float, Bt: float) -> None:
@@ -222,10 +219,8 @@ def _sampled_bands(
     """Return where the sampled law is passive; empty where that is not computed."""
     if not isinstance(task.axis, ProcessorAxis) or ranges or task.sensor.filter:
         return ()
-    shown, (least, most) = (
-        sampled_admittance(task.spec, task.axis, law, {}),
-        task.axis.sampling.delay,
-    )
+    shown = sampled_admittance(task.spec, task.axis, law, {})
+    least, most = task.axis.sampling.delay
     return () if isinstance(shown, str) else sampled_bands(shown, range(least, most + 1))
 
 
@@ -245,8 +240,10 @@ def impedance_problem(
     task: Task, given: ImpedanceControllerSpec, requirement: Requirement
 ) -> ImpedanceProblem:
     """State the choice of one controller's virtual mass and damping as an optimization."""
+    low_pass, contact = task.sensor.filter, task.plant.environment(given.environment).nominal
+    lags = (1.0,) if low_pass is None else low_pass.denominator
     return ImpedanceProblem(
-        loop=_loop(task, given),
+        loop=ImpedanceLoop(task.motion, contact, float(_spring(given)), lags),
         desired=desired_impedance(task.spec, given),
         bandwidth=task.spec.limits.bandwidth.si,
         mass_bounds=(given.Mt.min.si, given.Mt.max.si),
@@ -299,49 +296,26 @@ def _measures(task: Task) -> tuple[Measure, ...]:
     return (*IMPEDANCE_MEASURES, *(CREEP_MEASURES if task.sensor.errors else ()))
 
 
-def _loop(task: Task, given: ImpedanceControllerSpec) -> ImpedanceLoop:
-    """Return the loop of a controller in nominal contact."""
-    low_pass = task.sensor.filter
-    lags = (1.0,) if low_pass is None else low_pass.denominator
-    contact = task.plant.environment(given.environment).nominal
-    return ImpedanceLoop(task.motion, contact, float(_spring(given)), lags)
-
-
-def _optimize(task: Task, given: ImpedanceControllerSpec) -> tuple[Admittance, ImpedanceOptimum]:
-    """Optimize an admittance under its goals, and round it so that they are still met."""
-    requirement = requirement_of(task, given)
-    problem = impedance_problem(task, given, requirement)
-    optimum = optimize_with_goals(problem, requirement)
-    law = Admittance(
-        Mt=_shipped(optimum.Mt, given.Mt, task.digits),
-        Bt=_shipped(optimum.Bt, given.Bt, task.digits),
-        Kt=_spring(given),
-    )
-    if not meets(requirement, float(law.Mt), float(law.Bt)):
-        law = _rounded_within(problem, requirement, optimum, given, task.digits)
-    return law, optimum
-
-
 def _rounded_within(
     problem: ImpedanceProblem,
     requirement: Requirement,
     optimum: ImpedanceOptimum,
-    controller: ImpedanceControllerSpec,
+    given: ImpedanceControllerSpec,
     digits: int,
-) -> Admittance:
-    """Round an optimum at the edge of what its goals allow: a gain may have to go the other way."""
-    candidates = tuple(
-        {float(_shipped(near, bounds, digits)) for near in neighbors(value, digits)}
-        for value, bounds in ((optimum.Mt, controller.Mt), (optimum.Bt, controller.Bt))
+) -> tuple[Fraction, Fraction]:
+    """Return the cheapest rounded gains near an optimum at the edge of what its goals allow."""
+    Mts, Bts = (
+        [float(_shipped(near, bounds, digits)) for near in neighbors(value, digits)]
+        for value, bounds in ((optimum.Mt, given.Mt), (optimum.Bt, given.Bt))
     )
-    pair = best_rounding(problem, requirement, (candidates[0], candidates[1]))
+    pair = best_rounding(problem, requirement, (Mts, Bts))
     if pair is None:
         raise DesignError(
             f"no gains of {digits} significant digits near Mt = {optimum.Mt:.6g} {unit('kg m^2')} "
             f"and Bt = {optimum.Bt:.6g} {unit('N m s/rad')} meet the goals",
             remedy="raise design.significant_digits (at most 7), or relax a goal",
         )
-    return Admittance(Fraction(pair[0]), Fraction(pair[1]), _spring(controller))
+    return Fraction(pair[0]), Fraction(pair[1])
 
 
 def _spring(given: ImpedanceControllerSpec) -> Fraction:

@@ -37,7 +37,13 @@ def optimize_with_goals(problem: ImpedanceProblem, requirement: Requirement) -> 
     Goals are held against the loop that is proved; the cost is that of the thesis. Where none is
     met within the bounds, the `DesignError` names the goal and the best value.
     """
-    _check_computed(requirement)
+    unknown = (m for m, _ in requirement.goals if m not in CREEP_MEASURES)
+    if requirement.axis is None and (measure := next(unknown, None)) is not None:
+        raise DesignError(
+            f"the {measure.title} is {NOT_COMPUTED}",
+            remedy=f"leave the goal {measure.goal} out, or outer_period",
+            at=("goals", measure.goal),
+        )
     optimum = optimize_impedance(problem)
     if meets(requirement, optimum.Mt, optimum.Bt):
         return optimum
@@ -88,17 +94,6 @@ class _Search:
         part = 1 - 1 / (1 + np.maximum(missed, 0))
         values[stable] = np.where(missed > 0, _MISSED + part, values[stable])
         return values
-
-
-def _check_computed(requirement: Requirement) -> None:
-    """Refuse goals that no number decides."""
-    unknown = (m for m, _ in requirement.goals if m not in CREEP_MEASURES)
-    if requirement.axis is None and (measure := next(unknown, None)) is not None:
-        raise DesignError(
-            f"the {measure.title} is {NOT_COMPUTED}",
-            remedy=f"leave the goal {measure.goal} out, or outer_period",
-            at=("goals", measure.goal),
-        )
 
 
 def _unreachable(

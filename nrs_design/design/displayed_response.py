@@ -40,8 +40,9 @@ from nrs_design.loop.cut_loop import ContinuousAxis, Place
 from nrs_design.models.contact import KelvinVoigt
 from nrs_design.models.interval import Interval
 
-# Digits of a root.
+# Digits of a root, and what makes it one from above.
 _DIGITS = 20
+_ABOVE = Fraction(1, 10**_DIGITS)
 
 Band = tuple[Fraction, Fraction]  # In rad/s
 
@@ -169,7 +170,7 @@ def largest_over(
     *places, x = found.at
     square = low + x * (high - low)
     return LargestResponse(
-        above=None if found.above is None else root_above(found.above),
+        above=None if found.above is None else root_below(found.above, _DIGITS) + _ABOVE,
         below=root_below(found.below, _DIGITS),
         square=square,
         at={
@@ -183,8 +184,3 @@ def largest_over(
 def root_below(x: Fraction, digits: int = 6) -> Fraction:
     """Return a number of so many decimals whose square is not above x."""
     return Fraction(isqrt(int(x * 10 ** (2 * digits))), 10**digits)
-
-
-def root_above(square: Fraction) -> Fraction:
-    """Return a number whose square is not below, near the root."""
-    return root_below(square, _DIGITS) + Fraction(1, 10**_DIGITS)

@@ -25,25 +25,11 @@ import numpy as np
 
 from nrs_design.axis import unit
 from nrs_design.controllers.laws import CompliantLaw
+from nrs_design.design import measures
 from nrs_design.design.force_loop import Approach, steady_force_error
 from nrs_design.design.loop_family import LoopFamily
 from nrs_design.design.loops import Loops, gain_extremes, hand_effort, transparency
-from nrs_design.design.measures import (
-    AT_HOME,
-    CREEP,
-    CREEP_ANGLE,
-    CREEP_MEASURES,
-    DELAY_MARGIN,
-    DISK_MARGIN,
-    GAIN_MARGIN,
-    HAND_EFFORT,
-    MONOTONE,
-    PHASE_MARGIN,
-    SENSITIVITY_PEAK,
-    TRANSPARENCY,
-    GoalStanding,
-    Measure,
-)
+from nrs_design.design.measures import GoalStanding, Measure
 from nrs_design.design.transfer import (
     BoolArray,
     ComplexArray,
@@ -147,7 +133,7 @@ class AbstractRequirement(ABC):
         Gains are those chosen by the goals, in SI: Mt and Bt of an admittance, each of shape (m,).
         """
         count = len(gains[0]) if gains else 1
-        if self.axis is None and measure not in CREEP_MEASURES:
+        if self.axis is None and measure not in measures.CREEP_MEASURES:
             return np.full(count, np.nan), [NOT_COMPUTED] * count
         corners = [*self._measured_at(measure)]
         if measure in _MARGINS:
@@ -156,15 +142,15 @@ class AbstractRequirement(ABC):
             table = np.array([self._at(corner, measure, *gains) for corner in corners])
         worst = table.argmax(axis=0) if measure.upper else table.argmin(axis=0)
         values = np.take_along_axis(table, worst[None, :], axis=0)[0]
-        in_the_air = measure in CREEP_MEASURES
+        in_the_air = measure in measures.CREEP_MEASURES
         return values, ["free motion" if in_the_air else corners[i].label for i in worst]
 
-    def achieved(self, measures: tuple[Measure, ...], *gains: float) -> tuple[Achieved, ...]:
+    def achieved(self, asked: tuple[Measure, ...], *gains: float) -> tuple[Achieved, ...]:
         """Return the worst value of every measure, beside its goal.
 
         Where corners meet the goal, it is also looked for between them.
         """
-        return tuple(self._achieved(measure, *gains) for measure in measures)
+        return tuple(self._achieved(measure, *gains) for measure in asked)
 
     def _achieved(self, measure: Measure, *gains: float) -> Achieved:
         own = tuple(np.array([gain]) for gain in gains)
@@ -174,7 +160,7 @@ class AbstractRequirement(ABC):
             float(value),
             where,
             dict(self.goals).get(measure),
-            everywhere=measure in MONOTONE or self._is_one_point(measure),
+            everywhere=measure in measures.MONOTONE or self._is_one_point(measure),
         )
         if found.goal is None or found.standing is not GoalStanding.NOT_JUDGED or np.isnan(value):
             return found
@@ -195,7 +181,7 @@ class AbstractRequirement(ABC):
         return {}
 
     def _measured_at(self, measure: Measure) -> Iterator[ContactCorner]:
-        return (corner for corner in self.corners if corner.home or measure not in AT_HOME)
+        return (corner for corner in self.corners if corner.home or measure not in measures.AT_HOME)
 
     def _is_one_point(self, measure: Measure) -> bool:
         """Tell whether nothing has a range: ages of the force are taken one by one."""
@@ -316,12 +302,12 @@ class Requirement(AbstractRequirement):
 
     def _at(self, corner: ContactCorner, measure: Measure, *gains: FloatArray) -> FloatArray:
         Mt, Bt = gains
-        if measure is CREEP:
+        if measure is measures.CREEP:
             return np.zeros_like(Bt) if corner.Kt else self.force_error / Bt
-        if measure is CREEP_ANGLE:
+        if measure is measures.CREEP_ANGLE:
             angle = self.force_error / float(corner.Kt) if corner.Kt else np.inf
             return np.full_like(Bt, angle)
-        if measure in (TRANSPARENCY, HAND_EFFORT):
+        if measure in (measures.TRANSPARENCY, measures.HAND_EFFORT):
             return self._held(corner, measure, Mt, Bt)
         if corner.Kt:  # Towards rest the robot displays the spring, and no damping.
             return np.full(len(Mt), np.inf)
@@ -334,27 +320,23 @@ class Requirement(AbstractRequirement):
         self, corner: ContactCorner, measure: Measure, Mt: FloatArray, Bt: FloatArray
     ) -> FloatArray:
         """Return a measure of the hand that holds the robot."""
-        if self._period is not None:
+        if self.axis is not None and self.axis.period is not None:
             raise DesignError(
                 f"the {measure.title} is not computed for a sampled loop",
                 remedy=f"leave {measure.goal} out, or sampling",
                 at=("goals", measure.goal),
             )
         loops = self.family(corner).felt(Mt, Bt, corner.contact.stiffness)
-        if measure is TRANSPARENCY:
+        if measure is measures.TRANSPARENCY:
             return transparency(loops, self.bandwidth)
         return hand_effort(loops, corner.contact, self.bandwidth)
 
     @property
-    def _period(self) -> Fraction | None:
-        return None if self.axis is None else self.axis.period
-
-    @property
     def _seen_bandwidth(self) -> float:
         """The bandwidth on the axis of the loops; up to half the sampling rate, if there is one."""
-        if self._period is None:
+        if self.axis is None or self.axis.period is None:
             return self.bandwidth
-        half = float(self._period) / 2
+        half = float(self.axis.period) / 2
         return tan(min(self.bandwidth * half, pi / 2 * _NEARLY)) / half
 
 
@@ -436,9 +418,9 @@ def _inside(group: Sequence[ContactCorner]) -> Iterator[ContactCorner]:
 
 
 _MARGINS = {
-    SENSITIVITY_PEAK: Loops.sensitivity_peak,
-    GAIN_MARGIN: Loops.gain_margin,
-    PHASE_MARGIN: Loops.phase_margin,
-    DELAY_MARGIN: Loops.delay_margin,
-    DISK_MARGIN: Loops.disk_margin,
+    measures.SENSITIVITY_PEAK: Loops.sensitivity_peak,
+    measures.GAIN_MARGIN: Loops.gain_margin,
+    measures.PHASE_MARGIN: Loops.phase_margin,
+    measures.DELAY_MARGIN: Loops.delay_margin,
+    measures.DISK_MARGIN: Loops.disk_margin,
 }

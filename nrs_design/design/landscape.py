@@ -61,18 +61,13 @@ def map_cost(problem: ImpedanceProblem, requirement: Requirement, Mt: float, Bt:
         for bounds, value in ((problem.mass_bounds, Mt), (problem.damping_bounds, Bt))
     )
     grid = np.meshgrid(masses, dampings)
-    abscissa = _abscissa(requirement, *grid)
-    cost = np.where(abscissa < 0, impedance_cost(problem, *grid), np.nan)
-    return CostMap(masses, dampings, cost, abscissa)
-
-
-def _abscissa(requirement: Requirement, Mt: FloatArray, Bt: FloatArray) -> FloatArray:
-    """Return the largest real part of the roots."""
     found = []
     for corner in requirement.nominal:
-        closed = requirement.loops(corner, Mt.ravel(), Bt.ravel()).closed
+        closed = requirement.loops(corner, *(each.ravel() for each in grid)).closed
         found.append(np.nanmax(all_roots(closed).real, axis=-1))
-    return np.asarray(np.max(found, axis=0).reshape(Mt.shape), dtype=np.float64)
+    abscissa = np.max(found, axis=0).reshape(grid[0].shape)
+    cost = np.where(abscissa < 0, impedance_cost(problem, *grid), np.nan)
+    return CostMap(masses, dampings, cost, abscissa)
 
 
 def _ends(bounds: tuple[float, float], value: float) -> tuple[float, float]:

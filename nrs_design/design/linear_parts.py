@@ -83,25 +83,16 @@ def linear_parts(plant: Plant, design: ControllerDesign) -> LinearParts:
 
 def _plant_parts(plant: Plant, design: ControllerDesign) -> tuple[LinearPart, LinearPart]:
     """Return the actuator, and the closed motion loop from commands to motions."""
-    Km, tau, motion = plant.actuator.gain, plant.actuator.time_constant, design.motion
-    loop = plant.motion_loop(motion.Kp, motion.Kd)
-    command = design.command
+    loop = plant.motion_loop(design.motion.Kp, design.motion.Kd)
+    lag, given = (
+        (plant.actuator.time_constant, Fraction(1), Fraction(0)),
+        ("command", design.command),
+    )
+    # Of velocities to velocities, and likewise of positions to positions.
+    command, motion = (("command", "rad/s or rad"), ("motion", "rad/s or rad"))
     return (
-        _of_transfer(
-            "actuator",
-            (Km,),
-            (tau, Fraction(1), Fraction(0)),
-            ("command", command),
-            ("position", "rad"),
-        ),
-        _of_transfer(
-            "motion_loop",
-            loop.numerator,
-            loop.denominator,
-            # Of velocities to velocities, and likewise of positions to positions.
-            ("command", "rad/s or rad"),
-            ("motion", "rad/s or rad"),
-        ),
+        _of_transfer("actuator", (plant.actuator.gain,), lag, given, ("position", "rad")),
+        _of_transfer("motion_loop", loop.numerator, loop.denominator, command, motion),
     )
 
 

@@ -48,7 +48,7 @@ from fractions import Fraction
 from functools import partial
 from itertools import product
 from math import floor
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from nrs_design.controllers.laws import CompliantLaw
 from nrs_design.design.affine_family import (
@@ -66,13 +66,15 @@ from nrs_design.design.affine_family import (
     zeros_at_rest,
 )
 from nrs_design.design.displayed_response import impedance_at, root_below
-from nrs_design.design.sampled_response import SampledAdmittance
 from nrs_design.loop.cut_loop import ContinuousAxis
 from nrs_design.models.interval import Interval
 from nrs_design.proof.enclosure import fraction_of
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Time
 from nrs_design.proof.spectrum import is_stable
+
+if TYPE_CHECKING:
+    from nrs_design.design.sampled_response import SampledAdmittance
 
 # How far beyond a root it is looked for a negative value, at first, as a share of the root, and how
 # often twice as far.

@@ -30,6 +30,7 @@ from math import isfinite, prod
 import numpy as np
 
 from nrs_design.controllers.laws import CompliantLaw
+from nrs_design.design import measures
 from nrs_design.design.affine_family import (
     ONE,
     ZERO,
@@ -48,19 +49,7 @@ from nrs_design.design.affine_family import (
 )
 from nrs_design.design.displayed_response import over_admittance, parameters_at
 from nrs_design.design.goals import Achieved
-from nrs_design.design.measures import (
-    AT_HOME,
-    DELAY_MARGIN,
-    DISK_MARGIN,
-    GAIN_MARGIN,
-    HAND_EFFORT,
-    IMPEDANCE_ERROR,
-    PHASE_MARGIN,
-    SENSITIVITY_PEAK,
-    TRANSPARENCY,
-    GoalStanding,
-    Measure,
-)
+from nrs_design.design.measures import GoalStanding, Measure
 from nrs_design.design.transfer import frequencies
 from nrs_design.loop.cut_loop import ContinuousAxis
 from nrs_design.models.contact import Elastic, KelvinVoigt
@@ -237,14 +226,14 @@ class RangedLoop:
 
 
 _PROOFS: dict[Measure, Callable[[RangedLoop, Fraction], bool]] = {
-    SENSITIVITY_PEAK: RangedLoop._has_sensitivity,
-    GAIN_MARGIN: RangedLoop._stays_stable,
-    PHASE_MARGIN: RangedLoop._has_phase,
-    DELAY_MARGIN: RangedLoop._has_delay,
-    DISK_MARGIN: RangedLoop._has_disk,
-    IMPEDANCE_ERROR: RangedLoop._has_impedance,
-    TRANSPARENCY: RangedLoop._has_transparency,
-    HAND_EFFORT: RangedLoop._has_effort,
+    measures.SENSITIVITY_PEAK: RangedLoop._has_sensitivity,
+    measures.GAIN_MARGIN: RangedLoop._stays_stable,
+    measures.PHASE_MARGIN: RangedLoop._has_phase,
+    measures.DELAY_MARGIN: RangedLoop._has_delay,
+    measures.DISK_MARGIN: RangedLoop._has_disk,
+    measures.IMPEDANCE_ERROR: RangedLoop._has_impedance,
+    measures.TRANSPARENCY: RangedLoop._has_transparency,
+    measures.HAND_EFFORT: RangedLoop._has_effort,
 }
 PROVABLE = tuple(_PROOFS)
 
@@ -272,7 +261,13 @@ def with_proofs(
     The desired impedance is in N m s/rad, the highest frequency of the command in rad/s; `home` is
     the environment that the gains are designed for. They are of impedance controllers alone.
     """
-    proposed = [found for found in achieved if _is_provable(found)]
+    proposed = [
+        found
+        for found in achieved
+        if found.measure in PROVABLE
+        and found.value > 0
+        and found.standing is not GoalStanding.MISSED
+    ]
     if not proposed or not loops or not all(loop.stable for loop in loops):
         return tuple(achieved)
     at_home = [
@@ -287,16 +282,13 @@ def with_proofs(
         if loop.environment.name == home
     ]
     return tuple(
-        replace(found, proved=_proved(found, at_home if found.measure in AT_HOME else loops))
+        replace(
+            found, proved=_proved(found, at_home if found.measure in measures.AT_HOME else loops)
+        )
         if found in proposed
         else found
         for found in achieved
     )
-
-
-def _is_provable(found: Achieved) -> bool:
-    good = found.value > 0 and found.standing is not GoalStanding.MISSED
-    return good and found.measure in PROVABLE
 
 
 def _proved(found: Achieved, loops: Sequence[RangedLoop]) -> Fraction | None:
@@ -310,16 +302,12 @@ def _proved(found: Achieved, loops: Sequence[RangedLoop]) -> Fraction | None:
 def _proposed(found: Achieved) -> Iterator[Fraction]:
     """Yield values, the best first: as it is shown, the goal, and what is a little worse."""
     wanted = found.goal
-    if not isfinite(found.value):
-        # What nothing limits at the corners.
-        if wanted is not None:
-            yield Fraction(wanted)
-        return
+    # What nothing limits at the corners has no value to propose.
+    slacks = _SLACK if isfinite(found.value) else ()
     upper, scale = found.measure.upper, found.measure.exact_scale
     context = Context(prec=_DIGITS, rounding=ROUND_CEILING if upper else ROUND_FLOOR)
-    value = Fraction(found.value) * scale
-    for slack in _SLACK:
-        worse = value * (1 + slack if upper else 1 - slack)
+    for slack in slacks:
+        worse = Fraction(found.value) * scale * (1 + slack if upper else 1 - slack)
         shown = Fraction(context.create_decimal(Decimal(float(worse)))) / scale
         if wanted is None or found.measure.violation(float(shown), wanted) <= 0:
             yield shown

@@ -13,7 +13,6 @@ from nrs_design.design.displayed_response import (
     largest_impedance,
     largest_tracking_error,
 )
-from nrs_design.design.sampled_response import largest_sampled_impedance, sampled_admittance
 from nrs_design.loop.cut_loop import AbstractAxis, ContinuousAxis, ProcessorAxis
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.interval import Interval
@@ -149,6 +148,11 @@ def _found(
     if spec.sampling is not None and key == ACCURACY:
         return "the law is sampled, and when a commanded velocity takes effect is not modelled"
     if isinstance(axis, ProcessorAxis):
+        from nrs_design.design.sampled_response import (
+            largest_sampled_impedance,
+            sampled_admittance,
+        )
+
         shown = sampled_admittance(spec, axis, law, ranges)
         if isinstance(shown, str):
             return shown

@@ -19,7 +19,6 @@ from nrs_design.errors import AssemblyError, DesignError, SpecError
 from nrs_design.pipeline.certification import Result, assemble_spec, gains_text, search_limits
 from nrs_design.pipeline.design import design_at_least_cost
 from nrs_design.progress import Progress, silent
-from nrs_design.proof.system import SwitchedSystem
 from nrs_design.proof.text import counted
 from nrs_design.search.certification import Certification, Limits
 from nrs_design.spec import LoadedSpec
@@ -230,7 +229,9 @@ class _Search:
         # If these are proved, so is the spec: other gains are chosen only with their proof.
         designed = design_at_least_cost(loaded)
         system = assemble_spec(loaded, designed)
-        if _same_search(system, self._result.certification.system):
+        # Two systems that differ in words only.
+        own = self._result.certification.system
+        if system == replace(own, name=system.name, assumptions=system.assumptions):
             return None
         look = min(LOOK, budget / 4)
         self._spent += look
@@ -294,11 +295,6 @@ def _edited(loaded: LoadedSpec, edits: Sequence[Edit]) -> LoadedSpec:
 
 def _least(lines: Sequence[SpecRelaxation]) -> list[Edit]:
     return [line.edit(line.weakest, 0) for line in lines]
-
-
-def _same_search(one: SwitchedSystem, other: SwitchedSystem) -> bool:
-    """Tell whether two systems differ in words only."""
-    return replace(one, name="", assumptions=()) == replace(other, name="", assumptions=())
 
 
 def blocked_lines(blocked: Blocked, path: Path) -> tuple[str, ...]:

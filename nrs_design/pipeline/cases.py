@@ -88,7 +88,9 @@ def _cut(
         if cuts and not isinstance(found := proved_at(part), str):
             proved[index] = found
             continue
-        middles = {p.name: _middle(p, part) for p in constants}
+        # Halfway in the coordinate in which modes are affine.
+        parts = {p.name: replace(p, low=part[p.name][0], high=part[p.name][1]) for p in constants}
+        middles = {name: value_at(p, Fraction(1, 2)) for name, p in parts.items()}
         found = proved_at({name: (at, at) for name, at in middles.items()})
         if isinstance(found, str):
             where = " and ".join(f"{name} = {float(at):.4g}" for name, at in middles.items())
@@ -100,12 +102,6 @@ def _cut(
         todo += [index, len(cuts)]
     outcome = f"each of {len(proved)} parts of the constant ranges has a proof"
     return tuple(cuts), tuple(proved[k] for k in sorted(proved)), outcome
-
-
-def _middle(parameter: FixedParameter, part: Ends) -> Fraction:
-    """Return the value halfway in the coordinate in which modes are affine."""
-    low, high = part[parameter.name]
-    return value_at(replace(parameter, low=low, high=high), Fraction(1, 2))
 
 
 def _length(ends: tuple[Fraction, Fraction], whole: tuple[Fraction, Fraction]) -> Fraction:

@@ -37,7 +37,6 @@ from nrs_design.design.measures import (
 from nrs_design.design.passivity import PassiveBand, SampledBand, passive_band, sampled_bands
 from nrs_design.design.proved_margins import ranged_loops, with_proofs
 from nrs_design.design.response_goals import JudgedResponse, judged_responses, response_goals
-from nrs_design.design.sampled_response import sampled_admittance
 from nrs_design.errors import DesignError
 from nrs_design.loop.cut_loop import ContinuousAxis, ProcessorAxis
 from nrs_design.models.interval import Interval
@@ -219,6 +218,8 @@ def _sampled_bands(
     """Return where the sampled law is passive; empty where that is not computed."""
     if not isinstance(task.axis, ProcessorAxis) or ranges or task.sensor.filter:
         return ()
+    from nrs_design.design.sampled_response import sampled_admittance
+
     shown = sampled_admittance(task.spec, task.axis, law, {})
     least, most = task.axis.sampling.delay
     return () if isinstance(shown, str) else sampled_bands(shown, range(least, most + 1))

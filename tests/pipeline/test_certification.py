@@ -84,7 +84,7 @@ def test_a_gated_spec_is_built_once_and_optimized_once(tmp_path, monkeypatch):
         # It is imported where it is called, so there is one place to look.
         build_plant=("spec.build_plant",),
         optimize_impedance=("design.constrained",),
-        design_controllers=("design.design",),
+        design_controllers=("design.analysis",),
     )
     outcome = run_gate([SOFT_TISSUE], Files(folder=tmp_path, html=True))
     assert outcome.severity == 0

@@ -3,6 +3,7 @@
 import math
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from nrs_design.robot.models.neuroboscope import robot, robot_spec
@@ -10,6 +11,9 @@ from nrs_design.robot.simulation.tracking.experiment import thesis_experiments
 from nrs_design.robot.simulation.tracking.measured import measured_rmse
 from nrs_design.spec import parse_spec
 from nrs_design.spec.templates import TEMPLATES
+from nrs_design.thesis import hand_runs, thesis
+from nrs_design.thesis.hands_on import ADMITTANCES
+from nrs_design.thesis.table import topic_rows
 
 TEXT = TEMPLATES["robot"]
 TILTED = robot().tilted(robot_spec().balance.tilt.si)
@@ -44,3 +48,36 @@ def test_printed_beside_simulated(controller, moved, print):
 def test_no_measurement_of_another(text, tilt, controller, rate):
     base, other = robot().tilted(math.radians(tilt)), replace(DEPTH, rate=rate)
     assert measured_rmse(parse_spec(text), base, controller, other) is None
+
+
+@pytest.mark.parametrize(("Mt", "Bt"), ADMITTANCES)
+@pytest.mark.parametrize("stiffness", [None, hand_runs.HAND])
+def test_the_total_torque_is_a_balance(Mt, Bt, stiffness):
+    """``int F dt = Bt int vm dt + Mt vm``, and the robot is behind its admittance by 1/Kv."""
+    run = hand_runs.move(Mt, Bt, stiffness)
+    # Thesis 6.12: (a1 - b1)/a0 of the realization.
+    behind = run.last * (56.89 - 28.416) / 1618.8
+    wanted = Bt * (hand_runs.WAY + behind) + Mt * run.last
+    if stiffness is None or Mt == 1 or Bt == 8:
+        assert run.effort.total == pytest.approx(wanted, rel=2e-3)
+    else:
+        # This hand swings with the mass: it pulls, too, and both count.
+        assert run.effort.total > wanted
+
+
+def test_a_constant_torque_by_hand():
+    """``v = F/Bt (1 - exp(-Bt t/Mt))`` but for the motion loop, which is some 20 ms behind."""
+    t = np.linspace(0, 10, 100_001)
+    v = thesis.TORQUE / 4 * (1 - np.exp(-4 * t))
+    time = np.interp(hand_runs.WAY, np.concatenate([[0], np.cumsum(v[1:] * 1e-4)]), t)
+    assert hand_runs.move(1, 4).time == pytest.approx(time + 0.0176, abs=2e-3)
+
+
+def test_the_spec_of_the_runs_is_the_robot_of_the_thesis():
+    """The peak under a proportional gain is that of the closed form of 6.41."""
+    from nrs_design.design.force_loop import Approach, peak_force
+
+    approach = Approach("reference", math.radians(5), 0.3)
+    peak = peak_force(thesis.EXACT_LOOP, float(thesis.SOFT), 0.02, approach)
+    row = next(row for row in topic_rows("runs") if "reference at the switch" in row.name)
+    assert float(row.value.split(", ")[0]) == pytest.approx(peak, rel=1e-4)

@@ -1,9 +1,13 @@
-"""Properties of the full dynamics; its values are in test_pinocchio."""
+"""Properties of the full dynamics; its values are in `test_pinocchio`."""
+
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from hypothesis import given
 
+from nrs_design.errors import DesignError, PoseError
+from nrs_design.robot.models.body import MASSLESS, point_mass
 from nrs_design.robot.models.dynamics import (
     coriolis_matrix,
     gravity_torque,
@@ -12,7 +16,11 @@ from nrs_design.robot.models.dynamics import (
     mass_matrix,
     potential_energy,
 )
-from nrs_design.robot.models.kinematics import jacobian
+from nrs_design.robot.models.kinematics import jacobian, orientation, orientation_jacobian
+from nrs_design.robot.models.robot import Workspace
+from nrs_design.robot.models.shares import torque_shares
+from nrs_design.robot.models.simplified import simplified_dynamics
+from nrs_design.robot.models.soundness import examine_inertia
 
 from .strategies import poses, rates, tilts
 
@@ -83,3 +91,81 @@ def test_gravity_turns_with_the_base(robot):
     # Thesis 3.40: a negative tilt raises the +x side.
     x, y, z = robot.tilted(np.radians(-30)).gravity_vector
     assert (x, y, z) == pytest.approx((-9.81 / 2, 0, -9.81 * np.sqrt(3) / 2))
+
+
+def test_shares_add_up(robot):
+    shares = torque_shares(robot, [[0, 0, 0.2], [0.1, -0.2, 0.2]])
+    assert shares.gravity + shares.coriolis + shares.inertia == pytest.approx(np.ones((2, 3)))
+    assert min(part.min() for part in (shares.gravity, shares.coriolis, shares.inertia)) >= 0
+
+
+def test_at_rest_all_is_gravity(robot):
+    shares = torque_shares(robot, robot.home, (0, 0, 0), (0, 0, 0))
+    assert shares.means == (1, 0, 0)
+
+
+def test_weightless_and_slow_all_is_inertia(robot):
+    from dataclasses import replace
+
+    shares = torque_shares(replace(robot, gravity=0.0), robot.home, (0, 0, 0), (1, 1, 1))
+    assert shares.means == (0, 0, 1)
+
+
+def only_platform(robot):
+    left, right, middle = robot.without_links().legs
+    rotor = replace(middle, axis_inertia=robot.legs[2].axis_inertia)
+    return replace(robot, legs=(left, right, rotor))
+
+
+@given(pose=poses, tilt=tilts)
+def test_it_is_the_full_model_without_links(robot, pose, tilt):
+    robot = robot.tilted(tilt)
+    model, bare = simplified_dynamics(robot, pose), only_platform(robot)
+    assert pytest.approx(mass_matrix(bare, pose), abs=1e-15) == model.Ms
+    assert pytest.approx(gravity_torque(bare, pose), abs=1e-13) == model.Gs
+
+
+@given(pose=poses)
+def test_as_the_thesis_writes_it(robot, pose):
+    # Thesis 3.31 to 3.35, with the angular velocity of 3.33 as printed.
+    x, y, d = orientation(pose)
+    Rx = np.array([[1, 0, 0], [0, np.cos(x), -np.sin(x)], [0, np.sin(x), np.cos(x)]])
+    Ry = np.array([[np.cos(y), 0, np.sin(y)], [0, 1, 0], [-np.sin(y), 0, np.cos(y)]])
+    R = Rx @ Ry
+    J = orientation_jacobian(pose) @ jacobian(robot, pose)
+    L = np.array([0.0367, 0.0, d + 0.010])
+    linear = np.column_stack([np.cross((1, 0, 0), R @ L), np.cross(R[:, 1], R @ L), R[:, 2]]) @ J
+    angular = np.diag([1.0, 1.0, 0.0]) @ J
+    rod = 0.7972 * 0.25**2 / 12
+    inertia = R @ np.diag([rod, rod, 0]) @ R.T + np.diag([14.81e-7, 0, 0])
+    Ms = 0.7972 * linear.T @ linear + angular.T @ inertia @ angular
+    assert simplified_dynamics(robot, pose, printed=True).Ms == pytest.approx(Ms, abs=1e-14)
+
+
+def test_eigenvalues_of_the_robot(robot):
+    found = examine_inertia(robot)
+    assert (np.diff(found) > 0).all()
+    M = mass_matrix(robot, robot.home)
+    assert [found.sum(), found.prod()] == pytest.approx([np.trace(M), np.linalg.det(M)])
+
+
+def test_the_platform_alone_is_enough(robot):
+    assert (examine_inertia(robot.without_links()) > 0).all()
+
+
+def test_nothing_with_mass(robot):
+    with pytest.raises(DesignError, match="is singular"):
+        examine_inertia(replace(robot.without_links(), platform=MASSLESS))
+
+
+def test_a_mass_that_one_motion_leaves_at_rest(robot):
+    # In the pivot: turning the endoscope about it moves nothing.
+    at_pivot = point_mass(1.0, (0.0, 0.0, -float(robot.home[2])))
+    with pytest.raises(DesignError, match="moves no mass"):
+        examine_inertia(replace(robot.without_links(), platform=at_pivot))
+
+
+def test_a_workspace_out_of_reach(robot):
+    far = Workspace(robot.workspace.phi, robot.workspace.psi, (0.5, 0.6))
+    with pytest.raises(PoseError, match="overstretched"):
+        examine_inertia(replace(robot, workspace=far))

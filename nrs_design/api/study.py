@@ -233,7 +233,7 @@ class Study:
         >>> case.worst["force"] > case.limits["force"]
         True
         """
-        from nrs_design.pipeline.worst_case import run_worst_case
+        from nrs_design.pipeline.scenarios import run_worst_case
 
         with placed(self.loaded):
             designed, proof = self._interaction(certificate)

@@ -11,7 +11,7 @@ from nrs_design.api.result import AbstractResult, Figures
 from nrs_design.pipeline.design import Designed
 
 if TYPE_CHECKING:
-    from nrs_design.pipeline.worst_case import WorstCase
+    from nrs_design.pipeline.scenarios import WorstCase
     from nrs_design.simulation.worst_case import WorstRun
 
 
@@ -23,7 +23,7 @@ class WorstFound(AbstractResult):
     ----------
     designed : nrs_design.pipeline.design.Designed
         The spec and its gains.
-    case : nrs_design.pipeline.worst_case.WorstCase
+    case : nrs_design.pipeline.scenarios.WorstCase
         His runs.
     """
 

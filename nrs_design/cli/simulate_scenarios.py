@@ -81,7 +81,7 @@ def worst_case(
 ) -> Answer:
     """Search, and write the figure and the table of every run."""
     from nrs_design.api.worst import WorstFound
-    from nrs_design.pipeline.worst_case import run_worst_case
+    from nrs_design.pipeline.scenarios import run_worst_case
     from nrs_design.reporting.worst_case import response_of
     from nrs_design.simulation.worst_outputs import DEFLECTION
 

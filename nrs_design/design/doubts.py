@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
+from bisect import bisect_left
 from collections.abc import Iterator
 from itertools import combinations
+from math import floor, log10
 
 from nrs_design.axis import unit
 from nrs_design.controllers.controller_design import ControllerDesign, ImpedanceOptimum
-from nrs_design.controllers.float32 import round_significant
 from nrs_design.design.goals import Achieved, Requirement
 from nrs_design.design.measures import (
     DISK_MARGIN,
@@ -20,9 +21,8 @@ from nrs_design.design.measures import (
 from nrs_design.models.contact.environment import Environment
 from nrs_design.spec import Doubt, ImpedanceControllerSpec, InteractionDesignSpec
 
-# How far to look for a damping, as a factor, and how near to the least one to come.
-_FURTHEST, _NEAR = 1e4, 1e-3
-_DIGITS = 3
+# How far to look for a damping.
+_DECADES = 4
 
 
 def doubt_values(name: str, achieved: tuple[Achieved, ...], *, provable: bool) -> Iterator[Doubt]:
@@ -120,25 +120,17 @@ def doubt_stiffness(
 def enough_damping(
     requirement: Requirement, environment: str, Mt: float, Bt: float, stiffness: float
 ) -> float | None:
-    """Return a damping above Bt, of few digits, that is stable up to a stiffness in N m/rad.
+    """Return the least damping above Bt, of three digits, that is stable up to a stiffness.
 
-    The least one, rounded up; None if none up to 10,000 times Bt is enough.
+    The stiffness is in N m/rad. None if none up to 10,000 times Bt is enough.
     """
 
     def holds(damping: float) -> bool:
         limits = requirement.stiffness_limits(Mt, damping)
         return limits[environment][0] > stiffness
 
-    low, high = Bt, Bt
-    while not holds(high):
-        low, high = high, 2 * high
-        if high > _FURTHEST * Bt:
-            return None
-    while high - low > _NEAR * high:
-        middle = (low + high) / 2
-        low, high = (low, middle) if holds(middle) else (middle, high)
-    return next(
-        float(rounded)
-        for up in range(100)
-        if (rounded := round_significant(high * (1 + up * _NEAR), _DIGITS)) >= high
-    )
+    decades = range(floor(log10(Bt)), floor(log10(Bt)) + _DECADES + 1)
+    tried = [float(f"{n}e{decade - 2}") for decade in decades for n in range(100, 1000)]
+    higher = [damping for damping in tried if Bt < damping <= 10**_DECADES * Bt]
+    first = bisect_left(higher, True, key=holds)
+    return higher[first] if first < len(higher) else None

@@ -13,6 +13,7 @@ from nrs_design.design.transfer import (
     ComplexArray,
     FloatArray,
     TransferFunction,
+    controllable_form,
     frequencies,
     hurwitz,
     poles,
@@ -108,17 +109,10 @@ def step_overshoot(tf: TransferFunction) -> float:
         raise DesignError("an unstable loop has no overshoot", remedy="stabilize the loop first")
     if static_gain(tf) == 0:
         raise DesignError("a loop without static gain has no overshoot")
-    # In units of time that make the poles of order 1.
-    n, a, b = tf.order, np.array(tf.denominator), np.zeros(tf.order + 1)
-    numerator = np.trim_zeros(np.array(tf.numerator), "f")
-    b[n + 1 - len(numerator) :] = numerator
-    rate = float(abs(a[-1] / a[0]) ** (1 / n))
-    a, b = (c / a[0] / rate ** np.arange(n + 1) for c in (a, b))
-    final = b[-1] / a[-1]
-    A = np.vstack([-a[1:], np.eye(n - 1, n)])
-    # Around the final state the response is a free motion: y = 1 - C exp(A t) x_final.
-    start = np.linalg.solve(A, -np.eye(n)[:, 0])
-    return max(0.0, largest(A, (b[0] * a[1:] - b[1:]) / final, start, poles(tf) / rate))
+    # Around the final state the response is a free motion: y = G(0) - C exp(A t) x_final.
+    A, C = controllable_form(tf.numerator, tf.denominator)
+    final = np.linalg.solve(A, -np.eye(tf.order)[:, -1])
+    return max(0.0, largest(A, -C / static_gain(tf), final, poles(tf)))
 
 
 def _bandwidth(tf: TransferFunction) -> float:

@@ -21,7 +21,7 @@ from nrs_design.simulation.worst_outputs import DEFLECTION, output_values, pushe
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from nrs_design.pipeline.worst_case import WorstCase
+    from nrs_design.pipeline.scenarios import WorstCase
     from nrs_design.proof.channels import Output
     from nrs_design.simulation.norms import Array
     from nrs_design.simulation.worst_case import WorstRun

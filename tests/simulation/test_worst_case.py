@@ -10,8 +10,7 @@ import pytest
 from scipy.optimize import brentq
 
 from nrs_design.pipeline.runs import run_certification, run_design
-from nrs_design.pipeline.scenarios import run_scenarios
-from nrs_design.pipeline.worst_case import run_worst_case
+from nrs_design.pipeline.scenarios import run_scenarios, run_worst_case
 from nrs_design.proof.channels import Channel, Output
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.switching import ARBITRARY, Clock, Switching

@@ -23,9 +23,6 @@ from nrs_design.design.laws.law import AbstractControllerAnalysis, LawDesign, Ta
 from nrs_design.proof.bounds import lower
 from nrs_design.spec.controllers import TorqueImpedanceSpec
 
-# Halvings of an interval, and doublings until one is found.
-HALVINGS, DOUBLINGS = 50, 60
-
 
 @dataclass(frozen=True, slots=True)
 class Wall:
@@ -66,17 +63,15 @@ class Wall:
 
     def border(self, damping: float) -> float:
         """Return the stiffness in N m/rad up to which it is stable in the air, zero if none."""
-        low, high = 0.0, self.estimate(damping) or 1.0
-        if self.growth(1e-9 * high, damping) >= 1:
+        from scipy.optimize import brentq
+
+        first = 1e-9 * (self.estimate(damping) or 1.0)
+        if self.growth(first, damping) >= 1:
             return 0.0
-        for _ in range(DOUBLINGS):
-            if self.growth(high, damping) >= 1:
-                break
-            low, high = high, 2 * high
-        for _ in range(HALVINGS):
-            middle = (low + high) / 2
-            low, high = (middle, high) if self.growth(middle, damping) < 1 else (low, middle)
-        return low
+        high = 1e9 * first
+        while self.growth(high, damping) < 1:
+            high *= 2
+        return float(brentq(lambda k: self.growth(k, damping) - 1, first, high))
 
     def estimate(self, damping: float) -> float:
         """Return what Gil and others estimate for it."""

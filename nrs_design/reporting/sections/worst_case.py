@@ -5,7 +5,7 @@ from __future__ import annotations
 from nrs_design.errors import DesignError
 from nrs_design.pipeline.certification import Result
 from nrs_design.pipeline.design import Designed
-from nrs_design.pipeline.worst_case import run_worst_case
+from nrs_design.pipeline.scenarios import run_worst_case
 from nrs_design.reporting.document import Illustration, Paragraph, Section, Table
 from nrs_design.reporting.sections.places import linked
 from nrs_design.reporting.worst_case import (

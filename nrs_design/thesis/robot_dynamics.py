@@ -9,9 +9,8 @@ import numpy as np
 
 from nrs_design.robot.models.body import slender_rod
 from nrs_design.robot.models.correction import TABLE_3_5, correction_coefficients
-from nrs_design.robot.models.dynamics import mass_matrix
+from nrs_design.robot.models.dynamics import mass_matrix, torque_shares
 from nrs_design.robot.models.neuroboscope import robot
-from nrs_design.robot.models.shares import torque_shares
 from nrs_design.robot.models.simplified import simplified_dynamics
 from nrs_design.robot.models.workspace import thesis_grid
 from nrs_design.thesis import thesis

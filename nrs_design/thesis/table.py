@@ -1,6 +1,6 @@
 """The whole table: a module for each topic of `rows.yaml`, in that order.
 
-It is that of the thesis, but for the formulas.
+It is that of the thesis, but for the formulas. It is also rendered as one HTML page.
 """
 
 from __future__ import annotations
@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from importlib import import_module
 
+from nrs_design import __version__
 from nrs_design.progress import Progress, silent
 from nrs_design.thesis.comparison import PrintVerdict, ReproducedValue, compare_topic
 from nrs_design.thesis.errata import Erratum, errata, read_data
@@ -58,3 +59,36 @@ def counts_line(table: Sequence[ReproducedValue]) -> str:
         for verdict, count in count_verdicts(table).items()
     )
     return f"{len(table)} rows: {', '.join(parts)}."
+
+
+def render_page(table: tuple[ReproducedValue, ...], gallery: str | None = None) -> str:
+    """Return the page; the same rows give the same bytes."""
+    from jinja2 import Environment, PackageLoader, StrictUndefined
+
+    environment = Environment(
+        loader=PackageLoader("nrs_design.thesis"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        keep_trailing_newline=True,
+    )
+    environment.globals["within"] = format_within
+    template = environment.get_template("reproduce.html.j2")
+    return template.render(
+        rows=table,
+        counts=count_verdicts(table),
+        errors=printed_errors(table),
+        summary=counts_line(table),
+        converted=CONVERTED,
+        gallery=gallery,
+        version=__version__,
+    )
+
+
+def format_within(deviation: float | None, limit: str) -> str:
+    """Write a deviation with two digits and the limit that it is held to; none at all as nothing.
+
+    It is relative, or absolute where what it is from is zero.
+    """
+    if deviation is None:
+        return ""
+    return f"{f'{deviation:.1e}' if deviation else '0'} ({limit})"

@@ -12,8 +12,7 @@ import pytest
 
 from nrs_design.certificates.certificate import canonical
 from nrs_design.thesis.figures import draw_counterparts, gallery_page
-from nrs_design.thesis.page import render_page
-from nrs_design.thesis.table import reproduce
+from nrs_design.thesis.table import render_page, reproduce
 from tests.browser import faults_of, open_file, overflow_of, severe
 from tests.certificates.attacks import (
     ATTACKS,

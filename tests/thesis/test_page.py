@@ -1,6 +1,5 @@
 from nrs_design.thesis.comparison import PrintedRow, Recomputed, judge
-from nrs_design.thesis.page import format_within, render_page
-from nrs_design.thesis.table import counts_line, topic_rows
+from nrs_design.thesis.table import counts_line, format_within, render_page, topic_rows
 
 ROWS = topic_rows("specimens")
 

@@ -11,8 +11,7 @@ from nrs_design.cli.command import Answer, command
 from nrs_design.cli.options import SpecFile
 from nrs_design.cli.printing import note
 from nrs_design.cli.tables import print_table
-from nrs_design.robot.cli.options import Figures, write_figures
-from nrs_design.robot.cli.printing import lists
+from nrs_design.robot.cli.options import Figures, lists, write_figures
 
 if TYPE_CHECKING:
     from nrs_design.robot.models import Correction, SeparateCorrection, Sine, TiltTable

@@ -10,16 +10,20 @@ import typer
 from nrs_design.cli.command import Answer, command
 from nrs_design.cli.options import SpecFile
 from nrs_design.robot.cli.options import (
+    JOINTS,
+    ONE,
+    POSE,
     Acceleration,
     Figures,
     Pose,
+    Tables,
     Tilt,
     Velocity,
+    print_quantities,
     read_pose,
     three_numbers,
     write_figures,
 )
-from nrs_design.robot.cli.printing import JOINTS, ONE, POSE, Tables, print_quantities
 
 if TYPE_CHECKING:
     from nrs_design.robot.models import Robot

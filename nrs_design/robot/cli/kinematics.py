@@ -8,8 +8,20 @@ import typer
 
 from nrs_design.cli.command import Answer, command
 from nrs_design.cli.options import SpecFile
-from nrs_design.robot.cli.options import Figures, Pose, read_pose, three_numbers, write_figures
-from nrs_design.robot.cli.printing import JOINTS, LEGS, ONE, POSE, Tables, lists, print_quantities
+from nrs_design.robot.cli.options import (
+    JOINTS,
+    LEGS,
+    ONE,
+    POSE,
+    Figures,
+    Pose,
+    Tables,
+    lists,
+    print_quantities,
+    read_pose,
+    three_numbers,
+    write_figures,
+)
 
 if TYPE_CHECKING:
     from nrs_design.robot.models import Robot

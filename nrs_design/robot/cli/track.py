@@ -132,7 +132,7 @@ def _ablation(
     period: float | None,
     tell: Progress,
 ) -> list[dict[str, Any]]:
-    from nrs_design.robot.simulation.tracking.ablation import ablation_tracks
+    from nrs_design.robot.simulation.tracking.experiment import ablation_tracks
     from nrs_design.robot.simulation.tracking.simulate import simulate
 
     rows = []

@@ -21,6 +21,7 @@ from nrs_design.robot.models.dynamics import (
     gravity_torque,
     inverse_dynamics,
     mass_matrix,
+    torque_shares,
 )
 from nrs_design.robot.models.geometry import posture
 from nrs_design.robot.models.kinematics import (
@@ -32,11 +33,10 @@ from nrs_design.robot.models.kinematics import (
     singularity_margins,
 )
 from nrs_design.robot.models.robot import Leg, Robot, build_robot
-from nrs_design.robot.models.shares import torque_shares
 from nrs_design.robot.models.simplified import simplified_dynamics
-from nrs_design.robot.models.soundness import examine_inertia
 from nrs_design.robot.models.workspace import (
     WorkspaceSurvey,
+    examine_inertia,
     joint_peaks,
     reachable_poses,
     survey_workspace,

@@ -1,4 +1,4 @@
-"""The workspace: grids of poses, and how fast the joints must be within it (thesis 3.3)."""
+"""The workspace (thesis 3.3): grids of poses, how fast the joints must be, and where M is sound."""
 
 from __future__ import annotations
 
@@ -8,7 +8,8 @@ from itertools import product
 import numpy as np
 from numpy.typing import ArrayLike
 
-from nrs_design.errors import PoseError
+from nrs_design.errors import DesignError, PoseError
+from nrs_design.robot.models.dynamics import mass_matrix
 from nrs_design.robot.models.geometry import is_reachable, posture, unreachable
 from nrs_design.robot.models.kinematics import (
     inverse_jacobian,
@@ -126,3 +127,23 @@ def joint_peaks(robot: Robot, pose: ArrayLike) -> JointPeaks:
     ]
     acceleration = gain @ a + np.max(corners, axis=0)
     return JointPeaks((gain @ v).max(axis=0), acceleration.max(axis=0))
+
+
+# Least over largest eigenvalue of M below which a direction of motion counts as without inertia.
+SINGULAR = 1e-9
+
+
+def examine_inertia(robot: Robot) -> Array:
+    """Return the eigenvalues of the mass matrix in the middle of the workspace, rising, in kg m^2.
+
+    A motion without inertia, to whose acceleration no torque belongs, is a `DesignError`.
+    """
+    eigenvalues = np.linalg.eigvalsh(mass_matrix(robot, robot.home))
+    if not eigenvalues[0] > SINGULAR * eigenvalues[-1]:
+        raise DesignError(
+            "the mass matrix in the middle of the workspace is singular: some motion of the robot "
+            "moves no mass",
+            remedy="check the masses of legs and platform",
+            at=("legs",),
+        )
+    return np.asarray(eigenvalues, dtype=np.float64)

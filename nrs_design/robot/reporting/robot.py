@@ -37,8 +37,12 @@ from nrs_design.robot.models.correction import (
     tilt_tables,
 )
 from nrs_design.robot.models.robot import LEGS
-from nrs_design.robot.models.soundness import examine_inertia
-from nrs_design.robot.models.workspace import reachable_poses, survey_workspace, thesis_grid
+from nrs_design.robot.models.workspace import (
+    examine_inertia,
+    reachable_poses,
+    survey_workspace,
+    thesis_grid,
+)
 from nrs_design.robot.reporting.figures.robot import (
     JOINTS,
     draw_balance,

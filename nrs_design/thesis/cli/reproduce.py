@@ -42,7 +42,7 @@ def reproduce(
     """
     from nrs_design.output import PAGE, check_html, check_place, write_output
     from nrs_design.thesis.comparison import drifted
-    from nrs_design.thesis.page import render_page
+    from nrs_design.thesis.table import render_page
     from nrs_design.thesis.table import reproduce as recompute
 
     if html is not None:
@@ -131,8 +131,7 @@ def _summary(
 
 
 def _print(table: tuple[ReproducedValue, ...]) -> None:
-    from nrs_design.thesis.page import format_within
-    from nrs_design.thesis.table import CONVERTED, counts_line, printed_errors
+    from nrs_design.thesis.table import CONVERTED, counts_line, format_within, printed_errors
 
     cells = [
         [

@@ -15,12 +15,12 @@ from nrs_design.robot.models.dynamics import (
     mass_and_bias,
     mass_matrix,
     potential_energy,
+    torque_shares,
 )
 from nrs_design.robot.models.kinematics import jacobian, orientation, orientation_jacobian
 from nrs_design.robot.models.robot import Workspace
-from nrs_design.robot.models.shares import torque_shares
 from nrs_design.robot.models.simplified import simplified_dynamics
-from nrs_design.robot.models.soundness import examine_inertia
+from nrs_design.robot.models.workspace import examine_inertia
 
 from .strategies import poses, rates, tilts
 

@@ -20,9 +20,9 @@ from nrs_design.reporting.style import (
     styled,
 )
 from nrs_design.robot.models.correction import SeparateCorrection, TiltTable
+from nrs_design.robot.models.dynamics import torque_shares
 from nrs_design.robot.models.geometry import reach_margin
 from nrs_design.robot.models.robot import Robot
-from nrs_design.robot.models.shares import torque_shares
 from nrs_design.robot.models.vectors import Array, root_mean_square
 from nrs_design.robot.models.workspace import pose_grid, reachable_poses, thesis_grid
 

@@ -6,13 +6,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from nrs_design.errors import PoseError
-from nrs_design.robot.simulation.tracking.ablation import ablation_tracks
 from nrs_design.robot.simulation.tracking.experiment import (
     COORDINATE,
     Experiment,
     thesis_experiments,
 )
 from nrs_design.robot.simulation.tracking.simulate import simulate
+from nrs_design.robot.simulation.tracking.track import ablation_tracks
 from tests.support import ROOT
 
 # Of the equations, with the 0.0571 rad/s of 4.33c and 4.37 to 4.39 taken literally.

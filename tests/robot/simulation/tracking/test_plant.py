@@ -13,8 +13,13 @@ from nrs_design.robot.models.balance import balanced_robot, design_balance, resi
 from nrs_design.robot.models.body import MASSLESS
 from nrs_design.robot.models.dynamics import gravity_torque, mass_matrix
 from nrs_design.robot.models.kinematics import JointMotion, direct_kinematics, inverse_kinematics
-from nrs_design.robot.simulation.tracking.friction import DryFriction
-from nrs_design.robot.simulation.tracking.plant import DriveArrays, JointState, Mechanism, Stepper
+from nrs_design.robot.simulation.tracking.plant import (
+    DriveArrays,
+    DryFriction,
+    JointState,
+    Mechanism,
+    Stepper,
+)
 
 HOME = np.array([[0.02, -0.05, 0.2]])
 

@@ -63,7 +63,8 @@ def corners_in(at: Response, ranges: Mapping[str, Interval]) -> list[Quotient]:
         {n: r.low + u * (r.high - r.low) for u, (n, r) in zip(shares, ranges.items(), strict=True)}
     )
     weights = [
-        as_fmpq(prod(u if k else 1 - u for k, u in zip(end, shares, strict=True))) for end in ends
+        as_fmpq(prod((u if k else 1 - u for k, u in zip(end, shares, strict=True)), start=ONE))
+        for end in ends
     ]
     for found, *at_corners in zip(inside, *corners, strict=True):
         if found != sum(w * p for w, p in zip(weights, at_corners, strict=True)):

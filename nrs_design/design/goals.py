@@ -277,12 +277,7 @@ class Requirement(AbstractRequirement):
         if self.axis is None:
             return {c.environment: (np.nan, NOT_COMPUTED) for c in self.corners}
         found: dict[str, tuple[float, str]] = {}
-        seen = set()
         for corner in self.corners:
-            key = corner.contact.at_stiffness(Fraction(1)), corner.place
-            if (corner.environment, key) in seen:
-                continue
-            seen.add((corner.environment, key))
             limit = self.family(corner).stiffness_limit(Mt, Bt)
             if corner.environment not in found or limit < found[corner.environment][0]:
                 found[corner.environment] = limit, corner.label

@@ -31,6 +31,7 @@ MOST = 400_000
 ZERO, ONE = Fraction(0), Fraction(1)
 
 Tensor = Sequence[Any]  # Rational numbers or balls, the last index turning fastest
+Balls = NDArray[Any]  # The same, an axis for each direction
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,8 +104,8 @@ def bernstein(powers: Tensor, low: Any, high: Any) -> list[Any]:
 @dataclass(frozen=True, slots=True)
 class _Box:
     # above, below: coefficients, balls in an array with an axis for each direction.
-    above: NDArray[np.object_]
-    below: NDArray[np.object_]
+    above: Balls
+    below: Balls
     ends: tuple[tuple[Fraction, Fraction], ...]
 
     def bound(self) -> Fraction | None:
@@ -134,7 +135,7 @@ class _Box:
             yield _Box(above, below, (*self.ends[:axis], ends, *self.ends[axis + 1 :]))
 
 
-def _halved(values: NDArray[np.object_], axis: int) -> tuple[NDArray[np.object_], ...]:
+def _halved(values: Balls, axis: int) -> tuple[Balls, ...]:
     """Return the coefficients in both halves of a box."""
     line, low, high = [*np.moveaxis(values, axis, 0)], [], []
     while line:
@@ -144,14 +145,14 @@ def _halved(values: NDArray[np.object_], axis: int) -> tuple[NDArray[np.object_]
     return np.stack(low, axis), np.stack(high[::-1], axis)
 
 
-def _changes(values: NDArray[np.object_]) -> list[float]:
+def _changes(values: Balls) -> list[float]:
     """Return how much coefficients differ along each direction, as a share of the largest."""
     numbers = np.array([float(v.mid()) for v in values.flat]).reshape(values.shape)
     largest = np.abs(numbers).max() or 1.0
     return [np.ptp(numbers, axis).max() / largest for axis in range(values.ndim)]
 
 
-def _as_balls(values: Tensor, shape: Sequence[int]) -> NDArray[np.object_]:
+def _as_balls(values: Tensor, shape: Sequence[int]) -> Balls:
     """Return balls around rational numbers, of Python or of flint, at the current precision."""
     from flint import arb
 

@@ -112,16 +112,11 @@ class SampledAdmittance:
 
     def corners(self) -> Iterator[tuple[dict[str, Fraction], SampledAdmittance]]:
         """Yield this at each corner of the ranges of the motor, and the values there."""
-        ranges = {"Km": self.motor.gain, "tau": self.motor.time_constant}
-        names = [name for name, r in ranges.items() if r.low != r.high]
-        for ends in product(*((ranges[name].low, ranges[name].high) for name in names)):
-            at = dict(zip(names, ends, strict=True))
-            nominal = self.motor.nominal
-            point = replace(
-                nominal,
-                gain=at.get("Km", nominal.gain),
-                time_constant=at.get("tau", nominal.time_constant),
-            )
+        for (of_gain, gain), (of_tau, tau) in product(
+            self.motor.gain.ends, self.motor.time_constant.ends
+        ):
+            at = {n: v for n, label, v in (("Km", of_gain, gain), ("tau", of_tau, tau)) if label}
+            point = replace(self.motor.nominal, gain=gain, time_constant=tau)
             yield at, replace(self, motor=ActuatorRanges.point(point))
 
     def squared(self, t: Fraction) -> Any:

@@ -36,17 +36,29 @@ def squares(x):
     return float((x[0] - 1) ** 2 + (x[1] - 2) ** 2)
 
 
-def test_a_constraint_that_does_not_bind_costs_nothing():
-    found = optimum_of(problem_of(squares, lambda x: np.array([10 - x.sum()])), (0.0, 0.0))
-    assert found.last.x == pytest.approx([1, 2], abs=1e-4)
-    assert found.shadow_prices == pytest.approx([0], abs=1e-6)
+def kinked(x):
+    return abs(x[0] - 1) + abs(x[1] - 2)
 
 
-def test_a_linear_constraint_and_its_multiplier():
-    """The nearest point of ``x + y <= 2`` to (1, 2) is (1/2, 3/2); the multiplier is one."""
-    found = optimum_of(problem_of(squares, lambda x: np.array([2 - x.sum()])), (0.0, 0.0))
-    assert found.last.x == pytest.approx([0.5, 1.5], abs=1e-3)
-    assert found.shadow_prices == pytest.approx([1.0], rel=0.02)
+# The nearest point of ``x + y <= 2`` to (1, 2) is (1/2, 3/2), with a multiplier of one.
+@pytest.mark.parametrize(
+    ("cost", "values", "quick", "x", "within", "price"),
+    [
+        (squares, lambda x: 10 - x.sum(), None, (1, 2), 1e-4, 0),
+        (squares, lambda x: 2 - x.sum(), None, (0.5, 1.5), 1e-3, 1),
+        (squares, lambda x: 2 - x.sum(), lambda x: 0.25 - x[0], (0.25, 1.75), 1e-3, None),
+        (kinked, lambda x: x[0] - 1.5, None, (1.5, 2), 1e-3, None),
+        # What cannot be met is missed by little.
+        (squares, lambda x: x[0] - 6, None, (4, None), 1e-6, None),
+    ],
+    ids=["idle", "linear", "quick", "kink", "out of reach"],
+)
+def test_optima_by_hand(cost, values, quick, x, within, price):
+    more = None if quick is None else lambda x: np.array([quick(x)])
+    found = optimum_of(problem_of(cost, lambda x: np.array([values(x)]), more), (0.0, 0.0))
+    for own, wanted in zip(found.last.x, x, strict=True):
+        assert wanted is None or own == pytest.approx(wanted, abs=within)
+    assert price is None or found.shadow_prices == pytest.approx([price], rel=0.02, abs=1e-6)
 
 
 def test_a_curved_constraint():
@@ -55,28 +67,6 @@ def test_a_curved_constraint():
     assert found.last.x == pytest.approx(np.array([1, 2]) / 5**0.5, abs=3e-3)
     assert found.cost == pytest.approx((5**0.5 - 1) ** 2, rel=2e-3)
     assert found.evaluations <= MOST_EVALUATIONS
-
-
-def test_a_cost_with_a_kink():
-    found = optimum_of(
-        problem_of(lambda x: abs(x[0] - 1) + abs(x[1] - 2), lambda x: np.array([x[0] - 1.5])),
-        (0.0, 0.0),
-    )
-    assert found.last.x == pytest.approx([1.5, 2], abs=1e-3)
-
-
-def test_quick_constraints_hold_as_well():
-    quick = problem_of(
-        squares, lambda x: np.array([2 - x.sum()]), lambda x: np.array([0.25 - x[0]])
-    )
-    found = optimum_of(quick, (0.0, 0.0))
-    assert found.last.x == pytest.approx([0.25, 1.75], abs=1e-3)
-
-
-def test_what_cannot_be_met_is_missed_by_little():
-    found = optimum_of(problem_of(squares, lambda x: np.array([x[0] - 6])), (0.0, 0.0))
-    assert found.last.x[0] == pytest.approx(4.0)
-    assert found.last.values[0] == pytest.approx(-2.0)
 
 
 def test_slopes_that_lie_end_the_search_and_not_the_program():

@@ -22,7 +22,6 @@ class ImpedanceOptimum:
     Mt: float  # Virtual mass, kg m^2
     Bt: float  # Virtual damping, N m s/rad
     cost: float  # Value of `nrs_design.design.impedance_optimum.impedance_cost` there
-    evaluations: int  # Number of admittances that the search tried
 
 
 @dataclass(frozen=True, slots=True)

@@ -21,7 +21,7 @@ from nrs_design.design.impedance_optimum import (
     optimize_impedance,
 )
 from nrs_design.design.measures import CREEP_MEASURES, Measure
-from nrs_design.design.pattern_search import Objective, search_square
+from nrs_design.design.pattern_search import search_square
 from nrs_design.design.transfer import FloatArray
 from nrs_design.errors import DesignError
 
@@ -47,11 +47,10 @@ def optimize_with_goals(problem: ImpedanceProblem, requirement: Requirement) -> 
     optimum = optimize_impedance(problem)
     if meets(requirement, optimum.Mt, optimum.Bt):
         return optimum
-    search = _Search(problem, requirement)
-    Mt, Bt, value = search.run()
-    if value >= _MISSED:
-        raise _unreachable(problem, requirement, Mt, Bt)
-    return ImpedanceOptimum(Mt, Bt, value, optimum.evaluations + search.evaluations)
+    optimum = _cheapest(problem, requirement)
+    if optimum.cost >= _MISSED:
+        raise _unreachable(problem, requirement, optimum.Mt, optimum.Bt)
+    return optimum
 
 
 def meets(requirement: Requirement, Mt: float, Bt: float) -> bool:
@@ -69,31 +68,23 @@ def best_rounding(
     return min(pairs, key=lambda pair: float(impedance_cost(problem, *pair)), default=None)
 
 
-class _Search:
-    """Minimizes the cost where all goals are met, else the violation of the worst goal."""
+def _cheapest(problem: ImpedanceProblem, requirement: Requirement) -> ImpedanceOptimum:
+    """Minimize the cost where all goals are met, else the violation of the worst goal."""
+    cost = objective_of(problem, NODES)
 
-    def __init__(self, problem: ImpedanceProblem, requirement: Requirement) -> None:
-        self._problem, self._requirement = problem, requirement
-        self._cost: Objective = objective_of(problem, NODES)
-        self.evaluations = 0
-
-    def run(self) -> tuple[float, float, float]:
-        """Return Mt, Bt and the objective there."""
-        mass, damping = self._problem.mass_bounds, self._problem.damping_bounds
-        free = (mass[0] != mass[1], damping[0] != damping[1])
-        u, v, value = search_square(self._objective, free)
-        Mt, Bt = admittance_at(self._problem, np.array([u]), np.array([v]))
-        return float(Mt[0]), float(Bt[0]), value
-
-    def _objective(self, u: FloatArray, v: FloatArray) -> FloatArray:
-        self.evaluations += len(u)
-        values = self._cost(u, v)
+    def objective(u: FloatArray, v: FloatArray) -> FloatArray:
+        values = cost(u, v)
         stable = np.flatnonzero(np.isfinite(values))
-        missed = self._requirement.violation(*admittance_at(self._problem, u[stable], v[stable]))
+        missed = requirement.violation(*admittance_at(problem, u[stable], v[stable]))
         # From 0 to 1, also where a corner is unstable and the violation is infinite.
         part = 1 - 1 / (1 + np.maximum(missed, 0))
         values[stable] = np.where(missed > 0, _MISSED + part, values[stable])
         return values
+
+    mass, damping = problem.mass_bounds, problem.damping_bounds
+    u, v, value = search_square(objective, (mass[0] != mass[1], damping[0] != damping[1]))
+    (Mt,), (Bt,) = admittance_at(problem, np.array([u]), np.array([v]))
+    return ImpedanceOptimum(float(Mt), float(Bt), value)
 
 
 def _unreachable(
@@ -107,12 +98,12 @@ def _unreachable(
     )
     for measure, goal in requirement.goals:
         alone = replace(requirement, goals=((measure, goal),))
-        best_Mt, best_Bt, value = _Search(problem, alone).run()
-        if value >= _MISSED:
+        best = _cheapest(problem, alone)
+        if best.cost >= _MISSED:
             return DesignError(
                 f"the goal {measure.goal}, {measure.goal_text(goal)}, cannot be met with {bounds}: "
-                f"the best is {_reached(alone, measure, best_Mt, best_Bt)}",
-                remedy=_remedy("this goal", problem, best_Mt, best_Bt),
+                f"the best is {_reached(alone, measure, best.Mt, best.Bt)}",
+                remedy=_remedy("this goal", problem, best.Mt, best.Bt),
             )
     values = requirement.goals
     missed = [

@@ -17,7 +17,14 @@ from numpy.typing import ArrayLike
 
 from nrs_design.axis import unit
 from nrs_design.controllers.controller_design import ImpedanceOptimum
-from nrs_design.design.pattern_search import Objective, Points, local_minima, refine, snap
+from nrs_design.design.pattern_search import (
+    Objective,
+    Points,
+    best_across,
+    lowest_minima,
+    refine,
+    snap,
+)
 from nrs_design.design.transfer import (
     BoolArray,
     FloatArray,
@@ -86,13 +93,10 @@ def characteristic_polynomials(loop: ImpedanceLoop, Mt: FloatArray, Bt: FloatArr
 # Gauss rule; with 256 midpoints the cost is within 1e-6 of its integral on the published designs
 # and the optimal Bt within 3e-4.
 NODES = 256
-_SCAN_NODES = 32
 _VALLEY_NODES = 64
 _BLOCK = 256
-
-_SCAN = (25, 41)
-_STARTS = 4
-_VALLEY_TOLERANCE = 5e-3
+# Masses of the valley, minima along it from which the search starts, and its first pattern.
+_MASSES, _STARTS, _STEP = 25, 4, (1 / 96, 1 / 160)
 _STEP_TOLERANCE = 1e-5
 
 
@@ -131,23 +135,18 @@ def impedance_cost(problem: ImpedanceProblem, Mt: ArrayLike, Bt: ArrayLike) -> F
 def optimize_impedance(problem: ImpedanceProblem) -> ImpedanceOptimum:
     """Find the global minimum of the cost over the stable admittances within the bounds.
 
-    A scan over the whole box (with fewer frequencies, dense towards small Mt and in log Bt)
-    finds the best Bt of every Mt, and the best local minima along that valley; a pattern search
-    with the full cost refines each of them, and moves before it shrinks, so that a minimum
-    away from its start is still reached. The search is deterministic. An optimum on a bound is
-    returned exactly as the bound; stable is Hurwitz at the nominal stiffness.
+    The best Bt of every Mt (with fewer frequencies, dense towards small Mt and in log Bt) makes a
+    valley; a pattern search with the full cost refines the lowest minima along it, and moves before
+    it shrinks, so that a minimum away from its start is still reached. The search is deterministic.
+    An optimum on a bound is returned exactly as the bound; stable is Hurwitz at the nominal
+    stiffness.
     """
     objective = objective_of(problem, NODES)
-    found = refine(objective, _scan(problem), _STEP_TOLERANCE)
+    found = refine(objective, _valley(problem), _STEP_TOLERANCE)
     u, v, costs = snap(objective, found.u, found.v)
     best = int(np.argmin(costs))
     Mt, Bt = admittance_at(problem, u[best : best + 1], v[best : best + 1])
-    return ImpedanceOptimum(
-        Mt=float(Mt[0]),
-        Bt=float(Bt[0]),
-        cost=float(costs[best]),
-        evaluations=found.evaluations + 4 * len(u),
-    )
+    return ImpedanceOptimum(float(Mt[0]), float(Bt[0]), float(costs[best]))
 
 
 @dataclass(frozen=True, eq=False)
@@ -223,16 +222,13 @@ def objective_of(problem: ImpedanceProblem, nodes: int) -> Objective:
     return stable_cost
 
 
-def _scan(problem: ImpedanceProblem) -> Points:
-    """Return the starts of the search: local minima of a scan, and those along its valley."""
+def _valley(problem: ImpedanceProblem) -> Points:
+    """Return the starts of the search: the lowest minima of the best Bt of every Mt."""
     bounds = problem.mass_bounds, problem.damping_bounds
-    shape = tuple(
-        1 if low == high else count for (low, high), count in zip(bounds, _SCAN, strict=True)
-    )
-    u, v = np.meshgrid(*(np.linspace(0, 1, count) for count in shape), indexing="ij")
-    costs = objective_of(problem, _SCAN_NODES)(u.ravel(), v.ravel()).reshape(shape)
-    rows = np.flatnonzero(np.isfinite(costs).any(axis=1))
-    if not len(rows):
+    free = [low != high for low, high in bounds]
+    u = np.linspace(0, 1, _MASSES) if free[0] else np.zeros(1)
+    v, costs = best_across(objective_of(problem, _VALLEY_NODES), u, moves=free[1])
+    if not np.isfinite(costs).any():
         raise DesignError(
             f"no admittance with Mt in {list(problem.mass_bounds)} {unit('kg m^2')} and Bt in "
             f"{list(problem.damping_bounds)} {unit('N m s/rad')} keeps the loop stable at "
@@ -240,34 +236,6 @@ def _scan(problem: ImpedanceProblem) -> Points:
             remedy="raise the upper bound of Bt or lower the lower bound of Mt",
             at=("Bt",),
         )
-    spacing = [1 / (count - 1) if count > 1 else 0.0 for count in shape]
-    valley = _sharpen(problem, u[rows, 0], v[0, np.argmin(costs[rows], axis=1)], spacing[1])
-    cells = np.flatnonzero(local_minima(costs))
-    known = np.abs(u.ravel()[cells, None] - valley.u) + np.abs(v.ravel()[cells, None] - valley.v)
-    cells = cells[known.min(axis=1) > max(spacing)]
-    cells = cells[np.argsort(costs.ravel()[cells], kind="stable")][:_STARTS]
-    return Points(
-        u=np.r_[valley.u, u.ravel()[cells]],
-        v=np.r_[valley.v, v.ravel()[cells]],
-        step=np.array(spacing) / 4,
-        slope=np.r_[valley.slope, np.zeros(len(cells))],
-        evaluations=costs.size + valley.evaluations,
-    )
-
-
-def _sharpen(problem: ImpedanceProblem, u: FloatArray, v: FloatArray, spacing: float) -> Points:
-    """Refine the valley ``Bt(Mt)`` of the scan and pick its lowest local minima."""
-    objective = objective_of(problem, _VALLEY_NODES)
-    step = np.array([0.0, spacing])
-    valley = refine(objective, Points(u, v, step, np.zeros(len(u)), 0), _VALLEY_TOLERANCE)
-    costs = objective(valley.u, valley.v)
-    minima = np.flatnonzero(local_minima(costs[:, None]))
-    minima = minima[np.argsort(costs[minima], kind="stable")][:_STARTS]
-    slope = np.gradient(valley.v, valley.u) if len(u) > 1 else valley.slope
-    return Points(
-        u=valley.u[minima],
-        v=valley.v[minima],
-        step=step,
-        slope=slope[minima],
-        evaluations=valley.evaluations + len(costs),
-    )
+    starts = lowest_minima(costs, _STARTS)
+    slope = np.gradient(v, u) if free[0] else np.zeros(1)
+    return Points(u[starts], v[starts], np.multiply(_STEP, free), slope[starts])

@@ -173,10 +173,6 @@ def _of_transfer(
     return LinearPart(name, A, np.eye(len(A))[:, -1:], C[None], np.zeros((1, 1)), given, (out,))
 
 
-Matrix = NDArray[np.float64]
-Rows = Sequence[Sequence[Fraction]]
-
-
 @dataclass(frozen=True, slots=True)
 class OpenLoop:
     """The loop of one controller at one corner."""

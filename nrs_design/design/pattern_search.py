@@ -1,8 +1,9 @@
 """Two deterministic searches on the unit square.
 
-`refine` runs a pattern search from several points side by side. `search_square` is for objectives
-with a forbidden region: it looks for the best v of every u, then for the best u, because along one
-axis a forbidden region is only an end of an interval, and its slanted edge cannot hold the search.
+Both look for the best v of every u first. `refine` runs a pattern search from several points of
+that valley side by side. `search_square` is for objectives with a forbidden region: it looks for
+the best u with its best v, because along one axis a forbidden region is only an end of an interval,
+and its slanted edge cannot hold the search.
 By hand, as the optimizers of SciPy ask for one point after the other, or want smooth constraints:
 `differential_evolution` finds the same optimum in twenty times the time (see `benchmarks/`).
 """
@@ -13,6 +14,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from nrs_design.design.transfer import BoolArray, FloatArray
 
@@ -31,7 +33,6 @@ class Points:
     v: FloatArray
     step: FloatArray  # Shape (2,). Size of the pattern in u and v; 0 holds a coordinate.
     slope: FloatArray  # Shape (m,). Direction dv/du of the valley at each point.
-    evaluations: int  # Objective values spent so far
 
 
 def refine(objective: Objective, start: Points, tolerance: float) -> Points:
@@ -42,7 +43,7 @@ def refine(objective: Objective, start: Points, tolerance: float) -> Points:
     its pattern. The objective is infinite where a point is not allowed.
     """
     offsets = start.step * _pattern(start.step > 0)
-    u, v, scale, count = start.u.copy(), start.v.copy(), np.ones(len(start.u)), start.evaluations
+    u, v, scale = start.u.copy(), start.v.copy(), np.ones(len(start.u))
     for _ in range(_MAX_ROUNDS):
         rows = np.flatnonzero(scale * start.step.max() > tolerance)
         if not len(rows):
@@ -56,8 +57,7 @@ def refine(objective: Objective, start: Points, tolerance: float) -> Points:
         best = np.argmin(costs, axis=1)
         u[rows], v[rows] = (tried[np.arange(len(rows)), best] for tried in (tried_u, tried_v))
         scale[rows] = np.where(best == 0, scale[rows] / 4, np.minimum(1, 2 * scale[rows]))
-        count += costs.size
-    return replace(start, u=u, v=v, evaluations=count)
+    return replace(start, u=u, v=v)
 
 
 def _onto_square(w: FloatArray) -> FloatArray:
@@ -89,15 +89,12 @@ def snap(
     return u, v, costs
 
 
-def local_minima(costs: FloatArray) -> BoolArray:
-    """Mark the finite entries that no neighbor undercuts."""
-    padded = np.pad(costs, 1, constant_values=np.inf)
-    rows, columns = costs.shape
-    lowest = np.isfinite(costs)
-    for i in range(3):
-        for j in range(3):
-            lowest &= costs <= padded[i : i + rows, j : j + columns]
-    return lowest
+def lowest_minima(values: FloatArray, most: int) -> NDArray[np.intp]:
+    """Return where no neighbor undercuts a finite value, the lowest first, so many at most."""
+    padded = np.pad(values, 1, constant_values=np.inf)
+    local = np.isfinite(values) & (values <= padded[:-2]) & (values <= padded[2:])
+    places = np.flatnonzero(local)
+    return places[np.argsort(values[places], kind="stable")][:most]
 
 
 _COARSE = (33, 49)
@@ -113,9 +110,8 @@ def search_square(objective: Objective, free: tuple[bool, bool]) -> tuple[float,
     that is not free is 0.
     """
     u = np.linspace(0, 1, _COARSE[0]) if free[0] else np.zeros(1)
-    v, values = _best_across(objective, u, moves=free[1])
-    starts = np.flatnonzero(local_minima(values[:, None]))
-    starts = starts[np.argsort(values[starts], kind="stable")][:_STARTS]
+    v, values = best_across(objective, u, moves=free[1])
+    starts = lowest_minima(values, _STARTS)
     found = [(values[i], u[i], v[i]) for i in starts]
     if free[0]:
         found += [_refine_along(objective, u[i], moves=free[1]) for i in starts]
@@ -123,7 +119,7 @@ def search_square(objective: Objective, free: tuple[bool, bool]) -> tuple[float,
     return float(best[1]), float(best[2]), float(best[0])
 
 
-def _best_across(
+def best_across(
     objective: Objective, u: FloatArray, *, moves: bool
 ) -> tuple[FloatArray, FloatArray]:
     """Return the best v of every u, and the objective there."""
@@ -153,7 +149,7 @@ def _refine_along(objective: Objective, start: float, *, moves: bool) -> tuple[f
     best = (np.inf, u, 0.0)
     for _ in range(_ROUNDS):
         tried = _around(np.array([u]), spacing)[0]
-        v, values = _best_across(objective, tried, moves=moves)
+        v, values = best_across(objective, tried, moves=moves)
         index = int(values.argmin())
         best = min(best, (float(values[index]), float(tried[index]), float(v[index])))
         u, spacing = best[1], spacing * 2 / (_FINE - 1)

@@ -109,7 +109,7 @@ class RangedLoop:
         """
         law, place, factor = parameters_at(self.axis, self.law, values)
         contact = self._contact(values)
-        factor *= as_fmpq(prod(contact[name] for name in self.environment.law.inverse))
+        factor *= as_fmpq(prod((contact[name] for name in self.environment.law.inverse), start=ONE))
         loop = self.axis.cut(law, self.environment.at(contact), place)
         first = loop.free if held else loop.opened
         return factor * polynomial(*first), factor * polynomial(*loop.closed)

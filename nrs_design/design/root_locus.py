@@ -111,7 +111,7 @@ def step_overshoot(tf: TransferFunction) -> float:
         raise DesignError("a loop without static gain has no overshoot")
     # Around the final state the response is a free motion: y = G(0) - C exp(A t) x_final.
     A, C = controllable_form(tf.numerator, tf.denominator)
-    final = np.linalg.solve(A, -np.eye(tf.order)[:, -1])
+    final: FloatArray = np.linalg.solve(A, -np.eye(tf.order)[:, -1]).astype(np.float64)
     return max(0.0, largest(A, -C / static_gain(tf), final, poles(tf)))
 
 

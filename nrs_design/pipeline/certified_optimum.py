@@ -208,7 +208,7 @@ class _Search:
             if found.last.values.min() <= -NEAR:
                 break
             self.progress("proof")
-            if (proved := self._proved(found, problem, evaluations)) is not None:
+            if (proved := self._proved(found, problem)) is not None:
                 result, one = proved
                 return CertifiedOptimum(
                     result,
@@ -266,7 +266,7 @@ class _Search:
             yield SteeredGoal(key, wanted.exact, binds, price if binds else None)
 
     def _proved(
-        self, found: ConstrainedOptimum, problem: ConstrainedProblem, evaluations: int
+        self, found: ConstrainedOptimum, problem: ConstrainedProblem
     ) -> tuple[Result, RoundedGains] | None:
         """Round to the digits that ship, the cheapest first, and prove one that meets the goals."""
         last, near = found.last, []
@@ -277,7 +277,7 @@ class _Search:
                 near.append((rank, one))
         near.sort(key=lambda pair: pair[0])
         for _, one in near[:MOST_ROUNDINGS]:
-            design = self.gains.shipping(one, last.x, evaluations)
+            design = self.gains.shipping(one, last.x)
             if (result := self._certified(design)) is not None:
                 return result, one
         return None

@@ -196,13 +196,13 @@ class FreeGains:
         own = {one.name: laws[one.controller].gains[one.gain] for one in self.coordinates}
         point = np.log([float(value) for value in own.values()])
         for near in self.roundings(point):
-            if self.shipping(near, point, 1) == design:
+            if self.shipping(near, point) == design:
                 return near
         units = {one.name: one.unit for one in self.coordinates}
         return RoundedGains(point, {n: (v, f"{exact_text(v)} {units[n]}") for n, v in own.items()})
 
-    def shipping(self, one: RoundedGains, x: Array, tried: int) -> ControllerDesign:
-        """Return the design that ships of a rounding of a point, which was found in so many."""
+    def shipping(self, one: RoundedGains, x: Array) -> ControllerDesign:
+        """Return the design that ships of a rounding of a point."""
         from nrs_design.controllers.controller_design import ImpedanceOptimum
 
         chosen: dict[str, dict[str, Fraction]] = {}
@@ -212,7 +212,7 @@ class FreeGains:
         for own, value in zip(self.coordinates, x, strict=True):
             gains[own.controller][own.gain] = own.settled(float(value))
         best = {
-            name: ImpedanceOptimum(gains[name]["Mt"], gains[name]["Bt"], cost, tried)
+            name: ImpedanceOptimum(gains[name]["Mt"], gains[name]["Bt"], cost)
             for name, cost in costs.items()
         }
         controllers = (replace(c, optimum=best.get(c.name)) for c in found.controllers)

@@ -9,7 +9,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from nrs_design.errors import DesignError, NrsDesignError
-from nrs_design.pipeline.certification import Result, assemble_spec, search_limits
+from nrs_design.pipeline.certification import Result, assemble_spec
 from nrs_design.pipeline.design import Designed, placed
 from nrs_design.progress import Progress, silent
 from nrs_design.proof.mode import Time
@@ -25,12 +25,6 @@ if TYPE_CHECKING:
 MARGIN_BUDGET = 10.0
 # More misses in a row are not tried.
 MOST_IN_A_ROW = 64
-
-
-def quick_limits(result: Result, limits: Limits | None) -> Limits:
-    """Return how far one search of many goes: a proof is enough, whatever its decay rate."""
-    limits = limits or search_limits(result.loaded.spec)
-    return replace(limits, optimize_rate=False, budget=min(limits.budget, MARGIN_BUDGET))
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,7 +57,9 @@ def run_proof_margins(
         _refuse_box(result)
     if shortest_dwell:
         _refuse_dwell(result)
-    quick, ranged = quick_limits(result, limits), result.loaded.spec.has_ranges
+    # Of many searches, for each a proof is enough, whatever its decay rate.
+    quick = replace(limits, optimize_rate=False, budget=min(limits.budget, MARGIN_BUDGET))
+    ranged = result.loaded.spec.has_ranges
     return ProofMargins(
         loop=_run_loop(result, quick, progress) if margin else None,
         box=_run_box(result, quick, progress) if margin and ranged else None,

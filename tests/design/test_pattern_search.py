@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from nrs_design.design.pattern_search import Points, local_minima, refine, search_square
+from nrs_design.design.pattern_search import Points, lowest_minima, refine, search_square
 
 
 def start_at(u, v, slope=0.0, step=(0.05, 0.05)):
     u = np.atleast_1d(np.asarray(u, dtype=float))
     v = np.atleast_1d(np.asarray(v, dtype=float))
-    return Points(u, v, np.array(step), np.full(len(u), slope), 0)
+    return Points(u, v, np.array(step), np.full(len(u), slope))
 
 
 def test_sheared_pattern_follows_a_valley_with_kinked_walls():
@@ -22,9 +22,10 @@ def test_sheared_pattern_follows_a_valley_with_kinked_walls():
     assert stalled.u[0] > 0.5
 
 
-def test_local_minima_of_a_small_table():
-    table = np.array([[1.0, 3.0, np.inf], [3.0, 4.0, 3.0], [np.inf, 5.0, 2.0]])
-    assert np.argwhere(local_minima(table)).tolist() == [[0, 0], [2, 2]]
+def test_the_lowest_minima_of_a_few_values():
+    values = np.array([2.0, 3.0, np.inf, 5.0, 1.0, 1.5, np.inf, 4.0])
+    assert lowest_minima(values, 2).tolist() == [4, 0]
+    assert lowest_minima(values, 4).tolist() == [4, 0, 7]
 
 
 BOTH = (True, True)

@@ -63,7 +63,7 @@ def test_a_point_is_the_design_of_what_is_written():
     designed = freed(PD, MASS)
     gains = branch(designed)
     one = next(iter(gains.roundings(gains.optimum())))
-    own = gains.shipping(one, one.x, 1)
+    own = gains.shipping(one, one.x)
     found = run_design(with_gains(designed, one.written)).design
     assert found.laws["insertion"] == own.laws["insertion"]
     for gain in ("Kp", "Kd"):

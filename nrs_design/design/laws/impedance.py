@@ -142,7 +142,7 @@ def analyze(
     axis = task.axis if isinstance(task.axis, ContinuousAxis) else None
     # Gains that the spec gives are their own optimum.
     ends = given.Mt.min.si, given.Bt.min.si
-    own = ImpedanceOptimum(*ends, float(impedance_cost(problem, *ends)), 1)
+    own = ImpedanceOptimum(*ends, float(impedance_cost(problem, *ends)))
     law, contacts, moving = controller.law, task.contacts(given), _moving(task)
     asked, of_responses = dict(requirement.goals), response_goals(task.spec.goals, given.goals)
     measures = (*_measures(task), *(item for item in HAND_MEASURES if item in asked))

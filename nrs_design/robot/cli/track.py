@@ -132,8 +132,8 @@ def _ablation(
     period: float | None,
     tell: Progress,
 ) -> list[dict[str, Any]]:
-    from nrs_design.robot.simulation.tracking.experiment import ablation_tracks
     from nrs_design.robot.simulation.tracking.simulate import simulate
+    from nrs_design.robot.simulation.tracking.track import ablation_tracks
 
     rows = []
     changed = [(name, one.only(moved)) for name, one in ablation_tracks(spec, robot, period)]

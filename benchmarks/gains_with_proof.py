@@ -23,7 +23,7 @@ from nrs_design.design.trust_region import (
 )
 from nrs_design.pipeline.design import run_analysis
 from nrs_design.pipeline.free_gains import gain_branches
-from nrs_design.pipeline.proof_constraints import DesignEvaluator, rate_constraint
+from nrs_design.pipeline.proof_constraints import evaluator, rate_constraint
 from nrs_design.pipeline.runs import run_interaction
 from nrs_design.progress import silent
 from nrs_design.spec import read_spec
@@ -56,7 +56,7 @@ def run(size: Size) -> tuple[Finding, ...]:
 
         def evaluate(x: Array, expected: Array | None) -> Evaluation:
             # Each has its own budget, which the peer would use up.
-            return DesignEvaluator.of(gains, (constraint,), silent).evaluate(x, expected)
+            return evaluator(gains, (constraint,), silent)(x, expected)
 
         problem = ConstrainedProblem(gains.cost, evaluate, gains.low, gains.high, gains.spared)
         start = process_time()

@@ -129,7 +129,7 @@ def impedance_cost(problem: ImpedanceProblem, Mt: ArrayLike, Bt: ArrayLike) -> F
     stability is not checked.
     """
     Mt, Bt = np.broadcast_arrays(np.asarray(Mt, np.float64), np.asarray(Bt, np.float64))
-    return _sample(problem, NODES).cost(Mt.ravel(), Bt.ravel()).reshape(Mt.shape)
+    return _cost_by(problem, NODES)(Mt.ravel(), Bt.ravel()).reshape(Mt.shape)
 
 
 def optimize_impedance(problem: ImpedanceProblem) -> ImpedanceOptimum:
@@ -149,46 +149,31 @@ def optimize_impedance(problem: ImpedanceProblem) -> ImpedanceOptimum:
     return ImpedanceOptimum(float(Mt[0]), float(Bt[0]), float(costs[best]))
 
 
-@dataclass(frozen=True, eq=False)
-class _Samples:
-    """The part of the cost that depends on the frequency only."""
-
-    omega: FloatArray
-    real: FloatArray
-    imag: FloatArray
-    target: FloatArray
-    drawn: FloatArray
-    weights: tuple[float, float]
-
-    def cost(self, Mt: FloatArray, Bt: FloatArray) -> FloatArray:
-        """Evaluate in blocks that stay in the processor's cache."""
-        starts = range(0, len(Mt), _BLOCK)
-        parts = [self._block(Mt[i : i + _BLOCK, None], Bt[i : i + _BLOCK, None]) for i in starts]
-        return np.concatenate(parts) if parts else np.empty(0)
-
-    def _block(self, Mt: FloatArray, Bt: FloatArray) -> FloatArray:
-        reactance = Mt * self.omega - self.drawn
-        below = (reactance + self.imag) ** 2 + (Bt + self.real) ** 2
-        squared = (reactance**2 + Bt**2) / below  # |L|^2, and |Zdisp| = |G Ze| |L|
-        displayed = np.abs(self.target - 0.5 * np.log10(squared)).mean(axis=1)
-        robust = np.sqrt(squared).mean(axis=1)
-        return np.asarray(self.weights[0] * displayed + self.weights[1] * robust)
-
-
-def _sample(problem: ImpedanceProblem, nodes: int) -> _Samples:
+def _cost_by(problem: ImpedanceProblem, nodes: int) -> Objective:
+    """Return the cost of arrays of Mt and Bt, by so many frequencies."""
     omega: FloatArray = (np.arange(nodes, dtype=np.float64) + 0.5) * (problem.bandwidth / nodes)
     # That of a hand with a mass is improper, so it is no transfer function.
     above, below = (np.polyval(part, 1j * omega) for part in problem.loop.contact.impedance)
     forward = frequency_response(problem.loop.motion, omega) * above / below
     filtered = forward / np.polyval(problem.loop.lags, 1j * omega)
-    return _Samples(
-        omega=omega,
-        real=filtered.real,
-        imag=filtered.imag,
-        target=np.log10(problem.desired / np.abs(forward)),
-        drawn=problem.loop.Kt / omega,
-        weights=(problem.weight_displayed, problem.weight_sensitivity),
-    )
+    target, drawn = np.log10(problem.desired / np.abs(forward)), problem.loop.Kt / omega
+
+    def of_block(Mt: FloatArray, Bt: FloatArray) -> FloatArray:
+        reactance = Mt[:, None] * omega - drawn
+        beside = (reactance + filtered.imag) ** 2 + (Bt[:, None] + filtered.real) ** 2
+        squared = (reactance**2 + Bt[:, None] ** 2) / beside  # |L|^2, and |Zdisp| = |G Ze| |L|
+        displayed = np.abs(target - 0.5 * np.log10(squared)).mean(axis=1)
+        robust = np.sqrt(squared).mean(axis=1)
+        cost = problem.weight_displayed * displayed + problem.weight_sensitivity * robust
+        return np.asarray(cost)
+
+    def cost(Mt: FloatArray, Bt: FloatArray) -> FloatArray:
+        # In blocks that stay in the processor's cache.
+        starts = range(0, len(Mt), _BLOCK)
+        parts = [of_block(Mt[i : i + _BLOCK], Bt[i : i + _BLOCK]) for i in starts]
+        return np.concatenate(parts) if parts else np.empty(0)
+
+    return cost
 
 
 def admittance_at(
@@ -207,8 +192,8 @@ def admittance_at(
 
 def objective_of(problem: ImpedanceProblem, nodes: int) -> Objective:
     """Return the cost over the unit square; infinite where the nominal loop is not stable."""
-    samples, stabilizing = (
-        _sample(problem, nodes),
+    cost, stabilizing = (
+        _cost_by(problem, nodes),
         problem.stable or partial(stabilizes, problem.loop),
     )
 
@@ -216,7 +201,7 @@ def objective_of(problem: ImpedanceProblem, nodes: int) -> Objective:
         Mt, Bt = admittance_at(problem, u, v)
         stable = stabilizing(Mt, Bt)
         costs = np.full(len(Mt), np.inf)
-        costs[stable] = samples.cost(Mt[stable], Bt[stable])
+        costs[stable] = cost(Mt[stable], Bt[stable])
         return costs
 
     return stable_cost

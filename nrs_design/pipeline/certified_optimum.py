@@ -35,7 +35,7 @@ from nrs_design.pipeline.free_gains import (
     with_problems,
 )
 from nrs_design.pipeline.gain_coordinate import Written
-from nrs_design.pipeline.proof_constraints import NOTHING, ROOM, DesignEvaluator, constraints_of
+from nrs_design.pipeline.proof_constraints import NOTHING, ROOM, constraints_of, evaluator
 from nrs_design.progress import Progress, silent
 from nrs_design.proof.bounds import rounded_down
 
@@ -242,7 +242,7 @@ class _Search:
         from nrs_design.design.trust_region import ConstrainedProblem, minimize_in_trust_region
 
         gains = self.gains
-        evaluate = DesignEvaluator(gains, self.constraints, self.progress).evaluate
+        evaluate = evaluator(gains, self.constraints, self.progress)
         problem = ConstrainedProblem(gains.cost, evaluate, gains.low, gains.high, gains.spared)
         first = evaluate(start, None)
         found = minimize_in_trust_region(problem, first)

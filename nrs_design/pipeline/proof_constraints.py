@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from math import exp, log
 from typing import TYPE_CHECKING
 
@@ -126,32 +125,34 @@ def constraints_of(
     return decay, force_constraint(goals.peak_torque.si * (1 - room_of_bounds))
 
 
-@dataclass(frozen=True)
-class DesignEvaluator:
-    """Evaluates designs under several constraints."""
+def evaluator(
+    gains: FreeGains, constraints: Sequence[ProofConstraint], progress: Progress
+) -> Callable[[Array, Array | None], Evaluation]:
+    """Return what evaluates a design under several constraints, about what is expected of them.
 
-    gains: FreeGains
-    constraints: tuple[ProofConstraint, ...]
-    progress: Progress
+    Its Jacobian is found only where it is asked for.
+    """
+    from nrs_design.design.trust_region import Evaluation
 
-    @cached_property
-    def allowance(self) -> Allowance:
-        """Work and memory that the spec allows."""
-        limits = search_limits(self.gains.designed.spec)
-        return Allowance(limits.budget, limits.memory, Fuse.of(limits.budget))
+    limits = search_limits(gains.designed.spec)
+    allowance = Allowance(limits.budget, limits.memory, Fuse.of(limits.budget))
 
-    def evaluate(self, x: Array, expected: Array | None) -> Evaluation:
-        """Evaluate a design about what is expected; its Jacobian only where it is asked for."""
-        from nrs_design.design.trust_region import Evaluation
+    def value(
+        constraint: ProofConstraint, system: SwitchedSystem, expected: float | None
+    ) -> ConstraintValue:
+        try:
+            found = constraint.find(system, expected, allowance)
+        except NotAffordableError as error:
+            raise DesignError(
+                f"no gains were found: {error}", remedy="allow more with certification.budget"
+            ) from error
+        return found or ConstraintValue(NOTHING, lambda system: 0.0, f"no {constraint.title}")
 
-        gains = self.gains
+    def evaluate(x: Array, expected: Array | None) -> Evaluation:
         here = gains.system(x)
-        found = [
-            self._value(constraint, here, None if expected is None else float(expected[k]))
-            for k, constraint in enumerate(self.constraints)
-        ]
-        said = ", ".join(one.said for one in found)
-        self.progress(f"{said} at cost {gains.cost(x):.5g}")
+        guesses = [None] * len(constraints) if expected is None else [*map(float, expected)]
+        found = [value(one, here, guess) for one, guess in zip(constraints, guesses, strict=True)]
+        progress(f"{', '.join(one.said for one in found)} at cost {gains.cost(x):.5g}")
 
         def jacobian() -> Array:
             moved = []
@@ -163,13 +164,4 @@ class DesignEvaluator:
 
         return Evaluation(x, np.array([one.value for one in found]), jacobian)
 
-    def _value(
-        self, constraint: ProofConstraint, system: SwitchedSystem, expected: float | None
-    ) -> ConstraintValue:
-        try:
-            found = constraint.find(system, expected, self.allowance)
-        except NotAffordableError as error:
-            raise DesignError(
-                f"no gains were found: {error}", remedy="allow more with certification.budget"
-            ) from error
-        return found or ConstraintValue(NOTHING, lambda system: 0.0, f"no {constraint.title}")
+    return evaluate

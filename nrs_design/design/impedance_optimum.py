@@ -192,10 +192,8 @@ def admittance_at(
 
 def objective_of(problem: ImpedanceProblem, nodes: int) -> Objective:
     """Return the cost over the unit square; infinite where the nominal loop is not stable."""
-    cost, stabilizing = (
-        _cost_by(problem, nodes),
-        problem.stable or partial(stabilizes, problem.loop),
-    )
+    cost = _cost_by(problem, nodes)
+    stabilizing = problem.stable or partial(stabilizes, problem.loop)
 
     def stable_cost(u: FloatArray, v: FloatArray) -> FloatArray:
         Mt, Bt = admittance_at(problem, u, v)

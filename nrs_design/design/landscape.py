@@ -8,6 +8,7 @@ proved.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -81,26 +82,17 @@ def alternatives(problem: ImpedanceProblem, Mt: float, Bt: float) -> Iterator[Al
 
     Goals are not looked at: they may be why a cheaper admittance was not chosen.
     """
-    yield _priced(problem, "as shipped", Mt, Bt)
-    tries = (
-        ("best for the displayed impedance alone", _weighted(problem, 1.0, 0.0)),
-        ("best for the sensitivity alone", _weighted(problem, 0.0, 1.0)),
-    )
-    for name, other in tries:
-        try:
+    alone = {
+        "displayed impedance": replace(problem, weight_displayed=1.0, weight_sensitivity=0.0),
+        "sensitivity": replace(problem, weight_displayed=0.0, weight_sensitivity=1.0),
+    }
+
+    def priced(name: str, Mt: float, Bt: float) -> Alternative:
+        costs = (float(impedance_cost(each, Mt, Bt)) for each in (problem, *alone.values()))
+        return Alternative(name, Mt, Bt, *costs)
+
+    yield priced("as shipped", Mt, Bt)
+    for part, other in alone.items():
+        with suppress(DesignError):  # No admittance within the bounds is stable.
             best = optimize_impedance(other)
-        except DesignError:
-            continue  # No admittance within the bounds is stable.
-        yield _priced(problem, name, best.Mt, best.Bt)
-
-
-def _weighted(problem: ImpedanceProblem, displayed: float, robust: float) -> ImpedanceProblem:
-    return replace(problem, weight_displayed=displayed, weight_sensitivity=robust)
-
-
-def _priced(problem: ImpedanceProblem, name: str, Mt: float, Bt: float) -> Alternative:
-    costs = (
-        float(impedance_cost(p, Mt, Bt))
-        for p in (problem, _weighted(problem, 1.0, 0.0), _weighted(problem, 0.0, 1.0))
-    )
-    return Alternative(name, Mt, Bt, *costs)
+            yield priced(f"best for the {part} alone", best.Mt, best.Bt)

@@ -112,10 +112,9 @@ class _Box:
         """Return what the quotient is not above in the box; None if that is not shown."""
         if not all(a > 0 for a in self.below.flat):
             return None
+        ratios: Balls = self.above / self.below
         # Ends of balls have no radius, so that one of two is surely the larger.
-        return max(
-            ZERO, fraction_of(max(ratio.upper() for ratio in (self.above / self.below).flat))
-        )
+        return max(ZERO, fraction_of(max(ratio.upper() for ratio in ratios.flat)))
 
     def vertices(self) -> Iterator[tuple[Fraction, tuple[Fraction, ...]]]:
         """Yield what the quotient is not below at a vertex, and the vertex."""

@@ -20,11 +20,9 @@ from numpy.typing import NDArray
 
 from nrs_design.controllers.controller_design import Controller, ControllerDesign
 from nrs_design.controllers.sensor import LowPass
-from nrs_design.design.goals import ContactCorner
 from nrs_design.design.laws.law import Task
 from nrs_design.design.loops import Loops
 from nrs_design.design.transfer import controllable_form
-from nrs_design.loop.cut_loop import AbstractAxis
 from nrs_design.models.contact.law import AbstractLinearLaw
 from nrs_design.models.drive import Takes
 from nrs_design.models.linear_form import coordinates, zero
@@ -67,32 +65,25 @@ class LinearParts:
 
 def linear_parts(plant: Plant, design: ControllerDesign) -> LinearParts:
     """Return plant, controllers and contacts at nominal values."""
-    actuator, motion = _plant_parts(plant, design)
-    low_pass = design.sensor.filter
+    loop, low_pass = plant.motion_loop(design.motion.Kp, design.motion.Kd), design.sensor.filter
+    lag = plant.actuator.time_constant, Fraction(1), Fraction(0)
+    # Of velocities to velocities, and likewise of positions to positions.
+    command, motion = ("command", "rad/s or rad"), ("motion", "rad/s or rad")
     return LinearParts(
-        actuator,
-        motion,
+        _of_transfer(
+            "actuator",
+            (plant.actuator.gain,),
+            lag,
+            ("command", design.command),
+            ("position", "rad"),
+        ),
+        _of_transfer("motion_loop", loop.numerator, loop.denominator, command, motion),
         tuple(
             _controller_part(item, measured=design.takes is Takes.VELOCITY)
             for item in design.controllers
         ),
         None if low_pass is None else _filter_part(low_pass),
         tuple(_contacts(plant, design)),
-    )
-
-
-def _plant_parts(plant: Plant, design: ControllerDesign) -> tuple[LinearPart, LinearPart]:
-    """Return the actuator, and the closed motion loop from commands to motions."""
-    loop = plant.motion_loop(design.motion.Kp, design.motion.Kd)
-    lag, given = (
-        (plant.actuator.time_constant, Fraction(1), Fraction(0)),
-        ("command", design.command),
-    )
-    # Of velocities to velocities, and likewise of positions to positions.
-    command, motion = (("command", "rad/s or rad"), ("motion", "rad/s or rad"))
-    return (
-        _of_transfer("actuator", (plant.actuator.gain,), lag, given, ("position", "rad")),
-        _of_transfer("motion_loop", loop.numerator, loop.denominator, command, motion),
     )
 
 
@@ -194,31 +185,18 @@ def open_loops(
 
     None where no loop is cut at one place: the force is sampled more often than the motion.
     """
-    task = Task(spec, plant, design.motion)
-    if task.axis is None:
-        return ()
-    return tuple(loop for item in design.controllers for loop in _of(task, task.axis, item))
-
-
-def _of(task: Task, axis: AbstractAxis, controller: Controller) -> Iterator[OpenLoop]:
-    """Yield the loops of a controller; one that takes no force has none."""
-    given = task.spec.controllers[controller.name]
-    for corner in () if given.environment is None else task.corners(given):
-        yield _at(axis, controller, corner)
-
-
-def _at(axis: AbstractAxis, controller: Controller, corner: ContactCorner) -> OpenLoop:
-    opened, closed = axis.modes(controller.law, corner.contact, corner.place)
-    column, row = _factors(opened, closed)
-    cut = axis.cut(controller.law, corner.contact, corner.place)
-    return OpenLoop(
-        controller.name,
-        corner.label,
-        np.array([[float(entry) for entry in line] for line in opened]),
-        np.array([[float(entry)] for entry in column]),
-        np.array([[-float(entry) for entry in row]]),
-        Loops.of_cut(cut, axis.period),
-    )
+    task, found = Task(spec, plant, design.motion), []
+    axis = task.axis
+    for controller in () if axis is None else design.controllers:
+        given, law = spec.controllers[controller.name], controller.law
+        # One that takes no force has no loop.
+        for corner in () if given.environment is None else task.corners(given):
+            opened, closed = axis.modes(law, corner.contact, corner.place)
+            column, row = _factors(opened, closed)
+            cut = Loops.of_cut(axis.cut(law, corner.contact, corner.place), axis.period)
+            A, B, C = (np.array(M, dtype=np.float64) for M in (opened, [column], [row]))
+            found.append(OpenLoop(controller.name, corner.label, A, B.T, -C, cut))
+    return tuple(found)
 
 
 def _factors(opened: Rows, closed: Rows) -> tuple[list[Fraction], list[Fraction]]:

@@ -186,8 +186,9 @@ def open_loops(
     None where no loop is cut at one place: the force is sampled more often than the motion.
     """
     task, found = Task(spec, plant, design.motion), []
-    axis = task.axis
-    for controller in () if axis is None else design.controllers:
+    if (axis := task.axis) is None:
+        return ()
+    for controller in design.controllers:
         given, law = spec.controllers[controller.name], controller.law
         # One that takes no force has no loop.
         for corner in () if given.environment is None else task.corners(given):

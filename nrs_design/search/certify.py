@@ -20,12 +20,10 @@ from nrs_design.certificates.certificate import (
 from nrs_design.certificates.goals import rate_per_second
 from nrs_design.certificates.second_opinion import agrees
 from nrs_design.errors import DISAGREE, DesignError, InternalError
-from nrs_design.late import late_function
 from nrs_design.progress import Progress, silent
 from nrs_design.proof.channels import Channel, Output
 from nrs_design.proof.evidence import AbstractEvidence, FormsOnGraph, Shows
 from nrs_design.proof.exact import TooLargeError
-from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.candidates import Candidates, E
 from nrs_design.search.certification import Attempt, Certification, Limits
@@ -45,10 +43,6 @@ OFF_THE_ORIGIN = 0.7
 # The end of a search that had a solution, but no rate to claim for it.
 NO_RATE = "what was found shows no rate of decay"
 SATURATION = "decay under saturation"
-SATURATED = {
-    Time.CONTINUOUS: late_function("nrs_design.search.saturated_ellipsoid", "search_saturated"),
-    Time.DISCRETE: late_function("nrs_design.search.saturated_steps", "search_saturated_steps"),
-}
 SUSPICIOUS, ENCLOSURE = "suspicious modes", "enclosure of the ranges"
 WIDE = (
     "is not stable, and no loop of the spec need be there: nothing that covers the enclosure can "
@@ -215,11 +209,9 @@ def _ellipsoids(
     """Yield ellipsoids off the origin, where contact may be lost, before those around it."""
     if not any(any(map(any, B.numerators)) for channel in channels for B in channel.columns):
         return "it moves nothing in any mode"
-    from nrs_design.search.invariant_ellipsoid import search_ellipsoid
+    from nrs_design.search.invariant_ellipsoid import search_ellipsoid, search_offset_ellipsoid
 
     if system.contact is not None:
-        from nrs_design.search.offset_ellipsoid import search_offset_ellipsoid
-
         own = allowance.part(OFF_THE_ORIGIN)
         with suppress(NotAffordableError):
             yield from search_offset_ellipsoid(system, channels, output, own)
@@ -236,8 +228,10 @@ def _saturated(
     """Show from where motions decay although signals saturate, where the system has some."""
     if system.saturation is None:
         return (), ()
+    from nrs_design.search.saturated_ellipsoid import search_saturated
+
     task.progress(SATURATION)
-    search = partial(SATURATED[system.time], system, task.allowance)
+    search = partial(search_saturated, system, task.allowance)
     return _attempted(SATURATION, search, system, task.allowance)
 
 

@@ -10,14 +10,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import isfinite, log, sqrt
 
-import numpy as np
 from numpy.linalg import LinAlgError
 
 from nrs_design.proof.channels import Output
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.search.disturbed import DisturbedProblem
 from nrs_design.search.family import Family, floats_in_silence
-from nrs_design.search.invariant_ellipsoid import Frame, best_share, largest_share, least_level
+from nrs_design.search.invariant_ellipsoid import BoundProgram, Frame, largest_share
 from nrs_design.work import Allowance
 
 # Shares beside one that was the best nearby.
@@ -37,8 +35,8 @@ class ForceSlope:
     def change(self, system: SwitchedSystem) -> float:
         """Return by how much the logarithm of the bound of a system nearby is larger."""
         with floats_in_silence():
-            own, _ = _problem(system, self._output, self._frame)
-            found = least_level(own, self.share, self._allowance)
+            program = BoundProgram.around(system, system.channels, self._output, self._frame)
+            found = program.solve(self.share, self._allowance)
         if found is None:
             return 0.0
         return log(self._frame.level * sqrt(found.last) / self.level)
@@ -53,36 +51,22 @@ def force_slope(
     """
     with floats_in_silence():
         try:
-            frame = Frame.of(Family.of(system), system.channels, output)
+            frame = Frame.of(system, system.channels, output)
         except LinAlgError:  # A mode that grows has no norm.
             return None
         if frame is None:
             return None
-        own, limit = _problem(system, output, frame)
-        top = largest_share(limit, own.time)
-        tried = {}
+        program = BoundProgram.around(system, system.channels, output, frame)
+        limit = Family.of(system).limit
+        top, tried = largest_share(limit, system.time), {}
         for near in (share * factor for factor in BESIDE if share is not None):
-            if near < top and (found := least_level(own, near, allowance)) is not None:
+            if near < top and (found := program.solve(near, allowance)) is not None:
                 tried[near] = found.last
-        if tried:
-            best = min(tried, key=lambda one: tried[one])
-            least = tried[best]
+        best = min(tried, key=lambda one: tried[one], default=None)
+        if best is None:
+            least, best = program.best_share(limit, system.time, allowance)
         else:
-
-            def attempt(share: float) -> float:
-                found = least_level(own, share, allowance)
-                return np.inf if found is None else found.last
-
-            least, best = best_share(attempt, limit, own.time)
+            least = tried[best]
     if not isfinite(least):
         return None
     return ForceSlope(frame.level * sqrt(least), best, output, frame, allowance)
-
-
-def _problem(
-    system: SwitchedSystem, output: Output, frame: Frame
-) -> tuple[DisturbedProblem, float]:
-    """Return the conditions in a frame, without what is rounded, and the rate limit."""
-    family = Family.of(system)
-    whole, _ = frame.problem(family, system.channels, output)
-    return whole.without_roundings().distinct(), family.limit

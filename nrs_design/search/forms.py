@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from itertools import chain
-from math import exp, inf, isfinite
+from math import exp, isfinite
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +25,7 @@ from nrs_design.proof.steps import Step
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.balance import balance, scale_states
 from nrs_design.search.family import NEARLY
+from nrs_design.search.float_step import FloatStep
 from nrs_design.search.forms_interior_point import (
     ConeKind,
     FormsCones,
@@ -34,9 +35,8 @@ from nrs_design.search.forms_interior_point import (
 )
 from nrs_design.search.lifted import make_vanish, products, vanishing_basis
 from nrs_design.search.lmi import FEWEST_STEPS, time_unit
-from nrs_design.search.motions import numerators
 from nrs_design.search.pieces import enough_pieces
-from nrs_design.search.rounding import round_form, round_rate
+from nrs_design.search.rounding import numerators, round_form, round_rate
 from nrs_design.search.sdp import (
     STEPS,
     Maximum,
@@ -683,7 +683,7 @@ def _edges(
     inverses = [np.linalg.inv(whole) for whole in wholes]
     listed = [*graph.edges_in_time(system), *_at_once(drawing)]
     names, edges = _named(drawing, listed), list[Inequality]()
-    moves, known = list[tuple[int, Step, int]](), dict[int, _Floats]()
+    moves, known = list[tuple[int, Step, int]](), dict[int, FloatStep]()
     for a, step, b in listed:
         if isinstance(step, EnclosedStep):
             before, after = drawing.forms[a], drawing.forms[b]
@@ -694,7 +694,7 @@ def _edges(
             continue
         moves.append((a, step, b))
         if id(step) not in known:
-            known[id(step)] = _Floats.of(
+            known[id(step)] = FloatStep.of(
                 step if graph.degree == 1 else lifted(step, graph.degree, Fraction(1))
             )
     sizes: dict[Fact, float] = {}
@@ -773,36 +773,6 @@ def _stays(step: EnclosedStep) -> Iterator[tuple[float, Array]]:
     times = min(max(float(np.linalg.norm(A)) * (last - first), SHORTEST), LONGEST)
     for lasts in np.linspace(first, last, round(SAMPLES * times) + 1 if last > first else 1):
         yield float(lasts), G @ np.asarray(expm(A * lasts))
-
-
-@dataclass(frozen=True)
-class _Floats:
-    """A step in the units of the system."""
-
-    M: Array
-    errors: tuple[tuple[str, int, Array], ...]
-    crossings: tuple[tuple[str, Array], ...]
-
-    @classmethod
-    def of(cls, step: Step) -> _Floats:
-        units = step.units
-
-        def row(entries: Sequence[int], below: int) -> list[float]:
-            given = [_ratio(e, unit * below) for e, unit in zip(entries, units, strict=False)]
-            return given + [0.0] * (len(units) - len(given))
-
-        return cls(
-            np.array([row(entries, step.over) for entries in step.rows]),
-            tuple((name, i, np.array(row(q, below))) for name, i, q, below in step.errors),
-            tuple((name, np.array(row(c, below))) for name, c, below in step.crossings),
-        )
-
-
-def _ratio(above: int, below: int) -> float:
-    try:
-        return above / below
-    except OverflowError:
-        return inf
 
 
 def _distinct(edges: list[Inequality]) -> tuple[list[Inequality], list[int]]:

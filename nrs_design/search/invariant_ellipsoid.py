@@ -1,8 +1,9 @@
 """Search for small invariant ellipsoids: how far a disturbance can push an output (untrusted).
 
-For a fixed share a, the conditions of `nrs_design.proof.evidence.invariant_ellipsoid` are linear in
-Q, the multipliers and the square of the level. A few shares are tried; then the level is fixed a
-little above the best one, and the conditions are satisfied with as much to spare as possible.
+For a fixed share of the disturbances, the conditions of `nrs_design.proof.evidence` are linear in
+the form, the multipliers and the level, or its square. The best share is sought; then the level is
+fixed a little above the least one, and the conditions are satisfied with as much to spare as
+possible.
 """
 
 from __future__ import annotations
@@ -10,39 +11,154 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from math import isfinite
+from math import isfinite, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.proof.channels import Channel, Output
-from nrs_design.proof.evidence import InvariantEllipsoid
+from nrs_design.proof.evidence import InvariantEllipsoid, OffsetEllipsoid
 from nrs_design.proof.mode import Time
+from nrs_design.proof.steps import ROUNDING, multiplier_names
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
-from nrs_design.search.disturbed import (
-    DisturbedProblem,
-    DisturbedSolution,
-    balanced,
-    problem_of,
-    roundings,
-    transformed,
-)
-from nrs_design.search.family import Family
+from nrs_design.search.family import Family, to_floats
 from nrs_design.search.motions import separating_coordinates
-from nrs_design.search.sdp import solve_blocks, symmetric_basis
+from nrs_design.search.one_form import (
+    SHARE,
+    Constraint,
+    FormSolution,
+    OneForm,
+    StepUnits,
+    of_roundings,
+    plain_steps,
+)
 from nrs_design.work import Allowance
 
 Array = NDArray[np.float64]
 
-# Shares that are tried, and steps of a golden section around the best of them.
-SHARES, REFINED = 6, 4
-GOLDEN = (5**0.5 - 1) / 2
-SMALLEST_SHARE = 0.02
+# Where shares are tried first, relative to the largest, by what factor the next one differs, and
+# how often the best is refined.
+USUAL, STEP, REFINED = (0.38, 0.15, 0.06, 0.8), 1.5, 3
+SMALLEST = 0.02
 # How far above the least level found the claimed one lies: the nearer, the harder to round.
 SLACKS = (1.002, 1.01, 1.03, 1.1)
 # Steps of a response that is summed for the scale.
 STEPS = 4000
+
+
+@dataclass(frozen=True)
+class Frame:
+    """StepUnits ``x = T z`` and a unit of the output, in which both are about one."""
+
+    T: Array
+    level: float
+
+    @classmethod
+    def of(
+        cls, system: SwitchedSystem, channels: Sequence[Channel], output: Output
+    ) -> Frame | None:
+        """Return the frame of a system; None if it is beyond floating point."""
+        family = Family.of(system)
+        T = np.ldexp(separating_coordinates(family), family.exponents[:, None])
+        sizes = [float(channel.bound) for channel in channels]
+        columns = [to_floats(c.columns) * size for c, size in zip(channels, sizes, strict=True)]
+        pushed = np.linalg.inv(T) @ np.concatenate(columns, axis=2)[: len(system.modes)]
+        modes = np.linalg.inv(T) @ to_floats([mode.A for mode in system.modes]) @ T
+        rows = to_floats(output.rows)[:, 0] @ T
+        reach, level = reach_and_level(modes, pushed, rows, system.time)
+        found = np.isfinite(T).all() and isfinite(reach) and isfinite(level) and reach * level > 0
+        return cls(reach * T, level) if found else None
+
+
+def reach_and_level(modes: Array, x: Array, rows: Array, time: Time) -> tuple[float, float]:
+    """Return how far state and output go under one mode alone.
+
+    Modes of shape (m, n, n), pushed by disturbances up to one with columns of shape (m, n, c).
+    """
+    dt = np.ones(len(modes))
+    if time is Time.CONTINUOUS:
+        from scipy.linalg import expm
+
+        dt = 0.1 / np.maximum(np.abs(np.linalg.eigvals(modes)).max(axis=1), 1e-9)
+        modes = expm(modes * dt[:, None, None])
+    reach, level = np.zeros(len(modes)), np.zeros(len(modes))
+    for _ in range(STEPS):
+        reach += np.linalg.norm(x, axis=(1, 2)) * dt
+        level += np.abs(rows @ x).sum(axis=2).max(axis=1) * dt
+        x = modes @ x
+    return float(reach.max()), float(level.max())
+
+
+@dataclass(frozen=True)
+class BoundProgram:
+    """The ellipsoids that bound an output under disturbances."""
+
+    program: OneForm
+    own: StepUnits
+    bounds: tuple[Constraint, ...]
+    disturbances: int = 0  # That have a share each
+
+    @classmethod
+    def around(
+        cls,
+        system: SwitchedSystem,
+        channels: Sequence[Channel],
+        output: Output,
+        frame: Frame,
+        *,
+        rounding: bool = False,
+    ) -> BoundProgram:
+        """Take ellipsoids around the origin, with the square of the level as their level."""
+        steps = plain_steps(system, [*map(system.channels.index, channels)], rounding=rounding)
+        units = [float(channel.bound) for channel in channels]
+        own = StepUnits.of(frame.T, units, len(system.roundings) * rounding).balanced(steps)
+        program = OneForm.of(steps, own)
+        rows = to_floats(output.rows)[:, 0] @ own.T / frame.level
+        bounds = tuple(Constraint.bordered(program.basis, row, 1.0) for row in rows)
+        return cls(program, own, bounds, len(channels))
+
+    @classmethod
+    def off(cls, item: OffsetEllipsoid, system: SwitchedSystem, frame: Frame) -> BoundProgram:
+        """Take ellipsoids off the origin, of a state behind a one."""
+        steps, n = list(item.steps(system)), system.order
+        T = np.eye(n + 1)
+        T[1:, 1:] = frame.T
+        disturbed = StepUnits.of(T, [1.0] * len(item.channels), len(item.roundings))
+        own = disturbed.balanced(steps).without_weak(steps, len(item.channels))
+        ends = {
+            name: sign * np.array(row.floats()[0]) @ frame.T / frame.level
+            for name, row, sign in item.ends(system)
+        }
+        program = OneForm.of(steps, own, dict.fromkeys(ends, float(T[-1, -1])))
+        basis, zero = program.basis, np.zeros((n + 1, n + 1))
+        one, deflected = zero.copy(), zero.copy()
+        one[0, 0], deflected[0, -1], deflected[-1, 0] = 1.0, -T[-1, -1] / 2, -T[-1, -1] / 2
+        bounds = [Constraint(zero[1:, 1:], basis[:, 1:, 1:], zero[1:, 1:])]
+        bounds.append(Constraint(zero[:1, :1], -basis[:, :1, :1]))
+        for name, row in ends.items():
+            constant = zero.copy()
+            constant[0, 1:] = constant[1:, 0] = -row / 2
+            bounds.append(Constraint(constant, basis, one, {name: deflected}))
+        return cls(program, own, tuple(bounds))
+
+    def solve(
+        self, share: float, allowance: Allowance, level: float | None = None
+    ) -> FormSolution | None:
+        """Minimize the level, or leave most to spare, for a share of all disturbances together."""
+        one = np.ones((1, 1))
+        shares = {f"{SHARE} {k + 1}": -one for k in range(self.disturbances)}
+        total = Constraint(share * one, np.zeros((len(self.program.basis), 1, 1)), None, shares)
+        return self.program.solve(share, (*self.bounds, total), allowance, level)
+
+    def best_share(self, limit: float, time: Time, allowance: Allowance) -> tuple[float, float]:
+        """Return the least level found, and the share that gives it."""
+
+        def attempt(share: float) -> float:
+            found = self.solve(share, allowance)
+            return np.inf if found is None else found.last
+
+        return best_share(attempt, largest_share(limit, time))
 
 
 def search_ellipsoid(
@@ -53,36 +169,64 @@ def search_ellipsoid(
     The system is stable. Where the arithmetic rounds, ellipsoids that cover that come before
     others.
     """
-    family = Family.of(system)
-    frame = Frame.of(family, channels, output)
+    frame, limit = Frame.of(system, channels, output), Family.of(system).limit
     if frame is None:
         return OUT_OF_RANGE
-    whole, units = frame.problem(family, channels, output)
-    exact = whole.without_roundings().distinct()
-
-    def attempt(share: float) -> float:
-        found = least_level(exact, share, allowance)
-        return np.inf if found is None else found.last
-
-    best, share = best_share(attempt, family.limit, system.time)
+    exact = BoundProgram.around(system, channels, output, frame)
+    best, share = exact.best_share(limit, system.time, allowance)
     if not isfinite(best):
         return NO_MARGIN
+    programs = [exact]
+    if system.roundings:
+        programs.insert(0, BoundProgram.around(system, channels, output, frame, rounding=True))
     names = tuple(channel.name for channel in channels)
-    for own in [whole.distinct(), exact] if system.roundings else [exact]:
+    for own in programs:
         for slack in SLACKS:
-            found = least_level(own, share, allowance, best * slack**2)
+            found = own.solve(share, allowance, best * slack**2)
             if found is None:
                 continue
-            empty = InvariantEllipsoid(
-                names,
-                output.name,
-                (),
-                0,
-                tuple(map(seven_digits, found.shares.tolist())),
-                seven_digits(frame.level * float(np.sqrt(best)) * slack),
+            shares = (found.multipliers[f"{SHARE} {k + 1}"] for k in range(len(channels)))
+            claimed = (
+                tuple(map(seven_digits, shares)),
+                seven_digits(frame.level * sqrt(best) * slack),
             )
-            for numbers in roundings(family, found, frame.T, units, frame.size):
-                yield Candidate(replace(empty, **numbers))
+            for Q, log2, known in found.roundings(own.own.T):
+                lost = tuple(known[name] for name in multiplier_names(system))
+                yield Candidate(
+                    InvariantEllipsoid(
+                        names, output.name, Q, log2, *claimed, lost, of_roundings(known)
+                    )
+                )
+    return None
+
+
+def search_offset_ellipsoid(
+    system: SwitchedSystem, channels: Sequence[Channel], output: Output, allowance: Allowance
+) -> Candidates[OffsetEllipsoid]:
+    """Yield ellipsoids off the origin, as `search_ellipsoid` does; with the roundings, or none.
+
+    Contact may be lost.
+    """
+    frame, limit = Frame.of(system, channels, output), Family.of(system).limit
+    if frame is None:
+        return OUT_OF_RANGE
+    names = tuple(channel.name for channel in channels)
+    empty = OffsetEllipsoid(names, output.name, (), 0, (Fraction(1, 2),), Fraction(1))
+    every = replace(empty, roundings=(0,) * len(system.roundings))
+    exact, whole = (BoundProgram.off(item, system, frame) for item in (empty, every))
+    best, share = exact.best_share(limit, system.time, allowance)
+    if not isfinite(best):
+        return NO_MARGIN
+    for slack in SLACKS[1:]:
+        found = whole.solve(share, allowance, best * slack)
+        if found is None:
+            continue
+        level = seven_digits(frame.level * best * slack)
+        claim = replace(every, shares=(seven_digits(share),), level=level)
+        for Q, log2, known in found.roundings(whole.own.T, frame.level):
+            own = tuple(m for name, m in known.items() if not name.startswith(ROUNDING))
+            numbers = replace(claim, multipliers=own, roundings=of_roundings(known))
+            yield Candidate(replace(numbers, Q=Q, denominator_log2=log2))
     return None
 
 
@@ -91,61 +235,16 @@ def seven_digits(number: float) -> Fraction:
     return Fraction(f"{number:.6e}")
 
 
-@dataclass(frozen=True)
-class Frame:
-    """Coordinates ``x = size T z`` and a unit of the output, in which both are about one."""
-
-    T: Array
-    size: float
-    level: float
-
-    @classmethod
-    def of(cls, family: Family, channels: Sequence[Channel], output: Output) -> Frame | None:
-        """Return the frame of a system; None if it is beyond floating point."""
-        T = separating_coordinates(family)
-        size, level = reach_and_level(problem_of(family, channels, output), T)
-        found = np.isfinite(T).all() and isfinite(size) and isfinite(level) and size * level > 0
-        return cls(T, size, level) if found else None
-
-    def problem(
-        self, family: Family, channels: Sequence[Channel], output: Output
-    ) -> tuple[DisturbedProblem, Array]:
-        """Return the conditions in these coordinates, and the units that `balanced` gives."""
-        raw = problem_of(family, channels, output)
-        return balanced(transformed(raw, self.T, self.size, self.level))
-
-
-def reach_and_level(problem: DisturbedProblem, T: Array) -> tuple[float, float]:
-    """Return how far state and output go under one mode alone, in coordinates ``x = T z``."""
-    n = problem.order
-    inverse = np.linalg.inv(T)
-    size = level = 0.0
-    for mode in problem.contact:
-        A, x = inverse @ mode[:, :n] @ T, inverse @ mode[:, n : n + problem.disturbances]
-        dt = 1.0
-        if problem.time is Time.CONTINUOUS:
-            from scipy.linalg import expm
-
-            dt = 0.1 / max(float(np.abs(np.linalg.eigvals(A)).max()), 1e-9)
-            A = expm(A * dt)
-        reach = total = 0.0
-        rows = problem.rows @ T
-        for _ in range(STEPS):
-            reach += float(np.linalg.norm(x)) * dt
-            total += float(np.abs(rows @ x).sum(axis=1).max()) * dt
-            x = A @ x
-        size, level = max(size, reach), max(level, total)
-    return size, level
-
-
 def largest_share(limit: float, time: Time) -> float:
     """Return the share that no form can beat."""
     return 2 * limit if time is Time.CONTINUOUS else 1 - limit**2
 
 
-def best_share(attempt: Callable[[float], float], limit: float, time: Time) -> tuple[float, float]:
-    """Return the least value found, and the share that gives it."""
-    top = largest_share(limit, time)
+def best_share(attempt: Callable[[float], float], top: float) -> tuple[float, float]:
+    """Return the least value found, and the share that gives it.
+
+    Values are followed down from a usual share, and then by parabolas through the three best.
+    """
     tried: dict[float, float] = {}
 
     def value(share: float) -> float:
@@ -153,51 +252,23 @@ def best_share(attempt: Callable[[float], float], limit: float, time: Time) -> t
             tried[share] = attempt(share)
         return tried[share]
 
-    shares = np.geomspace(SMALLEST_SHARE * top, 0.98 * top, SHARES).tolist()
-    k = min(range(SHARES), key=lambda i: value(shares[i]))
-    low, high = np.log(shares[max(k - 1, 0)]), np.log(shares[min(k + 1, SHARES - 1)])
-    for _ in range(REFINED):
-        left, right = high - (high - low) * GOLDEN, low + (high - low) * GOLDEN
-        if value(float(np.exp(left))) <= value(float(np.exp(right))):
-            high = right
-        else:
-            low = left
-    best = min(tried, key=lambda share: tried[share])
-    return tried[best], best
-
-
-def least_level(
-    own: DisturbedProblem, share: float, allowance: Allowance, level: float | None = None
-) -> DisturbedSolution | None:
-    """Minimize the square of the level; or, for a given one, leave as much to spare as possible.
-
-    In coordinates of like size, with outputs over a scale, for a share of all disturbances
-    together.
-    """
-    n, lost, c, basis = own.order, own.multipliers, own.disturbances, symmetric_basis(own.order)
-    k, unknowns = len(basis), len(basis) + lost + c + own.errors + 1
-    blocks = own.condition_blocks(basis, share, 0.0 if level is None else 1.0)
-    for row in own.rows:
-        constant, images = own.bordered(row, basis)
-        if level is None:
-            images[-1, n, n] = -1.0
-        else:
-            constant[n, n] = level
-            images[-1] = -np.eye(n + 1)
-        blocks.append((constant, images))
-    # Multipliers and shares are not negative, and the shares add up to what they may.
-    bounds = [(0.0, {i: 1.0}) for i in range(k, unknowns - 1)]
-    bounds.append((share, dict.fromkeys(range(k + lost, k + lost + c), -1.0)))
-    if level is not None:
-        bounds.append((1.0, {unknowns - 1: -1.0}))
-    for number, weights in bounds:
-        images = np.zeros((unknowns, 1, 1))
-        for i, weight in weights.items():
-            images[i] = weight
-        blocks.append((np.full((1, 1), number), images))
-    x = solve_blocks(blocks, allowance)
-    if x is None or (level is not None and x[-1] <= 0) or (level is None and x[-1] >= 0):
-        return None
-    Q = np.asarray(np.tensordot(x[:k], basis, axes=1))
-    crossings, shares, taus = np.split(x[k:-1], [lost, lost + c])
-    return DisturbedSolution(Q, crossings, shares, taus, float(-x[-1]))
+    start = next((s * top for s in USUAL if isfinite(value(s * top))), USUAL[0] * top)
+    best = start
+    for factor in (1 / STEP, STEP):
+        while SMALLEST * top < factor * best < top and value(factor * best) < value(best):
+            best *= factor
+        if best != start:
+            break
+    for _ in range(REFINED if isfinite(value(best)) else 0):
+        shares = sorted(tried)
+        k = shares.index(best)
+        beside = shares[max(k - 1, 0) : k + 2]
+        values = [value(s) for s in beside]
+        if len(values) < 3 or not np.isfinite(values).all():
+            break
+        curve = np.polyfit(np.log(beside) - np.log(best), values, 2)
+        if not curve[0] > 0:
+            break
+        value(best * float(np.exp(-curve[1] / (2 * curve[0]))))
+        best = min(tried, key=lambda share: tried[share])
+    return value(best), best

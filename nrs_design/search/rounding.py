@@ -103,3 +103,9 @@ def unscale(
     top = int(exponents.max())
     rows, log2 = round_form(Q, top - exponents, bits), bits + 2 * top
     return (rows, log2) if log2 >= 0 else (tuple(tuple(v << -log2 for v in row) for row in rows), 0)
+
+
+def numerators(multipliers: NDArray[np.float64], log2: int) -> tuple[int, ...]:
+    """Round multipliers to integers over two to a power; none becomes negative."""
+    whole = Fraction(2) ** log2
+    return tuple(round(max(Fraction(float(entry)), Fraction(0)) * whole) for entry in multipliers)

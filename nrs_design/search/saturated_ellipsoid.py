@@ -1,50 +1,173 @@
-"""Search for ellipsoids in which motions decay although signals saturate (untrusted).
+"""Search for ellipsoids in which a loop decays although signals saturate (untrusted).
 
-With ``S = Q^-1`` and ``Y = H S`` the conditions of `nrs_design.proof.evidence.saturated_ellipsoid`
-in contact are linear in S and Y (Hu and Lin), and the largest start is found at once. Free motion
-is about a block of Q. There is ``y' M y < 0`` on a block if and only if ``(B + g e')' Q + Q (B + g
-e') < 0`` for some column g, e the unit vector of the deflection; for a fixed g that is linear in S.
-So g is taken from the last S, beginning where nothing saturates, and S is improved until that
-gains little. At last H is rounded, and Q is found for it with as much to spare as possible.
+The largest region in contact gives the rows H. For them, rounded, the conditions of
+`nrs_design.proof.evidence.saturated_ellipsoid` are linear in Q and all multipliers: those of lost
+contact and of roundings. Where they have no solution, H is moved to what the signals are while
+nothing is cut off.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass, replace
 from fractions import Fraction
+from typing import Any
 
 import numpy as np
 
+from nrs_design.proof.between import between
+from nrs_design.proof.channels import Rounding
 from nrs_design.proof.evidence import SaturatedEllipsoid
 from nrs_design.proof.mode import Time
+from nrs_design.proof.saturation import CutOff
+from nrs_design.proof.steps import multiplier_names
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.balance import round_coordinates
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
-from nrs_design.search.family import Family
-from nrs_design.search.rounding import round_rate, unscale
-from nrs_design.search.saturated_region import (
-    BELOW,
-    ENOUGH,
-    SLOWEST,
-    SMALLEST,
-    Array,
-    Problem,
-    Region,
-    bordered_by,
-    largest_region,
-    last_unknown,
-    log2_of,
-    row_unknowns,
-    solved,
+from nrs_design.search.family import Family, stand_ins, to_floats
+from nrs_design.search.motions import separating_coordinates
+from nrs_design.search.one_form import (
+    Constraint,
+    FormSolution,
+    OneForm,
+    StepUnits,
+    of_roundings,
+    plain_steps,
 )
+from nrs_design.search.rounding import position_of, rate_at, round_rate
+from nrs_design.search.saturated_region import Array, Region, SaturatingLoop, largest_region
 from nrs_design.work import Allowance
 
-DIGITS = (16, 20, 24, 32, 40, 50, 60)
-# Improvements of a region in free motion, and the least gain that is worth another.
-STEPS, GAIN = 12, 1.003
+H_DIGITS = 40
+# The slowest decay that counts, as a share of the fastest there is; what is rounded needs room.
+SLOWEST = {Time.CONTINUOUS: 1e-3, Time.DISCRETE: 0.02}
+# By how much a start stays below the largest one: nearer to it there is no decay to speak of.
+BELOW = 0.99
+# A start just inside of a region leaves nothing for rounding.
+ENOUGH = 0.999
+# How far H is taken from what the signals are while nothing is cut off, the farthest first.
+WAYS = (1.0, 0.8, 0.5, 0.0)
+# Steps of a bisection of the rate, and shares of the largest one that are claimed.
 BISECTIONS = 8
-# Shares of the largest rate that are claimed.
-RATES = (0.99, 0.9, 0.5, 0.1)
+RATES = (0.99, 0.98, 0.9, 0.5, 0.1)
+
+
+@dataclass(frozen=True)
+class _Held:
+    """Rows h in units of the spec, for a region that is round in coordinates ``x = T z``."""
+
+    H: Array
+    T: Array
+    size: float  # Of the largest start
+
+
+@dataclass(frozen=True)
+class _Search:
+    """A system without modes that floating point cannot tell apart, in coordinates ``x = T z``."""
+
+    system: SwitchedSystem
+    T: Array
+    loop: SaturatingLoop
+    limit: float  # The fastest rate there is
+    stands: tuple[int, ...]  # For each mode of the whole system, the one that stands for it
+    rounding: bool = False  # Whether what the arithmetic rounds is covered
+
+    def rate(self, position: float) -> float:
+        """Return the rate at a position from 0, mere stability, to 1."""
+        return rate_at(position, self.limit, self.loop.time)
+
+    @property
+    def limits(self) -> Array:
+        """Those of all rows h."""
+        assert self.system.saturation is not None
+        limits = [float(s.limit) for s in self.system.saturation.signals]
+        return np.tile(limits, self.loop.held // len(limits))
+
+    def rounded_rows(self, H: Array, way: float) -> Array:
+        """Return rows between what the signals are while nothing is cut off and others, rounded."""
+        moved = self.loop.shared + way * (H - self.loop.shared)
+        found = self.limits[:, None] * (moved @ np.linalg.inv(self.T))
+        log2 = log2_of(found)
+        return np.asarray(np.ldexp(np.rint(np.ldexp(found, log2)), -log2))
+
+    def program(self, held: _Held) -> OneForm:
+        """Return the conditions for given rows."""
+        rows = [[[Fraction(float(v)) for v in h] for h in H] for H in self.loop.by_mode(held.H)]
+        system = between(self.system, rows, rounding=self.rounding)
+        steps = plain_steps(system, rounding=self.rounding)
+        own = StepUnits.of(held.T, (), len(system.roundings) * self.rounding)
+        return OneForm.of(steps, own.balanced(steps))
+
+    def solve(
+        self, held: _Held, rate: float, size: float, *, largest: bool = False
+    ) -> FormSolution | None:
+        """Return Q and multipliers for a start of some size, with most to spare.
+
+        With `largest`, for the largest start, of which `last` is the square of the size over it.
+        """
+        program, zero = self.program(held), np.zeros((1, 1))
+        rows = held.H / self.limits[:, None] @ held.T
+        bounds = [Constraint.bordered(program.basis, row, 0.0, 1.0) for row in rows]
+        for x in self.loop.starts @ self.T.T @ np.linalg.inv(held.T).T:
+            value = -np.einsum("i,kij,j->k", size * x, program.basis, size * x)
+            bounds.append(Constraint(zero, value[:, None, None], zero + 1))
+        share, level = share_of(rate, self.loop.time), None if largest else 1.0
+        return program.solve(share, bounds, self.loop.allowance, level)
+
+    def largest(self, region: Region, rate: float) -> _Held | None:
+        """Return the rows with the largest start for them, rounded as it is."""
+        slower = self.rate(RATES[0] * position_of(rate, self.limit, self.loop.time))
+        shape = np.asarray(np.linalg.inv(region.S), dtype=np.float64)
+        T = np.asarray(self.T @ round_coordinates(shape))
+        for way in WAYS:
+            held = _Held(self.rounded_rows(region.H, way), T, region.size)
+            # The rows are made for this size, which leaves no room: a little less does.
+            if way == 1.0 and self.solve(held, slower, BELOW * region.size):
+                return held
+            found = self.solve(held, rate, region.size, largest=True)
+            if found is not None:
+                # With roundings, the solver ends a little beyond what is possible without them.
+                return replace(held, size=region.size * min(1 / float(np.sqrt(found.last)), 1.0))
+        return None
+
+    def fastest(
+        self, region: Region, held: _Held, level: float, slow: float
+    ) -> tuple[_Held, float]:
+        """Return rows for a start, and the position of the fastest rate that bisection finds."""
+        fast = 1.0
+        for _ in range(BISECTIONS):
+            position = float(np.sqrt(slow * fast))
+            nearby = largest_region(self.loop, self.rate(position), region, level / ENOUGH)
+            found = None
+            if nearby is not None and nearby.size * ENOUGH >= level:
+                found = self.largest(nearby, self.rate(position))
+            if nearby is None or found is None or found.size * ENOUGH < level:
+                fast = position
+            else:
+                region, held, slow = nearby, found, position
+        return held, slow
+
+    def rounded(self, held: _Held, level: Fraction, rate: Fraction) -> Iterator[SaturatedEllipsoid]:
+        """Yield the region with Q and the multipliers in integers, with ever more digits."""
+        found = self.solve(held, float(rate), float(level))
+        if found is None:
+            return
+        each, log2 = [held.H], log2_of(held.H)
+        if max(self.loop.groups) > 0:
+            by_mode = self.loop.by_mode(held.H)
+            each = [by_mode[k] for k in self.stands]
+        rows = tuple(tuple(int(v) for v in row) for row in np.ldexp(np.concatenate(each), log2))
+        for Q, power, known in found.roundings(held.T):
+            yield SaturatedEllipsoid(
+                Q=Q,
+                denominator_log2=power,
+                rate=rate,
+                H=rows,
+                H_denominator_log2=log2,
+                level=level,
+                multipliers=tuple(known[name] for name in multiplier_names(self.system)),
+                roundings=of_roundings(known),
+            )
 
 
 def search_saturated(
@@ -52,155 +175,109 @@ def search_saturated(
 ) -> Candidates[SaturatedEllipsoid]:
     """Yield ellipsoids that hold a start, those with the fastest decay first.
 
-    In continuous time. The start is the wanted one; without one, or where it is out of reach,
-    nearly the largest.
+    The start is the wanted one; without one, or where it is out of reach, nearly the largest. Where
+    the arithmetic rounds, ellipsoids that cover that come before others.
     """
     assert system.saturation is not None  # who asks has looked
-    family, raw = Family.of(system), Problem.of(system, allowance)
-    slowest = SLOWEST * family.limit
-    T = np.diag(np.ldexp(1.0, family.exponents))
-    first = _unsaturated(raw.transformed(T), slowest)
-    if first is None:
+    kept, stands = _stand_ins(system)
+    lean = _lean(system, kept)
+    family, raw = Family.of(lean), SaturatingLoop.of(lean, allowance)
+    slowest = SLOWEST[system.time]
+    T = _coordinates(lean, family, rate_at(slowest, family.limit, system.time), allowance)
+    if T is None:
         return NO_MARGIN
-    # A triangular change of coordinates leaves the deflection alone, which is zero in free motion.
-    T = T @ round_coordinates(first)
     T /= np.linalg.norm(raw.linear @ T, axis=-1).max()
-    own = raw.transformed(T)
-    if not all(np.isfinite(part).all() for part in (T, own.A, own.columns, *own.rows)):
+    loop = raw.transformed(T)
+    if not (np.isfinite(T).all() and loop.is_finite):
         return OUT_OF_RANGE
-    start = Region(np.eye(len(T)), own.linear[0], 0.0)
+    search = _Search(lean, T, loop, family.limit, stands)
     wanted = system.saturation.start.wanted
     enough = np.inf if wanted is None else float(wanted) / BELOW**2
-    largest = _largest(own, slowest, start, enough)
-    if largest is None:
+    region = largest_region(loop, search.rate(slowest), None, enough)
+    if region is None:
         return NO_MARGIN
-    level = Fraction(f"{BELOW * largest.size:.4e}")
-    if wanted is not None and wanted < level:
-        level = wanted
-    region, rate = _fastest(own, largest, float(level), slowest, family.limit)
-    yield from map(Candidate, _rounded(raw, system, T, region, rate, level))
-    return None
-
-
-def _unsaturated(problem: Problem, rate: float) -> Array | None:
-    """Return a quadratic function of the loop in which nothing is cut off."""
-    n = problem.A.shape[1]
-    Q, t = row_unknowns(n, 0)[0], last_unknown(n, 0)
-    blocks = [(np.eye(n), -Q), (np.zeros((n, n)), Q - t * np.eye(n))]
-    for k, A in enumerate(problem.A):
-        last = n - problem.is_free(k)
-        blocks.append(_decrease(A[:last, :last], Q[:, :last, :last], t, rate))
-    x = solved(blocks, problem.allowance)
-    return None if x is None else np.asarray(np.tensordot(x, Q, axes=1))
-
-
-def _largest(problem: Problem, rate: float, start: Region, enough: float) -> Region | None:
-    """Return the region with the largest start; in free motion, one that is hard to improve."""
-    best = None
-    for _ in range(STEPS if problem.free else 1):
-        found = _improved(problem, rate, start)
-        if found is None or (best is not None and found.size < GAIN * best.size):
-            return best if found is None or (best and best.size > found.size) else found
-        best = start = found
-        if best.size >= enough:
-            break
-    return best
-
-
-def _improved(problem: Problem, rate: float, near: Region) -> Region | None:
-    """Return the largest region for the columns g that fit another."""
-    n = problem.A.shape[1]
-
-    def decreases(S: Array, Y: list[Array]) -> Iterator[tuple[Array, Array]]:
-        before = problem.vertices(np.eye(n), [h[None] for h in near.H])
-        for (k, form), (_, B) in zip(problem.vertices(S, Y), before, strict=True):
-            if problem.is_free(k):
-                form = form + _column(B, near.S, rate)[:, None] @ S[:, n - 1 : n, :]
-            yield -SMALLEST * np.eye(n), -(form + np.swapaxes(form, -1, -2)) - 2 * rate * S
-
-    return largest_region(problem, decreases)
-
-
-def _column(B: Array, S: Array, rate: float) -> Array:
-    """Return the g for which free motion, at its B, decreases in all states at once."""
-    Q = np.linalg.inv(S)
-    M = -(B.T @ Q + Q @ B + 2 * rate * Q)
-    r = M[-1].copy()
-    r[-1] = (M[-1, -1] - np.abs(np.diag(M)[:-1]).max()) / 2
-    return np.asarray(S @ r)
-
-
-def _fastest(
-    problem: Problem, region: Region, level: float, slowest: float, fastest: float
-) -> tuple[Region, float]:
-    """Return a region that holds the start, with the largest rate that bisection finds."""
-    low, high = slowest, fastest
-    for _ in range(BISECTIONS):
-        rate = float(np.sqrt(low * high))
-        found = _largest(problem, rate, region, level / ENOUGH)
-        if found is None or found.size * ENOUGH < level:
-            high = rate
-        else:
-            region, low = found, rate
-    return region, low
-
-
-def _rounded(
-    raw: Problem, system: SwitchedSystem, T: Array, region: Region, rate: float, level: Fraction
-) -> Iterator[SaturatedEllipsoid]:
-    """Yield the region with H rounded and Q found anew for it, with ever more digits."""
-    assert system.saturation is not None
-    limits = np.array([float(s.limit) for s in system.saturation.signals])
-    H = limits[:, None] * (region.H @ np.linalg.inv(T))
-    shape = np.asarray(np.linalg.inv(region.S), dtype=np.float64)
-    T = np.asarray(T @ round_coordinates(shape), dtype=np.float64)
-    log2 = log2_of(H)
-    rows = tuple(tuple(round(float(v)) for v in row) for row in np.ldexp(H, log2))
-    kept = np.ldexp(np.array(rows, dtype=float), -log2) / limits[:, None] @ T
-    for share in RATES:
-        alpha = round_rate(share * rate, Time.CONTINUOUS)
-        own = _fitted(raw.transformed(T), kept, float(level), float(alpha))
-        if own is None:
+    for rounding in (True, False) if system.roundings else (False,):
+        own = replace(search, rounding=rounding)
+        found = own.largest(region, own.rate(slowest))
+        if found is None:
             continue
-        inverse = np.linalg.inv(T)
-        Q = inverse.T @ own @ inverse
-        # In these units the diagonal of Q is about one.
-        shifts = -np.round(np.log2(np.diag(Q)) / 2).astype(np.int64)
-        unit = np.ldexp(np.ldexp(Q, shifts[:, None]), shifts[None])
-        for bits in DIGITS:
-            numerators, power = unscale(unit, shifts, bits)
-            yield SaturatedEllipsoid(
-                Q=numerators,
-                denominator_log2=power,
-                rate=alpha,
-                H=rows,
-                H_denominator_log2=log2,
-                level=level,
-            )
+        level = Fraction(f"{BELOW * found.size:.4e}")
+        if wanted is not None and wanted < level:
+            level = wanted
+        held, position = own.fastest(region, found, float(level), slowest)
+        for share in RATES:
+            claimed = round_rate(own.rate(share * position), system.time)
+            yield from map(Candidate, own.rounded(held, level, claimed))
+    return NO_MARGIN
 
 
-def _fitted(problem: Problem, H: Array, level: float, rate: float) -> Array | None:
-    """Return Q for a given H, where it is about the identity, with as much to spare as possible."""
-    n = problem.A.shape[1]
-    Q, t = row_unknowns(n, 0)[0], last_unknown(n, 0)
-    blocks = []
-    for h in H:
-        constant = np.zeros((n + 1, n + 1))
-        constant[n, :n] = constant[:n, n] = h
-        constant[n, n] = 1.0
-        border = bordered_by(Q, np.zeros((len(Q), 1, n)))
-        blocks.append((constant, border - t * np.eye(n + 1)))
-    for x in problem.starts:
-        value = level**2 * (x @ Q @ x)[:, None, None]
-        blocks.append((np.ones((1, 1)), -value - t))
-    for k, B in problem.vertices(np.eye(n), [h[None] for h in H]):
-        last = n - problem.is_free(k)
-        blocks.append(_decrease(B[:last, :last], Q[:, :last, :last], t, rate))
-    x = solved(blocks, problem.allowance)
-    return None if x is None else np.asarray(np.tensordot(x, Q, axes=1))
+def _coordinates(
+    system: SwitchedSystem, family: Family, rate: float, allowance: Allowance
+) -> Array | None:
+    """Return coordinates in which a form of the loop in which nothing is cut off is round.
+
+    They leave the deflection alone, which is zero in free motion.
+    """
+    T = np.ldexp(separating_coordinates(family), family.exponents[:, None])
+    if not np.isfinite(T).all():
+        return None
+    program = OneForm.of(plain_steps(system, rounding=False), StepUnits.of(T, (), 0))
+    one, basis = np.eye(program.order), program.basis
+    within = [Constraint(0 * one, basis, 0 * one), Constraint(one, -basis)]
+    found = program.solve(share_of(rate, system.time), within, allowance, 1.0)
+    return None if found is None else np.asarray(T @ round_coordinates(found.Q))
 
 
-def _decrease(A: Array, Q: Array, t: Array, rate: float) -> tuple[Array, Array]:
-    """Return the block that wants a decrease of at least t."""
-    half, identity = Q @ A, np.eye(len(A))
-    return np.zeros_like(A), -(half + np.swapaxes(half, -1, -2)) - 2 * rate * Q - t * identity
+def share_of(rate: float, time: Time) -> float:
+    """Return twice the rate of a flow, or what a step takes of V."""
+    return 2 * rate if time is Time.CONTINUOUS else 1 - rate**2
+
+
+def log2_of(H: Array) -> int:
+    """Return with how many binary digits after the point rows are written."""
+    return max(0, H_DIGITS - int(np.frexp(np.abs(H).max())[1]))
+
+
+def _stand_ins(system: SwitchedSystem) -> tuple[list[int], tuple[int, ...]]:
+    """Return modes that floating point tells apart, and for each mode which of them stands for it.
+
+    Modes in contact and free, by their numbers.
+    """
+    kept: list[int] = []
+    stands: list[int] = []
+    first = 0
+    for modes in (system.modes, system.free):
+        if not modes:
+            continue
+        names = [mode.name for mode in modes]
+        found = stand_ins(names, to_floats([mode.A for mode in modes]))
+        kept += [first + k for k, name in enumerate(names) if found[name] == name]
+        stands += [kept.index(first + names.index(found[name])) for name in names]
+        first += len(modes)
+    return kept, tuple(stands)
+
+
+def _lean(system: SwitchedSystem, kept: list[int]) -> SwitchedSystem:
+    """Leave out all modes but some, with what belongs to them."""
+    modes, free = system.modes, system.free
+    own = tuple(m for k, m in enumerate(modes) if k in kept)
+    flying = tuple(m for k, m in enumerate(free, len(modes)) if k in kept)
+    contact = None if system.contact is None else replace(system.contact, free=flying)
+
+    assert system.saturation is not None
+    signals = tuple(replace(signal, **_parts(signal, kept)) for signal in system.saturation.signals)
+    return replace(
+        system,
+        modes=own,
+        contact=contact,
+        flights=None,
+        roundings=tuple(replace(item, **_parts(item, kept)) for item in system.roundings),
+        saturation=replace(system.saturation, signals=signals),
+        enclosures=(),
+    )
+
+
+def _parts(item: Rounding | CutOff, kept: list[int]) -> dict[str, Any]:
+    """Return what an item has for every mode, for some of them."""
+    parts = {part: getattr(item, part, ()) for part in ("columns", "rows", "errors")}
+    return {part: tuple(rows[k] for k in kept) for part, rows in parts.items() if rows}

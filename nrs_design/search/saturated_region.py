@@ -1,11 +1,18 @@
-"""What a search for regions of saturating loops works on, in floating point (untrusted)."""
+"""The largest region in which a saturating loop decays in contact, in floating point (untrusted).
+
+With ``S = Q^-1`` and ``Y = H S`` the conditions of `nrs_design.proof.evidence.saturated_ellipsoid`
+in contact are linear in S and Y where nothing is rounded (Hu and Lin 2001), and the largest start
+is found at once. In continuous time, free motion is about a block of Q. There is ``y' M y < 0`` on
+a block if and only if ``(B + g e')' Q + Q (B + g e') < 0`` for some column g, e the unit vector of
+the deflection; for a fixed g that is linear in S. So g is taken from the last S, beginning where
+nothing saturates, and S is improved until that gains little.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from itertools import product
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,20 +25,17 @@ from nrs_design.work import Allowance
 
 Array = NDArray[np.float64]
 
-H_DIGITS = 40
-# The slowest decay that counts, as a share of the fastest there is, and by how much a start stays
-# below the largest one: nearer to it there is no decay to speak of.
-SLOWEST, BELOW = 1e-3, 0.99
-# A start just inside of a region leaves nothing for rounding.
-ENOUGH = 0.999
-# In coordinates in which nothing saturates in the unit ball.
+# In coordinates in which nothing saturates in the unit ball: how short and long a region may be.
 SMALLEST, LARGEST = 1e-7, 1e5
+# Improvements of a region in free motion, and the least gain that is worth another.
+STEPS, GAIN = 12, 1.0005
 
 
 @dataclass(frozen=True)
-class Problem:
+class SaturatingLoop:
     """The loop in floating point, with signals in units of their limits, and what may be spent."""
 
+    time: Time
     # Shape (k, n, n). Modes in contact, and after them the free ones, which leave the deflection
     # where it is.
     A: Array
@@ -44,7 +48,7 @@ class Problem:
     allowance: Allowance
 
     @classmethod
-    def of(cls, system: SwitchedSystem, allowance: Allowance) -> Problem:
+    def of(cls, system: SwitchedSystem, allowance: Allowance) -> SaturatingLoop:
         """Convert a system of which something saturates."""
         saturation = system.saturation
         assert saturation is not None  # who asks has looked
@@ -64,14 +68,19 @@ class Problem:
         groups = (0,) * len(A)
         if system.time is Time.DISCRETE:
             groups = _alike(np.concatenate([row[:, :n] for row in rows], axis=1))
-        return cls(A, len(free), columns, tuple(rows), starts, groups, allowance)
+        return cls(system.time, A, len(free), columns, tuple(rows), starts, groups, allowance)
 
     @property
     def held(self) -> int:
         """How many rows h there are."""
         return len(self.rows) * (max(self.groups) + 1)
 
-    def transformed(self, T: Array) -> Problem:
+    @property
+    def is_finite(self) -> bool:
+        """Whether floating point holds it."""
+        return all(np.isfinite(part).all() for part in (self.A, self.columns, *self.rows))
+
+    def transformed(self, T: Array) -> SaturatingLoop:
         """Return the same in coordinates ``x = T z``."""
         inverse, n = np.linalg.inv(T), len(T)
         rows = (np.concatenate([row[:, :n] @ T, row[:, n:]], axis=1) for row in self.rows)
@@ -95,20 +104,31 @@ class Problem:
             found.append(whole)
         return np.stack(found, axis=1)
 
-    def vertices(self, S: Any, Y: Sequence[Any]) -> Iterator[tuple[int, Any]]:
+    @property
+    def shared(self) -> Array:
+        """The same in the first mode of each group; shape (held, n)."""
+        first = [self.groups.index(group) for group in range(max(self.groups) + 1)]
+        return np.concatenate(self.linear[first])
+
+    def by_mode(self, H: Array) -> list[Array]:
+        """Return the rows h of every mode."""
+        count = len(self.rows)
+        return [H[group * count : (group + 1) * count] for group in self.groups]
+
+    def vertices(self, S: Array, Y: Array) -> Iterator[tuple[int, Array]]:
         """Yield, with the index of its mode, ``B S`` for every B that a mode is a mixture of.
 
-        Y are the rows ``h S``, those of a group one after the other; S the identity gives the B.
+        For a stack of S and of the rows ``h S``, shape (N, held, n); S the identity gives the B.
         """
         n, linear, count = self.A.shape[1], self.linear, len(self.rows)
         for k, replaced in product(range(len(self.A)), product((False, True), repeat=count)):
-            B, taken = self.A[k] @ S, list[Any]()
-            own = Y[self.groups[k] * count :][:count]
-            for i, (row, y, other) in enumerate(zip(self.rows, own, replaced, strict=True)):
+            B, taken = self.A[k] @ S, list[Array]()
+            own = Y[:, self.groups[k] * count :]
+            for i, (row, other) in enumerate(zip(self.rows, replaced, strict=True)):
                 argument = row[k, None, :n] @ S
                 for share, before in zip(row[k, n:], taken, strict=True):
                     argument = argument + share * before
-                taken.append(y if other else argument)
+                taken.append(own[:, i : i + 1] if other else argument)
                 B = B + self.columns[k, i, :, None] @ (taken[-1] - linear[k, i, None] @ S)
             yield k, B
 
@@ -140,64 +160,73 @@ class Region:
     size: float
 
 
-def row_unknowns(n: int, rows: int) -> tuple[Array, list[Array]]:
-    """Return what each unknown makes of a symmetric matrix, and of rows.
-
-    The last unknown makes nothing of either.
-    """
-    basis, total = symmetric_basis(n), n * (n + 1) // 2 + rows * n + 1
-    S, Y = np.zeros((total, n, n)), [np.zeros((total, 1, n)) for _ in range(rows)]
-    S[: len(basis)] = basis
-    for i, row in enumerate(Y):
-        first = len(basis) + i * n
-        row[first : first + n, 0] = np.eye(n)
-    return S, Y
-
-
-def last_unknown(n: int, rows: int) -> Array:
-    """Return what each unknown makes of the number that is to be large."""
-    number = np.zeros((n * (n + 1) // 2 + rows * n + 1, 1, 1))
-    number[-1] = 1.0
-    return number
-
-
-def bordered_by(S: Array, y: Array) -> Array:
-    """Return ``[[S, y'], [y, 0]]`` for every unknown."""
-    n = S.shape[-1]
-    whole = np.zeros((len(S), n + 1, n + 1))
-    whole[:, :n, :n] = S
-    whole[:, n:, :n], whole[:, :n, n:] = y, np.swapaxes(y, -1, -2)
-    return whole
-
-
 def largest_region(
-    problem: Problem,
-    decreases: Callable[[Array, list[Array]], Iterable[tuple[Array, Array]]],
+    loop: SaturatingLoop, rate: float, near: Region | None = None, enough: float = np.inf
 ) -> Region | None:
-    """Return the region with the largest start for which blocks of S and Y are positive."""
-    n, count = problem.A.shape[1], problem.held
-    (S, Y), size = row_unknowns(n, count), last_unknown(n, count)
-    unit = np.linalg.norm(problem.starts, axis=1).max()
+    """Return the region with the largest start at a rate; in free motion one hard to improve."""
+    near = near or Region(np.eye(loop.A.shape[1]), loop.shared, 0.0)
+    best = _improved(loop, rate, near)
+    for _ in range(STEPS - 1 if loop.free and loop.time is Time.CONTINUOUS else 0):
+        if best is None or best.size >= enough:
+            break
+        found = _improved(loop, rate, best)
+        if found is None or found.size <= best.size:
+            break
+        gain, best = found.size / best.size, found
+        if gain < GAIN:
+            break
+    return best
+
+
+def _improved(loop: SaturatingLoop, rate: float, near: Region) -> Region | None:
+    """Return the region with the largest start, for the columns g that fit another."""
+    n, held = loop.A.shape[1], loop.held
+    basis, size = symmetric_basis(n), np.zeros((1, 1))
+    unknowns = len(basis) + held * n + 1
+    S, Y = np.zeros((unknowns, n, n)), np.zeros((unknowns, held, n))
+    S[: len(basis)] = basis
+    Y[len(basis) : -1] = np.eye(held * n).reshape(-1, held, n)
+    size = np.zeros((unknowns, 1, 1))
+    size[-1] = 1.0
+    unit = np.linalg.norm(loop.starts, axis=1).max()
     # An ellipsoid may be long, but not without end.
     blocks = [(LARGEST * np.eye(n), -S)]
-    blocks += [(np.zeros((n, n)), S - size * np.outer(x, x)) for x in problem.starts / unit]
+    blocks += [(np.zeros((n, n)), S - size * np.outer(x, x)) for x in loop.starts / unit]
     corner = np.zeros((n + 1, n + 1))
     corner[n, n] = 1.0
-    blocks += [(corner, bordered_by(S, y)) for y in Y]
-    x = solved([*blocks, *decreases(S, Y)], problem.allowance)
-    if x is None:
+    blocks += [(corner, _bordered(S, Y[:, i : i + 1], 0 * size)) for i in range(held)]
+    x = solve_blocks([*blocks, *_decreases(loop, rate, S, Y, near)], loop.allowance)
+    if x is None or x[-1] <= 0:
         return None
-    found = np.asarray(np.tensordot(x, S, axes=1))
-    rows = np.concatenate([np.tensordot(x, y, axes=1) for y in Y])
-    return Region(found, rows @ np.linalg.inv(found), float(np.sqrt(x[-1]) / unit))
+    found, rows = np.tensordot(x, S, axes=1), np.tensordot(x, Y, axes=1)
+    return Region(np.asarray(found), rows @ np.linalg.inv(found), float(np.sqrt(x[-1]) / unit))
 
 
-def log2_of(H: Array) -> int:
-    """Return with how many binary digits after the point rows are written."""
-    return max(0, H_DIGITS - int(np.frexp(np.abs(H).max())[1]))
+def _decreases(
+    loop: SaturatingLoop, rate: float, S: Array, Y: Array, near: Region
+) -> Iterator[tuple[Array, Array]]:
+    """Yield the decrease at every vertex; in discrete time of those in contact only."""
+    n = S.shape[-1]
+    before = loop.vertices(np.eye(n)[None], near.H[None])
+    for (k, form), (_, B) in zip(loop.vertices(S, Y), before, strict=True):
+        if loop.time is Time.DISCRETE:
+            if not loop.is_free(k):
+                yield -SMALLEST * np.eye(2 * n), _bordered(rate**2 * S, form, S)
+            continue
+        if loop.is_free(k):
+            form = form + _column(B[0], near.S, rate)[:, None] @ S[:, n - 1 : n, :]
+        yield -SMALLEST * np.eye(n), -(form + np.swapaxes(form, -1, -2)) - 2 * rate * S
 
 
-def solved(blocks: Sequence[tuple[Array, Array]], allowance: Allowance) -> Array | None:
-    """Make the last unknown large where all blocks are positive; None where it is not positive."""
-    x = solve_blocks(blocks, allowance)
-    return x if x is not None and x[-1] > 0 else None
+def _bordered(S: Array, y: Array, corner: Array) -> Array:
+    """Return ``[[S, y'], [y, corner]]`` for every unknown."""
+    return np.block([[S, np.swapaxes(y, -1, -2)], [y, corner]])
+
+
+def _column(B: Array, S: Array, rate: float) -> Array:
+    """Return the g for which free motion, at its B, decreases in all states at once."""
+    Q = np.linalg.inv(S)
+    M = -(B.T @ Q + Q @ B + 2 * rate * Q)
+    r = M[-1].copy()
+    r[-1] = (M[-1, -1] - np.abs(np.diag(M)[:-1]).max()) / 2
+    return np.asarray(S @ r)

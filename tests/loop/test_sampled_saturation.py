@@ -12,7 +12,7 @@ from nrs_design.controllers.shipped import shipped_law
 from nrs_design.pipeline.certification import assemble_spec
 from nrs_design.pipeline.runs import run_design
 from nrs_design.search.certify import first_accepted
-from nrs_design.search.saturated_steps import search_saturated_steps
+from nrs_design.search.saturated_ellipsoid import search_saturated
 from nrs_design.simulation.norms import clipped, quadratic_norm
 from nrs_design.simulation.saturation import saturated_rates
 from nrs_design.work import Allowance
@@ -51,7 +51,7 @@ def loop(kind):
     designed = run_design(spec)
     system = assemble_spec(spec, designed)
     law = shipped_law(spec.spec, designed.design, PERIOD)
-    evidence, _ = first_accepted(search_saturated_steps(system, Allowance()), system)
+    evidence, _ = first_accepted(search_saturated(system, Allowance()), system)
     return system, law, evidence
 
 
@@ -157,7 +157,7 @@ def test_no_run_in_single_precision_leaves_the_region(kind):
 def test_the_region_of_a_scalar_loop_is_nearly_that_of_its_motions():
     """By hand: x+ = 3/2 x + sat(-x) decays from |x| < 2, and from no other x."""
     system = pushed_away_in_steps()
-    evidence, words = first_accepted(search_saturated_steps(system, Allowance()), system)
+    evidence, words = first_accepted(search_saturated(system, Allowance()), system)
     assert words == "found"
     assert 1.9 < evidence.level < 2
     steps = saturated_rates(system)

@@ -1,0 +1,304 @@
+"""The conditions of steps on one quadratic form, and their semidefinite program (untrusted).
+
+With z the state, disturbances and errors, a step holds if
+
+    map   (1 - share) Q - M' Q M + sum m F > 0
+    flow  -(Q M + M' Q) - share Q + sum m F > 0
+
+for a multiplier m >= 0 of each fact, which adds the form F. This is linear in Q and m. The steps
+are those of the exact check (`nrs_design.proof.steps`). In free motion, Q has no deflection.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nrs_design.proof.evidence.fields import Matrix
+from nrs_design.proof.steps import CONTACT, FREE, ROUNDING, Acting, Step, steps_of
+from nrs_design.proof.system import SwitchedSystem
+from nrs_design.search.family import NEARLY
+from nrs_design.search.float_step import FloatStep
+from nrs_design.search.rounding import numerators, unscale
+from nrs_design.search.sdp import Blocks, begin, program_cost, symmetric_basis
+from nrs_design.work import Allowance, Cost
+
+Array = NDArray[np.float64]
+
+BITS = (30, 40, 50, 60)
+SHARE = "share"
+# What is less in a product, relative to it, is no factor of it.
+FELT = 1e-2
+# How much less than the others a disturbance pushes that is weak.
+WEAK = 1e-3
+
+
+@dataclass(frozen=True)
+class StepUnits:
+    """Coordinates in which state, disturbances and errors are about one: ``x = T z``."""
+
+    T: Array  # Shape (n, n). Its leading block is that of free motion.
+    others: Array  # Units of the disturbances, then of the errors
+    weak: tuple[int, ...] = ()  # Disturbances that do next to nothing: their products are left out
+
+    @classmethod
+    def of(cls, T: Array, disturbances: Sequence[float], errors: int) -> StepUnits:
+        """Take units of disturbances, and ones of errors."""
+        return cls(T, np.array([*disturbances, *[1.0] * errors]))
+
+    def rows(self, rows: Array, states: int) -> Array:
+        """Return what rows over state, disturbances and errors are in these coordinates."""
+        moved = rows[..., :states] @ self.T[:states, :states]
+        return np.concatenate([moved, rows[..., states:] * self.others], axis=-1)
+
+    def balanced(self, steps: Sequence[Step]) -> StepUnits:
+        """Choose units of errors: what they do to the state is as large as what it does to them."""
+        conditions = [StepInequality.of(step, self) for step in steps]
+        count = max((len(step.errors) for step in steps), default=0)
+        pushed, sizes = np.zeros(count), np.zeros(count)
+        for condition in conditions:
+            for k, (column, size) in enumerate(condition.errors):
+                pushed[k], sizes[k] = max(pushed[k], column), max(sizes[k], size)
+        units = np.divide(sizes, pushed, out=np.ones(count), where=(sizes > 0) & (pushed > 0))
+        others = self.others.copy()
+        others[len(others) - count :] = np.sqrt(units)
+        return replace(self, others=others)
+
+    def without_weak(self, steps: Iterable[Step], disturbances: int) -> StepUnits:
+        """Leave out products of disturbances that do next to nothing in contact."""
+        pushed = np.zeros(disturbances)
+        for step in steps:
+            if step.source == CONTACT:
+                columns = StepInequality.of(step, self).M[:, step.states :][:, :disturbances]
+                pushed = np.maximum(pushed, np.abs(columns).max(axis=0))
+        return replace(self, weak=tuple(np.flatnonzero(pushed < WEAK * pushed.max())))
+
+
+@dataclass(frozen=True)
+class StepInequality:
+    """What one step asks of the form."""
+
+    kind: tuple[object, ...]
+    states: int
+    M: Array
+    facts: dict[str, Array]  # What each multiplier adds
+    names: tuple[str, ...]  # Of all multipliers; those without a fact are zero
+    errors: tuple[tuple[float, float], ...]  # How large: what each does, and what it comes from
+    is_flow: bool
+
+    @classmethod
+    def of(cls, step: Step, own: StepUnits) -> StepInequality:
+        """Convert a step; a disturbance with a weight has the fact that it is at most one."""
+        raw, n, after = FloatStep.of(step), step.states, len(step.rows)
+        M = np.linalg.inv(own.T[:after, :after]) @ own.rows(raw.M, n)
+        unit, facts = np.eye(M.shape[1]), dict[str, Array]()
+        last = own.rows(unit[n - 1], n)
+        for k, _ in enumerate(filter(None, step.weights)):
+            facts[f"{SHARE} {k + 1}"] = np.outer(unit[n + k], unit[n + k])
+        for name, c in raw.crossings:
+            facts[name] = _both(last, own.rows(c, n))
+        for name, left, right in raw.products:
+            facts[name] = -_both(own.rows(left, n), own.rows(right, n))
+        errors = []
+        for name, i, q in raw.errors:
+            row, e = own.rows(q, n), own.rows(unit[i], n)
+            facts[name] = np.outer(e, e) - np.outer(row, row)
+            errors.append((float(np.linalg.norm(M[:, i])), float(np.linalg.norm(row))))
+        needed = {name: form for name, form in facts.items() if _is_needed(form, n, own.weak)}
+        kind = step.source, step.target, after, len(needed), step.is_flow
+        return cls(kind, n, M, needed, tuple(facts), tuple(errors), step.is_flow)
+
+    def images(self, basis: Array, share: float) -> Array:
+        """Return what it makes of every form of a basis."""
+        n, M = self.states, self.M
+        before, form = basis[:, :n, :n], np.zeros((len(basis), *[M.shape[1]] * 2))
+        if self.is_flow:
+            form[:, :n] = -(before @ M)
+            form += np.swapaxes(form, 1, 2)
+            form[:, :n, :n] -= share * before
+            return form
+        form[:, :n, :n] = (1 - share) * before
+        return np.asarray(form - M.T @ basis[:, : len(M), : len(M)] @ M)
+
+    def is_near(self, other: StepInequality) -> bool:
+        """Tell whether floating point can hardly tell it from another."""
+        numbers = ([one.M, *one.facts.values()] for one in (self, other))
+        return self.kind == other.kind and all(
+            np.abs(one - two).max() <= NEARLY * np.abs(one).max()
+            for one, two in zip(*numbers, strict=True)
+        )
+
+
+def _both(left: Array, right: Array) -> Array:
+    return np.outer(left, right) + np.outer(right, left)
+
+
+def _is_needed(form: Array, states: int, weak: Sequence[int]) -> bool:
+    """Tell whether a weak disturbance is no factor; its square is needed whatever it does."""
+    felt = (states + k for k in weak if np.abs(form[states + k]).max() > FELT * np.abs(form).max())
+    return all(form[k, k] for k in felt)
+
+
+def plain_steps(
+    system: SwitchedSystem, channels: Sequence[int] = (), *, rounding: bool
+) -> list[Step]:
+    """Return the steps of a system under disturbances, as `forms_of_one` asks them of a form."""
+    acting = Acting(tuple(channels), (Fraction(1),) * len(channels), rounding)
+    n = system.order
+    return [
+        step
+        for step in steps_of(system, acting, 1, lost=True)
+        if step.time and not (step.source == FREE and step.target == CONTACT and len(step.rows) < n)
+    ]
+
+
+@dataclass(frozen=True)
+class Constraint:
+    """What is asked beside the steps: ``constant + sum Q_k form_k + sum m F + level corner >= 0``.
+
+    Without a corner, neither the level nor what is left to spare is in it.
+    """
+
+    constant: Array  # Shape (s, s)
+    form: Array  # Shape (k, s, s). For every form of the basis.
+    corner: Array | None = None
+    multipliers: Mapping[str, Array] = field(default_factory=dict)
+
+    @classmethod
+    def bordered(cls, basis: Array, row: Array, corner: float, number: float = 0.0) -> Constraint:
+        """Return ``[[Q, row'], [row, corner level + number]]``."""
+        n = len(row)
+        constant, last = np.zeros((n + 1, n + 1)), np.zeros((n + 1, n + 1))
+        constant[:n, n] = constant[n, :n] = row
+        constant[n, n], last[n, n] = number, corner
+        return cls(constant, np.pad(basis, ((0, 0), (0, 1), (0, 1))), last)
+
+
+@dataclass(frozen=True)
+class FormSolution:
+    """A solution in floating point."""
+
+    Q: Array
+    multipliers: dict[str, float]  # Of all steps
+    last: float  # The level, or what is left to spare with the sign changed
+
+    def roundings(
+        self, T: Array, scale: float = 1.0
+    ) -> Iterator[tuple[Matrix, int, dict[str, int]]]:
+        """Yield Q and multipliers in integers, with more and more digits.
+
+        In the units of the system, where ``x = T z``, times a scale; with the logarithm of their
+        denominator.
+        """
+        inverse = np.linalg.inv(T)
+        Q = scale * inverse.T @ self.Q @ inverse
+        size = np.abs(np.diag(Q))
+        # In these units the diagonal is about one.
+        shifts = -np.round(np.log2(np.where(size > 0, size, 1.0)) / 2).astype(np.int64)
+        near = np.ldexp(Q, shifts[:, None] + shifts)
+        values = scale * np.array([*self.multipliers.values()])
+        for bits in BITS:
+            rows, log2 = unscale(near, shifts, bits)
+            known = zip(self.multipliers, numerators(values, log2), strict=True)
+            yield rows, log2, dict(known)
+
+
+@dataclass(frozen=True)
+class OneForm:
+    """The program of a form, of steps that floating point can tell apart."""
+
+    order: int  # Entries of z that the form is of
+    conditions: tuple[StepInequality, ...]
+    stands: dict[str, str]  # For every multiplier, that of the step which stands for its own
+    scales: dict[str, float]  # Of the multipliers that are solved for
+
+    @classmethod
+    def of(
+        cls, steps: Iterable[Step], own: StepUnits, more: Mapping[str, float] | None = None
+    ) -> OneForm:
+        """Take the conditions of steps, and `more` multipliers with their scales."""
+        kept, stands, scales = list[StepInequality](), dict[str, str](), dict[str, float]()
+        for step in steps:
+            condition = StepInequality.of(step, own)
+            like = next((other for other in kept if other.is_near(condition)), None)
+            if like is None:
+                kept.append(condition)
+                like = condition
+            for name, other in zip(condition.names, like.names, strict=True):
+                stands.setdefault(name, other)
+        for condition in kept:
+            for name, form in condition.facts.items():
+                scales[name] = max(scales.get(name, 0.0), float(np.abs(form).max()))
+        scales = {name: scale or 1.0 for name, scale in scales.items()} | dict(more or {})
+        return cls(len(own.T), tuple(kept), stands | {name: name for name in more or {}}, scales)
+
+    @property
+    def basis(self) -> Array:
+        """The forms that Q is a sum of."""
+        return symmetric_basis(self.order)
+
+    def cost(self, bounds: Sequence[Constraint]) -> Cost:
+        """Predict what a solution takes."""
+        k = self.order * (self.order + 1) // 2
+        count = Counter(name for item in self.conditions for name in item.facts)
+        shared = k + 1 + sum(several > 1 for several in count.values())
+        cones = [(item.M.shape[1], k + 1 + len(item.facts)) for item in self.conditions]
+        cones += [(len(bound.constant), k + 1 + len(bound.multipliers)) for bound in bounds]
+        return program_cost(
+            k + 1 + len(self.scales), shared, [*cones, *[(1, 1)] * len(self.scales)]
+        )
+
+    def solve(
+        self,
+        share: float,
+        bounds: Sequence[Constraint],
+        allowance: Allowance,
+        level: float | None = None,
+    ) -> FormSolution | None:
+        """Minimize the level; or, for a given one, leave as much to spare as possible."""
+        what = f"an ellipsoid of {len(self.conditions)} steps"
+        begun = begin(allowance, self.cost(bounds), what)
+        basis, blocks = self.basis, Blocks()
+        place = {name: len(basis) + i for i, name in enumerate(self.scales)}
+        last = len(basis) + len(place)
+
+        def add(
+            constant: Array, form: Array, facts: Mapping[str, Array], corner: Array | None
+        ) -> None:
+            images = dict(enumerate(form))
+            images |= {place[name]: own / self.scales[name] for name, own in facts.items()}
+            if level is None and corner is not None:
+                images[last] = -corner
+            elif level is not None and corner is not None:
+                images[last] = -np.eye(len(corner))
+                constant = constant + level * corner
+            blocks.add(constant, images)
+
+        for item in self.conditions:
+            images = item.images(basis, share)
+            add(np.zeros_like(images[0]), images, item.facts, np.zeros_like(images[0]))
+        for bound in bounds:
+            add(bound.constant, bound.form, bound.multipliers, bound.corner)
+        for column in place.values():
+            blocks.add(0.0, {column: np.ones((1, 1))})
+        if level is not None:
+            blocks.add(1.0, {last: -np.ones((1, 1))})
+        reached = blocks.maximize(last + 1, begun)
+        if reached is None or (level is None) == (reached.x[-1] >= 0) or not reached.x[-1]:
+            return None
+        x = reached.x
+        found = {name: float(x[place[name]] / scale) for name, scale in self.scales.items()}
+        Q = np.asarray(np.tensordot(x[: len(basis)], basis, axes=1))
+        multipliers = {name: found.get(other, 0.0) for name, other in self.stands.items()}
+        return FormSolution(Q, multipliers, float(-x[-1]))
+
+
+def of_roundings(multipliers: Mapping[str, int]) -> tuple[int, ...]:
+    """Return the multipliers of roundings, in their order."""
+    count = sum(name.startswith(ROUNDING) for name in multipliers)
+    return tuple(multipliers[f"{ROUNDING} {k + 1}"] for k in range(count))

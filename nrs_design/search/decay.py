@@ -58,7 +58,7 @@ def fastest_first(
     """
     half = allowance.part(0.5)
     best = bisect_position(
-        lambda position: solve(rate_at(position, limit, time), half) is not None,
+        lambda s: s if solve(rate_at(s, limit, time), half) is not None else None,
         resolution,
         smallest,
     )
@@ -68,22 +68,24 @@ def fastest_first(
 
 
 def bisect_position(
-    is_feasible: Callable[[float], bool],
+    shown: Callable[[float], float | None],
     resolution: float = RESOLUTION,
     smallest: float = SMALLEST,
 ) -> float:
     """Bisect for the largest feasible position; zero if nothing above the smallest one is.
 
-    Feasible positions come first. It is bracketed to a share of itself, `resolution`, or to the
-    difference `smallest`, whichever is reached first; it ends early when the work is used up.
+    Feasible positions come first; there, it is told which position is shown as well, perhaps a
+    larger one. The largest is bracketed to a share of itself, `resolution`, or to the difference
+    `smallest`, whichever is reached first; it ends early when the work is used up.
     """
     low, high = 0.0, 1.0
     while high - low > max(resolution * high, smallest):
         middle = (low + high) / 2
         try:
-            low, high = (middle, high) if is_feasible(middle) else (low, middle)
+            found = shown(middle)
         except NotAffordableError:
             break
+        low, high = (low, middle) if found is None else (max(middle, min(found, high)), high)
     return low
 
 

@@ -24,42 +24,22 @@ from nrs_design.proof.stays import EnclosedStep
 from nrs_design.proof.steps import Step
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.balance import balance, scale_states
+from nrs_design.search.cones import ConeKind, FormsCones, FormTerm
 from nrs_design.search.family import NEARLY
 from nrs_design.search.float_step import FloatStep
-from nrs_design.search.forms_interior_point import (
-    ConeKind,
-    FormsCones,
-    FormsPoint,
-    FormTerm,
-    maximize,
-)
+from nrs_design.search.interior_point import FormsPoint, maximize
 from nrs_design.search.lifted import make_vanish, products, vanishing_basis
 from nrs_design.search.lmi import FEWEST_STEPS, time_unit
 from nrs_design.search.pieces import enough_pieces
 from nrs_design.search.rounding import numerators, round_form, round_rate
-from nrs_design.search.sdp import (
-    STEPS,
-    Maximum,
-    Sparse,
-    begin,
-    maximize_margin,
-    pack,
-    program_cost,
-    symmetric_basis,
-    triangle,
-    unpack,
-)
+from nrs_design.search.sdp import STEPS, Maximum, begin, maximize_margin, unpack
 from nrs_design.work import Allowance, Cost
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 # The name of a fact, and the node after the step if there are several that it is known of.
 Fact = tuple[str, int | None]
-# Unknowns with their packed images in an inequality: those that stay, and those times a factor.
-Part = tuple[Indices, Array, Array | None]
 
-# A multiplier of a crossing lies between 0 and this, where all numbers are of like size.
-LARGEST_MULTIPLIER = 64.0
 # What is rounded takes a little more than in the first order.
 LOST_TO_ERRORS = 1.25
 # Times at which a stay of any length in a range is looked at: for each time of its mode, so many,
@@ -216,10 +196,11 @@ class FormsProgram:
 
         Ours begins where every inequality has room, and knows quadratic forms only.
         """
-        work = self.cost(self.active)[0].work
-        if self.degree > 1 or work <= DEAR or not all(edge.is_strict for edge in self.edges):
+        if self.degree > 1 or not all(edge.is_strict for edge in self.edges):
             return False
-        return STEPS * self._cones(self.active, 1.0).cost().work < work
+        cones = self.cones(self.active, 1.0)
+        work = cones.cost_of_solver()[0].work
+        return work > DEAR and STEPS * cones.cost().work < work
 
     @cached_property
     def _vanishing(self) -> list[Array]:
@@ -242,76 +223,6 @@ class FormsProgram:
             if len(monomials(n, self.degree)) == size
         )
 
-    def cost(self, active: Sequence[int]) -> tuple[Cost, str]:
-        """Predict what a solution for some edges takes; say for what."""
-        own = [n * (n + 1) // 2 for n in self.sizes]
-        shared, cones = sum(own) + len(self.scales) + 1, []
-        for edge, forms in ((self.edges[k], self._vanishing[k]) for k in active):
-            touched = own[edge.before] + len(forms)
-            touched += own[edge.after] * (edge.after != edge.before)
-            cones.append((edge.size, touched))
-        cones += [(n, width) for n, width in zip(self.sizes, own, strict=True) for _ in (0, 1)]
-        unknowns = shared + sum(len(self._vanishing[k]) for k in active)
-        return program_cost(unknowns, shared, cones), f"a program with {len(cones)} blocks"
-
-    @cached_property
-    def _starts(self) -> Indices:
-        """Where the unknowns of each form, those that vanish, multipliers and the margin begin."""
-        own = [n * (n + 1) // 2 for n in self.sizes]
-        return np.cumsum([0, *own, *map(len, self._vanishing), len(self.scales)])
-
-    @cached_property
-    def _bounds(self) -> list[_Cone]:
-        """Those of forms and multipliers, which are in every program."""
-        found, margin = list[_Cone](), int(self._starts[-1])
-        for k, n in enumerate(self.sizes):
-            images = np.eye(n * (n + 1) // 2)
-            columns = self._starts[k] + np.arange(len(images))
-            found.append(_Cone.of(n, 0.0, [(columns, images, None)], margin))
-            found.append(_Cone.of(n, 1.0, [(columns, -images, None)], None))
-        for k in range(len(self.scales)):
-            column, one = self._starts[-2:-1] + k, np.ones((1, 1))
-            found.append(_Cone.of(1, 0.0, [(column, one, None)], None))
-            found.append(_Cone.of(1, LARGEST_MULTIPLIER, [(column, -one, None)], None))
-        return found
-
-    @cached_property
-    def _inequalities(self) -> list[_Cone]:
-        """Those of all edges."""
-        found, margin = list[_Cone](), int(self._starts[-1])
-        facts = {fact: self._starts[-2:-1] + k for k, fact in enumerate(self.scales)}
-        for k, edge in enumerate(self.edges):
-            before, after = (
-                self._starts[form] + _columns(entries)
-                for form, entries in ((edge.before, edge.kept), (edge.after, edge.left))
-            )
-            given = pack(symmetric_basis(len(edge.kept)))
-            changed = -pack(edge.changed(symmetric_basis(len(edge.left))))
-            parts: list[Part] = [(before, given, None), (after, np.zeros_like(changed), changed)]
-            if edge.is_flow:
-                parts = [(before, np.ldexp(changed, self.unit), -given)]
-            vanishing = pack(self._vanishing[k])
-            columns = self._starts[len(self.sizes) + k] + np.arange(len(vanishing))
-            parts.append((columns, vanishing, None))
-            parts += [(facts[fact], pack(form)[None], None) for fact, form in edge.facts]
-            found.append(_Cone.of(edge.size, 0.0, parts, margin if edge.is_strict else None))
-        return found
-
-    def _program(self, rate: float, active: Sequence[int]) -> tuple[Sparse, Array, list[int]]:
-        """Return rows, offset and cones for some of the edges, whose cones are the last ones."""
-        factors = self.factors(rate)
-        cones = [(cone, 0.0) for cone in self._bounds]
-        cones += [(self._inequalities[k], factors[k]) for k in active]
-        offsets = [cone.constant * pack(np.eye(cone.size)) for cone, _ in cones]
-        firsts = np.cumsum([0, *map(len, offsets)])
-        matrix = Sparse.of(
-            np.concatenate([cone.fixed + cone.varying * factor for cone, factor in cones]),
-            np.concatenate([k + cone.rows for k, (cone, _) in zip(firsts, cones, strict=False)]),
-            np.concatenate([cone.columns for cone, _ in cones]),
-            (int(firsts[-1]), int(self._starts[-1]) + 1),
-        )
-        return matrix, np.concatenate(offsets), [cone.size for cone, _ in cones]
-
     def solve(self, rate: float, allowance: Allowance) -> Solution | None:
         """Maximize the margin at a rate; None if it is not positive.
 
@@ -332,44 +243,35 @@ class FormsProgram:
                 return solution
             self.active = sorted([*known, *added[: len(known)]])
 
-    @cached_property
-    def _vanish_nowhere(self) -> list[Array]:
-        return [np.zeros((edge.size, edge.size)) for edge in self.edges]
-
-    def _solve_ours(
+    def _solve_for(
         self, active: Sequence[int], rate: float, allowance: Allowance
     ) -> Solution | None:
-        """Solve for some of the edges with the method of our own, from where the last one ended."""
-        cones = self._cones(active, rate)
+        """Solve for some of the edges, with the method of our own from where the last one ended."""
+        if not self.is_dear:
+            found = self._maximum(active, rate, allowance)
+            return None if found is None else self._read(found.x, rate)
+        cones = self.cones(active, rate)
         step = cones.cost()
         allowance.require(
             Cost(FEWEST_STEPS * step.work, step.memory), f"{len(active)} inequalities"
         )
-        found = maximize(cones, self._last, lambda: allowance.goes_on(step.work))
-        if found.margin <= 0:
+        point = maximize(cones, self._last, lambda: allowance.goes_on(step.work))
+        if point.margin <= 0:
             return None
-        self._last = found
-        share = 1.0 if self.time is Time.CONTINUOUS else float(rate**2)
-        return Solution(found.forms, share * found.multipliers, self._vanish_nowhere, found.margin)
-
-    def _solve_for(
-        self, active: Sequence[int], rate: float, allowance: Allowance
-    ) -> Solution | None:
-        """Solve for some of the edges."""
-        if self.is_dear:
-            return self._solve_ours(active, rate, allowance)
-        found = self._maximum(active, rate, allowance)
-        return None if found is None else self._read(found.x, rate)
+        self._last = point
+        return self._solution(point, rate)
 
     def _maximum(self, active: Sequence[int], rate: float, allowance: Allowance) -> Maximum | None:
-        begun = begin(allowance, *self.cost(active))
-        return maximize_margin(*self._program(rate, active), begun)
+        cones = self.cones(active, rate)
+        begun = begin(allowance, *cones.cost_of_solver())
+        return maximize_margin(*cones.for_solver(), begun)
 
     def solve_dual(self, rate: float, allowance: Allowance) -> DualSolution | None:
         """Solve at a rate, for the dual variables as well; None without a margin."""
         if self.solve(rate, allowance) is None:
             return None
-        active = self.active  # Enough of the edges, as the solution has found
+        # Enough of the edges, as the solution has found, in the order of their rows.
+        active = [k for members in self._kinds(self.active) for k in members]
         found = self._maximum(active, rate, allowance)
         solution = None if found is None else self._read(found.x, rate)
         if found is None or solution is None:
@@ -381,24 +283,22 @@ class FormsProgram:
         duals = {k: unpack(part, n) for k, part, n in zip(active, parts, sizes, strict=True)}
         return DualSolution(solution, duals)
 
-    def _cones(self, active: Sequence[int], rate: float) -> FormsCones:
-        """Return the inequalities of some edges at a rate."""
-        factors, place = self.factors(rate), {fact: k for k, fact in enumerate(self.scales)}
-        kinds = list[ConeKind]()
-        for k, n in enumerate(self.sizes):
-            whole = np.eye(n)[None]
-            kinds.append(ConeKind(0.0, (FormTerm(k, whole, whole),), (), False, 1, n))
-        for k in place.values():
-            kinds.append(ConeKind(0.0, (), ((k, np.ones((1, 1, 1))),), False, 1, 1))
-            below = -np.ones((1, 1, 1))
-            kinds.append(ConeKind(LARGEST_MULTIPLIER, (), ((k, below),), False, 1, 1))
+    def _kinds(self, active: Sequence[int]) -> list[list[int]]:
+        """Group edges in which the same forms, multipliers and forms that vanish enter."""
         groups: dict[object, list[int]] = {}
         for k in active:
             edge = self.edges[k]
             entries = tuple(edge.kept), tuple(edge.left), tuple(fact for fact, _ in edge.facts)
-            key = edge.before, edge.after, edge.size, edge.is_flow, edge.is_strict, entries
+            own = k if len(self._vanishing[k]) else None
+            key = edge.before, edge.after, edge.size, edge.is_flow, edge.is_strict, entries, own
             groups.setdefault(key, []).append(k)
-        for members in groups.values():
+        return list(groups.values())
+
+    def cones(self, active: Sequence[int], rate: float) -> FormsCones:
+        """Return the inequalities of some edges at a rate; those of a kind come together."""
+        factors, place = self.factors(rate), {fact: k for k, fact in enumerate(self.scales)}
+        kinds, free = list[ConeKind](), 0
+        for members in self._kinds(active):
             first, edges = self.edges[members[0]], [self.edges[k] for k in members]
             weights = np.array([factors[k] for k in members])[:, None, None]
             E = np.zeros((1, first.size, self.sizes[first.before]))
@@ -410,12 +310,15 @@ class FormsProgram:
                 terms = FormTerm(first.before, E, N), FormTerm(first.before, N, E)
             else:
                 terms = FormTerm(first.before, E, E), FormTerm(first.after, -weights * M, M)
-            facts = tuple(
+            facts = [
                 (place[fact], np.array([edge.facts[i][1] for edge in edges]))
                 for i, (fact, _) in enumerate(first.facts)
-            )
-            kinds.append(ConeKind(0.0, terms, facts, first.is_strict, len(edges), first.size))
-        return FormsCones(self.sizes, len(self.scales), kinds)
+            ]
+            vanishing = self._vanishing[members[0]]
+            facts += [(len(place) + free + k, N[None]) for k, N in enumerate(vanishing)]
+            free += len(vanishing)
+            kinds.append(ConeKind(terms, tuple(facts), first.is_strict, len(edges), first.size))
+        return FormsCones(self.sizes, len(place), kinds, free)
 
     def factors(self, rate: float) -> list[float]:
         """Return what the rate makes of the inequality of each edge: twice that of a flow.
@@ -431,26 +334,30 @@ class FormsProgram:
 
     def _read(self, x: Array, rate: float) -> Solution | None:
         """Take apart what the solver returned; None if there is no margin."""
-        if x[-1] <= 0:
+        parts = np.split(x[:-1], np.cumsum([n * (n + 1) // 2 for n in self.sizes]))
+        forms = [unpack(part, n) for part, n in zip(parts, self.sizes, strict=False)]
+        if x[-1] <= 0 or max(np.abs(Q).max() for Q in forms) < NOTHING:
             return None
-        factors = self.factors(rate)
-        parts = np.split(x[:-1], self._starts[1:-1])
-        forms = [
-            np.tensordot(part, symmetric_basis(n), axes=1)
-            for part, n in zip(parts, self.sizes, strict=False)
-        ]
-        if max(np.abs(Q).max() for Q in forms) < NOTHING:
-            return None
+        return self._solution(FormsPoint(forms, parts[-1], float(x[-1])), rate)
+
+    def _solution(self, point: FormsPoint, rate: float) -> Solution:
+        """Return what was found in the units of the edges."""
         # Inequalities of maps have been divided by what is left of the form after a step.
         keeps = [
-            1.0 if edge.is_flow else 1 / f for edge, f in zip(self.edges, factors, strict=True)
+            1.0 if edge.is_flow else 1 / f
+            for edge, f in zip(self.edges, self.factors(rate), strict=True)
         ]
+        multipliers, free = np.split(point.multipliers, [len(self.scales)])
+        # Where forms vanish, all edges are active, each of a kind of its own.
+        counts = np.cumsum([len(basis) for basis in self._vanishing])[:-1]
         vanishing = [
             keep * np.tensordot(part, basis, axes=1)
-            for keep, part, basis in zip(keeps, parts[len(forms) :], self._vanishing, strict=False)
+            for keep, part, basis in zip(
+                keeps, np.split(free, counts), self._vanishing, strict=True
+            )
         ]
         share = 1.0 if self.time is Time.CONTINUOUS else float(rate ** (2 * self.degree))
-        return Solution(forms, share * parts[-1], vanishing, float(x[-1]))
+        return Solution(point.forms, share * multipliers, vanishing, point.margin)
 
     def _form(self, edge: Inequality, solution: Solution, N: Array) -> Array:
         """Return the inequality of an edge without what counts for the rate."""
@@ -620,37 +527,6 @@ class FormsProgram:
 def _spaced(count: int, few: int) -> list[int]:
     """Return so many of the first numbers, at about equal distances."""
     return sorted({k * (count - 1) // max(few - 1, 1) for k in range(few)})
-
-
-@dataclass(frozen=True)
-class _Cone:
-    """One inequality in the form of the solver: entries that stay, and those that a rate counts."""
-
-    size: int
-    constant: float  # Times the identity
-    rows: Indices  # Of the packed inequality
-    columns: Indices  # The unknowns
-    fixed: Array
-    varying: Array  # Times the factor of an edge
-
-    @classmethod
-    def of(cls, size: int, constant: float, parts: Sequence[Part], margin: int | None) -> _Cone:
-        """Join packed images of unknowns; a margin is the number of that which is left to spare."""
-        if margin is not None:
-            parts = [*parts, (np.array([margin]), -pack(np.eye(size))[None], None)]
-        entries = []
-        for columns, fixed, given in parts:
-            varying = np.zeros_like(fixed) if given is None else given
-            i, j = np.nonzero(np.abs(fixed) + np.abs(varying))
-            entries.append((j, columns[i], -fixed[i, j], -varying[i, j]))
-        return cls(size, constant, *(np.concatenate(part) for part in zip(*entries, strict=True)))
-
-
-def _columns(entries: Indices) -> Indices:
-    """Return where the coordinates of a block are among those of the whole form."""
-    i, j = triangle(len(entries))
-    a, b = entries[i], entries[j]
-    return np.asarray(b * (b + 1) // 2 + a)
 
 
 def _states(drawing: Drawing, node: Node) -> int:

@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
+from itertools import chain
 
 import numpy as np
 from numpy.typing import NDArray
@@ -111,6 +112,7 @@ def propose(
     """
     time, allowance = family.system.time, family.allowance
     first, best = program.solve(rate_at(0.0, limit, time), allowance), 0.0
+    found = list[tuple[float, Solution]]()
     if first is None:
         return NO_MARGIN
     if program.is_dear:
@@ -118,16 +120,27 @@ def propose(
     part = allowance.part(rates.share)
     if family.optimize_rate or rates.always:
         half = part.part(0.5)
-        best = bisect_position(
-            lambda s: program.solve(rate_at(s, limit, time), half) is not None,
-            rates.resolution,
-            rates.smallest,
-        )
+
+        def shown(position: float) -> float | None:
+            solution = program.solve(rate_at(position, limit, time), half)
+            if solution is None:
+                return None
+            found.append((position_of(program.own_rate(solution), limit, time), solution))
+            return found[-1][0]
+
+        best = bisect_position(shown, rates.resolution, rates.smallest)
+
+    def solved(claim: Fraction) -> Iterator[Solution]:
+        if (solution := program.solve(float(claim), part)) is not None:
+            yield solution
+
     for covered in coverings:
         bits = WITH_ERRORS if covered else rates.bits
         try:
             for claim in claims(best, limit, time, rates.nearest, few=rates.few):
-                if (solution := program.solve(float(claim), part)) is not None:
+                position = position_of(float(claim), limit, time)
+                known = [solution for own, solution in found if own > position]
+                for solution in chain(known[-1:], solved(claim)):
                     for evidence in program.roundings(solution, claim, bits, errors=covered):
                         yield Candidate(evidence, rates.words)
         except NotAffordableError:

@@ -1,6 +1,7 @@
 """Search for a common quadratic Lyapunov function by semidefinite programming (untrusted).
 
-Margin form: maximize t subject to ``0 <= Q <= I`` and a decrease of at least t in every mode.
+Margin form: maximize t subject to ``Q > 0`` of a fixed trace and a decrease of at least t in every
+mode.
 Only the modes that the last solution violates enter the solver. A solver's status is never
 evidence: whatever it returns goes through the exact check.
 """
@@ -11,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.proof.mode import Time
-from nrs_design.search.interior_point import Cones, maximize_last, step_cost
-from nrs_design.search.sdp import pack, symmetric_basis
+from nrs_design.search.cones import ConeKind, FormsCones, FormTerm, transposed
+from nrs_design.search.interior_point import FormsPoint, maximize
 from nrs_design.work import Allowance, Cost
 
 Matrices = NDArray[np.float64]
@@ -22,8 +23,6 @@ FIRST_MODES = 8
 ENTRY_LOG2 = 3
 # A smaller margin counts as zero, relative to Q, for the modes that the solver knew.
 MARGIN_FLOOR = 1e-10
-# The start lies below the margin of its Q by at least this.
-START_FLOOR = 1e-3
 # The method of our own is not begun if fewer steps than these fit.
 FEWEST_STEPS = 4
 
@@ -60,7 +59,7 @@ def find_common_quadratic(
     matrices, rate = np.ldexp(matrices, unit), float(np.ldexp(rate, unit))
     m, n = matrices.shape[:2]
     active = sorted({k * (m - 1) // (FIRST_MODES - 1) for k in range(FIRST_MODES)})
-    start: Matrices = np.eye(n) / 2
+    start: Matrices = np.eye(n)
     while True:
         Q = solve_by_interior_point(matrices[active], time, rate, start, allowance)
         if not np.isfinite(decreases(matrices, Q, time, rate)).all():
@@ -86,18 +85,15 @@ def solve_by_interior_point(
     matrices: Matrices, time: Time, rate: float, Q: Matrices, allowance: Allowance
 ) -> Matrices:
     """Improve on Q in the margin form for the given modes, with the method of our own."""
-    m, n = matrices.shape[:2]
-    step = step_cost(n * (n + 1) // 2 + 1, m + 2, n)
-    what = f"a program of {n * (n + 1) // 2} unknowns and {m + 2} blocks"
+    (m, n), whole, back = matrices.shape[:2], np.eye(matrices.shape[1])[None], transposed(matrices)
+    if time is Time.CONTINUOUS:
+        slow = -back - rate * whole
+        terms = FormTerm(0, whole, slow), FormTerm(0, slow, whole)
+    else:
+        terms = FormTerm(0, rate**2 * whole, whole), FormTerm(0, -back, back)
+    cones = FormsCones([n], 0, [ConeKind(terms, (), True, m, n)])
+    step = cones.cost()
+    what = f"a program of {n * (n + 1) // 2} unknowns and {m + 1} blocks"
     allowance.require(Cost(FEWEST_STEPS * step.work, step.memory), what)
-    basis, identity = symmetric_basis(n), np.eye(n)
-    constant, images = np.zeros((m + 2, n, n)), np.zeros((len(basis) + 1, m + 2, n, n))
-    constant[1] = identity
-    images[:-1, 0], images[:-1, 1] = basis, -basis
-    images[:-1, 2:] = decreases(matrices, basis[:, None], time, rate)
-    images[-1, 2:] = -identity
-    here = decreases(matrices, Q, time, rate)
-    below = np.linalg.eigvalsh(here).min() - max(0.1 * np.abs(here).max(), START_FLOOR)
-    start = np.append(pack(Q), below)
-    y = maximize_last(Cones(constant, images), start, lambda: allowance.goes_on(step.work))
-    return np.asarray(np.tensordot(y[:-1], basis, axes=1))
+    start = FormsPoint([Q], np.zeros(0), 0.0)
+    return maximize(cones, start, lambda: allowance.goes_on(step.work)).forms[0]

@@ -229,6 +229,7 @@ def maximize_margin(
     settings = clarabel.DefaultSettings()
     settings.verbose = False
     settings.max_threads = 1
+    settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = 1e-12
     settings.max_iter = begun.most_steps
     settings.time_limit = begun.allowance.fuse.left
     quadratic = Sparse.of_dense(np.zeros((variables, variables)))

@@ -8,6 +8,7 @@ import pytest
 
 from nrs_design.proof.mode import Time
 from nrs_design.search import forms
+from nrs_design.search.cones import FormsCones
 from nrs_design.search.family import Family, floats_in_silence
 from nrs_design.search.forms import FormsProgram
 from nrs_design.search.graphs import (
@@ -77,7 +78,7 @@ def test_solutions_that_lie_give_no_false_evidence(monkeypatch, search, system, 
 @pytest.mark.parametrize(("search", "system", "draw"), DRAWN)
 def test_a_program_that_does_not_fit_is_not_built(monkeypatch, search, system, draw):
     program = FormsProgram(draw(Family.of(system)))
-    monkeypatch.setattr(forms, "symmetric_basis", lambda n: pytest.fail("built"))
+    monkeypatch.setattr(FormsCones, "for_solver", lambda self: pytest.fail("built"))
     with pytest.raises(NotAffordableError, match=r"blocks.*--budget"):
         program.solve(at_rest(system), Allowance(1e-4))
 

@@ -6,7 +6,6 @@ import pytest
 
 from nrs_design.proof.mode import Time
 from nrs_design.search import lmi
-from nrs_design.search.interior_point import step_cost
 from nrs_design.search.lmi import decreases, find_common_quadratic, margins
 from nrs_design.work import Allowance, NotAffordableError
 from tests.support import thinned
@@ -83,14 +82,11 @@ def test_useless_answers_end_the_search(monkeypatch, answer):
         assert find_common_quadratic(-np.eye(2)[None], Time.CONTINUOUS, 0.0) is None
 
 
-def test_what_does_not_fit_is_not_even_built(monkeypatch):
-    def build(n):
-        raise AssertionError("built")
-
-    monkeypatch.setattr(lmi, "symmetric_basis", build)
+def test_what_does_not_fit_is_not_begun(monkeypatch):
+    monkeypatch.setattr(lmi, "maximize", lambda *_: pytest.fail("begun"))
     matrices = -np.broadcast_to(np.eye(64), (2, 64, 64))
     for allowance, words in (
-        (Allowance(5.0), r"2080 unknowns and 4 blocks would take about .* of work, .*--budget"),
+        (Allowance(4.0), r"2080 unknowns and 3 blocks would take about .* of work, .*--budget"),
         (Allowance(memory=1e8), "GB of memory, .*--memory"),
     ):
         with pytest.raises(NotAffordableError, match=words):
@@ -101,8 +97,9 @@ def test_a_search_that_runs_out_of_work_does_not_say_that_there_is_nothing():
     """It takes more steps than these to see that there is none."""
     matrices = np.array([[[-1.0, -1.0], [1.0, -1.0]], [[-1.0, -6.0], [1 / 6, -1.0]]])
     assert find_common_quadratic(matrices, Time.CONTINUOUS, 0.0) is None
-    step = step_cost(4, 4, 2).work
+    step = Allowance()
+    lmi.solve_by_interior_point(matrices, Time.CONTINUOUS, 0.0, np.eye(2), step)
     with pytest.raises(NotAffordableError, match="stopped: the budget"):
         find_common_quadratic(
-            matrices, Time.CONTINUOUS, 0.0, allowance=Allowance(lmi.FEWEST_STEPS * step)
+            matrices, Time.CONTINUOUS, 0.0, allowance=Allowance(0.6 * step.charged)
         )

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import replace
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import gcd
 
@@ -15,11 +15,12 @@ from nrs_design.proof.evidence.fields import Matrix
 from nrs_design.proof.evidence.graph import MODES, Node
 from nrs_design.proof.mode import Time
 from nrs_design.search.balance import mean_norm
-from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
-from nrs_design.search.decay import fastest_first, rate_of
+from nrs_design.search.candidates import OUT_OF_RANGE, Candidate, Candidates
+from nrs_design.search.decay import rate_of
 from nrs_design.search.family import Family
 from nrs_design.search.lmi import find_common_quadratic, margins
-from nrs_design.search.rounding import BITS, claims, digits, rate_at, round_rate, unscale
+from nrs_design.search.rates import Rates, at_own_rate, propose
+from nrs_design.search.rounding import digits, rate_at, round_rate, unscale
 from nrs_design.work import Allowance, NotAffordableError
 
 BACK_OFF = Fraction(1999, 2000)
@@ -34,44 +35,58 @@ def one_form(Q: Matrix, log2: int, rate: Fraction) -> FormsOnGraph:
     return FormsOnGraph((Node(MODES, Q),), log2, rate)
 
 
+@dataclass(frozen=True)
+class CommonQuadratic:
+    """The program of a quadratic function for all modes, in the coordinates of a family."""
+
+    family: Family
+    is_dear = False
+
+    def solve(self, rate: float, allowance: Allowance) -> Array | None:
+        """Return a function at a rate."""
+        family = self.family
+        return find_common_quadratic(family.matrices, family.system.time, rate, allowance)
+
+    def own_rate(self, Q: Array) -> float:
+        """Return the rate that a function shows."""
+        return rate_of(self.family.matrices, Q, self.family.system.time)
+
+    def roundings(
+        self, Q: Array, claim: Fraction, digits: Sequence[int], *, errors: bool = False
+    ) -> Iterator[FormsOnGraph]:
+        """Yield roundings that floating point thinks worth the exact check, and the last.
+
+        The scale of a quadratic function is free: common factors of two go.
+        """
+        family, largest = self.family, np.abs(Q).max()
+        if not np.isfinite(largest) or largest == 0:
+            return
+        unit = np.ldexp(Q, -int(np.frexp(largest)[1]))
+        for bits in digits:
+            rounded = np.ldexp(np.rint(np.ldexp((unit + unit.T) / 2, bits)), -bits)
+            margin = margins(family.matrices, rounded, family.system.time, float(claim)).min()
+            if margin > 0 or bits == digits[-1]:
+                rows, denominator_log2 = unscale(unit, family.exponents, bits)
+                common = gcd(*(entry for row in rows for entry in row)) or 1
+                twos = (common & -common).bit_length() - 1
+                reduced = tuple(tuple(entry >> twos for entry in row) for row in rows)
+                yield one_form(reduced, max(denominator_log2 - twos, 0), claim)
+
+
 def search_by_lmi(family: Family) -> Candidates[FormsOnGraph]:
     """Search by semidefinite programming; then, if asked to, raise the rate."""
-    time, allowance = family.system.time, family.allowance
+    time, program = family.system.time, CommonQuadratic(family)
     if not np.isfinite(family.limit):
         return OUT_OF_RANGE
-    least = rate_at(0.0, family.limit, time)
     try:
-        Q = find_common_quadratic(family.matrices, time, least, allowance=allowance)
+        rates = Rates(resolution=0.0, smallest=SMALLEST)
+        return (yield from propose(program, family, family.limit, rates))
     except NotAffordableError:
         Q = mean_norm(family.matrices, time)
-        if margins(family.matrices, Q, time, least).min() <= 0:
+        if margins(family.matrices, Q, time, rate_at(0.0, family.limit, time)).min() <= 0:
             raise
-        yield from _at_own_rate(family, Q)
-        return None
-    if Q is None:
-        return NO_MARGIN
-    if family.optimize_rate:
-        yield from _fastest(family)
-    yield from _at_own_rate(family, Q)
+    yield from at_own_rate(program, Q, family, digits())
     return None
-
-
-def _fastest(family: Family) -> Iterator[Candidate[FormsOnGraph]]:
-    """Yield functions for the largest rates that fit into the budget."""
-    time = family.system.time
-
-    def solve(rate: float, allowance: Allowance) -> Array | None:
-        return find_common_quadratic(family.matrices, time, rate, allowance=allowance)
-
-    found = fastest_first(
-        solve, family.limit, time, family.allowance, resolution=0.0, smallest=SMALLEST
-    )
-    try:
-        for Q, claim in found:
-            for evidence in round_quadratic(family, Q, claim):
-                yield Candidate(evidence, "found with the largest decay rate")
-    except NotAffordableError:
-        return
 
 
 def decide_one_state(family: Family) -> Candidates[FormsOnGraph]:
@@ -96,42 +111,11 @@ def search_by_gradient(family: Family) -> Candidates[FormsOnGraph]:
     result = find_by_gradient(family)
     if result.Q is None:
         return f"not converged after {result.updates} updates"
-    words = f"found after {result.updates} updates"
+    words, program = f"found after {result.updates} updates", CommonQuadratic(family)
     if family.optimize_rate:
         faster = find_faster_by_gradient(family, result.Q)
         more = f"with a decay rate near the largest after {faster.updates} more"
         if faster.Q is not None:
-            yield from _at_own_rate(family, faster.Q, f"{words}, {more}")
-    yield from _at_own_rate(family, result.Q, words)
+            yield from at_own_rate(program, faster.Q, family, digits(), f"{words}, {more}")
+    yield from at_own_rate(program, result.Q, family, digits(), words)
     return None
-
-
-def _at_own_rate(
-    family: Family, Q: Array, words: str = "found"
-) -> Iterator[Candidate[FormsOnGraph]]:
-    """Yield roundings of a function at rates just below the one that it shows itself."""
-    rate, time = rate_of(family.matrices, Q, family.system.time), family.system.time
-    for claim in claims(1.0, rate, time):
-        for evidence in round_quadratic(family, Q, claim):
-            yield Candidate(evidence, words)
-
-
-def round_quadratic(family: Family, Q: Array, claim: Fraction) -> Iterator[FormsOnGraph]:
-    """Yield roundings that floating point thinks worth the time of the exact check, and the last.
-
-    Q is in the coordinates of the family, `claim` the rate. The scale of a quadratic function is
-    free: common factors of two go.
-    """
-    largest = np.abs(Q).max()
-    if not np.isfinite(largest) or largest == 0:
-        return
-    unit = np.ldexp(Q, -int(np.frexp(largest)[1]))
-    for bits in digits():
-        rounded = np.ldexp(np.rint(np.ldexp((unit + unit.T) / 2, bits)), -bits)
-        margin = margins(family.matrices, rounded, family.system.time, float(claim)).min()
-        if margin > 0 or bits == BITS[-1]:
-            rows, denominator_log2 = unscale(unit, family.exponents, bits)
-            common = gcd(*(entry for row in rows for entry in row)) or 1
-            twos = (common & -common).bit_length() - 1
-            reduced = tuple(tuple(entry >> twos for entry in row) for row in rows)
-            yield one_form(reduced, max(denominator_log2 - twos, 0), claim)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -11,10 +12,10 @@ from numpy.typing import NDArray
 from nrs_design.proof.evidence import ConstantsQuadratic
 from nrs_design.proof.mode import Time
 from nrs_design.search.balance import mean_norm_coordinates
-from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
-from nrs_design.search.decay import fastest_first
+from nrs_design.search.candidates import OUT_OF_RANGE, Candidates
 from nrs_design.search.family import Family
 from nrs_design.search.lmi import time_unit
+from nrs_design.search.rates import Rates, propose
 from nrs_design.search.rounding import digits, round_form, round_matrix
 from nrs_design.search.sdp import (
     Blocks,
@@ -43,20 +44,15 @@ def search_constants_quadratic(family: Family) -> Candidates[ConstantsQuadratic]
     if not np.isfinite(coordinates).all():
         return OUT_OF_RANGE
     program = _Program.of(family, coordinates)
-    if program.solve(1.0 if system.time is Time.DISCRETE else 0.0, family.allowance) is None:
-        return NO_MARGIN
     resolution = RESOLUTION if family.optimize_rate else COARSE
-    for solution, claim in fastest_first(
-        program.solve,
-        family.limit,
-        system.time,
-        family.allowance,
+    rates = Rates(
         resolution=resolution,
         nearest=NEAREST,
-    ):
-        for bits in digits(FEWEST_BITS):
-            yield Candidate(solution.rounded(family.exponents, bits, claim))
-    return None
+        bits=digits(FEWEST_BITS),
+        always=True,
+        words="found",
+    )
+    return (yield from propose(program, family, family.limit, rates))
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,21 +61,7 @@ class _Solution:
 
     functions: Array  # Shape (corners, n, n)
     multipliers: Array  # Shape (sets, 2, n, n): F, and G in seconds
-    more_bits: int  # That G needs for its unit
-
-    def rounded(self, exponents: Indices, bits: int, rate: Fraction) -> ConstantsQuadratic:
-        """Round to integers."""
-        top, bits = max(int(exponents.max()), 0), bits + self.more_bits
-        shifts = top - exponents
-        return ConstantsQuadratic(
-            tuple(round_form(P, shifts, bits) for P in self.functions),
-            tuple(
-                (round_matrix(F, shifts, bits), round_matrix(G, shifts, bits))
-                for F, G in self.multipliers
-            ),
-            bits + 2 * top,
-            rate,
-        )
+    rate: float  # That it was solved for
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,6 +72,8 @@ class _Program:
     time: Time
     unit: int  # Of time, two to this power in s
     coordinates: Array  # Shape (n, n); x = T z
+    exponents: Indices  # Of the family
+    is_dear: bool = False
 
     @classmethod
     def of(cls, family: Family, coordinates: Array) -> _Program:
@@ -99,7 +83,7 @@ class _Program:
         sets = np.array([[index[name] for name in c] for c in system.switching.fixed_ends])
         modes: Array = np.asarray(np.linalg.solve(coordinates, family.matrices @ coordinates))
         unit = time_unit(modes, system.time)
-        return cls(np.ldexp(modes, unit)[sets], system.time, unit, coordinates)
+        return cls(np.ldexp(modes, unit)[sets], system.time, unit, coordinates, family.exponents)
 
     def solve(self, rate: float, allowance: Allowance) -> _Solution | None:
         """Make the margin of all inequalities as large as it gets with ``P <= I``."""
@@ -132,7 +116,28 @@ class _Program:
         slack[:, 1] = np.ldexp(slack[:, 1], self.unit)
         functions, slack = inverse.T @ P @ inverse, inverse.T @ slack @ inverse
         scale = int(np.frexp(np.abs(functions).max())[1])
-        return _Solution(np.ldexp(functions, -scale), np.ldexp(slack, -scale), max(-self.unit, 0))
+        return _Solution(np.ldexp(functions, -scale), np.ldexp(slack, -scale), rate)
+
+    def own_rate(self, solution: _Solution) -> float:
+        """Return the rate that was asked for."""
+        return solution.rate
+
+    def roundings(
+        self, solution: _Solution, claim: Fraction, digits: Sequence[int], *, errors: bool = False
+    ) -> Iterator[ConstantsQuadratic]:
+        """Yield roundings to integers; G needs more bits for its unit."""
+        top, more = max(int(self.exponents.max()), 0), max(-self.unit, 0)
+        shifts = top - self.exponents
+        for bits in (bits + more for bits in digits):
+            yield ConstantsQuadratic(
+                tuple(round_form(P, shifts, bits) for P in solution.functions),
+                tuple(
+                    (round_matrix(F, shifts, bits), round_matrix(G, shifts, bits))
+                    for F, G in solution.multipliers
+                ),
+                bits + 2 * top,
+                claim,
+            )
 
     def _of_functions(self, basis: Array, rate: float) -> Array:
         """Return what the entries of P add to an inequality, shape (N, 2n, 2n)."""

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from fractions import Fraction
-from itertools import chain
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,32 +21,25 @@ from nrs_design.proof.switching import Clock, Stay
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.balance import balance, own_norm, round_coordinates, scale_states, separating
 from nrs_design.search.branches import best_words, round_forms
-from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
+from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidates
 from nrs_design.search.cycle import growing_cycles
-from nrs_design.search.decay import (
-    RESOLUTION,
-    SMALLEST,
-    bisect_position,
-    climb_position,
-    limit_rate,
-)
+from nrs_design.search.decay import limit_rate
 from nrs_design.search.family import Family, stand_ins, to_floats
-from nrs_design.search.forms import Drawing, FormCoordinates, FormsProgram, Solution
+from nrs_design.search.forms import Drawing, FormCoordinates, FormsProgram
 from nrs_design.search.graph import Graph
 from nrs_design.search.lifted import monomial_weights
 from nrs_design.search.motions import free_motions, separating_coordinates
 from nrs_design.search.polynomial import conewise_cost, family_cost, functions_cost, work_of_checks
-from nrs_design.search.rounding import BACK_OFFS, claims, digits, position_of, rate_at
+from nrs_design.search.rates import POLYNOMIAL, Rates, propose
+from nrs_design.search.rounding import digits
 from nrs_design.search.rounds import turns_graph
 from nrs_design.search.stays import round_stays
 from nrs_design.search.step_graph import StepGraph
-from nrs_design.work import Cost, NotAffordableError
+from nrs_design.work import Cost
 
 Array = NDArray[np.float64]
 Exponents = NDArray[np.int64]
 
-# Few roundings with errors: more digits at once, as every check takes longer.
-WITH_ERRORS = (24, 32, 40, 50, 60)
 # The same where stays are enclosed.
 BITS_OF_STAYS = (12, 32, 60)
 # Work for each edge, to have it in floating point.
@@ -65,131 +57,11 @@ FEW_STAYS = 64
 FEW_STATES, LONG_AGO = 12, 2
 # Share of what is left for words that limit the rate.
 WORDS = 0.1
-# The largest rate to this share, where every solution takes long.
-OF_DEAR, NEAR_OF_DEAR = 2.0**-7, 0.998
 # The largest rate, where it was not asked for, to this share of it.
 ROUGH = 0.3
 GROWS = "not looked for: the state grows along a cycle of modes"
 # The lengths of a stay in continuous time, times the size of the mode, that are nearly one.
 NARROW_STAYS = 0.5
-
-
-@dataclass(frozen=True)
-class Rates:
-    """How rates are looked for: a program that takes long is asked rarely."""
-
-    share: float = 1.0  # Of the budget, for the largest rate
-    resolution: float = RESOLUTION
-    smallest: float = SMALLEST
-    nearest: float = BACK_OFFS[0]
-    few: bool = False
-    bits: Sequence[int] = field(default_factory=digits)
-    always: bool = False  # Look for the largest rate, whatever was asked for
-    words: str = "found with the largest decay rate"
-
-
-# Solutions take time: the largest rate is bracketed roughly, and a little less is claimed.
-POLYNOMIAL = Rates(
-    resolution=2.0**-8,
-    smallest=2.0**-10,
-    nearest=0.998,
-    bits=digits(10),
-    words="found with a decay rate near the largest",
-)
-
-
-def propose(
-    program: FormsProgram,
-    family: Family,
-    limit: float,
-    rates: Rates,
-    coverings: Sequence[bool] = (False,),
-) -> Candidates[FormsOnGraph]:
-    """Solve for any rate; then, if asked to, for the largest, which is proposed first.
-
-    Of `coverings` in turn, forms leave room for errors that they are not solved for, or they do
-    not. No form can beat the limit.
-    """
-    time, allowance = family.system.time, family.allowance
-    first, best = program.solve(rate_at(0.0, limit, time), allowance), 0.0
-    found = list[tuple[float, Solution]]()
-    if first is None:
-        return NO_MARGIN
-    if program.is_dear:
-        return (yield from _propose_dear(program, first, family, limit, rates, coverings))
-    part = allowance.part(rates.share)
-    if family.optimize_rate or rates.always:
-        half = part.part(0.5)
-
-        def shown(position: float) -> float | None:
-            solution = program.solve(rate_at(position, limit, time), half)
-            if solution is None:
-                return None
-            found.append((position_of(program.own_rate(solution), limit, time), solution))
-            return found[-1][0]
-
-        best = bisect_position(shown, rates.resolution, rates.smallest)
-
-    def solved(claim: Fraction) -> Iterator[Solution]:
-        if (solution := program.solve(float(claim), part)) is not None:
-            yield solution
-
-    for covered in coverings:
-        bits = WITH_ERRORS if covered else rates.bits
-        try:
-            for claim in claims(best, limit, time, rates.nearest, few=rates.few):
-                position = position_of(float(claim), limit, time)
-                known = [solution for own, solution in found if own > position]
-                for solution in chain(known[-1:], solved(claim)):
-                    for evidence in program.roundings(solution, claim, bits, errors=covered):
-                        yield Candidate(evidence, rates.words)
-        except NotAffordableError:
-            if rates.always:
-                raise
-        if rates.always:
-            continue
-        for claim in claims(1.0, program.own_rate(first), time):
-            for evidence in program.roundings(first, claim, bits, errors=covered):
-                yield Candidate(evidence)
-    return None
-
-
-def _propose_dear(
-    program: FormsProgram,
-    first: Solution,
-    family: Family,
-    limit: float,
-    rates: Rates,
-    coverings: Sequence[bool],
-) -> Candidates[FormsOnGraph]:
-    """Propose forms of a program of which every solution takes long: no more of them than needed.
-
-    What a solution shows is more than what it was asked for, and is claimed of it.
-    """
-    time, part = program.time, family.allowance.part(rates.share / 2)
-
-    def shown(solution: Solution) -> float:
-        return position_of(program.own_rate(solution), limit, time)
-
-    found = [(shown(first), first)]
-
-    def ask(position: float) -> tuple[float, float] | None:
-        solution = program.solve(rate_at(position, limit, time), part)
-        if solution is None:
-            return None
-        found.append((shown(solution), solution))
-        return solution.margin, found[-1][0]
-
-    if family.optimize_rate or rates.always:
-        start = first.margin, found[0][0]
-        climb_position(ask, start, max(rates.resolution, OF_DEAR), rates.smallest)
-    for position, solution in sorted(found, key=lambda one: one[0], reverse=True):
-        for covered in (True, False) if True in coverings else (False,):
-            bits = WITH_ERRORS if covered else rates.bits
-            for claim in claims(position, limit, time, min(rates.nearest, NEAR_OF_DEAR)):
-                for evidence in program.roundings(solution, claim, bits, errors=covered):
-                    yield Candidate(evidence, rates.words)
-    return None
 
 
 def search_conewise_modes(family: Family) -> Candidates[FormsOnGraph]:

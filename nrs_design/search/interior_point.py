@@ -79,8 +79,9 @@ def maximize(
             break
         y, X, Z = y + dy, trial, other
         value, gap = float(y[-1]), sum(float((a * b).sum()) for a, b in zip(X, Z, strict=True))
-        nearly = gap <= max(FLOOR, accuracy * abs(value)) or value + 2 * gap < 0
-        if lacks < NEARLY_DUAL and nearly:
+        if value > 0 and gap <= accuracy * value:
+            break
+        if lacks < NEARLY_DUAL and (gap <= max(FLOOR, -accuracy * value) or value + 2 * gap < 0):
             break
     forms, multipliers = cones.split(y)
     return FormsPoint(forms, multipliers, float(y[-1]))

@@ -24,13 +24,12 @@ from nrs_design.search.forms import Drawing, FormsProgram
 from nrs_design.search.graphs import (
     ANY_RATE,
     GROWS,
-    POLYNOMIAL,
     left_modes,
     lifted_coordinates,
     limit_of_cycles,
-    propose,
 )
 from nrs_design.search.polynomial import PER_CHECK, form_sizes
+from nrs_design.search.rates import POLYNOMIAL, propose
 from nrs_design.search.sdp import program_cost
 from nrs_design.work import Cost
 

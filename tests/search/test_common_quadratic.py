@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from nrs_design.proof.evidence.fields import MAX_INTEGER_BITS
-from nrs_design.search.common_quadratic import round_quadratic, search_by_lmi
+from nrs_design.search.common_quadratic import CommonQuadratic, search_by_lmi
 from nrs_design.search.family import Family, floats_in_silence
+from nrs_design.search.rounding import digits
 from tests.support import dayawansa_martin, family, holds
 
 LEVEL = np.zeros(2, dtype=np.int64)
@@ -22,7 +23,7 @@ def rounded(system, Q, claim=Fraction(1, 1000), exponents=LEVEL):
     with floats_in_silence():
         scaled = np.ldexp(matrices, exponents[None, :] - exponents[:, None])
         family_ = replace(Family.of(system), matrices=scaled, exponents=exponents)
-        proposed = round_quadratic(family_, Q, claim)
+        proposed = CommonQuadratic(family_).roundings(Q, claim, digits())
         return next((e for e in proposed if e.find_fault(system) is None), None)
 
 

@@ -1,0 +1,158 @@
+"""How a program is asked for rates, and what is claimed for its solutions (untrusted)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+from typing import Protocol, TypeVar
+
+from nrs_design.proof.evidence import AbstractEvidence
+from nrs_design.search.candidates import NO_MARGIN, Candidate, Candidates
+from nrs_design.search.family import Family
+from nrs_design.search.rounding import BACK_OFFS, claims, digits, position_of, rate_at
+from nrs_design.work import Allowance, NotAffordableError
+
+S = TypeVar("S")
+E = TypeVar("E", bound=AbstractEvidence, covariant=True)
+
+# A position is bracketed to this share of itself, or given up as nil below the smallest one.
+RESOLUTION, SMALLEST = 2.0**-12, 2.0**-40
+# Few roundings with errors: more digits at once, as every check takes longer.
+WITH_ERRORS = (24, 32, 40, 50, 60)
+# The largest rate to this share, where every solution takes long.
+OF_DEAR, NEAR_OF_DEAR = 2.0**-7, 0.998
+
+
+class RateProgram(Protocol[S, E]):
+    """What is solved for a rate, in 1/s or per step."""
+
+    @property
+    def is_dear(self) -> bool:
+        """Whether every solution takes long."""
+
+    def solve(self, rate: float, allowance: Allowance) -> S | None:
+        """Return a solution at a rate."""
+
+    def own_rate(self, solution: S) -> float:
+        """Return the rate that a solution shows, perhaps a better one than was asked for."""
+
+    def roundings(
+        self, solution: S, claim: Fraction, digits: Sequence[int], *, errors: bool = False
+    ) -> Iterator[E]:
+        """Yield evidence of a rate, with room for errors or without."""
+
+
+@dataclass(frozen=True)
+class Rates:
+    """How rates are looked for: a program that takes long is asked rarely."""
+
+    share: float = 1.0  # Of the budget, for the largest rate
+    resolution: float = RESOLUTION
+    smallest: float = SMALLEST
+    nearest: float = BACK_OFFS[0]
+    few: bool = False
+    bits: Sequence[int] = field(default_factory=digits)
+    always: bool = False  # Look for the largest rate, whatever was asked for
+    words: str = "found with the largest decay rate"
+
+
+# Solutions take time: the largest rate is bracketed roughly, and a little less is claimed.
+POLYNOMIAL = Rates(
+    resolution=2.0**-8,
+    smallest=2.0**-10,
+    nearest=0.998,
+    bits=digits(10),
+    words="found with a decay rate near the largest",
+)
+
+
+def propose(
+    program: RateProgram[S, E],
+    family: Family,
+    limit: float,
+    rates: Rates,
+    coverings: Sequence[bool] = (False,),
+) -> Candidates[E]:
+    """Solve for any rate; then, if asked to, for the largest, which is proposed first.
+
+    Of `coverings` in turn, solutions leave room for errors that they are not solved for, or they do
+    not. No solution can beat the limit.
+    """
+    time, allowance = family.system.time, family.allowance
+    first = program.solve(rate_at(0.0, limit, time), allowance)
+    if first is None:
+        return NO_MARGIN
+    part = allowance.part(rates.share)
+    half, found = part.part(0.5), list[tuple[float, S]]()
+
+    def shown(position: float) -> float | None:
+        """Solve for a position, and return which one the solution shows."""
+        if (solution := program.solve(rate_at(position, limit, time), half)) is None:
+            return None
+        found.append((position_of(program.own_rate(solution), limit, time), solution))
+        return found[-1][0]
+
+    def solutions(claim: Fraction) -> Iterator[S]:
+        """Yield the solution that shows the most, if it shows the claim, and then one for it."""
+        position = position_of(float(claim), limit, time)
+        known = sorted(found, key=lambda one: one[0], reverse=True)
+        yield from (solution for own, solution in known[:1] if own > position)
+        if not program.is_dear and (solved := program.solve(float(claim), part)) is not None:
+            yield solved
+
+    best, resolution, nearest = 0.0, rates.resolution, rates.nearest
+    if program.is_dear:
+        resolution, nearest = max(resolution, OF_DEAR), min(nearest, NEAR_OF_DEAR)
+    if family.optimize_rate or rates.always:
+        best = bisect_position(shown, resolution, rates.smallest)
+    for covered in coverings:
+        bits = WITH_ERRORS if covered else rates.bits
+        try:
+            for claim in claims(best, limit, time, nearest, few=rates.few):
+                for solution in solutions(claim):
+                    for evidence in program.roundings(solution, claim, bits, errors=covered):
+                        yield Candidate(evidence, rates.words)
+        except NotAffordableError:
+            if rates.always:
+                raise
+        if not rates.always:
+            yield from at_own_rate(program, first, family, bits, errors=covered)
+    return None
+
+
+def at_own_rate(
+    program: RateProgram[S, E],
+    solution: S,
+    family: Family,
+    bits: Sequence[int],
+    words: str = "found",
+    *,
+    errors: bool = False,
+) -> Iterator[Candidate[E]]:
+    """Yield roundings of a solution at rates just below the one that it shows itself."""
+    for claim in claims(1.0, program.own_rate(solution), family.system.time):
+        for evidence in program.roundings(solution, claim, bits, errors=errors):
+            yield Candidate(evidence, words)
+
+
+def bisect_position(
+    shown: Callable[[float], float | None],
+    resolution: float = RESOLUTION,
+    smallest: float = SMALLEST,
+) -> float:
+    """Bisect for the largest feasible position; zero if nothing above the smallest one is.
+
+    Feasible positions come first; there, it is told which position is shown as well, perhaps a
+    larger one. The largest is bracketed to a share of itself, `resolution`, or to the difference
+    `smallest`, whichever is reached first; it ends early when the work is used up.
+    """
+    low, high = 0.0, 1.0
+    while high - low > max(resolution * high, smallest):
+        middle = (low + high) / 2
+        try:
+            found = shown(middle)
+        except NotAffordableError:
+            break
+        low, high = (low, middle) if found is None else (max(middle, min(found, high)), high)
+    return low

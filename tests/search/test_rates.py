@@ -1,0 +1,181 @@
+"""How programs are asked for rates: a program here knows the largest feasible one."""
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+import pytest
+
+from nrs_design.proof.mode import Time
+from nrs_design.search.candidates import NO_MARGIN
+from nrs_design.search.family import Family
+from nrs_design.search.lmi import find_common_quadratic
+from nrs_design.search.rates import (
+    NEAR_OF_DEAR,
+    OF_DEAR,
+    RESOLUTION,
+    SMALLEST,
+    Rates,
+    bisect_position,
+    propose,
+)
+from nrs_design.search.rounding import BACK_OFFS, rate_at, round_rate
+from nrs_design.work import Allowance, Cost, NotAffordableError
+from tests.proof.systems import family as system_of
+
+PAIR = np.array([[[-1.0, -1.0], [1.0, -1.0]], [[-1.0, -5.0], [0.2, -1.0]]])
+# How exactly a position is found where it is not told otherwise.
+FINE = 2.0**-14
+
+
+def shown_up_to(threshold, further=0.0):
+    """Tell of positions up to a threshold that they are feasible, and show a share of the rest."""
+    return lambda s: None if s > threshold else s + further * (threshold - s)
+
+
+def largest_position(matrices, limit, allowance=None):
+    """The largest position at which there is a common quadratic function."""
+
+    def shown(position):
+        rate = rate_at(position, limit, Time.CONTINUOUS)
+        found = find_common_quadratic(matrices, Time.CONTINUOUS, rate, allowance=allowance)
+        return None if found is None else position
+
+    return bisect_position(shown, 0.0, FINE)
+
+
+def test_positions_run_from_stability_to_the_limit():
+    assert [rate_at(s, 4.0, Time.CONTINUOUS) for s in (0.0, 0.5, 1.0)] == [0.0, 2.0, 4.0]
+    contractions = [rate_at(s, 0.2, Time.DISCRETE) for s in (0.0, 0.5, 1.0)]
+    assert contractions == pytest.approx([1.0, 0.6, 0.2])
+
+
+def test_position_of_dayawansa_martin():
+    """The pair shifted by alpha is a scaled pair; the threshold falls where it must."""
+    position = largest_position(PAIR, 1.0)
+    assert position == pytest.approx(0.1056, abs=2e-4)
+
+
+@pytest.mark.parametrize("further", [0.0, 0.3])
+@pytest.mark.parametrize("threshold", [0.999, 0.5, 0.3, 1e-6, 2 * SMALLEST])
+def test_position_is_bracketed_relative_to_itself(threshold, further):
+    position = bisect_position(shown_up_to(threshold, further))
+    assert threshold * (1 - 2 * RESOLUTION) <= position <= threshold
+
+
+@pytest.mark.parametrize("threshold", [0.0, SMALLEST / 4])
+def test_nothing_feasible_ends(threshold):
+    assert bisect_position(shown_up_to(threshold)) == 0.0
+
+
+def test_a_position_is_bracketed_to_a_difference():
+    tried = []
+    shown = shown_up_to(0.3)
+    position = bisect_position(lambda s: tried.append(s) or shown(s), 0.0, 2.0**-8)
+    assert 0.3 - 2.0**-8 <= position <= 0.3
+    assert len(tried) == 8
+
+
+@dataclass
+class Known:
+    """A program with solutions up to a rate, which show a share of what is left to it."""
+
+    best: float
+    further: float = 0.0
+    is_flow: bool = True
+    is_dear: bool = False
+    work: float = 0.0
+    asked: list = field(default_factory=list)
+
+    def solve(self, rate, allowance):
+        allowance.take(Cost(self.work), "a step")
+        self.asked.append(rate)
+        return rate + self.further * (self.best - rate) if self.is_below(rate) else None
+
+    def is_below(self, rate):
+        return rate <= self.best if self.is_flow else rate >= self.best
+
+    def own_rate(self, solution):
+        return solution
+
+    def roundings(self, solution, claim, digits, *, errors=False):
+        yield solution, claim, errors
+
+
+def proposed(program, time=Time.CONTINUOUS, rates=None, coverings=(False,), **options):
+    limit = 2.0 if time is Time.CONTINUOUS else 0.5
+    family = replace(Family.of(system_of([[-1]] if limit > 1 else [["1/2"]], time=time)), **options)
+    return propose(program, family, limit, rates or Rates(), coverings)
+
+
+@pytest.mark.parametrize("time", list(Time))
+def test_solutions_come_fastest_first(time):
+    """Every claim is a short rate on the safe side of what a solution shows."""
+    best = rate_at(0.8, 2.0 if time is Time.CONTINUOUS else 0.5, time)
+    found = [
+        c.evidence
+        for c in proposed(Known(best, is_flow=time is Time.CONTINUOUS), time, Rates(always=True))
+    ]
+    claims = list(dict.fromkeys(claim for _, claim, _ in found))
+    assert claims == sorted(claims, reverse=time is Time.CONTINUOUS)
+    assert claims == [round_rate(claim, time) for claim in claims]
+    assert len(claims) == len(BACK_OFFS)
+    assert float(claims[0]) == pytest.approx(best, rel=1e-3)
+    sign = 1 if time is Time.CONTINUOUS else -1
+    assert all(sign * (solution - float(claim)) >= 0 for solution, claim, _ in found)
+
+
+def test_what_a_solution_shows_is_claimed_without_another():
+    program = Known(1.6, 0.5)
+    solution, claim, _ = next(proposed(program)).evidence
+    asked = len(program.asked)
+    assert solution >= claim > program.asked[-1] - 1e-3
+    assert asked < 12
+    dear = Known(1.6, 0.5, is_dear=True)
+    claims = [float(c.evidence[1]) for c in proposed(dear)]
+    assert 1.6 * NEAR_OF_DEAR * (1 - 2 * OF_DEAR) < claims[0] < 1.6
+    assert len(dear.asked) < 10
+
+
+def test_errors_are_covered_first_and_any_rate_last():
+    found = [c.evidence for c in proposed(Known(1.6), coverings=(True, False))]
+    covered = [errors for *_, errors in found]
+    assert covered == sorted(covered, reverse=True)
+    any_rate = [c.evidence for c in proposed(Known(1.6, 0.5), optimize_rate=False)]
+    assert {solution for solution, *_ in any_rate} == {0.8}
+
+
+def test_no_solution_is_no_margin():
+    with pytest.raises(StopIteration) as end:
+        next(proposed(Known(-1.0)))
+    assert end.value.value == NO_MARGIN
+
+
+@pytest.mark.parametrize("always", [False, True])
+def test_the_search_for_the_best_rate_takes_half_of_the_work(always):
+    allowance = Allowance(10.0)
+    found = proposed(Known(2.0, work=1.0), rates=Rates(always=always), allowance=allowance)
+    assert next(found).evidence[1] < 2
+    assert allowance.left == pytest.approx(5.0)
+    if always:
+        with pytest.raises(NotAffordableError):
+            list(found)
+    else:
+        assert list(found)
+
+
+def test_a_bisection_without_work_keeps_what_it_has():
+    assert largest_position(PAIR, 1.0, Allowance(0.0)) == 0.0
+    # Enough for some of the steps of the bisection only.
+    allowance = Allowance(0.04)
+    some = largest_position(PAIR, 1.0, allowance)
+    assert 0.0 < some < largest_position(PAIR, 1.0)
+
+    tried = []
+
+    def shown(position):
+        tried.append(position)
+        if len(tried) > 2:
+            raise NotAffordableError("no time")
+        return position if position < 0.6 else None
+
+    assert bisect_position(shown) == 0.5

@@ -16,8 +16,9 @@ from nrs_design.proof.evidence import GrowingSequence
 from nrs_design.search.balance import round_coordinates
 from nrs_design.search.branches import best_words
 from nrs_design.search.candidates import Candidates
+from nrs_design.search.drawing import Solution
 from nrs_design.search.family import Family
-from nrs_design.search.forms import FormsProgram, Solution
+from nrs_design.search.forms import FormsProgram
 from nrs_design.search.memory import draw_memory, memories
 from nrs_design.search.period import NOTHING_GROWS, powers
 from nrs_design.search.step_graph import StepGraph

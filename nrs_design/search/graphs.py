@@ -24,8 +24,9 @@ from nrs_design.search.branches import best_words, round_forms
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidates
 from nrs_design.search.cycle import growing_cycles
 from nrs_design.search.decay import limit_rate
+from nrs_design.search.drawing import Drawing, FormCoordinates
 from nrs_design.search.family import Family, stand_ins, to_floats
-from nrs_design.search.forms import Drawing, FormCoordinates, FormsProgram
+from nrs_design.search.forms import FormsProgram
 from nrs_design.search.graph import Graph
 from nrs_design.search.lifted import monomial_weights
 from nrs_design.search.motions import free_motions, separating_coordinates

@@ -19,8 +19,9 @@ from nrs_design.proof.steps import Stays
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.balance import balance
 from nrs_design.search.candidates import OUT_OF_RANGE, Candidates
+from nrs_design.search.drawing import Drawing
 from nrs_design.search.family import Family
-from nrs_design.search.forms import Drawing, FormsProgram
+from nrs_design.search.forms import FormsProgram
 from nrs_design.search.graphs import (
     ANY_RATE,
     GROWS,

@@ -11,7 +11,7 @@ from nrs_design.proof.evidence.graph import MAX_DEGREE, MAX_MONOMIALS
 from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Stay
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.search.forms import SAMPLES
+from nrs_design.search.drawing import SAMPLES
 from nrs_design.search.sdp import program_cost
 from nrs_design.work import Cost
 

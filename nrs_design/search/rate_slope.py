@@ -17,8 +17,9 @@ from numpy.typing import NDArray
 
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
+from nrs_design.search.drawing import Inequality, Solution
 from nrs_design.search.family import Family, floats_in_silence
-from nrs_design.search.forms import DualSolution, FormsProgram, Inequality, Solution
+from nrs_design.search.forms import DualSolution, FormsProgram
 from nrs_design.search.graphs import draw_together
 from nrs_design.search.rung import Facts
 from nrs_design.work import Allowance

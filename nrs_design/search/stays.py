@@ -12,7 +12,7 @@ from nrs_design.proof.mode import Mode
 from nrs_design.proof.switching import Edge
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.balance import balance, round_coordinates
-from nrs_design.search.forms import FormCoordinates
+from nrs_design.search.drawing import FormCoordinates
 
 Array = NDArray[np.float64]
 

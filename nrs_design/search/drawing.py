@@ -1,0 +1,276 @@
+"""A graph of which forms are to be found, and the inequalities of its edges (untrusted).
+
+They are those of the evidence, in floating point.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import chain
+from math import exp, isfinite
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nrs_design.proof.evidence import FormsOnGraph
+from nrs_design.proof.evidence.graph import AnyStep, Node, lifted
+from nrs_design.proof.lift import monomials
+from nrs_design.proof.mode import Time
+from nrs_design.proof.stays import EnclosedStep
+from nrs_design.proof.steps import Step
+from nrs_design.proof.system import SwitchedSystem
+from nrs_design.search.family import NEARLY
+from nrs_design.search.float_step import FloatStep
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+# The name of a fact, and the node after the step if there are several that it is known of.
+Fact = tuple[str, int | None]
+
+# Times at which a stay of any length in a range is looked at: for each time of its mode, so many,
+# and one more; no fewer than for the first of these times, and no more than for the last.
+SAMPLES, SHORTEST, LONGEST = 16, 1.0, 16.0
+
+
+@dataclass(frozen=True)
+class FormCoordinates:
+    """Of a form: ``x = 2^d T z``."""
+
+    exponents: Indices  # The d
+    T: Array  # It keeps apart the states that are zero at some place of the form
+
+    @property
+    def whole(self) -> Array:
+        """Return ``2^d T``."""
+        return np.asarray(np.ldexp(self.T, self.exponents[:, None]))
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """A graph of which the forms are to be found."""
+
+    system: SwitchedSystem
+    graph: FormsOnGraph  # Of its forms only the places count, of its multipliers only the facts
+    forms: tuple[int, ...]  # For each node, which form it has: whole, or without the deflection
+    coordinates: tuple[FormCoordinates, ...]  # Of each form
+
+    def like(self, node: int) -> list[int]:
+        """Return the nodes with the form of one at its place."""
+        nodes = zip(self.forms, (node.place for node in self.graph.nodes), strict=True)
+        same = self.forms[node], self.graph.nodes[node].place
+        return [k for k, other in enumerate(nodes) if other == same]
+
+    @property
+    def is_finite(self) -> bool:
+        """Whether floating point holds coordinates and modes."""
+        return all(np.isfinite(one.whole).all() for one in self.coordinates) and all(
+            np.isfinite(mode.A.floats()).all() for mode in self.system.modes
+        )
+
+
+@dataclass(frozen=True)
+class Error:
+    """What a step adds to the state, ``|e| <= |q z|``; both in the coordinates of the forms."""
+
+    fact: Fact
+    column: Array
+    q: Array
+
+
+@dataclass(frozen=True)
+class Inequality:
+    """The inequality of an edge, in the coordinates of its forms."""
+
+    before: int  # Which form, and which of its entries, that of the state before it is
+    kept: Indices
+    after: int
+    left: Indices
+    M: Array  # From the state before it
+    # Facts with the forms that their multipliers have.
+    facts: tuple[tuple[Fact, Array], ...]
+    errors: tuple[Error, ...]  # Their multipliers are not solved for
+    is_flow: bool
+    lasts: float  # Steps, or time in s of an enclosed stay
+    is_strict: bool
+    share: float = 1.0  # What the form after a map counts besides
+
+    def weight(self, rate: float, degree: int, time: Time) -> float:
+        """Return what the form after a map counts, if that before it counts one.
+
+        The rate is alpha in 1/s, or rho per step; the degree is that of the monomials.
+        """
+        if time is Time.CONTINUOUS:
+            return exp(2 * rate * self.lasts)
+        return self.share * float(rate ** (-2 * degree * self.lasts))
+
+    @property
+    def size(self) -> int:
+        """Number of entries of z."""
+        return int(self.M.shape[1])
+
+    def changed(self, Q: Array) -> Array:
+        """Return ``M' Q M`` of a map, ``Q M + M' Q`` of a flow, for one form or several."""
+        if not self.is_flow:
+            return np.asarray(self.M.T @ Q @ self.M)
+        half = Q @ self.M
+        return np.asarray(half + np.swapaxes(half, -1, -2))
+
+
+@dataclass(frozen=True)
+class Solution:
+    """Forms, multipliers and forms that vanish for each edge, in floating point."""
+
+    forms: list[Array]
+    multipliers: Array
+    vanishing: list[Array]
+    margin: float  # That they were solved for, of the edges that counted
+
+
+def states_at(drawing: Drawing, node: Node) -> int:
+    """Return how many states there are at the place of a node."""
+    if drawing.graph.stays is not None:
+        return next(m.A.shape[0] for m in drawing.system.modes if m.name == node.place)
+    return drawing.system.order - node.place.startswith("free")
+
+
+def entries_of(drawing: Drawing, form: int, states: int) -> list[int]:
+    """Return the entries of a form that are left where all but the first states are zero."""
+    if drawing.graph.degree == 1:
+        return list(range(states))
+    n = drawing.system.order
+    if len(drawing.coordinates[form].T) == len(monomials(states, drawing.graph.degree)):
+        return list(range(len(drawing.coordinates[form].T)))
+    terms = enumerate(monomials(n, drawing.graph.degree))
+    return [k for k, term in terms if not any(term[states:])]
+
+
+def inequalities(
+    drawing: Drawing, scales: Mapping[Fact, float] | None = None
+) -> tuple[list[Inequality], dict[Fact, float]]:
+    """Return all edges, and of what size the multipliers of the facts are that are solved for.
+
+    Sizes that are given are kept.
+    """
+    system, graph = drawing.system, drawing.graph
+    wholes = [one.whole for one in drawing.coordinates]
+    inverses = [np.linalg.inv(whole) for whole in wholes]
+    listed = [*graph.edges_in_time(system), *_at_once(drawing)]
+    names, edges = _named(drawing, listed), list[Inequality]()
+    moves, known = list[tuple[int, Step, int]](), dict[int, FloatStep]()
+    for a, step, b in listed:
+        if isinstance(step, EnclosedStep):
+            before, after = drawing.forms[a], drawing.forms[b]
+            kept, left = (np.arange(len(wholes[k])) for k in (before, after))
+            for lasts, flow in _stays(step):
+                M = inverses[after] @ flow @ wholes[before]
+                edges.append(Inequality(before, kept, after, left, M, (), (), False, lasts, True))
+            continue
+        moves.append((a, step, b))
+        if id(step) not in known:
+            known[id(step)] = FloatStep.of(
+                step if graph.degree == 1 else lifted(step, graph.degree, Fraction(1))
+            )
+    sizes: dict[Fact, float] = {}
+    for a, step, b in moves:
+        last = entries_of(drawing, drawing.forms[a], step.states)[-1]
+        size = float(wholes[drawing.forms[a]][last, last] ** 2)
+        for name, _ in known[id(step)].crossings:
+            sizes[names[b][name]] = max(size, sizes.get(names[b][name], 0.0))
+    scales = scales or {
+        fact: 1 / size if size > 0 and isfinite(1 / size) else 1.0 for fact, size in sizes.items()
+    }
+    for a, step, b in moves:
+        before, after, floats = drawing.forms[a], drawing.forms[b], known[id(step)]
+        kept = np.array(entries_of(drawing, before, step.states), dtype=np.int64)
+        left = np.array(entries_of(drawing, after, len(step.rows)), dtype=np.int64)
+        S, n = wholes[before][np.ix_(kept, kept)], len(kept)
+        own = inverses[after][np.ix_(left, left)]
+        M = np.asarray(own @ np.hstack([floats.M[:, :n] @ S, floats.M[:, n:]]), dtype=float)
+        facts = list[tuple[Fact, Array]]()
+        for name, c in floats.crossings:
+            fact, form = names[b][name], np.zeros((n, n))
+            form[n - 1] = scales[fact] * S[-1, -1] * (c[:n] @ S)
+            facts.append((fact, form + form.T))
+        errors = tuple(Error(names[b][name], M[:, i], q[:n] @ S) for name, i, q in floats.errors)
+        lasts = step.time if system.time is Time.DISCRETE else 0.0
+        edges.append(
+            Inequality(
+                before,
+                kept,
+                after,
+                left,
+                M[:, :n],
+                tuple(facts),
+                errors,
+                step.is_flow,
+                lasts,
+                step.time > 0,
+            )
+        )
+    return edges, dict(scales)
+
+
+def _named(drawing: Drawing, listed: Sequence[tuple[int, AnyStep, int]]) -> list[dict[str, Fact]]:
+    """Return for each node what the facts of steps to it are called."""
+    first = [drawing.like(k)[0] for k in range(len(drawing.graph.nodes))]
+    targets: dict[str, set[int]] = {}
+    for _, step, b in listed:
+        for name in step.facts:
+            targets.setdefault(name, set()).add(first[b])
+    return [
+        {name: (name, None if len(known) == 1 else b) for name, known in targets.items()}
+        for b in first
+    ]
+
+
+def _at_once(drawing: Drawing) -> Iterator[tuple[int, Step, int]]:
+    """Yield the switches that take no time, which are not among the edges in time."""
+    graph, system = drawing.graph, drawing.system
+    if graph.stays is None:
+        return  # At the surface a form agrees with itself without the deflection.
+    from nrs_design.proof.stays import steps_of_stays
+
+    number = {node.place: k for k, node in enumerate(graph.nodes)}
+    for step in steps_of_stays(system, graph.stays, lambda _: 1):
+        if isinstance(step, Step) and not step.time:
+            yield number[step.source], step, number[step.target]
+
+
+def _stays(step: EnclosedStep) -> Iterator[tuple[float, Array]]:
+    """Yield what a stay makes of the state, for some of its lengths."""
+    from scipy.linalg import expm
+
+    A = np.array(step.edge.source.A.floats())
+    G = np.eye(len(A)) if step.edge.map is None else np.array(step.edge.map.floats())
+    first, last = float(step.begin), float(step.end)
+    times = min(max(float(np.linalg.norm(A)) * (last - first), SHORTEST), LONGEST)
+    for lasts in np.linspace(first, last, round(SAMPLES * times) + 1 if last > first else 1):
+        yield float(lasts), G @ np.asarray(expm(A * lasts))
+
+
+def distinct(edges: list[Inequality]) -> tuple[list[Inequality], list[int]]:
+    """Leave out edges that differ by the last digits of a number; say which stand for them."""
+    kept: list[Inequality] = []
+    groups: dict[object, list[tuple[int, Array]]] = {}
+    found = []
+    for edge in edges:
+        facts = tuple(fact for fact, _ in edge.facts)
+        sizes = len(edge.kept), len(edge.left)
+        key = edge.before, edge.after, sizes, facts, edge.is_flow, edge.lasts, edge.is_strict
+        numbers = np.concatenate([edge.M.ravel(), *(form.ravel() for _, form in edge.facts)])
+        near = NEARLY * np.abs(numbers).max(initial=0.0)
+        # Edges that are near have nearly the same sum, so they are looked for in three places only.
+        width = np.ldexp(1.0, int(np.frexp(near)[1])) * max(len(numbers), 1)
+        share = float(numbers @ np.cos(np.arange(len(numbers))) / width)
+        place = int(share // 1) if isfinite(share) else 0
+        beside = (groups.get((key, width, place + i), ()) for i in (-1, 0, 1))
+        others = chain.from_iterable(beside)
+        same = (k for k, other in others if np.abs(other - numbers).max() <= near)
+        k = min(same, default=len(kept))
+        if k == len(kept):
+            kept.append(edge)
+            groups.setdefault((key, width, place), []).append((k, numbers))
+        found.append(k)
+    return kept, found

@@ -18,14 +18,7 @@ from nrs_design.search.candidates import Candidate, Candidates
 from nrs_design.search.family import Family
 from nrs_design.search.lmi import time_unit
 from nrs_design.search.rounding import digits
-from nrs_design.search.sdp import (
-    begin,
-    maximize_margin,
-    pack,
-    program_cost,
-    symmetric_basis,
-    unpack,
-)
+from nrs_design.search.sdp import Blocks, begin, program_cost, symmetric_basis, unpack
 from nrs_design.work import Allowance
 
 Array = NDArray[np.float64]
@@ -49,30 +42,26 @@ def solve_dual(matrices: Array, time: Time, allowance: Allowance | None = None) 
 
     Returns the X_i, shape (m, n, n), if s > 0; else None. Modes are preferably balanced, and few.
     """
-    allowance = allowance or Allowance()
     m, n = matrices.shape[:2]
-    own = n * (n + 1) // 2
+    basis, identity = symmetric_basis(n), np.eye(n)
+    own = len(basis)
     cost = program_cost(m * own + 1, own, [(n, 2 * own)] * (m + 1))
-    begun = begin(allowance, cost, f"a program of {m * own + 1} unknowns and {m + 1} blocks")
-    matrices = np.ldexp(matrices, time_unit(matrices, time))
-    basis, identity = symmetric_basis(n), pack(np.eye(n))
-    size = len(basis)
-    if time is Time.CONTINUOUS:
-        half = matrices[:, None] @ basis[None]
-        images = half + half.transpose(0, 1, 3, 2)
-    else:
-        images = matrices[:, None] @ basis[None] @ matrices.transpose(0, 2, 1)[:, None] - basis
-    variables = m * size
-    trace = np.append(np.tile(identity, m), 0.0)[None]
-    positive = np.hstack([-np.eye(variables), np.zeros((variables, 1))])
-    total = np.column_stack([-pack(images).reshape(variables, size).T, identity])
-    rows = np.vstack([trace, positive, total])
-    offset = np.zeros(len(rows))
-    offset[0] = 1.0
-    found = maximize_margin(rows, offset, [n] * (m + 1), begun, 1)
+    what = f"a program of {m * own + 1} unknowns and {m + 1} blocks"
+    begun = begin(allowance or Allowance(), cost, what)
+    half = np.ldexp(matrices, time_unit(matrices, time))[:, None] @ basis
+    images = half + np.swapaxes(half, -1, -2)
+    if time is Time.DISCRETE:
+        images = half @ np.swapaxes(matrices, -1, -2)[:, None] - basis
+    blocks = Blocks()
+    for k in range(m):
+        blocks.add(0.0, dict(enumerate(basis, k * own)))
+    blocks.add(0.0, {**dict(enumerate(np.concatenate(images))), m * own: -identity})
+    traces = -np.trace(basis, axis1=1, axis2=2)[:, None, None]
+    blocks.add(1.0, dict(enumerate(np.tile(traces, (m, 1, 1)))))
+    found = blocks.maximize(m * own + 1, begun)
     if found is None or found.x[-1] <= 0:
         return None
-    return unpack(found.x[:-1].reshape(m, size), n)
+    return unpack(found.x[:-1].reshape(m, own), n)
 
 
 def _roundings(

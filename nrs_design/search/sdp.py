@@ -128,12 +128,6 @@ class Sparse:
         ends = np.searchsorted(places, np.arange(shape[1] + 1) * shape[0])
         return cls(data, (places % shape[0]).astype(np.int32), ends.astype(np.int32), shape)
 
-    @classmethod
-    def of_dense(cls, matrix: Array) -> Sparse:
-        """Leave out zeros."""
-        rows, columns = np.nonzero(matrix)
-        return cls.of(matrix[rows, columns], rows, columns, matrix.shape)
-
 
 @dataclass(frozen=True, slots=True)
 class Maximum:
@@ -208,32 +202,27 @@ def solve_blocks(blocks: Sequence[tuple[Array, Array]], allowance: Allowance) ->
 
 
 def maximize_margin(
-    rows: Array | Sparse,
-    offset: Array,
-    sizes: Sequence[int],
-    begun: Begun,
-    equalities: int = 0,
+    rows: Sparse, offset: Array, sizes: Sequence[int], begun: Begun
 ) -> Maximum | None:
     """Maximize the last variable subject to ``offset - rows x`` in a product of cones.
 
-    The first `equalities` rows are equations, the others packed positive semidefinite cones of
-    these sizes. Returns what the solver returned, whatever its status; None if that is not finite.
+    The cones are packed positive semidefinite matrices of these sizes. Returns what the solver
+    returned, whatever its status; None if that is not finite.
     """
     import clarabel
 
     variables = rows.shape[1]
     objective = np.zeros(variables)
     objective[-1] = -1.0
-    cones: list[Any] = [clarabel.ZeroConeT(equalities)] if equalities else []
-    cones += [clarabel.PSDTriangleConeT(n) for n in sizes]
+    cones = [clarabel.PSDTriangleConeT(n) for n in sizes]
     settings = clarabel.DefaultSettings()
     settings.verbose = False
     settings.max_threads = 1
     settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = 1e-12
     settings.max_iter = begun.most_steps
     settings.time_limit = begun.allowance.fuse.left
-    quadratic = Sparse.of_dense(np.zeros((variables, variables)))
-    rows = rows if isinstance(rows, Sparse) else Sparse.of_dense(rows)
+    none = np.zeros(0)
+    quadratic = Sparse.of(none, none, none, (variables, variables))
 
     def solve() -> Any:
         return clarabel.DefaultSolver(quadratic, objective, rows, offset, cones, settings).solve()

@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 from nrs_design.search.sdp import (
     MOST_STEPS,
     STEPS,
+    Blocks,
     begin,
-    maximize_margin,
     pack,
     program_cost,
     symmetric_basis,
@@ -36,8 +36,9 @@ def test_the_largest_margin_of_a_matrix_is_its_smallest_eigenvalue():
 
 
 def largest_margin(allowance):
-    begun = begin(allowance, COST, "a program")
-    return maximize_margin(pack(np.eye(3))[:, None], pack(M), [3], begun).x
+    program = Blocks()
+    program.add(M, {0: -np.eye(3)})
+    return program.maximize(1, begin(allowance, COST, "a program")).x
 
 
 def test_the_steps_that_were_made_are_charged_not_those_that_were_predicted():
@@ -62,10 +63,3 @@ def test_a_solver_that_is_stopped_by_its_steps_returns_what_it_has(monkeypatch):
     x = largest_margin(Allowance(COST.work))
     assert np.isfinite(x).all()
     assert x[-1] != pytest.approx(np.linalg.eigvalsh(M).min(), abs=1e-6)
-
-
-def test_equations_come_first():
-    # x1 = 2 and t <= x1.
-    rows, offset = np.array([[1.0, 0.0], [-1.0, 1.0]]), np.array([2.0, 0.0])
-    found = maximize_margin(rows, offset, [1], begin(Allowance(), COST, "a program"), 1)
-    assert found.x == pytest.approx([2.0, 2.0], abs=1e-6)

@@ -197,7 +197,7 @@ def test_clocks_are_read_by_the_fuse_and_for_the_eye_only():
     assert {item.source for item in imports() if item.target == "time"} == {
         "nrs_design.work",
         # How long something took, told beside what was found.
-        "nrs_design.search.certify",
+        "nrs_design.search.acceptance",
         "nrs_design.pipeline.certification",
         "nrs_design.pipeline.runs",
         "nrs_design.cli.printing",
@@ -342,11 +342,14 @@ def test_a_search_proposes_and_never_checks():
     """Evidence is checked in one place, where candidates are taken."""
     searches = {name for name in FILES if floor(name) == "search"}
     checking = {name for name in searches if uses(name, "find_fault")}
-    assert checking == {"nrs_design.search.certify", "nrs_design.search.fast_check"}
-    check = "nrs_design.search.fast_check"
-    assert {item.source for item in ours() if item.target == check} == {"nrs_design.search.certify"}
-    asking = {item.source for item in ours() if item.target == "nrs_design.search.certify"}
-    assert asking.isdisjoint(searches)
+    place, check = "nrs_design.search.acceptance", "nrs_design.search.fast_check"
+    assert checking == {place, check}
+    assert {item.source for item in ours() if item.target == check} == {place}
+    asking = {item.source for item in ours() if item.target == place}
+    assert asking & searches == {"nrs_design.search.certify", "nrs_design.search.statements"}
+    assert searches.isdisjoint(
+        item.source for item in ours() if item.target == "nrs_design.search.certify"
+    )
     parts = ("find_unfit", "find_misfit", "find_indefinite")
     assert {name for name in searches for part in parts if uses(name, part)} == {check}
 

@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from contextlib import suppress
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
-from time import perf_counter
-
-from numpy.linalg import LinAlgError
 
 from nrs_design.certificates.certificate import (
     Verdict,
@@ -21,36 +17,25 @@ from nrs_design.certificates.goals import rate_per_second
 from nrs_design.certificates.second_opinion import agrees
 from nrs_design.errors import DISAGREE, DesignError, InternalError
 from nrs_design.progress import Progress, silent
-from nrs_design.proof.channels import Channel, Output
 from nrs_design.proof.evidence import AbstractEvidence, FormsOnGraph, Shows
-from nrs_design.proof.exact import TooLargeError
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.search.candidates import Candidates, E
+from nrs_design.search.acceptance import attempted, check_again, take_candidate
 from nrs_design.search.certification import Attempt, Certification, Limits
 from nrs_design.search.family import Family, floats_in_silence
-from nrs_design.search.fast_check import find_fault
 from nrs_design.search.gradient_settings import Gradient
 from nrs_design.search.ladder import applicable_methods, steps
 from nrs_design.search.method import Method
 from nrs_design.search.rate_limit import rate_limit
+from nrs_design.search.statements import bounds, regions
 from nrs_design.search.structure import merge_equal_modes, stand_in, triangular_blocks
-from nrs_design.work import Allowance, Fuse, NotAffordableError
+from nrs_design.work import Allowance, Fuse
 
 # Share of what is left, for a faster decay than the first proof shows.
 CLIMBING_ON = 0.5
-# Share of the work on a bound for ellipsoids off the origin.
-OFF_THE_ORIGIN = 0.7
-# The end of a search that had a solution, but no rate to claim for it.
-NO_RATE = "what was found shows no rate of decay"
-SATURATION = "decay under saturation"
 SUSPICIOUS, ENCLOSURE = "suspicious modes", "enclosure of the ranges"
 WIDE = (
     "is not stable, and no loop of the spec need be there: nothing that covers the enclosure can "
     "be proved; narrow the ranges"
-)
-NOT_IN_TURNS = (
-    "not looked for: where the loop has two periods or misses deadlines, decay is proved, and no "
-    "bound"
 )
 
 
@@ -106,12 +91,12 @@ def certify(
         result = _combine(merged, blocks, parts)
     statements = _spread(result.statements, merged, system)
     if result.verdict is Verdict.PROVED and limits.more:
-        bounds, attempts = _bounds(system, task)
-        held, last = _saturated(system, task)
-        statements += bounds + held
-        result = replace(result, attempts=(*result.attempts, *attempts, *last))
+        for state in (bounds, regions):
+            found, attempts = state(system, allowance, progress)
+            statements += found
+            result = replace(result, attempts=(*result.attempts, *attempts))
     if merged is not system or len(blocks) > 1:
-        _check_again(statements, system)
+        check_again(statements, system)
     for statement in statements:
         if not agrees(system, statement):
             raise InternalError(DISAGREE)
@@ -131,7 +116,7 @@ def refuted_at_once(system: SwitchedSystem, limits: Limits | None = None) -> str
     with floats_in_silence():
         family = Family.of(system, _allowance(limits or Limits()))
     search = examine_suspicious_modes if system.clock is None else search_rounds
-    evidence, _ = _take(partial(search, family), system, family.allowance)
+    evidence, _ = take_candidate(partial(search, family), system, family.allowance)
     if evidence is None:
         return None
     if not agrees(system, evidence):
@@ -154,7 +139,7 @@ def prove_together(
     search = search_together
     if (clock := system.clock) is not None:
         search = search_stays if clock.counts_stays else search_periodic_quadratic
-    found, outcome = _take(partial(search, family), system, allowance)
+    found, outcome = take_candidate(partial(search, family), system, allowance)
     shown = None if found is None else rate_per_second(found.rate, system)
     if wanted is not None and shown is not None and shown < wanted:
         return None, f"{outcome}, with less decay than the goal"
@@ -168,7 +153,7 @@ def certify_cases(
     from nrs_design.search.cases import joined
 
     evidence = joined(system, parts)
-    _check_again((evidence,), system)
+    check_again((evidence,), system)
     if not agrees(system, evidence):
         raise InternalError(DISAGREE)
     return replace(_conclude(system, "cases", (evidence,), attempts), rate_limit=rate_limit(system))
@@ -176,83 +161,6 @@ def certify_cases(
 
 def _allowance(limits: Limits) -> Allowance:
     return Allowance(limits.budget, limits.memory, Fuse.of(limits.budget))
-
-
-def _bounds(
-    system: SwitchedSystem, task: _Task
-) -> tuple[tuple[AbstractEvidence, ...], tuple[Attempt, ...]]:
-    """Bound every output under all disturbances at once, and the first one under each alone."""
-    alone = [(channel,) for channel in system.channels]
-    pairs = [(system.channels, output) for output in system.outputs if alone]
-    if len(alone) > 1:
-        pairs += [(channels, output) for channels in alone for output in system.outputs[:1]]
-    if not pairs:
-        return (), ()
-    if system.clock is not None:
-        return (), tuple(Attempt(_bound_name(*pair), NOT_IN_TURNS, 0.0) for pair in pairs)
-    found: list[AbstractEvidence] = []
-    attempts: list[Attempt] = []
-    for count, (channels, output) in enumerate(pairs):
-        name = _bound_name(channels, output)
-        task.progress(name)
-        own = task.allowance.part(1 / (len(pairs) - count))
-        search = partial(_ellipsoids, system, channels, output, own)
-        evidence, attempt = _attempted(name, search, system, own)
-        found += evidence
-        attempts += attempt
-    return tuple(found), tuple(attempts)
-
-
-def _ellipsoids(
-    system: SwitchedSystem, channels: Sequence[Channel], output: Output, allowance: Allowance
-) -> Candidates[AbstractEvidence]:
-    """Yield ellipsoids off the origin, where contact may be lost, before those around it."""
-    if not any(any(map(any, B.numerators)) for channel in channels for B in channel.columns):
-        return "it moves nothing in any mode"
-    from nrs_design.search.invariant_ellipsoid import search_ellipsoid, search_offset_ellipsoid
-
-    if system.contact is not None:
-        own = allowance.part(OFF_THE_ORIGIN)
-        with suppress(NotAffordableError):
-            yield from search_offset_ellipsoid(system, channels, output, own)
-    return (yield from search_ellipsoid(system, channels, output, allowance))
-
-
-def _bound_name(channels: Sequence[Channel], output: Output) -> str:
-    return f"bound on {output.name} under {' and '.join(channel.name for channel in channels)}"
-
-
-def _saturated(
-    system: SwitchedSystem, task: _Task
-) -> tuple[tuple[AbstractEvidence, ...], tuple[Attempt, ...]]:
-    """Show from where motions decay although signals saturate, where the system has some."""
-    if system.saturation is None:
-        return (), ()
-    from nrs_design.search.saturated_ellipsoid import search_saturated
-
-    task.progress(SATURATION)
-    search = partial(search_saturated, system, task.allowance)
-    return _attempted(SATURATION, search, system, task.allowance)
-
-
-def _attempted(
-    name: str,
-    search: Callable[[], Candidates[AbstractEvidence]],
-    system: SwitchedSystem,
-    allowance: Allowance,
-) -> tuple[tuple[AbstractEvidence, ...], tuple[Attempt, ...]]:
-    """Take the first candidate that holds, and say how it went."""
-    start, before = perf_counter(), allowance.charged
-    evidence, outcome = _take(search, system, allowance)
-    attempt = Attempt(name, outcome, perf_counter() - start, allowance.charged - before)
-    return () if evidence is None else (evidence,), (attempt,)
-
-
-def _check_again(statements: tuple[AbstractEvidence, ...], system: SwitchedSystem) -> None:
-    """Check what was put together from evidence for fewer modes or states."""
-    for statement in statements:
-        if fault := find_fault(statement, system):
-            raise InternalError(f"the search returned evidence that does not hold: {fault}")
 
 
 def _certify_block(system: SwitchedSystem, block: tuple[int, ...], task: _Task) -> Certification:
@@ -306,7 +214,7 @@ def _climb(system: SwitchedSystem, task: _Task) -> Certification:
             attempts.append(Attempt(name, spent, 0.0))
             break
         task.progress(name)
-        found, attempt = _attempted(name, partial(search, family), system, family.allowance)
+        found, attempt = attempted(name, partial(search, family), system, family.allowance)
         attempts += attempt
         if not found:
             # Nothing that covers the enclosure holds, and no loop of the spec need be there.
@@ -363,44 +271,6 @@ def _unstable_corner(rung: str, family: Family) -> str | None:
 
     with floats_in_silence():
         return find_unstable_corner(family)
-
-
-def _take(
-    search: Callable[[], Candidates[E]], system: SwitchedSystem, allowance: Allowance
-) -> tuple[E | None, str]:
-    """Make one search; where it is not affordable, or floating point fails, nothing is found."""
-    try:
-        with floats_in_silence():
-            return first_accepted(search(), system, allowance)
-    except TooLargeError as error:
-        return None, f"not tried: {error}"
-    except NotAffordableError as reason:
-        return None, str(reason)
-    except (LinAlgError, OverflowError) as error:
-        return None, f"floating point failed ({error})"
-
-
-def first_accepted(
-    candidates: Candidates[E],
-    system: SwitchedSystem,
-    allowance: Allowance | None = None,
-) -> tuple[E | None, str]:
-    """Return the first candidate that the exact check accepts, and in words how the search ended.
-
-    Nothing becomes evidence but here, or from evidence that was accepted here. No more candidates
-    than needed are asked for. Checks are charged to the allowance; none is left out for it.
-    """
-    charge = (allowance or Allowance()).charge
-    fault: str | None = None
-    while True:
-        try:
-            candidate = next(candidates)
-        except StopIteration as end:
-            refused = f"a candidate was found, but {fault}" if fault else NO_RATE
-            return None, end.value or refused
-        fault = find_fault(candidate.evidence, system, charge)
-        if fault is None:
-            return candidate.evidence, candidate.words
 
 
 def _conclude(

@@ -11,7 +11,7 @@ from nrs_design.controllers.replica import StepProgram
 from nrs_design.controllers.shipped import shipped_law
 from nrs_design.pipeline.certification import assemble_spec
 from nrs_design.pipeline.runs import run_design
-from nrs_design.search.certify import first_accepted
+from nrs_design.search.acceptance import first_accepted
 from nrs_design.search.saturated_ellipsoid import search_saturated
 from nrs_design.simulation.norms import clipped, quadratic_norm
 from nrs_design.simulation.saturation import saturated_rates

@@ -19,7 +19,8 @@ from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.saturation import CutOff, Saturation, Start
 from nrs_design.proof.switching import ARBITRARY, NOWHERE, Clock, Reset, Stay, Switching
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.search.certify import Limits, certify, first_accepted
+from nrs_design.search.acceptance import first_accepted
+from nrs_design.search.certify import Limits, certify
 from nrs_design.search.family import floats_in_silence
 from nrs_design.search.invariant_ellipsoid import search_ellipsoid
 from nrs_design.search.method import Method

@@ -17,12 +17,12 @@ from nrs_design.errors import ClockError, DesignError, InternalError
 from nrs_design.proof.evidence import BlockTriangular, FormsOnGraph, Shows
 from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Switching
-from nrs_design.search import certify as certify_module
+from nrs_design.search import acceptance, gradient, ladder, lmi, unstable_mode
 from nrs_design.search import common_quadratic as searches
-from nrs_design.search import gradient, ladder, lmi, unstable_mode
+from nrs_design.search.acceptance import first_accepted
 from nrs_design.search.candidates import Candidate
 from nrs_design.search.certification import Limits
-from nrs_design.search.certify import certify, first_accepted
+from nrs_design.search.certify import certify
 from nrs_design.search.gradient import GradientResult
 from nrs_design.search.method import Method
 from nrs_design.search.sdp import Maximum
@@ -569,7 +569,7 @@ def test_slightly_wrong_answers_do_not_pass(monkeypatch):
 
 def test_a_wrong_check_is_stopped(monkeypatch):
     """If the trusted check accepted anything, flint would still stop a wrong proof."""
-    monkeypatch.setattr(certify_module, "find_fault", lambda evidence, system, charge: None)
+    monkeypatch.setattr(acceptance, "find_fault", lambda evidence, system, charge: None)
     monkeypatch.setattr(searches, "find_common_quadratic", lambda *arguments, **options: np.eye(2))
     monkeypatch.setattr(searches, "rate_of", lambda *arguments: 0.5)
     with pytest.raises(InternalError):

@@ -5,7 +5,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from nrs_design.search.certify import first_accepted
+from nrs_design.search.acceptance import first_accepted
 from nrs_design.search.extremal_words import least_growth, search_extremal_words, words_in_norms
 from nrs_design.search.family import Family
 from nrs_design.search.forms import FormsProgram

@@ -11,7 +11,8 @@ from nrs_design.proof.channels import Channel, Output, Rounding
 from nrs_design.proof.evidence import InvariantEllipsoid
 from nrs_design.proof.mode import Mode
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.search.certify import Limits, certify, first_accepted
+from nrs_design.search.acceptance import first_accepted
+from nrs_design.search.certify import Limits, certify
 from nrs_design.search.family import floats_in_silence
 from nrs_design.search.invariant_ellipsoid import search_ellipsoid, search_offset_ellipsoid
 from nrs_design.simulation.worst_case import worst_runs

@@ -8,7 +8,8 @@ import pytest
 
 from nrs_design.proof.evidence.graph import MAX_SETS, Arc
 from nrs_design.proof.switching import Stay, Switching
-from nrs_design.search.certify import Limits, certify, first_accepted
+from nrs_design.search.acceptance import first_accepted
+from nrs_design.search.certify import Limits, certify
 from nrs_design.search.family import Family
 from nrs_design.search.memory import (
     MOST_WORDS,

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from nrs_design.search import mixture
+from nrs_design.search.acceptance import first_accepted
 from nrs_design.search.candidates import Candidate
-from nrs_design.search.certify import first_accepted
 from nrs_design.search.family import Family
 from nrs_design.search.mixture import search_mixture
 from nrs_design.work import Allowance

@@ -8,7 +8,7 @@ import pytest
 
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.switching import Reset, Switching
-from nrs_design.search.certify import first_accepted
+from nrs_design.search.acceptance import first_accepted
 from nrs_design.search.family import Family, floats_in_silence
 from nrs_design.search.period import search_period
 from tests.proof.systems import (

@@ -12,7 +12,8 @@ from nrs_design.proof.evidence.abstract import AT_ANY_DEFLECTION
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search import unstable_contact
-from nrs_design.search.certify import Limits, certify, first_accepted, refuted_at_once
+from nrs_design.search.acceptance import first_accepted
+from nrs_design.search.certify import Limits, certify, refuted_at_once
 from nrs_design.search.family import Family
 from nrs_design.search.method import Method
 from nrs_design.search.unstable_contact import NOTHING_GROWS, search_contact

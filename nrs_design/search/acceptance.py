@@ -1,0 +1,79 @@
+"""Where evidence is accepted: candidates are taken here, by the exact check alone."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from time import perf_counter
+
+from numpy.linalg import LinAlgError
+
+from nrs_design.errors import InternalError
+from nrs_design.proof.evidence import AbstractEvidence
+from nrs_design.proof.exact import TooLargeError
+from nrs_design.proof.system import SwitchedSystem
+from nrs_design.search.candidates import Candidates, E
+from nrs_design.search.certification import Attempt
+from nrs_design.search.family import floats_in_silence
+from nrs_design.search.fast_check import find_fault
+from nrs_design.work import Allowance, NotAffordableError
+
+# The end of a search that had a solution, but no rate to claim for it.
+NO_RATE = "what was found shows no rate of decay"
+
+
+def take_candidate(
+    search: Callable[[], Candidates[E]], system: SwitchedSystem, allowance: Allowance
+) -> tuple[E | None, str]:
+    """Make one search; where it is not affordable, or floating point fails, nothing is found."""
+    try:
+        with floats_in_silence():
+            return first_accepted(search(), system, allowance)
+    except TooLargeError as error:
+        return None, f"not tried: {error}"
+    except NotAffordableError as reason:
+        return None, str(reason)
+    except (LinAlgError, OverflowError) as error:
+        return None, f"floating point failed ({error})"
+
+
+def first_accepted(
+    candidates: Candidates[E],
+    system: SwitchedSystem,
+    allowance: Allowance | None = None,
+) -> tuple[E | None, str]:
+    """Return the first candidate that the exact check accepts, and in words how the search ended.
+
+    Nothing becomes evidence but here, or from evidence that was accepted here. No more candidates
+    than needed are asked for. Checks are charged to the allowance; none is left out for it.
+    """
+    charge = (allowance or Allowance()).charge
+    fault: str | None = None
+    while True:
+        try:
+            candidate = next(candidates)
+        except StopIteration as end:
+            refused = f"a candidate was found, but {fault}" if fault else NO_RATE
+            return None, end.value or refused
+        fault = find_fault(candidate.evidence, system, charge)
+        if fault is None:
+            return candidate.evidence, candidate.words
+
+
+def attempted(
+    name: str,
+    search: Callable[[], Candidates[AbstractEvidence]],
+    system: SwitchedSystem,
+    allowance: Allowance,
+) -> tuple[tuple[AbstractEvidence, ...], tuple[Attempt, ...]]:
+    """Take the first candidate that holds, and say how it went."""
+    start, before = perf_counter(), allowance.charged
+    evidence, outcome = take_candidate(search, system, allowance)
+    attempt = Attempt(name, outcome, perf_counter() - start, allowance.charged - before)
+    return () if evidence is None else (evidence,), (attempt,)
+
+
+def check_again(statements: tuple[AbstractEvidence, ...], system: SwitchedSystem) -> None:
+    """Check what was put together from evidence for fewer modes or states."""
+    for statement in statements:
+        if fault := find_fault(statement, system):
+            raise InternalError(f"the search returned evidence that does not hold: {fault}")

@@ -17,7 +17,7 @@ S = TypeVar("S")
 E = TypeVar("E", bound=AbstractEvidence, covariant=True)
 
 # A position is bracketed to this share of itself, or given up as nil below the smallest one.
-RESOLUTION, SMALLEST = 2.0**-12, 2.0**-40
+RESOLUTION, SMALLEST = 2.0**-14, 2.0**-40
 # Few roundings with errors: more digits at once, as every check takes longer.
 WITH_ERRORS = (24, 32, 40, 50, 60)
 # The largest rate to this share, where every solution takes long.

@@ -83,7 +83,7 @@ def test_rates_of_different_things_are_not_set_side_by_side():
     (contraction,) = rates["contraction per step of 0.002 s"][1:]
     assert 0 < float(contraction) < 1
     assert rates["contraction per step of 0.002 s"][0] is None
-    assert rates["decay rate"] == ("3.91583 1/s", None)
+    assert rates["decay rate"] == ("3.91595 1/s", None)
     assert found.remarks[-1].startswith(
         "The rates are not compared: a decay rate and a contraction"
     )

@@ -21,7 +21,7 @@ RESOLUTION, SMALLEST = 2.0**-14, 2.0**-40
 # Few roundings with errors: more digits at once, as every check takes longer.
 WITH_ERRORS = (24, 32, 40, 50, 60)
 # The largest rate to this share, where every solution takes long.
-OF_DEAR, NEAR_OF_DEAR = 2.0**-7, 0.998
+OF_DEAR, NEAR_OF_DEAR = 2.0**-9, 0.998
 
 
 class RateProgram(Protocol[S, E]):
@@ -59,8 +59,8 @@ class Rates:
 
 # Solutions take time: the largest rate is bracketed roughly, and a little less is claimed.
 POLYNOMIAL = Rates(
-    resolution=2.0**-8,
-    smallest=2.0**-10,
+    resolution=2.0**-11,
+    smallest=2.0**-14,
     nearest=0.998,
     bits=digits(10),
     words="found with a decay rate near the largest",

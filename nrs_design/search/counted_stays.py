@@ -23,9 +23,11 @@ from nrs_design.proof.switching import NOWHERE, Clock
 from nrs_design.search.balance import own_norm, round_coordinates, scale_states, separating
 from nrs_design.search.candidates import NO_MARGIN, Candidate, Candidates
 from nrs_design.search.decay import limit_rate
+from nrs_design.search.drawing import Drawing, FormCoordinates, Inequality, Solution
 from nrs_design.search.family import Family, to_floats
-from nrs_design.search.forms import Drawing, FormCoordinates, FormsProgram, Inequality, Solution
-from nrs_design.search.graphs import Rates, graph_of, propose, search_together
+from nrs_design.search.forms import FormsProgram
+from nrs_design.search.graphs import graph_of, search_together
+from nrs_design.search.rates import Rates, propose
 from nrs_design.search.rounding import digits, rate_at
 
 # Of the slowest decay that a controller has, what its form keeps while it is in force.
@@ -129,6 +131,10 @@ class CountedProgram(FormsProgram):
     def __init__(self, drawing: Drawing, counted: Counted) -> None:
         self.counted = counted
         super().__init__(drawing, counted.timed)
+
+    def own_rate(self, solution: Solution) -> float:
+        """Return the rate that a solution shows at switches, no faster than that of any form."""
+        return max(super().own_rate(solution), *self.counted.rates)
 
     def roundings(
         self,

@@ -134,15 +134,12 @@ const check = (() => {
       return steps.push(left(flight), ...(flow ? [] : [flight, { ...left(flight), target: "modes" }]));
     });
     if (!clock) return inCases(S, steps);
-    const { length, first, more = [], ahead = range(length).map((k) => (k ? [-1n, BigInt(k + 1) % length] : [1n, -1n])) } = clock, groups = [S.names.slice(0, S.count), S.names.slice(S.count)];
-    const named = [first, ...more], kind = (name) => named.concat([[name]]).findIndex((own) => own.includes(name)), kinds = named.length + 1;
-    need(!flow && length > 1n && S.o.switching === "arbitrary" && ahead.length === Number(length), "modes take turns without steps");
-    const count = (names) => new Set(names.map(kind)).size;
+    const { length, first, more = [], ahead = range(length).map((k) => (k ? [-1n, BigInt(k + 1) % length] : [1n, -1n])) } = clock, named = [first, ...more], groups = [S.names.slice(0, S.count), S.names.slice(S.count)], kind = (name) => named.concat([[name]]).findIndex((own) => own.includes(name)), kinds = named.length + 1, count = (names) => new Set(names.map(kind)).size;
     distinct(named.flat(), S.names);
+    need(!flow && length > 1n && S.o.switching === "arbitrary" && ahead.length === Number(length), "modes take turns without steps");
     need(groups.every((names) => !names.length || count(names) === kinds) && (S.o.enclosures ?? []).every((names) => count(names) === 1), "a turn has no mode");
     need(ahead.every((leads) => leads.length === kinds && leads.some((to) => to >= 0n) && leads.every((to) => to >= -1n && to < length)), "an automaton is odd");
-    return inCases(S, ahead.flatMap((leads, k) => leads.flatMap((to, own) => (to < 0n ? [] : steps.filter((s) => kind(s.mode) === own)
-      .map((s) => ({ ...s, source: `${s.source} ${k}`, target: `${s.target} ${to}` }))))));
+    return inCases(S, ahead.flatMap((leads, k) => steps.map((s) => ({ ...s, source: `${s.source} ${k}`, target: `${s.target} ${leads[kind(s.mode)]}` })).filter(({ mode }) => leads[kind(mode)] >= 0n)));
   }
   // Of cases one is there for ever: each has places of its own.
   function inCases({ o: { cases, switching }, names }, steps) {

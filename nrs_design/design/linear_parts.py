@@ -103,8 +103,9 @@ def _controller_part(controller: Controller, *, measured: bool) -> LinearPart:
     command, rates = law.respond(force, forms[:own])
     if spring:
         rates = [*rates, [-entry for entry in command]]
+    name = "force_and_spring" if law.spring and measured else "force"
     return _of_rows(
-        controller.name, rates, command, ("force", FORCE), (law.commands, UNITS[law.commands])
+        controller.name, rates, command, (name, FORCE), (law.commands, UNITS[law.commands])
     )
 
 

@@ -1,5 +1,7 @@
 """The loop of one controller in one contact, cut where its law takes the force.
 
+Where a spring draws the measured position, it is cut there, too: both enter the law at one place.
+
 With the share g of the force that reaches the law, the characteristic polynomial of an assembled
 mode is ``D + g N``: the force enters the law at one place, so its determinant is affine in g. D
 is that of the mode with ``g = 0``, ``D + N`` that of the mode which is proved, and ``L = N/D`` the
@@ -227,8 +229,9 @@ class ProcessorAxis(AbstractAxis):
 
     def _cut(self, law: DiscreteLaw, contact: AbstractLinearLaw, place: Place) -> CutLoop:
         # One place is asked for, and the hash of all takes as long as the loop.
-        alone = replace(self, places=())
-        loops = [_of_step(alone, law, place, *touch) for touch in _touches(contact)]
+        alone, laws = replace(self, places=()), (self._opened(law), law, law)
+        pairs = zip(laws, _touches(contact), strict=True)
+        loops = [_of_step(alone, own, place, *touch) for own, touch in pairs]
         while all(p[-1] == 0 for p in loops):  # A force sample that leaves its last place.
             loops = [p[:-1] for p in loops]
         return CutLoop(*(on_the_axis(p, self.period) for p in loops))
@@ -237,8 +240,17 @@ class ProcessorAxis(AbstractAxis):
         self, law: DiscreteLaw, contact: AbstractLinearLaw, place: Place
     ) -> tuple[Sequence[LinearForm], Sequence[LinearForm]]:
         """Close the loop over a period of the force."""
-        opened, closed, _ = (self.step(law, place, *touch) for touch in _touches(contact))
-        return opened, closed
+        opened, closed, _ = _touches(contact)
+        return self.step(self._opened(law), place, *opened), self.step(law, place, *closed)
+
+    def _opened(self, law: DiscreteLaw) -> DiscreteLaw:
+        """Return a law where it is cut: a spring that draws the measured position is cut as well.
+
+        It enters the law where the force does, so the loop is cut at the command.
+        """
+        if self.takes is not Takes.VELOCITY:
+            return law
+        return DiscreteLaw(law.law, {n: x for n, x in law.numbers.items() if n != "Kt"})
 
     def step(
         self,

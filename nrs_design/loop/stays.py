@@ -6,26 +6,35 @@ from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from math import ceil
 
+from nrs_design.errors import AssemblyError
 from nrs_design.proof.switching import NOWHERE, Clock
+from nrs_design.proof.text import exact_text
 from nrs_design.spec import SwitchingSpec
 
-# More states make a proof long; a stay that is counted up to fewer samples may be shorter.
-MOST_STATES = 600
+# Of an automaton that a certificate holds.
+MOST_STATES = 1000
 
 
 def clock_of_stays(
     rules: SwitchingSpec, modes: Mapping[str, Sequence[str]], period: Fraction
 ) -> Clock | None:
-    """Return which modes may be in force at a sample, or None where no stay is that long.
+    """Return which modes may be in force at a sample, or None where dwell times forbid nothing.
 
     `modes` are those of each controller, in contact and free, and follow each other freely; the
     period is the longest from sample to sample, in s. A state is how many samples a controller has
-    been in force, up to its dwell time.
+    been in force, up to its dwell time. An `AssemblyError` if there are too many of them.
     """
-    names = [*modes]
-    counts = [_samples(rules, name, period, MOST_STATES // len(names)) for name in names]
+    names, counts = [*modes], [count_samples(rules, name, period) for name in modes]
     if len(names) < 2 or max(counts) == 1:
         return None
+    if sum(counts) > MOST_STATES:
+        most = MOST_STATES // len(names)
+        raise AssemblyError(
+            f"the dwell times are {sum(counts)} samples long, at most {MOST_STATES} are counted",
+            remedy=f"write dwell times of up to {most} samples each, which is "
+            f"{exact_text(most * period)} s: a longer stay keeps them",
+            at=("switching", "dwell_time"),
+        )
     first = [sum(counts[:k]) for k in range(len(counts))]
     allowed = None if rules.transitions is None else frozenset(rules.transitions)
 
@@ -46,10 +55,10 @@ def clock_of_stays(
     return Clock(len(ahead), own, ahead, tuple(more[:-1]))
 
 
-def _samples(rules: SwitchingSpec, name: str, period: Fraction, most: int) -> int:
+def count_samples(rules: SwitchingSpec, name: str, period: Fraction) -> int:
     """Return how many samples a stay of a controller has at least."""
     shortest, _ = rules.stay(name)
     if shortest is None:
         return 1
     steps = shortest.value if shortest.unit == "steps" else shortest.value / period
-    return min(max(ceil(steps), 1), most)
+    return max(ceil(steps), 1)

@@ -19,8 +19,8 @@ from nrs_design.work import Allowance, NotAffordableError
 OFF_THE_ORIGIN = 0.7
 SATURATION = "decay under saturation"
 NOT_IN_TURNS = (
-    "not looked for: where the loop has two periods or misses deadlines, decay is proved, and no "
-    "bound"
+    "not looked for: where the loop has two periods, misses deadlines or counts dwell times, decay "
+    "is proved, and no bound"
 )
 
 

@@ -180,3 +180,34 @@ def test_a_force_that_is_sampled_more_often_than_the_motion_loop_has_no_axis():
     designed = run_design(loaded(text_of("sampled", 0), faster))
     design = designed.design
     assert axis_of(designed.spec, designed.plant, design.motion, design.sensor) is None
+
+
+STREAMED = """
+kind: interaction-design
+name: streamed
+title: A spring on the measured position
+velocity_interface: {time_constant: 0.03 s}
+limits: {velocity: 8 deg/s, torque: 0.3 N*m, bandwidth: 2 Hz}
+environments: {tissue: {model: elastic, stiffness: 40 N*m/rad}}
+controllers:
+  firm: {type: impedance, environment: tissue, Mt: 0.1 kg*m^2, Bt: 10 N*m*s/rad, Kt: 80 N*m/rad}
+switching: arbitrary
+contact: kept
+sampling: {period: 2 ms, delay: 1}
+"""
+
+
+def test_a_spring_on_the_measured_position_is_cut_with_the_force():
+    """L = C (k/z + Kt) P: so its margins are those of the command, which is late or too large."""
+    found = run_design(loaded(STREAMED))
+    axis = axis_of(found.spec, found.plant, found.design.motion, found.design.sensor)
+    (contact,) = found.plant.environment("tissue").corners
+    loop = axis.cut(found.design.controllers[0].law, contact, axis.places[0])
+    T, (a, b) = 0.002, (np.exp(-10 / 0.1 * 0.002), (1 - np.exp(-10 / 0.1 * 0.002)) / 10)
+    plant = control.c2d(control.ss(control.tf([1], [0.03, 1, 0])), T)
+    for omega in (1.0, 8.0, 40.0, 300.0):
+        z, w = np.exp(1j * omega * T), 2 / T * np.tan(omega * T / 2) * 1j
+        opened, closed = (np.polyval([float(c) for c in p], w) for p in (loop.opened, loop.closed))
+        law = b * z / (z - a)
+        expected = law * (40 / z + 80) * plant(z)
+        assert closed / opened - 1 == pytest.approx(expected, rel=1e-5)

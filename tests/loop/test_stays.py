@@ -5,8 +5,13 @@ from itertools import pairwise, product
 
 import pytest
 
-from nrs_design.loop.stays import MOST_STATES, clock_of_stays
+from nrs_design.errors import AssemblyError
+from nrs_design.loop.assemble import assemble
+from nrs_design.loop.stays import clock_of_stays
+from nrs_design.pipeline.runs import run_design
 from nrs_design.spec import SwitchingSpec
+from tests.loop.support import assembled, loaded
+from tests.support import words_of
 
 MODES = {"a": ["a/1", "a/2"], "b": ["b"], "c": ["c"]}
 
@@ -61,7 +66,45 @@ def test_without_long_stays_there_is_no_automaton():
     assert counted({"dwell_time": "5 s"}, modes={"a": ["a"]}) is None
 
 
-def test_long_stays_are_counted_up_to_a_limit():
-    """That allows for more signals than there are."""
-    clock = counted({"dwell_time": {"a": "1000 s", "b": "1 s"}})
-    assert clock.length == MOST_STATES // 3 + 2 + 1
+def test_stays_of_too_many_samples_are_refused_with_what_to_write():
+    """To count fewer would prove less than is asked, and refute what is not there."""
+    with pytest.raises(AssemblyError, match="2003 samples long, at most 1000") as refused:
+        counted({"dwell_time": {"a": "1000 s", "b": "1 s"}})
+    assert "333 samples each, which is 166.5 s" in refused.value.remedy
+
+
+SPEC = """
+kind: interaction-design
+name: stays
+title: Stays
+position_interface: {time_constant: 0.01 s}
+limits: {velocity: 8 deg/s, torque: 0.3 N*m, bandwidth: 2 Hz}
+environments:
+  soft: {model: elastic, stiffness: {nominal: 20 N*m/rad, range: [5 N*m/rad, 100 N*m/rad]}}
+controllers:
+  firm: {type: impedance, environment: soft, Mt: 0.3 kg*m^2, Bt: 3 N*m*s/rad}
+  mild: {type: impedance, environment: soft, Mt: 0.2 kg*m^2, Bt: 3 N*m*s/rad}
+sampling: {period: 10 ms, delay: 1, jitter: 2 ms}
+contact: kept
+switching: {dwell_time: 0.1 s}
+"""
+ALONE = "  mild: {type: impedance, environment: soft, Mt: 0.2 kg*m^2, Bt: 3 N*m*s/rad}\n", ""
+
+
+def test_a_dwell_time_of_a_controller_is_none_of_its_modes():
+    """The tissue may change at every sample: one controller alone is as if switching were free."""
+    alone = assembled(SPEC, ALONE)
+    free = assembled(SPEC, ALONE, ("{dwell_time: 0.1 s}", "arbitrary"))
+    assert alone.clock is None
+    assert alone.switching == free.switching
+    two = assembled(SPEC)
+    assert two.switching.is_arbitrary
+    assert two.clock.length == 2 * 9
+    assert "at least so many samples: firm 9, mild 9" in " ".join(words_of(two))
+
+
+def test_at_points_a_period_has_its_length():
+    """A word of so many samples there is shorter in time than with the longest periods."""
+    found = run_design(loaded(SPEC))
+    system = assemble(found.spec, found.plant, found.design, points="ends")
+    assert system.clock.length == 2 * 10

@@ -18,6 +18,8 @@ E = TypeVar("E", bound=AbstractEvidence, covariant=True)
 
 # A position is bracketed to this share of itself, or given up as nil below the smallest one.
 RESOLUTION, SMALLEST = 2.0**-14, 2.0**-40
+# How far above the largest position that was found another one is looked for, as a share of it.
+BEYOND = 2.0**-10
 # Few roundings with errors: more digits at once, as every check takes longer.
 WITH_ERRORS = (24, 32, 40, 50, 60)
 # The largest rate to this share, where every solution takes long.
@@ -93,13 +95,18 @@ def propose(
         found.append((position_of(program.own_rate(solution), limit, time), solution))
         return found[-1][0]
 
-    def solutions(claim: Fraction) -> Iterator[S]:
-        """Yield the solution that shows the most, if it shows the claim, and then one for it."""
+    def solutions(claim: Fraction, *, covered: bool) -> Iterator[S]:
+        """Yield the solution that shows the most, if it shows the claim, and one for the claim.
+
+        That for the claim leaves more room for errors, and is first where they are covered.
+        """
         position = position_of(float(claim), limit, time)
         known = sorted(found, key=lambda one: one[0], reverse=True)
-        yield from (solution for own, solution in known[:1] if own > position)
+        best = [solution for own, solution in known[:1] if own > position]
+        yield from () if covered else best
         if not program.is_dear and (solved := program.solve(float(claim), part)) is not None:
             yield solved
+        yield from best if covered else ()
 
     best, resolution, nearest = 0.0, rates.resolution, rates.nearest
     if program.is_dear:
@@ -110,7 +117,7 @@ def propose(
         bits = WITH_ERRORS if covered else rates.bits
         try:
             for claim in claims(best, limit, time, nearest, few=rates.few):
-                for solution in solutions(claim):
+                for solution in solutions(claim, covered=covered):
                     for evidence in program.roundings(solution, claim, bits, errors=covered):
                         yield Candidate(evidence, rates.words)
         except NotAffordableError:
@@ -145,9 +152,28 @@ def bisect_position(
 
     Feasible positions come first; there, it is told which position is shown as well, perhaps a
     larger one. The largest is bracketed to a share of itself, `resolution`, or to the difference
-    `smallest`, whichever is reached first; it ends early when the work is used up.
+    `smallest`, whichever is reached first; it ends early when the work is used up. A solver may
+    fail below the largest, so it is looked once at what is just above.
     """
-    low, high = 0.0, 1.0
+    low = _bisected(0.0, 1.0, shown, resolution, smallest)
+    above, high = min(low * (1 + BEYOND), 1.0), min(low * (1 + 8 * BEYOND), 1.0)
+    try:
+        found = shown(above) if low else None
+    except NotAffordableError:
+        found = None
+    if found is None:
+        return low
+    return _bisected(max(above, min(found, 1.0)), high, shown, resolution, smallest)
+
+
+def _bisected(
+    low: float,
+    high: float,
+    shown: Callable[[float], float | None],
+    resolution: float,
+    smallest: float,
+) -> float:
+    """Return the largest position that is found between two, of which the low one is feasible."""
     while high - low > max(resolution * high, smallest):
         middle = (low + high) / 2
         try:

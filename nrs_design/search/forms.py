@@ -25,6 +25,7 @@ from nrs_design.search.forms_rounding import rounded_forms
 from nrs_design.search.interior_point import FormsPoint, maximize
 from nrs_design.search.lifted import vanishing_basis
 from nrs_design.search.lmi import FEWEST_STEPS, time_unit
+from nrs_design.search.rounding import rate_at
 from nrs_design.search.sdp import STEPS, Maximum, begin, maximize_margin, unpack
 from nrs_design.work import Allowance, Cost
 
@@ -295,11 +296,17 @@ class FormsProgram:
         return np.array(margins)
 
     def own_rate(self, solution: Solution) -> float:
-        """Return the rate that a solution shows where every edge is a flow or some steps."""
-        rates = []
+        """Return the rate that a solution shows where every edge is a flow or some steps.
+
+        A form that is not positive definite shows mere stability at most.
+        """
+        rates, stable = list[float](), rate_at(0.0, 1.0, self.time)
         for edge, N in zip(self.edges, solution.vanishing, strict=True):
             Q = solution.forms[edge.before][np.ix_(edge.kept, edge.kept)]
-            inverse = np.linalg.inv(np.linalg.cholesky(Q))
+            try:
+                inverse = np.linalg.inv(np.linalg.cholesky(Q))
+            except np.linalg.LinAlgError:
+                return stable
             form = inverse @ self._form(edge, solution, N) @ inverse.T
             least = float(np.linalg.eigvalsh(form)[0])
             if edge.is_flow:

@@ -33,7 +33,7 @@ def test_beside_two_periods_no_bound_is_stated(tmp_path):
     missing = [a.outcome for a in result.certification.attempts if a.step.startswith("bound on")]
     assert len(missing) == 2
     assert all(
-        "two periods or misses deadlines, decay is proved, and no bound" in outcome
+        "misses deadlines or counts dwell times, decay is proved, and no bound" in outcome
         for outcome in missing
     )
     file = tmp_path / "turns.cert.json"

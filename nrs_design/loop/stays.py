@@ -60,5 +60,4 @@ def count_samples(rules: SwitchingSpec, name: str, period: Fraction) -> int:
     shortest, _ = rules.stay(name)
     if shortest is None:
         return 1
-    steps = shortest.value if shortest.unit == "steps" else shortest.value / period
-    return max(ceil(steps), 1)
+    return max(ceil(shortest.value / period), 1)

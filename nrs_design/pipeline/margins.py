@@ -231,7 +231,7 @@ def _refuse_dwell(result: Result) -> None:
         raise DesignError(
             "a shortest dwell time is for continuous time",
             path=loaded.path,
-            remedy="in discrete time, declare a dwell_time in steps and certify that",
+            remedy="declare a dwell_time, and certify that",
         )
     assert loaded.spec.kind != "robot"  # It has no modes, hence no certification.
     if obstacle := loaded.spec.find_dwell_obstacle():

@@ -314,7 +314,8 @@ class FormsProgram:
             elif edge.lasts:
                 kept = max(-least, 0.0) * edge.share
                 rates.append(kept ** (0.5 / (self.degree * edge.lasts)))
-        return min(rates) if self.time is Time.CONTINUOUS else max(rates)
+        slowest = min if self.time is Time.CONTINUOUS else max
+        return slowest(rates, default=stable)
 
     def roundings(
         self,

@@ -119,7 +119,7 @@ def search_periodic_quadratic(family: Family) -> Candidates[FormsOnGraph]:
     every = [mode.name for mode in system.every_mode]
     kinds = Counter(clock.kind_of(every))
     # At the largest rate itself there is no room for rounding.
-    rates = Rates(0.5, resolution=2.0**-5, nearest=0.99, few=True, bits=digits(24))
+    rates = Rates(0.5, resolution=2.0**-7, nearest=0.99, few=True, bits=digits(24))
     for drawing in draw_turns(family, clock):
         if not drawing.is_finite:
             return OUT_OF_RANGE

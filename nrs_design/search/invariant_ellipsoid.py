@@ -39,8 +39,8 @@ Array = NDArray[np.float64]
 
 # Where shares are tried first, relative to the largest, by what factor the next one differs, and
 # how often the best is refined.
-USUAL, STEP, REFINED = (0.38, 0.15, 0.06, 0.8), 1.5, 3
-SMALLEST = 0.02
+USUAL, STEP, REFINED = (0.38, 0.15, 0.06, 0.024, 0.009, 0.8), 1.5, 3
+SMALLEST = 0.001
 # How far above the least level found the claimed one lies: the nearer, the harder to round.
 SLACKS = (1.002, 1.01, 1.03, 1.1)
 # Steps of a response that is summed for the scale.
@@ -243,7 +243,8 @@ def largest_share(limit: float, time: Time) -> float:
 def best_share(attempt: Callable[[float], float], top: float) -> tuple[float, float]:
     """Return the least value found, and the share that gives it.
 
-    Values are followed down from a usual share, and then by parabolas through the three best.
+    Values are followed down from the best of usual shares, and then by parabolas through the three
+    best: a solver that fails at one of them may be right at another.
     """
     tried: dict[float, float] = {}
 
@@ -252,7 +253,7 @@ def best_share(attempt: Callable[[float], float], top: float) -> tuple[float, fl
             tried[share] = attempt(share)
         return tried[share]
 
-    start = next((s * top for s in USUAL if isfinite(value(s * top))), USUAL[0] * top)
+    start = min((s * top for s in USUAL), key=value)
     best = start
     for factor in (1 / STEP, STEP):
         while SMALLEST * top < factor * best < top and value(factor * best) < value(best):

@@ -217,11 +217,9 @@ def _about_commands(spec: Spec) -> Iterator[tuple[Location, Quantity | None]]:
 
 def _untimed(spec: Spec) -> Iterator[tuple[Location, str]]:
     """Yield dwell times in steps."""
-    # Those of a sampled loop are refused as such: no other way to write them helps.
-    if spec.sampling is None:
-        for at, dwell in spec.switching.dwell_times():
-            if dwell.unit != "s":
-                yield ("switching", *at), dwell.text
+    for at, dwell in spec.switching.dwell_times():
+        if dwell.unit != "s":
+            yield ("switching", *at), dwell.text
 
 
 def _weightless(spec: Spec) -> tuple[str, object] | None:

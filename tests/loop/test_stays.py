@@ -39,7 +39,7 @@ def lasts(word: str, counts: dict[str, int], pairs) -> bool:
         ({"dwell_time": "1.5 s"}, {"a": 3, "b": 3, "c": 3}),
         # A stay of 1.1 s is one of three samples, of 0.1 s of one.
         ({"dwell_time": {"a": "1.1 s", "b": "0.1 s"}}, {"a": 3, "b": 1, "c": 1}),
-        ({"dwell_time": "2 steps"}, {"a": 2, "b": 2, "c": 2}),
+        ({"dwell_time": "1 s"}, {"a": 2, "b": 2, "c": 2}),
         (
             {"dwell_time": {"a": "1 s"}, "transitions": [["a", "b"], ["b", "c"], ["c", "a"]]},
             {"a": 2, "b": 1, "c": 1},

@@ -81,3 +81,13 @@ def test_a_sampled_loop_that_needs_its_dwell_time():
             whole = matrices[rng.choice(np.flatnonzero(kinds == kind))] @ whole
         size = np.abs(np.linalg.eigvals(whole)).max() ** (1 / steps)
         assert size <= float(graph.rate)
+
+
+def test_stays_that_no_switch_ends():
+    system = sheared_in_stays(2)
+    ahead = tuple(
+        tuple(target if target // 2 == state // 2 else -1 for target in leads)
+        for state, leads in enumerate(system.clock.ahead)
+    )
+    found = certify(replace(system, clock=replace(system.clock, ahead=ahead)))
+    assert found.verdict is Verdict.PROVED

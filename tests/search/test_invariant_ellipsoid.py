@@ -17,6 +17,7 @@ from nrs_design.search.family import floats_in_silence
 from nrs_design.search.invariant_ellipsoid import search_ellipsoid, search_offset_ellipsoid
 from nrs_design.simulation.worst_case import worst_runs
 from nrs_design.work import Allowance, NotAffordableError
+from tests.loop.support import assembled
 from tests.proof.systems import (
     bouncing,
     bouncing_in_steps,
@@ -26,6 +27,7 @@ from tests.proof.systems import (
     pushed,
 )
 from tests.search.support import thesis_robot
+from tests.support import ROOT
 
 SOFT, BOTH, INSERTION = ("41.5", "44.2"), ("2.15", "1.04"), ("2.15",)
 slow = pytest.mark.slow
@@ -232,3 +234,11 @@ def test_nothing_is_found_where_a_mode_grows():
     with floats_in_silence():
         search = search_offset_ellipsoid(system, system.channels, system.outputs[0], Allowance())
         assert first_accepted(search, system)[0] is None
+
+
+def test_a_bound_at_an_unusual_share():
+    """Most shares leave the solver nothing there; the best is a fiftieth of the largest."""
+    system = assembled(ROOT / "tests" / "specs" / "far.yaml")
+    search = search_ellipsoid(system, system.channels, system.outputs[0], Allowance())
+    found, _ = first_accepted(search, system)
+    assert found.level < Fraction("4.75")

@@ -33,22 +33,20 @@ from nrs_design.loop.sampled import SampledLoop
 from nrs_design.loop.sampled_assumptions import assume_sampled_loop
 from nrs_design.loop.sampled_modes import Modes, SampledMode, damping_of
 from nrs_design.loop.saturation import with_sampled_saturation
-from nrs_design.loop.stays import clock_of_stays, count_samples
+from nrs_design.loop.stays import count_stays
 from nrs_design.models.drive import Drive
 from nrs_design.models.linear_form import LinearForm, coordinates
 from nrs_design.models.plant import Plant
-from nrs_design.proof.assumption import Assumption
 from nrs_design.proof.channels import Channel, Rounding
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Clock
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.spec import IdleStatesSpec, SwitchingSpec
+from nrs_design.spec import IdleStatesSpec
 from nrs_design.spec.interaction_parts import FREE
 from nrs_design.spec.misses import automaton_of
 from nrs_design.spec.operating import OperatingConditions
 from nrs_design.spec.sampling import SamplingSpec
-from nrs_design.spec.switching import ANY_SIGNAL
 
 
 def close_sampled_loop(
@@ -98,14 +96,9 @@ def close_sampled_loop(
         # It jumps after the sample, and the force of what is damped with it.
         damped = any(damping_of(environment).high for environment in environments)
         outputs = () if damped else tuple(one for one in outputs if one.name == "force")
-    own, rules = _clock(sampling, items), conditions.switching
     # Points are at the period itself, where a dwell time has more samples.
     period = sampling.step if points else sampling.longest_step
-    stays = clock_of_stays(rules, grouped(items), period) if own is None else None
-    # What an automaton says of switches is no rule besides, and no mode has a dwell time alone.
-    left = ANY_SIGNAL
-    if stays is None:
-        left = rules.model_copy(update={"dwell_time": None, "longest_dwell_time": None})
+    rules = count_stays(conditions.switching, grouped(items), period)
     driven = motor_command(conditions.largest_command, conditions.command, loop, channels)
     system = SwitchedSystem(
         name=conditions.name,
@@ -115,9 +108,11 @@ def close_sampled_loop(
         assumptions=(
             *assume_sampled_loop(conditions, sampling, plant, loop, laws, design, loss),
             *(() if driven is None else (driven.assumption,)),
-            *_assume_counted(rules, design, period, stays),
+            *rules.assumptions,
         ),
-        switching=assemble_switching(left, grouped(modes), _resets(conditions.idle, loop, design)),
+        switching=assemble_switching(
+            rules.rest, grouped(modes), _resets(conditions.idle, loop, design)
+        ),
         contact=lost_on_surface((item.mode for item in free), pulls, conditions.contact)
         if free
         else None,
@@ -125,22 +120,13 @@ def close_sampled_loop(
         channels=channels,
         outputs=(*outputs, *(() if driven is None else (driven.output,))),
         roundings=tuple(_roundings(loop, channels, items)),
-        clock=stays or own,
+        clock=_clock(sampling, items) or rules.clock,
         flights=flights_of(modes, environments, pulls) if loss.anywhere else None,
         enclosures=tuple(enclosures_of(items)),
     )
     if conditions.initial_force is not None:
         system = with_sampled_saturation(system, conditions, loop, items, environments)
     return system, tuple(item.corner for item in modes)
-
-
-def _assume_counted(
-    rules: SwitchingSpec, design: ControllerDesign, period: Fraction, stays: Clock | None
-) -> Iterator[Assumption]:
-    """Yield how many samples stays have, where they are counted."""
-    if stays is not None:
-        counts = (f"{c.name} {count_samples(rules, c.name, period)}" for c in design.controllers)
-        yield Assumption.create("rules.counted", counts=tuple(counts))
 
 
 def _wired(

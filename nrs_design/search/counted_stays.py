@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,6 +30,7 @@ from nrs_design.search.forms import FormsProgram
 from nrs_design.search.graphs import graph_of, search_together
 from nrs_design.search.rates import Rates, propose
 from nrs_design.search.rounding import digits, rate_at
+from nrs_design.work import Allowance
 
 # Of the slowest decay that a controller has, what its form keeps while it is in force.
 SHARES = (0.7, 0.4, 0.85, 0.2, 0.1)
@@ -50,13 +52,11 @@ def stays_of(clock: Clock) -> Stays | None:
     if any(len(own) != 1 for own in last):
         return None
     ends, found = {own[0] for own in last}, list[list[int]]()
-    for kind, stay in zip(clock.kinds, last, strict=True):
-        while True:
-            before = [k for k in range(clock.length) if clock.after(k, kind) == stay[0]]
-            before = [k for k in before if k not in ends and k not in stay]
-            if len(before) != 1:
-                break
-            stay = [*before, *stay]
+    for kind, (end,) in zip(clock.kinds, last, strict=True):
+        before = {clock.after(k, kind): k for k in range(clock.length) if k not in ends}
+        stay = [end]
+        while (k := before.get(stay[0])) is not None and k not in stay:
+            stay.insert(0, k)
         found.append(stay)
     states = sorted(state for stay in found for state in stay)
     return found if states == [*range(clock.length)] else None
@@ -89,7 +89,7 @@ def search_stays(family: Family) -> Candidates[FormsOnGraph]:
         own = [1 - share * (1 - rate) for rate in slowest]
         drawing = _draw(family, clock, stays, parts, own)
         if drawing.is_finite:
-            program = CountedProgram(drawing, Counted(stays, own))
+            program = CountedProgram(drawing, stays, own)
             programs.append((_reach(program, limit, family), program))
     coverings = (True, False) if family.system.roundings else (False,)
     # The rest of a rate is looked for where the most is known to be there.
@@ -100,20 +100,45 @@ def search_stays(family: Family) -> Candidates[FormsOnGraph]:
 
 
 @dataclass(frozen=True)
-class Counted:
-    """Forms of controllers, each while its controller is in force."""
+class CountedProgram:
+    """The program of the forms of first samples, whose solutions are forms of all samples."""
 
-    stays: Stays  # Of each, the states of a stay
-    rates: Sequence[float]  # At which it decreases then
+    drawing: Drawing
+    stays: Stays  # Of each controller, the states of a stay
+    rates: Sequence[float]  # At which its form decreases while it is in force
 
-    def timed(self, edge: Inequality) -> Inequality:
+    @cached_property
+    def first(self) -> FormsProgram:
+        """The program of first samples."""
+        return FormsProgram(self.drawing, self._timed)
+
+    @property
+    def is_dear(self) -> bool:
+        """Whether every solution takes long."""
+        return self.first.is_dear
+
+    def solve(self, rate: float, allowance: Allowance) -> Solution | None:
+        """Return a solution at a rate."""
+        return self.first.solve(rate, allowance)
+
+    def own_rate(self, solution: Solution) -> float:
+        """Return the rate that a solution shows at switches, no faster than that of any form."""
+        return max(self.first.own_rate(solution), *self.rates)
+
+    def roundings(
+        self, solution: Solution, claim: Fraction, digits: Sequence[int], *, errors: bool = False
+    ) -> Iterator[FormsOnGraph]:
+        """Yield roundings of the forms of all samples."""
+        return map(self._expanded, self.first.roundings(solution, claim, digits, errors=errors))
+
+    def _timed(self, edge: Inequality) -> Inequality:
         """Return an inequality between forms of first samples, with what a stay leaves of them."""
         rate, count = self.rates[edge.before], len(self.stays[edge.before])
         if edge.before == edge.after:
             return replace(edge, lasts=0.0, share=rate**-2)
         return replace(edge, lasts=count, share=rate ** (2 * (count - 1)))
 
-    def expanded(self, graph: FormsOnGraph) -> FormsOnGraph:
+    def _expanded(self, graph: FormsOnGraph) -> FormsOnGraph:
         """Return the forms of every sample of a stay, from those of the first ones."""
         places = len(graph.nodes) // len(self.stays)
         copies = []
@@ -123,30 +148,6 @@ class Counted:
             copies += [[*zip(stay, weights, strict=True)]] * places
         log2 = graph.denominator_log2 + WEIGHT_BITS
         return _at_states(replace(graph, denominator_log2=log2), copies)
-
-
-class CountedProgram(FormsProgram):
-    """The program of the first samples of stays, whose solutions are forms of all samples."""
-
-    def __init__(self, drawing: Drawing, counted: Counted) -> None:
-        self.counted = counted
-        super().__init__(drawing, counted.timed)
-
-    def own_rate(self, solution: Solution) -> float:
-        """Return the rate that a solution shows at switches, no faster than that of any form."""
-        return max(super().own_rate(solution), *self.counted.rates)
-
-    def roundings(
-        self,
-        solution: Solution,
-        claim: Fraction,
-        digits: Sequence[int],
-        *,
-        errors: bool = False,
-    ) -> Iterator[FormsOnGraph]:
-        """Yield roundings of the forms of all samples."""
-        found = super().roundings(solution, claim, digits, errors=errors)
-        return map(self.counted.expanded, found)
 
 
 def _at_states(graph: FormsOnGraph, copies: Sequence[Sequence[tuple[int, int]]]) -> FormsOnGraph:

@@ -7,7 +7,7 @@ import pytest
 
 from nrs_design.errors import AssemblyError
 from nrs_design.loop.assemble import assemble
-from nrs_design.loop.stays import clock_of_stays
+from nrs_design.loop.stays import count_stays
 from nrs_design.pipeline.runs import run_design
 from nrs_design.spec import SwitchingSpec
 from tests.loop.support import assembled, loaded
@@ -17,7 +17,7 @@ MODES = {"a": ["a/1", "a/2"], "b": ["b"], "c": ["c"]}
 
 
 def counted(rules: dict, period="1/2", modes=MODES):
-    return clock_of_stays(SwitchingSpec.model_validate(rules), modes, Fraction(period))
+    return count_stays(SwitchingSpec.model_validate(rules), modes, Fraction(period)).clock
 
 
 def lasts(word: str, counts: dict[str, int], pairs) -> bool:

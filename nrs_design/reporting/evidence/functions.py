@@ -201,8 +201,9 @@ def _size(forms: tuple[Form, ...], order: int) -> Table:
 
 def _turn(clock: Clock) -> str:
     """Say what there is a function of."""
-    rule = "dwell times" if clock.counts_stays else "the rule for misses"
-    return "step of a round" if clock.is_round else f"state of {rule}"
+    if clock.counts_stays:
+        return "sample of a stay"
+    return "step of a round" if clock.is_round else "state of the rule for misses"
 
 
 def _rate_blocks(

@@ -13,6 +13,7 @@ from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.reporting.document import Illustration, Section
 from nrs_design.reporting.evidence.offers import Form
+from nrs_design.reporting.evidence.words import allowed
 from nrs_design.reporting.figures.run import draw_phase_plane, draw_run
 from nrs_design.reporting.sections.modes import hardest_modes
 from nrs_design.simulation.admissible import active_norms, admissible_run
@@ -161,7 +162,8 @@ def bounded_run(greedy: Greedy, norm: str, note: str = "") -> Section:
         how, letter = _ROUNDS, "w"
     elif played.contact is not None:
         how, letter = _BOUNCING, "w"
-    holds = f"{_HOLDS}{' and any loss of contact' if played.contact is not None else ''}."
+    lost = " and any loss of contact" if played.contact is not None else ""
+    holds = f"{_HOLDS}{lost}{allowed(played)}."
     said = " ".join(text for text in (how, note, holds) if text)
     return greedy.draw(AGAINST, said, f"|{letter}(t)| / |{letter}(0)|\n{norm} [1]", _BOUND)
 

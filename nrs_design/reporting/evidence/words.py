@@ -53,9 +53,16 @@ def free_bound(system: SwitchedSystem) -> str:
     """Say what a bound means that holds whatever switches happen."""
     return (
         "The bound means: measured by |x|, the distance from rest shrinks at least by the factor "
-        f"{decay_factor(system)}, from the first moment on and whatever switches happen. In "
+        f"{decay_factor(system)}, from the first moment on and whatever switches happen"
+        f"{allowed(system)}. In "
         "another norm the same rate holds with a constant factor in front."
     )
+
+
+def allowed(system: SwitchedSystem) -> str:
+    """Say that switches keep the rules that a clock holds, if it holds any."""
+    ruled = system.clock is not None and not system.clock.is_round
+    return ", as the rules allow" if ruled else ""
 
 
 def ruled_bound(system: SwitchedSystem) -> str:

@@ -45,3 +45,18 @@ def test_the_run_is_drawn_beside_the_slope_of_its_bound():
     labels = [line.get_label() for line in run.figure.axes[0].lines]
     assert "slope of the proved bound, rho^t" in labels
     assert "up to one constant factor" in run.caption
+
+
+def test_stays_that_are_counted_are_said_where_the_bound_is():
+    page = page_of(*genuine("periodic-quadratic, stays"))
+    assert page.name == "quadratic function of each sample of a stay"
+    assert any("whatever switches happen, as the rules allow" in text for text in page.meaning)
+    assert any("decreases faster than the claim" in text for text in page.meaning)
+    assert "Switches that come before a dwell time has passed." in page.limits
+    assert "every switching signal, as the rules allow" in page.run().blocks[0].caption
+
+
+def test_a_round_has_no_rules_besides():
+    page = page_of(*genuine("periodic-quadratic, kept"))
+    assert page.name == "quadratic function of each step of a round"
+    assert not any("as the rules allow" in text for text in page.meaning)

@@ -80,7 +80,7 @@ def sector_of(spec: InteractionDesignSpec) -> Sector | str:
     for e in touched:
         if e.law.remembers or e.law.has_mass or e.preloaded:
             return f"the torque of {e.name} does not follow from angle and speed of the moment"
-    damping = max(e.parameters["b"].high if "b" in e.parameters else Fraction(0) for e in touched)
+    damping = max(e.load[1].high for e in touched)
     speed = spec.monitoring.speed
     if damping and speed is None:
         return "a tissue has damping, and no `monitoring: speed` bounds what that adds"

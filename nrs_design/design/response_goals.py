@@ -14,6 +14,7 @@ from nrs_design.design.displayed_response import (
     largest_tracking_error,
 )
 from nrs_design.loop.cut_loop import AbstractAxis, ContinuousAxis, ProcessorAxis
+from nrs_design.models.contact import Elastic, KelvinVoigt
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.interval import Interval
 from nrs_design.models.plant import Plant
@@ -164,8 +165,7 @@ def _found(
     elif key == TRANSPARENCY:
         found = largest_impedance(axis, law, ranges, band, goal.limit)
     elif touched is not None and (
-        # Hand, and memory.
-        touched.law.has_mass or touched.law.remembers or touched.preloaded or touched.each_losable
+        touched.law not in (Elastic, KelvinVoigt) or touched.preloaded or touched.each_losable
     ):
         return f"{touched.name} is neither elastic nor Kelvin-Voigt for every deflection"
     else:

@@ -283,9 +283,7 @@ class ProcessorAxis(AbstractAxis):
 def _touches(contact: AbstractLinearLaw) -> tuple[tuple[Contact, Contact, Memory], ...]:
     """Return sensed and carried contact and its memory: opened, closed, without force."""
     memory = contact.memory_rates
-    front = contact.exact[contact.parameters().index(contact.front)]
-    # Of what remembers, the second number is behind the spring.
-    touched = front, ZERO if memory else (*contact.exact, ZERO)[1]
+    touched = contact.load
     return (NOTHING, touched, memory), (touched, touched, memory), (NOTHING, NOTHING, memory)
 
 

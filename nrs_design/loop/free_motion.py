@@ -131,7 +131,8 @@ def could_pull(environments: Iterable[Environment]) -> tuple[Environment, ...]:
     what flies because every force would pull must not be pushed by a spring instead.
     """
     environments = tuple(environments)
-    return environments if any("b" in e.parameters for e in environments) else ()
+    springs = all(law.is_spring for e in environments for law in e.corners)
+    return () if springs else environments
 
 
 def force_rows(

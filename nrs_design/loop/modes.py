@@ -185,9 +185,8 @@ def position_mode(
     def react() -> Reaction:
         if contact is None:
             return w.nothing, []
-        takes = not (contact.is_spring or contact.remembers)
         deflection = motion.output(size), *(w[name] for name in memory)
-        return contact.react(w["velocity"] if takes else w.nothing, deflection)
+        return contact.react(w["velocity"] if contact.lags else w.nothing, deflection)
 
     def respond() -> Response:
         return law.respond(w["felt"] if takes_force else w.nothing, own)

@@ -166,7 +166,7 @@ class Modes:
         self, e: Environment | None, contacts: Sequence[Environment]
     ) -> Iterator[tuple[tuple[str, ...], Mapping[str, Interval]]]:
         """Yield labels of a load, and where its stiffness and damping are."""
-        own = {} if e is None else {"k": e.stiffness, "b": damping_of(e)}
+        own = {} if e is None else dict(zip(LOAD, e.load, strict=True))
         if e is None or not self._loaded or (self.drives and e.depends):
             yield (), own
         elif not self.drives:
@@ -213,7 +213,7 @@ def anything_of(environments: Iterable[Environment], *, lost: bool) -> dict[str,
 
     `lost`: nothing may be touched, too. What is constant stays so where nothing else is touched.
     """
-    each = [(e.stiffness, damping_of(e)) for e in environments]
+    each = [e.load for e in environments]
     return {
         symbol: Interval(
             ranges[0].nominal,
@@ -221,11 +221,5 @@ def anything_of(environments: Iterable[Environment], *, lost: bool) -> dict[str,
             max(r.high for r in ranges),
             lost or len(ranges) > 1 or ranges[0].varies,
         )
-        for symbol, ranges in zip(("k", "b"), zip(*each, strict=True), strict=True)
+        for symbol, ranges in zip(LOAD, zip(*each, strict=True), strict=True)
     }
-
-
-def damping_of(environment: Environment) -> Interval:
-    """Return the range of the damping parallel to the spring; zero without a damper."""
-    beside = not environment.law.remembers
-    return environment.parameters.get("b" if beside else "", Interval.point(ZERO))

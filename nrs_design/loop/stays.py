@@ -9,13 +9,11 @@ from math import ceil
 
 from nrs_design.errors import AssemblyError
 from nrs_design.proof.assumption import Assumption
+from nrs_design.proof.evidence.fields import MAX_STATES
 from nrs_design.proof.switching import NOWHERE, Clock
 from nrs_design.proof.text import exact_text
 from nrs_design.spec import SwitchingSpec
 from nrs_design.spec.switching import ANY_SIGNAL
-
-# Of an automaton that a certificate holds.
-MOST_STATES = 1000
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,10 +38,10 @@ def count_stays(
     if len(names) < 2 or max(counts) == 1:
         none = {"dwell_time": None, "longest_dwell_time": None}
         return CountedRules(None, rules.model_copy(update=none))
-    if sum(counts) > MOST_STATES:
-        most = MOST_STATES // len(names)
+    if sum(counts) > MAX_STATES:
+        most = MAX_STATES // len(names)
         raise AssemblyError(
-            f"the dwell times are {sum(counts)} samples long, at most {MOST_STATES} are counted",
+            f"the dwell times are {sum(counts)} samples long, at most {MAX_STATES} are counted",
             remedy=f"write dwell times of up to {most} samples each, which is "
             f"{exact_text(most * period)} s: a longer stay keeps them",
             at=("switching", "dwell_time"),

@@ -28,10 +28,16 @@ from nrs_design.loop.located import enclosures_of, grouped
 from nrs_design.loop.loss import Loss
 from nrs_design.loop.misses import clock_of
 from nrs_design.loop.motor_command import motor_command
-from nrs_design.loop.program import INPUTS, SampledProgram
+from nrs_design.loop.program import (
+    FORCE_ERROR,
+    INPUTS,
+    ROUNDED_ANGLE,
+    ROUNDED_REFERENCE,
+    SampledProgram,
+)
 from nrs_design.loop.sampled import SampledLoop
 from nrs_design.loop.sampled_assumptions import assume_sampled_loop
-from nrs_design.loop.sampled_modes import Modes, SampledMode, damping_of
+from nrs_design.loop.sampled_modes import Modes, SampledMode
 from nrs_design.loop.saturation import with_sampled_saturation
 from nrs_design.loop.stays import count_stays
 from nrs_design.models.drive import Drive
@@ -94,7 +100,7 @@ def close_sampled_loop(
     outputs = outputs_of(velocity, loop.states, environments, conditions.torque) if channels else ()
     if drive.speed is not None:
         # It jumps after the sample, and the force of what is damped with it.
-        damped = any(damping_of(environment).high for environment in environments)
+        damped = any(environment.load[1].high for environment in environments)
         outputs = () if damped else tuple(one for one in outputs if one.name == "force")
     # Points are at the period itself, where a dwell time has more samples.
     period = sampling.step if points else sampling.longest_step
@@ -220,14 +226,13 @@ def _channels(
     bounds = dict(conditions.disturbances)
     if (angle := conditions.largest_angle) is not None:
         # An angle of the law is read from a count, times a coefficient.
-        for name, n in (("rounding of the reference", 1), ("rounding of the angle", 3)):
+        for name, n in ((ROUNDED_REFERENCE, 1), (ROUNDED_ANGLE, 3)):
             bounds[name] = (rounding_share(n) * angle, "rad")
     if off:
-        bounds["force error"] = (off, "N*m")
-    for i, name in enumerate(INPUTS):
-        if name in bounds:
-            bound, unit = bounds[name]
-            yield Channel(name, unit, bound, tuple(item.column(i) for item in items))
+        bounds[FORCE_ERROR] = (off, "N*m")
+    for i, name in sorted((INPUTS.index(name), name) for name in bounds):
+        bound, unit = bounds[name]
+        yield Channel(name, unit, bound, tuple(item.column(i) for item in items))
 
 
 def _roundings(

@@ -155,15 +155,25 @@ def bisect_position(
     `smallest`, whichever is reached first; it ends early when the work is used up. A solver may
     fail below the largest, so it is looked once at what is just above.
     """
-    low = _bisected(0.0, 1.0, shown, resolution, smallest)
-    above, high = min(low * (1 + BEYOND), 1.0), min(low * (1 + 8 * BEYOND), 1.0)
+    failed: list[float] = []
+
+    def told(position: float) -> float | None:
+        """Keep the positions at which the solver fails."""
+        if (found := shown(position)) is None:
+            failed.append(position)
+        return found
+
+    low = _bisected(0.0, 1.0, told, resolution, smallest)
+    above = min(low * (1 + BEYOND), 1.0)
     try:
-        found = shown(above) if low else None
+        found = told(above) if low else None
     except NotAffordableError:
         found = None
     if found is None:
         return low
-    return _bisected(max(above, min(found, 1.0)), high, shown, resolution, smallest)
+    low = max(above, min(found, 1.0))
+    high = min((position for position in failed if position > low), default=1.0)
+    return _bisected(low, high, told, resolution, smallest)
 
 
 def _bisected(

@@ -20,6 +20,7 @@ from nrs_design.models.contact import (
     KelvinVoigt,
     Maxwell,
 )
+from nrs_design.models.contact.law import DAMPING
 from nrs_design.models.interval import Interval, turn
 from nrs_design.spec import kinds
 from nrs_design.spec import quantity_fields as field
@@ -117,10 +118,11 @@ class AbstractEnvironmentSpec(IdentifiedRangesSpec, stronger="holding"):
     @property
     def is_spring(self) -> bool:
         """Whether the force follows from the deflection of the moment, in the whole range."""
-        damping = self.ranges.get("damping")
         if self.law.remembers or self.law.has_mass:
             return False
-        return damping is None or not any(q.exact for q in (damping.nominal, *damping.range))
+        kinds = zip(self.law.keys, self.law.kinds, strict=True)
+        damping = (self.ranges[key] for key, kind in kinds if kind == DAMPING)
+        return not any(q.exact for each in damping for q in (each.nominal, *each.range))
 
     @property
     def is_losable(self) -> bool:

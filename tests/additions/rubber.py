@@ -35,6 +35,7 @@ class Rubber(AbstractLinearLaw):
     takes_velocity: ClassVar[bool] = True
     keys: ClassVar[tuple[str, ...]] = ("stiffness", "damping")
     front: ClassVar[str] = "k"
+    beside: ClassVar[str] = "b"
     sentences: ClassVar[Mapping[str, str]] = MappingProxyType(
         {"tissue.rubber": "The damping of {environment} is in proportion to its stiffness."}
     )
@@ -61,11 +62,6 @@ class Rubber(AbstractLinearLaw):
     def impedance(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """``(b s + k) / s``."""
         return (float(self.b), float(self.k)), (1.0, 0.0)
-
-    @property
-    def is_spring(self) -> bool:
-        """Never: it is damped."""
-        return False
 
     @property
     def element(self) -> Element:

@@ -36,7 +36,7 @@ class Environment:
     @property
     def depends(self) -> bool:
         """Whether stiffness and damping depend on each other: not every corner is attained."""
-        return self.preloaded or (self.each_losable and "b" in self.parameters)
+        return self.preloaded or (self.each_losable and bool(self.law.beside))
 
     @property
     def parameters(self) -> dict[str, Interval]:
@@ -62,6 +62,17 @@ class Environment:
     def stiffness(self) -> Interval:
         """Range of the stiffness that a sudden motion meets, in N m/rad."""
         return self.ranges[self.law.parameters().index(self.law.front)]
+
+    @property
+    def load(self) -> tuple[Interval, Interval]:
+        """Ranges of all that a sampled loop takes of it: stiffness and damping, in that order.
+
+        In N m/rad and N m s/rad. An `AssemblyError` if its law has another force.
+        """
+        for law in self.corners:
+            _ = law.load
+        beside = self.parameters.get(self.law.beside, Interval.point(Fraction(0)))
+        return self.stiffness, beside
 
     @property
     def memory_rates(self) -> tuple[Interval, Interval] | None:
@@ -101,15 +112,15 @@ def touch_at_once(parts: tuple[Environment, ...], *, losable: bool) -> Environme
     delta > 0 is ``sum k_j max(0, delta - a_j) = k delta``, and k is at least the stiffness of the
     first part and at most the sum, whatever the a_j are and however the k_j move.
     """
-    if heavy := [part.name for part in parts if part.law.has_mass]:
-        raise InternalError(f"the mass of {heavy[0]} would be left out")
-    stiffness = tuple(part.stiffness for part in parts)
+    if odd := [part.name for part in parts if part.law.has_mass or part.law.remembers]:
+        raise InternalError(f"mass or memory of {odd[0]} would be left out")
+    stiffness, dampings = zip(*(part.load for part in parts), strict=True)
     total = _sum(stiffness)
     if losable:
         total = Interval(total.nominal, min(k.low for k in stiffness), total.high)
-    damping = [part.parameters["b"] for part in parts if "b" in part.parameters]
     name = "+".join(part.name for part in parts)
-    law, ranges = (KelvinVoigt, (total, _sum(damping))) if damping else (Elastic, (total,))
+    damped = any(part.law.beside for part in parts)
+    law, ranges = (KelvinVoigt, (total, _sum(dampings))) if damped else (Elastic, (total,))
     return Environment(name, law, ranges, parts, losable)
 
 

@@ -50,6 +50,7 @@ class Hand(AbstractMemorylessLaw):
     keys: ClassVar[tuple[str, ...]] = ("stiffness", "damping", "mass")
     may_vanish: ClassVar[frozenset[str]] = frozenset({"b", "m"})
     front: ClassVar[str] = "k"
+    beside: ClassVar[str] = "b"
     has_mass: ClassVar[bool] = True
 
     k: Number  # Stiffness in N/m (N m/rad)
@@ -63,7 +64,7 @@ class Hand(AbstractMemorylessLaw):
     @property
     def is_spring(self) -> bool:
         """Whether there is neither damping nor mass."""
-        return self.b == 0 and self.m == 0
+        return super().is_spring and self.m == 0
 
     @property
     def element(self) -> Element:

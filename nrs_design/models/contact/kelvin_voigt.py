@@ -20,6 +20,7 @@ class KelvinVoigt(AbstractMemorylessLaw):
     keys: ClassVar[tuple[str, ...]] = ("stiffness", "damping")
     may_vanish: ClassVar[frozenset[str]] = frozenset({"b"})
     front: ClassVar[str] = "k"
+    beside: ClassVar[str] = "b"
 
     k: Number  # Stiffness in N/m (N m/rad)
     b: Number  # Damping in N s/m (N m s/rad); may be zero
@@ -27,11 +28,6 @@ class KelvinVoigt(AbstractMemorylessLaw):
     def at_stiffness(self, value: Fraction) -> KelvinVoigt:
         """Return it with the same damping."""
         return KelvinVoigt(value, self.b)
-
-    @property
-    def is_spring(self) -> bool:
-        """Whether there is no damping."""
-        return self.b == 0
 
     @property
     def element(self) -> Element:

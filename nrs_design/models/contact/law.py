@@ -13,8 +13,9 @@ from fractions import Fraction
 from types import MappingProxyType
 from typing import TYPE_CHECKING, ClassVar, Self
 
+from nrs_design.errors import AssemblyError
 from nrs_design.models.interval import turn
-from nrs_design.models.linear_form import LinearForm, combine
+from nrs_design.models.linear_form import ONE, ZERO, LinearForm, combine, coordinates, zero
 from nrs_design.proof.assumption import Assumption
 
 if TYPE_CHECKING:
@@ -142,8 +143,9 @@ class AbstractLinearLaw(AbstractContactLaw):
     # Parameters in one over which `react` is affine, and those that may be zero.
     inverse: ClassVar[frozenset[str]] = frozenset()
     may_vanish: ClassVar[frozenset[str]] = frozenset()
-    # The stiffness that a sudden motion meets.
+    # The stiffness that a sudden motion meets, and the damping beside it; "" without one.
     front: ClassVar[str]
+    beside: ClassVar[str] = ""
     # The states of `react`; the first is the one that all environments of a spec share.
     states: ClassVar[tuple[str, ...]] = ("delta [rad]",)
     # Whether the force depends on more than the deflection and the velocity of the moment.
@@ -192,9 +194,38 @@ class AbstractLinearLaw(AbstractContactLaw):
         """The springs and dampers that it consists of."""
 
     @property
+    def lags(self) -> bool:
+        """Whether force or memory take the velocity of the moment, too."""
+        velocity, *states = coordinates(1 + len(self.states))
+        force, (_, *rates) = self.react_accelerated(velocity, zero(len(velocity)), states)
+        return any(form[0] for form in (force, *rates))
+
+    @property
     def is_spring(self) -> bool:
         """Whether the force follows from the deflection of the moment alone."""
-        return not self.remembers
+        return not (self.remembers or self.lags)
+
+    @property
+    def load(self) -> tuple[Fraction, Fraction]:
+        """Stiffness k and damping b of ``F = k (delta - d) + b v``, all that a sampled loop takes.
+
+        They are `front` and `beside`, and d moves at `memory_rates`; without these it is zero. An
+        `AssemblyError` if `react` says anything else.
+        """
+        k = Fraction(getattr(self, self.front))
+        b = Fraction(getattr(self, self.beside)) if self.beside else ZERO
+        force, rates = [b, k], [[ONE, ZERO]]
+        if self.memory_rates is not None:
+            decays, follows = self.memory_rates
+            force, rates = [b, k, -k], [[ONE, ZERO, ZERO], [ZERO, follows, -decays - follows]]
+        velocity, *states = coordinates(1 + len(self.states))
+        if self.react(velocity, states) != (force, rates):
+            raise AssemblyError(
+                f"the law {self.name!r} is not F = k (δ - d) + b δ', all that a sampled loop takes",
+                remedy="use an elastic, kelvin-voigt or kelvin-boltzmann environment",
+                at=("environments",),
+            )
+        return k, b
 
     @property
     def memory_rates(self) -> tuple[Fraction, Fraction] | None:

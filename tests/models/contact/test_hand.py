@@ -52,7 +52,7 @@ def test_the_mass_is_never_left_out():
         HAND.element  # noqa: B018
     ranges = tuple(map(Interval.point, (Fraction(50), Fraction(3), Fraction(1))))
     hand = Environment("hand", Hand, ranges)
-    with pytest.raises(InternalError, match="mass of hand"):
+    with pytest.raises(InternalError, match="mass or memory of hand"):
         touch_at_once((hand, hand), losable=False)
 
 

@@ -1,5 +1,6 @@
 """What holds for all tissue laws."""
 
+from dataclasses import dataclass
 from fractions import Fraction
 
 import numpy as np
@@ -9,17 +10,19 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
 from nrs_design.certificates.catalogue import sentences
+from nrs_design.errors import AssemblyError
 from nrs_design.models.contact import (
     LINEAR_LAWS,
     Elastic,
+    Hand,
     HuntCrossley,
     KelvinBoltzmann,
     KelvinVoigt,
     Maxwell,
     Motion,
 )
-from nrs_design.models.contact.law import AbstractLinearLaw
-from nrs_design.models.linear_form import coordinates
+from nrs_design.models.contact.law import AbstractLinearLaw, AbstractMemorylessLaw
+from nrs_design.models.linear_form import combine, coordinates
 from tests.identification.support import wobble
 
 # Thesis tables 2.4 and 2.5.
@@ -82,6 +85,7 @@ def test_torque_at_the_pivot(law, radius, seed):
     assert torque == pytest.approx(radius * force, abs=1e-9 * radius * np.abs(force).max())
 
 
+POINT = Fraction(5)
 LINEAR = [law for law in SAMPLES if law.name in LINEAR_LAWS]
 
 
@@ -106,6 +110,51 @@ def test_impedance_and_state_space_are_the_printed_law(law, s):
     C, A = np.array(force, dtype=float), np.array(rates, dtype=float)
     z = np.linalg.solve(s * np.eye(len(A)) - A[:, 1:], A[:, 0])
     assert C[1:] @ z + C[0] == pytest.approx(expected)
+
+
+@dataclass(frozen=True)
+class Pad(AbstractMemorylessLaw):
+    """Two springs and a damper side by side: a law that nobody shipped."""
+
+    name, kinds, front = "pad", ("stiffness", "stiffness", "damping"), "k1"
+
+    k1: Fraction
+    k2: Fraction
+    c: Fraction
+
+    def react(self, velocity, states):
+        (delta,) = states
+        return combine((self.k1 + self.k2, delta), (self.c, velocity)), [velocity]
+
+    element = None
+
+
+@dataclass(frozen=True)
+class Unsaid(KelvinBoltzmann):
+    """One that remembers, and does not say at which rates."""
+
+    memory_rates = None
+
+
+def test_a_sampled_loop_takes_a_spring_with_a_memory_and_a_damper():
+    for law in LINEAR:
+        if law.has_rest:
+            damping = law.b if isinstance(law, KelvinVoigt) else 0
+            assert law.load == (Fraction(law.stiffness), Fraction(damping))
+    stretched = Maxwell(*(POINT,) * 2)
+    for law in (Pad(*(POINT,) * 3), Unsaid(*(POINT,) * 3), stretched):
+        with pytest.raises(AssemblyError, match="all that a sampled loop takes"):
+            _ = law.load
+
+
+def test_what_lags_takes_the_velocity_of_the_moment():
+    lagging = {Pad(*(POINT,) * 3), KelvinVoigt(POINT, POINT), Hand(POINT, POINT, Fraction(0))}
+    assert all(law.lags and not law.is_spring for law in lagging)
+    springs = {Elastic(POINT), KelvinVoigt(POINT, Fraction(0)), Hand(POINT, *(Fraction(0),) * 2)}
+    assert all(law.is_spring and not law.lags for law in springs)
+    # One that remembers is no spring, and follows from the deflections alone.
+    assert not LINEAR[-1].lags
+    assert not LINEAR[-1].is_spring
 
 
 @pytest.mark.parametrize("law", LINEAR, ids=lambda law: law.name)

@@ -46,11 +46,16 @@ def cases(file: str) -> list[Any]:
 
 
 def check(case: dict[str, Any]) -> None:
-    # A word that nobody reads would ask for nothing.
+    # A word that nobody reads would ask for nothing, and no words are in every fault.
     assert case.keys() <= KNOWN
     assert case.keys() & ASKED
+    assert "asks" not in case or "says" in case
+    claims = case.get("claims", [])
+    assert isinstance(claims, list)
+    assert "" not in (case.get("says"), case.get("contradiction"), *claims)
     system = system_in(case)
     if "contradiction" in case:
+        assert case.keys() & ASKED == {"contradiction"}
         found, words = find_contradiction(system), case["contradiction"]
         assert (found is None) is (words is None), found
         assert found is None or words in found, found
@@ -66,7 +71,7 @@ def check(case: dict[str, Any]) -> None:
         assert evidence.fits(system.switching) is case["fits"]
     if "claim" in case:
         assert evidence.claim(system) == case["claim"]
-    for words in case.get("claims", ()):
+    for words in claims:
         assert words in evidence.claim(system)
 
 
@@ -101,8 +106,8 @@ def evidence_in(case: dict[str, Any]) -> AbstractEvidence:
 
 def made(hint: Any, value: Any) -> Any:
     """Return what a table says as a value of a type; what is of another type is left as it is."""
-    if get_origin(hint) is UnionType and value is not None:
-        (hint,) = (part for part in get_args(hint) if part is not NoneType)
+    if value is not None:
+        hint = _inner(hint)
     if hint is Fraction and isinstance(value, (int, str)):
         return Fraction(value)
     if hint is AbstractEvidence:
@@ -112,6 +117,7 @@ def made(hint: Any, value: Any) -> Any:
     if hint is RationalMatrix:
         if not isinstance(value, dict):
             return systems.matrix(value)
+        assert value.keys() == {"rows", "over"}
         return RationalMatrix(tuple(map(tuple, value["rows"])), value["over"])
     if hint is Time:
         return Time(value)
@@ -120,7 +126,9 @@ def made(hint: Any, value: Any) -> Any:
         hints = [first] * len(value) if others == [...] else [first, *others]
         return tuple(made(part, item) for part, item in zip(hints, value, strict=True))
     if _has_fields(hint) and isinstance(value, (list, dict)):
-        named = value if isinstance(value, dict) else dict(zip(_names(hint), value, strict=False))
+        # Of a list, the last fields may be left out.
+        names = _names(hint)[: len(value)]
+        named = value if isinstance(value, dict) else dict(zip(names, value, strict=True))
         return hint(**{name: made(part, named[name]) for name, part in _parts(hint, named)})
     return value
 
@@ -135,8 +143,7 @@ def _put(hint: Any, thing: Any, path: str, value: Any) -> Any:
     """Return a thing of which what a path leads to is another."""
     if not path:
         return made(hint, value)
-    if get_origin(hint) is UnionType:
-        (hint,) = (part for part in get_args(hint) if part is not NoneType)
+    hint = _inner(hint)
     name, _, rest = path.partition(".")
     if type(thing) is tuple:
         k = int(name) % len(thing)
@@ -144,6 +151,14 @@ def _put(hint: Any, thing: Any, path: str, value: Any) -> Any:
         return (*thing[:k], _put(inner, thing[k], rest, value), *thing[k + 1 :])
     changed = {name: _put(get_type_hints(type(thing))[name], getattr(thing, name), rest, value)}
     return thing._replace(**changed) if isinstance(thing, tuple) else replace(thing, **changed)
+
+
+def _inner(hint: Any) -> Any:
+    """Return the type of what is not None, if a type is optional; else the type itself."""
+    if get_origin(hint) is not UnionType:
+        return hint
+    (inner,) = (part for part in get_args(hint) if part is not NoneType)
+    return inner
 
 
 def _has_fields(hint: Any) -> bool:

@@ -51,15 +51,14 @@ def count_stays(
 
     def leads(k: int, spent: int) -> tuple[int, ...]:
         """Return where each controller leads after so many samples of one."""
-        last = spent == counts[k] - 1
-        return tuple(
-            first[k] + min(spent + 1, counts[k] - 1)
-            if other == k
-            else first[other]
-            if last and (allowed is None or (names[k], name) in allowed)
-            else NOWHERE
-            for other, name in enumerate(names)
-        )
+        last = counts[k] - 1
+        to = [NOWHERE] * len(names)
+        if spent == last:
+            for other, name in enumerate(names):
+                if allowed is None or (names[k], name) in allowed:
+                    to[other] = first[other]
+        to[k] = first[k] + min(spent + 1, last)
+        return tuple(to)
 
     ahead = tuple(leads(k, spent) for k, count in enumerate(counts) for spent in range(count))
     own, *more = (tuple(found) for found in modes.values())

@@ -47,29 +47,26 @@ LAW: Mapping[str, Parameter] = MappingProxyType(
         "update_rate": Parameter(read_integer, low=Fraction(0), default=Fraction(0)),
     }
 )
-# What the node knows besides; everything else it passes over without a word.
-OTHERS = frozenset(
-    {
-        "joints",
-        "command_joints",
-        "command_interfaces",
-        "state_interfaces",
-        "chainable_command_interfaces",
-        "kinematics.plugin_name",
-        "kinematics.plugin_package",
-        "kinematics.base",
-        "kinematics.tip",
-        "ft_sensor.name",
-        "ft_sensor.frame.id",
-        "control.frame.id",
-        "fixed_world_frame.frame.id",
-        "gravity_compensation.frame.id",
-        "gravity_compensation.CoG.pos",
-        "robot_description",
-        "type",
-        "use_sim_time",
-        "is_async",
-    }
+# What no law depends on, and the node does not start without.
+NEEDED = (
+    "joints",
+    "command_interfaces",
+    "state_interfaces",
+    "chainable_command_interfaces",
+    "kinematics.plugin_name",
+    "kinematics.plugin_package",
+    "kinematics.base",
+    "kinematics.tip",
+    "ft_sensor.name",
+    "ft_sensor.frame.id",
+    "control.frame.id",
+    "fixed_world_frame.frame.id",
+    "gravity_compensation.frame.id",
+    "gravity_compensation.CoG.pos",
+)
+# All that the node knows; it passes over everything else without a word.
+KNOWN = frozenset(
+    {*LAW, *NEEDED, "command_joints", "robot_description", "type", "use_sim_time", "is_async"}
 )
 
 
@@ -200,5 +197,4 @@ def _bounded(item: Scalar, parameter: Parameter) -> Fraction:
 
 def unknown_names(node: RosNode) -> list[str]:
     """Return the parameters that the controller passes over without a word."""
-    known = {*LAW, *OTHERS}
-    return [name for name in node.values if name not in known]
+    return [name for name in node.values if name not in KNOWN]

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from nrs_design.gating.obligations import Caution
-from nrs_design.ros2.law import FILTER, LAW, OTHERS, AdmittanceLaw, unknown_names
+from nrs_design.ros2.law import FILTER, KNOWN, NEEDED, AdmittanceLaw, unknown_names
 from nrs_design.ros2.parameters import RosNode, texts
 
 # Of the broadcaster, which publishes what it filters.
@@ -49,6 +49,12 @@ def _traps(law: AdmittanceLaw) -> Iterator[Trap]:
             f"{said}: parameters change while the controller runs, and no verdict covers that; set "
             "it to false",
         )
+    if missing := [name for name in NEEDED if name not in law.node.values]:
+        yield Trap(
+            missing[0],
+            f"the controller does not start without {', '.join(missing)}, unless another file or a "
+            "launch file gives what this one does not",
+        )
     yield from _unknown(law)
 
 
@@ -64,7 +70,7 @@ def _same_frame(node: RosNode) -> bool:
 
 def _unknown(law: AdmittanceLaw) -> Iterator[Trap]:
     """Yield names that may be slips of the pen, and the others together."""
-    known, others = sorted({*LAW, *OTHERS}), []
+    known, others = sorted(KNOWN), []
     unknown = unknown_names(law.node)
     if chain := [name for name in unknown if name.startswith(f"{CHAIN}.")]:
         yield Trap(

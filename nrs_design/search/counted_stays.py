@@ -27,15 +27,13 @@ from nrs_design.search.decay import limit_rate
 from nrs_design.search.drawing import Drawing, FormCoordinates, Inequality, Solution
 from nrs_design.search.family import Family, to_floats
 from nrs_design.search.forms import FormsProgram
-from nrs_design.search.graphs import graph_of, search_together
+from nrs_design.search.graphs import KEPT, graph_of, search_together
 from nrs_design.search.rates import Rates, propose
 from nrs_design.search.rounding import digits, rate_at
 from nrs_design.work import Allowance
 
 # Of the slowest decay that a controller has, what its form keeps while it is in force.
 SHARES = (0.7, 0.4, 0.85, 0.2, 0.1)
-# Of the mean mode of a controller, what its coordinates keep at most.
-KEPT = 0.99
 # Positions of rates that are tried for each, and the share of the budget for that.
 LOOKED_AT, LOOKING = (0.0, 0.1, 0.25, 0.4, 0.6), 0.05
 RATES = Rates(0.5, resolution=2.0**-5, nearest=0.99, few=True, bits=digits(24))
@@ -43,10 +41,10 @@ RATES = Rates(0.5, resolution=2.0**-5, nearest=0.99, few=True, bits=digits(24))
 WEIGHT_BITS = 24
 
 Array = NDArray[np.float64]
-Stays = Sequence[Sequence[int]]
+CountedStays = Sequence[Sequence[int]]
 
 
-def stays_of(clock: Clock) -> Stays | None:
+def stays_of(clock: Clock) -> CountedStays | None:
     """Return for each kind of modes the states of a stay in order, or None if it counts none."""
     last = [[k for k in range(clock.length) if clock.after(k, kind) == k] for kind in clock.kinds]
     if any(len(own) != 1 for own in last):
@@ -104,7 +102,7 @@ class CountedProgram:
     """The program of the forms of first samples, whose solutions are forms of all samples."""
 
     drawing: Drawing
-    stays: Stays  # Of each controller, the states of a stay
+    stays: CountedStays  # Of each controller, the states of a stay
     rates: Sequence[float]  # At which its form decreases while it is in force
 
     @cached_property
@@ -179,7 +177,11 @@ def _reach(program: CountedProgram, limit: float, family: Family) -> int:
 
 
 def _draw(
-    family: Family, clock: Clock, stays: Stays, parts: Sequence[Array], rates: Sequence[float]
+    family: Family,
+    clock: Clock,
+    stays: CountedStays,
+    parts: Sequence[Array],
+    rates: Sequence[float],
 ) -> Drawing:
     """Draw a node for each controller, as if a stay had one state."""
     system, lost = family.system, family.system.contact is not None

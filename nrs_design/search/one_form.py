@@ -289,7 +289,9 @@ class OneForm:
         if level is not None:
             blocks.add(1.0, {last: -np.ones((1, 1))})
         reached = blocks.maximize(last + 1, begun)
-        if reached is None or (level is None) == (reached.x[-1] >= 0) or not reached.x[-1]:
+        # The last unknown is what is left to spare, or the level with its sign changed.
+        sign = -1 if level is None else 1
+        if reached is None or sign * reached.x[-1] <= 0:
             return None
         x = reached.x
         found = {name: float(x[place[name]] / scale) for name, scale in self.scales.items()}

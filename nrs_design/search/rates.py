@@ -102,11 +102,11 @@ def propose(
         """
         position = position_of(float(claim), limit, time)
         known = sorted(found, key=lambda one: one[0], reverse=True)
-        best = [solution for own, solution in known[:1] if own > position]
-        yield from () if covered else best
+        better = [solution for own, solution in known[:1] if own > position]
+        yield from () if covered else better
         if not program.is_dear and (solved := program.solve(float(claim), part)) is not None:
             yield solved
-        yield from best if covered else ()
+        yield from better if covered else ()
 
     best, resolution, nearest = 0.0, rates.resolution, rates.nearest
     if program.is_dear:

@@ -90,8 +90,11 @@ _TABLE: tuple[tuple[Any, ...], ...] = (
         has.OTHERS,
         has.CONTINUOUS,
     ),
-    (_CONSTANTS, has.CONSTANT_MOTOR, (has.LOSABLE, has.TWO_PERIODS)),
-    (_CONSTANTS, has.CONSTANT_TISSUE, (has.LOSABLE, has.TWO_PERIODS)),
+    (
+        _CONSTANTS,
+        (has.CONSTANT_MOTOR, has.CONSTANT_TISSUE),
+        (has.LOSABLE, has.TWO_PERIODS),
+    ),
     (
         "sums or rates of its numbers take their place",
         has.CONSTANT_TISSUE,

@@ -31,6 +31,7 @@ def test_the_example_has_none():
         ("filter_coefficient: 0.5", "filter_coefficient: 0.0", "no share of the new sample", 22),
         ("filter_coefficient: 0.5", "filter_coefficent: 0.5", "did you mean ft_sensor.filter", 22),
         ("tip: tool0", "tip: tool0\n      group_name: arm", "passes over", 18),
+        ("      base: base_link\n", "", "does not start without kinematics.base, unless", 8),
     ],
 )
 def test_each_at_its_place(tmp_path, old, new, message, line):

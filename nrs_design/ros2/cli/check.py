@@ -66,8 +66,8 @@ def check(
     the measurement, changing at will. Where there is no proof, it says up to which stiffness there
     is one; and it warns of parameters that do not do what they seem to.
 
-    Exit code 0: all axes proved. 1: one refuted. 2: the controller would not start. 3: undecided;
-    so is any other controller of the file that may move the robot.
+    Exit code 0: all axes proved. 1: one refuted. 2: a parameter of the law is missing or
+    wrong. 3: undecided; so is any other controller of the file that may move the robot.
 
     Example: nrs-design ros2 check docs/examples/admittance.ros2.yaml --stiffness '200..2000 N/m'
 

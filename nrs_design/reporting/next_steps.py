@@ -9,7 +9,7 @@ from shlex import quote
 from nrs_design.certificates.certificate import Verdict, refutes_in_contact
 from nrs_design.pipeline.certification import Result
 from nrs_design.proof.mode import Time
-from nrs_design.spec import RobotSpec
+from nrs_design.spec import ImpedanceControllerSpec, InteractionDesignSpec, RobotSpec
 
 
 def next_steps(
@@ -49,8 +49,10 @@ def _steps(result: Result, name: str, margin: bool, shortest_dwell: bool) -> Ite
         yield f"Find the largest ranges that are proved: {command} --margin"
     if not alone and not shortest_dwell and _takes_dwell(result):
         yield f"Find the shortest dwell time that is proved: {command} --shortest-dwell"
-    if result.designed is not None:
-        yield f"See which gains the goals allow: nrs-design optimize {name}"
+    if isinstance(spec, InteractionDesignSpec):
+        chosen = any(isinstance(c, ImpedanceControllerSpec) for c in spec.controllers.values())
+        command = "optimize" if chosen else "tune"
+        yield f"See which gains the goals allow: nrs-design {command} {name}"
 
 
 def _takes_dwell(result: Result) -> bool:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from difflib import get_close_matches
+from fractions import Fraction
 from pathlib import Path
 from typing import NamedTuple
 
@@ -13,6 +14,8 @@ from nrs_design.ros2.parameters import RosNode, texts
 
 # Of the broadcaster, which publishes what it filters.
 CHAIN = "sensor_filter_chain"
+# The default share of the new sample, and all that smooth the force as long.
+SLOW = Fraction(1, 20)
 RETUNING = "enable_parameter_update_without_reactivation"
 
 
@@ -111,3 +114,5 @@ def _filter(law: AdmittanceLaw) -> Iterator[Trap]:
         yield Trap(FILTER, "is not given; the default 0.05 smooths the force over 20 periods")
     elif not 0 < c <= 1:
         yield Trap(FILTER, f"{float(c):g} is no share of the new sample: write 0 < c <= 1")
+    elif c <= SLOW:
+        yield Trap(FILTER, f"{float(c):g} smooths the force over {float(1 / c):.0f} periods")

@@ -59,3 +59,12 @@ def test_commands_can_be_typed_as_they_stand(tmp_path):
     steps = next_steps(wide, spec=Path("my specs/a.nrs.yaml"))
     assert steps[0].endswith("certify-switching 'my specs/a.nrs.yaml' --margin")
     assert next_steps(wide)[0].endswith("certify-switching wide-range.nrs.yaml --margin")
+
+
+@pytest.mark.parametrize(
+    ("spec", "command"), [("insertion-axis", "optimize"), ("torque-arm", "tune")]
+)
+def test_the_command_that_knows_the_gains_follows_from_the_laws(spec, command):
+    loaded = read_spec(ROOT / f"docs/examples/{spec}.nrs.yaml")
+    steps = next_steps(run_certification(loaded, limits=Limits(budget=0)))
+    assert f"See which gains the goals allow: nrs-design {command} {spec}.nrs.yaml" in steps

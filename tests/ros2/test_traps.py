@@ -29,6 +29,7 @@ def test_the_example_has_none():
         ("damping_ratio: [2.8,", "damping_ratio: [-2.8,", "negative for axis x", 31),
         ("update_without_reactivation: false", "update_without_reactivation: true", "is on:", 34),
         ("filter_coefficient: 0.5", "filter_coefficient: 0.0", "no share of the new sample", 22),
+        ("filter_coefficient: 0.5", "filter_coefficient: 0.005", "over 200 periods", 22),
         ("filter_coefficient: 0.5", "filter_coefficent: 0.5", "did you mean ft_sensor.filter", 22),
         ("tip: tool0", "tip: tool0\n      group_name: arm", "passes over", 18),
         ("      base: base_link\n", "", "does not start without kinematics.base, unless", 8),

@@ -19,6 +19,8 @@ from nrs_design.spec import InteractionDesignSpec
 LARGEST_BYTES = 2**22
 # First line of every exported file, and of the sources in a model for co-simulation.
 _RELEASE = re.compile(rb"nrs-design (\d[\w.+]{0,40}), nrs-design/export/")
+# The law and its monitor, not the self-test, which a robot may do without.
+_LAW = re.compile(r"(?<!_test)\.[hc]$")
 # How much of a line is shown, around the first byte that differs.
 _BEFORE, _AFTER = 48, 32
 
@@ -74,7 +76,7 @@ def compare_deployed(
     told = [f"{file.name}: {each}" for file in known for each in _differs(file, exported)]
     if whole:
         missing = sorted(exported.keys() - {file.name for file in known})
-        told += [f"{name}: it is missing" for name in missing if name.endswith((".h", ".c"))]
+        told += [f"{name}: it is missing" for name in missing if _LAW.search(name)]
     # The certificate is read, not compared.
     aside = {*known, place / f"{spec.name}.cert.json"}
     others = tuple(file for file in files if file not in aside)

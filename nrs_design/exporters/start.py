@@ -58,7 +58,8 @@ SIGNS: Mapping[str, str] = MappingProxyType(
 )
 WRONG = (
     "Of a torque or an angle of the other sign the proof says nothing: the loop then adds to what "
-    "it should oppose. Vectors do not see it: push the joint by hand, and look at both signs."
+    "it should oppose. The self-test does not see it: push the joint by hand, and look at both "
+    "signs."
 )
 
 

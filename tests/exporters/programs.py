@@ -101,11 +101,11 @@ def write_formats(folder: Path, export: Export, formats: Iterable[str]) -> Path:
     return folder
 
 
-def write_law(folder: Path, record, law: StepLaw, vectors) -> tuple[Path, Path, str]:
+def write_law(folder: Path, record, law: StepLaw, cases) -> tuple[Path, Path, str]:
     """Write a law and its self-test; both sources come back, and the flag that brings a `main`."""
     names = CNames(record.spec.name)
     program = Program(record, law, names)
-    texts = self_test(law, vectors.columns, vectors.rows, names, program.about)
+    texts = self_test(law, cases, names, program.about)
     texts |= {".h": header_text(program).encode(), ".c": source_text(program).encode()}
     for ending, content in texts.items():
         (folder / f"{names.spec}{ending}").write_bytes(content)

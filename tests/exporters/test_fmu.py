@@ -18,8 +18,8 @@ from nrs_design.exporters import format_of
 from nrs_design.exporters.c_names import CNames
 from nrs_design.exporters.cosimulation import contents, description, guid_of, packed
 from nrs_design.exporters.formats.fmu import remarks, render
-from nrs_design.exporters.formats.vectors import make_vectors
 from nrs_design.exporters.program import Program
+from nrs_design.exporters.self_test import draw_cases
 from tests.exporters.programs import LAWS, STRICT, built, compiler
 from tests.support import thinned
 
@@ -80,9 +80,9 @@ def test_every_bit_is_that_of_the_replica(opened, shape):
     law = LAWS[shape]
     slave, at = opened(shape)
     run(slave, at)
-    vectors = make_vectors(law)
-    given = {v.name: vectors.rows[:, vectors.columns.index(v.name)] for v in law.inputs}
-    modes = vectors.rows[:, 0]
+    cases = draw_cases(law)
+    given = {v.name: cases.rows[:, cases.columns.index(v.name)] for v in law.inputs}
+    modes = cases.rows[:, 0]
     state = {value.name: np.zeros(1, np.float32) for value in law.states}
     names = [f"state.{name}" for name in state]
     outputs = [at[name] for name in (*law.outputs, *names)]

@@ -11,7 +11,7 @@ from nrs_design.exporters.template import fill_template
 from nrs_design.output import CMAKE
 
 FORMAT = Format(
-    "a library and a test for CMake from the files of c, vectors and monitor beside it",
+    "a library and a test for CMake from the files of c and monitor beside it",
     SAMPLED,
     {".cmake": CMAKE},
     executable=True,

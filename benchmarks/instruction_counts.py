@@ -14,9 +14,9 @@ from benchmarks.cortex import Compiled, Counts, measure, versions
 from benchmarks.measure import Finding, Size
 from nrs_design.controllers.shipped import shipped_law
 from nrs_design.exporters.build import build_unproved
-from nrs_design.exporters.c_names import CNames
 from nrs_design.exporters.formats.c import header_text, source_text
 from nrs_design.exporters.self_test import draw_cases
+from nrs_design.exporters.text import CNames
 from nrs_design.pipeline.runs import run_design
 from nrs_design.spec import read_spec
 

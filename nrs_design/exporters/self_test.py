@@ -21,8 +21,7 @@ from numpy.typing import NDArray
 from nrs_design.controllers.operations import StepLaw
 from nrs_design.controllers.replica import Single, step
 from nrs_design.controllers.step_logic import LONGEST, StepLogic
-from nrs_design.exporters.c_names import CNames, block_comment
-from nrs_design.exporters.template import fill_template
+from nrs_design.exporters.text import CNames, block_comment, fill_template
 from nrs_design.output import C_TEST, C_TEST_HEADER
 
 COUNT, LOGIC_COUNT, SEED = 1000, 500, 2026

@@ -18,11 +18,11 @@ from nrs_design.controllers.operations import StepLaw
 from nrs_design.controllers.sensor import LowPass
 from nrs_design.controllers.step_law import StepFrame, StepLimits, build_law
 from nrs_design.exporters import rendered
-from nrs_design.exporters.c_names import CNames
 from nrs_design.exporters.export import Export
 from nrs_design.exporters.formats.c import header_text, source_text
 from nrs_design.exporters.program import Program
 from nrs_design.exporters.self_test import program_macro, self_test
+from nrs_design.exporters.text import CNames
 from nrs_design.models.drive import Takes
 from tests.support import program_named
 

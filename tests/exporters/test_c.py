@@ -5,8 +5,8 @@ import re
 import numpy as np
 import pytest
 
-from nrs_design.exporters.c_names import CNames
 from nrs_design.exporters.self_test import draw_cases
+from nrs_design.exporters.text import CNames
 from tests.exporters.programs import (
     LAWS,
     STRICT,

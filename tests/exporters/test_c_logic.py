@@ -9,10 +9,10 @@ import pytest
 from nrs_design.controllers.shipped import shipped_law
 from nrs_design.controllers.step_logic import LONGEST
 from nrs_design.exporters.build import build_unproved
-from nrs_design.exporters.c_names import CNames, literal
 from nrs_design.exporters.formats.c import header_text
 from nrs_design.exporters.program import Program
 from nrs_design.exporters.self_test import LOGIC_COUNT, LOGIC_SPECIAL, draw_cases, logic_cases
+from nrs_design.exporters.text import CNames, literal
 from nrs_design.pipeline.runs import run_design
 from nrs_design.spec import read_spec
 from tests.exporters.programs import (

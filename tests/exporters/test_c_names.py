@@ -8,9 +8,9 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from nrs_design.controllers.float32 import to_float32
-from nrs_design.exporters.c_names import CNames, block_comment, literal
 from nrs_design.exporters.formats.c import header_text
 from nrs_design.exporters.program import Program
+from nrs_design.exporters.text import CNames, block_comment, literal
 from tests.exporters.programs import LAWS
 
 NAMES = st.from_regex("[a-z0-9][a-z0-9._-]{0,63}", fullmatch=True)

@@ -1,7 +1,7 @@
 import pytest
 
 from nrs_design.errors import DesignError
-from nrs_design.exporters.compiled import compiler, shared_library
+from nrs_design.exporters.formats.fmu import compiler, shared_library
 from tests.exporters.programs import compiler as found
 
 SOURCES = {

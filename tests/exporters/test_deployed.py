@@ -121,7 +121,7 @@ def test_a_model_counts_to_the_last_byte(folder, compared):
     content[len(content) // 2] ^= 1
     file.write_bytes(content)
     (found,) = compared().differences
-    assert found.startswith(f"soft-tissue.fmu: it differs from byte {len(content) // 2 + 1} on")
+    assert found.startswith("soft-tissue.fmu: it differs (a library in it must")
 
 
 @pytest.mark.parametrize("ending", [".h", ".cmake", "_test.c", ".fmu"])
@@ -187,7 +187,7 @@ def test_a_certificate_of_two_periods_says_nothing_of_a_program_of_one(folder, s
     file = folder / "two.nrs.yaml"
     file.write_text(sampled.text.replace("delay: [0, 1]", "outer_period: 4 ms, delay: 0"))
     result = run_certification(read_spec(file))
-    with pytest.raises(NrsDesignError, match="the certificate is about two"):
+    with pytest.raises(NrsDesignError, match="the certificate is about two periods"):
         compare_deployed(folder, result.designed.spec, result.certificate)
 
 

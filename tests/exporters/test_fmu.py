@@ -15,11 +15,10 @@ from fmpy.validation import validate_fmu
 
 from nrs_design.controllers.replica import step
 from nrs_design.exporters import format_of
-from nrs_design.exporters.c_names import CNames
-from nrs_design.exporters.cosimulation import contents, description, guid_of, packed
-from nrs_design.exporters.formats.fmu import remarks, render
+from nrs_design.exporters.formats.fmu import contents, description, guid_of, packed, remarks, render
 from nrs_design.exporters.program import Program
 from nrs_design.exporters.self_test import draw_cases
+from nrs_design.exporters.text import CNames
 from tests.exporters.programs import LAWS, STRICT, built, compiler
 from tests.support import thinned
 

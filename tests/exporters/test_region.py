@@ -11,9 +11,8 @@ from nrs_design.controllers.replica import StepProgram
 from nrs_design.exporters.export import Execution, export_design
 from nrs_design.exporters.formats.c import render as render_c
 from nrs_design.exporters.formats.monitor import render, told_kinds
-from nrs_design.exporters.monitor_limits import monitor_limits
+from nrs_design.exporters.monitor_limits import ROOM, MonitoredRegion, monitor_limits, region_of
 from nrs_design.exporters.program import program_of
-from nrs_design.exporters.region import ROOM, MonitoredRegion, region_of
 from nrs_design.proof.evidence import SaturatedEllipsoid
 from nrs_design.spec import read_spec
 from nrs_design.spec.sampling import SamplingSpec

@@ -6,10 +6,17 @@ import numpy as np
 import pytest
 
 from nrs_design.controllers.replica import StepProgram, step
-from nrs_design.exporters.c_names import CNames
 from nrs_design.exporters.formats.c import header_text
-from nrs_design.exporters.program import Program
-from nrs_design.exporters.start import PLACED, SPRUNG, STREAMED, TWICE, sign_lines, start_lines
+from nrs_design.exporters.program import (
+    PLACED,
+    SPRUNG,
+    STREAMED,
+    TWICE,
+    Program,
+    sign_lines,
+    start_lines,
+)
+from nrs_design.exporters.text import CNames
 from tests.exporters.programs import LAWS, law
 
 PERIOD, LAG, GAIN, STIFFNESS, DEPTH, SPRING = 0.002, 0.0351, 4.8417e-4, 43.0, 0.007, 0.5

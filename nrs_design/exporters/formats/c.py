@@ -12,12 +12,10 @@ from nrs_design.controllers.parts import BEYOND
 from nrs_design.controllers.step_law import INTEGRAL_LIMIT
 from nrs_design.controllers.step_logic import UNITS
 from nrs_design.exporters import SAMPLED, Format
-from nrs_design.exporters.c_names import CNames, block_comment
 from nrs_design.exporters.export import Export
-from nrs_design.exporters.program import Program, program_of
+from nrs_design.exporters.program import Program, program_of, sign_lines, start_lines
 from nrs_design.exporters.self_test import draw_cases, self_test
-from nrs_design.exporters.start import sign_lines, start_lines
-from nrs_design.exporters.template import fill_template
+from nrs_design.exporters.text import CNames, block_comment, fill_template
 from nrs_design.output import C_HEADER, C_SOURCE, C_TEST, C_TEST_HEADER
 
 FORMAT = Format(

@@ -1,4 +1,4 @@
-"""Names and numbers of exported C: identifiers from the spec's names, exact literals, comments."""
+"""Text of exported files: names, numbers and comments of C, and templates."""
 
 from __future__ import annotations
 
@@ -7,11 +7,20 @@ import textwrap
 from collections.abc import Iterable
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cache
+from html import escape
+from typing import TYPE_CHECKING
+from xml.sax.saxutils import quoteattr
 
+from nrs_design.axis import unit
+from nrs_design.controllers.float32 import exact_decimal
 from nrs_design.controllers.operations import Coefficient, StepLaw, Value
 from nrs_design.controllers.step_logic import SignalBound
 from nrs_design.errors import DesignError
 from nrs_design.printable import printable
+
+if TYPE_CHECKING:
+    from jinja2 import Environment
 
 WIDTH = 100
 
@@ -115,3 +124,31 @@ def harmless(text: str) -> str:
     """Return a text that neither ends a comment nor begins one: printable ASCII, no trigraphs."""
     plain = printable(" ".join(text.split())).encode("ascii", "backslashreplace").decode()
     return re.sub(r"\?(?=\?)", "? ", plain.replace("*/", "* /").replace("/*", "/ *"))
+
+
+def fill_template(name: str, **values: object) -> str:
+    """Return the text of a file in `templates`; a name in it that has no value is an error."""
+    return _environment().get_template(name).render(values | {"unit": unit})
+
+
+@cache
+def _environment() -> Environment:
+    from jinja2 import Environment, PackageLoader, StrictUndefined
+
+    found = Environment(
+        loader=PackageLoader("nrs_design.exporters"),
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+        # C and Python are no markup; what goes into XML and HTML says how it is escaped.
+        autoescape=False,
+    )
+    found.filters |= {
+        "literal": literal,
+        "exact_decimal": exact_decimal,
+        "harmless": harmless,
+        "quoted": quoteattr,
+        "escaped": escape,
+    }
+    return found

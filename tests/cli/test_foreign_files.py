@@ -27,7 +27,6 @@ QUICK = ("certify-switching", "schema")
 BEFORE = {
     "scenarios.profile-of-the-thesis.csv": ("simulate", RUNS, "--out", "."),
     "scenarios.worst-force.png": ("simulate", RUNS, "--worst-case", "--out", "."),
-    "figures.html": ("reproduce", "--figures", "."),
     "x.csv": ("robot", "correction", HOLDER, "--table", "x.csv"),
     "x.htm": ("identify", "actuator", *ACTUATOR, "--report", "x.htm"),
     "x.html": ("report", SAMPLED, "--out", "x.html"),

@@ -18,7 +18,7 @@ from nrs_design.proof.spectrum import is_stable
 from nrs_design.robot.models.dynamics import gravity_torque, potential_energy
 from nrs_design.robot.models.geometry import direction
 from nrs_design.robot.models.kinematics import inverse_kinematics
-from nrs_design.robot.models.neuroboscope import robot, robot_spec
+from nrs_design.robot.models.robot import robot, robot_spec
 from nrs_design.robot.models.vectors import Array
 from nrs_design.search.balance import own_norm
 from nrs_design.thesis import thesis

@@ -25,13 +25,12 @@ from nrs_design.robot.models.kinematics import (
     orientation,
     orientation_jacobian,
 )
-from nrs_design.robot.models.neuroboscope import robot, robot_spec
-from nrs_design.robot.models.robot import Robot
+from nrs_design.robot.models.robot import Robot, robot, robot_spec
 from nrs_design.robot.models.simplified import simplified_dynamics
 from nrs_design.robot.models.vectors import Array
 from nrs_design.robot.models.workspace import joint_peaks, pose_grid, thesis_grid
-from nrs_design.robot.simulation.tracking.experiment import MOTIONS
-from nrs_design.robot.simulation.tracking.measured import MEASURED
+from nrs_design.robot.tracking.experiment import MOTIONS
+from nrs_design.robot.tracking.measured import MEASURED
 from nrs_design.thesis import thesis
 from nrs_design.thesis.comparison import (
     Found,

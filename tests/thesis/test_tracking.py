@@ -6,9 +6,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from nrs_design.robot.models.neuroboscope import robot, robot_spec
-from nrs_design.robot.simulation.tracking.experiment import thesis_experiments
-from nrs_design.robot.simulation.tracking.measured import measured_rmse
+from nrs_design.robot.models.robot import robot, robot_spec
+from nrs_design.robot.tracking.experiment import thesis_experiments
+from nrs_design.robot.tracking.measured import measured_rmse
 from nrs_design.spec import parse_spec
 from nrs_design.spec.templates import TEMPLATES
 from nrs_design.thesis import runs, thesis

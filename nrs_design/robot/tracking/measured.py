@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from nrs_design.robot.models.neuroboscope import robot, robot_spec
-from nrs_design.robot.models.robot import Robot
-from nrs_design.robot.simulation.tracking.experiment import MOTIONS, Experiment, thesis_experiments
-from nrs_design.robot.simulation.tracking.track import CONTROLLERS, experiment_tilt
+from nrs_design.robot.models.robot import Robot, robot, robot_spec
+from nrs_design.robot.tracking.experiment import MOTIONS, Experiment, thesis_experiments
+from nrs_design.robot.tracking.track import CONTROLLERS, experiment_tilt
 from nrs_design.spec import RobotSpec
 
 # Controller, tables, and RMSE of phi, psi (deg) and d (mm) where d, phi or psi moves.

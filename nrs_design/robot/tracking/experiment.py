@@ -1,15 +1,16 @@
-"""The three experiments of the thesis on tracking: one of d, phi and psi moves (4.2 to 4.4)."""
+"""The three experiments of the thesis on tracking, 4.2 to 4.4: what moves, and what it gave."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from math import pi
+from typing import Any
 
 import numpy as np
 
 from nrs_design.robot.models.kinematics import JointMotion, joint_motion
 from nrs_design.robot.models.robot import Robot
-from nrs_design.robot.models.vectors import Array
+from nrs_design.robot.models.vectors import Array, root_mean_square
 
 HOLD = 10.0
 # Angular frequencies in rad/s: 2 pi 0.1 of 4.20 to 4.22, 4.34 and 4.35, and 0.0571 of 4.33c and
@@ -77,3 +78,47 @@ def thesis_experiments(
         Experiment("phi", (0.0, 0.0, depth), space.phi, rates["phi"]),
         Experiment("psi", (0.0, 0.0, depth), space.psi, rates["psi"]),
     )
+
+
+# From rad and m to what the thesis prints of (phi, psi, d).
+DISPLAY = np.array([180 / pi, 180 / pi, 1e3])
+
+
+@dataclass(frozen=True, slots=True)
+class TrackingRecord:
+    """What one experiment gave."""
+
+    controller: str  # Which one
+    experiment: Experiment  # What was asked for
+    time: Array  # Ticks in s, shape (n,)
+    # wanted, measured, actual: poses (phi, psi, d), shape (n, 3), in rad and m; measured through
+    # the encoders.
+    wanted: Array
+    measured: Array
+    actual: Array
+    command: Array  # Shape (n, 3), in rpm
+
+    @property
+    def rmse(self) -> Array:
+        """Root mean square of wanted less measured, shape (3,), in rad and m.
+
+        Over the whole record, with the time that the pose is held.
+        """
+        return root_mean_square(self.wanted - self.measured)
+
+    @property
+    def actual_rmse(self) -> Array:
+        """Root mean square of wanted less actual, shape (3,), in rad and m."""
+        return root_mean_square(self.wanted - self.actual)
+
+    def summary(self) -> dict[str, Any]:
+        """Return what to print: angles in deg, lengths in mm, commands in rpm, times in s."""
+        return {
+            "controller": self.controller,
+            "moved": self.experiment.moved,
+            "period": 2 * pi / self.experiment.rate,
+            "duration": self.experiment.duration,
+            "rmse": (self.rmse * DISPLAY).tolist(),
+            "actual_rmse": (self.actual_rmse * DISPLAY).tolist(),
+            "largest_command": np.abs(self.command).max(axis=0).tolist(),
+        }

@@ -8,8 +8,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from nrs_design.reporting.style import CYCLE, DASHES, INK, color, marker, new_figure, styled
-from nrs_design.robot.simulation.tracking.experiment import COORDINATE, MOTIONS
-from nrs_design.robot.simulation.tracking.record import DISPLAY, TrackingRecord
+from nrs_design.robot.tracking.experiment import (
+    COORDINATE,
+    DISPLAY,
+    MOTIONS,
+    TrackingRecord,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -1,17 +1,23 @@
-"""One tick of the laws of thesis 4.2 to 4.4: computed torque, and a PD on each joint."""
+"""Motion control of the joints (thesis 4.2 to 4.4): one tick of the laws, and their gains."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from fractions import Fraction
 
 import numpy as np
 
+from nrs_design.controllers.float32 import to_float32
 from nrs_design.controllers.laws import ProportionalDerivative
-from nrs_design.robot.models.dynamics import mass_and_bias
+from nrs_design.design.root_locus import PdDesign, design_pd
+from nrs_design.errors import DesignError
+from nrs_design.robot.models.correction import DEPTH_SINES, correction_coefficients
+from nrs_design.robot.models.drive import build_drive
 from nrs_design.robot.models.kinematics import JointMotion, direct_kinematics
 from nrs_design.robot.models.robot import Robot
 from nrs_design.robot.models.simplified import simplified_dynamics
 from nrs_design.robot.models.vectors import Array
+from nrs_design.spec import RobotControlSpec, RobotSpec
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,15 +35,11 @@ class LoadModel:
 
     robot: Robot  # On its base
     encoder_ratio: float  # Turns of the encoder per turn of the joint
-    # K of the three joints (thesis 3.38). None takes the full dynamics M and G instead, which are
-    # too much for the robot's processor: to see what the simplification costs.
-    correction: tuple[float, float, float] | None
+    correction: tuple[float, float, float]  # K of the three joints (thesis 3.38)
 
     def terms(self, angle: Array) -> LoadTerms:
         """Compute inertia and weight at encoder angles of shape (n, 3), in rad."""
         pose = direct_kinematics(self.robot, angle / self.encoder_ratio)
-        if self.correction is None:
-            return LoadTerms(angle, *mass_and_bias(self.robot, pose, np.zeros_like(pose)))
         K = np.array(self.correction)
         simplified = simplified_dynamics(self.robot, pose)
         return LoadTerms(angle, K[:, None] * simplified.Ms, K * simplified.Gs)
@@ -76,8 +78,7 @@ class ComputedTorque:
     with e and a in encoder coordinates, n turns of the encoder and N of the motor per turn of the
     joint. The acceleration in 4.16 is that of the reference.
 
-    The law of the thesis knows the robot and not its motors. Their inertia and damping, as seen
-    from the joints, can be added, to see what that costs; both are 0 in the thesis.
+    The law of the thesis knows the robot and not its motors.
     """
 
     # Kp, Kd: in 1/s^2 and 1/s (thesis 4.15).
@@ -87,8 +88,6 @@ class ComputedTorque:
     encoder_ratio: float  # Turns n of the encoder per turn of the joint
     command_per_torque: float  # Command that holds a joint torque, ``gradient/N`` in rpm/(N m)
     load: LoadModel  # Inertia and weight
-    rotor_inertia: float = 0.0  # Of a motor at its joint, in kg m^2
-    motor_damping: float = 0.0  # Torque per speed of the reference, at the joint, in N m s/rad
 
     def step(self, state: LawState, reference: JointMotion, angle: Array) -> tuple[Array, LawState]:
         """Compute the commands of one tick in rpm, shape (n, 3), and what the next tick needs.
@@ -100,7 +99,6 @@ class ComputedTorque:
         wanted = reference.acceleration + feedback / self.encoder_ratio
         load = self.load.follow(angle, state.load)
         torque = (load.inertia @ wanted[..., None])[..., 0] + load.gravity
-        torque = torque + self.rotor_inertia * wanted + self.motor_damping * reference.velocity
         return self.command_per_torque * torque, LawState(error, load)
 
 
@@ -136,3 +134,71 @@ class IndependentJoint:
 
 
 MotionLaw = ComputedTorque | IndependentJoint
+
+
+def control_of(spec: RobotSpec) -> RobotControlSpec:
+    """Return what a robot spec says about its motion control; nothing said is a `DesignError`."""
+    if spec.control is None:
+        raise DesignError("this robot spec has no `control`", remedy="add it, as `init robot` does")
+    if spec.control.motion_loop.transfer_function is not None:
+        raise DesignError(
+            "motion control needs a controller, not a closed loop",
+            remedy="take transfer_function out of control.motion_loop",
+        )
+    return spec.control
+
+
+def design_load_model(spec: RobotSpec, robot: Robot) -> LoadModel:
+    """Return the simplified dynamics with the correction coefficients for the robot's tilt.
+
+    These are mean ratios over slow motions of the depth, as thesis 4.19 takes them from fig. 3.12.
+    """
+    first, second, third = correction_coefficients(robot, DEPTH_SINES).mean_ratio.tolist()
+    return LoadModel(robot, build_drive(spec.drive).encoder_ratio, (first, second, third))
+
+
+def design_computed_torque(spec: RobotSpec, load: LoadModel) -> ComputedTorque:
+    """Choose the error dynamics by damping ratio and settling time (thesis 4.14 and 4.15)."""
+    control, drive = control_of(spec), build_drive(spec.drive)
+    wn = _root_locus(spec).natural_frequency
+    return ComputedTorque(
+        Kp=wn**2,
+        Kd=2 * float(control.motion_loop.damping_ratio) * wn,
+        period=control.sample_period.si,
+        encoder_ratio=drive.encoder_ratio,
+        command_per_torque=1 / drive.torque_per_command,
+        load=load,
+    )
+
+
+def design_independent_joint(spec: RobotSpec, load: LoadModel | None) -> IndependentJoint:
+    """Choose the PD by root locus, or take the one that the spec gives (thesis 4.30)."""
+    control, drive = control_of(spec), build_drive(spec.drive)
+    return IndependentJoint(
+        motion=_proportional_derivative(spec),
+        period=control.sample_period.si,
+        encoder_ratio=drive.encoder_ratio,
+        command_per_torque=1 / drive.torque_per_command,
+        load=load,
+    )
+
+
+def _proportional_derivative(spec: RobotSpec) -> ProportionalDerivative:
+    given, wanted = control_of(spec).motion_loop, _root_locus(spec)
+    Kd = to_float32(
+        Fraction(wanted.derivative_gain)
+        if given.derivative_gain is None
+        else given.derivative_gain.exact
+    )
+    zero = Fraction(wanted.zero) if given.zero is None else given.zero.exact
+    return ProportionalDerivative(Kp=to_float32(Kd * zero), Kd=Kd)
+
+
+def _root_locus(spec: RobotSpec) -> PdDesign:
+    loop = control_of(spec).motion_loop
+    return design_pd(
+        spec.drive.gain.si,
+        spec.drive.time_constant.si,
+        float(loop.damping_ratio),
+        loop.settling_time.si,
+    )

@@ -7,13 +7,17 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from scipy.integrate import solve_ivp
 
-from nrs_design.robot.controllers.motion_laws import LawState, LoadModel
-from nrs_design.robot.design.motion_control import design_independent_joint
 from nrs_design.robot.models.balance import balanced_robot, design_balance, residual_torque
 from nrs_design.robot.models.body import MASSLESS
-from nrs_design.robot.models.dynamics import gravity_torque, mass_matrix
+from nrs_design.robot.models.dynamics import gravity_torque, mass_and_bias, mass_matrix
 from nrs_design.robot.models.kinematics import JointMotion, direct_kinematics, inverse_kinematics
-from nrs_design.robot.simulation.tracking.plant import (
+from nrs_design.robot.motion_control import (
+    LawState,
+    LoadModel,
+    LoadTerms,
+    design_independent_joint,
+)
+from nrs_design.robot.tracking.plant import (
     DriveArrays,
     DryFriction,
     JointState,
@@ -65,10 +69,18 @@ def test_step_response_of_the_linear_loop(spec, smooth):
     assert np.max(trace) == pytest.approx(1.068, abs=2e-3)
 
 
+class ExactLoad(LoadModel):
+    """The plant's own mass and weight in the place of the simplified ones."""
+
+    def terms(self, angle):
+        pose = direct_kinematics(self.robot, angle / self.encoder_ratio)
+        return LoadTerms(angle, *mass_and_bias(self.robot, pose, np.zeros_like(pose)))
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("fed", [False, True], ids=["without", "exact"])
 def test_the_weight_deflects_the_joints_unless_it_is_fed_forward(spec, tilted, smooth, fed):
-    known = LoadModel(tilted, smooth.encoder_ratio, None) if fed else None
+    known = ExactLoad(tilted, smooth.encoder_ratio, (1.0, 1.0, 1.0)) if fed else None
     law, mechanism = design_independent_joint(spec, known), Mechanism(tilted)
     state, memory = at_rest(tilted), LawState()
     wanted = state.position + 0.01

@@ -6,8 +6,8 @@ import pytest
 
 from nrs_design.controllers.laws import ProportionalDerivative
 from nrs_design.errors import DesignError
-from nrs_design.robot.simulation.tracking.simulate import simulate
-from nrs_design.robot.simulation.tracking.track import CONTROLLERS, build_track
+from nrs_design.robot.tracking.simulate import simulate
+from nrs_design.robot.tracking.track import CONTROLLERS, build_track
 from tests.support import ROOT
 
 # Fast, after a short hold, so that little simulated time shows everything.
@@ -67,26 +67,6 @@ def test_independent_joints_beat_computed_torque(records):
     # The ranking of thesis 4.3.4, on the same motions.
     for torque, joint, place in zip(records[:3], records[3:6], (2, 0, 1), strict=True):
         assert joint.rmse[place] < torque.rmse[place] / 5
-
-
-@pytest.mark.slow
-def test_complete_computed_torque_follows_almost_perfectly(spec, tilted):
-    # The law's model is the plant's: full dynamics, rotors and motors, no friction, no counts.
-    # What remains is the sampling.
-    track = shortened(build_track(spec, tilted, "computed-torque", PERIOD)).only("psi")
-    law = replace(
-        track.law,
-        load=replace(track.law.load, correction=None),
-        rotor_inertia=track.drive.inertia,
-        motor_damping=track.drive.damping,
-    )
-    drive = replace(track.drive, coulomb_friction=0.0)
-    encoder = replace(track.encoder, counts=None)
-    (record,) = simulate([replace(track, law=law, drive=drive, encoder=encoder)])
-    moving = record.time > HOLD + 0.5
-    error = np.degrees((record.wanted - record.actual)[moving, 1])
-    assert np.sqrt(np.mean(error**2)) < 0.05
-    assert np.degrees(np.ptp(record.actual[:, 1])) == pytest.approx(40, abs=0.2)
 
 
 @pytest.mark.slow

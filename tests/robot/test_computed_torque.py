@@ -1,11 +1,8 @@
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
-from nrs_design.robot.controllers.motion_laws import LawState
-from nrs_design.robot.design.motion_control import design_computed_torque
 from nrs_design.robot.models.kinematics import JointMotion, inverse_kinematics
+from nrs_design.robot.motion_control import LawState, design_computed_torque
 
 POSE = np.array([[0.05, -0.1, 0.2]])
 ACCELERATION = np.array([[0.3, -0.1, 0.2]])
@@ -31,11 +28,3 @@ def test_equation_4_18_with_acceleration_and_error_of_the_encoders(law, load, an
     terms = load.terms(angle)
     expected = 2.7044e5 * (terms.inertia[0] @ wanted[0] / (905 * 5) + terms.gravity[0] / 905)
     assert command[0] == pytest.approx(expected, rel=1e-5)
-
-
-def test_rotor_and_motor_can_be_added(law, angle, load):
-    reference = JointMotion(angle / 5, VELOCITY, ACCELERATION)
-    plain, _ = law.step(LawState(), reference, angle)
-    more, _ = replace(law, rotor_inertia=1.2, motor_damping=34.0).step(LawState(), reference, angle)
-    added = (more - plain) * 905 / 2.7044e5
-    assert added == pytest.approx(1.2 * ACCELERATION + 34.0 * VELOCITY, rel=1e-9)

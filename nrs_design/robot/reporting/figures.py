@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from nrs_design.reporting.style import (
-    BLUE,
     CYCLE,
     INK,
     MUTED,
@@ -19,7 +18,7 @@ from nrs_design.reporting.style import (
     new_figure,
     styled,
 )
-from nrs_design.robot.models.correction import SeparateCorrection, TiltTable
+from nrs_design.robot.models.correction import TiltTable
 from nrs_design.robot.models.dynamics import torque_shares
 from nrs_design.robot.models.geometry import reach_margin
 from nrs_design.robot.models.robot import Robot
@@ -157,20 +156,4 @@ def draw_balance(gravity: Array, residual: Array) -> Figure:
     axes.set_ylabel("Static torque [N·m]")
     axes.set_ylim(0, None)
     legend(figure, axes, 2)
-    return figure
-
-
-@styled
-def draw_inertia_errors(apart: SeparateCorrection) -> Figure:
-    """Draw the error of the corrected mass matrix with one, three and nine coefficients."""
-    figure, axes = new_axes(2.4)
-    names = ("those of gravity", "by rows", "by entries")
-    errors = [100 * e for e in (apart.single_error, apart.rows_error, apart.entries_error)]
-    bars = axes.barh(names, errors, color=BLUE, height=0.6)
-    axes.bar_label(bars, [f"{error:.1f} %" for error in errors], padding=3)
-    axes.invert_yaxis()
-    axes.set_xlim(0, 1.2 * max(errors))
-    axes.grid(visible=False, axis="y")
-    axes.set_xlabel("Error of the corrected mass matrix [%]")
-    axes.set_ylabel("Coefficients of inertia")
     return figure

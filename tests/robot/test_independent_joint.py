@@ -1,13 +1,9 @@
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
-from nrs_design.robot.controllers.motion_laws import LawState, LoadModel
-from nrs_design.robot.design.motion_control import design_independent_joint
-from nrs_design.robot.models.dynamics import gravity_torque, mass_matrix
 from nrs_design.robot.models.kinematics import JointMotion, inverse_kinematics
 from nrs_design.robot.models.simplified import simplified_dynamics
+from nrs_design.robot.motion_control import LawState, LoadModel, design_independent_joint
 
 POSE = np.array([[0.05, -0.1, 0.2]])
 
@@ -61,12 +57,6 @@ def test_corrected_simplified_dynamics(tilted):
     simplified = simplified_dynamics(tilted, POSES)
     assert terms.inertia == pytest.approx(np.diag(K) @ simplified.Ms, abs=1e-12)
     assert terms.gravity == pytest.approx(K * simplified.Gs, abs=1e-12)
-
-
-def test_full_dynamics(tilted, load):
-    terms = replace(load, correction=None).terms(5 * inverse_kinematics(tilted, POSES))
-    assert terms.inertia == pytest.approx(mass_matrix(tilted, POSES), abs=1e-12)
-    assert terms.gravity == pytest.approx(gravity_torque(tilted, POSES), abs=1e-12)
 
 
 def test_follows_the_encoders_that_move(tilted, load):

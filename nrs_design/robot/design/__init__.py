@@ -1,1 +1,0 @@
-"""Choosing the gains of the motion control of a robot."""

@@ -1,1 +1,0 @@
-"""What the links of a robot do in a run."""

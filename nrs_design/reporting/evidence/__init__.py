@@ -5,12 +5,9 @@ from __future__ import annotations
 from nrs_design.proof.evidence import AbstractEvidence, Shows
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.reporting.evidence.blocks import blocks_page
-from nrs_design.reporting.evidence.constants import constants_page
-from nrs_design.reporting.evidence.functions import functions_page
-from nrs_design.reporting.evidence.growth import growth_page
-from nrs_design.reporting.evidence.obstruction import obstruction_page
-from nrs_design.reporting.evidence.offers import offer_of
-from nrs_design.reporting.evidence.page import Page
+from nrs_design.reporting.evidence.functions import constants_page, functions_page
+from nrs_design.reporting.evidence.growth import growth_page, obstruction_page
+from nrs_design.reporting.evidence.offers import Page, offer_of
 from nrs_design.reporting.evidence.regions import bound_page, saturation_page
 
 _PAGES = {

@@ -13,12 +13,10 @@ from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.reporting.document import Block, Illustration, Paragraph, Section, Table
 from nrs_design.reporting.evidence import words
-from nrs_design.reporting.evidence.norms import matrix_tables
-from nrs_design.reporting.evidence.offers import Offer
-from nrs_design.reporting.evidence.page import Page
+from nrs_design.reporting.evidence.functions import matrix_tables
+from nrs_design.reporting.evidence.offers import Offer, Page
 from nrs_design.reporting.evidence.runs import simulated
-from nrs_design.reporting.figures.bounded_run import BoundedSignal, draw_bounded_run
-from nrs_design.reporting.figures.run import draw_run
+from nrs_design.reporting.figures.run import BoundedSignal, draw_bounded_run, draw_run
 from nrs_design.reporting.formatting import number
 from nrs_design.reporting.sections.titles import SATURATION
 from nrs_design.simulation.greedy import all_modes, greedy_run, relative_norms

@@ -1,19 +1,61 @@
-"""How far ranges, delay and dwell time reach until a proof is lost, in words."""
+"""What would help: margins of a proof, and next steps where there is none, as commands."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from fractions import Fraction
+from pathlib import Path
+from shlex import quote
 from typing import TYPE_CHECKING
 
 from nrs_design.axis import unit as shown_unit
+from nrs_design.certificates.certificate import Verdict, refutes_in_contact
+from nrs_design.pipeline.blocked import blocked_lines
+from nrs_design.pipeline.certification import Result, find_relief
 from nrs_design.proof.bounds import nearly, rounded_down, rounded_up
+from nrs_design.proof.mode import Time
+from nrs_design.reporting.document import Block, Bullets, Section
+from nrs_design.spec import RobotSpec
 
 if TYPE_CHECKING:
+    from nrs_design.pipeline.blocked import Blocked
+    from nrs_design.pipeline.certification import Result
     from nrs_design.pipeline.margins import ProofMargins
     from nrs_design.search.loop_margin import Bracket
     from nrs_design.spec import Spec
     from nrs_design.spec.misses import MissRuleSpec
+
+REMEDIES = "What would help"
+MARGINS = "Margins of the proof"
+_DESIGN = (
+    "Change the design: narrower parameter ranges or fewer contacts per controller, more damping, "
+    "modes that are more alike; a longer dwell time or fewer transitions, where the machine can "
+    "enforce them."
+)
+
+
+def remedies_section(
+    result: Result,
+    margins: ProofMargins | None,
+    blocked: Blocked | None = None,
+) -> Section | None:
+    """Report the margins of the proof and the next steps; None without either."""
+    blocks: list[Block] = []
+    if relief := find_relief(result):
+        blocks.append(Bullets("Gains that would hold", relief))
+    if blocked is not None:
+        why = blocked_lines(blocked, Path(result.loaded.path.name))
+        blocks.append(Bullets("Why it is not proved", why))
+    lines = () if margins is None else tuple(margin_lines(margins, result.loaded.spec))
+    if lines:
+        said = tuple(f"{line[0].upper()}{line[1:]}." for line in lines)
+        blocks.append(Bullets("How far a proof reaches", said))
+    box = margins is not None and margins.box is not None
+    dwell = margins is not None and margins.dwell is not None
+    steps = next_steps(result, margin=box, shortest_dwell=dwell)
+    if steps:
+        blocks.append(Bullets("Next steps", (*steps[:-1], _DESIGN, steps[-1])))
+    return Section(REMEDIES if steps else MARGINS, tuple(blocks)) if blocks else None
 
 
 def margin_lines(margins: ProofMargins, spec: Spec) -> Iterator[str]:
@@ -112,3 +154,52 @@ def _in(contact: str) -> str:
 
 def _samples(count: Fraction) -> str:
     return f"{count} sample{'s' * (count != 1)}"
+
+
+def next_steps(
+    result: Result,
+    *,
+    margin: bool = False,
+    shortest_dwell: bool = False,
+    spec: Path | None = None,
+) -> tuple[str, ...]:
+    """Return next steps, the most promising first; none where stability is proved.
+
+    What was looked for just now need not be told to be. Without its path, a spec is named by file
+    name alone, which is the same wherever it lies.
+    """
+    verdict = result.certification.verdict
+    if verdict is Verdict.PROVED:
+        return ()
+    name = quote(str(spec or result.loaded.path.name))
+    steps = _steps(result, name, margin, shortest_dwell)
+    return (*steps, "Do not ship this design: a gate must treat it as a failure.")
+
+
+def _steps(result: Result, name: str, margin: bool, shortest_dwell: bool) -> Iterator[str]:
+    certification, spec = result.certification, result.loaded.spec
+    command = f"nrs-design certify-switching {name}"
+    evidence = certification.evidence
+    evidence = evidence or refutes_in_contact(certification.system, certification.statements)
+    alone = evidence is not None and evidence.names_unstable_mode
+    if alone:
+        yield (
+            "A mode is not stable by itself, so no rule of switching helps: change the gains of "
+            "its controller, or narrow the range that makes it unstable."
+        )
+    if certification.verdict is Verdict.INCONCLUSIVE:
+        yield f"Search longer: {command} --budget 600 (or more --memory, or a --max-degree)"
+    if spec.has_ranges and not margin:
+        yield f"Find the largest ranges that are proved: {command} --margin"
+    if not alone and not shortest_dwell and _takes_dwell(result):
+        yield f"Find the shortest dwell time that is proved: {command} --shortest-dwell"
+    if result.designed is not None:
+        yield f"See which gains the goals allow: nrs-design optimize {name}"
+
+
+def _takes_dwell(result: Result) -> bool:
+    """Tell whether a shortest dwell time can be searched."""
+    spec, system = result.loaded.spec, result.certification.system
+    assert not isinstance(spec, RobotSpec)  # It has no modes, hence no certification.
+    lasting = len(system.lasting_modes()) == len(system.modes)
+    return system.time is Time.CONTINUOUS and lasting and spec.find_dwell_obstacle() is None

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 
 import numpy as np
 
@@ -19,7 +18,7 @@ from nrs_design.proof.text import counted
 from nrs_design.reporting.document import Block, Illustration, Paragraph, Section, Table
 from nrs_design.reporting.evidence import words
 from nrs_design.reporting.evidence.offers import Offer, Page, offer_of
-from nrs_design.reporting.evidence.runs import Bound, run_figures, unbounded_run
+from nrs_design.reporting.evidence.runs import Bound, run_figures
 from nrs_design.reporting.formatting import number, roots
 from nrs_design.simulation.greedy import all_modes
 from nrs_design.simulation.periodic import (
@@ -119,11 +118,13 @@ def _at_a_value(system: SwitchedSystem, offer: Offer) -> Page:
     """Return the page of what happens at one value of the constant parameters."""
     ((_, part),) = offer.parts
     page = growth_page(system_at(system, offer.shares), part, offer_of(part))
+    run = page.run
+    assert run is not None  # it shows instability
     return Page(
         "a value of the parameter that is not stable",
         (_AT_A_VALUE, *page.meaning),
         (*page.limits, _OTHER_VALUES),
-        lambda: Section(_TITLE, (Paragraph(_AT_THIS_VALUE), *page.run().blocks)),
+        lambda: Section(_TITLE, (Paragraph(_AT_THIS_VALUE), *run().blocks)),
     )
 
 
@@ -243,8 +244,7 @@ def obstruction_page(system: SwitchedSystem, _: AbstractEvidence, offer: Offer) 
         "no common quadratic function exists",
         (_MEANING,),
         (),
-        partial(unbounded_run, system),
-        lambda: (_section(system, offer),),
+        sections=lambda: (_section(system, offer),),
     )
 
 

@@ -24,7 +24,8 @@ class Page:
     name: str  # What it is, in a few words, for a table
     meaning: tuple[str, ...]  # What the claim means, what it rests on, and how it was decided
     limits: tuple[str, ...]  # What does not follow, beside what the meaning says of it
-    run: Callable[[], Section]  # Below the proved bound, or a witness of instability
+    # Below the proved bound, or a witness of instability; None where it decides nothing.
+    run: Callable[[], Section] | None = None
     sections: Callable[[], tuple[Section, ...]] = tuple  # The numbers in tables
     changing: str = "however fast they change"  # Which values between corners are covered
 

@@ -18,7 +18,8 @@ def evidence_sections(certification: Certification) -> Iterator[Section]:
     system, evidence = certification.system, certification.evidence
     for statement in certification.statements:
         yield from page_of(system, statement).sections()
-    run = page_of(system, evidence).run() if evidence else unbounded_run(system)
+    drawn = None if evidence is None else page_of(system, evidence).run
+    run = unbounded_run(system) if drawn is None else drawn()
     if system.saturation is not None:
         run = replace(run, blocks=(Paragraph(_LINEAR), *run.blocks))
     yield run

@@ -11,11 +11,14 @@ from nrs_design.controllers.float32 import to_float32
 from nrs_design.controllers.laws import ProportionalDerivative
 from nrs_design.design.root_locus import PdDesign, design_pd
 from nrs_design.errors import DesignError
-from nrs_design.robot.models.correction import DEPTH_SINES, correction_coefficients
+from nrs_design.robot.models.correction import (
+    DEPTH_SINES,
+    correction_coefficients,
+    simplified_dynamics,
+)
 from nrs_design.robot.models.drive import build_drive
 from nrs_design.robot.models.kinematics import JointMotion, direct_kinematics
 from nrs_design.robot.models.robot import Robot
-from nrs_design.robot.models.simplified import simplified_dynamics
 from nrs_design.robot.models.vectors import Array
 from nrs_design.spec import RobotControlSpec, RobotSpec
 

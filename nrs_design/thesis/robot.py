@@ -16,6 +16,7 @@ from nrs_design.robot.models.correction import (
     WHOLE_WORKSPACE,
     Correction,
     correction_coefficients,
+    simplified_dynamics,
 )
 from nrs_design.robot.models.dynamics import mass_matrix, torque_shares
 from nrs_design.robot.models.geometry import direction
@@ -26,11 +27,10 @@ from nrs_design.robot.models.kinematics import (
     orientation_jacobian,
 )
 from nrs_design.robot.models.robot import Robot, robot, robot_spec
-from nrs_design.robot.models.simplified import simplified_dynamics
 from nrs_design.robot.models.vectors import Array
 from nrs_design.robot.models.workspace import joint_peaks, pose_grid, thesis_grid
 from nrs_design.robot.tracking.experiment import MOTIONS
-from nrs_design.robot.tracking.measured import MEASURED
+from nrs_design.robot.tracking.track import MEASURED
 from nrs_design.thesis import thesis
 from nrs_design.thesis.comparison import (
     Found,

@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
+from nrs_design.robot.models.correction import simplified_dynamics
 from nrs_design.robot.models.kinematics import JointMotion, inverse_kinematics
-from nrs_design.robot.models.simplified import simplified_dynamics
 from nrs_design.robot.motion_control import LawState, LoadModel, design_independent_joint
 
 POSE = np.array([[0.05, -0.1, 0.2]])

@@ -84,13 +84,13 @@ def _at_pose(
     velocity: tuple[float, float, float],
     acceleration: tuple[float, float, float],
 ) -> dict[str, Any]:
+    from nrs_design.robot.models.correction import simplified_dynamics
     from nrs_design.robot.models.dynamics import (
         coriolis_matrix,
         gravity_torque,
         inverse_dynamics,
         mass_matrix,
     )
-    from nrs_design.robot.models.simplified import simplified_dynamics
 
     simplified = simplified_dynamics(robot, pose)
     return {

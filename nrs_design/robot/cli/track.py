@@ -87,7 +87,7 @@ def track(
     if figures is not None:
         from nrs_design.output import PNG, SVG, Output, write_outputs
         from nrs_design.reporting.images import to_png, to_svg_file
-        from nrs_design.robot.reporting.tracking import draw_tracking
+        from nrs_design.robot.reporting.figures import draw_tracking
 
         drawn = draw_tracking(records, [run["measured_on_robot"] for run in runs])
         outputs: list[Output] = [
@@ -127,7 +127,7 @@ def _records(
 
 
 def _run(spec: RobotSpec, robot: Robot, record: TrackingRecord) -> dict[str, Any]:
-    from nrs_design.robot.tracking.measured import measured_rmse
+    from nrs_design.robot.tracking.track import measured_rmse
 
     measured = measured_rmse(spec, robot, record.controller, record.experiment)
     return record.summary() | {"measured_on_robot": measured}

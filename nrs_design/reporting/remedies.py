@@ -19,7 +19,6 @@ from nrs_design.spec import RobotSpec
 
 if TYPE_CHECKING:
     from nrs_design.pipeline.blocked import Blocked
-    from nrs_design.pipeline.certification import Result
     from nrs_design.pipeline.margins import ProofMargins
     from nrs_design.search.loop_margin import Bracket
     from nrs_design.spec import Spec

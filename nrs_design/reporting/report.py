@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 from nrs_design.axis import about
 from nrs_design.certificates.certificate import canonical, to_document
 from nrs_design.reporting.document import Report
+from nrs_design.reporting.evidence import evidence_sections
 from nrs_design.reporting.remedies import remedies_section
 from nrs_design.reporting.sections.design import design_sections
-from nrs_design.reporting.sections.evidence import evidence_sections
 from nrs_design.reporting.sections.goals import goals_section
 from nrs_design.reporting.sections.head import (
     claim_of,

@@ -108,7 +108,7 @@ def _sequence(e: Any) -> Offer:
     return Offer(steps=e.steps, edges=e.edges, factor=None if e.factor is None else e.factor[0])
 
 
-# By kind of evidence.
+# By kind of evidence: the only place in the reports that knows a kind by its name.
 OFFERS: Mapping[str, Callable[[Any], Offer]] = {
     "block-triangular": lambda e: Offer(blocks=e.blocks, parts=e.parts),
     "constants-quadratic": _corners,

@@ -41,8 +41,6 @@ from nrs_design.spec.provenance import COVERS, MOTOR_COVERS
 
 if TYPE_CHECKING:
     from nrs_design.design.analysis import DesignAnalysis
-    from nrs_design.pipeline.certification import Result
-
 
 # Labels and values.
 _Facts = list[tuple[str, str]]
@@ -51,8 +49,6 @@ NO_CLAIM = (
     "Neither a proof nor a refutation was found. This is no statement about stability: the modes "
     "may be stable or unstable under switching."
 )
-
-
 REFUTED_ASIDE = (
     "Refuted {}, for which the environment would have to pull. Where contact may be lost:"
 )

@@ -12,8 +12,6 @@ from nrs_design.cli.tables import print_table
 from nrs_design.errors import PoseError
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from nrs_design.robot.models.robot import Robot
 
 

@@ -31,8 +31,8 @@ LOGIC_SPECIAL = (0x7FC00000, 0x7F800000, 0xFF800000, 0)
 
 
 @dataclass(frozen=True, slots=True)
-class Cases:
-    """Cases of a law as bits."""
+class StepCases:
+    """StepCases of a law as bits."""
 
     # Mode, inputs, states before, outputs, whether the step is valid, states after.
     columns: tuple[str, ...]
@@ -40,7 +40,7 @@ class Cases:
 
 
 def self_test(
-    law: StepLaw, cases: Cases, names: CNames, about: tuple[str, ...]
+    law: StepLaw, cases: StepCases, names: CNames, about: tuple[str, ...]
 ) -> dict[str, bytes]:
     """Return header and source of the self-test, by their endings."""
     logic = [] if law.logic is None else [*logic_cases(law.logic)]
@@ -88,7 +88,7 @@ def _words(count: int, size: int, names: CNames, of: str) -> tuple[str, ...]:
     )
 
 
-def draw_cases(law: StepLaw, count: int = COUNT) -> Cases:
+def draw_cases(law: StepLaw, count: int = COUNT) -> StepCases:
     """Draw inputs and states, always the same ones, and compute a step of each."""
     # The bits of this generator are fixed; what NumPy makes of them may change.
     draw = np.random.PCG64(SEED).random_raw
@@ -105,7 +105,7 @@ def draw_cases(law: StepLaw, count: int = COUNT) -> Cases:
     parts |= {name: _bits(values) for name, values in result.outputs.items()}
     parts["valid"] = result.valid.astype(np.uint32)
     parts |= {f"after.{v.name}": _bits(result.states[v.name]) for v in law.states}
-    return Cases(tuple(parts), np.stack(list(parts.values()), axis=1))
+    return StepCases(tuple(parts), np.stack(list(parts.values()), axis=1))
 
 
 def _draw(

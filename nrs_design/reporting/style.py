@@ -160,8 +160,6 @@ def _shrink(figure: Figure) -> None:
 
 def settle(figure: Figure) -> None:
     """Lay a figure out for good, once; where an aspect is kept, only drawing it does that."""
-    from nrs_design.reporting.style import write_ticks_in_full
-
     engine = figure.get_layout_engine()
     if engine is None:
         return

@@ -29,8 +29,8 @@ from nrs_design.robot.models.kinematics import (
 from nrs_design.robot.models.robot import Robot, robot, robot_spec
 from nrs_design.robot.models.vectors import Array
 from nrs_design.robot.models.workspace import joint_peaks, pose_grid, thesis_grid
-from nrs_design.robot.tracking.experiment import MOTIONS
-from nrs_design.robot.tracking.track import MEASURED
+from nrs_design.robot.simulation.experiment import MOTIONS
+from nrs_design.robot.simulation.track import MEASURED
 from nrs_design.thesis import thesis
 from nrs_design.thesis.comparison import (
     Found,
@@ -187,7 +187,7 @@ LEFT, RIGHT = (843.5, 1301.1, 1.8041), (844.1, 1302.4, 1.5919)
 ARM, COUPLER, PAYLOAD = 0.115, 0.220, 0.4428
 
 
-def balance() -> Iterable[Found]:
+def passive_balance() -> Iterable[Found]:
     """Recompute counter-masses, springs and the misprinted lengths."""
     ours = design_balance(robot_spec(), robot())
     left, arm = ours.left, robot().legs[0]

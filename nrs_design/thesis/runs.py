@@ -134,7 +134,7 @@ def away(speed: float) -> float:
     return math.degrees(thesis.TORQUE / float(thesis.SOFT)) / speed
 
 
-def runs() -> Iterator[Found]:
+def simulated_runs() -> Iterator[Found]:
     """Simulate insertion and withdrawal, the limit on the force, and tissue and tool."""
     yield from _profile()
     for speed in (5, 3):

@@ -33,7 +33,7 @@ TOPICS: Mapping[str, Callable[[], Iterable[Found]]] = {
     "actuator": loops.actuator,
     "root_locus": loops.root_locus,
     "tracking": robot.tracking,
-    "balance": robot.balance,
+    "balance": robot.passive_balance,
     "specimens": materials.specimens,
     "impedance": loops.impedance,
     "modes": switching.modes,
@@ -41,7 +41,7 @@ TOPICS: Mapping[str, Callable[[], Iterable[Found]]] = {
     "switching": switching.switching,
     "gradient": switching.gradient,
     "experiments": loops.experiments,
-    "runs": runs.runs,
+    "runs": runs.simulated_runs,
     "hands_on": loops.hands_on,
     "hand_runs": runs.hand_runs,
 }

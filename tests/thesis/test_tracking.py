@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from nrs_design.robot.models.robot import robot, robot_spec
-from nrs_design.robot.tracking.experiment import thesis_experiments
-from nrs_design.robot.tracking.track import measured_rmse
+from nrs_design.robot.simulation.experiment import thesis_experiments
+from nrs_design.robot.simulation.track import measured_rmse
 from nrs_design.spec import parse_spec
 from nrs_design.spec.templates import TEMPLATES
 from nrs_design.thesis import runs, thesis

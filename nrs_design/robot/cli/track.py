@@ -18,7 +18,7 @@ from nrs_design.robot.cli.options import Tilt
 
 if TYPE_CHECKING:
     from nrs_design.robot.models.robot import Robot
-    from nrs_design.robot.tracking.experiment import TrackingRecord
+    from nrs_design.robot.simulation.experiment import TrackingRecord
     from nrs_design.spec import RobotSpec
 
 ALL = "all"
@@ -74,8 +74,8 @@ def track(
     Example: nrs-design robot track specs/robots/neuroboscope.nrs.yaml --figures figures
     """
     from nrs_design.robot.pipeline import run_robot
-    from nrs_design.robot.tracking.simulate import LEFT_OUT
-    from nrs_design.robot.tracking.track import experiment_tilt
+    from nrs_design.robot.simulation.simulate import LEFT_OUT
+    from nrs_design.robot.simulation.track import experiment_tilt
 
     loaded, robot_spec, robot = run_robot(spec)
     robot = robot.tilted(experiment_tilt(robot_spec) if tilt is None else math.radians(tilt))
@@ -116,8 +116,8 @@ def _records(
     period: float | None,
     tell: Progress,
 ) -> list[TrackingRecord]:
-    from nrs_design.robot.tracking.simulate import simulate
-    from nrs_design.robot.tracking.track import CONTROLLERS, build_track
+    from nrs_design.robot.simulation.simulate import simulate
+    from nrs_design.robot.simulation.track import CONTROLLERS, build_track
 
     names: tuple[str, ...] = (controller.value,)
     if controller is ControllerOption.ALL:
@@ -127,14 +127,14 @@ def _records(
 
 
 def _run(spec: RobotSpec, robot: Robot, record: TrackingRecord) -> dict[str, Any]:
-    from nrs_design.robot.tracking.track import measured_rmse
+    from nrs_design.robot.simulation.track import measured_rmse
 
     measured = measured_rmse(spec, robot, record.controller, record.experiment)
     return record.summary() | {"measured_on_robot": measured}
 
 
 def _document(robot: Robot, runs: list[dict[str, Any]]) -> dict[str, Any]:
-    from nrs_design.robot.tracking.simulate import LEFT_OUT
+    from nrs_design.robot.simulation.simulate import LEFT_OUT
 
     return {
         "base_tilt": robot.base_tilt,

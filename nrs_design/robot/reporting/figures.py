@@ -25,7 +25,7 @@ from nrs_design.robot.models.geometry import reach_margin
 from nrs_design.robot.models.robot import Robot
 from nrs_design.robot.models.vectors import Array, root_mean_square
 from nrs_design.robot.models.workspace import pose_grid, reachable_poses, thesis_grid
-from nrs_design.robot.tracking.experiment import (
+from nrs_design.robot.simulation.experiment import (
     COORDINATE,
     DISPLAY,
     MOTIONS,

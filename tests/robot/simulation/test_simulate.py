@@ -6,8 +6,8 @@ import pytest
 
 from nrs_design.controllers.laws import ProportionalDerivative
 from nrs_design.errors import DesignError
-from nrs_design.robot.tracking.simulate import simulate
-from nrs_design.robot.tracking.track import CONTROLLERS, build_track
+from nrs_design.robot.simulation.simulate import simulate
+from nrs_design.robot.simulation.track import CONTROLLERS, build_track
 from tests.support import ROOT
 
 # Fast, after a short hold, so that little simulated time shows everything.

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from nrs_design.errors import PoseError
-from nrs_design.robot.tracking.experiment import (
+from nrs_design.robot.simulation.experiment import (
     COORDINATE,
     Experiment,
     thesis_experiments,

@@ -7,17 +7,17 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from scipy.integrate import solve_ivp
 
-from nrs_design.robot.models.balance import balanced_robot, design_balance, residual_torque
-from nrs_design.robot.models.body import MASSLESS
-from nrs_design.robot.models.dynamics import gravity_torque, mass_and_bias, mass_matrix
-from nrs_design.robot.models.kinematics import JointMotion, direct_kinematics, inverse_kinematics
-from nrs_design.robot.motion_control import (
+from nrs_design.robot.design.motion_control import (
     LawState,
     LoadModel,
     LoadTerms,
     design_independent_joint,
 )
-from nrs_design.robot.tracking.plant import (
+from nrs_design.robot.models.balance import balanced_robot, design_balance, residual_torque
+from nrs_design.robot.models.body import MASSLESS
+from nrs_design.robot.models.dynamics import gravity_torque, mass_and_bias, mass_matrix
+from nrs_design.robot.models.kinematics import JointMotion, direct_kinematics, inverse_kinematics
+from nrs_design.robot.simulation.plant import (
     DriveArrays,
     DryFriction,
     JointState,

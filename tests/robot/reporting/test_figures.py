@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from nrs_design.robot.reporting.figures import draw_tracking
-from nrs_design.robot.tracking.experiment import Experiment, TrackingRecord
+from nrs_design.robot.simulation.experiment import Experiment, TrackingRecord
 
 ERROR = np.radians([0.5, 0.01, 0.0])
 

@@ -9,12 +9,12 @@ import numpy as np
 
 from nrs_design.errors import DesignError, PoseError
 from nrs_design.progress import Progress, silent
+from nrs_design.robot.design.motion_control import LawState
 from nrs_design.robot.models.kinematics import JointMotion, direct_kinematics
 from nrs_design.robot.models.vectors import Array
-from nrs_design.robot.motion_control import LawState
-from nrs_design.robot.tracking.experiment import TrackingRecord
-from nrs_design.robot.tracking.plant import DriveArrays, JointState, Stepper
-from nrs_design.robot.tracking.track import Track
+from nrs_design.robot.simulation.experiment import TrackingRecord
+from nrs_design.robot.simulation.plant import DriveArrays, JointState, Stepper
+from nrs_design.robot.simulation.track import Track
 
 # Steps of the mechanism between two ticks: more do not change the fourth digit of any error.
 STEPS_PER_TICK = 1

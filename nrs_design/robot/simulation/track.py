@@ -7,18 +7,18 @@ from math import pi
 
 import numpy as np
 
-from nrs_design.robot.models.balance import balanced_robot, design_balance
-from nrs_design.robot.models.drive import JointDrive, build_drive
-from nrs_design.robot.models.robot import Robot, robot, robot_spec
-from nrs_design.robot.models.vectors import Array
-from nrs_design.robot.motion_control import (
+from nrs_design.robot.design.motion_control import (
     MotionLaw,
     design_computed_torque,
     design_independent_joint,
     design_load_model,
 )
-from nrs_design.robot.tracking.experiment import MOTIONS, Experiment, thesis_experiments
-from nrs_design.robot.tracking.plant import Mechanism
+from nrs_design.robot.models.balance import balanced_robot, design_balance
+from nrs_design.robot.models.drive import JointDrive, build_drive
+from nrs_design.robot.models.robot import Robot, robot, robot_spec
+from nrs_design.robot.models.vectors import Array
+from nrs_design.robot.simulation.experiment import MOTIONS, Experiment, thesis_experiments
+from nrs_design.robot.simulation.plant import Mechanism
 from nrs_design.spec import RobotSpec
 
 CONTROLLERS = ("computed-torque", "independent-joint", "balanced")

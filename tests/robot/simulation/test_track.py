@@ -2,10 +2,10 @@ import numpy as np
 import pytest
 
 from nrs_design.errors import DesignError
+from nrs_design.robot.design.motion_control import ComputedTorque, IndependentJoint
 from nrs_design.robot.models.robot import build_robot
-from nrs_design.robot.motion_control import ComputedTorque, IndependentJoint
-from nrs_design.robot.tracking.experiment import Experiment, TrackingRecord
-from nrs_design.robot.tracking.track import CONTROLLERS, build_track, experiment_tilt
+from nrs_design.robot.simulation.experiment import Experiment, TrackingRecord
+from nrs_design.robot.simulation.track import CONTROLLERS, build_track, experiment_tilt
 from nrs_design.spec import parse_spec
 from nrs_design.spec.templates import TEMPLATES
 

@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nrs_design.robot.tracking.track import Encoder
+from nrs_design.robot.simulation.track import Encoder
 
 ENCODER = Encoder(5.0, 8192)
 angles = st.lists(st.floats(-2, 2), min_size=3, max_size=3).map(np.array)

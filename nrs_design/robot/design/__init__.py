@@ -1,0 +1,1 @@
+"""Motion control of the joints: the laws, and their gains."""
